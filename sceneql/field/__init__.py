@@ -1,0 +1,1 @@
+"""The implicit-field engine: tapes, their evaluators, root isolation."""

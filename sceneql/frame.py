@@ -1,0 +1,196 @@
+"""Plain values handed to renderers: a closed set. Every object, material and light lowers itself to these.
+
+Space is right-handed, y up, meters; a camera looks along its -z; pixel (0, 0) is top left; the front of a triangle
+is counterclockwise. Colors are linear, scene-referred RGB. Arrays are numpy arrays; this module imports none.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from numpy import float64, int32
+    from numpy.typing import NDArray
+
+    Floats = NDArray[float64]
+    Ints = NDArray[int32]
+
+RGB = tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Surface:
+    """How a surface answers light: one parametric record (Burley 2012, simplified: metallic and roughness)."""
+
+    color: RGB = (0.8, 0.8, 0.8)
+    roughness: float = 0.5
+    """0 mirror-sharp to 1 matte; the GGX width is its square (Walter et al. 2007; Burley 2012)."""
+    metallic: float = 0.0
+    specular: float = 0.04
+    """Reflectance at normal incidence of the dielectric part; 0 for a perfectly matte one."""
+    transmission: float = 0.0
+    index_of_refraction: float = 1.5
+    emission: RGB = (0.0, 0.0, 0.0)
+    checker_size: float = 0.0
+    """Side [m] of a checker pattern in world x and z (and y off horizontal faces); 0 for none."""
+    checker_color: RGB = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Mesh:
+    """Triangles; with ``normals`` they are shaded smooth, without they are flat."""
+
+    name: str
+    surface: Surface
+    vertices: Floats
+    """(n, 3) [m], world."""
+    triangles: Ints
+    """(m, 3) indices, counterclockwise seen from the front."""
+    normals: Floats | None = None
+    """(n, 3) unit."""
+    colors: Floats | None = None
+    """(n, 3) linear RGB in place of the surface's."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Quadric:
+    """The convex solid {sum squares_k p_k^2 + linear_k p_k + constant <= 0} within low <= p <= high, p local.
+
+    Carries sphere, ellipsoid, plane (half-space), box (squares and linear zero, constant -1) and capped cylinder.
+    """
+
+    name: str
+    surface: Surface
+    to_local: Floats
+    """(3, 4) affine map from world to local coordinates."""
+    squares: tuple[float, float, float]
+    """>= 0, so that the solid is convex."""
+    linear: tuple[float, float, float]
+    constant: float
+    low: tuple[float, float, float]
+    """May be -inf."""
+    high: tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Tape:
+    """An implicit field f(x, y, z) as straight-line code in static single assignment; the solid is {f < 0}.
+
+    Row k of ``code`` is (operation, left, right, third) and writes register k; operands are registers, or for the
+    constant operation an index into ``constants`` and for the density operation a range of ``parts``. The last
+    register is the value. Numbers are data: a film with moving parts changes constants and parts, never code.
+    """
+
+    code: Ints
+    """(n, 4)."""
+    constants: Floats
+    """(c,)."""
+    parts: Floats
+    """(p, 8): a density field's skeleton parts: end a (3), end b (3), radius [m], weight."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Implicit:
+    """The solid {tape < 0} inside the world box low..high (it is cut at the box and capped there)."""
+
+    name: str
+    surface: Surface
+    tape: Tape
+    low: tuple[float, float, float]
+    high: tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Points:
+    """Spheres, many: particles."""
+
+    name: str
+    surface: Surface
+    centers: Floats
+    """(n, 3) [m]."""
+    radii: Floats
+    """(n,) [m]."""
+    colors: Floats | None = None
+    """(n, 3) linear RGB."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Segments:
+    """Capsules, many: springs, ropes, bones, trails."""
+
+    name: str
+    surface: Surface
+    ends: Floats
+    """(n, 2, 3) [m]."""
+    radii: Floats
+    """(n,) [m]."""
+    colors: Floats | None = None
+    """(n, 3) linear RGB."""
+
+
+Shape = Mesh | Quadric | Implicit | Points | Segments
+
+
+@dataclass(frozen=True, slots=True)
+class Sun:
+    """A distant light: ``direction`` points from the scene towards it (unit)."""
+
+    direction: RGB
+    irradiance: RGB
+    """On a surface facing it (a white matte surface there has radiance irradiance/pi)."""
+    angle: float = 0.009
+    """Angular diameter [rad]; larger gives softer shadows."""
+
+
+@dataclass(frozen=True, slots=True)
+class PointLight:
+    """A small glowing sphere; intensity falls with the square of the distance."""
+
+    position: RGB
+    intensity: RGB
+    """Radiant intensity [W/sr]; a power P shines P/(4 pi) in every direction."""
+    radius: float = 0.05
+    """[m]; larger gives softer shadows."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sky:
+    """Light from all around: radiance blends from ``horizon`` to ``zenith`` above and to ``ground`` below."""
+
+    zenith: RGB
+    horizon: RGB
+    ground: RGB
+    visible: RGB | None = None
+    """Seen by camera rays in place of the sky, where given (a plain background)."""
+
+
+Light = Sun | PointLight | Sky
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class View:
+    """A camera at an instant."""
+
+    origin: tuple[float, float, float]
+    """[m]; of an orthographic view, the center of its window."""
+    axes: Floats
+    """(3, 3): rows right, up, back (unit, world); it looks along -back."""
+    size: tuple[int, int]
+    """Width and height [pixels]."""
+    half_height: float
+    """Perspective: tan(vertical field of view / 2). Orthographic: half the window's height [m]."""
+    orthographic: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Frame:
+    """All that a renderer needs to know of one instant."""
+
+    index: int
+    time: float
+    """[s] of simulation."""
+    shapes: tuple[Shape, ...]
+    lights: tuple[Light, ...]
+    view: View
+    seed: int = 0

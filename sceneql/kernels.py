@@ -1,0 +1,118 @@
+"""Where compiled code begins: the one decorator, the cache folder, the compile account and the thread pool.
+
+Imports numba; only ``*_kernels.py`` files and those that run them import this module.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numba
+from numba.core import event
+
+PACKAGES = (Path(__file__).parent, Path(__file__).parent.parent / "renderers")
+
+
+def cache_folder() -> Path:
+    """Folder of compiled code, named by a hash of all kernel sources and of numba's version.
+
+    numba's own cache does not notice a change in a function imported from another file; the hash does.
+    """
+    digest = hashlib.sha256(f"{numba.__version__} {numba.config.DISABLE_JIT}".encode())
+    for package in PACKAGES:
+        for path in sorted([*package.rglob("*_kernels.py"), *package.glob("kernels.py")]):
+            digest.update(path.read_bytes())
+    home = os.environ.get("SCENEQL_CACHE") or os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    folder = Path(home) / "sceneql" / f"kernels-{digest.hexdigest()[:16]}"
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
+CACHE = cache_folder()
+numba.config.CACHE_DIR = str(CACHE)
+
+
+class CompileAccount(event.Listener):
+    """Counts numba compilations (not loads from the cache) and the seconds they took, nested ones once."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self.seconds = 0.0
+        self._depth = 0
+        self._started = 0.0
+
+    def on_start(self, event: Any) -> None:
+        """A compilation starts."""
+        if self._depth == 0:
+            self._started = time.perf_counter()
+        self._depth += 1
+
+    def on_end(self, event: Any) -> None:
+        """A compilation ends."""
+        self._depth -= 1
+        if self._depth == 0:
+            self.count += 1
+            self.seconds += time.perf_counter() - self._started
+
+
+compiled = CompileAccount()
+event.register("numba:compile", compiled)
+
+
+def kernel(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Compile a function for one explicit signature, cached on disk, without the GIL, NaN and inf as in numpy.
+
+    Fastmath stays off, so that the bits do not depend on the machine.
+    """
+    return numba.njit(signature, cache=True, nogil=True, error_model="numpy", **options)  # type: ignore[no-any-return]
+
+
+inlined = numba.njit(cache=True, nogil=True, error_model="numpy", inline="never")
+"""A helper of kernels of the same file: compiled with its caller, for the types it is called with."""
+
+
+def thread_count() -> int:
+    """Threads to use: SCENEQL_THREADS, else the processors this process may run on."""
+    wanted = os.environ.get("SCENEQL_THREADS")
+    return max(1, int(wanted)) if wanted else max(1, len(os.sched_getaffinity(0)))
+
+
+@cache
+def _pool(threads: int) -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(threads, thread_name_prefix="sceneql")
+
+
+def over_tiles(count: int, work: Callable[[int], object]) -> None:
+    """Call ``work(tile)`` for every tile 0..count-1 on the pool; tiles must write to places of their own.
+
+    Which thread takes which tile does not matter to the result, so the bytes are the same for any thread count.
+    The first exception is raised after all threads have stopped.
+    """
+    threads = min(thread_count(), count)
+    if threads <= 1:
+        for tile in range(count):
+            work(tile)
+        return
+    upcoming = iter(range(count))
+    lock = threading.Lock()
+
+    def drain() -> None:
+        while True:
+            with lock:
+                tile = next(upcoming, None)
+            if tile is None:
+                return
+            work(tile)
+
+    futures = [_pool(threads).submit(drain) for _ in range(threads)]
+    errors = [error for error in (future.exception() for future in futures) if error is not None]
+    if errors:
+        raise errors[0]
