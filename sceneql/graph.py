@@ -1,0 +1,93 @@
+"""The simulation graph: what the compiler makes of a script and the run marches. Immutable values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from sceneql.kinds import Clock, Kind, Value
+from sceneql.quantities.span import Span
+
+if TYPE_CHECKING:
+    from sceneql.quantities.diagnostic import Diagnostic
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A part of the script: its word's class with checked fields."""
+
+    name: str
+    word: str
+    kind: Kind
+    span: Span | None
+    needs: tuple[str, ...] = ()
+    """Names of the parts that it links or refers to."""
+
+    @property
+    def family(self) -> str:
+        """The family of its word."""
+        return self.kind.family
+
+
+@dataclass(frozen=True, slots=True)
+class Island:
+    """Models that are solved together, in script order, by one solver."""
+
+    models: tuple[str, ...]
+    forces: tuple[tuple[str, str], ...]
+    """(force, model) pairs."""
+    contacts: tuple[tuple[str, str, tuple[str, ...]], ...]
+    """(contact, model, the objects it may touch)."""
+    solver: str
+    """Name of the solver's task."""
+    reason: str
+    """Why this solver."""
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """A part that no output needs."""
+
+    name: str
+    word: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """An entry of `expect`: a number of the run and what it must be."""
+
+    name: str
+    of: Value
+    value: Value | None
+    tolerance: float
+    """Absolute, or relative to |value| where that is larger than 1."""
+    below: float | None
+    because: str
+    variant: str | None
+    span: Span | None
+
+
+@dataclass(frozen=True, slots=True)
+class SimulationGraph:
+    """Everything the run needs, and an account of the rest."""
+
+    name: str
+    """The script's name without its extension: default name of what is made."""
+    about: str
+    clock: Clock
+    tasks: Mapping[str, Task]
+    """In an order in which every part stands behind those it needs."""
+    needed_by: Mapping[str, tuple[str, ...]]
+    """For each task the outputs that need it."""
+    islands: tuple[Island, ...]
+    drawn: Mapping[str, tuple[str, ...]]
+    """For each output with pictures, the objects and models it draws."""
+    cameras: Mapping[str, str]
+    """For each output with pictures, its camera's task."""
+    expectations: tuple[Expectation, ...] = ()
+    left_out: tuple[LeftOut, ...] = ()
+    warnings: tuple[Diagnostic, ...] = ()
+    script_hash: str = ""
+    gallery: Mapping[str, float] = field(default_factory=dict)

@@ -1,0 +1,129 @@
+"""The system contract: what models, forces and contacts hand to an island, and what a solver sees of it.
+
+An island is a set of models that are solved together. Its state is one vector ``y``; its rate dy/dt = f(t, y) is the
+sum of *terms*: compiled kernels of one signature, each called with its own integers and with the island's one array
+of floats. All numbers of the script are inputs in that array (so a changed number compiles nothing); values that vary
+in time are evaluated into it at every stage time before the terms run.
+
+Kernel signatures (numba; the types are in system_kernels.py), all ``-> None`` unless said:
+
+    term(t, y, rate, floats, ints)          adds its part to rate (n,). Forces add newtons to the velocity entries
+    gap(t, y, gaps, floats, ints)           writes signed distances [m] of its contact pairs, > 0 apart (exact mode)
+    impact(t, y, pair, floats, ints)        changes y by the impulse of that pair (exact mode)
+    settle(t0, t1, y0, rate0, y1, floats, ints)   backs each mass off to its own impact within the step (local mode)
+    step(rate, t, h, y0, rate0, y1, work, settings, numbers, floats, ints) -> error   one step of a solver: writes y1;
+                                            the error is scaled by the tolerance (accept when <= 1), 0 for fixed steps
+    dense(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out)   the solution inside the step, 0 <= theta <= 1
+
+Stages: the terms run in the order `internal` (a model's own), `force`, `close` (a model turns newtons into
+accelerations by its inverse masses and writes dx/dt = v), `constrain` (a resting contact removes what pushes in).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, Protocol
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from sceneql.frame import Floats
+    from sceneql.kinds import Object, Ref, Value
+    from sceneql.quantities.span import Span
+
+Stage = Literal["internal", "force", "close", "constrain"]
+
+
+@dataclass(frozen=True, slots=True)
+class Bodies:
+    """Point masses in an island's state, as offsets: body k has position y[position_at + 3k : +3] [m]."""
+
+    model: str
+    count: int
+    position_at: int
+    velocity_at: int
+    """y[velocity_at + 3k : +3] [m/s]."""
+    work_at: int
+    """y[work_at]: energy [J] that drag, damping and impacts have taken out so far."""
+    mass_at: int
+    """floats[mass_at + k] [kg]."""
+    inverse_at: int
+    """floats[inverse_at + k]: 1/mass; 0 for a fixed body."""
+    radius_at: int
+    """floats[radius_at + k]: collision radius [m]."""
+
+
+class Assembly(Protocol):
+    """The island under construction, as words see it."""
+
+    def state(self, initial: Any, spans: Sequence[Span | None] | None = None) -> int:
+        """Reserve len(initial) entries of y with these values at the start; the offset of the first.
+
+        ``spans``, one an entry or one for all, say which line of the script an entry comes from.
+        """
+
+    def pair(self, position_at: int, velocity_at: int, count: int) -> None:
+        """Say that y[velocity_at + k] is the velocity of y[position_at + k] (for methods that use it)."""
+
+    def floats(self, values: Any) -> int:
+        """Store numbers; the offset of the first."""
+
+    def value(self, value: Value) -> int:
+        """Store a value of the script, a varying one to be evaluated at stage times; the offset of its first float."""
+
+    def initial(self, value: Value) -> Any:
+        """The value at the start of the run: float or float64 array."""
+
+    def term(self, stage: Stage, kernel: str, ints: Sequence[int]) -> None:
+        """Add a term to the rate; ``kernel`` is ``"package.module:function"``."""
+
+    def contact(self, mode: Literal["exact", "local"], kernels: Sequence[str], ints: Sequence[int], pairs: int) -> None:
+        """Add contacts: kernels (gap, impact) with the number of pairs for `exact`, (settle,) for `local`."""
+
+    def object(self, ref: Ref) -> Object:
+        """The kind of an object of the script."""
+
+    def body_count(self) -> int:
+        """Number of bodies of the island (contacts choose their mode by it)."""
+
+
+@dataclass(frozen=True, slots=True)
+class ModelState:
+    """A model's view of its island at an instant."""
+
+    t: float
+    y: Floats
+    """(n,) the whole island."""
+    rate: Floats
+    """(n,) dy/dt."""
+    floats: Floats
+    bodies: Bodies | None
+    ints: tuple[int, ...]
+    """What the word asked to be remembered (`Assembly.remember`)."""
+    potential: float = 0.0
+    """Potential energy [J] of the model in the forces that act on it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stepper:
+    """A solver as the run sees it."""
+
+    step: str
+    """``"package.module:function"`` of the compiled step."""
+    dense: str | None
+    """Compiled dense output; None: the cubic Hermite interpolant of the step's ends."""
+    order: int
+    settings: tuple[float, ...] = ()
+    """Floats for the step (a tableau)."""
+    numbers: tuple[int, ...] = ()
+    """Integers for the step (its stages)."""
+    work: int = 1
+    """Arrays of the size of y that the step needs as scratch."""
+    first_step: float = 0.0
+    """The fixed step [s], or the first of an adaptive method (0: choose)."""
+    adaptive: bool = False
+    tolerance: float = 0.0
+    """Relative tolerance of an adaptive method."""
+    absolute: float = 0.0
+    """Absolute tolerance."""
+    largest_step: float = float("inf")

@@ -1,0 +1,24 @@
+"""The numba types of the system contract (system.py says what each function does)."""
+
+from numba import types
+
+F = types.float64
+N = types.int64
+A = types.float64[::1]
+I = types.int64[::1]  # noqa: E741  (the name of the type in every signature)
+
+TERM = types.void(F, A, A, A, I)
+GAP = types.void(F, A, A, A, I)
+IMPACT = types.void(F, A, N, A, I)
+SETTLE = types.void(F, F, A, A, A, A, I)
+
+RATE_FUNCTION = types.FunctionType(TERM)
+GAP_FUNCTION = types.FunctionType(GAP)
+IMPACT_FUNCTION = types.FunctionType(IMPACT)
+SETTLE_FUNCTION = types.FunctionType(SETTLE)
+
+STEP = types.float64(RATE_FUNCTION, F, F, A, A, A, A, A, I, A, I)
+DENSE = types.void(F, F, A, A, A, A, A, A, I, A)
+
+STEP_FUNCTION = types.FunctionType(STEP)
+DENSE_FUNCTION = types.FunctionType(DENSE)
