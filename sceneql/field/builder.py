@@ -1,0 +1,289 @@
+"""Builds tapes: straight-line code with common subexpressions shared, constants folded and powers lowered."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from sceneql.field import tape_ops as ops
+from sceneql.quantities.expression import Call, Expr, Number, Symbol
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Tape
+
+Row = tuple[int, int, int, int]
+COMMUTATIVE = {ops.ADD, ops.MUL, ops.MIN, ops.MAX}
+LARGEST_POWER = 64
+"""Integer powers up to this one become multiplications."""
+
+
+class TapeBuilder:
+    """A tape in the making. Registers are integers; ``x``, ``y``, ``z`` hold the point where f is asked."""
+
+    def __init__(self) -> None:
+        self._rows: list[Row] = [(ops.X, 0, 0, 0), (ops.Y, 0, 0, 0), (ops.Z, 0, 0, 0)]
+        self._numbers: dict[Row, int] = {}
+        self._constants: list[float] = []
+        self._parts: list[list[float]] = []
+        self._triples: dict[tuple[int, int, int], int] = {(0, 1, 2): 0}
+        self.x, self.y, self.z = 0, 1, 2
+
+    def _emit(self, row: Row) -> int:
+        register = self._numbers.get(row)
+        if register is None:
+            register = self._numbers[row] = len(self._rows)
+            self._rows.append(row)
+        return register
+
+    def constant(self, value: float) -> int:
+        """Register of a number; equal numbers share one."""
+        for index, known in enumerate(self._constants):
+            if known == value and math.copysign(1.0, known) == math.copysign(1.0, value):
+                return self._emit((ops.CONSTANT, index, 0, 0))
+        self._constants.append(float(value))
+        return self._emit((ops.CONSTANT, len(self._constants) - 1, 0, 0))
+
+    def _known(self, register: int) -> float | None:
+        """The number in a constant register, else None."""
+        op, index, _, _ = self._rows[register]
+        return self._constants[index] if op == ops.CONSTANT else None
+
+    def op(self, name: str, *registers: int) -> int:
+        """Register of a scalar operation on registers. ValueError for a name that no tape can compute."""
+        if name in LOWERED:
+            return LOWERED[name](self, *registers)
+        if name in ops.UNARY:
+            (a,) = registers
+            return self._folded(name, (a,)) or self._emit((ops.UNARY[name], a, a, 0))
+        if name not in ops.BINARY:
+            raise ValueError(f"no tape operation is named {name!r}")
+        a, b = registers
+        if name == "pow":
+            lowered = self._power(a, self._known(b))
+            if lowered is not None:
+                return lowered
+        simpler = self._folded(name, (a, b)) or self._simplified(name, a, b)
+        if simpler is not None:
+            return simpler
+        code = ops.BINARY[name]
+        if code in COMMUTATIVE and b < a:
+            a, b = b, a
+        return self._emit((code, a, b, 0))
+
+    def _folded(self, name: str, registers: tuple[int, ...]) -> int | None:
+        """The constant register of an operation on constants, where it has a finite value."""
+        known = [value for value in map(self._known, registers) if value is not None]
+        if len(known) < len(registers):
+            return None
+        try:
+            value = FOLD[name](*known)
+        except (ArithmeticError, ValueError):
+            return None
+        return self.constant(value) if math.isfinite(value) else None
+
+    def _simplified(self, name: str, a: int, b: int) -> int | None:
+        """The register of a simpler equal of a op b, exact also for NaN and infinity."""
+        left, right = self._known(a), self._known(b)
+        if name == "mul" and a == b:
+            return self.op("square", a)
+        if name == "mul" and left == 1.0 or name == "add" and left == 0.0:
+            return b
+        if name in ("mul", "div") and right == 1.0 or name in ("add", "sub") and right == 0.0:
+            return a
+        if name in ("min", "max") and a == b:
+            return a
+        if name == "mul" and right == -1.0:
+            return self.op("neg", a)
+        if name == "mul" and left == -1.0:
+            return self.op("neg", b)
+        if name == "div" and right not in (None, 0.0):
+            return None if not math.log2(abs(right)).is_integer() else self.op("mul", a, self.constant(1.0 / right))
+        return None
+
+    def _power(self, a: int, exponent: float | None) -> int | None:
+        """Integer powers as squares and products, half-integer ones with a square root; else None."""
+        if exponent is None or self._known(a) is not None or abs(exponent) > LARGEST_POWER:
+            return None
+        if exponent < 0.0:
+            positive = self._power(a, -exponent)
+            return None if positive is None else self.op("div", self.constant(1.0), positive)
+        whole = math.floor(exponent)
+        if exponent - whole not in (0.0, 0.5):
+            return None
+        result = None if exponent == whole else self.op("sqrt", a)
+        square = a
+        while whole:
+            if whole & 1:
+                result = square if result is None else self.op("mul", result, square)
+            whole >>= 1
+            if whole:
+                square = self.op("square", square)
+        return self.constant(1.0) if result is None else result
+
+    def expression(self, expr: Expr, symbols: Mapping[str, int]) -> int:
+        """Register of a bound scalar expression whose symbols stand in ``symbols``.
+
+        ValueError for what is not scalar, KeyError for a symbol without a register.
+        """
+        match expr:
+            case Number(value=value):
+                return self.constant(value)
+            case Symbol(name=name):
+                return symbols[name]
+            case Call(op=name, args=args):
+                return self.op(name, *[self.expression(arg, symbols) for arg in args])
+        raise ValueError(f"{type(expr).__name__} is no scalar of symbols and numbers")
+
+    def affine(self, matrix: Floats, x: int, y: int, z: int) -> tuple[int, int, int]:
+        """Registers of matrix (3, 4) applied to a point."""
+
+        def row(numbers: Sequence[float]) -> int:
+            total = self.constant(numbers[3])
+            for register, number in zip((x, y, z), numbers, strict=False):
+                if number != 0.0:
+                    total = self.op("add", total, self.op("mul", register, self.constant(number)))
+            return total
+
+        first, second, third = (row([float(number) for number in numbers]) for numbers in matrix)
+        return first, second, third
+
+    def density(self, parts: Floats, x: int, y: int, z: int) -> int:
+        """Register of the density of skeleton parts at a point: the sum of weight (1 - d^2/R^2)^3 over those with d < R.
+
+        ``parts`` (p, 8) [m]: ends a and b (a point has a = b), radius R, weight; d is the distance to the segment
+        (Wyvill, McPheeters & Wyvill 1986).
+        """
+        start = len(self._parts)
+        self._parts.extend([[float(number) for number in part] for part in parts])
+        base = self._triples.get((x, y, z))
+        if base is None:
+            base = self._triples[x, y, z] = len(self._rows)
+            self._rows.extend((ops.COPY, register, register, 0) for register in (x, y, z))
+        self._rows.append((ops.DENSITY, start, len(self._parts), base))
+        return len(self._rows) - 1
+
+    def finish(self, register: int) -> Tape:
+        """The tape whose value is ``register``; what it does not need is left out."""
+        import numpy as np
+
+        from sceneql.frame import Tape
+
+        needed = {register}
+        for k in range(register, -1, -1):
+            if k in needed:
+                needed.update(self._operands(k))
+        kept = sorted(needed)
+        place = {old: new for new, old in enumerate(kept)}
+        numbers = sorted({self._rows[k][1] for k in kept if self._rows[k][0] == ops.CONSTANT})
+        index = {old: new for new, old in enumerate(numbers)}
+        code, parts = [], []
+        for k in kept:
+            op, left, right, third = self._rows[k]
+            if op == ops.CONSTANT:
+                code.append((op, index[left], 0, 0))
+            elif op == ops.DENSITY:
+                code.append((op, len(parts), len(parts) + right - left, place[third]))
+                parts.extend(self._parts[left:right])
+            elif op in (ops.X, ops.Y, ops.Z):
+                code.append((op, 0, 0, 0))
+            else:
+                code.append((op, place[left], place[right], 0))
+        return Tape(
+            code=np.array(code, dtype=np.int32),
+            constants=np.array([self._constants[old] for old in numbers], dtype=np.float64),
+            parts=np.array(parts, dtype=np.float64).reshape(-1, 8),
+        )
+
+    def _operands(self, register: int) -> tuple[int, ...]:
+        """Registers that one reads."""
+        op, left, right, third = self._rows[register]
+        if op in (ops.CONSTANT, ops.X, ops.Y, ops.Z):
+            return ()
+        return (third, third + 1, third + 2) if op == ops.DENSITY else (left, right)
+
+
+def _sign(a: float) -> float:
+    return (a > 0.0) - (a < 0.0)
+
+
+FOLD: dict[str, Callable[..., float]] = {
+    "add": lambda a, b: a + b,
+    "sub": lambda a, b: a - b,
+    "mul": lambda a, b: a * b,
+    "div": lambda a, b: a / b,
+    "min": min,
+    "max": max,
+    "pow": math.pow,
+    "atan2": math.atan2,
+    "neg": lambda a: -a,
+    "abs": abs,
+    "square": lambda a: a * a,
+    "sqrt": math.sqrt,
+    "sin": math.sin,
+    "cos": math.cos,
+    "exp": math.exp,
+    "log": math.log,
+    "floor": math.floor,
+    "sign": _sign,
+}
+
+
+def _many(name: str) -> Callable[..., int]:
+    """min and max of two and more."""
+    code = ops.BINARY[name]
+
+    def lower(tape: TapeBuilder, *registers: int) -> int:
+        result, *others = registers
+        for other in others:
+            result = tape._emit((code, min(result, other), max(result, other), 0)) if result != other else result
+        return result
+
+    return lower
+
+
+def _times(name: str, factor: float) -> Callable[[TapeBuilder, int], int]:
+    return lambda tape, a: tape.op("mul", tape.op(name, a), tape.constant(factor))
+
+
+def _tan(tape: TapeBuilder, a: int) -> int:
+    return tape.op("div", tape.op("sin", a), tape.op("cos", a))
+
+
+def _arc(tape: TapeBuilder, a: int, cosine: bool) -> int:
+    other = tape.op("sqrt", tape.op("sub", tape.constant(1.0), tape.op("square", a)))
+    return tape.op("atan2", other, a) if cosine else tape.op("atan2", a, other)
+
+
+def _hyperbolic(tape: TapeBuilder, a: int, join: str) -> int:
+    grown = tape.op("exp", a)
+    both = tape.op(join, grown, tape.op("div", tape.constant(1.0), grown))
+    return tape.op("mul", tape.constant(0.5), both)
+
+
+def _tanh(tape: TapeBuilder, a: int) -> int:
+    grown = tape.op("exp", tape.op("mul", tape.constant(2.0), a))
+    less = tape.op("div", tape.constant(2.0), tape.op("add", grown, tape.constant(1.0)))
+    return tape.op("sub", tape.constant(1.0), less)
+
+
+def _modulo(tape: TapeBuilder, a: int, b: int) -> int:
+    return tape.op("sub", a, tape.op("mul", b, tape.op("floor", tape.op("div", a, b))))
+
+
+LOWERED: dict[str, Callable[..., int]] = {
+    "tan": _tan,
+    "asin": lambda tape, a: _arc(tape, a, cosine=False),
+    "acos": lambda tape, a: _arc(tape, a, cosine=True),
+    "atan": lambda tape, a: tape.op("atan2", a, tape.constant(1.0)),
+    "sinh": lambda tape, a: _hyperbolic(tape, a, "sub"),
+    "cosh": lambda tape, a: _hyperbolic(tape, a, "add"),
+    "tanh": _tanh,
+    "log2": _times("log", 1.0 / math.log(2.0)),
+    "log10": _times("log", 1.0 / math.log(10.0)),
+    "ceil": lambda tape, a: tape.op("neg", tape.op("floor", tape.op("neg", a))),
+    "mod": _modulo,
+    "hypot": lambda tape, a, b: tape.op("sqrt", tape.op("add", tape.op("square", a), tape.op("square", b))),
+    "clamp": lambda tape, a, low, high: tape.op("min", tape.op("max", a, low), high),
+}
+"""Operations that a tape computes by others."""

@@ -1,0 +1,142 @@
+"""First roots of a tape along a ray, proved by enclosures: no gradient bound is asked of anyone.
+
+From the start of the ray on, a segment is rejected when its enclosure c0 + c1 tau +- e has no zero, and the next one is
+twice as long; else the segment is cut where the enclosure allows no zero, and halved where that gains little. So all
+that lies before a root returned is proved to be outside, up to the tolerance.
+"""
+
+from sceneql.field.enclosure_kernels import segment
+from sceneql.field.tape_kernels import TAPE, value
+from sceneql.field.tape_ops import HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
+from sceneql.kernels import inlined, kernel
+
+RAY = "float64, float64, float64, float64, float64, float64, float64, float64, float64"
+EVALUATIONS = 2000
+"""Enclosures spent on one ray before it is left undecided."""
+FINE = 5.0e-13
+"""Width of a bracket, relative to its place on the ray, at which a root is polished."""
+
+
+@inlined
+def along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t):
+    """f at the place t of a ray."""
+    return value(code, constants, parts, scratch, ox + t * dx, oy + t * dy, oz + t * dz)
+
+
+@inlined
+def polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign):
+    """Where sign f goes from >= 0 at a to < 0 at b: bisection and the secant by turns."""
+    fa = sign * along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a)
+    fb = sign * along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, b)
+    for turn in range(100):
+        if not b - a > FINE * (abs(a) + abs(b)):
+            break
+        t = 0.5 * (a + b)
+        if turn % 2 == 0 and fa - fb > 0.0:
+            t = min(max(a + (b - a) * (fa / (fa - fb)), a), b)
+        if t <= a or t >= b:
+            t = 0.5 * (a + b)
+            if t <= a or t >= b:
+                break
+        f = sign * along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t)
+        if f < 0.0:
+            b, fb = t, f
+        else:
+            a, fa = t, f
+    return b
+
+
+@kernel(f"Tuple((int64, float64))({TAPE}, {RAY}, float64, boolean)")
+def isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, sign, anywhere):
+    """(status, t) of the first entry into {sign f < 0}, or with ``anywhere`` of some point in it; see first_root."""
+    a = t0
+    b = end = t1
+    held = False  # {sign f < 0} is proved at `end`, so that a root lies before it
+    cut_from = cut_to = t1  # from the one to the other nothing is left to find
+    least = max(tolerance * (t1 - t0), 1.0e-15 * (abs(t0) + abs(t1)))
+    survey = True
+    for _ in range(EVALUATIONS):
+        c0, c1, e, status = segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, survey)
+        survey = False
+        c0 *= sign
+        c1 *= sign
+        width = b - a
+        if status == NOWHERE or c0 - abs(c1) > e:
+            a = b
+            if a == cut_from:
+                a = cut_to
+            if a >= end:
+                return (HIT, end) if held else (MISS, t1)
+            b = min(a + 2.0 * width, end)
+            if cut_from > a:
+                b = min(b, cut_from)
+            continue
+        middle = 0.5 * (a + b)
+        half = 0.5 * width
+        blur = 1.0e-15 * (abs(a) + abs(b))
+        root = middle
+        if status == WHOLE and (c0 - c1 < -e or (anywhere and c0 - abs(c1) < -e)):
+            return HIT, a
+        start = a
+        stop = b
+        if e < abs(c0) + abs(c1):
+            if c1 < 0.0:
+                root = min(max(middle - half * c0 / c1, a), b)
+                start = max(a, middle + half * (e - c0) / c1 - blur)
+                if status == WHOLE:
+                    stop = middle - half * (c0 + e) / c1 + blur
+                    if stop < b:
+                        held = True
+                        b = end = stop
+            elif c1 > 0.0:
+                stop = middle + half * (e - c0) / c1 + blur
+                if stop < b:
+                    cut_from = stop
+                    cut_to = b
+                    b = stop
+            a = min(start, b)
+        if held and b == end and b - a <= FINE * (abs(a) + abs(b)):
+            return HIT, root
+        if b - a >= 0.5 * width:
+            if b - a <= least:
+                inside = sign * along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, b) < 0.0
+                if not inside:
+                    return UNDECIDED, a
+                return HIT, polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign)
+            b = a + 0.5 * (b - a)
+    return UNDECIDED, a
+
+
+@kernel(f"Tuple((int64, float64))({TAPE}, {RAY})")
+def first_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance):
+    """(status, t) of the first entry of the ray o + t d, t in [t0, t1], into the solid {f < 0}.
+
+    HIT: all before t is proved outside, and inside begins at t. INSIDE: t0 is inside already. MISS: all of [t0, t1] is
+    proved outside. UNDECIDED: at t something smaller than ``tolerance`` (t1 - t0), as a root of even multiplicity,
+    could not be told from nothing. d need not be a unit vector; undefined places are outside.
+    """
+    status, t = isolate(
+        code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, 1.0, False
+    )
+    if status == HIT and t - t0 <= tolerance * (t1 - t0):
+        if along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0) < 0.0:
+            return INSIDE, t0
+    return status, t
+
+
+@kernel(f"Tuple((int64, float64))({TAPE}, {RAY})")
+def exit_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance):
+    """As ``first_root``, for the way out: the first entry into {f > 0}."""
+    status, t = isolate(
+        code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, -1.0, False
+    )
+    if status == HIT and t - t0 <= tolerance * (t1 - t0):
+        if along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0) > 0.0:
+            return INSIDE, t0
+    return status, t
+
+
+@kernel(f"int64({TAPE}, {RAY})")
+def any_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance):
+    """HIT where the ray meets the solid anywhere in [t0, t1], MISS where it proves not to, UNDECIDED: shadow rays."""
+    return isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, 1.0, True)[0]

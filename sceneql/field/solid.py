@@ -1,0 +1,50 @@
+"""The solid {f < 0} of a tape, for Python callers: numpy arrays in, numpy arrays out."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.field import isolation_kernels, tape_kernels
+from sceneql.field.tape_ops import SCRATCH_COLUMNS, scratch_rows
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Tape
+
+
+def scratch(tape: Tape) -> Floats:
+    """Working memory for the kernels of one thread."""
+    return np.zeros((scratch_rows(len(tape.code), len(tape.parts)), SCRATCH_COLUMNS))
+
+
+def field_values(tape: Tape, points: Floats) -> Floats:
+    """f at points (n, 3) [m]: (n,)."""
+    points = np.ascontiguousarray(points, dtype=np.float64)
+    out = np.empty(len(points))
+    tape_kernels.values(tape.code, tape.constants, tape.parts, scratch(tape), points, out)
+    return out
+
+
+def field_gradients(tape: Tape, points: Floats) -> Floats:
+    """Gradient of f at points (n, 3) [m]: (n, 3) [1/m]."""
+    room = scratch(tape)
+    rows = [tape_kernels.gradient(tape.code, tape.constants, tape.parts, room, *map(float, point)) for point in points]
+    return np.array(rows).reshape(-1, 4)[:, 1:]
+
+
+def cast(
+    tape: Tape, origins: Floats, directions: Floats, t0: Floats | float, t1: Floats | float, tolerance: float = 1e-9
+) -> tuple[Floats, Floats]:
+    """(status, t), each (n,): the first entry of rays o + t d, t in [t0, t1], as of isolation_kernels.first_root."""
+    room = scratch(tape)
+    origins, directions = np.broadcast_arrays(np.atleast_2d(origins), np.atleast_2d(directions))
+    starts = np.broadcast_to(np.asarray(t0, dtype=np.float64), len(origins))
+    ends = np.broadcast_to(np.asarray(t1, dtype=np.float64), len(origins))
+    status = np.empty(len(origins), dtype=np.int64)
+    t = np.empty(len(origins))
+    for i in range(len(origins)):
+        o, d = origins[i], directions[i]
+        ray = (*map(float, o), *map(float, d), float(starts[i]), float(ends[i]), tolerance)
+        status[i], t[i] = isolation_kernels.first_root(tape.code, tape.constants, tape.parts, room, *ray)
+    return status, t
