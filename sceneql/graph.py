@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from sceneql.kinds import Clock, Kind, Value
+from sceneql.kinds import Kind, Settings
 from sceneql.quantities.span import Span
 
 if TYPE_CHECKING:
@@ -55,28 +55,12 @@ class LeftOut:
 
 
 @dataclass(frozen=True, slots=True)
-class Expectation:
-    """An entry of `expect`: a number of the run and what it must be."""
-
-    name: str
-    of: Value
-    value: Value | None
-    tolerance: float
-    """Absolute, or relative to |value| where that is larger than 1."""
-    below: float | None
-    because: str
-    variant: str | None
-    span: Span | None
-
-
-@dataclass(frozen=True, slots=True)
 class SimulationGraph:
     """Everything the run needs, and an account of the rest."""
 
     name: str
     """The script's name without its extension: default name of what is made."""
-    about: str
-    clock: Clock
+    settings: Settings
     tasks: Mapping[str, Task]
     """In an order in which every part stands behind those it needs."""
     needed_by: Mapping[str, tuple[str, ...]]
@@ -86,8 +70,6 @@ class SimulationGraph:
     """For each output with pictures, the objects and models it draws."""
     cameras: Mapping[str, str]
     """For each output with pictures, its camera's task."""
-    expectations: tuple[Expectation, ...] = ()
     left_out: tuple[LeftOut, ...] = ()
     warnings: tuple[Diagnostic, ...] = ()
     script_hash: str = ""
-    gallery: Mapping[str, float] = field(default_factory=dict)

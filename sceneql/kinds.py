@@ -7,9 +7,10 @@ family class below. The class is the schema and the manual: fields with type, de
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Protocol
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
@@ -60,8 +61,10 @@ class Quantity:
     On a ``Value`` it may vary in time; on a ``float`` or ``tuple`` it must be constant and is stored in SI.
     """
 
-    dimension: Dimension
-    shape: Shape = ()
+    dimension: Dimension | None
+    """None: any."""
+    shape: Shape | None = ()
+    """None: any."""
     needs_unit: bool = False
     """A bare number is refused (angles, temperatures)."""
 
@@ -133,6 +136,9 @@ FixedDamping = Annotated[float, Quantity(dim.DAMPING)]
 FixedFrequency = Annotated[float, Quantity(dim.FREQUENCY)]
 FixedPosition = Annotated[tuple[float, float, float], Quantity(dim.LENGTH, (3,))]
 FixedVelocity = Annotated[tuple[float, float, float], Quantity(dim.VELOCITY, (3,))]
+
+Measured = Annotated[Value, Quantity(None, None)]
+"""Any output or expression: what a record writes."""
 
 ObjectRef = Annotated[Ref, Refers("objects")]
 ModelRef = Annotated[Ref, Refers("models")]
@@ -275,6 +281,8 @@ class Object(Kind):
     """Something to draw, to collide with, to be moved."""
 
     family: ClassVar[str] = "objects"
+    collides: ClassVar[bool] = False
+    """Whether contacts that name no surface take it as one (it has a collider)."""
 
     material: MaterialRef | None = field("How it looks; by default glossy, in a color by order.", None)
     color: Color | None = field("Color in place of the material's.", None)
@@ -323,6 +331,8 @@ class Model(Kind):
 
     family: ClassVar[str] = "models"
     kinematic: ClassVar[bool] = False
+    has_bodies: ClassVar[bool] = True
+    """Whether forces that name no model act on it."""
 
     def assemble(self, name: str, assembly: Assembly) -> Bodies | None:
         """Reserve state, give initial values, add the terms of its own rate; the point masses forces may act on."""
@@ -444,51 +454,39 @@ class Tools(Protocol):
     """What the pipeline lends to an output."""
 
     @property
-    def rate(self) -> float:
-        """Film frames a second."""
-
-    @property
-    def span(self) -> tuple[float, float]:
-        """First and last instant [s] of the simulation that is filmed."""
-
-    @property
-    def speed(self) -> float:
-        """Seconds of simulation for a second of film."""
+    def clock(self) -> Clock:
+        """Film time and simulation time."""
 
     def path(self, extension: str) -> Any:
         """Path of the output's file."""
 
-    def pixels(self, moment: Moment) -> Any:
+    def pixels(self, output: Picture, moment: Moment) -> Any:
         """The developed picture (h, w, 3) uint8 of this output's camera, renderer and size."""
 
-    def encoder(self, word: str, path: Any, **settings: Any) -> Any:
-        """A writer with ``write``, ``close`` (whole under its final name) and ``abort`` (playable, beside it)."""
-
-    def comment(self) -> str:
-        """What to store with the film: the script's hash and the program's version."""
+    def encoder(self, word: str, **settings: Any) -> Any:
+        """A writer with ``write``, ``close`` (whole under its final name) and ``abort`` (what was made, beside it)."""
 
 
 class Sink(Protocol):
-    """An open output."""
+    """An open output. The paths that it returns are those of the files it has made."""
 
     def take(self, moment: Moment) -> None:
         """One instant of those asked for."""
 
     def close(self) -> Iterable[Any]:
-        """Finish; the paths made."""
+        """Finish: files appear under their final names."""
 
     def abort(self) -> Iterable[Any]:
-        """The run failed: keep what was made beside the final name; the paths kept."""
+        """The run failed: keep what was made beside the final name."""
 
 
 class Output(Kind):
     """Something that is made: a film, a picture, a table."""
 
     family: ClassVar[str] = "outputs"
-    pictures: ClassVar[bool] = True
 
-    def times(self, tools: Tools) -> list[float]:
-        """The instants [s] it wants, increasing."""
+    def times(self, clock: Clock) -> list[float]:
+        """The instants [s] of the simulation that it wants, increasing, from 0 to ``clock.end``."""
         raise NotImplementedError
 
     def open(self, tools: Tools) -> Sink:
@@ -508,12 +506,45 @@ class Clock(Record):
     speed: FixedScalar = field("Seconds of simulation in a second of film.", "1", above=0)
     seed: int = field("Seed of all chance.", 0, at_least=0)
 
+    def frames(self, fps: float) -> list[float]:
+        """Instants [s] of the film's frames: frame i stands at film time i/fps, before the end."""
+        count = max(1, math.ceil(round(self.end / self.speed * fps, 9)))
+        return [k / fps * self.speed for k in range(count)]
+
+
+class Gallery(Record):
+    """The small and short version of a scene that the gallery keeps."""
+
+    size: tuple[int, int] = field("Width and height of the poster [pixels].", (320, 180), above=0)
+    time: FixedTime = field("The instant of the poster.", "1 s", at_least=0)
+    end: FixedTime | None = field("Length of the run for the poster; by default it ends with the poster.", None, above=0)
+
+
+class Expect(Record):
+    """A number that the scene must give, and where that is known from."""
+
+    of: Measured = field("What is measured: an expression of outputs, with final(), max(), at(x, 2 s), ...")
+    value: Measured | None = field("What it must be.", None)
+    tolerance: FixedScalar = field("How far it may be off, as a number in SI.", "1e-6", at_least=0)
+    below: Measured | None = field("In place of a value: what it must stay below.", None)
+    because: str = field("Why: exact, independent source, conservation, ...")
+    variant: str | None = field("The variant that it holds for; by default the script as it stands.", None)
+
+    @model_validator(mode="after")
+    def _one_target(self) -> Expect:
+        if (self.value is None) == (self.below is None):
+            raise ValueError("an expectation has either 'value' or 'below'")
+        return self
+
 
 class Settings(Record):
     """The top-level keys of a script that are not parts."""
 
     about: str = field("One sentence on the scene.", "")
-    clock: Clock = field("Film time and simulation time.", None)
+    clock: Clock = field("Film time and simulation time.", Clock())
+    gallery: Gallery = field("The gallery's version of the scene.", Gallery())
+    expect: dict[str, Expect] = field("Numbers that the scene must give.", {})
+    background: Color | None = field("What the camera sees where nothing is; by default the sky.", None)
 
 
 FAMILIES: tuple[type[Kind], ...] = (

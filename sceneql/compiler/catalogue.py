@@ -1,0 +1,93 @@
+"""Word to file: listing the words of a family is listing its folder; naming a word imports its file alone.
+
+Words come from the package's own folders, then from folders of the user's (``--words DIR`` with one subfolder a
+family, as ``DIR/solvers/heun.py``), then from installed packages through the entry point group ``sceneql.words``
+(entry ``solvers.heun = "package.module"``), which is read only when a word is in none of the folders.
+"""
+
+from __future__ import annotations
+
+import importlib
+import re
+import sys
+from functools import cached_property
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from sceneql.kinds import FAMILIES, Kind
+
+ROOT = Path(__file__).parent.parent
+USER_PACKAGE = "sceneql_words"
+
+
+def class_name(word: str) -> str:
+    """``mass_spring`` to ``MassSpring``."""
+    return "".join(part.capitalize() for part in word.split("_"))
+
+
+class Catalogue:
+    """The words that a script may use."""
+
+    def __init__(self, words_folder: Path | None = None) -> None:
+        self.families: dict[str, type[Kind]] = {kind.family: kind for kind in FAMILIES}
+        self._folder = None if words_folder is None else words_folder.resolve()
+        if self._folder is not None:
+            package = ModuleType(USER_PACKAGE)
+            package.__path__ = [str(self._folder)]
+            for name in [name for name in sys.modules if name.split(".")[0] == USER_PACKAGE]:
+                del sys.modules[name]  # another folder's words under the same names
+            sys.modules[USER_PACKAGE] = package
+            importlib.invalidate_caches()
+        self._loaded: dict[tuple[str, str], type[Kind]] = {}
+
+    def _places(self, family: str) -> list[tuple[str, Path]]:
+        if family == "renderers":
+            places = [("renderers", ROOT.parent / "renderers")]
+        else:
+            places = [(f"sceneql.simulation.{family}", ROOT / "simulation" / family)]
+        if self._folder is not None:
+            places.append((f"{USER_PACKAGE}.{family}", self._folder / family))
+        return places
+
+    def words(self, family: str) -> list[str]:
+        """The words of a family, in alphabetical order."""
+        found = {path.stem for _, folder in self._places(family) for path in folder.glob("*.py") if _is_word(path)}
+        found |= {name.partition(".")[2] for name in self._installed if name.partition(".")[0] == family}
+        return sorted(found)
+
+    def load(self, family: str, word: str) -> type[Kind] | None:
+        """The class of a word, or None if the family has no such word."""
+        key = (family, word)
+        if key not in self._loaded and word.isidentifier():
+            for package, folder in self._places(family):
+                if _is_word(folder / f"{word}.py"):
+                    module = importlib.import_module(f"{package}.{word}")
+                    self._loaded[key] = getattr(module, class_name(word))
+                    break
+            else:
+                entry = self._installed.get(f"{family}.{word}")
+                if entry is not None:
+                    self._loaded[key] = getattr(entry.load(), class_name(word))
+        return self._loaded.get(key)
+
+    def families_of(self, word: str) -> list[str]:
+        """The families that have a word of this name (for a hint when it stands in the wrong section)."""
+        return [
+            family
+            for family in self.families
+            if any(_is_word(folder / f"{word}.py") for _, folder in self._places(family))
+        ]
+
+    @cached_property
+    def _installed(self) -> dict[str, Any]:
+        from importlib.metadata import entry_points
+
+        return {entry.name: entry for entry in entry_points(group="sceneql.words")}
+
+
+def _is_word(path: Path) -> bool:
+    """Whether a file defines the class that its name asks for (kernel files and helpers beside words do not)."""
+    if path.stem.startswith("_") or path.stem.endswith("_kernels") or not path.is_file():
+        return False
+    return re.search(rf"^class {class_name(path.stem)}\(", path.read_text(encoding="utf-8"), re.MULTILINE) is not None

@@ -1,0 +1,203 @@
+"""Script to checked parts: every entry is read by its own word's class, and all errors are found in one run.
+
+Unused parts are checked too, since an error in an unused part is still an error; nothing is pruned here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from pydantic import BaseModel
+
+from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.names import Names
+from sceneql.compiler.read import Reader, Unreadable
+from sceneql.compiler.values import read_expr
+from sceneql.graph import Task
+from sceneql.kinds import Gives, Kind, Object, Quantity, Ref, Settings, Value
+from sceneql.language.script import Entry, Script
+from sceneql.language.tree import Mapping as MappingNode
+from sceneql.language.tree import Node, Scalar, Sequence
+from sceneql.quantities.diagnostic import Diagnostics, suggestion
+from sceneql.quantities.expression import Link, Type, walk
+
+SETTINGS = tuple(Settings.model_fields)
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """A script whose every part is right."""
+
+    script: Script
+    settings: Settings
+    tasks: Mapping[str, Task]
+    """In the order of the script; parts written in place stand before the part that holds them."""
+
+
+def check(script: Script, catalogue: Catalogue, found: Diagnostics) -> Checked:
+    """Read every entry of a script. Raises ScriptError with all that is wrong."""
+    checker = _Checker(script, catalogue, found)
+    for family, entries in script.sections.items():
+        for name in entries:
+            checker.task(family, name)
+    settings = checker.settings()
+    found.raise_errors()
+    return Checked(script, settings, checker.tasks)
+
+
+class _Checker:
+    def __init__(self, script: Script, catalogue: Catalogue, found: Diagnostics) -> None:
+        self.script, self.catalogue, self.found = script, catalogue, found
+        self.tasks: dict[str, Task] = {}
+        self.family_of: dict[str, str] = {}
+        self.entries: dict[str, Entry] = {}
+        self._done: set[str] = set()
+        for family, entries in script.sections.items():
+            for name, entry in entries.items():
+                self.family_of[name], self.entries[name] = family, entry
+        define = script.settings.get("define")
+        if define is not None and not isinstance(define, MappingNode):
+            found.error("wrong-shape", "define takes names with values, `{name: value}`", define.span)
+            define = None
+        self.names = Names(
+            defines={} if define is None else define.entries,
+            parts=self.entries,
+            outputs_of=self.outputs_of,
+            read=lambda node, names: read_expr(node, None, None, "define", names, found),
+            found=found,
+        )
+
+    def settings(self) -> Settings:
+        """The top-level keys; every define is read, used or not."""
+        for name, node in self.names.defines.items():
+            self.names.define(name, node.span)
+        given = {key: self.script.settings[key] for key in SETTINGS if key in self.script.settings}
+        reader = Reader(self.names, self.found, lambda node, family, name: None, "")
+        result: dict[str, Any] = {}
+        for key, node in given.items():
+            info = Settings.model_fields[key]
+            try:
+                result[key] = reader.field(node, info, key)
+            except Unreadable:
+                continue
+        return Settings.model_validate(result)
+
+    def kind(self, family: str, entry: Entry) -> type[Kind] | None:
+        """The class of an entry's word, or None after reporting that there is none."""
+        cls = self.catalogue.load(family, entry.word)
+        if cls is None:
+            words = self.catalogue.words(family)
+            others = self.catalogue.families_of(entry.word)
+            hint = f"it belongs under '{others[0]}:'" if others else suggestion(entry.word, words)
+            self.found.error(
+                "unknown-word",
+                f"'{entry.word}' is no word of {family}",
+                entry.word_span,
+                help=hint or "the words are " + ", ".join(words),
+            )
+        return cls
+
+    def outputs_of(self, name: str) -> Mapping[str, Gives] | None:
+        """The outputs of a part, without reading its fields; None if nothing is called so."""
+        if name not in self.entries:
+            return None
+        cls = self.catalogue.load(self.family_of[name], self.entries[name].word)
+        if cls is None:
+            return {}
+        fields = self.entries[name].fields
+        outputs = dict(cls.outputs({} if fields is None else written(fields)))
+        if issubclass(cls, Object):
+            for field_name, info in cls.model_fields.items():
+                for mark in info.metadata:
+                    if isinstance(mark, Quantity) and info.annotation is Value and mark.shape is not None:
+                        outputs.setdefault(field_name, Gives(Type(mark.shape, mark.dimension), info.description or ""))
+        return outputs
+
+    def task(self, family: str, name: str) -> None:
+        """Read one entry, once."""
+        if name in self._done:
+            return
+        self._done.add(name)
+        entry = self.entries[name]
+        cls = self.kind(family, entry)
+        if cls is None:
+            return
+        needs: list[str] = []
+        names = replace(self.names, scope=entry.scope)
+
+        def refer(node: Node, wanted: str, anonymous: str) -> Ref | None:
+            ref = self.refer(node, wanted, anonymous, entry)
+            if ref is not None:
+                needs.append(ref.name)
+            return ref
+
+        reader = Reader(names, self.found, refer, name)
+        try:
+            kind = reader.record(entry.fields, cls, entry.word_span, entry.word)
+        except Unreadable:
+            return
+        needs += [link.task for value in values_of(kind) for link in value.links]
+        self.tasks[name] = Task(name, entry.word, kind, entry.span, tuple(dict.fromkeys(needs)))
+
+    def refer(self, node: Node, family: str, anonymous: str, entry: Entry) -> Ref | None:
+        """The part that a field names; one that is written in place becomes a part of its own first."""
+        if isinstance(node, Scalar):
+            name = entry.scope.resolve(node.text) if entry.scope is not None else node.text
+            if name in self.entries and family in ("", self.family_of[name]):
+                return Ref(name, node.span)
+            if family and self.catalogue.load(family, node.text) is not None:
+                return self._in_place(Entry(anonymous, node.text, None, node.span, node.span, entry.scope), family)
+            self._unknown(node, name, family)
+            return None
+        if isinstance(node, MappingNode) and len(node.entries) == 1 and family:
+            (word, fields), (key,) = next(iter(node.entries.items())), node.keys.values()
+            return self._in_place(Entry(anonymous, word, fields, node.span, key.span, entry.scope), family)
+        self.found.error(
+            "entry-shape", f"a name, or one entry `{{word: {{fields}}}}`, stands here for a part of {family}", node.span
+        )
+        return None
+
+    def _in_place(self, entry: Entry, family: str) -> Ref | None:
+        if entry.name not in self.entries:
+            self.entries[entry.name], self.family_of[entry.name] = entry, family
+        self.task(family, entry.name)
+        return Ref(entry.name, entry.span) if entry.name in self.tasks else None
+
+    def _unknown(self, node: Scalar, name: str, family: str) -> None:
+        if name in self.entries:
+            self.found.error(
+                "wrong-family", f"'{name}' is one of {self.family_of[name]}, not of {family}", node.span
+            )
+            return
+        choices = [n for n in self.entries if family in ("", self.family_of[n])]
+        words = self.catalogue.words(family) if family else []
+        hint = suggestion(name, [*choices, *words])
+        what = f"of {family} " if family else ""
+        self.found.error("unknown-name", f"no part {what}is called '{name}'", node.span, help=hint)
+
+
+def written(node: Node) -> Any:
+    """A node as plain nested dicts, lists and texts."""
+    if isinstance(node, MappingNode):
+        return {key: written(item) for key, item in node.entries.items()}
+    if isinstance(node, Sequence):
+        return [written(item) for item in node.items]
+    return node.text
+
+
+def values_of(part: Any) -> list[Value]:
+    """All values in time below a kind, record, list or dict."""
+    if isinstance(part, Value):
+        return [part]
+    if isinstance(part, BaseModel):
+        return [value for name in type(part).model_fields for value in values_of(getattr(part, name))]
+    if isinstance(part, dict):
+        return [value for item in part.values() for value in values_of(item)]
+    if isinstance(part, list | tuple):
+        return [value for item in part for value in values_of(item)]
+    expr = getattr(part, "expr", None)
+    if expr is not None and any(isinstance(node, Link) for node in walk(expr)):
+        return [Value(expr)]
+    return []

@@ -1,0 +1,75 @@
+"""Script to simulation graph: check, then the passes in order."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.check import check
+from sceneql.compiler.passes.expand import expand
+from sceneql.compiler.passes.islands import islands
+from sceneql.compiler.passes.prune import prune
+from sceneql.graph import SimulationGraph, Task
+from sceneql.kinds import Camera, Model, Object, Picture
+from sceneql.language.script import Script
+from sceneql.quantities.diagnostic import Diagnostics
+
+
+def compile_script(script: Script, catalogue: Catalogue, *, pruned: bool = True) -> SimulationGraph:
+    """The graph of a script. ``pruned=False`` keeps every part (its pictures must be the same). Raises ScriptError."""
+    found = Diagnostics()
+    checked = check(script, catalogue, found)
+    tasks = expand(checked.tasks, catalogue)
+    groups = islands(tasks, found)
+    drawn = _drawn(tasks)
+    cameras = _cameras(tasks)
+    found.raise_errors()
+    order, needed_by, left_out = prune(tasks, groups, drawn, cameras)
+    if not pruned:
+        order = {**order, **{name: task for name, task in tasks.items() if name not in order}}
+    return SimulationGraph(
+        name=script.name,
+        settings=checked.settings,
+        tasks=order,
+        needed_by=needed_by,
+        islands=tuple(group for group in groups if group.models[0] in order),
+        drawn=drawn,
+        cameras=cameras,
+        left_out=left_out,
+        warnings=found.warnings,
+        script_hash=script.hash,
+    )
+
+
+def _drawn(tasks: Mapping[str, Task]) -> dict[str, tuple[str, ...]]:
+    """What each picture draws: objects that are not hidden and no child of another, and models that nothing draws."""
+    inner = {ref.name for t in tasks.values() if isinstance(t.kind, Object) for ref in t.kind.children()}
+    objects = [
+        t.name for t in tasks.values() if isinstance(t.kind, Object) and not t.kind.hidden and t.name not in inner
+    ]
+    shown: set[str] = set()
+    stack = list(objects)
+    while stack:
+        for need in tasks[stack.pop()].needs:
+            if need not in shown:
+                shown.add(need)
+                stack.append(need)
+    models = [
+        t.name for t in tasks.values() if isinstance(t.kind, Model) and not t.kind.kinematic and t.name not in shown
+    ]
+    result = {}
+    for task in tasks.values():
+        if isinstance(task.kind, Picture):
+            show = task.kind.show
+            result[task.name] = tuple(ref.name for ref in show) if show else (*objects, *models)
+    return result
+
+
+def _cameras(tasks: Mapping[str, Task]) -> dict[str, str]:
+    """The camera of each picture: the one it names, else the first of the script."""
+    first = next((t.name for t in tasks.values() if isinstance(t.kind, Camera)), "")
+    return {
+        t.name: t.kind.camera.name if t.kind.camera is not None else first
+        for t in tasks.values()
+        if isinstance(t.kind, Picture)
+    }

@@ -1,0 +1,129 @@
+"""What the names of a script mean: defines, `time`, a template's fields, and the outputs of other parts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, fields, replace
+from typing import Any
+
+from sceneql.kinds import Gives
+from sceneql.language.templates import Scope
+from sceneql.language.tree import Node
+from sceneql.quantities.diagnostic import Diagnostics, suggestion
+from sceneql.quantities.dimension import PLAIN, TIME
+from sceneql.quantities.expression import Call, Expr, Key, Keys, Link, Number, Symbol, Type, Vector
+from sceneql.quantities.span import Span
+
+COMPONENTS = {"x": 0, "y": 1, "z": 2}
+
+
+@dataclass
+class Names:
+    """One script's names. ``outputs_of`` is asked for a part's outputs; ``read`` turns a define's node into a tree."""
+
+    defines: Mapping[str, Node]
+    parts: Iterable[str]
+    outputs_of: Callable[[str], Mapping[str, Gives] | None]
+    read: Callable[[Node, Names], Expr | None]
+    found: Diagnostics
+    scope: Scope | None = None
+    _bound: dict[str, Expr | None] = field(default_factory=dict)
+    _open: list[str] = field(default_factory=list)
+
+    def define(self, name: str, span: Span) -> Expr | None:
+        """The value of a define; a define that needs itself is an error."""
+        if name in self._open:
+            circle = " -> ".join([*self._open[self._open.index(name) :], name])
+            self.found.error("circular-define", f"'{name}' is defined by itself: {circle}", span)
+            return None
+        if name not in self._bound:
+            self._open.append(name)
+            self._bound[name] = self.read(self.defines[name], replace(self, scope=None))
+            self._open.pop()
+        return self._bound[name]
+
+    def field(self, name: str) -> tuple[Node, Names] | None:
+        """What a template's instance was given for a field of this name, and the names that hold where it stands."""
+        scope = self.scope
+        while scope is not None:
+            if name in scope.fields:
+                return scope.fields[name], replace(self, scope=scope.outer)
+            scope = scope.outer
+        return None
+
+    def lookup(self, parts: tuple[str, ...], span: Span) -> Expr | None:
+        """What a dotted name means, or None after reporting that it means nothing."""
+        head = parts[0]
+        if parts == ("time",):
+            return Symbol("time", Type((), TIME), span)
+        field = self.field(head)
+        if field is not None:
+            node, outer = field
+            expr = self.read(node, outer)
+            return None if expr is None else self._component(expr, parts[1:], span)
+        if head in self.defines:
+            expr = self.define(head, span)
+            return None if expr is None else self._component(expr, parts[1:], span)
+        for size in range(len(parts) - 1, 0, -1):
+            task = ".".join(parts[:size])
+            task = task if self.scope is None else self.scope.resolve(task)
+            outputs = self.outputs_of(task)
+            if outputs is not None:
+                return self._output(task, outputs, parts[size:], span)
+        self._unknown(parts, span)
+        return None
+
+    def _output(self, task: str, outputs: Mapping[str, Gives], rest: tuple[str, ...], span: Span) -> Expr | None:
+        for size in range(len(rest), 0, -1):
+            name = ".".join(rest[:size])
+            if name in outputs:
+                return self._component(Link(task, name, outputs[name].type, span), rest[size:], span)
+        wanted = ".".join(rest)
+        names = ", ".join(sorted(outputs)) or "nothing"
+        self.found.error(
+            "unknown-output",
+            f"'{task}' gives no '{wanted}'",
+            span,
+            help=suggestion(wanted, outputs) or f"it gives {names}",
+        )
+        return None
+
+    def _component(self, expr: Expr, rest: tuple[str, ...], span: Span) -> Expr | None:
+        if not rest:
+            return expr
+        if len(rest) == 1 and rest[0] in COMPONENTS and expr.type.shape and expr.type.shape[-1] == 3:
+            index = Number(float(COMPONENTS[rest[0]]))
+            return Call("component", (expr, index), Type(expr.type.shape[:-1], expr.type.dimension), span)
+        self.found.error("unknown-output", f"there is no '.{'.'.join(rest)}' here", span)
+        return None
+
+    def _unknown(self, parts: tuple[str, ...], span: Span) -> None:
+        wanted = ".".join(parts)
+        parts_known = list(self.parts)
+        if parts == ("t",):
+            hint: str | None = "the time is written 'time'"
+        elif wanted in parts_known:
+            hint = f"'{wanted}' is a part; write one of its outputs, such as '{self._some_output(wanted)}'"
+        else:
+            hint = suggestion(wanted, [*self.defines, *parts_known, "time"])
+        self.found.error("unknown-name", f"nothing is called '{wanted}'", span, help=hint)
+
+    def _some_output(self, task: str) -> str:
+        outputs = self.outputs_of(task) or {}
+        return f"{task}.{next(iter(outputs), 'position')}"
+
+
+def plain(expr: Expr) -> Expr:
+    """The same tree over plain numbers in SI: textbook formulas are not homogeneous, so dimensions are dropped."""
+    parts = {f.name: _plain(getattr(expr, f.name)) for f in fields(expr)}
+    return replace(expr, **parts)
+
+
+def _plain(part: Any) -> Any:
+    if isinstance(part, Type):
+        return Type(part.shape, PLAIN)
+    if isinstance(part, tuple):
+        return tuple(_plain(item) for item in part)
+    if isinstance(part, Number | Symbol | Link | Call | Vector | Keys | Key):
+        return plain(part)
+    return part

@@ -1,0 +1,82 @@
+"""Nodes to colors and rotations: fields whose grammar is more than a quantity's."""
+
+from __future__ import annotations
+
+from sceneql.compiler.names import Names
+from sceneql.compiler.values import parsed_text, read_keys, read_value
+from sceneql.kinds import Quantity, Value
+from sceneql.language.tree import Mapping as MappingNode
+from sceneql.language.tree import Node, Scalar
+from sceneql.quantities.diagnostic import Diagnostics, suggestion
+from sceneql.quantities.dimension import PLAIN
+from sceneql.quantities.expression import Call, Expr, Number, Type, Vector
+
+RGB = Type((3,), PLAIN)
+QUATERNION = Type((4,), PLAIN)
+AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+ORDERS = ("xyz", "xzy", "yxz", "yzx", "zxy", "zyx")
+
+
+def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
+    """An sRGB color (3,) from 0 to 1: a CSS name, ``#rrggbb``, or a vector value."""
+    if isinstance(node, MappingNode) and "keys" in node.entries:
+        expr = read_keys(node, "color", lambda item: _expr(read_color(item, names, found)), None, RGB, names, found)
+        return None if expr is None else Value(expr, node.span)
+    if isinstance(node, Scalar):
+        text = node.text.strip()
+        if text.startswith("#") or (text.isidentifier() and text not in names.defines):
+            from PIL import ImageColor
+
+            try:
+                components = ImageColor.getrgb(text)[:3]
+            except ValueError:
+                hint = suggestion(text, ImageColor.colormap) or "write a CSS name, \"#rrggbb\" or three numbers"
+                found.error("unknown-color", f"'{text}' is no color", node.span, help=hint)
+                return None
+            return Value(Vector(tuple(Number(c / 255) for c in components), RGB), node.span)
+    return read_value(node, Quantity(PLAIN, (3,)), "color", names, found)
+
+
+def read_rotation(node: Node, names: Names, found: Diagnostics) -> Value | None:
+    """A rotation as a unit quaternion [w, x, y, z] (4,)."""
+    if not isinstance(node, MappingNode):
+        return read_value(node, Quantity(PLAIN, (4,)), "rotation", names, found)
+    if "keys" in node.entries:
+        expr = read_keys(
+            node, "rotation", lambda item: _expr(read_rotation(item, names, found)), None, QUATERNION, names, found
+        )
+        return None if expr is None else Value(expr, node.span)
+    given = list(node.entries)
+    if sorted(given) == ["about", "angle"]:
+        axis = _axis(node.entries["about"], names, found)
+        angle = read_value(node.entries["angle"], Quantity(PLAIN, needs_unit=True), "angle", names, found)
+        if axis is None or angle is None:
+            return None
+        return Value(Call("about", (axis, angle.expr), QUATERNION, node.span), node.span)
+    if len(given) == 1 and given[0] in ORDERS:
+        angles = read_value(node.entries[given[0]], Quantity(PLAIN, (3,), needs_unit=True), given[0], names, found)
+        if angles is None:
+            return None
+        return Value(Call(f"euler_{given[0]}", (angles.expr,), QUATERNION, node.span), node.span)
+    found.error(
+        "rotation-shape",
+        "a rotation names its axis or its order",
+        node.span,
+        help="write `{about: z, angle: 30 deg}`, `{xyz: 10 20 30 deg}` or a quaternion `[w, x, y, z]`",
+    )
+    return None
+
+
+def _axis(node: Node, names: Names, found: Diagnostics) -> Expr | None:
+    if isinstance(node, Scalar):
+        text = parsed_text(node).strip()
+        sign = -1.0 if text.startswith("-") else 1.0
+        if text.lstrip("-") in AXES:
+            return Vector(tuple(Number(sign * c + 0.0) for c in AXES[text.lstrip("-")]), RGB, node.span)
+    return _expr(read_value(node, Quantity(PLAIN, (3,)), "about", names, found))
+
+
+def _expr(value: Value | None) -> Expr | None:
+    return None if value is None else value.expr
+
+

@@ -1,0 +1,63 @@
+"""Defaults as parts: what a script leaves unsaid (output, camera, light, floor, solver) is added by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from sceneql.compiler.catalogue import Catalogue
+from sceneql.graph import Task
+from sceneql.kinds import Camera, Contact, Illumination, Kind, Model, Object, Output, Solver, Value
+from sceneql.quantities.expression import Link
+
+
+def expand(tasks: Mapping[str, Task], catalogue: Catalogue) -> dict[str, Task]:
+    """The parts with those that the defaults add; objects that a model drives are linked to it."""
+    result = dict(tasks)
+
+    def has(family: type[Kind]) -> bool:
+        return any(isinstance(task.kind, family) for task in result.values())
+
+    def add(name: str, family: str, word: str) -> None:
+        cls = catalogue.load(family, word)
+        if cls is None:
+            raise LookupError(f"the default {word} of {family} is missing")
+        while name in result:
+            name += "_"
+        result[name] = Task(name, word, cls(), None)
+
+    if not has(Output):
+        add("film", "outputs", "video")
+    if not has(Camera):
+        add("camera", "cameras", "auto")
+    if not has(Illumination):
+        add("light", "lights", "studio")
+    if any(isinstance(t.kind, Contact) and not t.kind.ties() for t in result.values()) and not _surfaces(result):
+        add("floor", "objects", "plane")
+    if any(isinstance(t.kind, Model) and not t.kind.kinematic for t in result.values()) and (
+        not any(isinstance(t.kind, Solver) and t.kind.on is None for t in result.values())
+    ):
+        add("solver", "solvers", "auto")
+    return _drive(result)
+
+
+def _surfaces(tasks: Mapping[str, Task]) -> bool:
+    driven = {name for task in tasks.values() if isinstance(task.kind, Model) for name in task.kind.drives()}
+    inner = {ref.name for task in tasks.values() if isinstance(task.kind, Object) for ref in task.kind.children()}
+    return any(
+        isinstance(t.kind, Object) and t.kind.collides and t.name not in driven | inner for t in tasks.values()
+    )
+
+
+def _drive(tasks: dict[str, Task]) -> dict[str, Task]:
+    """Link the fields of driven objects to the outputs of the models that drive them."""
+    for model in list(tasks.values()):
+        if not isinstance(model.kind, Model):
+            continue
+        for name, (field, output) in model.kind.drives().items():
+            target = tasks[name]
+            old: Value = getattr(target.kind, field)
+            link = Value(Link(model.name, output, old.expr.type), old.span)
+            needs = (*target.needs, model.name)
+            tasks[name] = replace(target, kind=target.kind.model_copy(update={field: link}), needs=needs)
+    return tasks

@@ -1,0 +1,133 @@
+"""Which models are solved together, by which solver, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from sceneql.graph import Island, Task
+from sceneql.kinds import Contact, Force, Model, Object, Solver
+from sceneql.quantities.diagnostic import Diagnostics, Note
+
+
+def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]:
+    """The islands of a script's dynamic models, in script order.
+
+    Models are tied by a force or contact whose values read one and act on the other, by a contact between two of
+    them, and by values of their own that read another's outputs.
+    """
+    models = [t for t in tasks.values() if isinstance(t.kind, Model) and not t.kind.kinematic]
+    names = [t.name for t in models]
+    root = {name: name for name in names}
+
+    def find(name: str) -> str:
+        while root[name] != name:
+            name = root[name]
+        return name
+
+    def tie(a: str, b: str) -> None:
+        if a in root and b in root:
+            root[max(find(a), find(b), key=names.index)] = min(find(a), find(b), key=names.index)
+
+    forces = {t.name: acts_on(t, models) for t in tasks.values() if isinstance(t.kind, Force)}
+    contacts = {t.name: _touching(t, tasks, names) for t in tasks.values() if isinstance(t.kind, Contact)}
+    for task in models:
+        for other in reads(task.name, tasks):
+            tie(task.name, other)
+    for force, targets in forces.items():
+        for other in reads(force, tasks):
+            for target in targets:
+                tie(target, other)
+    for targets, others in contacts.values():
+        if len(targets) > 1 and not others:
+            for target in targets[1:]:
+                tie(targets[0], target)
+        for surface in others:
+            for other in reads(surface, tasks):
+                for target in targets:
+                    tie(target, other)
+
+    result = []
+    for first in [name for name in names if find(name) == name]:
+        group = tuple(name for name in names if find(name) == first)
+        solver, reason = _solver(group, tasks, found)
+        result.append(
+            Island(
+                models=group,
+                forces=tuple((f, m) for f, targets in forces.items() for m in targets if m in group),
+                contacts=tuple((c, m, others) for c, (targets, others) in contacts.items() for m in targets if m in group),
+                solver=solver,
+                reason=reason,
+            )
+        )
+    return tuple(result)
+
+
+def acts_on(force: Task, models: list[Task]) -> tuple[str, ...]:
+    """The models that a force acts on: those it names, else all that have masses."""
+    assert isinstance(force.kind, Force)
+    if force.kind.on is not None:
+        return tuple(ref.name for ref in force.kind.on)
+    return tuple(t.name for t in models if isinstance(t.kind, Model) and t.kind.has_bodies)
+
+
+def reads(name: str, tasks: Mapping[str, Task]) -> tuple[str, ...]:
+    """The dynamic models that a part's values depend on, through objects and kinematic models."""
+    found: dict[str, None] = {}
+    stack, seen = list(tasks[name].needs), {name}
+    while stack:
+        other = stack.pop()
+        if other in seen or other not in tasks:
+            continue
+        seen.add(other)
+        kind = tasks[other].kind
+        if isinstance(kind, Model) and not kind.kinematic:
+            found[other] = None
+        elif isinstance(kind, Model | Object) and not _driven_by(name, other, tasks):
+            stack.extend(tasks[other].needs)
+    return tuple(found)
+
+
+def _driven_by(model: str, name: str, tasks: Mapping[str, Task]) -> bool:
+    kind = tasks[model].kind
+    return isinstance(kind, Model) and name in kind.drives()
+
+
+def _touching(task: Task, tasks: Mapping[str, Task], models: list[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The models that a contact acts on, and the objects that they may touch."""
+    assert isinstance(task.kind, Contact)
+    ties = [ref.name for ref in task.kind.ties()]
+    driver = {name: t.name for t in tasks.values() if isinstance(t.kind, Model) for name in t.kind.drives()}
+    ties = [driver.get(name, name) for name in ties]
+    targets = [name for name in ties if name in models]
+    surfaces = [name for name in ties if isinstance(tasks[name].kind, Object)]
+    if not targets:
+        targets = [n for n in models if getattr(tasks[n].kind, "has_bodies", False)]
+    if not surfaces and len(targets) < 2 or not ties:
+        inner = {ref.name for t in tasks.values() if isinstance(t.kind, Object) for ref in t.kind.children()}
+        surfaces = [
+            t.name
+            for t in tasks.values()
+            if isinstance(t.kind, Object) and t.kind.collides and t.name not in driver and t.name not in inner
+        ]
+    return tuple(targets), tuple(surfaces)
+
+
+def _solver(group: tuple[str, ...], tasks: Mapping[str, Task], found: Diagnostics) -> tuple[str, str]:
+    solvers = [t for t in tasks.values() if isinstance(t.kind, Solver)]
+    named = [t for t in solvers if isinstance(t.kind, Solver) and t.kind.on and {r.name for r in t.kind.on} & set(group)]
+    default = [t for t in solvers if isinstance(t.kind, Solver) and t.kind.on is None]
+    for candidates, reason in ((named, "named for {}"), (default, "the script's default solver")):
+        if len(candidates) > 1:
+            found.error(
+                "two-solvers",
+                f"'{candidates[0].name}' and '{candidates[1].name}' both march {', '.join(group)}",
+                candidates[1].span,
+                notes=[Note("the other is here", candidates[0].span)] if candidates[0].span else [],
+                help="models that are tied are solved together, by one solver; give each its own with `on: [models]`",
+            )
+        if candidates:
+            chosen = candidates[0]
+            if chosen.span is None:
+                return chosen.name, "no solver is named"
+            return chosen.name, reason.format(", ".join(group))
+    raise LookupError("the default solver is missing")

@@ -1,0 +1,286 @@
+"""Nodes to field values, by the field's own type: what a kind's annotation says is what the script may write.
+
+One reader for every word: quantities, colors, rotations, keyframes, formulas, references, choices, records and
+lists of these. What is wrong is reported where it stands, and reading goes on, so that all errors come in one run.
+"""
+
+from __future__ import annotations
+
+import types
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
+
+from pydantic import BaseModel, ValidationError
+
+from sceneql.compiler import paint, values
+from sceneql.compiler.names import Names
+from sceneql.kinds import Formula, Paint, Quantity, Ref, Refers, Symbols, Turn, Value
+from sceneql.language.tree import Mapping as MappingNode
+from sceneql.language.tree import Node, Scalar, Sequence
+from sceneql.quantities.diagnostic import Diagnostics, suggestion
+from sceneql.quantities.span import Span
+
+TRUE, FALSE = ("true", "yes", "on"), ("false", "no", "off")
+
+
+class Unreadable(Exception):
+    """The value was reported as wrong; whoever reads the whole goes on with the next."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reader:
+    """Reads the fields of one entry. ``refer`` resolves a reference (or an entry written in place) to a part's name."""
+
+    names: Names
+    found: Diagnostics
+    refer: Callable[[Node, str, str], Ref | None]
+    """(node, family, the name that an entry in place would get)."""
+    owner: str
+    """Name of the part whose fields these are."""
+
+    def record(self, node: Node | None, cls: type[BaseModel], span: Span, title: str) -> Any:
+        """An instance of a record or kind from a mapping (None: no fields are written). Raises Unreadable."""
+        written: Mapping[str, Node] = {}
+        if isinstance(node, MappingNode):
+            written = node.entries
+        elif node is not None and not (isinstance(node, Scalar) and node.kind == "null"):
+            self._fail("wrong-shape", f"{title} takes fields, `{{name: value}}`", node.span)
+        ok = True
+        got: dict[str, Any] = {}
+        if isinstance(node, MappingNode):
+            for name in [name for name in written if name not in cls.model_fields]:
+                ok = False
+                self.found.error(
+                    "unknown-field",
+                    f"{title} has no field '{name}'",
+                    node.keys[name].span,
+                    help=suggestion(name, cls.model_fields) or "it has " + ", ".join(cls.model_fields),
+                )
+        for name, info in cls.model_fields.items():
+            if name not in written:
+                if info.is_required():
+                    ok = False
+                    self.found.error(
+                        "missing-field", f"{title} needs '{name}'", span, help=f"{name}: {info.description}"
+                    )
+                continue
+            reader = replace(self, owner=f"{self.owner}.{name}") if self.owner else self
+            try:
+                got[name] = reader.field(written[name], info, name)
+            except Unreadable:
+                ok = False
+        if not ok:
+            raise Unreadable
+        try:
+            return cls.model_validate(got)
+        except ValidationError as error:
+            for problem in error.errors():
+                self.found.error("invalid", _text(problem), _place(problem["loc"], node, span))
+            raise Unreadable from None
+
+    def field(self, node: Node, info: Any, name: str) -> Any:
+        """The value of a field, within its range. Raises Unreadable after reporting."""
+        annotation = Annotated[(info.annotation, *info.metadata)] if info.metadata else info.annotation
+        errors = len(self.found.errors)
+        value = self.read(node, annotation, name)
+        limits = (info.json_schema_extra or {}).get("limits", {})
+        values.check_limits(value, limits, name, annotation, node.span, self.found)
+        if len(self.found.errors) > errors:
+            raise Unreadable
+        return value
+
+    def read(self, node: Node, annotation: Any, what: str) -> Any:
+        """A value of the annotation's type. Raises Unreadable after reporting."""
+        if isinstance(node, Scalar) and not node.quoted:
+            field = self.names.field(node.text)
+            if field is not None:
+                node, outer = field
+                return replace(self, names=outer).read(node, annotation, what)
+        base, marks = _unwrap(annotation)
+        for mark in marks:
+            if isinstance(mark, Quantity):
+                return self._quantity(node, base, mark, what)
+            if isinstance(mark, Paint):
+                return self._some(paint.read_color(node, self.names, self.found), node)
+            if isinstance(mark, Turn):
+                return self._some(paint.read_rotation(node, self.names, self.found), node)
+            if isinstance(mark, Refers):
+                return self._some(self.refer(node, mark.family, self.owner), node)
+            if isinstance(mark, Symbols):
+                return self._formula(node, mark, what)
+        origin, arms = get_origin(base), get_args(base)
+        if origin in (Union, types.UnionType):
+            return self._union(node, arms, what)
+        if origin is Literal:
+            return self._choice(node, arms, what)
+        if origin in (list, tuple):
+            return self._list(node, origin, arms, what)
+        if origin is dict:
+            return self._dict(node, arms[1], what)
+        if isinstance(base, type) and issubclass(base, BaseModel):
+            return self.record(node, base, node.span, what)
+        if base is Formula:
+            return self._formula(node, Symbols(None), what)
+        if base is bool:
+            return self._bool(node, what)
+        if base in (int, float):
+            return self._number(node, base, what)
+        if base is str:
+            if isinstance(node, Scalar):
+                return node.text
+            self._fail("wrong-shape", f"{what} is a text", node.span)
+        if base is Any:
+            return node
+        raise TypeError(f"no reading for {annotation!r}")
+
+    # --- one method a shape ---
+
+    def _quantity(self, node: Node, base: Any, mark: Quantity, what: str) -> Any:
+        value = self._some(values.read_value(node, mark, what, self.names, self.found), node)
+        if base is Value:
+            return value
+        if not value.constant:
+            self._fail("not-constant", f"{what} must be constant", node.span)
+        number = value.number()
+        if not values.finite(number):
+            self._fail("not-finite", f"{what} is {number}", node.span)
+        return number
+
+    def _formula(self, node: Node, mark: Symbols, what: str) -> Formula:
+        expr = self._some(values.read_formula(node, mark.names or (), what, self.names, self.found), node)
+        return Formula(expr, node.span)
+
+    def _union(self, node: Node, arms: tuple[Any, ...], what: str) -> Any:
+        if type(None) in arms and isinstance(node, Scalar) and node.kind == "null":
+            return None
+        fitting = [arm for arm in arms if arm is not type(None) and _could_be(arm, node)]
+        fitting = fitting or [arm for arm in arms if arm is not type(None)]
+        for arm in fitting[:-1]:
+            attempt = replace(self, found=Diagnostics())
+            attempt = replace(attempt, names=replace(self.names, found=attempt.found))
+            try:
+                value = attempt.read(node, arm, what)
+            except Unreadable:
+                continue
+            if not attempt.found.errors:
+                return value
+        return self.read(node, fitting[-1], what)
+
+    def _choice(self, node: Node, choices: tuple[Any, ...], what: str) -> Any:
+        text = node.text if isinstance(node, Scalar) else ""
+        for choice in choices:
+            if text == str(choice):
+                return choice
+        hint = suggestion(text, [str(c) for c in choices]) or "one of " + ", ".join(str(c) for c in choices)
+        self._fail("unknown-choice", f"{what} cannot be '{text}'", node.span, hint)
+
+    def _list(self, node: Node, origin: Any, arms: tuple[Any, ...], what: str) -> Any:
+        fixed = origin is tuple and not (len(arms) == 2 and arms[1] is Ellipsis)
+        if fixed and isinstance(node, Scalar):
+            return tuple(self._spread(node, arms, what))
+        items = node.items if isinstance(node, Sequence) else [node]
+        if fixed and len(items) != len(arms):
+            self._fail("wrong-count", f"{what} takes {len(arms)} values, not {len(items)}", node.span)
+        result, ok = [], True
+        for k, item in enumerate(items):
+            reader = replace(self, owner=f"{self.owner}.{k}") if len(items) > 1 or not isinstance(item, Scalar) else self
+            try:
+                result.append(reader.read(item, arms[k] if fixed else arms[0], what))
+            except Unreadable:
+                ok = False
+        if not ok:
+            raise Unreadable
+        return tuple(result) if origin is tuple else result
+
+    def _spread(self, node: Scalar, arms: tuple[Any, ...], what: str) -> list[Any]:
+        """``960 540`` for a pair of whole numbers."""
+        words = node.text.replace(",", " ").split()
+        if len(words) != len(arms):
+            self._fail("wrong-count", f"{what} takes {len(arms)} values, not {len(words)}", node.span)
+        at, result = node.content.start, []
+        for word, arm in zip(words, arms, strict=True):
+            start = node.source.text.find(word, at)
+            at = start + len(word)
+            part = Scalar(word, "integer", False, node.source, start, at)
+            result.append(self.read(part, arm, what))
+        return result
+
+    def _dict(self, node: Node, arm: Any, what: str) -> dict[str, Any]:
+        if not isinstance(node, MappingNode):
+            self._fail("wrong-shape", f"{what} takes names with values, `{{name: value}}`", node.span)
+        result, ok = {}, True
+        for name, item in node.entries.items():
+            try:
+                result[name] = replace(self, owner=f"{self.owner}.{name}").read(item, arm, f"{what}.{name}")
+            except Unreadable:
+                ok = False
+        if not ok:
+            raise Unreadable
+        return result
+
+    def _bool(self, node: Node, what: str) -> bool:
+        text = node.text.lower() if isinstance(node, Scalar) else ""
+        if text in TRUE or text in FALSE:
+            return text in TRUE
+        self._fail("unknown-choice", f"{what} is yes or no, not '{text}'", node.span)
+
+    def _number(self, node: Node, base: Any, what: str) -> Any:
+        value = self._some(values.read_value(node, values.PLAIN_NUMBER, what, self.names, self.found), node)
+        if not value.constant:
+            self._fail("not-constant", f"{what} must be constant", node.span)
+        number = value.number()
+        if base is float:
+            return number
+        if not values.finite(number) or number != int(number):
+            self._fail("not-whole", f"{what} must be a whole number, not {number:g}", node.span)
+        return int(number)
+
+    def _some(self, value: Any, node: Node) -> Any:
+        if value is None:
+            raise Unreadable
+        return value
+
+    def _fail(self, code: str, message: str, span: Span, help: str | None = None) -> Any:
+        self.found.error(code, message, span, help=help)
+        raise Unreadable
+
+
+def _unwrap(annotation: Any) -> tuple[Any, tuple[Any, ...]]:
+    if get_origin(annotation) is Annotated:
+        base, *marks = get_args(annotation)
+        inner, more = _unwrap(base)
+        return inner, (*marks, *more)
+    return annotation, ()
+
+
+def _could_be(annotation: Any, node: Node) -> bool:
+    """Whether a node's shape suits a type, to choose among the arms of a union."""
+    base, marks = _unwrap(annotation)
+    origin = get_origin(base)
+    if any(isinstance(mark, Quantity | Paint | Turn | Refers) for mark in marks):
+        return True
+    if origin is dict or (isinstance(base, type) and issubclass(base, BaseModel)):
+        return isinstance(node, MappingNode)
+    if origin in (list, tuple):
+        return isinstance(node, Sequence)
+    if origin is Literal:
+        return isinstance(node, Scalar) and node.text in [str(c) for c in get_args(base)]
+    return isinstance(node, Scalar)
+
+
+def _text(problem: Any) -> str:
+    message: str = problem["msg"]
+    return message.removeprefix("Value error, ").removeprefix("Assertion failed, ")
+
+
+def _place(path: tuple[int | str, ...], node: Node | None, span: Span) -> Span:
+    """The deepest node that a validation error's path leads to."""
+    for step in path:
+        if isinstance(node, MappingNode) and isinstance(step, str) and step in node.entries:
+            node = node.entries[step]
+        elif isinstance(node, Sequence) and isinstance(step, int) and step < len(node.items):
+            node = node.items[step]
+        else:
+            break
+    return span if node is None else node.span

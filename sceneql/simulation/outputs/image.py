@@ -1,0 +1,37 @@
+"""The word `image`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from sceneql.kinds import Clock, FixedTime, Moment, Picture, Sink, Tools, field
+
+
+class Image(Picture):
+    """One picture as PNG (ISO/IEC 15948), at an instant of the simulation."""
+
+    time: FixedTime | None = field("The instant; by default the end of the clock.", None, at_least=0)
+
+    def times(self, clock: Clock) -> list[float]:
+        return [clock.end if self.time is None else min(self.time, clock.end)]
+
+    def open(self, tools: Tools) -> Sink:
+        return _Stills(self, tools, numbered=False)
+
+
+class _Stills:
+    """PNG files: one, or a numbered row of them."""
+
+    def __init__(self, picture: Picture, tools: Tools, *, numbered: bool) -> None:
+        self.picture, self.tools = picture, tools
+        self.writer: Any = tools.encoder("png", numbered=numbered)
+
+    def take(self, moment: Moment) -> None:
+        self.writer.write(self.tools.pixels(self.picture, moment))
+
+    def close(self) -> Iterable[Any]:
+        return self.writer.close()  # type: ignore[no-any-return]
+
+    def abort(self) -> Iterable[Any]:
+        return self.writer.abort()  # type: ignore[no-any-return]

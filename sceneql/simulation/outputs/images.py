@@ -1,0 +1,18 @@
+"""The word `images`."""
+
+from __future__ import annotations
+
+from sceneql.kinds import Clock, FixedScalar, Picture, Sink, Tools, field
+from sceneql.simulation.outputs.image import _Stills
+
+
+class Images(Picture):
+    """A film as numbered PNG files (`name.0000.png`, ...), for other programs to cut."""
+
+    fps: FixedScalar | None = field("Frames a second; by default the clock's.", None, above=0, at_most=1000)
+
+    def times(self, clock: Clock) -> list[float]:
+        return clock.frames(clock.fps if self.fps is None else self.fps)
+
+    def open(self, tools: Tools) -> Sink:
+        return _Stills(self, tools, numbered=True)

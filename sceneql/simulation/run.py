@@ -1,0 +1,221 @@
+"""Graph to moments: the islands march, and the moments asked for are read off, in one pass."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from sceneql.graph import Island, SimulationGraph, Task
+from sceneql.kinds import Contact, Force, Material, Model, Object, Ref, Solver, Value
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Expr, Link, Symbol
+from sceneql.simulation.bounds import box_of
+from sceneql.simulation.color import default_color, linear
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Surface
+    from sceneql.frame import Shape as Drawn
+    from sceneql.simulation.march import March
+    from sceneql.system import Bodies, ModelState
+
+IDENTITY = np.eye(3, 4)
+BOUNDS_MOMENTS = 49
+
+
+class Run:
+    """One run of a graph. ``moments`` may be called once; its moments are valid until the next one is asked for."""
+
+    def __init__(self, graph: SimulationGraph) -> None:
+        self.graph = graph
+        self.islands = [IslandRun(graph, island) for island in graph.islands]
+        self.island_of = {name: run for run in self.islands for name in run.members}
+        self.orders = _orders(graph)
+        self._bounds: dict[str, tuple[Floats, Floats]] | None = None
+
+    def moments(self, times: Iterable[float]) -> Iterator[Instant]:
+        """The instants [s] asked for, in order; times do not decrease. Raises RunFailure."""
+        for time in times:
+            for island in self.islands:
+                island.advance(time)
+            yield Instant(self, time)
+
+    def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
+        """Low and high corner (3,) of what the parts draw over the whole run, found by a run ahead of its own."""
+        if self._bounds is None:
+            self._bounds = _bounds(self.graph)
+        corners = [self._bounds[name] for name in names if name in self._bounds]
+        if not corners:
+            return np.full(3, -1.0), np.full(3, 1.0)
+        return np.min([low for low, _ in corners], axis=0), np.max([high for _, high in corners], axis=0)
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """What an island's assembly may ask of the scene."""
+
+    tasks: Mapping[str, Task]
+
+    def object(self, ref: Ref) -> Object:
+        """The kind of an object of the script."""
+        return cast(Object, self.tasks[ref.name].kind)
+
+    def formula(self, link: Link) -> Expr | None:
+        """The output of a kinematic model, or an object's field, as an expression; None for a dynamic model's."""
+        kind = self.tasks[link.task].kind
+        if isinstance(kind, Model):
+            return kind.formula(link.output) if kind.kinematic else None
+        value = getattr(kind, link.output, None)
+        return value.expr if isinstance(value, Value) else None
+
+
+class IslandRun:
+    """An island on its way: its assembly, its march and its latest state."""
+
+    def __init__(self, graph: SimulationGraph, island: Island) -> None:
+        from sceneql.simulation.island import IslandAssembly
+        from sceneql.simulation.march import March
+
+        self.graph, self.island = graph, island
+        self.solver = cast(Solver, graph.tasks[island.solver].kind)
+        assembly = IslandAssembly(Setting(graph.tasks))
+        self.bodies: dict[str, Bodies | None] = {}
+        for name in island.models:
+            with assembly.word(name, graph.tasks[name].span):
+                self.bodies[name] = cast(Model, graph.tasks[name].kind).assemble(name, assembly)
+        for force, model in island.forces:
+            bodies = self.bodies[model]
+            if bodies is not None:
+                with assembly.word(force, graph.tasks[force].span, model):
+                    cast(Force, graph.tasks[force].kind).assemble(force, assembly, bodies)
+        for contact, model, others in island.contacts:
+            bodies = self.bodies[model]
+            if bodies is not None:
+                with assembly.word(contact, graph.tasks[contact].span):
+                    refs = tuple(Ref(other) for other in others)
+                    cast(Contact, graph.tasks[contact].kind).assemble(contact, assembly, bodies, refs)
+        self.assembly = assembly
+        self.march: March = March(assembly.finish(), self.solver.stepper(), graph.settings.clock.end)
+        self.members = {*island.models, *(contact for contact, _, _ in island.contacts)}
+        self._now: tuple[float, Floats, Floats] | None = None
+
+    def advance(self, time: float) -> None:
+        """March to an instant [s]."""
+        y, rate = self.march.advance(time)
+        self._now = (time, y, rate)
+
+    def state(self, name: str) -> ModelState:
+        """The view of a model or contact."""
+        from dataclasses import replace
+
+        from sceneql.system import ModelState
+
+        if self._now is None:
+            raise RuntimeError("the island has not been marched yet")
+        time, y, rate = self._now
+        floats = self.march.floats_at(time, y)
+        bodies = self.bodies.get(name)
+        state = ModelState(time, y, rate, floats, bodies, self.assembly.remembered(name))
+        if bodies is None:
+            return state
+        potential = 0.0
+        for force, model in self.island.forces:
+            if model == name:
+                view = replace(state, ints=self.assembly.remembered(force, model))
+                potential += cast(Force, self.graph.tasks[force].kind).potential(bodies, view)
+        return replace(state, potential=potential)
+
+
+@dataclass
+class Instant:
+    """One instant of a run (kinds.Moment)."""
+
+    run: Run
+    time: float
+    _states: dict[str, ModelState] = field(default_factory=dict)
+
+    def at(self, value: Value) -> Any:
+        """The value now: float or float64 array, SI."""
+        return self._evaluate(value.expr)
+
+    def _evaluate(self, expr: Expr) -> Any:
+        return evaluate(expr, self._look_up, arrays=True)
+
+    def _look_up(self, node: Symbol | Link) -> Any:
+        if isinstance(node, Symbol):
+            if node.name == "time":
+                return self.time
+            raise KeyError(node.name)
+        return self.read(node.task, node.output)
+
+    def read(self, task: str, output: str) -> Any:
+        """An output of a part now."""
+        kind = self.run.graph.tasks[task].kind
+        if isinstance(kind, Model) and kind.kinematic:
+            return self._evaluate(kind.formula(output))
+        if isinstance(kind, Model | Contact):
+            return kind.read(output, self.state(task))
+        return self._evaluate(getattr(kind, output).expr)
+
+    def state(self, name: str) -> ModelState:
+        """The state of a dynamic model or contact now."""
+        if name not in self._states:
+            self._states[name] = self.run.island_of[name].state(name)
+        return self._states[name]
+
+    def object(self, ref: Ref) -> Object:
+        """The kind of an object."""
+        return cast(Object, self.run.graph.tasks[ref.name].kind)
+
+    def surface(self, name: str, material: Ref | None, color: Value | None) -> Surface:
+        """The surface of a drawn part: its material's, its color in place of that, a default by order."""
+        from sceneql.frame import Surface
+
+        own = None if color is None else linear(self.at(color))
+        if material is None:
+            return Surface(color=own or default_color(self.run.orders.get(name, 0)), roughness=0.35)
+        kind = cast(Material, self.run.graph.tasks[material.name].kind)
+        return kind.surface(self, own)
+
+    def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
+        """Low and high corner (3,) of what the parts draw over the whole film; of all that is drawn for no names."""
+        return self.run.bounds(list(names) or list(self.run.orders))
+
+    def lower(self, names: Iterable[str]) -> list[Drawn]:
+        """The shapes of the named objects and models."""
+        shapes: list[Drawn] = []
+        for name in names:
+            kind = self.run.graph.tasks[name].kind
+            if isinstance(kind, Object):
+                shapes += kind.lower(name, IDENTITY, self)
+            elif isinstance(kind, Model):
+                shapes += kind.lower(name, self.state(name), self)
+        return shapes
+
+    @cached_property
+    def everything(self) -> list[str]:
+        """All that any picture draws, in order."""
+        return list(self.run.orders)
+
+
+def _orders(graph: SimulationGraph) -> dict[str, int]:
+    """For every drawn part its place in the row of default colors."""
+    names = dict.fromkeys(name for drawn in graph.drawn.values() for name in drawn)
+    return {name: k for k, name in enumerate(names)}
+
+
+def _bounds(graph: SimulationGraph) -> dict[str, tuple[Floats, Floats]]:
+    ahead = Run(graph)
+    end = graph.settings.clock.end
+    result: dict[str, tuple[Floats, Floats]] = {}
+    for moment in ahead.moments(end * k / (BOUNDS_MOMENTS - 1) for k in range(BOUNDS_MOMENTS)):
+        for name in ahead.orders:
+            for shape in moment.lower([name]):
+                low, high = box_of(shape)
+                if np.isfinite(low).all() and np.isfinite(high).all():
+                    old = result.get(name, (low, high))
+                    result[name] = np.minimum(old[0], low), np.maximum(old[1], high)
+    return result
