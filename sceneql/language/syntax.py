@@ -1,0 +1,130 @@
+"""What YAML's parser complains of, in our words and with our caret."""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+import yaml
+
+from sceneql.language.torn import torn_near
+from sceneql.quantities.diagnostic import Diagnostic, Note
+from sceneql.quantities.span import Source, Span
+
+_UNPRINTABLE = re.compile("[^\t\n\r -~\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+# (words of libyaml's or PyYAML's message, our message, our help)
+_PROBLEMS: Final = (
+    (
+        "block sequence entries are not allowed",
+        "a list item cannot begin here",
+        "put `- ` on a line of its own, below its key; a text that begins with a dash goes in quotes",
+    ),
+    ("unknown escape", "this backslash means nothing in double quotes", "use single quotes: they take it as it is"),
+    ("could not find expected ':'", "a key without a colon", "write `name: value`, or `name:` with its fields below"),
+    (
+        "expected <document start>",
+        "this stands behind the end of the script",
+        "put a space behind the colon of a key",
+    ),
+    (
+        "alphabetic or numeric",
+        "a name must follow & or *",
+        "a text that begins with & or * goes in quotes",
+    ),
+    (
+        "did not find expected key",
+        "this does not line up with what stands above",
+        "begin the keys of one mapping in the same column",
+    ),
+    ("<block end>", "this does not line up with what stands above", "begin the keys of one mapping in the same column"),
+    (
+        "'-' indicator",
+        "this does not line up with the list above",
+        "begin its items with `- `, in the same column",
+    ),
+    ("directive", "a line that begins with % is a YAML directive, and a script has none", "put it in quotes"),
+    ("tag", "a tag (!) means nothing in a script", "a text that begins with ! goes in quotes"),
+)
+_KEY: Final = "write `name: value`"
+
+
+def unprintable(text: str) -> int | None:
+    """Where the first character stands that YAML does not allow, if any."""
+    found = _UNPRINTABLE.search(text)
+    return None if found is None else found.start()
+
+
+def explain(source: Source, error: yaml.YAMLError, flow: int | None) -> tuple[Diagnostic, ...]:
+    """The diagnostics for an error of the parser: `yaml-syntax`, or what tore the text there.
+
+    ``flow`` is where the outermost flow collection that is still open begins, if there is one.
+    """
+    problem = str(getattr(error, "problem", None) or "")
+    context = str(getattr(error, "context", None) or "")
+    size = len(source.text)
+    at = min(_index(error, "problem_mark", size), size)
+    since = min(_index(error, "context_mark", at), at)
+    if torn := torn_near(source, at, flow):
+        return torn
+    if "quoted scalar" in context and "escape" not in problem:
+        return (_syntax("this quote is never closed", source, since, "end the text with the same quote"),)
+    if flow is not None:
+        return (_in_flow(source, at, since if source.text[since : since + 1] in ("[", "{") else flow),)
+    character = source.text[at : at + 1]
+    if (tab := _tab(source, at)) is not None:
+        return (_syntax("a tab cannot indent a line", source, tab, "use spaces: two for each level"),)
+    if "cannot start any token" in problem:
+        message = f"a text cannot begin with `{character}`"
+        return (_syntax(message, source, at, "put it in quotes"),)
+    if "mapping values are not allowed" in problem:
+        return (_misplaced_colon(source, at),)
+    if character == ":" and source.line(source.position(at)[0]).lstrip().startswith(":"):
+        return (Diagnostic("key-not-text", "a key is missing before this colon", Span(source, at, at + 1), _KEY),)
+    for words, message, help in _PROBLEMS:
+        if words in problem:
+            return (_syntax(message, source, at, help),)
+    return (_syntax("this is not YAML", source, at, f"the parser says: {problem or error}"),)
+
+
+def _in_flow(source: Source, at: int, opening: int) -> Diagnostic:
+    if at < len(source.text) and source.position(at)[0] == source.position(opening)[0]:
+        help = "separate the items by commas; an expression with brackets goes in quotes"
+        return _syntax("this does not belong here, or a comma is missing before it", source, at, help)
+    bracket = source.text[opening : opening + 1]
+    note = Note("reading stopped here", Span(source, at, at + 1))
+    closing = "]" if bracket == "[" else "}"
+    return _syntax(f"this `{bracket}` is never closed", source, opening, f"close it with `{closing}`", note)
+
+
+def _misplaced_colon(source: Source, at: int) -> Diagnostic:
+    number, column = source.position(at)
+    before = source.line(number)[: column - 1]
+    if ": " in before:
+        help = "put a text that holds a colon in quotes, or begin a new line after the first colon"
+        return _syntax("a second colon on this line, where no key can stand", source, at, help)
+    help = "begin it in the column of the keys above, or end the line above with a colon"
+    start = at - len(before.lstrip())
+    span = Span(source, start, at)
+    return Diagnostic("yaml-syntax", "no key can stand here: the line above ends in a value", span, help)
+
+
+def _index(error: yaml.YAMLError, name: str, default: int) -> int:
+    mark = getattr(error, name, None)
+    return default if mark is None else int(mark.index)
+
+
+def _tab(source: Source, at: int) -> int | None:
+    """Where a tab stands in the indentation of the line of ``at``, or of the line before."""
+    line = source.position(at)[0]
+    for number in (line, line - 1):
+        if number >= 1:
+            text = source.line(number)
+            blank = text[: len(text) - len(text.lstrip())]
+            if "\t" in blank:
+                return source.line_starts[number - 1] + blank.index("\t")
+    return None
+
+
+def _syntax(message: str, source: Source, at: int, help: str, *notes: Note) -> Diagnostic:
+    return Diagnostic("yaml-syntax", message, Span(source, at, at + 1), help, notes)

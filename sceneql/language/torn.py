@@ -1,0 +1,240 @@
+"""Values that YAML tears: it knows no parentheses, takes ``#`` for a comment, and ends a value at ``]``."""
+
+from __future__ import annotations
+
+import re
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Final
+
+from sceneql.language.tree import Mapping, Scalar, Sequence
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
+from sceneql.quantities.span import Source, Span
+
+_MOST_SCANNED: Final = 20_000
+_MOST_DEPTH: Final = 64
+_CLOSES: Final = {"(": ")", "[": "]", "{": "}"}
+_COLOR = re.compile(r"#(?:[0-9a-fA-F]{8}|[0-9a-fA-F]{6}|[0-9a-fA-F]{3,4})(?![^\s,\]}])")
+_SWALLOWED = re.compile(rf"[ \t]+({_COLOR.pattern})")
+_SPACE = re.compile(r"(?:\s+#[^\n]*|\s)*")
+_PROPERTY = re.compile(r"[&!][^\s,\[\]{}]*\s*")
+_QUOTED = re.compile(r"\"(?:[^\"\\]|\\.)*\"|'(?:[^']|'')*'", re.DOTALL)
+_UNIT = re.compile(r"[^\W\d_]|[%°]")
+_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+_BLOCK_VALUE = re.compile(r"\s*(?:- +)*(?:[^\s\[{\"'#][^\[{\"'#]*?:\s+)?(?=[\[{])")
+
+
+@dataclass(frozen=True, slots=True)
+class _Fault:
+    """Characters ``start`` to ``end`` should read ``fixed``; the caret stands from ``caret`` on."""
+
+    code: str
+    start: int
+    end: int
+    caret: int
+    fixed: str
+
+
+def report_comment(value: Scalar, found: Diagnostics) -> None:
+    """Report an empty value behind which a color was taken for a comment."""
+    if (color := _SWALLOWED.match(value.source.text, value.end)) is not None:
+        start, end = color.span(1)
+        _report(value.source, [_Fault("comment-color", start, end, start, f'"{color[1]}"')], found)
+
+
+def report_torn(collection: Mapping | Sequence, found: Diagnostics) -> list[Span]:
+    """Report the expressions of a flow collection that its commas cut; returns their places."""
+    return _report(collection.source, _faults(collection.source.text, collection.start, collection.end), found)
+
+
+def torn_near(source: Source, at: int, opening: int | None) -> tuple[Diagnostic, ...]:
+    """What tore the text where YAML fails at ``at``, within the flow collection that opens at ``opening`` if any."""
+    text = source.text
+    if opening is None:
+        start = max(text.rfind("\n", 0, at), text.rfind("\r", 0, at)) + 1
+        value = _BLOCK_VALUE.match(text, start, at)
+        if value is None:
+            return ()
+        opening = value.end()
+    found = Diagnostics()
+    _report(source, _faults(text, opening, min(len(text), opening + _MOST_SCANNED)), found)
+    return found.errors
+
+
+def _report(source: Source, faults: list[_Fault], found: Diagnostics) -> list[Span]:
+    for fault in faults:
+        written = source.text[fault.caret : fault.end]
+        line = _corrected(source, fault, faults)
+        match fault.code:
+            case "comment-color":
+                message, help = f"{written} is read as a comment here, so the value is missing", f"quote it: {line}"
+            case "unit-after-bracket":
+                message, help = f"the unit '{written}' cannot stand behind a bracket", f"write: {line}"
+            case _:
+                message, help = "YAML cuts this expression in two at a comma or bracket", f"quote it: {line}"
+        found.error(fault.code, message, Span(source, fault.caret, fault.end), help=help)
+    return [Span(source, fault.start, fault.end) for fault in faults]
+
+
+def _corrected(source: Source, fault: _Fault, faults: list[_Fault]) -> str:
+    """The line of a fault with all that is torn in it mended; of a very long line only the mended value."""
+    text = source.text
+    line = source.position(fault.start)[0]
+    first = source.line_starts[line - 1]
+    out, at = "", first
+    for one in faults:
+        if one.start >= at and source.position(one.start)[0] == line:
+            out += text[at : one.start] + one.fixed
+            at = one.end
+    last = source.position(at)[0]
+    out += text[at : source.line_starts[last - 1] + len(source.line(last))]
+    return out.strip() if len(out) <= 160 else fault.fixed
+
+
+def _faults(text: str, start: int, end: int) -> list[_Fault]:
+    scan = _Scan(text, end)
+    with suppress(_LostError):
+        scan.value(start, 0)
+    return scan.faults
+
+
+class _LostError(Exception):
+    """The text is not what the scan takes it for; what was found before still holds."""
+
+
+class _Scan:
+    """Reads flow syntax as it was meant: with parentheses, and with brackets inside expressions."""
+
+    def __init__(self, text: str, end: int) -> None:
+        self.text = text
+        self.end = end
+        self.faults: list[_Fault] = []
+
+    def peek(self, at: int) -> str:
+        """The character at a place, empty behind the end."""
+        return self.text[at] if at < self.end else ""
+
+    def value(self, at: int, depth: int) -> int:
+        """Read a value; returns where it ends."""
+        while (named := _PROPERTY.match(self.text, at, self.end)) is not None:
+            at = named.end()
+        character = self.peek(at)
+        if character in ('"', "'"):
+            quoted = _QUOTED.match(self.text, at, self.end)
+            if quoted is None:
+                raise _LostError
+            return quoted.end()
+        if character in ("[", "{"):
+            end = self.collection(at, depth)
+            return self.behind(at, end, depth)
+        if (color := _COLOR.match(self.text, at, self.end)) is not None:
+            self.faults.append(_Fault("comment-color", at, color.end(), at, f'"{color[0]}"'))
+            return color.end()
+        end, torn = self.plain(at, nested=depth > 0)
+        if torn:
+            self.faults.append(_Fault("torn-expression", at, end, at, _quote(self.text[at:end])))
+        return end
+
+    def collection(self, at: int, depth: int) -> int:
+        """Read a list or mapping in brackets."""
+        if depth > _MOST_DEPTH:
+            raise _LostError
+        closing = _CLOSES[self.text[at]]
+        at += 1
+        while True:
+            at = self.space(at)
+            character = self.peek(at)
+            if character == closing:
+                return at + 1
+            if character in ("", "]", "}"):
+                raise _LostError
+            at = at + 1 if character in (",", ":", "?") else self.value(at, depth + 1)
+
+    def space(self, at: int) -> int:
+        """Skip blanks and comments, but not a color that passes for one."""
+        while True:
+            while self.peek(at).isspace():
+                at += 1
+            if self.peek(at) != "#" or _COLOR.match(self.text, at, self.end) is not None:
+                return at
+            end = self.text.find("\n", at, self.end)
+            at = self.end if end < 0 else end
+
+    def behind(self, start: int, close: int, depth: int) -> int:
+        """Read on behind a closing bracket, where nothing more should stand on the line."""
+        at = close
+        while self.peek(at) in (" ", "\t"):
+            at += 1
+        if self.peek(at) in ("", "\n", "\r", "#", ",", ":", "]", "}"):
+            return close
+        end, _ = self.plain(at, nested=depth > 0)
+        rest = self.text[at:end]
+        # What is wrong inside is wrong with the whole, which is quoted as one or written anew.
+        self.faults = [fault for fault in self.faults if fault.start < start]
+        if self.text[start] == "[" and _UNIT.match(rest) is not None:
+            fixed = _with_unit(self.text[start + 1 : close - 1], rest)
+            self.faults.append(_Fault("unit-after-bracket", start, end, at, fixed))
+        else:
+            self.faults.append(_Fault("torn-expression", start, end, start, _quote(self.text[start:end])))
+        return end
+
+    def plain(self, at: int, *, nested: bool) -> tuple[int, bool]:
+        """Read a plain text; returns where it ends, and whether YAML would end it sooner."""
+        open_brackets: list[str] = []
+        torn = False
+        start = at
+        while (character := self.peek(at)) != "":
+            following = self.peek(at + 1)
+            if character == ":" and (following.isspace() or following in ("", ",", "]", "}")):
+                if open_brackets:
+                    raise _LostError
+                break
+            if character == "#" and self.text[at - 1].isspace():
+                break
+            if not open_brackets and (character in "\r\n" or (nested and character in ",]}")):
+                break
+            if character in _CLOSES:
+                torn = torn or character != "("
+                open_brackets.append(_CLOSES[character])
+            elif character in ")]}":
+                if not open_brackets or open_brackets.pop() != character:
+                    raise _LostError
+            elif character == "," and open_brackets:
+                torn = True
+            at += 1
+        if open_brackets:
+            raise _LostError
+        return start + len(self.text[start:at].rstrip()), torn
+
+
+def _quote(text: str) -> str:
+    text = " ".join(text.split())
+    if '"' in text or "\\" in text:
+        return "'" + text.replace("'", "''") + "'"
+    return f'"{text}"'
+
+
+def _with_unit(inside: str, unit: str) -> str:
+    """A list with its unit where one may stand: ``0, 1, 0`` in m becomes ``0 1 0 m``."""
+    items = _split(inside)
+    if all(_NUMBER.fullmatch(item) for item in items):
+        return " ".join([*items, unit])
+    written = []
+    for item in items:
+        if item.startswith("[") and item.endswith("]"):
+            written.append(_with_unit(item[1:-1], unit))
+        else:
+            written.append(f"{item} {unit}" if _NUMBER.fullmatch(item) else item)
+    text = f"[{', '.join(written)}]"
+    return _quote(text) if any("(" in item and "," in item for item in written) else text
+
+
+def _split(text: str) -> list[str]:
+    """The items between the commas that no bracket encloses."""
+    items, depth, start = [], 0, 0
+    for at, character in enumerate(text):
+        depth += (character in "([{") - (character in ")]}")
+        if character == "," and depth == 0:
+            items.append(text[start:at].strip())
+            start = at + 1
+    return [*items, text[start:].strip()]
