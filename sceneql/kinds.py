@@ -222,6 +222,8 @@ class Kind(Record):
 
     family: ClassVar[str] = ""
     gives: ClassVar[Mapping[str, Gives]] = {}
+    imports: ClassVar[tuple[str, ...]] = ()
+    """Libraries that its running methods import and that scenes without it do without (told by `explain`)."""
 
     @classmethod
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:

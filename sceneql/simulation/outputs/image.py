@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, ClassVar
 
 from sceneql.kinds import Clock, FixedTime, Moment, Picture, Sink, Tools, field
 
 
 class Image(Picture):
     """One picture as PNG (ISO/IEC 15948), at an instant of the simulation."""
+
+    imports: ClassVar[tuple[str, ...]] = ("PIL",)
 
     time: FixedTime | None = field("The instant; by default the end of the clock.", None, at_least=0)
 

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from sceneql.kinds import Clock, FixedScalar, Picture, Sink, Tools, field
 from sceneql.simulation.outputs.image import _Stills
 
 
 class Images(Picture):
     """A film as numbered PNG files (`name.0000.png`, ...), for other programs to cut."""
+
+    imports: ClassVar[tuple[str, ...]] = ("PIL",)
 
     fps: FixedScalar | None = field("Frames a second; by default the clock's.", None, above=0, at_most=1000)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, ClassVar
 
 from sceneql.kinds import Clock, FixedScalar, Moment, Picture, Sink, Tools, field
 
@@ -13,6 +13,8 @@ class Video(Picture):
 
     Frame i shows the instant i/fps of film time; `clock.speed` relates it to the simulation.
     """
+
+    imports: ClassVar[tuple[str, ...]] = ("av", "imageio")
 
     fps: FixedScalar | None = field("Frames a second; by default the clock's.", None, above=0, at_most=1000)
     quality: FixedScalar = field("Constant rate factor of x264: 0 is lossless, 51 worst.", "17", at_least=0, at_most=51)

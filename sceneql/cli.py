@@ -1,0 +1,244 @@
+"""The command line. Nothing but click is imported before a command runs.
+
+Exit codes: 0 ok, 1 run failed, 2 usage, 3 script invalid, 4 gallery differs, 5 limit refused, 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from sceneql import __version__
+
+OK, RUN_FAILED, USAGE, SCRIPT_INVALID, GALLERY_DIFFERS, LIMIT_REFUSED, INTERRUPTED = 0, 1, 2, 3, 4, 5, 130
+
+F = TypeVar("F", bound=Callable[..., Any])
+SCENE = click.argument("scene", type=click.Path(path_type=Path))
+
+
+def _options(command: F) -> F:
+    """The options of every command that reads a script."""
+    command = click.option("--variant", metavar="NAME", help="Apply one of the script's variants.")(command)
+    command = click.option(
+        "--set", "sets", multiple=True, metavar="PATH=VALUE", help="Replace a value, as --set define.k='3 N/m'."
+    )(command)
+    return click.option(
+        "--words",
+        type=click.Path(file_okay=False, exists=True, path_type=Path),
+        help="A folder of words of your own (DIR/solvers/heun.py).",
+    )(command)
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="sceneql")
+def cli() -> None:
+    """A compiler from scene scripts to films."""
+
+
+def main() -> None:
+    """The entry point of the program: exceptions become messages and exit codes."""
+    try:
+        code = cli.main(prog_name="sceneql", standalone_mode=False)
+    except click.exceptions.Abort:
+        code = INTERRUPTED
+    except click.ClickException as error:
+        error.show()
+        code = error.exit_code
+    except KeyboardInterrupt as error:
+        _say_kept(error)
+        click.echo("interrupted", err=True)
+        code = INTERRUPTED
+    except Exception as error:
+        code = _failure(error)
+    sys.exit(code if isinstance(code, int) else OK)
+
+
+def _failure(error: Exception) -> int:
+    """Say what went wrong; the exit code. An exception that is nobody's message is a bug and is raised."""
+    from sceneql.failure import LimitRefused, RunFailure
+    from sceneql.quantities.diagnostic import ScriptError
+
+    if isinstance(error, ScriptError):
+        click.echo(str(error), err=True)
+        count = len(error.diagnostics)
+        click.echo(f"\n{count} error{'s' if count > 1 else ''}", err=True)
+        return SCRIPT_INVALID
+    if isinstance(error, LimitRefused):
+        click.echo(str(error), err=True)
+        return LIMIT_REFUSED
+    if isinstance(error, RunFailure | OSError):
+        click.echo(str(error) if isinstance(error, RunFailure) else f"error: {error}", err=True)
+        _say_kept(error)
+        return RUN_FAILED
+    raise error
+
+
+def _say_kept(error: BaseException) -> None:
+    for path in getattr(error, "kept", ()):
+        click.echo(f"kept {path}", err=True)
+
+
+@cli.command()
+@SCENE
+@_options
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="File to make, for a script with one output.")
+def render(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None, output: Path | None) -> None:
+    """Make the outputs of a scene."""
+    from sceneql import pipeline
+    from sceneql.report.progress import bar
+
+    graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
+    _warn(graph)
+    with bar(graph.name) as progress:
+        report = pipeline.render(graph, output=output, progress=progress)
+    for path in report.files:
+        click.echo(f"made {path}")
+    line = f"run {report.run_seconds:.2f} s"
+    if report.frames:
+        line += f", {report.frames} frames"
+    if report.steps:
+        line += f", {report.steps} steps"
+    click.echo(f"{line}; compile {report.compile_seconds:.2f} s ({report.compilations} functions)")
+    if report.undecided:
+        click.echo(f"{report.undecided} pixels undecided: proved neither hit nor miss at the tolerance")
+
+
+@cli.command()
+@SCENE
+@_options
+def check(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None) -> None:
+    """Find all errors of a script without running it."""
+    from sceneql import pipeline
+
+    graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
+    _warn(graph)
+    click.echo(f"{scene}: ok, {len(graph.tasks)} parts" + (f", {len(graph.left_out)} not needed" if graph.left_out else ""))
+
+
+@cli.command()
+@SCENE
+@_options
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def explain(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None, as_json: bool) -> None:
+    """Tell what will run, with which solver and step bound, and what is left out and why."""
+    from sceneql import pipeline
+    from sceneql.report.explain import explain as account
+    from sceneql.report.explain import text
+
+    graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
+    found = account(graph)
+    if as_json:
+        import json
+
+        click.echo(json.dumps(found, indent=2))
+    else:
+        _warn(graph)
+        click.echo(text(found))
+
+
+@cli.command()
+@SCENE
+@_options
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder or stem for the CSV and the SVG.")
+def bench(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None, output: Path | None) -> None:
+    """Measure error against run time: the scene's physics by every solver that applies."""
+    from sceneql import pipeline
+    from sceneql.report.bench import bench as measure
+
+    graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
+    click.echo(measure(graph, output, words))
+
+
+@cli.command()
+@click.argument("word", required=False)
+@click.option("--words", "folder", type=click.Path(file_okay=False, exists=True, path_type=Path), help="Your own words.")
+def words(word: str | None, folder: Path | None) -> None:
+    """List the words of the language, or show the manual of one."""
+    from sceneql.compiler.catalogue import Catalogue
+    from sceneql.report.manual import listing, manual
+
+    catalogue = Catalogue(folder)
+    click.echo(listing(catalogue) if word is None else manual(catalogue, word))
+
+
+@cli.command()
+def schema() -> None:
+    """Print the JSON Schema of scripts, for editors."""
+    import json
+
+    from sceneql.compiler.catalogue import Catalogue
+    from sceneql.report.schema import schema as build
+
+    click.echo(json.dumps(build(Catalogue()), indent=1))
+
+
+@cli.command()
+@click.argument("name")
+def new(name: str) -> None:
+    """Write a commented first script, NAME.yaml, with the schema that editors read beside it."""
+    from sceneql.report.new import write
+
+    for path in write(name):
+        click.echo(f"made {path}")
+
+
+@cli.group()
+def gallery() -> None:
+    """Compare scenes with their kept posters and expected numbers."""
+
+
+@gallery.command("check")
+@click.argument("scenes", nargs=-1, type=click.Path(exists=True, path_type=Path))
+@click.option("--folder", type=click.Path(path_type=Path), default=Path("gallery"), help="Where the posters are kept.")
+def gallery_check(scenes: tuple[Path, ...], folder: Path) -> None:
+    """Run scenes small and short; compare posters and expected numbers."""
+    from sceneql.report.gallery import check as compare
+
+    lines, same = compare(scenes, folder)
+    for line in lines:
+        click.echo(line)
+    if not same:
+        raise _Exit(GALLERY_DIFFERS)
+
+
+@gallery.command("update")
+@click.argument("scenes", nargs=-1, type=click.Path(exists=True, path_type=Path))
+@click.option("--folder", type=click.Path(path_type=Path), default=Path("gallery"), help="Where the posters are kept.")
+def gallery_update(scenes: tuple[Path, ...], folder: Path) -> None:
+    """Keep the posters of scenes as they are now, and write the gallery's page."""
+    from sceneql.report.gallery import update
+
+    for line in update(scenes, folder):
+        click.echo(line)
+
+
+@cli.command()
+def warmup() -> None:
+    """Compile everything once, so that no later run has to."""
+    from sceneql.report.warmup import warmup as compile_all
+
+    click.echo(compile_all())
+
+
+class _Exit(click.ClickException):
+    """Ends the program with a code and no further words."""
+
+    def __init__(self, code: int) -> None:
+        super().__init__("")
+        self.exit_code = code
+
+    def show(self, file: Any = None) -> None:
+        """Nothing to add."""
+
+
+def _warn(graph: Any) -> None:
+    for warning in graph.warnings:
+        click.echo(str(warning), err=True)
+
+
+if __name__ == "__main__":
+    main()

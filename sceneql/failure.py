@@ -1,0 +1,23 @@
+"""How a run ends badly: with the part, the time and the line of the script."""
+
+from __future__ import annotations
+
+from sceneql.quantities.diagnostic import Diagnostic
+from sceneql.quantities.span import Span
+
+
+class RunFailure(Exception):
+    """A run that cannot go on. ``part``: the entry and what of it failed; ``time`` [s] of the simulation."""
+
+    def __init__(self, message: str, *, part: str, time: float, span: Span | None, help: str | None = None) -> None:
+        self.part, self.time, self.span = part, time, span
+        self.diagnostic = Diagnostic("run-failed", f"at {time:.6g} s, {part}: {message}", span, help)
+        super().__init__(str(self.diagnostic))
+
+
+class LimitRefused(Exception):
+    """Something that would need more memory or work than is allowed, refused before it starts."""
+
+    def __init__(self, message: str, span: Span | None = None, help: str | None = None) -> None:
+        self.diagnostic = Diagnostic("limit-refused", message, span, help)
+        super().__init__(str(self.diagnostic))

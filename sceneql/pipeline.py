@@ -1,0 +1,189 @@
+"""The one file that joins the stages: load, compile, simulate, render. Also the public Python interface.
+
+    import sceneql.pipeline as sceneql
+    graph = sceneql.load("scenes/first.yaml")
+    report = sceneql.render(graph)
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from sceneql import __version__
+from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.compile import compile_script
+from sceneql.graph import SimulationGraph
+from sceneql.kinds import FAMILIES, Camera, Clock, Illumination, Output, Picture, Renderer
+from sceneql.language.script import read_script
+
+if TYPE_CHECKING:
+    from sceneql.simulation.run import Instant
+
+
+def load(
+    path: Path | str,
+    *,
+    variant: str | None = None,
+    sets: Sequence[str] = (),
+    words: Path | None = None,
+    pruned: bool = True,
+) -> SimulationGraph:
+    """Read, check and compile a script. ``sets`` are ``path=value`` patches. Raises ScriptError with all its errors."""
+    script = read_script(Path(path), variant=variant, sets=sets, families=tuple(kind.family for kind in FAMILIES))
+    return compile_script(script, Catalogue(words), pruned=pruned)
+
+
+@dataclass
+class Report:
+    """What a render made and what it took."""
+
+    files: list[Path] = field(default_factory=list)
+    frames: int = 0
+    undecided: int = 0
+    """Pixels whose ray could be proved neither hit nor miss, over all frames."""
+    compile_seconds: float = 0.0
+    compilations: int = 0
+    run_seconds: float = 0.0
+    """Wall time, compilation left out."""
+    steps: int = 0
+
+
+def simulate(graph: SimulationGraph, times: Iterable[float]) -> Iterator[Instant]:
+    """The moments of a run at increasing instants [s]. Raises RunFailure."""
+    from sceneql.simulation.run import Run
+
+    return Run(graph).moments(times)
+
+
+def render(
+    graph: SimulationGraph,
+    *,
+    output: Path | None = None,
+    folder: Path | None = None,
+    progress: Callable[[int, int], None] = lambda done, total: None,
+) -> Report:
+    """Run a graph and make its outputs, in one pass over the union of their times.
+
+    ``output`` overrides the file of a single output. On a failure what was made is kept beside the final names, in
+    ``error.kept`` of the exception that goes on.
+    """
+    started = time.perf_counter()
+    report = Report()
+    outputs = {name: cast(Output, task.kind) for name, task in graph.tasks.items() if isinstance(task.kind, Output)}
+    if output is not None and len(outputs) > 1:
+        raise ValueError(f"--output names one file, but the script has {len(outputs)} outputs: {', '.join(outputs)}")
+    clock = graph.settings.clock
+    times = {name: kind.times(clock) for name, kind in outputs.items()}
+    instants = sorted(set().union(*times.values()))
+    tools = {
+        name: Tools(graph, name, report, _target(graph, name, len(outputs), output, folder or Path()))
+        for name in outputs
+    }
+    sinks: dict[str, Any] = {}
+    try:
+        sinks = {name: kind.open(tools[name]) for name, kind in outputs.items()}
+        wanted = {name: set(at) for name, at in times.items()}
+        from sceneql.simulation.run import Run
+
+        run = Run(graph)
+        for done, moment in enumerate(run.moments(instants)):
+            progress(done, len(instants))
+            for name, sink in sinks.items():
+                if moment.time in wanted[name]:
+                    sink.take(moment)
+        progress(len(instants), len(instants))
+        report.steps = sum(island.march.statistics.steps for island in run.islands)
+        for sink in sinks.values():
+            report.files += sink.close()
+    except BaseException as error:
+        kept = [path for sink in sinks.values() for path in sink.abort()]
+        error.kept = kept  # type: ignore[attr-defined]
+        raise
+    report.compile_seconds, report.compilations = _compiled()
+    report.run_seconds = time.perf_counter() - started - report.compile_seconds
+    return report
+
+
+def _compiled() -> tuple[float, int]:
+    import sys
+
+    kernels = sys.modules.get("sceneql.kernels")
+    return (0.0, 0) if kernels is None else (kernels.compiled.seconds, kernels.compiled.count)
+
+
+def _target(graph: SimulationGraph, name: str, count: int, output: Path | None, folder: Path) -> Path:
+    """Path without extension (its own, if the user gave one)."""
+    if output is not None:
+        return output
+    return folder / (graph.name if count == 1 else f"{graph.name}.{name}")
+
+
+class Tools:
+    """What the pipeline lends to an output (kinds.Tools)."""
+
+    def __init__(self, graph: SimulationGraph, name: str, report: Report, target: Path) -> None:
+        self.graph, self.name, self.report, self.target = graph, name, report, target
+        self.catalogue = Catalogue()
+
+    @property
+    def clock(self) -> Clock:
+        """Film time and simulation time."""
+        return self.graph.settings.clock
+
+    def path(self, extension: str) -> Path:
+        """Path of the output's file."""
+        target = self.target
+        return target if target.suffix == f".{extension}" else target.with_name(f"{target.name}.{extension}")
+
+    def pixels(self, output: Picture, moment: Instant) -> Any:
+        """The developed picture (h, w, 3) uint8."""
+        from renderers.develop import develop
+
+        frame = frame_of(self.graph, self.name, output.pixels, moment, self.report.frames)
+        renderer = self._renderer(output)
+        picture = renderer.draw(frame)
+        self.report.frames += 1
+        self.report.undecided += picture.undecided
+        return develop(picture.linear, exposure=output.exposure, data=renderer.data)
+
+    def encoder(self, word: str, **settings: Any) -> Any:
+        """A writer of the encoders' folder."""
+        from importlib import import_module
+
+        comment = f"sceneql {__version__} script {self.graph.script_hash}"
+        module = import_module(f"renderers.encoders.{word}")
+        return module.Writer(self.path(word), comment=comment, **settings)
+
+    def _renderer(self, output: Picture) -> Renderer:
+        if output.renderer is not None:
+            return cast(Renderer, self.graph.tasks[output.renderer.name].kind)
+        cls = self.catalogue.load("renderers", "trace")
+        if cls is None:
+            raise LookupError("the default renderer is missing")
+        return cast(Renderer, cls())
+
+
+def frame_of(graph: SimulationGraph, output: str, size: tuple[int, int], moment: Instant, index: int) -> Any:
+    """The Frame that a renderer gets for an output at a moment."""
+    from sceneql.frame import Frame, Sky
+    from sceneql.simulation.color import linear
+
+    camera = cast(Camera, graph.tasks[graph.cameras[output]].kind)
+    lights = [light for task in graph.tasks.values() if isinstance(task.kind, Illumination) for light in task.kind.lower(moment)]
+    if graph.settings.background is not None:
+        seen = linear(moment.at(graph.settings.background))
+        skies = [light for light in lights if isinstance(light, Sky)] or [Sky((0, 0, 0), (0, 0, 0), (0, 0, 0))]
+        lights = [light for light in lights if not isinstance(light, Sky)]
+        lights += [replace(sky, visible=seen) for sky in skies]
+    return Frame(
+        index=index,
+        time=moment.time,
+        shapes=tuple(moment.lower(graph.drawn[output])),
+        lights=tuple(lights),
+        view=camera.view(size, moment),
+        seed=graph.settings.clock.seed,
+    )

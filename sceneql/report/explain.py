@@ -1,0 +1,114 @@
+"""The plan of a scene: what will run in which order, for which output, by which solver, and what is left out and why."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from sceneql.compiler.catalogue import ROOT, Catalogue
+from sceneql.graph import SimulationGraph
+from sceneql.kinds import Output
+
+if TYPE_CHECKING:
+    from sceneql.simulation.run import IslandRun
+
+
+def explain(graph: SimulationGraph) -> dict[str, Any]:
+    """The plan as plain data (the form of ``explain --json``)."""
+    catalogue = Catalogue()
+    words = {(family, word) for family in catalogue.families for word in catalogue.words(family)}
+    used = {(task.family, task.word) for task in graph.tasks.values()}
+    libraries = {name for pair in words for name in getattr(catalogue.load(*pair), "imports", ())}
+    needed = {name for task in graph.tasks.values() for name in task.kind.imports}
+    return {
+        "scene": graph.name,
+        "about": graph.settings.about,
+        "outputs": [
+            {"name": name, "word": task.word, "moments": len(task.kind.times(graph.settings.clock))}
+            for name, task in graph.tasks.items()
+            if isinstance(task.kind, Output)
+        ],
+        "parts": [
+            {
+                "name": name,
+                "family": task.family,
+                "word": task.word,
+                "line": None if task.span is None else str(task.span),
+                "needed_by": list(graph.needed_by.get(name, ())),
+            }
+            for name, task in graph.tasks.items()
+        ],
+        "islands": _islands(graph),
+        "left_out": [{"name": part.name, "word": part.word, "why": part.reason} for part in graph.left_out],
+        "avoided": {
+            "words": len(words - used),
+            "kernels": sorted(_kernels(words - used)),
+            "libraries": sorted(libraries - needed),
+        },
+    }
+
+
+def _kernels(words: set[tuple[str, str]]) -> set[str]:
+    """Words whose compiled code, in a file beside them, is not loaded."""
+    return {word for family, word in words if (ROOT / "simulation" / family / f"{word}_kernels.py").is_file()}
+
+
+def _islands(graph: SimulationGraph) -> list[dict[str, Any]]:
+    if not graph.islands:
+        return []
+    from sceneql.simulation.run import Run
+
+    return [_island(graph, run) for run in Run(graph).islands]
+
+
+def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
+    from sceneql.simulation.stability import stability
+
+    island = run.island
+    stepper = run.solver.stepper()
+    bound = stability(run.march, run.solver)
+    return {
+        "models": list(island.models),
+        "forces": sorted({force for force, _ in island.forces}),
+        "contacts": sorted({contact for contact, _, _ in island.contacts}),
+        "contact_mode": run.assembly.contact_mode,
+        "states": len(run.march.system.y),
+        "solver": graph.tasks[island.solver].word,
+        "solver_name": island.solver,
+        "why": island.reason,
+        "order": stepper.order,
+        "adaptive": stepper.adaptive,
+        "step": None if stepper.adaptive else stepper.first_step,
+        "tolerance": stepper.tolerance if stepper.adaptive else None,
+        "step_bound": bound.step if math.isfinite(bound.step) else None,
+        "bound_text": bound.text,
+    }
+
+
+def text(plan: dict[str, Any]) -> str:
+    """The plan for people."""
+    lines = [f"{plan['scene']}: {plan['about']}".rstrip(": "), "", "will run, in this order:"]
+    width = max((len(part["name"]) for part in plan["parts"]), default=0)
+    for part in plan["parts"]:
+        origin = f"({part['line']})" if part["line"] else "(default)"
+        lines.append(
+            f"  {part['name']:<{width}}  {part['family']}/{part['word']}, for {', '.join(part['needed_by'])} {origin}"
+        )
+    for island in plan["islands"]:
+        lines += ["", f"solved together: {', '.join(island['models'])} ({island['states']} numbers)"]
+        if island["forces"]:
+            lines.append(f"  forces: {', '.join(island['forces'])}")
+        if island["contacts"]:
+            lines.append(f"  contacts: {', '.join(island['contacts'])}, {island['contact_mode']}")
+        control = f"tolerance {island['tolerance']:g}" if island["adaptive"] else f"step {island['step']:g} s"
+        lines.append(f"  solver: {island['solver']} of order {island['order']}, {control}; {island['why']}")
+        lines.append(f"  stability: {island['bound_text']}")
+    if plan["left_out"]:
+        lines += ["", "left out:"]
+        lines += [f"  {part['name']} ({part['word']}): {part['why']}" for part in plan["left_out"]]
+    avoided = plan["avoided"]
+    lines += ["", f"not loaded: {avoided['words']} words; libraries {', '.join(avoided['libraries']) or 'none'}"]
+    lines.append(f"not compiled: {', '.join(avoided['kernels']) or 'nothing left out'}")
+    return "\n".join(lines)
+
+

@@ -1,0 +1,119 @@
+"""The manual of words, from their classes: there is no second list."""
+
+from __future__ import annotations
+
+import inspect
+import types
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
+
+from pydantic import BaseModel
+
+from sceneql.compiler.catalogue import Catalogue
+from sceneql.kinds import REQUIRED, Formula, Kind, Paint, Quantity, Ref, Refers, Turn, Value
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError, suggestion
+
+
+def listing(catalogue: Catalogue) -> str:
+    """All words by family, each with the first line of its manual."""
+    lines = []
+    for family in catalogue.families:
+        lines.append(f"{family}:")
+        for word in catalogue.words(family):
+            cls = catalogue.load(family, word)
+            lines.append(f"  {word:<22}{_summary(cls)}")
+    return "\n".join(lines)
+
+
+def manual(catalogue: Catalogue, word: str) -> str:
+    """The manual of a word (of every family that has it). Raises ScriptError if there is none."""
+    classes = [(family, cls) for family in catalogue.families if (cls := catalogue.load(family, word)) is not None]
+    if not classes:
+        every = [w for family in catalogue.families for w in catalogue.words(family)]
+        raise ScriptError([Diagnostic("unknown-word", f"there is no word '{word}'", None, suggestion(word, every))])
+    return "\n\n".join(_page(family, word, cls) for family, cls in classes)
+
+
+def _page(family: str, word: str, cls: type[Kind]) -> str:
+    lines = [f"{word} ({family})", "", inspect.cleandoc(cls.__doc__ or ""), "", "fields:"]
+    lines += _fields(cls, "  ")
+    if cls.gives:
+        lines += ["", "gives:"]
+        for name, gives in cls.gives.items():
+            unit = "" if gives.type.dimension is None else f" [{gives.type.dimension}]"
+            lines.append(f"  {name}{_shape(gives.type.shape)}{unit}: {gives.doc}")
+    return "\n".join(lines)
+
+
+def _fields(cls: type[BaseModel], indent: str) -> list[str]:
+    lines = []
+    for name, info in cls.model_fields.items():
+        annotation = Annotated[(info.annotation, *info.metadata)] if info.metadata else info.annotation
+        extra: dict[str, Any] = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else {}
+        default = extra.get("default", REQUIRED)
+        notes = [type_text(annotation)]
+        notes += [f"{limit.replace('_', ' ')} {bound:g}" for limit, bound in extra.get("limits", {}).items()]
+        if default is REQUIRED:
+            notes.append("required")
+        elif default not in (None, "", (), {}) and not isinstance(default, BaseModel):
+            notes.append(f"default {_plain(default)}")
+        lines.append(f"{indent}{name} ({', '.join(notes)}): {info.description}")
+        for record in _records(annotation):
+            lines += _fields(record, indent + "  ")
+    return lines
+
+
+def _plain(default: Any) -> str:
+    if isinstance(default, bool):
+        return "yes" if default else "no"
+    return " ".join(map(str, default)) if isinstance(default, tuple) else str(default)
+
+
+def _records(annotation: Any) -> list[type[BaseModel]]:
+    if isinstance(annotation, type):
+        return [annotation] if issubclass(annotation, BaseModel) else []
+    return [record for part in get_args(annotation) if not isinstance(part, str) for record in _records(part)]
+
+
+def type_text(annotation: Any) -> str:
+    """A field's type in the words of a script's author."""
+    base, marks = annotation, ()
+    if get_origin(annotation) is Annotated:
+        base, *rest = get_args(annotation)
+        marks = tuple(rest)
+    for mark in marks:
+        if isinstance(mark, Quantity):
+            unit = "any quantity" if mark.dimension is None else "angle" if mark.needs_unit else str(mark.dimension)
+            unit = "number" if unit == "1" else unit
+            constant = "" if base is Value else "constant "
+            return f"{constant}{unit}{_shape(mark.shape or ())}"
+        if isinstance(mark, Paint):
+            return "color"
+        if isinstance(mark, Turn):
+            return "rotation"
+        if isinstance(mark, Refers):
+            return f"one of {mark.family}" if mark.family else "a part"
+    origin, arms = get_origin(base), get_args(base)
+    if origin in (Union, types.UnionType):
+        return " or ".join(type_text(arm) for arm in arms if arm is not type(None))
+    if origin is Literal:
+        return " | ".join(map(str, arms))
+    if origin in (list, tuple):
+        many = origin is list or (len(arms) == 2 and arms[1] is Ellipsis)
+        return f"list of {type_text(arms[0])}" if many else f"{len(arms)} times {type_text(arms[0])}"
+    if origin is dict:
+        return f"names with {type_text(arms[1])}"
+    if isinstance(base, type) and issubclass(base, BaseModel):
+        return "fields"
+    names = {bool: "yes or no", int: "whole number", float: "number", str: "text", Formula: "formula", Ref: "a part"}
+    return names.get(base, "value")
+
+
+def _shape(shape: tuple[int | None, ...]) -> str:
+    if not shape:
+        return ""
+    return "(" + ", ".join("n" if size is None else str(size) for size in shape) + ")"
+
+
+def _summary(cls: type[Kind] | None) -> str:
+    text = inspect.cleandoc((cls.__doc__ if cls is not None else "") or "")
+    return text.split("\n\n")[0].replace("\n", " ").split(". ")[0].rstrip(".")

@@ -1,0 +1,97 @@
+"""The JSON Schema of scripts (draft 2020-12), from the words' classes, for completion and hints in editors."""
+
+from __future__ import annotations
+
+import inspect
+import types
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
+
+from pydantic import BaseModel
+
+from sceneql.compiler.catalogue import Catalogue
+from sceneql.kinds import Kind, Refers, Settings
+from sceneql.report.manual import type_text
+
+TEXT: dict[str, Any] = {"type": ["string", "number", "integer"]}
+
+
+def schema(catalogue: Catalogue) -> dict[str, Any]:
+    """The schema of a whole script."""
+    properties: dict[str, Any] = {
+        "sceneql": {"const": 1, "description": "Version of the language."},
+        "define": {"type": "object", "description": "Names for values."},
+        "include": {"type": "array", "items": {"type": "string"}, "description": "Scripts of this folder to add."},
+        "templates": {"type": "object", "description": "Parts with fields, to be used under `parts`."},
+        "parts": {"type": "object", "description": "Instances of templates."},
+        "defaults": {"type": "object", "description": "Fields by word, for all entries that leave them out."},
+        "variants": {"type": "object", "description": "Patches: dotted paths with values."},
+    }
+    properties |= _record(Settings, catalogue)["properties"]
+    definitions = {}
+    for family in catalogue.families:
+        words = catalogue.words(family)
+        kinds = {word: cls for word in words if (cls := catalogue.load(family, word)) is not None}
+        definitions[family] = {
+            "anyOf": [
+                {"enum": words},
+                {
+                    "type": "object",
+                    "properties": {word: _kind(cls, catalogue) for word, cls in kinds.items()},
+                },
+            ]
+        }
+        entry = {"$ref": f"#/$defs/{family}"}
+        properties[family] = {
+            "anyOf": [{"type": "object", "additionalProperties": entry}, {"type": "array", "items": entry}]
+        }
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "sceneql scene script",
+        "type": "object",
+        "properties": properties,
+        "additionalProperties": False,
+        "$defs": definitions,
+    }
+
+
+def _kind(cls: type[Kind], catalogue: Catalogue) -> dict[str, Any]:
+    return {**_record(cls, catalogue), "description": inspect.cleandoc(cls.__doc__ or "")}
+
+
+def _record(cls: type[BaseModel], catalogue: Catalogue) -> dict[str, Any]:
+    properties = {}
+    for name, info in cls.model_fields.items():
+        annotation = Annotated[(info.annotation, *info.metadata)] if info.metadata else info.annotation
+        text = f"{info.description} ({type_text(annotation)})"
+        properties[name] = {**_type(annotation, catalogue), "description": text}
+    required = [name for name, info in cls.model_fields.items() if info.is_required()]
+    return {
+        "type": ["object", "null"],
+        "properties": properties,
+        "additionalProperties": False,
+        **({"required": required} if required else {}),
+    }
+
+
+def _type(annotation: Any, catalogue: Catalogue) -> dict[str, Any]:
+    base = annotation
+    if get_origin(annotation) is Annotated:
+        base, *marks = get_args(annotation)
+        for mark in marks:
+            if isinstance(mark, Refers) and mark.family:
+                return {"anyOf": [{"type": "string"}, {"$ref": f"#/$defs/{mark.family}"}]}
+        return {"type": ["string", "number", "integer", "array", "object"]}
+    origin, arms = get_origin(base), get_args(base)
+    if origin in (Union, types.UnionType):
+        return {"anyOf": [{"type": "null"} if arm is type(None) else _type(arm, catalogue) for arm in arms]}
+    if origin is Literal:
+        return {"enum": list(arms)}
+    if origin in (list, tuple):
+        return {"anyOf": [{"type": "array", "items": _type(arms[0], catalogue)}, TEXT, {"type": "object"}]}
+    if origin is dict:
+        return {"type": "object", "additionalProperties": _type(arms[1], catalogue)}
+    if isinstance(base, type) and issubclass(base, BaseModel):
+        return _record(base, catalogue)
+    if base is bool:
+        return {"enum": [True, False, "yes", "no", "on", "off"]}
+    return TEXT
