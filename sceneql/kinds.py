@@ -519,7 +519,6 @@ class Gallery(Record):
 
     size: tuple[int, int] = field("Width and height of the poster [pixels].", (320, 180), above=0)
     time: FixedTime = field("The instant of the poster.", "1 s", at_least=0)
-    end: FixedTime | None = field("Length of the run for the poster; by default it ends with the poster.", None, above=0)
 
 
 class Expect(Record):

@@ -1,0 +1,127 @@
+"""Measuring what `expect` says of a scene: numbers of its run, against exact, independent or conserved values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from sceneql import pipeline
+from sceneql.graph import SimulationGraph
+from sceneql.kinds import Expect
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Call, Expr, Link, Symbol, walk
+from sceneql.quantities.operations import OPERATIONS
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What an expectation measured."""
+
+    name: str
+    expect: Expect
+    measured: float
+    wanted: float
+    error: float
+    """|measured - wanted|, or measured for one that must stay below."""
+    limit: float
+    """What the error may be at most."""
+
+    @property
+    def holds(self) -> bool:
+        """Whether it is as expected (NaN is not)."""
+        return self.error <= self.limit
+
+    def __str__(self) -> str:
+        verdict = "ok" if self.holds else "DIFFERS"
+        what = f"below {self.limit:.3g}" if self.expect.value is None else f"{self.wanted:.12g} +- {self.limit:.2g}"
+        off = "" if self.expect.value is None else f" (off by {self.error:.2g})"
+        return f"{verdict}: {self.name} = {self.measured:.12g}{off}, expected {what}: {self.expect.because}"
+
+
+def outcomes(graph: SimulationGraph, variant: str | None = None) -> list[Outcome]:
+    """Measure every expectation of a graph that holds for the variant, in one run."""
+    wanted = {name: e for name, e in graph.settings.expect.items() if e.variant == variant}
+    if not wanted:
+        return []
+    clock = graph.settings.clock
+    instants = {*clock.frames(clock.fps), clock.end}
+    for expect in wanted.values():
+        instants |= {_instant(node) for node in walk(expect.of.expr) if isinstance(node, Call) and node.op == "at"}
+    times = sorted(t for t in instants if t <= clock.end)
+    links = {node for expect in wanted.values() for node in walk(expect.of.expr) if isinstance(node, Link)}
+    series = _sample(graph, times, links)
+    return [_outcome(name, expect, series, times) for name, expect in wanted.items()]
+
+
+def _sample(graph: SimulationGraph, times: list[float], links: set[Link]) -> dict[Symbol | Link, Any]:
+    import numpy as np
+
+    rows: dict[Link, list[Any]] = {link: [] for link in links}
+    for moment in pipeline.simulate(graph, times):
+        for link, row in rows.items():
+            row.append(moment.read(link.task, link.output))
+    return {Symbol("time"): np.array(times), **{link: np.array(row) for link, row in rows.items()}}
+
+
+def _outcome(name: str, expect: Expect, series: Mapping[Symbol | Link, Any], times: list[float]) -> Outcome:
+    import numpy as np
+
+    measured = float(np.max(measure(expect.of.expr, series, times)))
+    if expect.value is not None:
+        wanted = float(np.max(measure(expect.value.expr, series, times)))
+        return Outcome(name, expect, measured, wanted, abs(measured - wanted), expect.tolerance)
+    assert expect.below is not None
+    limit = float(np.max(measure(expect.below.expr, series, times)))
+    return Outcome(name, expect, measured, limit, measured, limit)
+
+
+def measure(expr: Expr, series: Mapping[Symbol | Link, Any], times: list[float]) -> Any:
+    """The value of an expression over series (times, ...); one without an operation on time is read at the end."""
+    known: dict[Symbol, Any] = {}
+
+    def look_up(node: Symbol | Link) -> Any:
+        if isinstance(node, Symbol) and node in known:
+            return known[node]
+        return series[Symbol("time")] if isinstance(node, Symbol) else _of(series, node)
+
+    def solve(node: Expr) -> Expr:
+        if not isinstance(node, Call):
+            return node
+        args = tuple(solve(arg) for arg in node.args)
+        node = Call(node.op, args, node.type, node.span)
+        if not OPERATIONS[node.op].series:
+            return node
+        value = evaluate(args[0], look_up, arrays=True)
+        symbol = Symbol(f"series {len(known)}", node.type)
+        known[symbol] = _SERIES[node.op](value, times, node)
+        return symbol
+
+    if not any(isinstance(node, Call) and (OPERATIONS[node.op].series or OPERATIONS[node.op].reduces) for node in walk(expr)):
+        return evaluate(expr, lambda node: look_up(node)[-1], arrays=True)
+    return evaluate(solve(expr), look_up, arrays=True)
+
+
+def _of(series: Mapping[Symbol | Link, Any], link: Link) -> Any:
+    return series[link]
+
+
+def _instant(node: Call) -> float:
+    return float(evaluate(node.args[1], {}))
+
+
+def _drift(value: Any, times: list[float], node: Call) -> Any:
+    """Relative to the start, or, for a quantity that starts at 0, to its largest magnitude over the run."""
+    import numpy as np
+
+    scale = value[0] if np.all(value[0] != 0) else np.max(np.abs(value)) or 1.0
+    return (value - value[0]) / scale
+
+
+_SERIES: Mapping[str, Any] = {
+    "final": lambda value, times, node: value[-1],
+    "initial": lambda value, times, node: value[0],
+    "at": lambda value, times, node: value[times.index(_instant(node))],
+    "relative_drift": _drift,
+    "spread": lambda value, times, node: value.max(axis=0) - value.min(axis=0),
+}

@@ -1,0 +1,96 @@
+"""The gallery: every scene's poster and expected numbers, compared with what the program makes now."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from sceneql import pipeline
+from sceneql.files import whole
+from sceneql.graph import SimulationGraph
+from sceneql.kinds import Picture
+from sceneql.report.expect import Outcome, outcomes
+
+MEAN, NEARLY_ALL, LARGEST = 0.002, 0.05, 0.2
+"""Two posters are the same if the mean difference, that of 99.9 % of the pixels and the largest are below these.
+
+A pixel's difference is that of its most different channel, from 0 to 1. The three bounds tell rounding by another
+processor (everywhere, tiny) from damage (local, large).
+"""
+
+
+def scenes_of(scenes: tuple[Path, ...]) -> list[Path]:
+    """The scripts given, else those of the folder ``scenes``."""
+    return list(scenes) or sorted(Path("scenes").glob("*.yaml"))
+
+
+def poster(graph: SimulationGraph) -> Any:
+    """The gallery's picture (h, w, 3) uint8 of the first output that draws."""
+    settings = graph.settings.gallery
+    name, task = next((name, task) for name, task in graph.tasks.items() if isinstance(task.kind, Picture))
+    small = task.kind.model_copy(update={"size": settings.size})
+    tools = pipeline.Tools(graph, name, pipeline.Report(), Path())
+    (moment,) = pipeline.simulate(graph, [min(settings.time, graph.settings.clock.end)])
+    return tools.pixels(small, moment)  # type: ignore[arg-type]
+
+
+def numbers(scene: Path) -> list[Outcome]:
+    """What the scene's expectations measure, each in its own variant."""
+    graph = pipeline.load(scene)
+    variants = dict.fromkeys(expect.variant for expect in graph.settings.expect.values())
+    return [found for variant in variants for found in outcomes(pipeline.load(scene, variant=variant), variant)]
+
+
+def check(scenes: tuple[Path, ...], folder: Path) -> tuple[list[str], bool]:
+    """A line for every poster and number, and whether all are as they should be."""
+    lines, same = [], True
+    for scene in scenes_of(scenes):
+        kept = folder / f"{scene.stem}.png"
+        verdict, equal = compare(poster(pipeline.load(scene)), kept)
+        lines.append(f"{scene.stem}: {verdict}")
+        same &= equal
+        for found in numbers(scene):
+            lines.append(f"  {found}")
+            same &= found.holds
+    return lines, same
+
+
+def compare(picture: Any, kept: Path) -> tuple[str, bool]:
+    """How a picture differs from a kept one, and whether it counts as the same."""
+    import numpy as np
+    from PIL import Image
+
+    if not kept.is_file():
+        return f"DIFFERS: no poster is kept as {kept}", False
+    old = np.asarray(Image.open(kept).convert("RGB"))
+    if old.shape != picture.shape:
+        return f"DIFFERS: the size is {picture.shape[1]} x {picture.shape[0]}", False
+    if old.tobytes() == picture.tobytes():
+        return "ok, the same bytes", True
+    off = np.abs(old.astype(float) - picture).max(axis=-1) / 255
+    most = float(np.quantile(off, 0.999))
+    equal = bool(off.mean() < MEAN and most < NEARLY_ALL and off.max() < LARGEST)
+    verdict = "ok, nearly the same" if equal else "DIFFERS"
+    return f"{verdict}: mean {off.mean():.4f}, 99.9 % {most:.3f}, largest {off.max():.3f}", equal
+
+
+def update(scenes: tuple[Path, ...], folder: Path) -> list[str]:
+    """Keep posters as they are now and write the page. Numbers are never updated: scripts say what they must be."""
+    from io import BytesIO
+
+    from PIL import Image
+
+    lines, page = [], ["# Gallery", "", "Made by `sceneql gallery update`; compared by `sceneql gallery check`.", ""]
+    for scene in scenes_of(scenes):
+        graph = pipeline.load(scene)
+        data = BytesIO()
+        Image.fromarray(poster(graph)).save(data, "png")
+        with whole(folder / f"{scene.stem}.png") as stream:
+            stream.write(data.getvalue())
+        lines.append(f"kept {folder / scene.stem}.png")
+        page += [f"## {scene.stem}", "", graph.settings.about, "", f"![{scene.stem}]({scene.stem}.png)", ""]
+        page += [f"- {found}" for found in numbers(scene)]
+        page.append("")
+    with whole(folder / "README.md") as stream:
+        stream.write("\n".join(page).encode())
+    return [*lines, f"wrote {folder / 'README.md'}"]
