@@ -87,9 +87,9 @@ class TapeBuilder:
         left, right = self._known(a), self._known(b)
         if name == "mul" and a == b:
             return self.op("square", a)
-        if name == "mul" and left == 1.0 or name == "add" and left == 0.0:
+        if (name, left) in (("mul", 1.0), ("add", 0.0)):
             return b
-        if name in ("mul", "div") and right == 1.0 or name in ("add", "sub") and right == 0.0:
+        if (name, right) in (("mul", 1.0), ("div", 1.0), ("add", 0.0), ("sub", 0.0)):
             return a
         if name in ("min", "max") and a == b:
             return a
@@ -149,7 +149,7 @@ class TapeBuilder:
         return first, second, third
 
     def density(self, parts: Floats, x: int, y: int, z: int) -> int:
-        """Register of the density of skeleton parts at a point: the sum of weight (1 - d^2/R^2)^3 over those with d < R.
+        """Register of the density of skeleton parts at a point: sum of weight (1 - d^2/R^2)^3 where d < R.
 
         ``parts`` (p, 8) [m]: ends a and b (a point has a = b), radius R, weight; d is the distance to the segment
         (Wyvill, McPheeters & Wyvill 1986).
@@ -177,7 +177,8 @@ class TapeBuilder:
         place = {old: new for new, old in enumerate(kept)}
         numbers = sorted({self._rows[k][1] for k in kept if self._rows[k][0] == ops.CONSTANT})
         index = {old: new for new, old in enumerate(numbers)}
-        code, parts = [], []
+        code: list[Row] = []
+        parts: list[list[float]] = []
         for k in kept:
             op, left, right, third = self._rows[k]
             if op == ops.CONSTANT:
@@ -227,19 +228,6 @@ FOLD: dict[str, Callable[..., float]] = {
     "floor": math.floor,
     "sign": _sign,
 }
-
-
-def _many(name: str) -> Callable[..., int]:
-    """min and max of two and more."""
-    code = ops.BINARY[name]
-
-    def lower(tape: TapeBuilder, *registers: int) -> int:
-        result, *others = registers
-        for other in others:
-            result = tape._emit((code, min(result, other), max(result, other), 0)) if result != other else result
-        return result
-
-    return lower
 
 
 def _times(name: str, factor: float) -> Callable[[TapeBuilder, int], int]:

@@ -1,8 +1,10 @@
 """Density fields of skeleton parts: values, gradients and enclosures.
 
-A part has the density weight (1 - d^2/R^2)^3 within its radius R and 0 beyond, d the distance to the segment from a to b
-(Wyvill, McPheeters & Wyvill 1986); a point is the segment with a = b.
+A part has the density weight (1 - d^2/R^2)^3 within its radius R and 0 beyond, d the distance to the segment from a
+to b (Wyvill, McPheeters & Wyvill 1986); a point is the segment with a = b.
 """
+
+import numpy as np
 
 from sceneql.kernels import inlined
 
@@ -30,9 +32,9 @@ def offset(parts, i, x, y, z):
 
 @inlined
 def density_value(parts, start, stop, x, y, z):
-    """Sum of the densities of parts start..stop-1 at a point; NaN at a point that is not a number."""
-    if not x + y + z - (x + y + z) == 0.0:
-        return x + y + z - (x + y + z)
+    """Sum of the densities of parts start..stop-1 at a point; NaN at a point that is not finite."""
+    if not np.isfinite(x + y + z):
+        return np.nan
     total = 0.0
     for i in range(start, stop):
         wx, wy, wz = offset(parts, i, x, y, z)

@@ -30,7 +30,6 @@ from sceneql.field.tape_ops import (
     NOWHERE,
     PARTIAL,
     POW,
-    SIGN,
     SIN,
     SQRT,
     SQUARE,
@@ -244,7 +243,9 @@ def unary(op, a0, a1, ea):
         return slope * a0 + half_gap, slope * a1, abs(slope) * ea + half_gap + PAD * reach
     if op == FLOOR:
         return hull(np.floor(low), np.floor(high))
-    return hull(-1.0 if low < 0.0 else (1.0 if low > 0.0 else 0.0), 1.0 if high > 0.0 else (-1.0 if high < 0.0 else 0.0))
+    return hull(
+        -1.0 if low < 0.0 else (1.0 if low > 0.0 else 0.0), 1.0 if high > 0.0 else (-1.0 if high < 0.0 else 0.0)
+    )
 
 
 @inlined

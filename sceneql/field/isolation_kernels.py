@@ -81,15 +81,15 @@ def isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tol
         stop = b
         if e < abs(c0) + abs(c1):
             if c1 < 0.0:
-                root = min(max(middle - half * c0 / c1, a), b)
-                start = max(a, middle + half * (e - c0) / c1 - blur)
+                root = min(max(middle - half * (c0 / c1), a), b)
+                start = max(a, middle + half * ((e - c0) / c1) - blur)
                 if status == WHOLE:
-                    stop = middle - half * (c0 + e) / c1 + blur
+                    stop = middle - half * ((c0 + e) / c1) + blur
                     if stop < b:
                         held = True
                         b = end = stop
             elif c1 > 0.0:
-                stop = middle + half * (e - c0) / c1 + blur
+                stop = middle + half * ((e - c0) / c1) + blur
                 if stop < b:
                     cut_from = stop
                     cut_to = b
@@ -115,9 +115,7 @@ def first_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, 
     proved outside. UNDECIDED: at t something smaller than ``tolerance`` (t1 - t0), as a root of even multiplicity,
     could not be told from nothing. d need not be a unit vector; undefined places are outside.
     """
-    status, t = isolate(
-        code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, 1.0, False
-    )
+    status, t = isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, 1.0, False)
     if status == HIT and t - t0 <= tolerance * (t1 - t0):
         if along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0) < 0.0:
             return INSIDE, t0
@@ -127,9 +125,7 @@ def first_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, 
 @kernel(f"Tuple((int64, float64))({TAPE}, {RAY})")
 def exit_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance):
     """As ``first_root``, for the way out: the first entry into {f > 0}."""
-    status, t = isolate(
-        code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, -1.0, False
-    )
+    status, t = isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, -1.0, False)
     if status == HIT and t - t0 <= tolerance * (t1 - t0):
         if along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0) > 0.0:
             return INSIDE, t0

@@ -1,15 +1,20 @@
-"""The solid {f < 0} of a tape, for Python callers: numpy arrays in, numpy arrays out."""
+"""The solid {f < 0} of a tape, for Python callers: numpy arrays in, numpy arrays out.
+
+Imports numpy and numba: to be imported by the function that needs it.
+"""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
+import numpy as np  # noqa: TID253
 
 from sceneql.field import isolation_kernels, tape_kernels
 from sceneql.field.tape_ops import SCRATCH_COLUMNS, scratch_rows
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from sceneql.frame import Floats, Tape
 
 
@@ -35,7 +40,7 @@ def field_gradients(tape: Tape, points: Floats) -> Floats:
 
 def cast(
     tape: Tape, origins: Floats, directions: Floats, t0: Floats | float, t1: Floats | float, tolerance: float = 1e-9
-) -> tuple[Floats, Floats]:
+) -> tuple[NDArray[np.int64], Floats]:
     """(status, t), each (n,): the first entry of rays o + t d, t in [t0, t1], as of isolation_kernels.first_root."""
     room = scratch(tape)
     origins, directions = np.broadcast_arrays(np.atleast_2d(origins), np.atleast_2d(directions))

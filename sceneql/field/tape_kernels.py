@@ -130,7 +130,7 @@ def values(code, constants, parts, scratch, points, out):
 
 @inlined
 def slopes(op, v, a, b):
-    """Derivatives of an operation with value v = op(a, b) with respect to a and b; at a kink, those of one side."""
+    """Derivatives of v = op(a, b) with respect to a and b; at a kink those of one side, or 0."""
     if op == ADD:
         return 1.0, 1.0
     if op == SUB:
@@ -152,7 +152,7 @@ def slopes(op, v, a, b):
     if op == SQUARE:
         return 2.0 * a, 0.0
     if op == SQRT:
-        return 0.5 / v, 0.0
+        return (0.5 / v if v > 0.0 else 0.0), 0.0
     if op == SIN:
         return sine_cosine(a)[1], 0.0
     if op == COS:
@@ -162,10 +162,12 @@ def slopes(op, v, a, b):
     if op == LOG:
         return 1.0 / a, 0.0
     if op == POW:
+        if a == 0.0:
+            return (1.0 if b == 1.0 else 0.0), 0.0
         return b * a ** (b - 1.0), (v * np.log(a) if a > 0.0 else 0.0)
     if op == ATAN2:
         r2 = a * a + b * b
-        return b / r2, -a / r2
+        return (b / r2, -a / r2) if r2 > 0.0 else (0.0, 0.0)
     return 0.0, 0.0
 
 
