@@ -127,3 +127,5 @@ class Stepper:
     absolute: float = 0.0
     """Absolute tolerance."""
     largest_step: float = float("inf")
+    last_stage: int = -1
+    """Array of ``work`` that after a step holds the rate at its end (first same as last); -1: none does."""

@@ -1,0 +1,272 @@
+"""An island under construction: words reserve state, store numbers and add terms; `finish` lays it out as arrays.
+
+It knows no word. What it makes is a `System`: the start, two arrays of numbers, and a `Structure`, which is all that
+decides which code is compiled.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from itertools import accumulate
+from typing import TYPE_CHECKING, Any, Literal, Protocol
+
+import numpy as np
+
+from sceneql.failure import LimitRefused
+from sceneql.kinds import Object, Ref, Value
+from sceneql.quantities.expression import Expr, Link
+from sceneql.simulation.inputs import Inputs
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats
+    from sceneql.quantities.span import Span
+    from sceneql.system import Stage
+
+STAGES: tuple[Stage, ...] = ("internal", "force", "close", "constrain")
+LARGEST_MEMORY = 8 * 2**30
+"""[bytes] of the state and of a solver's stages."""
+VECTORS = 12
+"""Arrays of the state's size that a run keeps: ends and rates of a step, and the stages of a solver."""
+RESERVED_FLOATS = 2
+"""floats[0] counts rate evaluations; floats[1] is set by a contact that changed the state (march_kernels)."""
+
+
+class Setting(Protocol):
+    """What an assembly asks of the scene."""
+
+    def object(self, ref: Ref) -> Object:
+        """The kind of an object of the script."""
+
+    def formula(self, link: Link) -> Expr | None:
+        """A linked output as an expression of time; None for one of a model that is solved."""
+
+
+@dataclass(frozen=True, slots=True)
+class Structure:
+    """The kernels of an island by name, each once for each stage. Nothing of the script's text or numbers."""
+
+    terms: tuple[str, ...]
+    exact: tuple[tuple[str, str], ...]
+    """(gap, impact)."""
+    local: tuple[str, ...]
+    varying: bool
+    """Whether values vary in time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where entries of the state come from."""
+
+    part: str
+    span: Span | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class System:
+    """An island as arrays."""
+
+    structure: Structure
+    y: Floats
+    """(n,) the start."""
+    floats: Floats
+    ints: NDArray[int64]
+    """Offsets, then the integers of every block (driver.py says how they are laid out)."""
+    pairs: int
+    """Contact pairs of exact contacts."""
+    partner: NDArray[int64]
+    """(n,) for a position its velocity's index, else -1."""
+    ranges: tuple[tuple[int, int, str, tuple[Span | None, ...]], ...]
+
+    def origin(self, index: int) -> Origin:
+        """Part and line of an entry of y."""
+        for first, last, part, spans in self.ranges:
+            if first <= index < last:
+                return Origin(part, spans[(index - first) * len(spans) // (last - first)])
+        return Origin("island", None)
+
+
+@dataclass(frozen=True, slots=True)
+class _Block:
+    kernels: tuple[str, ...]
+    ints: tuple[int, ...]
+    pairs: int = 0
+
+
+@dataclass
+class IslandAssembly:
+    """The Assembly (system.py) of one island. ``offsets`` says where in y a solved model's output stands."""
+
+    setting: Setting
+    offsets: Callable[[Link], Sequence[int]] | None = None
+    _starts: list[Floats] = field(default_factory=list)
+    _size: int = 0
+    _bodies: int = 0
+    _ranges: list[tuple[int, int, str, tuple[Span | None, ...]]] = field(default_factory=list)
+    _pairs: list[tuple[int, int, int]] = field(default_factory=list)
+    _numbers: list[Floats] = field(default_factory=lambda: [np.zeros(RESERVED_FLOATS)])
+    _stored: int = RESERVED_FLOATS
+    _terms: dict[Stage, list[_Block]] = field(default_factory=lambda: {stage: [] for stage in STAGES})
+    _exact: list[_Block] = field(default_factory=list)
+    _local: list[_Block] = field(default_factory=list)
+    _varying: list[tuple[int, Value]] = field(default_factory=list)
+    _word: tuple[str, Span | None, str | None] = ("island", None, None)
+    _remembered: dict[tuple[str, str | None], tuple[int, ...]] = field(default_factory=dict)
+
+    @contextmanager
+    def word(self, name: str, span: Span | None, model: str | None = None) -> Iterator[None]:
+        """What is added inside comes from the part ``name`` (a force's for one model)."""
+        before = self._word
+        self._word = (name, span, model)
+        try:
+            yield
+        finally:
+            self._word = before
+
+    def state(self, initial: Any, spans: Sequence[Span | None] | None = None) -> int:
+        """Reserve entries of y (system.Assembly). Raises LimitRefused when the run would need too much memory."""
+        start = np.array(initial, dtype=np.float64).ravel()
+        name, span, _ = self._word
+        self.room(self._size + len(start), span)
+        first = self._size
+        self._starts.append(start)
+        self._size += len(start)
+        self._ranges.append((first, self._size, name, tuple(spans) if spans else (span,)))
+        return first
+
+    def room(self, entries: float, span: Span | None) -> None:
+        """Raise LimitRefused when a state of so many entries cannot be held; call it before making large arrays."""
+        memory = 8.0 * entries * VECTORS
+        if memory > LARGEST_MEMORY:
+            raise LimitRefused(
+                f"a state of {entries:.3g} numbers needs about {memory / 2**30:.3g} GiB; at most "
+                f"{LARGEST_MEMORY / 2**30:.0f} GiB are allowed",
+                span,
+                "use fewer masses or a coarser lattice",
+            )
+
+    def pair(self, position_at: int, velocity_at: int, count: int) -> None:
+        """Say which entries are velocities of which (system.Assembly)."""
+        self._pairs.append((position_at, velocity_at, count))
+        self._bodies += count // 3
+
+    def floats(self, values: Any) -> int:
+        """Store numbers; the offset of the first."""
+        numbers = np.array(values, dtype=np.float64).ravel()
+        first = self._stored
+        self._numbers.append(numbers)
+        self._stored += len(numbers)
+        return first
+
+    def value(self, value: Value) -> int:
+        """Store a value, a varying one to be evaluated at stage times; the offset of its first float."""
+        first = self.floats(self.initial(value))
+        if not value.constant:
+            self._varying.append((first, value))
+        return first
+
+    def initial(self, value: Value) -> Any:
+        """The value at the start of the run: float or float64 array."""
+        return self._inputs().at_start(value)
+
+    def term(self, stage: Stage, kernel: str, ints: Sequence[int]) -> None:
+        """Add a term to the rate."""
+        self._terms[stage].append(_Block((kernel,), tuple(ints)))
+
+    def contact(self, mode: Literal["exact", "local"], kernels: Sequence[str], ints: Sequence[int], pairs: int) -> None:
+        """Add contacts."""
+        (self._exact if mode == "exact" else self._local).append(_Block(tuple(kernels), tuple(ints), pairs))
+
+    def object(self, ref: Ref) -> Object:
+        """The kind of an object of the script."""
+        return self.setting.object(ref)
+
+    def body_count(self) -> int:
+        """Number of bodies of the island so far."""
+        return self._bodies
+
+    def remember(self, *ints: int) -> None:
+        """Keep integers for the word's own reading (ModelState.ints)."""
+        name, _, model = self._word
+        self._remembered[name, model] = self._remembered.get((name, model), ()) + ints
+
+    def remembered(self, name: str, model: str | None = None) -> tuple[int, ...]:
+        """What a word asked to be remembered (a force: for this model)."""
+        return self._remembered.get((name, model), ())
+
+    @property
+    def contact_mode(self) -> str:
+        """How its contacts work: exact, local, both or none."""
+        modes = [mode for mode, blocks in (("exact", self._exact), ("local", self._local)) if blocks]
+        return " and ".join(modes) or "none"
+
+    def finish(self) -> System:
+        """The island as arrays. Raises ScriptError for a value that no program can be made of."""
+        y = np.concatenate(self._starts) if self._starts else np.zeros(0)
+        inputs = self._inputs()
+        program = [number for first, value in self._varying for number in inputs.program(value, first)]
+        blocks = [_Block((), tuple(program))]
+        groups: list[tuple[tuple[str, ...], int]] = []
+        for stage in STAGES:
+            groups += _grouped(self._terms[stage], blocks)
+        first_exact = len(blocks)
+        exact = _grouped(self._exact, blocks)
+        pairs = [block.pairs for block in blocks[first_exact:]]
+        local = _grouped(self._local, blocks)
+        first_blocks = list(accumulate((count for _, count in (*groups, *exact, *local)), initial=1))
+        structure = Structure(
+            tuple(kernels[0] for kernels, _ in groups),
+            tuple((kernels[0], kernels[1]) for kernels, _ in exact),
+            tuple(kernels[0] for kernels, _ in local),
+            bool(self._varying),
+        )
+        partner = np.full(len(y), -1, dtype=np.int64)
+        for position, velocity, count in self._pairs:
+            partner[position : position + count] = np.arange(velocity, velocity + count)
+        return System(
+            structure=structure,
+            y=y,
+            floats=np.concatenate(self._numbers),
+            ints=_lay_out(self._pairs, blocks, first_blocks, pairs),
+            pairs=sum(pairs),
+            partner=partner,
+            ranges=tuple(self._ranges),
+        )
+
+    def _inputs(self) -> Inputs:
+        return Inputs(self.setting.formula, self.offsets, self._starts, self.floats)
+
+
+def _grouped(blocks: list[_Block], laid: list[_Block]) -> list[tuple[tuple[str, ...], int]]:
+    """The kernels in order of first use with their numbers of blocks; the blocks, in that order, are put on ``laid``."""
+    by_kernels: dict[tuple[str, ...], list[_Block]] = {}
+    for block in blocks:
+        by_kernels.setdefault(block.kernels, []).append(block)
+    for group in by_kernels.values():
+        laid.extend(group)
+    return [(kernels, len(group)) for kernels, group in by_kernels.items()]
+
+
+def _lay_out(
+    triples: list[tuple[int, int, int]], blocks: list[_Block], first_blocks: list[int], pairs: list[int]
+) -> NDArray[int64]:
+    """The one array of integers: see driver.py."""
+    head = 4 + len(first_blocks)
+    triples_at = head
+    table_at = triples_at + 3 * len(triples)
+    ranges_at = table_at + len(blocks) + 1
+    data_at = ranges_at + len(pairs) + 1
+    table = list(accumulate((len(block.ints) for block in blocks), initial=data_at))
+    parts = [
+        [triples_at, len(triples), table_at, ranges_at],
+        [table_at + block for block in first_blocks],
+        [number for triple in triples for number in triple],
+        table,
+        list(accumulate(pairs, initial=0)),
+        *(block.ints for block in blocks),
+    ]
+    return np.concatenate([np.array(part, dtype=np.int64) for part in parts])

@@ -1,0 +1,187 @@
+"""The march of one island: compiled steps up to the instant asked for, which is read off the last step."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.failure import RunFailure
+from sceneql.simulation import march_kernels as kernels
+from sceneql.simulation.driver import driver, function
+from sceneql.simulation.island import System
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.system import Stepper
+
+GROWTH_LIMIT = 1e12
+"""A run fails when an entry of y exceeds this times the largest entry of the start (at least 1) or of its rate's move."""
+
+TOUCHING = 1e-13
+"""Gap that counts as touching, relative to the largest position at the start or 1 m."""
+
+ENTRIES_A_CALL = 20_000_000
+"""Entries of y to step over in one compiled call, so that a long run can be interrupted."""
+
+MESSAGES = {
+    kernels.NOT_FINITE: "a value is no longer finite: the step is unstable, or the equations have no value there",
+    kernels.GROWTH: f"the state has grown beyond {GROWTH_LIMIT:.0e} times its start: the step is unstable",
+    kernels.STEP_TOO_SMALL: "the step that the tolerance asks for is below the resolution of time: a singularity",
+    kernels.STUCK: "contacts push against each other at one instant without end",
+}
+
+
+@dataclass(slots=True)
+class Statistics:
+    """What a march has cost so far."""
+
+    steps: int = 0
+    rejected: int = 0
+    """Steps tried again with a smaller length."""
+    events: int = 0
+    """Impacts of exact contacts."""
+    rates: int = 0
+    """Evaluations of the rate."""
+    seconds: float = 0.0
+    """Run time of the compiled steps [s]."""
+
+
+class March:
+    """An island on its way from 0 to ``end`` [s] by one solver."""
+
+    def __init__(self, system: System, stepper: Stepper, end: float) -> None:
+        self.system, self.stepper, self.end = system, stepper, end
+        self.statistics = Statistics()
+        self.floats = system.floats.copy()
+        self.driver = driver(system.structure)
+        n = len(system.y)
+        self._step = function(stepper.step)
+        local = bool(system.structure.local)
+        self._dense = kernels.hermite if stepper.dense is None or local else function(stepper.dense)
+        self._settings = np.array(stepper.settings, dtype=np.float64)
+        self._numbers = np.array(stepper.numbers, dtype=np.int64)
+        self._y0, self._rate0, self._rate1, self._sample = (np.zeros(n) for _ in range(4))
+        self._y1 = system.y.copy()
+        self._work = np.zeros(max(1, stepper.work) * n)
+        self._gaps = np.zeros(3 * system.pairs)
+        self._leaving = np.zeros(system.pairs, dtype=np.int64)
+        self._clock = np.zeros(kernels.CLOCKS)
+        self._counts = np.zeros(kernels.COUNTS, dtype=np.int64)
+        self._counts[kernels.ADAPTIVE] = stepper.adaptive
+        self._counts[kernels.ORDER] = stepper.order
+        self._counts[kernels.LOCAL] = local
+        self._counts[kernels.LAST_STAGE] = stepper.last_stage
+        self._counts[kernels.PENDING] = -1
+        self._clock[kernels.ERROR] = 1e-4
+        self._clock[kernels.LARGEST] = stepper.largest_step
+        self._started = False
+        self._floats_time = math.nan
+
+    def rate(self, t: float, y: Floats) -> Floats:
+        """dy/dt (n,) at a time [s] and state, not counted as cost; the floats then hold the values at that time."""
+        rate = np.empty_like(y)
+        counted = self.floats[0]
+        self.driver.rate(t, y, rate, self.floats, self.system.ints)
+        self.floats[0] = counted
+        self._floats_time = t
+        return rate
+
+    def floats_at(self, t: float, y: Floats) -> Floats:
+        """The island's floats with the values that vary at a time [s]."""
+        if self._floats_time != t:
+            self.rate(t, y)
+        return self.floats
+
+    def advance(self, t: float) -> tuple[Floats, Floats]:
+        """State and rate at an instant [s], not before the one asked for last; beyond the end, those at the end.
+
+        Raises RunFailure, with the part and line of the entry of the state that failed.
+        """
+        t = min(t, self.end)
+        if not self._started:
+            self._start()
+        if t > self._clock[kernels.T1]:
+            self._march(t)
+        t0, t1 = float(self._clock[kernels.T0]), float(self._clock[kernels.T1])
+        y = self._y1.copy()
+        if t < t1:
+            h = t1 - t0
+            steps = (self._y0, self._rate0, self._y1, self._rate1, self._work, self._settings, self._numbers)
+            self._dense((t - t0) / h, h, *steps, y)
+        return y, self.rate(t, y)
+
+    def _start(self) -> None:
+        self._started = True
+        y = self._y1
+        self._rate1[:] = self.rate(0.0, y)
+        bad = np.flatnonzero(~np.isfinite(y) | ~np.isfinite(self._rate1))
+        if len(bad):
+            self._fail(int(bad[0]), "the rate has no finite value at the start")
+        moved = np.abs(self._rate1).max(initial=0.0) * self.end
+        self._clock[kernels.LIMIT] = GROWTH_LIMIT * max(1.0, np.abs(y).max(initial=0.0), moved)
+        positions = np.abs(y[self.system.partner >= 0]).max(initial=1.0)
+        self._clock[kernels.SLOP] = TOUCHING * positions
+        self._clock[kernels.STEP] = self.stepper.first_step or self._first_step()
+
+    def _first_step(self) -> float:
+        """The first step of an adaptive method (Hairer, Norsett & Wanner 1993, II.4, "starting step size")."""
+        y, rate, stepper = self._y1, self._rate1, self.stepper
+        scale = stepper.absolute + stepper.tolerance * np.abs(y)
+
+        def norm(x: Floats) -> float:
+            return math.sqrt(float(np.mean((x / scale) ** 2))) if len(x) else 0.0
+
+        size, speed = norm(y), norm(rate)
+        h = 1e-6 if size < 1e-5 or speed < 1e-5 else 0.01 * size / speed
+        h = min(h, stepper.largest_step, self.end)
+        bend = norm(self.rate(h, y + h * rate) - rate) / h
+        most = max(speed, bend)
+        guess = max(1e-6, 1e-3 * h) if not most > 1e-15 else (0.01 / most) ** (1.0 / stepper.order)
+        return min(100.0 * h, guess, stepper.largest_step)
+
+    def _march(self, target: float) -> None:
+        started = time.perf_counter()
+        counts, clock = self._counts, self._clock
+        self._floats_time = math.nan
+        while True:
+            counts[kernels.LEFT] = max(100, ENTRIES_A_CALL // (len(self._y1) + 10))
+            status = kernels.march(
+                self._step,
+                self._dense,
+                *self.driver,
+                target,
+                self.end,
+                self._y0,
+                self._rate0,
+                self._y1,
+                self._rate1,
+                self._sample,
+                self._work,
+                self._settings,
+                self._numbers,
+                self.floats,
+                self.system.ints,
+                self._gaps,
+                self._leaving,
+                clock,
+                counts,
+            )
+            if status != kernels.PAUSED:
+                break
+        done = self.statistics
+        done.steps, done.rejected, done.events = (
+            int(counts[k]) for k in (kernels.STEPS, kernels.REJECTED, kernels.EVENTS)
+        )
+        done.rates = int(self.floats[0])
+        done.seconds += time.perf_counter() - started
+        if status != kernels.REACHED:
+            at = int(counts[kernels.INDEX])
+            self._fail(-1 if status == kernels.STUCK else at, MESSAGES[status])
+
+    def _fail(self, entry: int, message: str) -> None:
+        origin = self.system.origin(entry)
+        raise RunFailure(message, part=origin.part, time=float(self._clock[kernels.T1]), span=origin.span)

@@ -1,0 +1,226 @@
+"""The one loop that marches an island in time: fixed grid or error control, exact events, local contacts, the watch.
+
+All state of a march lies in arrays of the caller, so that it can stop anywhere and go on: the last accepted step
+(y0, rate0 at clock[T0]; y1, rate1 at clock[T1]; ``work`` as its solver left it, for dense output), ``clock`` and
+``counts`` with the entries named below. An impact is applied when the step after it begins, so that frames up to the
+impact read the state before it.
+"""
+
+import math
+
+from numba import types
+
+from sceneql.kernels import inlined, kernel
+from sceneql.simulation.events_kernels import find_event
+from sceneql.system_kernels import (
+    DENSE,
+    DENSE_FUNCTION,
+    GAP,
+    GAP_FUNCTION,
+    IMPACT,
+    IMPACT_FUNCTION,
+    RATE_FUNCTION,
+    SETTLE,
+    SETTLE_FUNCTION,
+    STEP_FUNCTION,
+    A,
+    F,
+    I,
+)
+
+T0, T1, STEP, ERROR, LARGEST, LIMIT, SLOP, CLOCKS = range(8)
+"""Ends of the last step [s]; the step to try next, or the grid's; the last error; largest step [s]; largest |y|; gap
+that counts as touching [m]."""
+
+STEPS, REJECTED, EVENTS, REPEATS, LEFT, INDEX, GRID, ADAPTIVE, ORDER, LOCAL, LAST_STAGE, PENDING, COUNTS = range(13)
+"""Tallies; impacts since time moved; steps left in this call; the entry that a failure names; grid points passed; what
+solver and island are; the pair whose impact is due (-1: none)."""
+
+REACHED, PAUSED, NOT_FINITE, GROWTH, STEP_TOO_SMALL, STUCK = range(6)
+
+MOST_REPEATS = 100
+"""Impacts for each pair at one instant before the contacts count as contradictory."""
+
+CHANGED_AT = 1
+"""floats[1]: a contact sets it to 1 when its hold changed the state."""
+
+MARCH = types.int64(
+    STEP_FUNCTION, DENSE_FUNCTION, RATE_FUNCTION, GAP_FUNCTION, IMPACT_FUNCTION, SETTLE_FUNCTION,
+    F, F, A, A, A, A, A, A, A, I, A, I, A, I, A, I,
+)  # fmt: skip
+
+
+@kernel(DENSE)
+def hermite(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
+    """Cubic Hermite interpolant of the step's ends: third order (Hairer, Norsett & Wanner 1993, eq. II.6.7)."""
+    for k in range(y0.size):
+        difference = y1[k] - y0[k]
+        bend = (1.0 - 2.0 * theta) * difference + (theta - 1.0) * h * rate0[k] + theta * h * rate1[k]
+        out[k] = (1.0 - theta) * y0[k] + theta * y1[k] + theta * (theta - 1.0) * bend
+
+
+@kernel(GAP)
+def no_gap(t, y, gaps, floats, ints):
+    """Of an island without exact contacts."""
+
+
+@kernel(IMPACT)
+def no_impact(t, y, pair, floats, ints):
+    """Of an island without exact contacts."""
+
+
+@kernel(SETTLE)
+def no_settle(t0, t1, y0, rate0, y1, floats, ints):
+    """Of an island without local contacts."""
+
+
+@inlined
+def copy(source, target):
+    """Entry by entry: numba's slice assignment costs seconds to compile."""
+    for k in range(target.size):
+        target[k] = source[k]
+
+
+@inlined
+def first_bad(y):
+    """Index of the first entry that is not finite, or -1."""
+    for k in range(y.size):
+        if not math.isfinite(y[k]):
+            return k
+    return -1
+
+
+@inlined
+def largest(y):
+    """Index of the entry of largest magnitude."""
+    best = 0
+    for k in range(y.size):
+        if abs(y[k]) > abs(y[best]):
+            best = k
+    return best
+
+
+@inlined
+def next_factor(error, previous, order, rejected):
+    """Factor for the next step: PI control (Gustafsson 1991; the constants of Hairer, Norsett & Wanner's DOPRI5)."""
+    if not math.isfinite(error):
+        return 0.1
+    if error > 1.0:
+        return max(0.2, 0.9 * error ** (-1.0 / order))
+    beta = 0.2 / order
+    factor = 0.9 * max(error, 1e-10) ** (0.75 * beta - 1.0 / order) * previous**beta
+    return min(1.0 if rejected else 10.0, max(0.2, factor))
+
+
+@inlined
+def try_steps(step, rate, t0, t1, y0, rate0, y1, work, settings, numbers, floats, ints, clock, counts):
+    """Step until the error is accepted: (end of the step, whether it is good). A fixed step is tried once."""
+    adaptive = counts[ADAPTIVE] > 0
+    rejected = False
+    while True:
+        h = t1 - t0
+        error = step(rate, t0, h, y0, rate0, y1, work, settings, numbers, floats, ints)
+        bad = first_bad(y1)
+        if bad >= 0:
+            error = math.inf
+        if bad < 0 and (error <= 1.0 or not adaptive):
+            if adaptive:
+                clock[STEP] = h * next_factor(error, clock[ERROR], counts[ORDER], rejected)
+                clock[ERROR] = max(error, 1e-4)
+            return t1, True
+        counts[REJECTED] += 1
+        counts[INDEX] = bad if bad >= 0 else largest(rate0)
+        h *= next_factor(error, 1.0, counts[ORDER], True)
+        if not adaptive or t0 + 0.1 * h <= t0:
+            return t1, False
+        rejected = True
+        t1 = t0 + h
+
+
+@inlined
+def apply_impact(rate, impact, t, y, slope, floats, ints, leaving, counts):
+    """The impact that is due. Contacts may read what the terms left in floats for the state before it."""
+    pair = counts[PENDING]
+    counts[PENDING] = -1
+    counts[EVENTS] += 1
+    rate(t, y, slope, floats, ints)
+    impact(t, y, pair, floats, ints)
+    rate(t, y, slope, floats, ints)
+    for k in range(leaving.size):
+        leaving[k] = 0
+    leaving[pair] = 1
+
+
+@kernel(MARCH)
+def march(
+    step, dense, rate, gap, impact, settle, target, end,
+    y0, rate0, y1, rate1, sample, work, settings, numbers, floats, ints, gaps, leaving, clock, counts,
+):  # fmt: skip
+    """Take steps until clock[T1] >= target; the status.
+
+    y0, rate0, y1, rate1, sample are of y's size; leaving (pairs,), gaps (3 pairs,). On a failure the step is taken
+    back: (clock[T1], y1, rate1) is the last good state, counts[INDEX] the entry of y (STUCK: the pair) at fault.
+    """
+    n = y0.size
+    while clock[T1] < target:
+        if counts[LEFT] <= 0:
+            return PAUSED
+        counts[LEFT] -= 1
+        t0 = clock[T1]
+        copy(y1, y0)
+        copy(rate1, rate0)
+        if counts[PENDING] >= 0:
+            apply_impact(rate, impact, t0, y0, rate0, floats, ints, leaving, counts)
+        if counts[ADAPTIVE] > 0:
+            h = min(clock[STEP], clock[LARGEST])
+            grid = end if t0 + 1.01 * h >= end else t0 + h
+        else:
+            grid = (counts[GRID] + 1) * clock[STEP]
+            if grid > end - 1e-9 * clock[STEP]:
+                grid = end
+        t1, good = try_steps(step, rate, t0, grid, y0, rate0, y1, work, settings, numbers, floats, ints, clock, counts)
+        status = REACHED if good else NOT_FINITE if counts[ADAPTIVE] == 0 else STEP_TOO_SMALL
+        if good:
+            most = largest(y1)
+            if abs(y1[most]) > clock[LIMIT]:
+                counts[INDEX] = most
+                status = GROWTH
+        if status != REACHED:
+            copy(y0, y1)
+            copy(rate0, rate1)
+            return status
+        if counts[LAST_STAGE] >= 0:
+            copy(work[counts[LAST_STAGE] * n :], rate1)
+        else:
+            rate(t1, y1, rate1, floats, ints)
+        if leaving.size > 0:
+            pair, reached = find_event(
+                step, dense, rate, gap, t0, t1 - t0, y0, rate0, y1, rate1,
+                sample, work, settings, numbers, floats, ints, gaps, leaving, clock[SLOP],
+            )  # fmt: skip
+            counts[PENDING] = pair
+            if reached == 0.0:
+                copy(y0, y1)
+                copy(rate0, rate1)
+                counts[REPEATS] += 1
+                if counts[REPEATS] > MOST_REPEATS * leaving.size:
+                    counts[INDEX] = pair
+                    return STUCK
+                continue
+            counts[REPEATS] = 0
+            if reached < t1 - t0:
+                t1 = t0 + reached
+        if counts[LOCAL] > 0:
+            settle(t0, t1, y0, rate0, y1, floats, ints)
+            rate(t1, y1, rate1, floats, ints)
+        if leaving.size > 0:
+            floats[CHANGED_AT] = 0.0
+            impact(t1, y1, -1, floats, ints)
+            if floats[CHANGED_AT] != 0.0:
+                rate(t1, y1, rate1, floats, ints)
+        clock[T0] = t0
+        clock[T1] = t1
+        counts[STEPS] += 1
+        if counts[ADAPTIVE] == 0 and t1 >= grid:
+            counts[GRID] += 1
+    return REACHED

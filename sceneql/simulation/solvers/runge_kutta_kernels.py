@@ -1,0 +1,72 @@
+"""One step of any explicit Runge-Kutta method: the tableau is data.
+
+``numbers`` = (stages, 1 if there is an embedded method). ``settings`` = (relative tolerance, absolute tolerance,
+c (s), b (s), b - b_hat (s), rows of a below the diagonal, packed: s (s-1)/2 numbers). ``work``: s arrays, the stages;
+the first is not used, for stage one is ``rate0``.
+"""
+
+import math
+
+from sceneql.kernels import inlined, kernel
+from sceneql.system_kernels import DENSE, STEP
+
+
+@inlined
+def add_stages(weights, count, h, y0, rate0, work, out):
+    """out = y0 + h * the weighted sum of the first stages."""
+    n = y0.size
+    scaled = h * weights[0]
+    for k in range(n):
+        out[k] = y0[k] + scaled * rate0[k]
+    for j in range(1, count):
+        if weights[j] != 0.0:
+            scaled = h * weights[j]
+            at = j * n
+            for k in range(n):
+                out[k] += scaled * work[at + k]
+
+
+@kernel(STEP)
+def step(rate, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
+    """y1 after a step of length h; the embedded error in the norm of Hairer, Norsett & Wanner (1993, eq. II.4.11)."""
+    stages = numbers[0]
+    n = y0.size
+    c = settings[2 : 2 + stages]
+    b = settings[2 + stages : 2 + 2 * stages]
+    row = 2 + 3 * stages
+    for i in range(1, stages):
+        add_stages(settings[row : row + i], i, h, y0, rate0, work, y1)
+        row += i
+        rate(t + c[i] * h, y1, work[i * n : (i + 1) * n], floats, ints)
+    add_stages(b, stages, h, y0, rate0, work, y1)
+    if numbers[1] == 0:
+        return 0.0
+    e = settings[2 + 2 * stages : 2 + 3 * stages]
+    total = 0.0
+    for k in range(n):
+        error = e[0] * rate0[k]
+        for j in range(1, stages):
+            error += e[j] * work[j * n + k]
+        error *= h / (settings[1] + settings[0] * max(abs(y0[k]), abs(y1[k])))
+        total += error * error
+    return math.sqrt(total / n)
+
+
+@kernel(DENSE)
+def dopri5_dense(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
+    """The fourth-order interpolant of Dormand & Prince's pair (Hairer, Norsett & Wanner 1993, II.6, code DOPRI5)."""
+    n = y0.size
+    for k in range(n):
+        last = work[6 * n + k]
+        difference = y1[k] - y0[k]
+        bend = h * rate0[k] - difference
+        quartic = h * (
+            -12715105075.0 / 11282082432.0 * rate0[k]
+            + 87487479700.0 / 32700410799.0 * work[2 * n + k]
+            - 10690763975.0 / 1880347072.0 * work[3 * n + k]
+            + 701980252875.0 / 199316789632.0 * work[4 * n + k]
+            - 1453857185.0 / 822651844.0 * work[5 * n + k]
+            + 69997945.0 / 29380423.0 * last
+        )
+        inner = difference - h * last - bend + (1.0 - theta) * quartic
+        out[k] = y0[k] + theta * (difference + (1.0 - theta) * (bend + theta * inner))

@@ -1,0 +1,21 @@
+"""One step of semi-implicit Euler: velocities first, then positions by the new velocities."""
+
+from sceneql.kernels import kernel
+from sceneql.system_kernels import STEP
+
+
+@kernel(STEP)
+def step(rate, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
+    """Explicit Euler on every entry, then the positions of the island's pairs advance by their velocities at the end.
+
+    The pairs stand at the head of ``ints``: ints[1] triples (position, velocity, count) from ints[0] on.
+    """
+    for k in range(y0.size):
+        y1[k] = y0[k] + h * rate0[k]
+    for pair in range(ints[1]):
+        at = ints[0] + 3 * pair
+        position = ints[at]
+        velocity = ints[at + 1]
+        for k in range(ints[at + 2]):
+            y1[position + k] += h * (h * rate0[velocity + k])
+    return 0.0
