@@ -1,0 +1,185 @@
+"""Patches: variants and `--set` replace values of the tree by dotted paths, before templates are written out."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+from typing import Final, cast
+
+from sceneql.language.compose import compose_node, kind_of
+from sceneql.language.sections import empty
+from sceneql.language.syntax import unprintable
+from sceneql.language.tree import Mapping, Node, Scalar, Sequence
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError, suggestion
+from sceneql.quantities.span import Source, Span
+
+Patch = tuple[str, Node, Span]
+"""A dotted path, what is to stand there, and where the path is written."""
+
+VARIANT_OPTIONS: Final = ("may_fail",)
+"""Keys of a variant that are no paths."""
+
+
+def apply_patch(
+    root: Mapping, patches: Iterable[Patch], families: Collection[str], settings: Collection[str] = ()
+) -> Mapping:
+    """The tree with its values replaced; what is not on a path is shared with the old tree, which stays as it was.
+
+    A path names a section, a part and a field: ``models.cage.stiffness``. The part's word may stand between
+    (``models.cage.mass_spring.stiffness``), the section may be left out where one part or define alone has the name,
+    and a number selects an item of a list. A path may end in a new field or part, not go through one. Raises
+    ScriptError (`unknown-path`).
+    """
+    found = Diagnostics()
+    for patch in patches:
+        try:
+            root = _Path(patch, families, settings).put_into(root)
+        except ScriptError as error:
+            for diagnostic in error.diagnostics:
+                found.add(diagnostic)
+    found.raise_errors()
+    return root
+
+
+def variant_names(root: Mapping) -> tuple[str, ...]:
+    """The names of the script's variants."""
+    node = root.entries.get("variants")
+    return tuple(node.entries) if isinstance(node, Mapping) else ()
+
+
+def variant(root: Mapping, name: str) -> list[Patch]:
+    """The patches of a variant. Raises ScriptError (`unknown-variant`, `section-shape`)."""
+    node = root.entries.get("variants")
+    if not isinstance(node, Mapping) or name not in node.entries:
+        names = variant_names(root)
+        help = suggestion(name, names) or (f"the variants are {', '.join(names)}" if names else "the script has none")
+        span = root.keys["variants"].span if "variants" in root.keys else None
+        raise ScriptError([Diagnostic("unknown-variant", f"there is no variant '{name}'", span, help)])
+    patches = node.entries[name]
+    if empty(patches):
+        return []
+    if not isinstance(patches, Mapping):
+        help = "write `name: {define.k: 200 N/m}`"
+        raise ScriptError([Diagnostic("section-shape", "a variant holds values by path", patches.span, help)])
+    return [(path, n, patches.keys[path].span) for path, n in patches.entries.items() if path not in VARIANT_OPTIONS]
+
+
+def parse_set(text: str) -> Patch:
+    """The patch of an option ``--set path=value``, whose value is written as in a script. Raises ScriptError.
+
+    Lists, mappings and quoted texts are read as YAML; anything else is one plain value, so that
+    ``objects.ball.color=#ff8800`` needs no quotes.
+    """
+    source = Source("--set", text)
+    path, equals, value = text.partition("=")
+    at = len(path) + 1 + len(value) - len(value.lstrip())
+    span = Span(source, len(path) - len(path.lstrip()), len(path.rstrip()))
+    if not equals or not path.strip() or not value.strip():
+        help = "write `--set 'define.k=2 kN/m'`"
+        raise ScriptError([Diagnostic("set-shape", "a path, an equals sign and a value belong here", span, help)])
+    if value.strip()[0] in "[{\"'" or unprintable(text) is not None:
+        return path.strip(), compose_node(source, at), span
+    value = value.strip()
+    return path.strip(), Scalar(value, kind_of(value), False, source, at, at + len(value)), span
+
+
+class _Path:
+    def __init__(self, patch: Patch, families: Collection[str], settings: Collection[str]) -> None:
+        self.path, self.value, self.span = patch
+        self.families, self.settings = families, settings
+        self.steps = self.path.split(".")
+        self.shift = 0
+        """1 where the section is left out of the path."""
+
+    def fail(self, at: int, message: str, help: str | None) -> ScriptError:
+        """What is wrong with a step."""
+        written = self.path.split(".")
+        at = max(at - self.shift, 0)
+        start = max(self.span.text.find(self.path), 0) + len("".join(f"{step}." for step in written[:at]))
+        place = self.span.part(start, start + len(written[at]))
+        return ScriptError([Diagnostic("unknown-path", message, place, help)])
+
+    def put_into(self, root: Mapping) -> Mapping:
+        """The tree with the value at the path."""
+        if "" in self.steps:
+            raise self.fail(self.steps.index(""), "a step of this path is empty", "write `section.part.field`")
+        first = self.steps[0]
+        if first not in root.entries and first not in self.families and first not in self.settings:
+            sections = (*self.families, "define", "parts")
+            owners = [key for key in sections if first in _keys(root.entries.get(key))]
+            if len(owners) != 1:
+                help = f"write {' or '.join(f'{key}.{self.path}' for key in owners)}"
+                names = [*root.entries, *self.families, *(n for key in sections for n in _keys(root.entries.get(key)))]
+                message = f"'{first}' is in several sections" if owners else f"the script has no '{first}'"
+                raise self.fail(0, message, help if owners else suggestion(first, names))
+            self.steps, self.shift = [owners[0], *self.steps], 1
+        return cast(Mapping, self.put(root, 0))
+
+    def put(self, node: Node, at: int) -> Node:
+        """``node`` with the value below it, by the steps from ``at`` on."""
+        if at == len(self.steps):
+            return self.value
+        if empty(node):
+            node = _nothing(node.span)
+        if at == self.entry_level():
+            return self.put_into_entry(node, at)
+        return self.put_below(node, at)
+
+    def entry_level(self) -> int:
+        """How many steps lead to a part; -1 where none do."""
+        part = (*self.families, "parts")
+        if self.steps[0] == "templates":
+            return 4 if len(self.steps) > 2 and self.steps[2] in part else -1
+        return 2 if self.steps[0] in part else -1
+
+    def put_into_entry(self, node: Node, at: int) -> Node:
+        """A part with the value in its fields; its word may stand in the path."""
+        if isinstance(node, Scalar) and node.kind == "text":
+            fields = _nothing(node.span)
+            node = Mapping({node.text: fields}, {node.text: node}, True, node.source, node.start, node.end)
+        if isinstance(node, Mapping) and self.steps[at] not in node.entries:
+            words = [key for key in node.entries if key != "repeat"]
+            if len(words) == 1:
+                inner = node.entries[words[0]]
+                inner = self.put_below(_nothing(inner.span) if empty(inner) else inner, at)
+                return self.with_item(node, words[0], inner)
+        return self.put_below(node, at)
+
+    def put_below(self, node: Node, at: int) -> Node:
+        """A mapping or list with the value below one of its items."""
+        step, before = self.steps[at], ".".join(self.steps[:at])
+        if isinstance(node, Scalar):
+            raise self.fail(at, f"there is nothing called '{step}' here", f"'{before}' is a single value")
+        if isinstance(node, Sequence):
+            if not step.isdecimal() or len(step) > 9 or int(step) >= len(node.items):
+                help = f"its items are numbered from 0 to {len(node.items) - 1}" if node.items else "the list is empty"
+                raise self.fail(at, f"the list '{before}' has no item '{step}'", help)
+            items = list(node.items)
+            items[int(step)] = self.put(items[int(step)], at + 1)
+            return Sequence(items, node.flow, node.source, node.start, node.end)
+        # The second of two parts without names is called such as `gravity.2`.
+        numbered = ".".join(self.steps[at : at + 2])
+        if step not in node.entries and numbered in node.entries:
+            return self.with_item(node, numbered, self.put(node.entries[numbered], at + 2))
+        if step in node.entries:
+            return self.with_item(node, step, self.put(node.entries[step], at + 1))
+        if at == 0 and len(self.steps) > 1:
+            return self.with_item(node, step, self.put(_nothing(self.span), 1))
+        if at + 1 == len(self.steps) and self.steps[0] != "define":
+            return self.with_item(node, step, self.value)
+        raise self.fail(at, f"'{before}' has no '{step}'", suggestion(step, node.entries))
+
+    def with_item(self, node: Mapping, key: str, value: Node) -> Mapping:
+        """A copy of a mapping with one value replaced or added."""
+        entries, keys = dict(node.entries), dict(node.keys)
+        entries[key] = value
+        if key not in keys:
+            keys[key] = Scalar(key, "text", False, self.span.source, self.span.start, self.span.end)
+        return Mapping(entries, keys, node.flow, node.source, node.start, node.end)
+
+
+def _keys(node: Node | None) -> Collection[str]:
+    return node.entries if isinstance(node, Mapping) else ()
+
+
+def _nothing(span: Span) -> Mapping:
+    return Mapping({}, {}, True, span.source, span.end, span.end)

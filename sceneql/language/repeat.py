@@ -1,0 +1,68 @@
+"""`repeat`: how many copies of an entry there are, and what their number is called."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping as Table
+from dataclasses import dataclass
+from typing import Final
+
+from sceneql.language.scope import Scope
+from sceneql.language.tree import Mapping, Node, Scalar
+from sceneql.quantities.diagnostic import Diagnostics
+
+MOST_COPIES: Final = 10_000
+_MOST_HOPS: Final = 64
+
+
+@dataclass(frozen=True, slots=True)
+class Repeat:
+    """``count`` copies, numbered from 0 by ``symbol``; ``node`` is where the number's name is written."""
+
+    count: int
+    symbol: str
+    node: Node
+
+    def number(self, copy: int) -> Scalar:
+        """The number of a copy as a node."""
+        return Scalar(str(copy), "integer", False, self.node.source, self.node.start, self.node.end)
+
+
+def read_repeat(node: Node, scope: Scope | None, define: Table[str, Node], found: Diagnostics) -> Repeat | None:
+    """What stands under `repeat`, or None after reporting what is wrong with it."""
+    if not isinstance(node, Mapping) or "count" not in node.entries or node.entries.keys() - {"count", "as"}:
+        help = "write `repeat: {count: 5, as: i}`"
+        found.error("repeat-shape", "`repeat` takes a count, and a name for the number", node.span, help=help)
+        return None
+    index = node.entries.get("as")
+    if index is not None and not (isinstance(index, Scalar) and index.text.isidentifier()):
+        found.error("repeat-shape", "`as` takes a name", index.span, help="write `as: i`")
+        return None
+    count = _whole(node.entries["count"], scope, define, found)
+    if count is None:
+        return None
+    return Repeat(count, "i", node) if index is None else Repeat(count, index.text, index)
+
+
+def _whole(node: Node, scope: Scope | None, define: Table[str, Node], found: Diagnostics) -> int | None:
+    """A count: a whole number, or the name of a field or define that is one."""
+    value: Node | None = node
+    for _ in range(_MOST_HOPS):
+        if not isinstance(value, Scalar) or value.kind != "text":
+            break
+        name = value.text
+        while scope is not None and name not in scope.fields:
+            scope = scope.outer
+        if scope is None:
+            value = define.get(name)
+        else:
+            value, scope = scope.fields[name], scope.outer
+    if not isinstance(value, Scalar) or value.kind != "integer" or not value.text.isdecimal():
+        help = "write a number, or the name of a define that is one"
+        found.error("repeat-count", "a count is a whole number, 0 or more", node.span, help=help)
+        return None
+    if len(value.text) > 9 or int(value.text) > MOST_COPIES:
+        message = f"{value.text[:20]} copies are more than {MOST_COPIES:,}"
+        help = "a model such as `particles` holds many bodies in one part"
+        found.error("repeat-count", message, node.span, help=help)
+        return None
+    return int(value.text)

@@ -1,0 +1,65 @@
+"""Entries with the scope in which their names are looked up: what the checker reads."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping as Table
+from dataclasses import dataclass, field
+
+from sceneql.language.tree import Node
+from sceneql.quantities.span import Span
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scope:
+    """What names mean inside an instance of a template or a copy.
+
+    ``names`` maps the names inside to those of the whole script (``hip`` to ``front_left.hip``). ``fields`` holds the
+    nodes of fields and copy numbers; the names in such a node are looked up in ``outer``, so that a field given to an
+    instance sees what is outside it, and a default sees the fields before it.
+    """
+
+    names: Table[str, str]
+    fields: Table[str, Node]
+    outer: Scope | None
+
+    def resolve(self, name: str) -> str:
+        """The name in the whole script of what is called ``name`` here; other names stay as they are."""
+        scope: Scope | None = self
+        while scope is not None:
+            if name in scope.names:
+                return scope.names[name]
+            scope = scope.outer
+        return name
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Entry:
+    """One part: its name in the whole script, its word, the node of its fields if any, and where both are written."""
+
+    name: str
+    word: str
+    fields: Node | None
+    span: Span
+    word_span: Span
+    scope: Scope | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Given:
+    """What a template gives under a name: a node, and the scope of the instance."""
+
+    node: Node
+    scope: Scope
+
+
+@dataclass(slots=True, eq=False)
+class Expanded:
+    """Sections without templates or copies.
+
+    ``gives`` holds the outputs of instances (``lantern.0.lit``); ``groups`` the names of all parts that stand for one
+    written name (``dust``: ``dust.0``, ``dust.1``, ...; ``front_left``: ``front_left.hip``, ...).
+    """
+
+    sections: dict[str, dict[str, Entry]] = field(default_factory=dict)
+    gives: dict[str, Given] = field(default_factory=dict)
+    groups: dict[str, list[str]] = field(default_factory=dict)

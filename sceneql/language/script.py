@@ -1,0 +1,179 @@
+"""A script as the checker reads it: composed, joined with what it includes, patched, templates written out."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from sceneql.language.compose import compose
+from sceneql.language.include import OutsideError, Read, folder_reader, read_included, read_source
+from sceneql.language.patch import VARIANT_OPTIONS, Patch, apply_patch, parse_set, variant, variant_names
+from sceneql.language.scope import Entry, Expanded, Given, Scope
+from sceneql.language.sections import NAMED, join
+from sceneql.language.templates import expand
+from sceneql.language.tree import Mapping, Node, Scalar
+from sceneql.quantities.diagnostic import Diagnostics, ScriptError, suggestion
+from sceneql.quantities.span import Source
+
+__all__ = ["FAMILIES", "SETTINGS", "VERSION", "Entry", "Given", "Scope", "Script", "read_script"]
+
+VERSION: Final = "1"
+FAMILIES: Final = ("objects", "models", "forces", "contacts", "solvers", "cameras", "lights", "materials", "outputs")
+SETTINGS: Final = ("sceneql", "about", "clock", "gallery", "background", "expect", "define", "variants")
+_REWRITTEN: Final = ("include", "templates", "parts", "defaults")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Script:
+    """A script ready to be checked.
+
+    ``sections`` holds the entries of each family in the order written, ``settings`` the other top-level values as
+    nodes, ``defaults`` the fields by word (already filled into the entries), ``gives`` and ``groups`` what instances
+    give and which parts stand for one written name (see `Expanded`). ``hash`` is the SHA-256 of all texts and patches.
+    """
+
+    name: str
+    sources: tuple[Source, ...]
+    root: Mapping
+    sections: dict[str, dict[str, Entry]]
+    settings: dict[str, Node]
+    defaults: dict[str, Node]
+    gives: dict[str, Given]
+    groups: dict[str, list[str]]
+    variants: tuple[str, ...]
+    variant: str | None
+    may_fail: bool
+    hash: str
+
+
+def read_script(
+    script: Path | Source,
+    variant: str | None = None,
+    sets: Iterable[str] = (),
+    families: Sequence[str] = FAMILIES,
+    settings: Sequence[str] = SETTINGS,
+    read: Read | None = None,
+    found: Diagnostics | None = None,
+) -> Script:
+    """Read a script from a file, or from a source whose includes ``read`` finds. Raises ScriptError with all errors.
+
+    ``sets`` are patches ``path=value``; they are laid over the variant's. With ``found``, errors that leave the rest
+    of the script readable are recorded there instead of raised, and what is wrong is left out.
+    """
+    raising = found is None
+    found = Diagnostics() if found is None else found
+    source = script if isinstance(script, Source) else read_source(script)
+    if read is None:
+        read = _no_folder if isinstance(script, Source) else folder_reader(script.parent)
+    first = compose(source)
+    trees = read_included(first, Path(source.name).name, read, found)
+    found.raise_errors()
+    root = join(trees, families, found)
+    for tree in trees:
+        _check_version(tree, found)
+    _check_sections(root, families, settings, found)
+    patches = _patches(root, variant, sets, families, settings, found)
+    patched = _patched(root, patches, families, settings, found)
+    expanded = expand(patched, families, found)
+    if raising:
+        found.raise_errors()
+    defaults = patched.entries.get("defaults")
+    return Script(
+        name=Path(source.name).stem,
+        sources=tuple(tree.source for tree in trees),
+        root=patched,
+        sections=_in_order(expanded, patched),
+        settings={k: n for k, n in patched.entries.items() if k not in families and k not in _REWRITTEN},
+        defaults=dict(defaults.entries) if isinstance(defaults, Mapping) else {},
+        gives=expanded.gives,
+        groups=expanded.groups,
+        variants=variant_names(root),
+        variant=variant,
+        may_fail=_may_fail(root, variant),
+        hash=_hash(trees, patches),
+    )
+
+
+def _no_folder(name: str) -> Source:
+    raise OutsideError(name)
+
+
+def _check_version(tree: Mapping, found: Diagnostics) -> None:
+    node = tree.entries.get("sceneql")
+    if node is not None and not (isinstance(node, Scalar) and node.text == VERSION):
+        written = node.text if isinstance(node, Scalar) else "this"
+        help = f"write `sceneql: {VERSION}`"
+        found.error(
+            "version", f"this program reads version {VERSION} of the language, not {written}", node.span, help=help
+        )
+
+
+def _check_sections(root: Mapping, families: Sequence[str], settings: Sequence[str], found: Diagnostics) -> None:
+    known = (*families, *settings, *NAMED, *_REWRITTEN)
+    for key in root.entries:
+        if key not in known:
+            help = suggestion(key, known) or f"the sections are {', '.join(dict.fromkeys(known))}"
+            found.error("unknown-section", f"there is no section '{key}'", root.keys[key].span, help=help)
+
+
+def _patches(
+    root: Mapping,
+    name: str | None,
+    sets: Iterable[str],
+    families: Sequence[str],
+    settings: Sequence[str],
+    found: Diagnostics,
+) -> list[Patch]:
+    """The patches asked for. All variants are tried, since an error in an unused part is still an error."""
+    patches: list[Patch] = []
+    for each in dict.fromkeys([*variant_names(root), *([] if name is None else [name])]):
+        try:
+            inner = variant(root, each)
+            apply_patch(root, inner, families, settings)
+            patches += inner if each == name else []
+        except ScriptError as error:
+            for diagnostic in error.diagnostics:
+                found.add(diagnostic)
+    for text in sets:
+        try:
+            patches.append(parse_set(text))
+        except ScriptError as error:
+            for diagnostic in error.diagnostics:
+                found.add(diagnostic)
+    return patches
+
+
+def _patched(
+    root: Mapping, patches: list[Patch], families: Sequence[str], settings: Sequence[str], found: Diagnostics
+) -> Mapping:
+    try:
+        return apply_patch(root, patches, families, settings)
+    except ScriptError as error:
+        for diagnostic in error.diagnostics:
+            found.add(diagnostic)
+        return root
+
+
+def _may_fail(root: Mapping, name: str | None) -> bool:
+    variants = root.entries.get("variants")
+    chosen = variants.entries.get(name) if isinstance(variants, Mapping) and name is not None else None
+    node = chosen.entries.get(VARIANT_OPTIONS[0]) if isinstance(chosen, Mapping) else None
+    return isinstance(node, Scalar) and node.text.lower() in ("yes", "true")
+
+
+def _in_order(expanded: Expanded, root: Mapping) -> dict[str, dict[str, Entry]]:
+    """The sections as the script orders them, those that only templates fill behind."""
+    order = [key for key in root.entries if key in expanded.sections]
+    return {key: expanded.sections[key] for key in dict.fromkeys([*order, *expanded.sections])}
+
+
+def _hash(trees: Iterable[Mapping], patches: Iterable[Patch]) -> str:
+    digest = hashlib.sha256()
+    texts = [tree.source.text for tree in trees]
+    for text in [*texts, *(part for path, node, _ in patches for part in (path, node.span.text))]:
+        data = text.encode()
+        digest.update(len(data).to_bytes(8, "little") + data)
+    return digest.hexdigest()

@@ -1,0 +1,133 @@
+"""Sections and entries: several scripts joined to one tree, and what an entry may look like."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
+from typing import Final
+
+from sceneql.language.tree import Mapping, Node, Scalar, Sequence
+from sceneql.quantities.diagnostic import Diagnostics, Note
+
+NAMED: Final = ("define", "templates", "parts", "defaults", "variants", "expect")
+"""Sections beside the families that hold names."""
+
+_ENTRY = "an entry is `name: word` or `name: {word: {fields}}`"
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """An entry as it stands: ``word`` is the node of the word, ``fields`` None where there are none."""
+
+    word: Scalar
+    fields: Node | None
+    repeat: Node | None
+
+
+def empty(node: Node) -> bool:
+    """Whether nothing is written here."""
+    return isinstance(node, Scalar) and node.kind == "null" and not node.quoted
+
+
+def read_entry(what: str, node: Node, found: Diagnostics) -> Written | None:
+    """The word and the fields of an entry, or None after reporting a shape that no entry has."""
+    if isinstance(node, Scalar):
+        if node.kind == "text":
+            return Written(node, None, None)
+        message = f"{what} has no word" if empty(node) else f"{what} is a {node.kind}, not a part"
+        found.error("entry-shape", message, node.span, help=_ENTRY)
+        return None
+    if isinstance(node, Sequence):
+        found.error("entry-shape", f"{what} is a list, not a part", node.span, help=_ENTRY)
+        return None
+    words = [key for key in node.entries if key != "repeat"]
+    if not words:
+        found.error("entry-shape", f"{what} has no word", node.span, help=_ENTRY)
+        return None
+    if len(words) > 1:
+        first, second = node.keys[words[0]], node.keys[words[1]]
+        message = f"{what} holds '{words[0]}' and '{words[1]}', but a part has one word"
+        help = f"fields stand below the word: {{word: {{{words[0]}: ..., {words[1]}: ...}}}}"
+        found.error("entry-shape", message, second.span, help=help, notes=[Note("the first stands here", first.span)])
+        return None
+    fields = node.entries[words[0]]
+    return Written(node.keys[words[0]], None if empty(fields) else fields, node.entries.get("repeat"))
+
+
+def section(name: str, node: Node, taken: Collection[str], found: Diagnostics) -> Mapping:
+    """A section as a mapping; the items of a list are named by their words: ``gravity``, ``gravity.2``, ..."""
+    if isinstance(node, Mapping):
+        return node
+    result = Mapping({}, {}, True, node.source, node.start, node.end)
+    if isinstance(node, Sequence):
+        for item in node.items:
+            written = read_entry(f"this item of '{name}'", item, found)
+            if written is not None:
+                own = _free(written.word.text, result.entries.keys() | set(taken))
+                result.entries[own], result.keys[own] = item, written.word
+    elif not empty(node):
+        found.error("section-shape", f"'{name}' holds parts by name, or a list of words", node.span, help=_ENTRY)
+    return result
+
+
+def _free(word: str, taken: Collection[str]) -> str:
+    number, name = 1, word
+    while name in taken:
+        number += 1
+        name = f"{word}.{number}"
+    return name
+
+
+def join(trees: Iterable[Mapping], families: Collection[str], found: Diagnostics) -> Mapping:
+    """One tree of a script and those it includes.
+
+    Families and sections of names are merged, and a name in two scripts is an error; of other keys the first script's
+    value stands. Sections that are lists become mappings.
+    """
+    trees = list(trees)
+    first = trees[0]
+    root = Mapping({}, {}, False, first.source, first.start, first.end)
+    named = {*families, *NAMED}
+    lists: list[tuple[str, Node]] = []
+    for tree in trees:
+        for key, node in tree.entries.items():
+            if key in families and not isinstance(node, Mapping):
+                lists.append((key, node))
+                node = Mapping({}, {}, True, node.source, node.start, node.end)
+            if key not in root.entries:
+                root.entries[key], root.keys[key] = node, tree.keys[key]
+            elif key in named:
+                root.entries[key] = _merged(key, root.entries[key], node, found)
+    taken = {name for key in (*families, "define", "parts") for name in _names(root.entries.get(key))}
+    for key, node in lists:
+        more = section(key, node, taken, found)
+        taken |= more.entries.keys()
+        root.entries[key] = _merged(key, root.entries[key], more, found)
+    return root
+
+
+def _names(node: Node | None) -> Iterable[str]:
+    return node.entries if isinstance(node, Mapping) else ()
+
+
+def _merged(key: str, one: Node, other: Node, found: Diagnostics) -> Node:
+    if empty(one) or empty(other):
+        return other if empty(one) else one
+    if not isinstance(one, Mapping) or not isinstance(other, Mapping):
+        odd = other if isinstance(one, Mapping) else one
+        found.error("section-shape", f"'{key}' holds values by name", odd.span, help="write `name: value`")
+        return one
+    result = Mapping(dict(one.entries), dict(one.keys), one.flow, one.source, one.start, one.end)
+    for name, node in other.entries.items():
+        if name in result.entries:
+            duplicate(name, result.keys[name], other.keys[name], found)
+        else:
+            result.entries[name], result.keys[name] = node, other.keys[name]
+    return result
+
+
+def duplicate(name: str, first: Scalar, second: Scalar, found: Diagnostics) -> None:
+    """Report a name that two parts have."""
+    help = "all parts of a script share one set of names: rename one of the two"
+    note = Note("the first stands here", first.span)
+    found.error("duplicate-name", f"the name '{name}' is used twice", second.span, help=help, notes=[note])

@@ -1,0 +1,261 @@
+"""Templates, parts, copies and defaults: the tree's sections rewritten to plain entries, each with its scope."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from collections.abc import Mapping as Table
+from collections.abc import Sequence as List
+from dataclasses import dataclass
+from typing import Final
+
+from sceneql.language.repeat import read_repeat
+from sceneql.language.scope import Entry, Expanded, Given, Scope
+from sceneql.language.sections import Written, duplicate, empty, read_entry, section
+from sceneql.language.tree import Mapping, Node, Scalar
+from sceneql.quantities.diagnostic import Diagnostics, Note, suggestion
+from sceneql.quantities.span import Span
+
+__all__ = ["Entry", "Expanded", "Given", "Scope", "expand", "filled"]
+
+MOST_NESTED: Final = 64
+MOST_PARTS: Final = 100_000
+
+
+def expand(root: Mapping, families: List[str], found: Diagnostics) -> Expanded:
+    """The entries of a script, templates and copies written out and defaults filled in."""
+    expander = _Expander(root, families, found)
+    expander.unique(root)
+    for name in expander.templates:
+        expander.template(name)
+    try:
+        expander.body(root, _Place("", None, ()))
+    except _FullError:
+        message = f"templates and copies make more than {MOST_PARTS:,} parts"
+        key = root.keys.get("parts") or next(iter(root.keys.values()))
+        help = "a model such as `particles` holds many bodies in one part"
+        found.error("too-many-parts", message, key.span, help=help)
+    return expander.done
+
+
+def filled(word: str, fields: Node | None, defaults: Table[str, Node], span: Span) -> Node | None:
+    """The fields of a word together with those of its defaults that are not given."""
+    more = defaults.get(word)
+    if not isinstance(more, Mapping) or not (fields is None or isinstance(fields, Mapping)):
+        return fields
+    if fields is None:
+        return Mapping(dict(more.entries), dict(more.keys), True, span.source, span.start, span.end)
+    entries, keys = more.entries | fields.entries, more.keys | fields.keys
+    return Mapping(entries, keys, fields.flow, fields.source, fields.start, fields.end)
+
+
+class _FullError(Exception):
+    """There are more parts than any script needs."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Place:
+    """Where entries are added: the front of their names, the scope, and the names of the instances around them."""
+
+    front: str
+    scope: Scope | None
+    around: tuple[tuple[str, dict[str, str]], ...]
+    templates: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class _Template:
+    fields: dict[str, Node]
+    gives: dict[str, Node]
+    body: Mapping
+
+
+class _Expander:
+    def __init__(self, root: Mapping, families: List[str], found: Diagnostics) -> None:
+        self.families, self.found = families, found
+        self.define = self.named(root, "define")
+        self.templates = self.named(root, "templates")
+        self.defaults = self.named(root, "defaults")
+        for word, node in self.defaults.items():
+            if not isinstance(node, Mapping):
+                help = f"write `{word}: {{field: value}}`"
+                found.error("section-shape", f"the defaults of '{word}' are fields with values", node.span, help=help)
+        self.read: dict[str, _Template | None] = {}
+        self.done = Expanded()
+        self.count = 0
+
+    def named(self, mapping: Mapping, key: str) -> dict[str, Node]:
+        """The entries of a section of names; none after reporting that it is something else."""
+        node = mapping.entries.get(key)
+        if node is None or empty(node):
+            return {}
+        if isinstance(node, Mapping):
+            return node.entries
+        help = f"write `{key}: {{name: ...}}`"
+        self.found.error("section-shape", f"'{key}' holds values by name", node.span, help=help)
+        return {}
+
+    def unique(self, root: Mapping) -> None:
+        """Report names that two parts or defines of the script share."""
+        seen: dict[str, Scalar] = {}
+        for key in [key for key in root.entries if key in ("define", "parts", *self.families)]:
+            node = root.entries[key]
+            for name, written in node.keys.items() if isinstance(node, Mapping) else ():
+                if name in seen:
+                    duplicate(name, seen[name], written, self.found)
+                else:
+                    seen[name] = written
+
+    def template(self, name: str) -> _Template | None:
+        """A template as it is written, its shape checked once."""
+        if name not in self.read:
+            self.read[name] = None
+            node = self.templates[name]
+            if not isinstance(node, Mapping):
+                help = "it holds `fields:` and sections such as `objects:`"
+                self.found.error("section-shape", f"the template '{name}' is not a mapping", node.span, help=help)
+                return None
+            known = ("fields", "gives", "parts", *self.families)
+            for key in [key for key in node.entries if key not in known]:
+                self.found.error(
+                    "unknown-section",
+                    f"a template has no section '{key}'",
+                    node.keys[key].span,
+                    help=suggestion(key, known) or f"it may have {', '.join(known)}",
+                )
+            self.read[name] = _Template(self.named(node, "fields"), self.named(node, "gives"), self.local(name, node))
+        return self.read[name]
+
+    def local(self, template: str, node: Mapping) -> Mapping:
+        """The sections of a template as mappings, its names checked."""
+        body = Mapping({}, {}, node.flow, node.source, node.start, node.end)
+        fields = node.entries.get("fields")
+        seen: dict[str, Scalar] = dict(fields.keys) if isinstance(fields, Mapping) else {}
+        for key in ("parts", *self.families):
+            if key in node.entries:
+                inner = section(key, node.entries[key], seen, self.found)
+                body.entries[key], body.keys[key] = inner, node.keys[key]
+                for name, written in inner.keys.items():
+                    if name in seen:
+                        message = f"'{name}' is used twice in the template '{template}'"
+                        note = Note("it stands here first", seen[name].span)
+                        self.found.error("duplicate-name", message, written.span, help="rename one", notes=[note])
+                    seen[name] = written
+        return body
+
+    def body(self, body: Mapping, place: _Place) -> None:
+        """Add the entries and instances of a script's or a template's sections."""
+        for family in self.families:
+            for name, node in self.named(body, family).items():
+                if (written := self.entry(name, node, body.entries[family], place)) is not None:
+                    for full, scope in self.copies(name, written.repeat, place):
+                        self.add(family, full, written, body.entries[family], name, scope, place)
+        for name, node in self.named(body, "parts").items():
+            if (written := self.entry(name, node, body.entries["parts"], place)) is not None:
+                self.instances(name, written, place)
+
+    def entry(self, name: str, node: Node, section: Node, place: _Place) -> Written | None:
+        """An entry whose name and shape are right."""
+        assert isinstance(section, Mapping)
+        key = section.keys[name]
+        if not name.split(".")[0].isidentifier() or (key.text == name and "." in name):
+            message = f"'{name}' cannot be the name of a part"
+            help = "a name is made of letters, digits and underscores, and begins with a letter"
+            self.found.error("part-name", message, key.span, help=help)
+            return None
+        return read_entry(f"'{name}'", node, self.found)
+
+    def copies(self, name: str, repeat: Node | None, place: _Place) -> Iterator[tuple[str, Scope | None]]:
+        """The names in the whole script, and the scopes, of an entry's copies; without `repeat` it is just one."""
+        full = place.front + name
+        if repeat is None:
+            self.one_more()
+            yield full, place.scope
+        elif (times := read_repeat(repeat, place.scope, self.define, self.found)) is not None:
+            self.group(full, place)
+            for number in range(times.count):
+                self.one_more()
+                yield f"{full}.{number}", Scope({}, {times.symbol: times.number(number)}, place.scope)
+
+    def one_more(self) -> None:
+        """Count a part or an instance. Raises _FullError when there are too many."""
+        self.count += 1
+        if self.count > MOST_PARTS:
+            raise _FullError
+
+    def group(self, name: str, place: _Place) -> None:
+        """Make a name stand for several parts, and known to the instances around it."""
+        self.done.groups.setdefault(name, [])
+        for front, names in place.around:
+            names[name.removeprefix(front)] = name
+
+    def add(
+        self, family: str, name: str, written: Written, section: Node, key: str, scope: Scope | None, place: _Place
+    ) -> None:
+        """Add one entry, its name known to the instances around it."""
+        assert isinstance(section, Mapping)
+        span, word = section.keys[key].span, written.word.text
+        fields = filled(word, written.fields, self.defaults, written.word.span)
+        entry = Entry(name, word, fields, span, written.word.span, scope)
+        self.done.sections.setdefault(family, {})[name] = entry
+        for front, names in place.around:
+            names[name.removeprefix(front)] = name
+        whole = name
+        while (at := whole.rfind(".")) > 0:
+            whole = whole[:at]
+            if whole in self.done.groups:
+                self.done.groups[whole].append(name)
+
+    def instances(self, name: str, written: Written, place: _Place) -> None:
+        """Add what a template holds, once for each copy."""
+        word = written.word
+        if word.text not in self.templates:
+            help = suggestion(word.text, self.templates) or "declare it under `templates:`"
+            self.found.error("unknown-template", f"there is no template '{word.text}'", word.span, help=help)
+            return
+        if word.text in place.templates:
+            circle = " in ".join([*reversed(place.templates[place.templates.index(word.text) :]), word.text])
+            self.found.error("template-cycle", f"the template '{word.text}' holds itself: {circle}", word.span)
+            return
+        if len(place.templates) >= MOST_NESTED:
+            self.found.error("too-deep", f"templates hold each other more than {MOST_NESTED} levels deep", word.span)
+            return
+        template = self.template(word.text)
+        given = self.given(word, written.fields, template)
+        if template is None or given is None:
+            return
+        for full, outer in self.copies(name, written.repeat, place):
+            self.group(full, place)
+            scope = Scope({}, given, outer)
+            for key, node in template.fields.items():
+                if key not in given:
+                    scope = Scope({}, {key: node}, scope)
+            names: dict[str, str] = {}
+            front = f"{full}."
+            scope = Scope(names, {}, scope)
+            inner = _Place(front, scope, (*place.around, (front, names)), (*place.templates, word.text))
+            self.body(template.body, inner)
+            for key, node in template.gives.items():
+                self.done.gives[front + key] = Given(node, scope)
+                for before, known in inner.around:
+                    known[(front + key).removeprefix(before)] = front + key
+
+    def given(self, word: Scalar, fields: Node | None, template: _Template | None) -> dict[str, Node] | None:
+        """The fields of an instance, None after reporting what is wrong with them."""
+        if template is None:
+            return None
+        if fields is not None and not isinstance(fields, Mapping):
+            message = f"'{word.text}' takes fields with values"
+            self.found.error("entry-shape", message, fields.span, help="write `{field: value}`")
+            return None
+        given = {} if fields is None else fields.entries
+        for key in [key for key in given if key not in template.fields]:
+            assert isinstance(fields, Mapping)
+            message = f"the template '{word.text}' has no field '{key}'"
+            help = suggestion(key, template.fields) or f"it has {', '.join(template.fields) or 'none'}"
+            self.found.error("unknown-field", message, fields.keys[key].span, help=help)
+        for key, node in template.fields.items():
+            if empty(node) and key not in given:
+                note = Note("it has no default", node.span)
+                message = f"'{word.text}' needs '{key}'"
+                self.found.error("missing-field", message, word.span, help=f"write `{key}: ...`", notes=[note])
+        return given
