@@ -183,6 +183,10 @@ def literal(text: str, quantity: Quantity) -> Value:
     return Value(expr)
 
 
+GRAMMAR: Mapping[type, Any] = {Paint: Quantity(dim.PLAIN, (3,)), Turn: Quantity(dim.PLAIN, (4,))}
+"""How the default of a color (three sRGB numbers) and of a rotation (a quaternion) is written."""
+
+
 class Record(BaseModel):
     """A group of fields inside a word (a mass, a spring, a clock): the same types, no methods of a family."""
 
@@ -198,8 +202,8 @@ class Record(BaseModel):
             if name in filled or not isinstance(info.default, str):
                 continue
             for mark in info.metadata:
-                if isinstance(mark, Quantity):
-                    value = literal(info.default, mark)
+                if isinstance(mark, Quantity | Paint | Turn):
+                    value = literal(info.default, GRAMMAR.get(type(mark), mark))
                     filled[name] = value if info.annotation is Value else value.number()
         return filled
 
