@@ -1,0 +1,132 @@
+"""collision: masses bounce off, slide on and rest on planes, spheres and boxes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar, Literal
+
+from sceneql.kinds import (
+    Contact,
+    FixedLength,
+    Gives,
+    Object,
+    PartRef,
+    Ref,
+    Scalar,
+    field,
+    quantity_type,
+)
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.expression import Type
+from sceneql.simulation.contacts.moving import is_moving, later
+from sceneql.system import Assembly, Bodies, ModelState
+
+SHAPES = ("plane", "sphere", "box")
+"""Names of shapes in the order of their numbers in the kernels."""
+
+PAIR, INSTANT = 6, 7
+"""Floats of memory for a pair, and for a body (collision_kernels)."""
+
+TALLY = ("hits.count", "hits.first.time", "hits.last.time", "hits.last.speed", "rest.time")
+MOST_EXACT = 8
+
+
+class Collision(Contact):
+    """Impacts and resting contact of masses with planes, spheres and boxes; the radius of a mass counts.
+
+    An impact turns the normal velocity round, scaled by the restitution (Newton 1687), with an impulse of Coulomb's
+    friction across it; a resting mass feels the normal force that keeps it outside and Coulomb's friction (1785). The
+    kinetic energy that is lost is counted as dissipated. Mode `exact` locates every impact to rounding and restarts
+    the solver there, up to the end of infinitely many bounces; `local` backs each mass off to its own impact within
+    the step, for very many; `auto` is exact for up to 8 masses.
+    """
+
+    gives: ClassVar[Mapping[str, Gives]] = {
+        "hits.count": Gives(Type(), "Number of impacts so far."),
+        "hits.first.time": Gives(quantity_type(dim.TIME), "Time of the first impact; NaN before."),
+        "hits.last.time": Gives(quantity_type(dim.TIME), "Time of the latest impact; NaN before the first."),
+        "hits.last.speed": Gives(quantity_type(dim.VELOCITY), "Speed of approach of the latest impact."),
+        "rest.time": Gives(quantity_type(dim.TIME), "When the bouncing came to its end; NaN before."),
+    }
+
+    between: tuple[PartRef, ...] | None = field(
+        "What collides: models and objects, as `[ball, floor]`; by default all models with masses and every object "
+        "that can be collided with.",
+        None,
+    )
+    restitution: Scalar = field("Normal speed after an impact as a part of that before.", "0.5", at_least=0, at_most=1)
+    friction: Scalar = field("Coulomb's coefficient of friction.", "0", at_least=0)
+    thickness: FixedLength = field("Distance to keep besides the radius.", "0 m", at_least=0)
+    mode: Literal["auto", "exact", "local"] = field("How impacts are found.", "auto")
+
+    def ties(self) -> tuple[Ref, ...]:
+        """The models and objects of `between`."""
+        return self.between or ()
+
+    def assemble(self, name: str, assembly: Assembly, bodies: Bodies, others: tuple[Ref, ...]) -> None:
+        """Add the contacts of one model with the objects. Raises ScriptError for one that cannot be collided with."""
+        objects = [number for ref in others for number in _object(ref, assembly)]
+        if not objects:
+            return
+        exact = self.mode == "exact" or (self.mode == "auto" and assembly.body_count() <= MOST_EXACT)
+        nan = float("nan")
+        tally_at = assembly.floats([0.0, nan, nan, 0.0, nan])
+        pairs = bodies.count * len(others)
+        numbers = (
+            assembly.value(self.restitution),
+            assembly.value(self.friction),
+            assembly.floats([self.thickness]),
+            tally_at,
+            assembly.floats([0.0] * (pairs * PAIR if exact else bodies.count)),
+            assembly.floats([nan] * (bodies.count * INSTANT if exact else 0)),
+            len(others),
+        )
+        masses = (bodies.position_at, bodies.velocity_at, bodies.work_at, bodies.mass_at, bodies.inverse_at)
+        ints = (*masses, bodies.radius_at, bodies.count, *numbers, *objects)
+        folder = "sceneql.simulation.contacts"
+        if exact:
+            kernels = (f"{folder}.collision_kernels:gap", f"{folder}.collision_kernels:impact")
+            assembly.contact("exact", kernels, ints, pairs)
+            assembly.term("constrain", f"{folder}.collision_kernels:constrain", ints)
+        else:
+            assembly.contact("local", (f"{folder}.settle_kernels:settle",), ints, pairs)
+        assembly.remember(tally_at)
+
+    def read(self, output: str, state: ModelState) -> Any:
+        """An output over all its models: counts add up, the first time is the earliest, the last the latest."""
+        import numpy as np
+
+        tallies = np.array([state.floats[at : at + len(TALLY)] for at in state.ints]).reshape(-1, len(TALLY))
+        column = tallies[:, TALLY.index(output)]
+        if output == "hits.count":
+            return float(column.sum())
+        times = column if output != "hits.last.speed" else tallies[:, TALLY.index("hits.last.time")]
+        known = np.flatnonzero(~np.isnan(times))
+        if len(known) == 0 or (output == "rest.time" and len(known) < len(tallies)):
+            return 0.0 if output == "hits.last.speed" else float("nan")
+        best = known[np.argmin(times[known]) if output == "hits.first.time" else np.argmax(times[known])]
+        return float(column[best])
+
+
+def _object(ref: Ref, assembly: Assembly) -> tuple[int, ...]:
+    """The integers of an object (surface_kernels)."""
+    kind = assembly.object(ref)
+    try:
+        here = kind.collider(assembly)
+        if not is_moving(kind):
+            poses = (0, here.position_at, here.rotation_at, here.position_at, here.rotation_at)
+        else:
+            before, after = _shifted(kind, -1, assembly), _shifted(kind, 1, assembly)
+            poses = (1, *before, *after)
+    except TypeError as error:
+        raise ScriptError([Diagnostic("no-collider", f"'{ref.name}': {error}", ref.span)]) from None
+    return (SHAPES.index(here.shape), here.position_at, here.rotation_at, here.size_at, *poses)
+
+
+def _shifted(kind: Object, steps: int, assembly: Assembly) -> tuple[int, int]:
+    """Position and rotation of an object's collider a little earlier or later."""
+    from sceneql.simulation.contacts.surface_kernels import APART
+
+    there = later(kind, steps * APART).collider(assembly)
+    return there.position_at, there.rotation_at

@@ -1,0 +1,48 @@
+"""attractor: a pull towards a point."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from sceneql.kinds import FixedLength, FixedScalar, Force, Position, Quantity, Value, field
+from sceneql.quantities import dimension as dim
+from sceneql.system import Assembly, Bodies, ModelState
+
+
+class Attractor(Force):
+    """A pull towards a point by a power of the distance: a = (strength / l^2) (l/r)^exponent with l = 1 m.
+
+    With exponent 2 it is the gravity of a body of G M = strength (Newton, Principia (1687), book I, proposition 11);
+    with -1 a spring. With ``softening`` s, r becomes sqrt(r^2 + s^2) in the size of the force, and the direction is
+    scaled by r over that (Plummer 1911). At the point itself the pull is zero, by symmetry. A negative strength repels.
+    """
+
+    position: Position = field("Where it pulls to.", "0 0 0 m")
+    strength: Annotated[Value, Quantity(dim.VOLUME / dim.TIME**2)] = field("G M of the pulling body.", "1 m^3/s^2")
+    exponent: FixedScalar = field("Power of the distance that it falls with.", "2", at_least=-10, at_most=10)
+    softening: FixedLength = field("Length below which the pull no longer grows.", "0 m", at_least=0)
+
+    def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
+        """Add the pull on every mass."""
+        ints = (bodies.position_at, bodies.velocity_at, bodies.count, bodies.mass_at)
+        parameters = (
+            assembly.value(self.position),
+            assembly.value(self.strength),
+            assembly.floats([self.exponent, self.softening]),
+        )
+        assembly.term("force", "sceneql.simulation.forces.attractor_kernels:attractor", (*ints, *parameters))
+        assembly.remember(*parameters)
+
+    def potential(self, bodies: Bodies, state: ModelState) -> float:
+        """Sum of m phi with phi = -strength / ((p - 1) rho^(p-1)), or strength ln rho for exponent p = 1 [J]."""
+        import numpy as np
+
+        from sceneql.simulation import bodies as masses
+
+        position_at, strength_at, shape_at = state.ints
+        away = masses.positions(bodies, state) - state.floats[position_at : position_at + 3]
+        p, softening = state.floats[shape_at], state.floats[shape_at + 1]
+        moving = masses.moving_masses(bodies, state) > 0
+        rho = np.sqrt(np.sum(away[moving] ** 2, axis=1) + softening**2)
+        phi = np.log(rho) if p == 1 else -(rho ** (1 - p)) / (p - 1)
+        return float(state.floats[strength_at] * (masses.masses(bodies, state)[moving] @ phi))

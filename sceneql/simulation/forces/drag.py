@@ -1,0 +1,37 @@
+"""drag: a medium at rest slows the masses."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import model_validator
+
+from sceneql.kinds import Damping, Force, Quantity, Value, field
+from sceneql.quantities import dimension as dim
+from sceneql.system import Assembly, Bodies
+
+
+class Drag(Force):
+    """Drag of a medium at rest: F = -(linear + quadratic |v|) v on every mass; what it takes is counted as dissipated.
+
+    The linear part is that of a slow sphere, 6 pi eta r (Stokes 1851); the quadratic one that of a fast body,
+    rho C A / 2 (Newton, Principia (1687), book II, proposition 33; Rayleigh 1876).
+    """
+
+    linear: Damping = field("Force for a speed.", "0 N*s/m", at_least=0)
+    quadratic: Annotated[Value, Quantity(dim.MASS / dim.LENGTH)] = field(
+        "Force for a squared speed.", "0 kg/m", at_least=0
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _does_something(cls, given: Any) -> Any:
+        if isinstance(given, dict) and not {"linear", "quadratic"} & set(given):
+            raise ValueError("drag needs a coefficient: `linear: 0.1 N*s/m`, `quadratic: 0.01 kg/m`, or both")
+        return given
+
+    def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
+        """Add the force to every mass, and its power to the dissipated energy."""
+        ints = (bodies.velocity_at, bodies.count, bodies.work_at, bodies.inverse_at)
+        parameters = (assembly.value(self.linear), assembly.value(self.quadratic))
+        assembly.term("force", "sceneql.simulation.forces.drag_kernels:drag", (*ints, *parameters))

@@ -1,0 +1,245 @@
+"""Nets of springs: what a script may say of a lattice, a cloth, a rope or single masses, and the graph it makes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from dataclasses import field as member
+from itertools import product
+from math import prod
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import model_validator
+
+from sceneql.kinds import (
+    Axis,
+    FixedDamping,
+    FixedLength,
+    FixedMass,
+    FixedPosition,
+    FixedScalar,
+    FixedStiffness,
+    FixedVelocity,
+    Quantity,
+    Record,
+    Rotation,
+    field,
+)
+from sceneql.quantities import dimension as dim
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats, Ints
+
+MOST_MASSES = 5_000_000
+SIDES = ("left", "right", "bottom", "top", "back", "front")
+EDGES = ("left", "right", "bottom", "top")
+CORNERS = ("bottom_left", "bottom_right", "top_left", "top_right")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Net:
+    """Masses and the springs between them."""
+
+    points: Floats
+    """(n, 3) [m] at the start."""
+    pairs: NDArray[int64]
+    """(m, 2) indices of the masses at a spring's ends."""
+    stiffness: Floats
+    """(m,) stiffness of each spring as a part of the model's."""
+    places: dict[str, Any] = member(default_factory=dict)
+    """Names for pins: indices or masks of points."""
+    triangles: Ints | None = None
+    """(k, 3) of a surface, counterclockwise seen from where it faces."""
+
+
+def turned(points: Floats, center: Sequence[float], quaternion: Sequence[float]) -> Floats:
+    """Points (n, 3) turned about a center by a unit quaternion [w, x, y, z]."""
+    import numpy as np
+
+    w, axis, away = quaternion[0], np.asarray(quaternion[1:]), points - np.asarray(center)
+    return points + 2 * np.cross(axis, np.cross(axis, away) + w * away)
+
+
+class MassPoint(Record):
+    """One named mass."""
+
+    mass: FixedMass | None = field("Its mass; by default the model's.", None, above=0)
+    position: FixedPosition = field("Where it starts.", "0 0 0 m")
+    velocity: FixedVelocity | None = field("How fast it starts; by default the model's.", None)
+    fixed: bool = field("It never moves.", False)
+
+    @model_validator(mode="after")
+    def _rests_if_fixed(self) -> MassPoint:
+        if self.fixed and self.velocity is not None and any(self.velocity):
+            raise ValueError("a fixed mass has no velocity")
+        return self
+
+
+class Spring(Record):
+    """One spring between two named masses."""
+
+    between: tuple[str, str] = field("The masses at its ends.")
+    rest: FixedLength | None = field(
+        "Its length without force; by default the distance at the start.", None, at_least=0
+    )
+    stiffness: FixedStiffness | None = field("Force for a stretch; by default the model's.", None, above=0)
+    damping: FixedDamping | None = field("Force for a speed of stretching; by default the model's.", None, at_least=0)
+    name: str | None = field("Its name, for `name.length` and `name.tension`.", None)
+
+    @model_validator(mode="after")
+    def _has_two_ends(self) -> Spring:
+        if self.between[0] == self.between[1]:
+            raise ValueError(f"a spring from '{self.between[0]}' to itself")
+        return self
+
+
+def _bounded(count: int) -> None:
+    if count > MOST_MASSES:
+        raise ValueError(f"{count:.3g} masses: at most {MOST_MASSES:,} are possible")
+
+
+class Lattice(Record):
+    """A block of masses: springs along the edges of its cells and along their face and body diagonals."""
+
+    count: tuple[int, int, int] = field("Masses along x, y and z.", (3, 3, 3), at_least=1)
+    spacing: FixedLength = field("Distance of neighbors.", "0.3 m", above=0)
+    center: FixedPosition = field("Where its middle starts.", "0 0 0 m")
+    rotation: Rotation | None = field("How it is turned at the start.", None)
+    shear: FixedScalar = field(
+        "Stiffness of the diagonals as a part of the edges'; 0 leaves them out.", "1", at_least=0
+    )
+
+    @model_validator(mode="after")
+    def _is_of_a_size(self) -> Lattice:
+        _bounded(self.mass_count())
+        return self
+
+    def mass_count(self) -> int:
+        """Number of masses."""
+        return prod(self.count)
+
+    def net(self) -> Net:
+        """Masses in order of x, then y, then z (z fastest); without its rotation."""
+        import numpy as np
+
+        count = np.array(self.count)
+        grid = np.stack(np.meshgrid(*(np.arange(c) for c in count), indexing="ij"), axis=-1).reshape(-1, 3)
+        index = np.arange(len(grid)).reshape(self.count)
+        steps = [s for s in product((-1, 0, 1), repeat=3) if s > (0, 0, 0)]
+        pairs, parts = [], []
+        for step in sorted(steps, key=lambda s: (sum(map(abs, s)), s)):
+            part = 1.0 if sum(map(abs, step)) == 1 else self.shear
+            if part == 0:
+                continue
+            here = tuple(slice(max(0, -s), c - max(0, s)) for s, c in zip(step, self.count, strict=True))
+            there = tuple(slice(max(0, s), c - max(0, -s)) for s, c in zip(step, self.count, strict=True))
+            found = np.stack([index[here].ravel(), index[there].ravel()], axis=1)
+            pairs.append(found)
+            parts.append(np.full(len(found), part))
+        last = count - 1
+        masks = [grid[:, 0] == 0, grid[:, 0] == last[0], grid[:, 1] == 0, grid[:, 1] == last[1]]
+        masks += [grid[:, 2] == 0, grid[:, 2] == last[2]]
+        return Net(
+            points=np.array(self.center) + self.spacing * (grid - last / 2),
+            pairs=np.concatenate(pairs),
+            stiffness=np.concatenate(parts),
+            places=dict(zip(SIDES, masks, strict=True)),
+        )
+
+
+class Cloth(Record):
+    """A sheet of square cells with springs along their sides, along their diagonals, and over two cells.
+
+    The three kinds resist stretching, shearing and bending (Provot 1995).
+    """
+
+    size: Annotated[tuple[float, float], Quantity(dim.LENGTH, (2,))] = field("Width and height.", "2 2 m", above=0)
+    cells: tuple[int, int] = field("Cells across the width and the height.", (20, 20), at_least=1)
+    center: FixedPosition = field("Where its middle starts.", "0 2 0 m")
+    facing: Axis = field("Where its front faces: y lies flat, z hangs with its top up.", "0 1 0")
+    shear: FixedScalar = field("Stiffness of the diagonals as a part of the sides'.", "0.5", at_least=0)
+    bend: FixedScalar = field("Stiffness over two cells as a part of the sides'.", "0.1", at_least=0)
+
+    @model_validator(mode="after")
+    def _is_of_a_size(self) -> Cloth:
+        _bounded(self.mass_count())
+        if not any(self.facing):
+            raise ValueError("a cloth that faces 0 0 0 faces nowhere")
+        return self
+
+    def mass_count(self) -> int:
+        """Number of masses."""
+        return (self.cells[0] + 1) * (self.cells[1] + 1)
+
+    def net(self) -> Net:
+        """Masses by columns from the left, each from bottom to top."""
+        import numpy as np
+
+        normal = np.array(self.facing) / np.linalg.norm(self.facing)
+        side = np.cross((0.0, 1.0, 0.0), normal)
+        length = np.linalg.norm(side)
+        right = side / length if length > 1e-6 else np.array([1.0, 0.0, 0.0])
+        up = np.cross(normal, right)
+        columns, rows = self.cells[0] + 1, self.cells[1] + 1
+        u, v = np.meshgrid(np.linspace(0, 1, columns), np.linspace(0, 1, rows), indexing="ij")
+        u, v = u.ravel(), v.ravel()
+        flat = (u - 0.5)[:, None] * self.size[0] * right + (v - 0.5)[:, None] * self.size[1] * up
+        index = np.arange(columns * rows).reshape(columns, rows)
+        a, b, c, d = index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:]
+        groups = [
+            (index[:-1], index[1:], 1.0),
+            (index[:, :-1], index[:, 1:], 1.0),
+            (a, c, self.shear),
+            (b, d, self.shear),
+            (index[:-2], index[2:], self.bend),
+            (index[:, :-2], index[:, 2:], self.bend),
+        ]
+        groups = [group for group in groups if group[2] > 0]
+        left, right_edge, bottom, top = u == 0, u == 1, v == 0, v == 1
+        corners = (bottom & left, bottom & right_edge, top & left, top & right_edge)
+        return Net(
+            points=np.array(self.center) + flat,
+            pairs=np.concatenate([np.stack([i.ravel(), j.ravel()], axis=1) for i, j, _ in groups]),
+            stiffness=np.concatenate([np.full(i.size, part) for i, _, part in groups]),
+            places={
+                **dict(zip(EDGES, (left, right_edge, bottom, top), strict=True)),
+                **dict(zip(CORNERS, corners, strict=True)),
+            },
+            triangles=np.concatenate(
+                [np.stack([i.ravel(), j.ravel(), k.ravel()], axis=1) for i, j, k in ((a, b, c), (a, c, d))]
+            ).astype(np.int32),
+        )
+
+
+class Rope(Record):
+    """A line of masses, each tied to the next."""
+
+    start: FixedPosition = field("Where its first mass starts.", "0 2 0 m")
+    end: FixedPosition = field("Where its last mass starts.", "2 2 0 m")
+    count: int = field("Number of masses.", 20, at_least=2)
+
+    @model_validator(mode="after")
+    def _is_of_a_size(self) -> Rope:
+        _bounded(self.mass_count())
+        if self.start == self.end:
+            raise ValueError("a rope that ends where it starts")
+        return self
+
+    def mass_count(self) -> int:
+        """Number of masses."""
+        return self.count
+
+    def net(self) -> Net:
+        """Masses from the start to the end."""
+        import numpy as np
+
+        index = np.arange(self.count)
+        return Net(
+            points=np.linspace(self.start, self.end, self.count),
+            pairs=np.stack([index[:-1], index[1:]], axis=1),
+            stiffness=np.ones(self.count - 1),
+            places={"start": index == 0, "end": index == self.count - 1},
+        )

@@ -1,0 +1,108 @@
+"""How masses and springs look when nothing else draws them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from sceneql.frame import Mesh, Points, Segments, Surface
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats, Ints
+
+TURNS, PIECES = 9, 12
+LEAD = 0.12
+"""Part of a coil's length that is straight at either end."""
+
+
+def spheres(name: str, surface: Surface, places: Floats, radius: float) -> Points:
+    """Masses (n, 3) as spheres of one radius [m]."""
+    import numpy as np
+
+    return Points(name, surface, places, np.full(len(places), radius))
+
+
+def lines(name: str, surface: Surface, ends: Floats, radius: float) -> Segments:
+    """Springs (m, 2, 3) as straight rods."""
+    import numpy as np
+
+    return Segments(f"{name}.springs", surface, ends, np.full(len(ends), radius))
+
+
+def coils(name: str, surface: Surface, ends: Floats, rest: Floats, radius: float) -> Segments:
+    """Springs (m, 2, 3) as coils whose wire keeps its number of turns; ``radius`` [m] is that of the masses."""
+    import numpy as np
+
+    pieces = [
+        coil(a, b, min(0.6 * radius, 0.2 * length) if length > 0 else 0.6 * radius)
+        for (a, b), length in zip(ends, rest, strict=True)
+    ]
+    wires = np.concatenate(pieces) if pieces else np.zeros((0, 2, 3))
+    return Segments(f"{name}.springs", surface, wires, np.full(len(wires), 0.14 * radius))
+
+
+def coil(start: Floats, end: Floats, radius: float) -> Floats:
+    """A helix with straight leads from ``start`` to ``end`` (3,) as pieces (k, 2, 3)."""
+    import numpy as np
+
+    along = end - start
+    length = float(np.linalg.norm(along))
+    along = along / length if length > 0 else np.array([0.0, 1.0, 0.0])
+    across = np.cross(along, np.eye(3)[np.argmin(np.abs(along))])
+    across /= np.linalg.norm(across)
+    other = np.cross(along, across)
+    s = np.linspace(0.0, 1.0, TURNS * PIECES + 1)
+    angle = 2 * np.pi * TURNS * s
+    # The coil opens from the axis within half a turn and closes in the same way.
+    wide = radius * np.minimum(1.0, np.minimum(s, 1 - s) * TURNS * 2)
+    height = length * (LEAD + (1 - 2 * LEAD) * s)
+    helix = start + height[:, None] * along
+    helix += (wide * np.cos(angle))[:, None] * across + (wide * np.sin(angle))[:, None] * other
+    path = np.concatenate([[start], helix, [end]])
+    return np.stack([path[:-1], path[1:]], axis=1)
+
+
+def sheet(name: str, surface: Surface, places: Floats, triangles: Ints, half: float) -> Mesh:
+    """A surface of masses (n, 3) as a closed slab of thickness 2 ``half`` [m], smooth on both sides."""
+    import numpy as np
+
+    normals = vertex_normals(places, triangles)
+    n = len(places)
+    back = triangles[:, ::-1] + n
+    rim = rim_edges(triangles)
+    a, b = rim[:, 0], rim[:, 1]
+    walls = [np.stack([b, a, a + n], axis=1), np.stack([b, a + n, b + n], axis=1)]
+    return Mesh(
+        name,
+        surface,
+        vertices=np.concatenate([places + half * normals, places - half * normals]),
+        triangles=np.concatenate([triangles, back, *walls]).astype(np.int32),
+        normals=np.concatenate([normals, -normals]),
+    )
+
+
+def vertex_normals(places: Floats, triangles: Ints) -> Floats:
+    """(n, 3) unit normals, the mean over the triangles around weighted by their areas."""
+    import numpy as np
+
+    a, b, c = (places[triangles[:, k]] for k in range(3))
+    areas = np.cross(b - a, c - a)
+    normals = np.stack(
+        [
+            sum(np.bincount(triangles[:, corner], areas[:, axis], len(places)) for corner in range(3))
+            for axis in range(3)
+        ],
+        axis=1,
+    )
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    return np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
+
+
+def rim_edges(triangles: Ints) -> NDArray[Any]:
+    """(r, 2) directed edges that belong to one triangle alone."""
+    import numpy as np
+
+    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    _, first, count = np.unique(np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True)
+    return edges[first[count == 1]]
