@@ -35,6 +35,9 @@ _NUMBER = re.compile(
 _PROPERTIES = re.compile(r"(?:[&!][^\s,\[\]{}]*(?:\s+#[^\n]*|\s)*)*")
 _TAG = re.compile(r"!\S*")
 
+_LARGE: Final = "keep large tables in data files of their own"
+_DEEP: Final = "give the inner parts names of their own, and refer to them by name"
+
 
 def kind_of(text: str) -> Kind:
     """The YAML 1.2 core type of a plain scalar: ``1e3`` is a number, ``no`` and ``yes`` are text."""
@@ -62,8 +65,7 @@ def source_of(name: str, data: bytes) -> Source:
 
 def _too_large(source: Source) -> ScriptError:
     message = f"the script is larger than {MOST_BYTES // 1_000_000} MB"
-    help = "keep large tables in data files of their own"
-    return ScriptError([Diagnostic("too-large", message, Span(source, 0, 1), help)])
+    return ScriptError([Diagnostic("too-large", message, Span(source, 0, 1), _LARGE)])
 
 
 def compose(source: Source) -> Mapping:
@@ -205,7 +207,7 @@ class _Composer:
 
             count += 1
             if count > MOST_NODES:
-                self.stop("too-many-nodes", f"the script has more than {MOST_NODES:,} values", end - 1, end)
+                self.stop("too-many-nodes", f"the script has more than {MOST_NODES:,} values", end - 1, end, _LARGE)
             if kind is not alias_event and (event.anchor is not None or event.tag is not None):
                 self.properties(event, node)
             if here is None:
@@ -230,7 +232,7 @@ class _Composer:
                 key = None
             if kind is open_mapping or kind is open_sequence:
                 if len(stack) >= MOST_DEPTH:
-                    self.stop("too-deep", f"more than {MOST_DEPTH} levels of lists and mappings", end - 1, end)
+                    self.stop("too-deep", f"more than {MOST_DEPTH} levels of lists and mappings", end - 1, end, _DEEP)
                 here = node
                 stack.append(here)
 
@@ -265,7 +267,13 @@ class _Composer:
             self.error("unknown-alias", f"no value above is marked &{name}", span, help=help)
             return Scalar("", "null", False, self.source, span.start, span.end)
         if any(node is collection for collection in self.stack):
-            self.stop("alias-cycle", f"*{name} stands inside the value that it names", span.start, span.end)
+            self.stop(
+                "alias-cycle",
+                f"*{name} stands inside the value that it names",
+                span.start,
+                span.end,
+                "name a finished value",
+            )
         depth, size = self.measure(node)
         self.expanded += size
         if self.expanded > MOST_EXPANDED:
@@ -273,7 +281,7 @@ class _Composer:
             self.stop("alias-expansion", message, span.start, span.end, "`repeat` makes many copies of a part")
         if len(self.stack) + depth > MOST_DEPTH:
             message = f"with what *{name} names, more than {MOST_DEPTH} levels of lists and mappings"
-            self.stop("too-deep", message, span.start, span.end)
+            self.stop("too-deep", message, span.start, span.end, _DEEP)
         return node
 
     def measure(self, node: Node) -> tuple[int, int]:
@@ -308,7 +316,7 @@ class _Composer:
         if len(self.found.found) >= MOST_ERRORS:
             raise _StopError
 
-    def stop(self, code: str, message: str, start: int, end: int, help: str | None = None) -> NoReturn:
+    def stop(self, code: str, message: str, start: int, end: int, help: str) -> NoReturn:
         """Record an error behind which nothing can be read."""
         self.found.error(code, message, Span(self.source, start, end), help=help)
         raise _StopError

@@ -111,7 +111,8 @@ class _Reading:
             self.outside(span)
         except (OSError, ValueError, RuntimeError) as error:
             reason = getattr(error, "strerror", None) or error
-            self.found.error("include-missing", f"{path} cannot be read: {reason}", span)
+            help = "an include is looked up from the folder of the script that holds it"
+            self.found.error("include-missing", f"{path} cannot be read: {reason}", span, help=help)
         except ScriptError as error:
             for diagnostic in error.diagnostics:
                 self.found.add(diagnostic)

@@ -92,10 +92,9 @@ class _Path:
 
     def fail(self, at: int, message: str, help: str | None) -> ScriptError:
         """What is wrong with a step."""
-        written = self.path.split(".")
-        at = max(at - self.shift, 0)
-        start = max(self.span.text.find(self.path), 0) + len("".join(f"{step}." for step in written[:at]))
-        place = self.span.part(start, start + len(written[at]))
+        before = "".join(f"{step}." for step in self.steps[self.shift : at])
+        start = max(self.span.text.find(self.path), 0) + len(before)
+        place = self.span.part(start, start + len(self.steps[at]))
         return ScriptError([Diagnostic("unknown-path", message, place, help)])
 
     def put_into(self, root: Mapping) -> Mapping:
@@ -158,8 +157,8 @@ class _Path:
             return Sequence(items, node.flow, node.source, node.start, node.end)
         # The second of two parts without names is called such as `gravity.2`.
         numbered = ".".join(self.steps[at : at + 2])
-        if step not in node.entries and numbered in node.entries:
-            return self.with_item(node, numbered, self.put(node.entries[numbered], at + 2))
+        if numbered != step and numbered in node.entries:
+            self.steps[at : at + 2] = [step := numbered]
         if step in node.entries:
             return self.with_item(node, step, self.put(node.entries[step], at + 1))
         if at == 0 and len(self.steps) > 1:

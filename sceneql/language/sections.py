@@ -34,7 +34,7 @@ def read_entry(what: str, node: Node, found: Diagnostics) -> Written | None:
     if isinstance(node, Scalar):
         if node.kind == "text":
             return Written(node, None, None)
-        message = f"{what} has no word" if empty(node) else f"{what} is a {node.kind}, not a part"
+        message = f"{what} has no word" if empty(node) else f"{what} is the {node.kind} {node.text}, not a part"
         found.error("entry-shape", message, node.span, help=_ENTRY)
         return None
     if isinstance(node, Sequence):

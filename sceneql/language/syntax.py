@@ -46,6 +46,7 @@ _PROBLEMS: Final = (
     ("directive", "a line that begins with % is a YAML directive, and a script has none", "put it in quotes"),
     ("tag", "a tag (!) means nothing in a script", "a text that begins with ! goes in quotes"),
 )
+_NO_KEY = re.compile(r"(?:^|[,{\n\r])[ \t]*\Z")
 _KEY: Final = "write `name: value`"
 
 
@@ -69,6 +70,10 @@ def explain(source: Source, error: yaml.YAMLError, flow: int | None) -> tuple[Di
         return torn
     if "quoted scalar" in context and "escape" not in problem:
         return (_syntax("this quote is never closed", source, since, "end the text with the same quote"),)
+    if "escape" in problem and source.text[at - 1 : at] == "\\":
+        at -= 1
+    if source.text[at : at + 1] == ":" and _NO_KEY.search(source.text[max(0, at - 80) : at]) is not None:
+        return (Diagnostic("key-not-text", "a key is missing before this colon", Span(source, at, at + 1), _KEY),)
     if flow is not None:
         return (_in_flow(source, at, since if source.text[since : since + 1] in ("[", "{") else flow),)
     character = source.text[at : at + 1]
@@ -79,8 +84,6 @@ def explain(source: Source, error: yaml.YAMLError, flow: int | None) -> tuple[Di
         return (_syntax(message, source, at, "put it in quotes"),)
     if "mapping values are not allowed" in problem:
         return (_misplaced_colon(source, at),)
-    if character == ":" and source.line(source.position(at)[0]).lstrip().startswith(":"):
-        return (Diagnostic("key-not-text", "a key is missing before this colon", Span(source, at, at + 1), _KEY),)
     for words, message, help in _PROBLEMS:
         if words in problem:
             return (_syntax(message, source, at, help),)
