@@ -1,0 +1,43 @@
+"""What the words of constructive solid geometry share: their members and their field."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from pydantic import model_validator
+
+from sceneql.kinds import FieldBuilder, Moment, ObjectRef, Ref, field
+from sceneql.simulation.solid import Solid
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+
+
+class Combination(Solid):
+    """Solids joined into one by set operations on their fields (Ricci 1973)."""
+
+    of: tuple[ObjectRef, ...] | dict[str, ObjectRef] = field("The solids, by name or in place: at least two.")
+
+    @model_validator(mode="after")
+    def _joins_several(self) -> Combination:
+        if len(self.of) < 2:
+            raise ValueError(f"{type(self).__name__.lower()} joins at least two objects")
+        return self
+
+    def children(self) -> tuple[Ref, ...]:
+        """Its members."""
+        return tuple(self.of.values()) if isinstance(self.of, dict) else self.of
+
+    def values(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> list[int]:
+        """Registers of its members' fields. Raises TypeError where a member has no inside."""
+        return [moment.object(ref).implicit(build, x, y, z, moment) for ref in self.children()]
+
+    def extents(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
+        """Low and high corners (m, 3) of its members' boxes."""
+        import numpy as np
+
+        from sceneql.simulation.placement import compose
+
+        whole = compose(place, self.local(moment))
+        boxes = [moment.object(ref).extent(whole, moment) for ref in self.children()]
+        return np.array([low for low, _ in boxes]), np.array([high for _, high in boxes])

@@ -1,0 +1,73 @@
+"""implicit: a solid given by a formula of x, y and z."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import field_validator, model_validator
+
+from sceneql.kinds import FieldBuilder, FixedLength, FixedPosition, FixedScalar, Formula, Moment, Record, Symbols
+from sceneql.kinds import field as described
+from sceneql.simulation.formula import in_coordinates, written_out
+from sceneql.simulation.solid import Solid, block, length, less
+
+
+class Within(Record):
+    """Where the formula is looked at: a ball about the origin or a box, in units of the formula."""
+
+    ball: FixedScalar | None = described("Radius of a ball about the origin.", None, above=0)
+    box: tuple[FixedPosition, FixedPosition] | None = described("Low and high corner of a box.", None)
+
+    @model_validator(mode="after")
+    def _one_shape(self) -> Within:
+        if (self.ball is None) == (self.box is None):
+            raise ValueError("bounds are one of `ball: radius` and `box: [low, high]`")
+        if self.box is not None and not all(low < high for low, high in zip(*self.box, strict=True)):
+            raise ValueError("each component of the box's low corner must be below that of its high corner")
+        return self
+
+    @property
+    def corners(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Low and high corner of the box around it."""
+        if self.box is not None:
+            return self.box
+        r = self.ball or 0.0
+        return (-r, -r, -r), (r, r, r)
+
+
+class Implicit(Solid):
+    """The solid {field < level} within its bounds.
+
+    The formula takes plain numbers x, y, z and the time t in seconds; x = 1 stands for the length `unit`, so textbook
+    formulas need no dimensions. Where the formula is not defined is outside. Its field is max(unit (field - level),
+    distance to the bounds), which is negative inside but is a distance only where |grad field| = 1.
+    """
+
+    field: Annotated[Formula, Symbols(("x", "y", "z", "t"))] = described("The formula.")
+    level: FixedScalar = described("The value that the formula has on the surface.", "0")
+    unit: FixedLength = described("The length that x = 1 stands for.", "1 m", above=0)
+    bounds: Within = described("Where the formula is looked at, in units of the formula.", Within(ball=1.0))
+    mode: Literal["solid"] = described("`solid`: all that is below the level.", "solid")
+
+    @field_validator("field")
+    @classmethod
+    def _is_scalar(cls, given: Formula) -> Formula:
+        in_coordinates(given.expr)
+        return given
+
+    def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
+        """The formula and its bounds, in meters."""
+        per_unit = build.constant(1.0 / self.unit)
+        u, v, w = (build.op("mul", register, per_unit) for register in (x, y, z))
+        formula = written_out(self.field.expr, moment)
+        value = less(build, build.expression(formula, {"x": u, "y": v, "z": w}), self.level)
+        if self.bounds.ball is not None:
+            limit = less(build, length(build, u, v, w), self.bounds.ball)
+        else:
+            limit = block(build, (u, v, w), *self.bounds.corners)
+        return build.op("mul", build.op("max", value, limit), build.constant(self.unit))
+
+    def reach(self, moment: Moment) -> tuple[Any, Any]:
+        """The box around its bounds."""
+        low, high = self.bounds.corners
+        return tuple(self.unit * c for c in low), tuple(self.unit * c for c in high)

@@ -1,0 +1,54 @@
+"""mesh: triangles from an OBJ file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, ClassVar
+
+from sceneql.frame import Mesh as Triangles
+from sceneql.frame import Shape
+from sceneql.kinds import FixedAngle, Moment, field
+from sceneql.simulation.placement import Placed, Scale, affine, apply, compose
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+
+
+class Mesh(Placed):
+    """Triangles of an OBJ file. Edges that turn by less than `crease` are shaded smooth, others stay sharp.
+
+    It has no inside, so it is no member of a union, intersection or difference. A file of more than 64 MiB or 4 million
+    triangles is refused.
+    """
+
+    imports: ClassVar[tuple[str, ...]] = ("trimesh",)
+
+    # The checker hands over the path of a file that lies inside the scene's folder.
+    file: str = field("Path of the OBJ file, inside the scene's folder.")
+    scale: Scale = field("Factor on the file's numbers, which are taken as meters, or three.", "1", above=0)
+    crease: FixedAngle = field("Edges that turn by more stay sharp.", "40 deg", at_least=0)
+
+    def local(self, moment: Moment) -> Floats:
+        """(3, 4) map from the file's coordinates to its parent's."""
+        return affine(moment.at(self.position), moment.at(self.rotation), moment.at(self.scale))
+
+    def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
+        """The box around its vertices."""
+        from sceneql.simulation.mesh_file import load
+
+        vertices = apply(compose(place, self.local(moment)), load(self.file, self.crease).vertices)
+        return vertices.min(axis=0), vertices.max(axis=0)
+
+    def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
+        """Its triangles in the world. Raises OSError and LimitRefused as the file's loading does."""
+        import numpy as np
+
+        from sceneql.simulation.mesh_file import load
+
+        whole = compose(place, self.local(moment))
+        loaded = load(self.file, self.crease)
+        triangles = loaded.triangles if np.linalg.det(whole[:, :3]) > 0 else loaded.triangles[:, ::-1].copy()
+        normals = loaded.normals @ np.linalg.inv(whole[:, :3])
+        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+        surface = moment.surface(name, self.material, self.color)
+        yield Triangles(name, surface, apply(whole, loaded.vertices), triangles, normals)

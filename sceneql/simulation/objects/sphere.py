@@ -1,0 +1,54 @@
+"""sphere: all points within a radius."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from sceneql.frame import Shape
+from sceneql.kinds import Collider, FieldBuilder, Length, Moment, field
+from sceneql.simulation.placement import compose
+from sceneql.simulation.present import positive
+from sceneql.simulation.solid import Solid, length, less, quadric
+from sceneql.system import Assembly
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+
+
+class Sphere(Solid):
+    """The ball |p| <= radius about its position. Its field is the signed distance |p| - radius."""
+
+    collides: ClassVar[bool] = True
+
+    radius: Length = field("Its radius.", "0.5 m", above=0)
+
+    def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
+        """Signed distance."""
+        return less(build, length(build, x, y, z), positive(moment, self.radius, "radius"))
+
+    def reach(self, moment: Moment) -> tuple[Any, Any]:
+        """The cube around it."""
+        r = positive(moment, self.radius, "radius")
+        return (-r, -r, -r), (r, r, r)
+
+    def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
+        """The box around the ellipsoid that it is in the world."""
+        import numpy as np
+
+        whole = compose(place, self.local(moment))
+        half = positive(moment, self.radius, "radius") * np.linalg.norm(whole[:, :3], axis=1)
+        return whole[:, 3] - half, whole[:, 3] + half
+
+    def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
+        """A quadric; under an uneven scale an ellipsoid."""
+        r = positive(moment, self.radius, "radius")
+        surface = moment.surface(name, self.material, self.color)
+        whole = compose(place, self.local(moment))
+        yield quadric(name, surface, whole, squares=(1.0, 1.0, 1.0), constant=-r * r, half=(r, r, r))
+
+    def collider(self, assembly: Assembly) -> Collider:
+        """Center, rotation and radius."""
+        return Collider(
+            "sphere", assembly.value(self.position), assembly.value(self.rotation), assembly.value(self.radius)
+        )

@@ -1,0 +1,118 @@
+"""Solids: objects that are known by an implicit field, negative inside; how they become shapes of a frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from sceneql import frame
+from sceneql.simulation.placement import Placed, compose, inverse, mapped_box
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Surface
+    from sceneql.kinds import FieldBuilder, Moment, Object
+
+INFINITY = float("inf")
+MARGIN = 1e-6
+"""By how much the box around a traced field is larger than the solid, in parts of its size."""
+
+
+class Solid(Placed):
+    """An object with a field in its own coordinates."""
+
+    def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
+        """Register of its field, negative inside; (x, y, z) are registers of a point in its own coordinates."""
+        raise NotImplementedError
+
+    def reach(self, moment: Moment) -> tuple[Any, Any]:
+        """Low and high corner of a box around it in its own coordinates."""
+        raise NotImplementedError
+
+    def implicit(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
+        """Its field at a point of its parent's coordinates."""
+        return self.inside(build, *build.affine(inverse(self.local(moment)), x, y, z), moment)
+
+    def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
+        """The box around its own box."""
+        return mapped_box(compose(place, self.local(moment)), *self.reach(moment))
+
+    def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[frame.Shape]:
+        """Its field as a tape."""
+        return traced(self, name, place, moment)
+
+
+def traced(solid: Object, name: str, place: Floats, moment: Moment) -> Iterable[frame.Shape]:
+    """Any object with a field, as a tape in a box a little larger than itself; nothing where the box is empty.
+
+    Raises TypeError where it is unbounded.
+    """
+    import numpy as np
+
+    from sceneql.field.builder import TapeBuilder
+
+    low, high = solid.extent(place, moment)
+    if not (high > low).all():
+        return
+    if not (np.isfinite(low).all() and np.isfinite(high).all()):
+        raise TypeError(f"{name} is unbounded, and cannot be drawn: intersect it with a box")
+    build = TapeBuilder()
+    value = solid.implicit(build, *build.affine(inverse(place), build.x, build.y, build.z), moment)
+    room = MARGIN * float((high - low).max())
+    surface = moment.surface(name, solid.material, solid.color)
+    yield frame.Implicit(name, surface, build.finish(value), triple(low - room), triple(high + room))
+
+
+def quadric(
+    name: str,
+    surface: Surface,
+    place: Floats,
+    *,
+    squares: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    linear: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    constant: float,
+    half: tuple[float, float, float] = (INFINITY, INFINITY, INFINITY),
+) -> frame.Quadric:
+    """A convex quadric solid within -half..half, both in the coordinates that ``place`` maps to the world."""
+    low = (-half[0], -half[1], -half[2])
+    return frame.Quadric(name, surface, inverse(place), squares, linear, constant, low, half)
+
+
+def triple(vector: Any) -> tuple[float, float, float]:
+    """A vector (3,) as floats."""
+    x, y, z = (float(c) for c in vector)
+    return x, y, z
+
+
+def length(build: FieldBuilder, *registers: int) -> int:
+    """Register of the Euclidean length of a vector."""
+    total = build.op("square", registers[0])
+    for register in registers[1:]:
+        total = build.op("add", total, build.op("square", register))
+    return build.op("sqrt", total)
+
+
+def less(build: FieldBuilder, register: int, number: float) -> int:
+    """Register of a value less a number."""
+    return build.op("sub", register, build.constant(number))
+
+
+def largest(build: FieldBuilder, *registers: int) -> int:
+    """Register of the largest of some values."""
+    result = registers[0]
+    for register in registers[1:]:
+        result = build.op("max", result, register)
+    return result
+
+
+def block(build: FieldBuilder, registers: tuple[int, int, int], low: Any, high: Any) -> int:
+    """Register of the signed distance, in the maximum norm, to the box low..high; infinite sides are left out."""
+    sides = []
+    for register, down, up in zip(registers, low, high, strict=True):
+        if down == -up and up < INFINITY:
+            sides.append(less(build, build.op("abs", register), up))
+            continue
+        if up < INFINITY:
+            sides.append(less(build, register, up))
+        if down > -INFINITY:
+            sides.append(build.op("sub", build.constant(down), register))
+    return largest(build, *sides)
