@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import combinations
+from itertools import combinations, pairwise
 from math import isfinite, log
 
 LARGEST_ERROR = 0.1
@@ -30,7 +30,7 @@ def observed_order(steps: Sequence[float], errors: Sequence[float], floor: float
             return None
         run = usable[first:end]
         slope = _slope(run)
-        local = [_slope([a, b]) for a, b in zip(run, run[1:], strict=False)]
+        local = [_slope([a, b]) for a, b in pairwise(run)]
         if slope is not None and all(s is not None and abs(s - slope) <= max(0.1, 0.1 * slope) for s in local):
             return slope
     return None

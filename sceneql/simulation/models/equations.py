@@ -1,0 +1,211 @@
+"""`equations`: any system of ordinary differential equations, written in the script."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from functools import cached_property
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+from pydantic import ValidationError, create_model, model_validator
+from pydantic_core import InitErrorDetails, PydanticCustomError
+
+from sceneql.kinds import FixedLength, Formula, Gives, Model, Record, Value, field, quantity_type
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.derivative import components
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Expr, Link, Symbol
+from sceneql.simulation.formula_rows import TIMES, Problem, Rows, states
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.system import Assembly, ModelState
+
+Copies = create_model(  # `as` is a word of Python: it can be a field, but not be written as one
+    "Copies",
+    __base__=Record,
+    __doc__="How often the system stands side by side, each copy with a number of its own.",
+    count=(int, field("How many.", at_least=1)),
+    **{"as": (str, field("Name of the number of a copy in the formulas: 0, 1, ..., count - 1.", "i"))},
+)
+
+with warnings.catch_warnings():
+    # The script's field `gives` has the name of the class variable that other words list their outputs in; here
+    # `outputs` does that.
+    warnings.simplefilter("ignore", UserWarning)
+
+    class _Written(Model):
+        """The fields."""
+
+        start: dict[str, Formula] = field("State at the start: `{a: 90 deg, a': 0}`.")
+        rate: dict[str, Formula] = field("Rates: `y: ...` is dy/dt, `a'': ...` is d²a/dt² (then a and a' are states).")
+        where: dict[str, Formula] = field("Quantities that the formulas use, each evaluated once.", {})
+        invariants: dict[str, Formula] = field("What the exact solution conserves: outputs, for `relative_drift`.", {})
+        gives: dict[str, Formula] = field("Outputs of any shape made of the states: points for objects to link to.", {})  # type: ignore[misc]
+        unit: FixedLength = field("Length that 1 stands for in the vectors that it gives.", "1 m")
+        copies: Copies | None = field("The same system several times; its number may stand in every formula.", None)  # type: ignore[valid-type]
+
+
+class Equations(_Written):
+    """A system of ordinary differential equations, dy/dt = f(t, y), as a textbook writes it.
+
+    States, `t` (or `time`, [s]), helper quantities and defines are plain numbers inside the formulas, in SI. A row
+    ``a'': f`` is the second-order equation d²a/dt² = f; it stands for da/dt = a' and da'/dt = f, and solvers that
+    treat positions and velocities apart (semi-implicit Euler) see a as a position and a' as its velocity. The rate is
+    compiled by its form: other numbers or more copies compile nothing. The Jacobian is derived symbolically.
+
+    Outputs: every state, invariant and entry of `gives` under its own name; with `copies`, lists of them.
+    """
+
+    has_bodies = False
+
+    @classmethod
+    def formula_symbols(cls, written: Mapping[str, Any]) -> tuple[str, ...]:
+        """The free symbols of its formulas, from its fields as plain nested dicts and texts."""
+        known = states(_mapping(written.get("rate")))
+        return tuple(dict.fromkeys([*known, *_mapping(written.get("where")), *TIMES, *_index(written)]))
+
+    @classmethod
+    def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
+        """The states, the invariants, what `gives` says, and the numbers of the copies."""
+        copies = _index(written)
+        many: tuple[None, ...] = (None,) if copies else ()
+        plain = quantity_type(dim.PLAIN, many)
+        vector = quantity_type(dim.LENGTH, (*many, 3))
+        result = {state: Gives(plain, f"The state {state}.") for state in states(_mapping(written.get("rate")))}
+        result |= {name: Gives(plain, f"The invariant {name}.") for name in _mapping(written.get("invariants"))}
+        for name, item in _mapping(written.get("gives")).items():
+            result[name] = Gives(
+                vector if isinstance(item, list) or "[" in str(item) else plain, "Given by the script."
+            )
+        return result | {name: Gives(plain, "The number of each copy.") for name in copies}
+
+    @cached_property
+    def rows(self) -> Rows:
+        """Its formulas without their places in the script."""
+        fields = (self.start, self.rate, self.where, self.invariants, self.gives)
+        exprs = [{name: formula.expr for name, formula in formulas.items()} for formulas in fields]
+        return Rows(*exprs, index=None if self.copies is None else getattr(self.copies, "as"))
+
+    @property
+    def count(self) -> int:
+        """Number of copies."""
+        return 1 if self.copies is None else self.copies.count
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Equations:
+        problems = self.rows.problems() or self._first_rates()
+        if problems:
+            raise ValidationError.from_exception_data(
+                type(self).__name__,
+                [
+                    InitErrorDetails(
+                        type=PydanticCustomError("equations", "{text}", {"text": text}), loc=at, input=None
+                    )
+                    for at, text in problems
+                ],
+            )
+        return self
+
+    def _first_rates(self) -> list[Problem]:
+        """Rows that have no finite value at the start of the first copy, where nothing is read from other parts."""
+        rows = self.rows
+        if rows.links():
+            return []
+        known = {**dict.fromkeys(TIMES, 0.0), **({} if rows.index is None else {rows.index: 0.0})}
+        look_up = rows.look_up(known, _no_link)
+        known |= {state: evaluate(rows.start[state], look_up) for state in rows.states}
+        rates = zip(rows.states, rows.rates(), strict=True)
+        return [
+            (("rate", rows.row_of(state)), f"the rate of {state} has no finite value at the start")
+            for state, expr in rates
+            if not isfinite(evaluate(expr, look_up))
+        ]
+
+    def assemble(self, name: str, assembly: Assembly) -> None:
+        """Reserve the states of all copies and add their compiled rate. Raises ScriptError for one not finite."""
+        from sceneql.simulation.rate_program import RateSystem, rate_kernel
+
+        rows = self.rows
+        start = self._start(assembly)
+        names = [rows.row_of(state) for state in rows.states]
+        at = assembly.state(start, [self.rate[row].span for row in names] * self.count)
+        positions = sum(row.endswith("''") for row in rows.rate)
+        for copy in range(self.count if positions else 0):
+            first = at + copy * len(names)
+            assembly.pair(first, first + positions, positions)
+        kernel = rate_kernel(RateSystem(tuple(rows.states), tuple(rows.rates()), rows.where, rows.index))
+        inputs = [assembly.value(Value(expr)) for expr in kernel.inputs]
+        assembly.term("internal", kernel.name, (assembly.floats(kernel.constants), at, self.count, *inputs))
+        links = [assembly.value(Value(link)) for link in rows.links()]
+        assembly.remember(at, *links)
+
+    def _start(self, assembly: Assembly) -> Floats:
+        """(count * states,) start values, after a look at the rates there."""
+        import numpy as np
+
+        rows = self.rows
+        known: dict[str, Any] = dict.fromkeys(TIMES, 0.0)
+        if rows.index is not None:
+            known[rows.index] = np.arange(self.count, dtype=np.float64)
+        look_up = rows.look_up(known, lambda link: assembly.initial(Value(link)), arrays=True)
+
+        def column(expr: Expr) -> Floats:
+            return np.broadcast_to(np.asarray(evaluate(expr, look_up, arrays=True), dtype=np.float64), self.count)
+
+        values = {state: column(rows.start[state]) for state in rows.states}
+        known |= values
+        for state, expr in zip(rows.states, rows.rates(), strict=True):
+            bad = np.flatnonzero(~np.isfinite(column(expr)))
+            if len(bad):
+                copy = "" if rows.index is None else f" of copy {bad[0]}"
+                message = f"the rate of {state}{copy} has no finite value at the start"
+                raise ScriptError([Diagnostic("not-finite", message, self.rate[rows.row_of(state)].span)])
+        return np.stack(list(values.values()), axis=1).ravel()
+
+    def read(self, output: str, state: ModelState) -> Any:
+        """An output: float or (3,); with copies (count,) or (count, 3)."""
+        import numpy as np
+
+        rows = self.rows
+        at, *links = state.ints
+        size = len(rows.states)
+        y = state.y[at : at + self.count * size].reshape(self.count, size)
+        known: dict[str, Any] = dict.fromkeys(TIMES, state.t)
+        known |= {name: y[:, k] for k, name in enumerate(rows.states)}
+        if rows.index is not None:
+            known[rows.index] = np.arange(self.count, dtype=np.float64)
+        offsets = dict(zip(rows.links(), links, strict=True))
+
+        def linked(link: Link) -> Any:
+            first = offsets[link]
+            return state.floats[first : first + 3] if link.type.shape else state.floats[first]
+
+        look_up = rows.look_up(known, linked, arrays=True)
+
+        def column(expr: Expr) -> Floats:
+            return np.array(np.broadcast_to(evaluate(expr, look_up, arrays=True), self.count))
+
+        if output in rows.gives:
+            expr = rows.gives[output]
+            parts = [column(part) for part in components(expr)]
+            result = np.stack(parts, axis=1) * self.unit if expr.type.shape else parts[0]
+        else:
+            result = column(rows.invariants[output] if output in rows.invariants else Symbol(output))
+        return result if self.copies is not None else result[0]
+
+
+def _no_link(link: Link) -> Any:
+    raise LookupError(link)
+
+
+def _mapping(item: Any) -> Mapping[str, Any]:
+    return item if isinstance(item, Mapping) else {}
+
+
+def _index(written: Mapping[str, Any]) -> list[str]:
+    """The name of a copy's number, where there are copies."""
+    copies = written.get("copies")
+    return [str(copies.get("as", "i"))] if isinstance(copies, Mapping) else []
