@@ -1,0 +1,69 @@
+"""runge_kutta: an explicit Runge-Kutta method by the script's own tableau."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+
+from pydantic import model_validator
+
+from sceneql.frame import Floats
+from sceneql.kinds import FixedScalar, FixedTime, Solver, field
+from sceneql.simulation.tableau import Tableau
+from sceneql.system import Stepper
+
+ROUNDING = 1e-9
+
+
+class RungeKutta(Solver):
+    """An explicit Runge-Kutta method by its tableau: k_i = f(t + c_i h, y + h sum_j a_ij k_j), y1 = y + h sum b_i k_i.
+
+    With ``b_hat`` and a ``tolerance`` the steps follow the difference of the two methods, else they are ``step`` long.
+    Its order is found from the order conditions. Source: Kutta (1901); Butcher (1964).
+    """
+
+    a: tuple[tuple[FixedScalar, ...], ...] = field("Rows of the matrix, the first (empty or zero) included.")
+    b: tuple[FixedScalar, ...] = field("Weights of the stages; their sum is 1.")
+    c: tuple[FixedScalar, ...] | None = field("Places of the stages; by default the row sums, which they must be.", None)
+    b_hat: tuple[FixedScalar, ...] | None = field("Weights of an embedded method of lower order.", None)
+    step: FixedTime = field("Length of a step, or with a tolerance of the first.", "1 ms", above=0)
+    tolerance: FixedScalar | None = field("Relative error of a step; needs b_hat.", None, at_least=1e-14, below=1)
+
+    @model_validator(mode="after")
+    def _is_explicit(self) -> RungeKutta:
+        stages = len(self.b)
+        if stages == 0 or len(self.a) != stages:
+            raise ValueError(f"`a` has {len(self.a)} rows and `b` {stages} weights: one of each for every stage")
+        for i, row in enumerate(self.a):
+            if any(row[i:]):
+                raise ValueError(f"row {i + 1} of `a` reaches the diagonal: only explicit methods can be written here")
+            if len(row) < i:
+                raise ValueError(f"row {i + 1} of `a` has {len(row)} entries: it needs {i}")
+        if abs(sum(self.b) - 1.0) > ROUNDING:
+            raise ValueError(f"the weights `b` sum to {sum(self.b):.12g}, not to 1: the method would not converge")
+        if self.c is not None and (
+            len(self.c) != stages
+            or any(abs(c - sum(row)) > ROUNDING for c, row in zip(self.c, self.a, strict=True))
+        ):
+            raise ValueError("`c` must be the row sums of `a`")
+        if self.b_hat is not None and len(self.b_hat) != stages:
+            raise ValueError(f"`b_hat` needs {stages} weights")
+        if self.tolerance is not None and (self.b_hat is None or self.b_hat == self.b):
+            raise ValueError("a tolerance needs the weights `b_hat` of an embedded method that differs from `b`")
+        return self
+
+    @cached_property
+    def tableau(self) -> Tableau:
+        """The method."""
+        lower = tuple(row[:i] for i, row in enumerate(self.a))
+        return Tableau(lower, self.b, self.b_hat)
+
+    def stepper(self) -> Stepper:
+        """Fixed steps, or by the embedded error."""
+        if self.tolerance is None:
+            return self.tableau.fixed(self.step)
+        return self.tableau.adaptive(self.tolerance, self.tolerance, first_step=self.step)
+
+    def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
+        """max |R(h lambda)| with the stability function of the tableau."""
+        return self.tableau.growth(jacobian, step)

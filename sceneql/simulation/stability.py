@@ -1,0 +1,175 @@
+"""The stable step of a solver on an assembled island: sharp, and named by the part and line that sets it.
+
+The rate is linearized at the start of the run; a solver's growth factor is asked for on the modes of the Jacobian, each
+as a small system of its own. A mode that grows by itself counts as neutral: its growth is the scene's, not the
+step's.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.simulation.modes import Modes, jacobian, modes_of, coupled
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.kinds import Solver
+    from sceneql.quantities.span import Span
+    from sceneql.simulation.march import March
+
+NEUTRAL = 1e-8
+"""Growth per unit of (step times frequency) that counts as none, and damping (relative) that does: rounding."""
+LEAST, MOST = 1e-8, 1e3
+"""Range of (step times largest frequency) that is searched; below 100 LEAST a bound is no bound."""
+WHOLE = 200
+"""Up to so many entries a method that uses pairs is asked about the whole Jacobian where modes are overdamped."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stability:
+    """What is known about the step before the run."""
+
+    step: float
+    """Largest stable step [s]; 0: none is; inf: any is."""
+    growth: float
+    """Factor by which the worst mode grows in a step of the script's own length; 1 for adaptive methods."""
+    frequency: float
+    """|lambda|/(2 pi) of the mode that sets the bound [1/s]."""
+    part: str
+    span: Span | None
+    text: str
+
+
+def stability(march: March, solver: Solver) -> Stability:
+    """The stable step of ``solver`` on the island of ``march`` at its start."""
+    system, stepper = march.system, march.stepper
+    modes = modes_of(march)
+    if modes is None:
+        return Stability(math.inf, 1.0, 0.0, "", None, "nothing limits the step: the rate does not change with the state")
+    fastest = modes.fastest
+    blocks = [_block(value / fastest) for value in modes.values]
+    reduced = _Reduced(solver, blocks)
+    bound = reduced.bound()
+    if bound > 0 and math.isfinite(bound) and _overdamped(modes) and len(system.y) <= WHOLE and _uses_pairs(solver):
+        bound = _whole(march, solver, bound / fastest) * fastest
+    script = 0.0 if stepper.adaptive else stepper.first_step
+    tried = script * fastest if script else 1e-2
+    if 0 < bound < math.inf and tried <= bound:
+        tried = 1.02 * bound
+    growths = [reduced.growth_of(block, tried) for block in blocks]
+    worst = int(np.argmax(growths))
+    origin = system.origin(modes.leading(worst, system.partner))
+    frequency = abs(modes.values[worst]) / (2 * math.pi)
+    growth = max(reduced.growth_of(block, script * fastest) for block in blocks) if script else 1.0
+    mode = f"a mode of '{origin.part}' at {frequency:.4g} Hz" + (f" ({origin.span})" if origin.span else "")
+    step = bound / fastest
+    return Stability(step, growth, frequency, origin.part, origin.span, _text(step, script, growth, mode, stepper.adaptive))
+
+
+def _text(bound: float, script: float, growth: float, mode: str, adaptive: bool) -> str:
+    if math.isinf(bound):
+        return "any step is stable"
+    if bound == 0.0:
+        own = f"; a step of {script:.4g} s multiplies it by {growth:.6g}" if script else ""
+        return f"no step is stable: {mode} grows under this method at every step{own}"
+    limit = f"stable up to a step of {bound:.4g} s, set by {mode}"
+    if adaptive:
+        return limit + "; the steps follow the tolerance and stay below"
+    if script > bound:
+        return f"unstable: the step of {script:.4g} s exceeds {bound:.4g} s, set by {mode}; it grows by {growth:.4g} a step"
+    return limit
+
+
+@dataclass(frozen=True)
+class _Reduced:
+    """Growth on single modes, time scaled so that the fastest has frequency 1."""
+
+    solver: Solver
+    blocks: list[tuple[Floats, Any]]
+
+    def growth_of(self, block: tuple[Floats, Any], step: float) -> float:
+        return self.solver.growth(block[0], block[1], step)
+
+    def bound(self) -> float:
+        """Largest stable scaled step; 0 where it is rounding alone that would allow one."""
+        sharp = self._bound(NEUTRAL)
+        if sharp < 100 * LEAST or self._bound(NEUTRAL / 100) < 0.8 * sharp:
+            return 0.0
+        return sharp
+
+    def _bound(self, neutral: float) -> float:
+        """The bound of the fastest mode, and then of those too that do not hold at it."""
+        asked = {max(range(len(self.blocks)), key=lambda k: float(np.abs(self.blocks[k][0]).max()))}
+        while True:
+
+            def holds(k: int, step: float) -> bool:
+                return self.growth_of(self.blocks[k], step) <= 1.0 + 1e-14 + neutral * step
+
+            bound = first_unstable(lambda step: all(holds(k, step) for k in asked))
+            at = 0.999 * min(bound, MOST)
+            more = [k for k in range(len(self.blocks)) if k not in asked and not holds(k, at)]
+            if not more or bound == 0.0:
+                return bound
+            asked.add(max(more, key=lambda k: self.growth_of(self.blocks[k], at)))
+
+
+def first_unstable(stable: Callable[[float], bool], low: float = LEAST, most: float = MOST, ratio: float = 1.3) -> float:
+    """End of the interval of stable steps from ``low`` on, to 1e-6; 0 where it is empty, inf beyond ``most``."""
+    if not stable(low):
+        return 0.0
+    high = low
+    while stable(high):
+        low, high = high, high * ratio
+        if low > most:
+            return math.inf
+    while high - low > 1e-6 * high:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if stable(middle) else (low, middle)
+    return low
+
+
+def _block(value: complex) -> tuple[Floats, Any]:
+    """A mode as a real system: an oscillator x' = v, v' = -|value|^2 x + 2 Re(value) v, or a scalar."""
+    damping = 0.0 if abs(value.real) < NEUTRAL or value.real > 0 else value.real
+    if value.imag == 0.0:
+        return np.array([[damping]]), np.array([-1])
+    square = value.imag**2 + damping**2
+    return np.array([[0.0, 1.0], [-square, 2.0 * damping]]), np.array([1, -1])
+
+
+def _overdamped(modes: Modes) -> bool:
+    """Whether a mode that matters is no oscillation (then which are pairs is not seen from the modes)."""
+    real = np.abs(modes.values[modes.values.imag == 0.0])
+    return bool(np.any(real > 1e-3 * modes.fastest))
+
+
+def _uses_pairs(solver: Solver) -> bool:
+    oscillator = np.array([[0.0, 1.0], [-1.0, 0.0]])
+    with_pairs, without = (solver.growth(oscillator, np.array([k, -1]), 0.5) for k in (1, -1))
+    return abs(with_pairs - without) > 1e-9
+
+
+def _whole(march: March, solver: Solver, guess: float) -> float:
+    """The bound [s] by the whole Jacobian, from that of the modes."""
+    matrix, partner = coupled(jacobian(march), march.system.partner)
+
+    def stable(step: float) -> bool:
+        return solver.growth(matrix, partner, step) <= 1.0 + 1e-6
+
+    low = guess
+    while not stable(low):
+        low *= 0.7
+        if low < 1e-3 * guess:
+            return guess
+    high = low
+    while stable(high) and high < 100 * guess:
+        low, high = high, high * 1.3
+    while high - low > 1e-3 * high:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if stable(middle) else (low, middle)
+    return low
