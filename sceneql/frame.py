@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
     Floats = NDArray[float64]
     Ints = NDArray[int32]
+else:  # names to import where numpy is not
+    Floats = Ints = object
 
 RGB = tuple[float, float, float]
 

@@ -225,6 +225,8 @@ class Kind(Record):
     """A word: its fields, its outputs, its manual."""
 
     family: ClassVar[str] = ""
+    also_under: ClassVar[str] = ""
+    """Another section whose entries may be of this family too (a collision is a force to most)."""
     gives: ClassVar[Mapping[str, Gives]] = {}
     imports: ClassVar[tuple[str, ...]] = ()
     """Libraries that its running methods import and that scenes without it do without (told by `explain`)."""
@@ -236,6 +238,11 @@ class Kind(Record):
         Words whose outputs have the script's own names (``spring.bob.position``) add them here.
         """
         return cls.gives
+
+    @classmethod
+    def formula_symbols(cls, written: Mapping[str, Any]) -> tuple[str, ...]:
+        """The free symbols of its formulas that are marked ``Symbols(None)``; ``written`` as in `outputs`."""
+        return ()
 
 
 # --- the families ----------------------------------------------------------------------------------------------------
@@ -381,6 +388,7 @@ class Contact(Kind):
     """Gives events and impulses."""
 
     family: ClassVar[str] = "contacts"
+    also_under: ClassVar[str] = "forces"
 
     def ties(self) -> tuple[Ref, ...]:
         """The models and objects it acts between; empty: all models and the floor."""
@@ -499,9 +507,30 @@ class Output(Kind):
         """Start it."""
         raise NotImplementedError
 
-    def reads(self) -> tuple[Value, ...]:
-        """The values it measures."""
-        return ()
+
+class Picture(Output):
+    """An output that draws frames: what every picture has."""
+
+    size: tuple[int, int] | Literal["360p", "480p", "720p", "1080p", "4k"] = field(
+        "Width and height [pixels], or the name of a 16:9 size.", (960, 540)
+    )
+    camera: CameraRef | None = field("Seen from; by default the script's first camera.", None)
+    renderer: RendererRef | None = field("Drawn by; by default `trace`.", None)
+    show: tuple[PartRef, ...] | None = field("Draws only these parts; by default all that is not hidden.", None)
+    exposure: FixedScalar = field("Stops by which the picture is brightened.", "0", at_least=-20, at_most=20)
+
+    @model_validator(mode="after")
+    def _size_in_range(self) -> Picture:
+        width, height = self.pixels
+        if not (2 <= width <= 16384 and 2 <= height <= 16384):
+            raise ValueError(f"size must be from 2 to 16384 pixels a side, not {width} {height}")
+        return self
+
+    @property
+    def pixels(self) -> tuple[int, int]:
+        """Width and height."""
+        named = {"360p": (640, 360), "480p": (854, 480), "720p": (1280, 720), "1080p": (1920, 1080), "4k": (3840, 2160)}
+        return named[self.size] if isinstance(self.size, str) else self.size
 
 
 class Clock(Record):

@@ -42,6 +42,11 @@ class Catalogue:
         self._loaded: dict[tuple[str, str], type[Kind]] = {}
 
     def _places(self, family: str) -> list[tuple[str, Path]]:
+        """Packages and folders of the words that may stand in a family's section."""
+        also = [kind.family for kind in FAMILIES if kind.also_under == family]
+        return [place for name in (family, *also) for place in self._own_places(name)]
+
+    def _own_places(self, family: str) -> list[tuple[str, Path]]:
         if family == "renderers":
             places = [("renderers", ROOT.parent / "renderers")]
         else:
@@ -52,12 +57,12 @@ class Catalogue:
 
     def words(self, family: str) -> list[str]:
         """The words of a family, in alphabetical order."""
-        found = {path.stem for _, folder in self._places(family) for path in folder.glob("*.py") if _is_word(path)}
+        found = {path.stem for _, folder in self._own_places(family) for path in folder.glob("*.py") if _is_word(path)}
         found |= {name.partition(".")[2] for name in self._installed if name.partition(".")[0] == family}
         return sorted(found)
 
     def load(self, family: str, word: str) -> type[Kind] | None:
-        """The class of a word, or None if the family has no such word."""
+        """The class of a word that may stand in a family's section, or None if there is none."""
         key = (family, word)
         if key not in self._loaded and word.isidentifier():
             for package, folder in self._places(family):
@@ -76,7 +81,7 @@ class Catalogue:
         return [
             family
             for family in self.families
-            if any(_is_word(folder / f"{word}.py") for _, folder in self._places(family))
+            if any(_is_word(folder / f"{word}.py") for _, folder in self._own_places(family))
         ]
 
     @cached_property

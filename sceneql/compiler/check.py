@@ -17,9 +17,10 @@ from sceneql.compiler.read import Reader, Unreadable
 from sceneql.compiler.values import read_expr
 from sceneql.graph import Task
 from sceneql.kinds import Gives, Kind, Object, Quantity, Ref, Settings, Value
-from sceneql.language.script import Entry, Script
+from sceneql.language.scope import Entry
+from sceneql.language.script import Script
 from sceneql.language.tree import Mapping as MappingNode
-from sceneql.language.tree import Node, Scalar, Sequence
+from sceneql.language.tree import Node, Scalar, written
 from sceneql.quantities.diagnostic import Diagnostics, suggestion
 from sceneql.quantities.expression import Link, Type, walk
 
@@ -67,6 +68,7 @@ class _Checker:
             outputs_of=self.outputs_of,
             read=lambda node, names: read_expr(node, None, None, "define", names, found),
             found=found,
+            given=script.gives,
         )
 
     def settings(self) -> Settings:
@@ -99,13 +101,18 @@ class _Checker:
             )
         return cls
 
+    def family(self, name: str) -> str:
+        """The family of an entry's word (of the section, where the word is unknown)."""
+        cls = self.catalogue.load(self.family_of[name], self.entries[name].word)
+        return self.family_of[name] if cls is None else cls.family
+
     def outputs_of(self, name: str) -> Mapping[str, Gives] | None:
-        """The outputs of a part, without reading its fields; None if nothing is called so."""
+        """The outputs of a part, without reading its fields; None if nothing is called so or its word is unknown."""
         if name not in self.entries:
             return None
         cls = self.catalogue.load(self.family_of[name], self.entries[name].word)
         if cls is None:
-            return {}
+            return None
         fields = self.entries[name].fields
         outputs = dict(cls.outputs({} if fields is None else written(fields)))
         if issubclass(cls, Object):
@@ -145,7 +152,7 @@ class _Checker:
         """The part that a field names; one that is written in place becomes a part of its own first."""
         if isinstance(node, Scalar):
             name = entry.scope.resolve(node.text) if entry.scope is not None else node.text
-            if name in self.entries and family in ("", self.family_of[name]):
+            if name in self.entries and family in ("", self.family(name)):
                 return Ref(name, node.span)
             if family and self.catalogue.load(family, node.text) is not None:
                 return self._in_place(Entry(anonymous, node.text, None, node.span, node.span, entry.scope), family)
@@ -168,23 +175,14 @@ class _Checker:
     def _unknown(self, node: Scalar, name: str, family: str) -> None:
         if name in self.entries:
             self.found.error(
-                "wrong-family", f"'{name}' is one of {self.family_of[name]}, not of {family}", node.span
+                "wrong-family", f"'{name}' is one of {self.family(name)}, not of {family}", node.span
             )
             return
-        choices = [n for n in self.entries if family in ("", self.family_of[n])]
+        choices = [n for n in self.entries if family in ("", self.family(n))]
         words = self.catalogue.words(family) if family else []
         hint = suggestion(name, [*choices, *words])
         what = f"of {family} " if family else ""
         self.found.error("unknown-name", f"no part {what}is called '{name}'", node.span, help=hint)
-
-
-def written(node: Node) -> Any:
-    """A node as plain nested dicts, lists and texts."""
-    if isinstance(node, MappingNode):
-        return {key: written(item) for key, item in node.entries.items()}
-    if isinstance(node, Sequence):
-        return [written(item) for item in node.items]
-    return node.text
 
 
 def values_of(part: Any) -> list[Value]:

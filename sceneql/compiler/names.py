@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 from sceneql.kinds import Gives
-from sceneql.language.templates import Scope
+from sceneql.language.scope import Given, Scope
 from sceneql.language.tree import Node
 from sceneql.quantities.diagnostic import Diagnostics, suggestion
 from sceneql.quantities.dimension import PLAIN, TIME
@@ -26,6 +26,8 @@ class Names:
     outputs_of: Callable[[str], Mapping[str, Gives] | None]
     read: Callable[[Node, Names], Expr | None]
     found: Diagnostics
+    given: Mapping[str, Given]
+    """What instances of templates give."""
     scope: Scope | None = None
     _bound: dict[str, Expr | None] = field(default_factory=dict)
     _open: list[str] = field(default_factory=list)
@@ -67,9 +69,15 @@ class Names:
         for size in range(len(parts) - 1, 0, -1):
             task = ".".join(parts[:size])
             task = task if self.scope is None else self.scope.resolve(task)
+            given = self.given.get(f"{task}.{parts[size]}")
+            if given is not None:
+                expr = self.read(given.node, replace(self, scope=given.scope))
+                return None if expr is None else self._component(expr, parts[size + 1 :], span)
             outputs = self.outputs_of(task)
             if outputs is not None:
                 return self._output(task, outputs, parts[size:], span)
+            if task in self.parts:
+                return None  # its word is unknown, which is reported there
         self._unknown(parts, span)
         return None
 

@@ -15,9 +15,10 @@ from pydantic import BaseModel, ValidationError
 
 from sceneql.compiler import paint, values
 from sceneql.compiler.names import Names
-from sceneql.kinds import Formula, Paint, Quantity, Ref, Refers, Symbols, Turn, Value
+from sceneql.kinds import Formula, Kind, Paint, Quantity, Ref, Refers, Symbols, Turn, Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence
+from sceneql.language.tree import written as plainly
 from sceneql.quantities.diagnostic import Diagnostics, suggestion
 from sceneql.quantities.span import Span
 
@@ -38,6 +39,8 @@ class Reader:
     """(node, family, the name that an entry in place would get)."""
     owner: str
     """Name of the part whose fields these are."""
+    symbols: tuple[str, ...] = ()
+    """What the formulas of this kind may use besides defines."""
 
     def record(self, node: Node | None, cls: type[BaseModel], span: Span, title: str) -> Any:
         """An instance of a record or kind from a mapping (None: no fields are written). Raises Unreadable."""
@@ -46,6 +49,9 @@ class Reader:
             written = node.entries
         elif node is not None and not (isinstance(node, Scalar) and node.kind == "null"):
             self._fail("wrong-shape", f"{title} takes fields, `{{name: value}}`", node.span)
+        symbols = self.symbols
+        if node is not None and issubclass(cls, Kind):
+            symbols = cls.formula_symbols(plainly(node))
         ok = True
         got: dict[str, Any] = {}
         if isinstance(node, MappingNode):
@@ -65,7 +71,7 @@ class Reader:
                         "missing-field", f"{title} needs '{name}'", span, help=f"{name}: {info.description}"
                     )
                 continue
-            reader = replace(self, owner=f"{self.owner}.{name}") if self.owner else self
+            reader = replace(self, owner=f"{self.owner}.{name}" if self.owner else "", symbols=symbols)
             try:
                 got[name] = reader.field(written[name], info, name)
             except Unreadable:
@@ -148,7 +154,7 @@ class Reader:
         return number
 
     def _formula(self, node: Node, mark: Symbols, what: str) -> Formula:
-        expr = self._some(values.read_formula(node, mark.names or (), what, self.names, self.found), node)
+        expr = self._some(values.read_formula(node, self.symbols if mark.names is None else mark.names, what, self.names, self.found), node)
         return Formula(expr, node.span)
 
     def _union(self, node: Node, arms: tuple[Any, ...], what: str) -> Any:

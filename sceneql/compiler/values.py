@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import Annotated, Any, get_args, get_origin
+from typing import Any, get_args
 
 from sceneql.compiler.names import Names, plain
 from sceneql.kinds import Quantity, Value
@@ -28,6 +28,7 @@ from sceneql.quantities.expression import (
     walk,
 )
 from sceneql.quantities.parser import parse_expression, parse_value
+from sceneql.quantities.printing import describe
 from sceneql.quantities.span import Span
 
 PLAIN_NUMBER = Quantity(PLAIN)
@@ -304,31 +305,6 @@ def _shape_text(shape: Shape) -> str:
     return "a list of points"
 
 
-_NAMES: Mapping[str, str] = {
-    "1": "a plain number",
-    "m": "a length (m)",
-    "s": "a time (s)",
-    "kg": "a mass (kg)",
-    "m/s": "a velocity (m/s)",
-    "m/s^2": "an acceleration (m/s^2)",
-    "1/s": "a frequency (1/s)",
-    "kg*m/s^2": "a force (N)",
-    "kg/s^2": "a stiffness (N/m)",
-    "kg/s": "a damping (N*s/m)",
-    "kg*m^2/s^2": "an energy (J)",
-    "m^2*kg/s^2": "an energy (J)",
-    "m*kg/s^2": "a force (N)",
-    "K": "a temperature (K)",
-    "m^2": "an area (m^2)",
-    "m^3": "a volume (m^3)",
-}
-
-
-def describe(dimension: Dimension) -> str:
-    """A dimension in words: ``a stiffness (N/m)``."""
-    return _NAMES.get(str(dimension), f"a quantity in {dimension}")
-
-
 def finite(number: Any) -> bool:
     """Whether a number, or all numbers of nested tuples, are finite."""
     if isinstance(number, tuple):
@@ -373,8 +349,10 @@ def _numbers(value: Any) -> list[float]:
 
 
 def _unit(annotation: Any) -> str:
-    if get_origin(annotation) is Annotated:
-        for mark in get_args(annotation)[1:]:
-            if isinstance(mark, Quantity) and mark.dimension is not None and not mark.dimension.plain:
-                return f" {mark.dimension}"
+    """The unit in which a field's range is told."""
+    for part in get_args(annotation):
+        if isinstance(part, Quantity) and part.dimension is not None and not part.dimension.plain:
+            return f" {part.dimension}"
+        if not isinstance(part, str | Quantity) and (unit := _unit(part)):
+            return unit
     return ""

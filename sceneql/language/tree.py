@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 from sceneql.quantities.span import Source, Span
 
@@ -65,3 +65,12 @@ class Mapping:
 
 
 Node = Scalar | Sequence | Mapping
+
+
+def written(node: Node) -> Any:
+    """A node as plain nested dicts, lists and texts."""
+    if isinstance(node, Mapping):
+        return {key: written(item) for key, item in node.entries.items()}
+    if isinstance(node, Sequence):
+        return [written(item) for item in node.items]
+    return node.text

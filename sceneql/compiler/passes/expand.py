@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.graph import Task
-from sceneql.kinds import Camera, Contact, Illumination, Kind, Model, Object, Output, Solver, Value
+from sceneql.kinds import Camera, Contact, Illumination, Kind, Model, Object, Output, Picture, Solver, Value
 from sceneql.quantities.expression import Link
 
 
@@ -28,9 +28,9 @@ def expand(tasks: Mapping[str, Task], catalogue: Catalogue) -> dict[str, Task]:
 
     if not has(Output):
         add("film", "outputs", "video")
-    if not has(Camera):
+    if has(Picture) and not has(Camera):
         add("camera", "cameras", "auto")
-    if not has(Illumination):
+    if has(Picture) and not has(Illumination):
         add("light", "lights", "studio")
     if any(isinstance(t.kind, Contact) and not t.kind.ties() for t in result.values()) and not _surfaces(result):
         add("floor", "objects", "plane")
