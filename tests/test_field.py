@@ -103,7 +103,7 @@ def check_box(tape, low, high):
     f = field_values(tape, grid)
     f = f[~np.isnan(f)] if status != WHOLE else f
     assert not (status == NOWHERE and len(f))
-    assert (f >= below).all() and (f <= above).all(), (below, above, f.min(), f.max())
+    assert ((f >= below) & (f <= above)).all(), (below, above, f.min(), f.max())
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -138,7 +138,7 @@ def test_interval_of_any_tape_contains_its_values(tape, ray):
 @given(tape=tapes(most=5), point=st.tuples(COORDINATES, COORDINATES, COORDINATES))
 def test_gradient_agrees_with_differences(tape, point):
     h = 1e-5
-    point = np.array(point) + (0.0173205, 0.0141421, 0.0223606)  # off the ties that round numbers make
+    point = np.add(point, (0.0173205, 0.0141421, 0.0223606))  # off the ties that round numbers make
     steps = np.concatenate([h * np.eye(3), -h * np.eye(3), 2 * h * np.eye(3), -2 * h * np.eye(3), np.zeros((1, 3))])
     f = field_values(tape, point + steps)
     found, *slope = gradient(*arguments(tape), *point)

@@ -189,12 +189,20 @@ class TapeBuilder:
             elif op in (ops.X, ops.Y, ops.Z):
                 code.append((op, 0, 0, 0))
             else:
-                code.append((op, place[left], place[right], 0))
+                code.append((op, place[left], place[right], self._twin(k, place)))
         return Tape(
             code=np.array(code, dtype=np.int32),
             constants=np.array([self._constants[old] for old in numbers], dtype=np.float64),
             parts=np.array(parts, dtype=np.float64).reshape(-1, 8),
         )
+
+    def _twin(self, register: int, place: Mapping[int, int]) -> int:
+        """Where the finished tape has an earlier cosine of the angle of a sine, or sine of a cosine's; else 0."""
+        op, left, right, third = self._rows[register]
+        if op not in (ops.SIN, ops.COS):
+            return 0
+        twin = self._numbers.get((ops.SIN + ops.COS - op, left, right, third), register)
+        return place.get(twin, 0) if twin < register else 0
 
     def _operands(self, register: int) -> tuple[int, ...]:
         """Registers that one reads."""

@@ -221,11 +221,6 @@ def unary(op, a0, a1, ea):
     """Enclosure of the operations of one argument that are seldom or long."""
     if op == SQRT:
         return square_root(a0, a1, ea)
-    if op == SIN or op == COS:
-        s, c = sine_cosine(a0)
-        if op == COS:
-            s, c = c, -s
-        return sine(s, c, a1, ea)
     if op == EXP:
         return exponential(a0, a1, ea)
     if op == LOG:
@@ -266,7 +261,8 @@ def domain(op, a0, reach_a, b0, reach_b, b_constant):
 
 @kernel(
     f"Tuple((float64, float64, float64, int64))({TAPE}, float64, float64, float64, float64, float64, float64,"
-    " float64, float64, boolean)"
+    " float64, float64, boolean)",
+    _nrt=False,
 )
 def segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, survey):
     """(c0, c1, e, status) of f on the segment o + t d, t in [t0, t1]; ``scratch`` (rows, 8) is overwritten.
@@ -325,6 +321,18 @@ def segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, sur
             e = ea
         elif op == DENSITY:
             c0, c1, e = density_segment(parts, left, right, scratch, k, last + 1 + left, code[k, 3], survey)
+        elif op == SIN or op == COS:
+            twin = code[k, 3]
+            if twin:
+                s = scratch[twin, 3]
+                c = scratch[twin, 4]
+            else:
+                s, c = sine_cosine(a0)
+                scratch[k, 3] = s
+                scratch[k, 4] = c
+            if op == COS:
+                s, c = c, -s
+            c0, c1, e = sine(s, c, a1, ea)
         elif op <= ATAN2:
             found = domain(op, a0, abs(a1) + ea, b0, abs(b1) + eb, b1 == 0.0 and eb == 0.0)
             if found == NOWHERE:

@@ -190,7 +190,7 @@ def unary_box(op, a, b):
     return low, high, status
 
 
-@kernel(f"Tuple((float64, float64, int64))({TAPE}, float64, float64, float64, float64, float64, float64)")
+@kernel(f"Tuple((float64, float64, int64))({TAPE}, float64, float64, float64, float64, float64, float64)", _nrt=False)
 def box(code, constants, parts, scratch, x0, x1, y0, y1, z0, z1):
     """(low, high, status): f lies in low..high wherever it is defined in the box; ``scratch`` (rows, 8) is overwritten.
 

@@ -5,25 +5,29 @@ twice as long; else the segment is cut where the enclosure allows no zero, and h
 that lies before a root returned is proved to be outside, up to the tolerance.
 """
 
+import numba
+
 from sceneql.field.enclosure_kernels import segment
 from sceneql.field.tape_kernels import TAPE, value
 from sceneql.field.tape_ops import HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
-from sceneql.kernels import inlined, kernel
+from sceneql.kernels import kernel
 
-RAY = "float64, float64, float64, float64, float64, float64, float64, float64, float64"
 EVALUATIONS = 2000
 """Enclosures spent on one ray before it is left undecided."""
 FINE = 5.0e-13
-"""Width of a bracket, relative to its place on the ray, at which a root is polished."""
+"""Half the width of a bracket, relative to its place on the ray, at which a root is polished."""
+
+woven = numba.njit(cache=True, nogil=True, error_model="numpy", inline="always")
+"""Put into its caller before compilation: for small functions around a large one, whose code they would repeat."""
 
 
-@inlined
+@woven
 def along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t):
     """f at the place t of a ray."""
     return value(code, constants, parts, scratch, ox + t * dx, oy + t * dy, oz + t * dz)
 
 
-@inlined
+@woven
 def polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign):
     """Where sign f goes from >= 0 at a to < 0 at b: bisection and the secant by turns."""
     fa = sign * along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a)
@@ -32,28 +36,37 @@ def polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign
         if not b - a > FINE * (abs(a) + abs(b)):
             break
         t = 0.5 * (a + b)
-        if turn % 2 == 0 and fa - fb > 0.0:
-            t = min(max(a + (b - a) * (fa / (fa - fb)), a), b)
+        if turn % 2 == 0 and fa > fb:
+            t = a + (b - a) * (fa / (fa - fb))
         if t <= a or t >= b:
             t = 0.5 * (a + b)
             if t <= a or t >= b:
                 break
         f = sign * along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t)
         if f < 0.0:
-            b, fb = t, f
+            b = t
+            fb = f
         else:
-            a, fa = t, f
+            a = t
+            fa = f
     return b
 
 
-@kernel(f"Tuple((int64, float64))({TAPE}, {RAY}, float64, boolean)")
+@kernel(
+    f"Tuple((int64, float64))({TAPE}, float64, float64, float64, float64, float64, float64,"
+    " float64, float64, float64, float64, boolean)",
+    _nrt=False,
+)
 def isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, sign, anywhere):
-    """(status, t) of the first entry into {sign f < 0}, or with ``anywhere`` of some point in it; see first_root."""
+    """(status, t) of the first entry into {sign f < 0}, or with ``anywhere`` of any place in it; see first_root."""
     a = t0
-    b = end = t1
+    b = t1
+    end = t1
     held = False  # {sign f < 0} is proved at `end`, so that a root lies before it
-    cut_from = cut_to = t1  # from the one to the other nothing is left to find
+    cut_from = t1  # from here to cut_to nothing is left to find
+    cut_to = t1
     least = max(tolerance * (t1 - t0), 1.0e-15 * (abs(t0) + abs(t1)))
+    outcome = UNDECIDED
     survey = True
     for _ in range(EVALUATIONS):
         c0, c1, e, status = segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, survey)
@@ -62,32 +75,32 @@ def isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tol
         c1 *= sign
         width = b - a
         if status == NOWHERE or c0 - abs(c1) > e:
-            a = b
-            if a == cut_from:
-                a = cut_to
+            a = cut_to if b == cut_from else b
             if a >= end:
-                return (HIT, end) if held else (MISS, t1)
+                outcome = HIT if held else MISS
+                a = end
+                break
             b = min(a + 2.0 * width, end)
             if cut_from > a:
                 b = min(b, cut_from)
             continue
+        if status == WHOLE and (c0 - c1 < -e or (anywhere and c0 - abs(c1) < -e)):
+            outcome = HIT
+            break
         middle = 0.5 * (a + b)
         half = 0.5 * width
         blur = 1.0e-15 * (abs(a) + abs(b))
         root = middle
-        if status == WHOLE and (c0 - c1 < -e or (anywhere and c0 - abs(c1) < -e)):
-            return HIT, a
-        start = a
-        stop = b
         if e < abs(c0) + abs(c1):
+            start = a
             if c1 < 0.0:
                 root = min(max(middle - half * (c0 / c1), a), b)
                 start = max(a, middle + half * ((e - c0) / c1) - blur)
-                if status == WHOLE:
-                    stop = middle - half * ((c0 + e) / c1) + blur
-                    if stop < b:
-                        held = True
-                        b = end = stop
+                stop = middle - half * ((c0 + e) / c1) + blur
+                if status == WHOLE and stop < b:
+                    held = True
+                    b = stop
+                    end = stop
             elif c1 > 0.0:
                 stop = middle + half * ((e - c0) / c1) + blur
                 if stop < b:
@@ -96,18 +109,23 @@ def isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tol
                     b = stop
             a = min(start, b)
         if held and b == end and b - a <= FINE * (abs(a) + abs(b)):
-            return HIT, root
+            outcome = HIT
+            a = min(max(root, a), b)
+            break
         if b - a >= 0.5 * width:
             if b - a <= least:
-                inside = sign * along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, b) < 0.0
-                if not inside:
-                    return UNDECIDED, a
-                return HIT, polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign)
+                if sign * along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, b) < 0.0:
+                    outcome = HIT
+                    a = polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign)
+                break
             b = a + 0.5 * (b - a)
-    return UNDECIDED, a
+    if outcome == HIT and not anywhere and a - t0 <= least:
+        if sign * along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0) < 0.0:
+            return INSIDE, t0
+    return outcome, a
 
 
-@kernel(f"Tuple((int64, float64))({TAPE}, {RAY})")
+@woven
 def first_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance):
     """(status, t) of the first entry of the ray o + t d, t in [t0, t1], into the solid {f < 0}.
 
@@ -115,24 +133,16 @@ def first_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, 
     proved outside. UNDECIDED: at t something smaller than ``tolerance`` (t1 - t0), as a root of even multiplicity,
     could not be told from nothing. d need not be a unit vector; undefined places are outside.
     """
-    status, t = isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, 1.0, False)
-    if status == HIT and t - t0 <= tolerance * (t1 - t0):
-        if along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0) < 0.0:
-            return INSIDE, t0
-    return status, t
+    return isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, 1.0, False)
 
 
-@kernel(f"Tuple((int64, float64))({TAPE}, {RAY})")
+@woven
 def exit_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance):
     """As ``first_root``, for the way out: the first entry into {f > 0}."""
-    status, t = isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, -1.0, False)
-    if status == HIT and t - t0 <= tolerance * (t1 - t0):
-        if along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0) > 0.0:
-            return INSIDE, t0
-    return status, t
+    return isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, -1.0, False)
 
 
-@kernel(f"int64({TAPE}, {RAY})")
+@woven
 def any_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance):
     """HIT where the ray meets the solid anywhere in [t0, t1], MISS where it proves not to, UNDECIDED: shadow rays."""
     return isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, 1.0, True)[0]

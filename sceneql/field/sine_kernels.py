@@ -30,11 +30,9 @@ def sine_cosine(x):
     c = -2.75573143513906633035e-07 + z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)
     c = -1.38888888888741095749e-03 + z * (2.48015872894767294178e-05 + z * c)
     c = 1.0 - (0.5 * z - z * z * (4.16666666666666019037e-02 + z * c))
-    quadrant = int(turns) & 3
-    if quadrant == 0:
-        return s, c
-    if quadrant == 1:
-        return c, -s
-    if quadrant == 2:
-        return -s, -c
-    return -c, s
+    quadrant = int(turns)
+    if quadrant & 1:
+        s, c = c, -s
+    if quadrant & 2:
+        s, c = -s, -c
+    return s, c

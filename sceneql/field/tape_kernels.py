@@ -56,7 +56,7 @@ def sign_of(a):
     return -1.0 if a < 0.0 else 0.0 * a
 
 
-@kernel(f"float64({TAPE}, float64, float64, float64)")
+@kernel(f"float64({TAPE}, float64, float64, float64)", _nrt=False)
 def value(code, constants, parts, scratch, x, y, z):
     """f at a point [m]; ``scratch`` (rows, 8) is overwritten."""
     last = code.shape[0] - 1
@@ -96,10 +96,12 @@ def value(code, constants, parts, scratch, x, y, z):
             v = a * a
         elif op == SQRT:
             v = np.sqrt(a)
-        elif op == SIN:
-            v = sine_cosine(a)[0]
-        elif op == COS:
-            v = sine_cosine(a)[1]
+        elif op == SIN or op == COS:
+            twin = code[k, 3]
+            if twin == 0:
+                twin = k
+                scratch[k, 4], scratch[k, 5] = sine_cosine(a)
+            v = scratch[twin, 4] if op == SIN else scratch[twin, 5]
         elif op == DENSITY:
             p = code[k, 3]
             v = density_value(parts, left, right, scratch[p, 0], scratch[p + 1, 0], scratch[p + 2, 0])
@@ -121,7 +123,7 @@ def value(code, constants, parts, scratch, x, y, z):
     return scratch[last, 0]
 
 
-@kernel(f"void({TAPE}, float64[:, ::1], float64[::1])")
+@kernel(f"void({TAPE}, float64[:, ::1], float64[::1])", _nrt=False)
 def values(code, constants, parts, scratch, points, out):
     """f at ``points`` (n, 3) [m] into ``out`` (n,)."""
     for i in range(points.shape[0]):
@@ -153,10 +155,6 @@ def slopes(op, v, a, b):
         return 2.0 * a, 0.0
     if op == SQRT:
         return (0.5 / v if v > 0.0 else 0.0), 0.0
-    if op == SIN:
-        return sine_cosine(a)[1], 0.0
-    if op == COS:
-        return -sine_cosine(a)[0], 0.0
     if op == EXP:
         return v, 0.0
     if op == LOG:
@@ -171,7 +169,7 @@ def slopes(op, v, a, b):
     return 0.0, 0.0
 
 
-@kernel(f"UniTuple(float64, 4)({TAPE}, float64, float64, float64)")
+@kernel(f"UniTuple(float64, 4)({TAPE}, float64, float64, float64)", _nrt=False)
 def gradient(code, constants, parts, scratch, x, y, z):
     """f and its three derivatives at a point, by forward differentiation; ``scratch`` (rows, 8) is overwritten."""
     value(code, constants, parts, scratch, x, y, z)
@@ -194,7 +192,12 @@ def gradient(code, constants, parts, scratch, x, y, z):
             gy = u * scratch[p, 2] + v * scratch[p + 1, 2] + w * scratch[p + 2, 2]
             gz = u * scratch[p, 3] + v * scratch[p + 1, 3] + w * scratch[p + 2, 3]
         elif op != CONSTANT:
-            u, v = slopes(op, scratch[k, 0], scratch[left, 0], scratch[right, 0])
+            if op == SIN or op == COS:
+                twin = code[k, 3] if code[k, 3] else k
+                u = scratch[twin, 5] if op == SIN else -scratch[twin, 4]
+                v = 0.0
+            else:
+                u, v = slopes(op, scratch[k, 0], scratch[left, 0], scratch[right, 0])
             # A zero slope is skipped: zero times an infinite slope of the branch not taken would be NaN.
             if u != 0.0:
                 gx = u * scratch[left, 1]
