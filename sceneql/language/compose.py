@@ -261,19 +261,15 @@ class _Composer:
         """The node of an anchor, shared; counted as if it stood there in full."""
         node = self.anchors.get(name)
         if node is None:
-            help = (
-                f"mark the value that is meant as &{name}, above this place; a product such as `*x` needs its left side"
-            )
-            self.error("unknown-alias", f"no value above is marked &{name}", span, help=help)
+            message = f"*{name} is an alias, and no value above is marked &{name}"
+            help = f"write `{name}` without the star for a define; a text that begins with * goes in quotes"
+            self.error("unknown-alias", message, span, help=help)
+            if not self.stack:
+                raise _StopError
             return Scalar("", "null", False, self.source, span.start, span.end)
         if any(node is collection for collection in self.stack):
-            self.stop(
-                "alias-cycle",
-                f"*{name} stands inside the value that it names",
-                span.start,
-                span.end,
-                "name a finished value",
-            )
+            message = f"*{name} stands inside the value that it names"
+            self.stop("alias-cycle", message, span.start, span.end, "a value cannot hold itself; remove the alias")
         depth, size = self.measure(node)
         self.expanded += size
         if self.expanded > MOST_EXPANDED:

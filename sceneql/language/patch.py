@@ -165,7 +165,9 @@ class _Path:
             return self.with_item(node, step, self.put(_nothing(self.span), 1))
         if at + 1 == len(self.steps) and self.steps[0] != "define":
             return self.with_item(node, step, self.value)
-        raise self.fail(at, f"'{before}' has no '{step}'", suggestion(step, node.entries))
+        has = ", ".join(list(node.entries)[:8])
+        hint = suggestion(step, node.entries) or (f"it has {has}" if has else None)
+        raise self.fail(at, f"'{before}' has no '{step}'", hint)
 
     def with_item(self, node: Mapping, key: str, value: Node) -> Mapping:
         """A copy of a mapping with one value replaced or added."""

@@ -48,6 +48,8 @@ def read_entry(what: str, node: Node, found: Diagnostics) -> Written | None:
         first, second = node.keys[words[0]], node.keys[words[1]]
         message = f"{what} holds '{words[0]}' and '{words[1]}', but a part has one word"
         help = f"fields stand below the word: {{word: {{{words[0]}: ..., {words[1]}: ...}}}}"
+        if isinstance(node.entries[words[0]], Mapping):
+            help = f"if '{words[1]}' is a field, it stands inside: {{{words[0]}: {{{words[1]}: ..., ...}}}}"
         found.error("entry-shape", message, second.span, help=help, notes=[Note("the first stands here", first.span)])
         return None
     fields = node.entries[words[0]]
@@ -66,7 +68,8 @@ def section(name: str, node: Node, taken: Collection[str], found: Diagnostics) -
                 own = _free(written.word.text, result.entries.keys() | set(taken))
                 result.entries[own], result.keys[own] = item, written.word
     elif not empty(node):
-        found.error("section-shape", f"'{name}' holds parts by name, or a list of words", node.span, help=_ENTRY)
+        help = f"write `{name}: [{node.text}]`" if node.kind == "text" else _ENTRY
+        found.error("section-shape", f"'{name}' holds parts by name, or a list of words", node.span, help=help)
     return result
 
 

@@ -21,9 +21,9 @@ _PROBLEMS: Final = (
         "put `- ` on a line of its own, below its key; a text that begins with a dash goes in quotes",
     ),
     ("unknown escape", "this backslash means nothing in double quotes", "use single quotes: they take it as it is"),
-    ("could not find expected ':'", "a key without a colon", "write `name: value`, or `name:` with its fields below"),
+    ("could not find expected :", "a key without a colon", "write `name: value`, or `name:` with its fields below"),
     (
-        "expected <document start>",
+        "<document start>",
         "this stands behind the end of the script",
         "put a space behind the colon of a key",
     ),
@@ -39,10 +39,17 @@ _PROBLEMS: Final = (
     ),
     ("<block end>", "this does not line up with what stands above", "begin the keys of one mapping in the same column"),
     (
-        "'-' indicator",
+        "- indicator",
         "this does not line up with the list above",
         "begin its items with `- `, in the same column",
     ),
+    ("node content", "a value is missing before this", "a text that begins so goes in quotes"),
+    (
+        "comment or",
+        "nothing but a comment may follow | or > on its line",
+        "put the text below, indented, or in quotes",
+    ),
+    ("indentation indicator", "this cannot follow | or >", "put the text below, indented, or in quotes"),
     ("directive", "a line that begins with % is a YAML directive, and a script has none", "put it in quotes"),
     ("tag", "a tag (!) means nothing in a script", "a text that begins with ! goes in quotes"),
 )
@@ -82,6 +89,7 @@ def explain(source: Source, error: yaml.YAMLError, flow: int | None) -> tuple[Di
     if "cannot start any token" in problem:
         message = f"a text cannot begin with `{character}`"
         return (_syntax(message, source, at, "put it in quotes"),)
+    problem = problem.replace("'", "")
     if "mapping values are not allowed" in problem:
         return (_misplaced_colon(source, at),)
     for words, message, help in _PROBLEMS:

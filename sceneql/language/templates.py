@@ -213,8 +213,11 @@ class _Expander:
             self.found.error("unknown-template", f"there is no template '{word.text}'", word.span, help=help)
             return
         if word.text in place.templates:
-            circle = " in ".join([*reversed(place.templates[place.templates.index(word.text) :]), word.text])
-            self.found.error("template-cycle", f"the template '{word.text}' holds itself: {circle}", word.span)
+            help = "a part cannot be made of itself; remove this instance"
+            circle = " in ".join(reversed([*place.templates[place.templates.index(word.text) :], word.text]))
+            self.found.error(
+                "template-cycle", f"the template '{word.text}' holds itself: {circle}", word.span, help=help
+            )
             return
         if len(place.templates) >= MOST_NESTED:
             self.found.error("too-deep", f"templates hold each other more than {MOST_NESTED} levels deep", word.span)

@@ -1,4 +1,4 @@
-"""Errors as data: each has a code, a place with a caret, and a help line; a script reports all of its own in one run."""
+"""Errors as data: each has a code, a place with a caret, and a help line; all of a script's come in one run."""
 
 from __future__ import annotations
 
@@ -37,7 +37,12 @@ class Diagnostic:
             lines += [f"note: {note.message}", *_excerpt(note.span)]
         if self.help is not None:
             lines.append(f"help: {self.help}")
-        return "\n".join(lines)
+        return _shown("\n".join(lines))
+
+
+def _shown(text: str) -> str:
+    # A script may hold escape sequences that would drive the terminal.
+    return "".join(c if c.isprintable() or c == "\n" else "\ufffd" for c in text)
 
 
 def _excerpt(span: Span) -> list[str]:
