@@ -255,6 +255,9 @@ BOMBS = {
     ),
     "large": ("a: " + "x" * composer.MOST_BYTES, "too-large"),
     "duplicates": ("a: 1\n" * 20_000, "duplicate-key"),
+    "colors": ("".join(f"a{n}: #fff\n" for n in range(20_000)), "comment-color"),
+    "halves": ("a: [" + "f(x, y), " * 20_000 + "]", "torn-expression"),
+    "sums": ("a: [" + "x + [0, 1], " * 20_000 + "]", "torn-expression"),
 }
 
 

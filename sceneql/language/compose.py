@@ -101,7 +101,7 @@ def compose_node(source: Source, start: int = 0) -> Node:
                 found.add(diagnostic)
         except _StopError:
             pass
-    torn = [span for collection in composer.suspects for span in report_torn(collection, found)]
+    torn = report_torn(composer.halves[:MOST_ERRORS], found)
     # Two halves that look the same are no duplicate keys.
     found.found = [d for d in found.found if d.code != "duplicate-key" or not _inside(d.span, torn)]
     found.raise_errors()
@@ -132,7 +132,7 @@ class _Composer:
     def __init__(self, source: Source, found: Diagnostics) -> None:
         self.source = source
         self.found = found
-        self.suspects: list[Mapping | Sequence] = []
+        self.halves: list[Scalar] = []
         self.anchors: dict[str, Node] = {}
         self.expanded = 0
         self.measured: dict[int, tuple[int, int]] = {}
@@ -182,9 +182,9 @@ class _Composer:
                 else:
                     node = Scalar(text, kind_of(text), False, source, event.start_mark.index, end)
                     if not text:
-                        report_comment(node, self.found)
-                    elif ("(" in text or ")" in text) and here is not None and here.flow:
-                        self.suspect(here)
+                        self.empty(node)
+                    elif "(" in text and text.count("(") > text.count(")") and here is not None and here.flow:
+                        self.halves.append(node)
             elif kind is open_mapping:
                 end = event.end_mark.index
                 node = Mapping({}, {}, event.flow_style, source, event.start_mark.index, end)
@@ -240,10 +240,11 @@ class _Composer:
         """Where the outermost open flow collection begins."""
         return next((one.start for one in self.stack if one.flow), None)
 
-    def suspect(self, collection: Mapping | Sequence) -> None:
-        """Remember a flow collection that may hold the halves of a torn expression."""
-        if not self.suspects or self.suspects[-1] is not collection:
-            self.suspects.append(collection)
+    def empty(self, node: Scalar) -> None:
+        """Report a value that is missing because a color was taken for a comment."""
+        report_comment(node, self.found)
+        if len(self.found.found) >= MOST_ERRORS:
+            raise _StopError
 
     def properties(self, event: Any, node: Node) -> None:
         """Take note of an anchor, refuse a tag, and let the node start behind both."""

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Final
 
-from sceneql.language.tree import Mapping, Scalar, Sequence
+from sceneql.language.tree import Scalar
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
 from sceneql.quantities.span import Source, Span
 
 _MOST_SCANNED: Final = 20_000
 _MOST_DEPTH: Final = 64
+_MOST_FAULTS: Final = 20
+_MOST_SHOWN: Final = 160
 _CLOSES: Final = {"(": ")", "[": "]", "{": "}"}
 _COLOR = re.compile(r"#(?:[0-9a-fA-F]{8}|[0-9a-fA-F]{6}|[0-9a-fA-F]{3,4})(?![^\s,\]}])")
 _SWALLOWED = re.compile(rf"[ \t]+({_COLOR.pattern})")
@@ -42,9 +45,21 @@ def report_comment(value: Scalar, found: Diagnostics) -> None:
         _report(value.source, [_Fault("comment-color", start, end, start, f'"{color[1]}"')], found)
 
 
-def report_torn(collection: Mapping | Sequence, found: Diagnostics) -> list[Span]:
-    """Report the expressions of a flow collection that its commas cut; returns their places."""
-    return _report(collection.source, _faults(collection.source.text, collection.start, collection.end), found)
+def report_torn(halves: Iterable[Scalar], found: Diagnostics) -> list[Span]:
+    """Report the expressions that a flow collection's commas cut, from their first halves; returns their places."""
+    faults: list[_Fault] = []
+    source = None
+    for half in halves:
+        source = half.source
+        if faults and half.start < faults[-1].end:
+            continue
+        with suppress(_LostError):
+            scan = _Scan(source.text, min(len(source.text), half.start + _MOST_SCANNED))
+            end, torn = scan.plain(half.start, nested=True)
+            if torn:
+                written = _quote(source.text[half.start : end])
+                faults.append(_Fault("torn-expression", half.start, end, half.start, written))
+    return [] if source is None else _report(source, faults, found)
 
 
 def torn_near(source: Source, at: int, opening: int | None) -> tuple[Diagnostic, ...]:
@@ -81,6 +96,8 @@ def _corrected(source: Source, fault: _Fault, faults: list[_Fault]) -> str:
     text = source.text
     line = source.position(fault.start)[0]
     first = source.line_starts[line - 1]
+    if fault.end - first > _MOST_SHOWN:
+        return fault.fixed
     out, at = "", first
     for one in faults:
         if one.start >= at and source.position(one.start)[0] == line:
@@ -88,7 +105,7 @@ def _corrected(source: Source, fault: _Fault, faults: list[_Fault]) -> str:
             at = one.end
     last = source.position(at)[0]
     out += text[at : source.line_starts[last - 1] + len(source.line(last))]
-    return out.strip() if len(out) <= 160 else fault.fixed
+    return out.strip() if len(out) <= _MOST_SHOWN else fault.fixed
 
 
 def _faults(text: str, start: int, end: int) -> list[_Fault]:
@@ -149,6 +166,8 @@ class _Scan:
             if character in ("", "]", "}"):
                 raise _LostError
             at = at + 1 if character in (",", ":", "?") else self.value(at, depth + 1)
+            if len(self.faults) >= _MOST_FAULTS:
+                raise _LostError
 
     def space(self, at: int) -> int:
         """Skip blanks and comments, but not a color that passes for one."""
