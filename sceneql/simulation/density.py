@@ -41,4 +41,5 @@ def _gaps(parts: Floats) -> Floats:
     ends = parts[:, :6].reshape(-1, 2, 3)
     low, high = ends.min(axis=1), ends.max(axis=1)
     apart = np.maximum(low[:, None] - high, low - high[:, None])
-    return np.linalg.norm(np.maximum(apart, 0.0), axis=2)
+    distances: Floats = np.linalg.norm(np.maximum(apart, 0.0), axis=2)
+    return distances

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from sceneql.kinds import Value
+from sceneql.quantities.derivative import components
 from sceneql.quantities.expression import Call, Expr, Number, Symbol, walk
 
 if TYPE_CHECKING:
@@ -26,12 +27,23 @@ def in_coordinates(expr: Expr) -> None:
 
     build = TapeBuilder()
     registers = dict(zip(COORDINATES, (build.x, build.y, build.z), strict=True))
-    build.expression(_replaced(expr, lambda part: Number(1.0, part.type)), registers)
+    build.expression(_scalars(expr, lambda part: Number(1.0, part.type)), registers)
 
 
 def written_out(expr: Expr, moment: Moment) -> Expr:
     """The formula with time, links and keyframes replaced by their numbers now."""
-    return _replaced(expr, lambda part: Number(float(moment.at(Value(part))), part.type))
+    return _scalars(expr, lambda part: Number(float(moment.at(Value(part))), part.type))
+
+
+def _scalars(expr: Expr, number: Callable[[Expr], Number]) -> Expr:
+    """The tree with vectors written out in components, and a number for what does not depend on the point."""
+    try:
+        whole = components(expr)
+    except TypeError as error:
+        raise ValueError(f"a formula cannot be computed: {error}") from error
+    if len(whole) != 1:
+        raise ValueError(f"a formula is one number at every point, not {len(whole)}")
+    return _replaced(whole[0], number)
 
 
 def _replaced(expr: Expr, number: Callable[[Expr], Number]) -> Expr:

@@ -92,6 +92,8 @@ def uniform_scale(place: Floats) -> float:
     import numpy as np
 
     lengths = np.linalg.norm(place[:, :3], axis=0)
-    if not np.allclose(place[:, :3].T @ place[:, :3], np.eye(3) * lengths[0] ** 2, rtol=1e-9, atol=1e-9 * lengths[0] ** 2):
+    if not np.allclose(
+        place[:, :3].T @ place[:, :3], np.eye(3) * lengths[0] ** 2, rtol=1e-9, atol=1e-9 * lengths[0] ** 2
+    ):
         raise ValueError("it cannot be stretched unevenly")
     return float(lengths[0])

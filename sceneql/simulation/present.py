@@ -15,5 +15,7 @@ def positive(moment: Moment, value: Value, part: str) -> float:
     """A value that is above 0 now. Raises RunFailure at its line of the script if it is not."""
     now = float(moment.at(value))
     if not (now > 0 and math.isfinite(now)):
-        raise RunFailure(f"must be above 0 and finite, but is {now:g} now", part=part, time=moment.time, span=value.span)
+        raise RunFailure(
+            f"must be above 0 and finite, but is {now:g} now", part=part, time=moment.time, span=value.span
+        )
     return now

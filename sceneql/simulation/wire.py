@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from sceneql.simulation.placement import mapped_box
@@ -18,7 +19,7 @@ SIDES = 10
 def chain(build: FieldBuilder, path: Floats, radius: float, x: int, y: int, z: int) -> int:
     """Register of the signed distance to the capsules (n - 1) between the points (n, 3) of a path."""
     total = None
-    for a, b in zip(path[:-1], path[1:], strict=True):
+    for a, b in pairwise(path):
         value = less(build, _distance(build, a, b, (x, y, z)), radius)
         total = value if total is None else build.op("min", total, value)
     if total is None:
@@ -49,9 +50,7 @@ def chain_box(place: Floats, path: Floats, radius: float) -> tuple[Floats, Float
     return np.min([low for low, _ in boxes], axis=0), np.max([high for _, high in boxes], axis=0)
 
 
-def helix(
-    start: Any, end: Any, radius: float, turns: float, lead: float, pieces: int
-) -> tuple[Floats, Floats]:
+def helix(start: Any, end: Any, radius: float, turns: float, lead: float, pieces: int) -> tuple[Floats, Floats]:
     """Middle line (n, 3) of a coil spring from start to end (3,), and vectors (n, 3) across it that turn with it.
 
     ``lead``: part of the length that is straight at either end; ``pieces``: a turn. The radius opens and closes

@@ -34,7 +34,9 @@ class Blobby(Object):
 
     points: Points = field("The points of the skeleton.")
     segments: tuple[tuple[int, int], ...] = field("Pairs of points, counted from 0, that are joined.", ())
-    radius: LengthOrLengths = field("How far a point's density reaches: one for all, or one for each.", "0.3 m", above=0)
+    radius: LengthOrLengths = field(
+        "How far a point's density reaches: one for all, or one for each.", "0.3 m", above=0
+    )
     weight: NumberOrNumbers = field("Factor of a point's density, one or one each; below 0 it hollows out.", "1")
     threshold: FixedScalar = field("The density at the surface.", "0.3", above=0, below=1)
 
@@ -58,7 +60,9 @@ class Blobby(Object):
         n = len(points)
         pairs = np.array(self.segments, dtype=int).reshape(-1, 2)
         if pairs.size and pairs.max() >= n:
-            raise self._failure(f"there is no point {pairs.max()}: the {n} points are 0 to {n - 1}", self.points, moment)
+            raise self._failure(
+                f"there is no point {pairs.max()}: the {n} points are 0 to {n - 1}", self.points, moment
+            )
         lone = np.setdiff1d(np.arange(n), pairs)
         ends = np.concatenate([pairs, np.column_stack([lone, lone])])
         radii, weights = self._each(self.radius, n, moment), self._each(self.weight, n, moment)

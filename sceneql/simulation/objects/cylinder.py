@@ -41,6 +41,4 @@ class Cylinder(Solid):
         r, half = positive(moment, self.radius, "radius"), 0.5 * positive(moment, self.height, "height")
         surface = moment.surface(name, self.material, self.color)
         middle = compose(compose(place, self.local(moment)), affine((0.0, half, 0.0), (1.0, 0.0, 0.0, 0.0)))
-        yield quadric(
-            name, surface, middle, squares=(1.0, 0.0, 1.0), constant=-r * r, half=(INFINITY, half, INFINITY)
-        )
+        yield quadric(name, surface, middle, squares=(1.0, 0.0, 1.0), constant=-r * r, half=(INFINITY, half, INFINITY))

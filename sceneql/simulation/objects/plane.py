@@ -78,7 +78,9 @@ class Plane(Object):
         """A point on it and its normal, in the world's axes."""
         shift = Call("mul", (self.height.expr, self.normal.expr), Type((3,), LENGTH))
         place = Value(Call("add", (self.position.expr, shift), Type((3,), LENGTH)), self.position.span)
-        return Collider("plane", assembly.value(place), assembly.floats([1.0, 0.0, 0.0, 0.0]), assembly.value(self.normal))
+        return Collider(
+            "plane", assembly.value(place), assembly.floats([1.0, 0.0, 0.0, 0.0]), assembly.value(self.normal)
+        )
 
 
 def _rows(normal: Floats, level: float) -> Floats:

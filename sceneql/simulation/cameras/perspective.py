@@ -1,0 +1,62 @@
+"""perspective: a camera with a field of view."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from pydantic import model_validator
+
+from sceneql.frame import View
+from sceneql.kinds import Angle, Camera, Direction, FixedScalar, Moment, PartRef, Position, field
+from sceneql.simulation import framing
+from sceneql.simulation.solid import triple
+
+
+class Perspective(Camera):
+    """A pinhole camera. It stands at `position`, or follows a part, or is fitted to what it shall show.
+
+    With `fit`, or without `position` and `follow`, it stands as near as it can with the named parts (without names: all
+    that is drawn) inside the picture over the whole film, in the given `direction`, or in that of `position` if given.
+    """
+
+    position: Position | None = field("Where it stands.", None)
+    look_at: Position | None = field("The point in the middle of the picture; by default what it shows.", None)
+    follow: PartRef | None = field("A part that it moves with, and looks at.", None)
+    offset: Position = field("Its place as seen from what it follows.", "0 1 4 m")
+    fit: tuple[PartRef, ...] | None = field("The parts that must be in the picture over the whole film.", None)
+    direction: Direction = field("With `fit`: from what it shows towards the camera.", "0.5 0.35 1")
+    margin: FixedScalar = field("With `fit`: part of half the picture that is left free.", "0.08", at_least=0, below=1)
+    field_of_view: Angle = field("Vertical field of view.", "40 deg", above=0, below=math.pi)
+    up: Direction = field("What is upwards in the picture.", "0 1 0")
+
+    @model_validator(mode="after")
+    def _one_place(self) -> Perspective:
+        if self.follow is not None and (self.position is not None or self.fit is not None):
+            raise ValueError("a camera that follows takes its place from `offset`, not from `position` or `fit`")
+        return self
+
+    def view(self, size: tuple[int, int], moment: Moment) -> View:
+        """The view of this instant. Raises ValueError where it would look at its own position."""
+        half = math.tan(0.5 * float(moment.at(self.field_of_view)))
+        aim: Any = None if self.look_at is None else moment.at(self.look_at)
+        up = moment.at(self.up)
+        if self.follow is not None:
+            target = framing.whereabouts(moment, self.follow)
+            origin = target + moment.at(self.offset)
+            axes = framing.axes_towards(origin - (target if aim is None else aim), up)
+        elif self.fit is None and self.position is not None:
+            origin = moment.at(self.position)
+            if aim is None:
+                low, high = framing.bounds(moment, None)
+                aim = (low + high) / 2
+            axes = framing.axes_towards(origin - aim, up)
+        else:
+            low, high = framing.bounds(moment, self.fit)
+            towards = moment.at(self.direction)
+            if self.position is not None:
+                towards = moment.at(self.position) - ((low + high) / 2 if aim is None else aim)
+            axes = framing.axes_towards(towards, up)
+            slopes = framing.seen_slopes(half, size, self.margin)
+            origin, _ = framing.fitted(framing.corners(low, high), axes, slopes, aim)
+        return View(triple(origin), axes, size, half)

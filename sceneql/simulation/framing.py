@@ -1,0 +1,96 @@
+"""Where a camera must stand so that a box fills its picture."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+from sceneql.kinds import Object, Ref, Value
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.kinds import Moment
+
+NEAREST = 1e-3
+"""Least distance [m] of a camera from what it is fitted to."""
+
+
+def axes_towards(back: Any, up: Any = (0.0, 1.0, 0.0)) -> Floats:
+    """(3, 3) rows right, up, back of a camera that looks along -back, with ``up`` upwards in the picture.
+
+    Where the camera looks along ``up``, another axis takes its place. Raises ValueError for a ``back`` of zero.
+    """
+    import numpy as np
+
+    b, u = np.asarray(back, dtype=float), np.asarray(up, dtype=float)
+    far = float(np.linalg.norm(b))
+    if not (far > 0 and np.isfinite(far)):
+        raise ValueError("a camera cannot look at its own position")
+    b = b / far
+    for candidate in (u, np.array([0.0, 0.0, -1.0]), np.array([0.0, 1.0, 0.0])):
+        right = np.cross(candidate, b)
+        if np.linalg.norm(right) > 1e-9 * np.linalg.norm(candidate):
+            break
+    right /= np.linalg.norm(right)
+    return np.array([right, np.cross(b, right), b])
+
+
+def corners(low: Any, high: Any) -> Floats:
+    """(8, 3) corners of a box."""
+    import numpy as np
+
+    return np.array(list(product(*zip(low, high, strict=True))), dtype=float)
+
+
+def bounds(moment: Moment, refs: Iterable[Ref] | None) -> tuple[Floats, Floats]:
+    """Low and high corner (3,) of what is to be framed over the whole film: the named parts, or all that is drawn."""
+    return moment.bounds([ref.name for ref in refs or ()])
+
+
+def fitted(points: Floats, axes: Floats, slopes: tuple[float, float], aim: Any = None) -> tuple[Floats, float]:
+    """Position (3,) and distance of the nearest camera that sees all points; exact, without iteration.
+
+    ``slopes``: half the picture's width and height at the distance 1, margins taken off. With ``aim`` (3,) the camera
+    looks at that point; else it moves sideways until the picture is filled best. For a coordinate p across, a depth b
+    towards the camera and a slope k, a point is seen from the distance D at the place s across if
+    |p - s| <= k (D - b): so D >= (max(p + k b) - min(p - k b))/(2 k), and s is the middle of what is left.
+    """
+    import numpy as np
+
+    center = np.asarray(aim, dtype=float) if aim is not None else (points.min(axis=0) + points.max(axis=0)) / 2
+    right, up, back = axes
+    depth = (points - center) @ back
+    distance, shift = float(depth.max()) + NEAREST, np.zeros(3)
+    sides = []
+    for axis, slope in ((right, slopes[0]), (up, slopes[1])):
+        p = (points - center) @ axis
+        if aim is not None:
+            distance = max(distance, float((depth + np.abs(p) / slope).max()))
+        else:
+            above, below = float((p + slope * depth).max()), float((p - slope * depth).min())
+            distance = max(distance, (above - below) / (2 * slope))
+            sides.append((axis, slope, above, below))
+    for axis, _, above, below in sides:
+        shift += (above + below) / 2 * axis
+    return center + shift + distance * back, distance
+
+
+def whereabouts(moment: Moment, ref: Ref) -> Any:
+    """(3,) place of a part now: its position, the middle of its box, or the center of its masses."""
+    part: Any = moment.object(ref)
+    if isinstance(part, Object):
+        position = getattr(part, "position", None)
+        if isinstance(position, Value):
+            return moment.at(position)
+        import numpy as np
+
+        low, high = part.extent(np.eye(3, 4), moment)
+        return (low + high) / 2
+    return moment.read(ref.name, "center" if "center" in part.gives else "position")
+
+
+def seen_slopes(half_height: float, size: tuple[int, int], margin: float) -> tuple[float, float]:
+    """Half width and half height of the picture's inner part, at the distance 1."""
+    inner = half_height * (1 - margin)
+    return inner * size[0] / size[1], inner

@@ -1,0 +1,119 @@
+"""Laws of colors, materials and lights."""
+
+from __future__ import annotations
+
+import math
+from importlib import import_module
+from itertools import combinations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from moment import FakeMoment, const
+from sceneql.frame import PointLight, Sky, Sun
+from sceneql.simulation.color import PALETTE, default_color, linear
+
+WORDS = ("matte", "glossy", "metal", "mirror", "checker", "glass")
+
+
+def word(family, name):
+    return getattr(import_module(f"sceneql.simulation.{family}.{name}"), name.capitalize())
+
+
+def encode(c):
+    """sRGB of a linear component (IEC 61966-2-1)."""
+    return 12.92 * c if c <= 0.0031308 else 1.055 * c ** (1 / 2.4) - 0.055
+
+
+@given(st.tuples(*[st.floats(0, 1)] * 3))
+def test_linear_is_the_inverse_of_the_srgb_curve(color):
+    assert [encode(c) for c in linear(color)] == pytest.approx(color, abs=1e-4)
+
+
+def test_linear_has_the_known_value_of_middle_gray():
+    assert linear((0.5, 0.0, 1.0)) == pytest.approx((0.21404114, 0.0, 1.0))
+
+
+def test_default_colors_differ_and_repeat():
+    colors = [np.array(default_color(k)) for k in range(len(PALETTE))]
+    assert len(colors) >= 8
+    assert min(np.abs(a - b).max() for a, b in combinations(colors, 2)) > 0.1
+    assert default_color(len(PALETTE)) == default_color(0)
+
+
+@pytest.mark.parametrize("name", WORDS)
+def test_a_material_takes_its_own_color_or_the_one_given(name):
+    material = word("materials", name)(color=const([0.5, 0.2, 1.0]))
+    assert material.surface(FakeMoment(), None).color == linear((0.5, 0.2, 1.0))
+    assert material.surface(FakeMoment(), (0.1, 0.9, 0.3)).color == (0.1, 0.9, 0.3)
+
+
+@pytest.mark.parametrize("name", WORDS)
+def test_default_surfaces_reflect_no_more_than_they_get(name):
+    surface = word("materials", name)().surface(FakeMoment(), None)
+    assert all(0 <= c <= 1 for c in surface.color)
+    assert 0 <= surface.roughness <= 1
+    assert 0 <= surface.specular < 1
+
+
+def test_what_makes_each_material_itself():
+    surfaces = {name: word("materials", name)().surface(FakeMoment(), None) for name in WORDS}
+    assert surfaces["matte"].specular == 0
+    assert surfaces["matte"].roughness == 1
+    assert surfaces["metal"].metallic == surfaces["mirror"].metallic == 1
+    assert surfaces["mirror"].roughness == 0
+    assert surfaces["glass"].transmission == 1
+    assert surfaces["glass"].specular == pytest.approx(0.04)
+    assert surfaces["checker"].checker_size == 0.5
+    assert surfaces["checker"].checker_color != surfaces["checker"].color
+    assert word("materials", "glass")(index_of_refraction=1.0).surface(FakeMoment(), None).specular == 0
+
+
+def lights(name, **fields):
+    return list(word("lights", name)(**fields).lower(FakeMoment()))
+
+
+@given(st.floats(-1.5, 1.5), st.floats(-3, 3))
+def test_sun_stands_where_its_angles_say(elevation, azimuth):
+    (sun,) = lights("sun", elevation=const(elevation), azimuth=const(azimuth))
+    assert math.hypot(*sun.direction) == pytest.approx(1)
+    assert math.asin(sun.direction[1]) == pytest.approx(elevation)
+    assert math.atan2(sun.direction[0], sun.direction[2]) == pytest.approx(azimuth)
+
+
+def test_sun_of_strength_one_makes_white_as_bright_as_its_color():
+    (sun,) = lights("sun", direction=const([0, 2, 0]), strength=const(1.0), color=const([1, 0.5, 0]))
+    assert sun.direction == (0, 1, 0)
+    assert np.array(sun.irradiance) / math.pi == pytest.approx(linear((1, 0.5, 0)))
+    with pytest.raises(ValueError, match="direction"):
+        lights("sun", direction=const([0, 0, 0]))
+
+
+def test_point_shines_its_power_into_the_whole_sphere():
+    (lamp,) = lights("point", power=const(100.0), position=const([1, 2, 3]))
+    assert isinstance(lamp, PointLight)
+    assert np.array(lamp.intensity) * 4 * math.pi == pytest.approx([100, 100, 100])
+    assert lamp.position == (1, 2, 3)
+
+
+def test_sky_of_one_color_is_the_same_all_around():
+    (sky,) = lights("sky", color=const([0.5, 0.5, 0.5]), strength=const(2.0), background=const([1, 1, 1]))
+    assert sky.zenith == sky.horizon == sky.ground == pytest.approx([2 * c for c in linear((0.5, 0.5, 0.5))])
+    assert sky.visible == (1, 1, 1)
+    (plain,) = lights("sky")
+    assert plain.visible is None
+    assert plain.zenith != plain.horizon
+
+
+def test_studio_has_its_key_light_upper_left_in_front_and_a_gray_background():
+    sun, sky = lights("studio")
+    assert isinstance(sun, Sun)
+    assert isinstance(sky, Sky)
+    assert sun.direction[0] < 0 < min(sun.direction[1:])
+    assert math.hypot(*sun.direction) == pytest.approx(1)
+    assert max(sky.visible) - min(sky.visible) < 0.05
+    dark, dome = lights("studio", key=const(0.0), fill=const(2.0))
+    assert dark.irradiance == (0, 0, 0)
+    assert dome.zenith == pytest.approx([2 * c for c in sky.zenith])
