@@ -17,8 +17,9 @@ from sceneql import __version__
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.compile import compile_script
 from sceneql.graph import SimulationGraph
-from sceneql.kinds import FAMILIES, Camera, Clock, Illumination, Output, Picture, Renderer
+from sceneql.kinds import FAMILIES, Camera, Clock, Illumination, Output, Picture, Renderer, Settings
 from sceneql.language.script import read_script
+from sceneql.quantities.diagnostic import Diagnostics
 
 if TYPE_CHECKING:
     from sceneql.simulation.run import Instant
@@ -33,8 +34,16 @@ def load(
     pruned: bool = True,
 ) -> SimulationGraph:
     """Read, check and compile a script. ``sets`` are ``path=value`` patches. Raises ScriptError with all its errors."""
-    script = read_script(Path(path), variant=variant, sets=sets, families=tuple(kind.family for kind in FAMILIES))
-    return compile_script(script, Catalogue(words), pruned=pruned)
+    found = Diagnostics()
+    script = read_script(
+        Path(path),
+        variant,
+        sets,
+        families=tuple(kind.family for kind in FAMILIES),
+        settings=(*Settings.model_fields, "sceneql", "define", "variants"),
+        found=found,
+    )
+    return compile_script(script, Catalogue(words), found, pruned=pruned)
 
 
 @dataclass

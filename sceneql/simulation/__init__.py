@@ -1,0 +1,1 @@
+"""Graph to frames: the run, the islands, and the families of words."""
