@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from sceneql.field import tape_ops as ops
+from sceneql.field.lowering import FOLD, LOWERED
 from sceneql.quantities.expression import Call, Expr, Number, Symbol
 
 if TYPE_CHECKING:
@@ -50,7 +51,11 @@ class TapeBuilder:
         return self._constants[index] if op == ops.CONSTANT else None
 
     def op(self, name: str, *registers: int) -> int:
-        """Register of a scalar operation on registers. ValueError for a name that no tape can compute."""
+        """Register of a scalar operation on registers. ValueError for a name that no tape can compute.
+
+        `min` and `max` take any number. The comparisons, `step` and `where` are made by arithmetic, hence undefined
+        where any of their arguments is, also in the branch not taken.
+        """
         if name in LOWERED:
             return LOWERED[name](self, *registers)
         if name in ops.UNARY:
@@ -58,6 +63,9 @@ class TapeBuilder:
             return self._folded(name, (a,)) or self._emit((ops.UNARY[name], a, a, 0))
         if name not in ops.BINARY:
             raise ValueError(f"no tape operation is named {name!r}")
+        if name in ("min", "max") and len(registers) != 2:
+            first, *others = registers
+            return self.op(name, first, self.op(name, *others)) if others else first
         a, b = registers
         if name == "pow":
             lowered = self._power(a, self._known(b))
@@ -210,76 +218,3 @@ class TapeBuilder:
         if op in (ops.CONSTANT, ops.X, ops.Y, ops.Z):
             return ()
         return (third, third + 1, third + 2) if op == ops.DENSITY else (left, right)
-
-
-def _sign(a: float) -> float:
-    return (a > 0.0) - (a < 0.0)
-
-
-FOLD: dict[str, Callable[..., float]] = {
-    "add": lambda a, b: a + b,
-    "sub": lambda a, b: a - b,
-    "mul": lambda a, b: a * b,
-    "div": lambda a, b: a / b,
-    "min": min,
-    "max": max,
-    "pow": math.pow,
-    "atan2": math.atan2,
-    "neg": lambda a: -a,
-    "abs": abs,
-    "square": lambda a: a * a,
-    "sqrt": math.sqrt,
-    "sin": math.sin,
-    "cos": math.cos,
-    "exp": math.exp,
-    "log": math.log,
-    "floor": math.floor,
-    "sign": _sign,
-}
-
-
-def _times(name: str, factor: float) -> Callable[[TapeBuilder, int], int]:
-    return lambda tape, a: tape.op("mul", tape.op(name, a), tape.constant(factor))
-
-
-def _tan(tape: TapeBuilder, a: int) -> int:
-    return tape.op("div", tape.op("sin", a), tape.op("cos", a))
-
-
-def _arc(tape: TapeBuilder, a: int, cosine: bool) -> int:
-    other = tape.op("sqrt", tape.op("sub", tape.constant(1.0), tape.op("square", a)))
-    return tape.op("atan2", other, a) if cosine else tape.op("atan2", a, other)
-
-
-def _hyperbolic(tape: TapeBuilder, a: int, join: str) -> int:
-    grown = tape.op("exp", a)
-    both = tape.op(join, grown, tape.op("div", tape.constant(1.0), grown))
-    return tape.op("mul", tape.constant(0.5), both)
-
-
-def _tanh(tape: TapeBuilder, a: int) -> int:
-    grown = tape.op("exp", tape.op("mul", tape.constant(2.0), a))
-    less = tape.op("div", tape.constant(2.0), tape.op("add", grown, tape.constant(1.0)))
-    return tape.op("sub", tape.constant(1.0), less)
-
-
-def _modulo(tape: TapeBuilder, a: int, b: int) -> int:
-    return tape.op("sub", a, tape.op("mul", b, tape.op("floor", tape.op("div", a, b))))
-
-
-LOWERED: dict[str, Callable[..., int]] = {
-    "tan": _tan,
-    "asin": lambda tape, a: _arc(tape, a, cosine=False),
-    "acos": lambda tape, a: _arc(tape, a, cosine=True),
-    "atan": lambda tape, a: tape.op("atan2", a, tape.constant(1.0)),
-    "sinh": lambda tape, a: _hyperbolic(tape, a, "sub"),
-    "cosh": lambda tape, a: _hyperbolic(tape, a, "add"),
-    "tanh": _tanh,
-    "log2": _times("log", 1.0 / math.log(2.0)),
-    "log10": _times("log", 1.0 / math.log(10.0)),
-    "ceil": lambda tape, a: tape.op("neg", tape.op("floor", tape.op("neg", a))),
-    "mod": _modulo,
-    "hypot": lambda tape, a, b: tape.op("sqrt", tape.op("add", tape.op("square", a), tape.op("square", b))),
-    "clamp": lambda tape, a, low, high: tape.op("min", tape.op("max", a, low), high),
-}
-"""Operations that a tape computes by others."""

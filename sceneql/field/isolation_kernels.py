@@ -58,7 +58,7 @@ def polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign
     _nrt=False,
 )
 def isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, sign, anywhere):
-    """(status, t) of the first entry into {sign f < 0}, or with ``anywhere`` of any place in it; see first_root."""
+    """(status, t) of the first entry into {sign f < 0}, or with ``anywhere`` of any place in it; never INSIDE."""
     a = t0
     b = t1
     end = t1
@@ -119,9 +119,6 @@ def isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tol
                     a = polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign)
                 break
             b = a + 0.5 * (b - a)
-    if outcome == HIT and not anywhere and a - t0 <= least:
-        if sign * along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0) < 0.0:
-            return INSIDE, t0
     return outcome, a
 
 
@@ -133,13 +130,21 @@ def first_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, 
     proved outside. UNDECIDED: at t something smaller than ``tolerance`` (t1 - t0), as a root of even multiplicity,
     could not be told from nothing. d need not be a unit vector; undefined places are outside.
     """
-    return isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, 1.0, False)
+    status, t = isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, 1.0, False)
+    if status == HIT and t - t0 <= tolerance * (t1 - t0):
+        if along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0) < 0.0:
+            return INSIDE, t0
+    return status, t
 
 
 @woven
 def exit_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance):
     """As ``first_root``, for the way out: the first entry into {f > 0}."""
-    return isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, -1.0, False)
+    status, t = isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, -1.0, False)
+    if status == HIT and t - t0 <= tolerance * (t1 - t0):
+        if along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0) > 0.0:
+            return INSIDE, t0
+    return status, t
 
 
 @woven
