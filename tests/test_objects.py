@@ -38,7 +38,7 @@ def own(points):
 
 
 def column(p, radius, height):
-    return (np.hypot(p[:, 0], p[:, 2]) < radius) & (p[:, 1] > 0) & (p[:, 1] < height)
+    return (np.hypot(p[:, 0], p[:, 2]) < radius) & (np.abs(p[:, 1]) < height / 2)
 
 
 PATH = np.array([[-0.8, 0.0, 0.1], [0.1, 0.5, 0.0], [0.6, -0.3, 0.2], [0.6, -0.3, 0.2]])

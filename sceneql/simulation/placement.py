@@ -87,6 +87,15 @@ def mapped_box(place: Floats, low: Any, high: Any) -> tuple[Floats, Floats]:
     return place[:, 3] + ends.min(axis=0).sum(axis=1), place[:, 3] + ends.max(axis=0).sum(axis=1)
 
 
+def balls_box(place: Floats, centers: Any, radii: Any) -> tuple[Floats, Floats]:
+    """Low and high corner (3,) of the world box around mapped balls: centers (..., 3), radii (...)."""
+    import numpy as np
+
+    middle = apply(place, centers).reshape(-1, 3)
+    reach = np.broadcast_to(radii, np.shape(centers)[:-1]).reshape(-1, 1) * np.linalg.norm(place[:, :3], axis=1)
+    return (middle - reach).min(axis=0), (middle + reach).max(axis=0)
+
+
 def uniform_scale(place: Floats) -> float:
     """The factor of a map that keeps angles. Raises ValueError for one that stretches unevenly."""
     import numpy as np

@@ -5,7 +5,6 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from sceneql.simulation.placement import mapped_box
 from sceneql.simulation.solid import length, less
 
 if TYPE_CHECKING:
@@ -40,14 +39,6 @@ def _distance(build: FieldBuilder, a: Floats, b: Floats, point: tuple[int, int, 
             build.op("sub", w, build.op("mul", q, build.constant(float(c)))) for w, c in zip(away, along, strict=True)
         ]
     return length(build, *away)
-
-
-def chain_box(place: Floats, path: Floats, radius: float) -> tuple[Floats, Floats]:
-    """Low and high corner (3,) of the world box around a mapped chain."""
-    import numpy as np
-
-    boxes = [mapped_box(place, point - radius, point + radius) for point in path]
-    return np.min([low for low, _ in boxes], axis=0), np.max([high for _, high in boxes], axis=0)
 
 
 def helix(start: Any, end: Any, radius: float, turns: float, lead: float, pieces: int) -> tuple[Floats, Floats]:

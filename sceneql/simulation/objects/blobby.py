@@ -11,7 +11,7 @@ from sceneql.failure import RunFailure
 from sceneql.frame import Shape
 from sceneql.kinds import FieldBuilder, FixedScalar, Moment, Object, Points, Quantity, Value, field
 from sceneql.quantities import dimension as dim
-from sceneql.simulation.placement import mapped_box
+from sceneql.simulation.placement import balls_box
 from sceneql.simulation.solid import traced
 
 if TYPE_CHECKING:
@@ -104,13 +104,7 @@ class Blobby(Object):
         solid = reach > 0
         if not solid.any():
             return np.full(3, np.inf), np.full(3, -np.inf)
-        ends = parts[solid, :6].reshape(-1, 2, 3)
-        around = reach[solid, None]
-        boxes = [
-            mapped_box(place, low, high)
-            for low, high in zip(ends.min(axis=1) - around, ends.max(axis=1) + around, strict=True)
-        ]
-        return np.min([low for low, _ in boxes], axis=0), np.max([high for _, high in boxes], axis=0)
+        return balls_box(place, parts[solid, :6].reshape(-1, 2, 3), reach[solid, None])
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """Its density as a tape."""

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 from sceneql.frame import Mesh, Shape
 from sceneql.kinds import FieldBuilder, FixedScalar, Length, Moment, Object, Position, field
-from sceneql.simulation.placement import apply
+from sceneql.simulation.placement import apply, balls_box
 from sceneql.simulation.present import positive
-from sceneql.simulation.wire import chain, chain_box, helix, swept
+from sceneql.simulation.wire import chain, helix, swept
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -46,7 +46,7 @@ class Coil(Object):
 
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
         """The box around its wire."""
-        return chain_box(place, self.path(moment)[0], self._wire(moment))
+        return balls_box(place, self.path(moment)[0], self._wire(moment))
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """A smooth mesh."""

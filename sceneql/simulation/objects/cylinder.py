@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from sceneql.frame import Shape
 from sceneql.kinds import FieldBuilder, Length, Moment, field
-from sceneql.simulation.placement import affine, compose
+from sceneql.simulation.placement import compose
 from sceneql.simulation.present import positive
 from sceneql.simulation.solid import INFINITY, Solid, largest, length, less, quadric
 
@@ -16,29 +16,29 @@ if TYPE_CHECKING:
 
 
 class Cylinder(Solid):
-    """The column x^2 + z^2 <= radius^2, 0 <= y <= height: its position is the middle of its foot.
+    """The column x^2 + z^2 <= radius^2, |y| <= height / 2 about its position.
 
-    Its field is max(sqrt(x^2 + z^2) - radius, |y - height/2| - height/2): exact inside and in front of its side and
-    ends, less than the distance in front of its rims.
+    Its field is max(sqrt(x^2 + z^2) - radius, |y| - height / 2): exact inside and in front of its side and ends, less
+    than the distance in front of its rims.
     """
 
     radius: Length = field("Its radius.", "0.5 m", above=0)
-    height: Length = field("How high it stands, along its own y.", "1 m", above=0)
+    height: Length = field("Its length along its own y.", "1 m", above=0)
 
     def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
         """Signed distance in the maximum norm of side and ends."""
         half = 0.5 * positive(moment, self.height, "height")
         side = less(build, length(build, x, z), positive(moment, self.radius, "radius"))
-        return largest(build, side, less(build, build.op("abs", less(build, y, half)), half))
+        return largest(build, side, less(build, build.op("abs", y), half))
 
     def reach(self, moment: Moment) -> tuple[Any, Any]:
         """The block around it."""
-        r = positive(moment, self.radius, "radius")
-        return (-r, 0.0, -r), (r, positive(moment, self.height, "height"), r)
+        r, half = positive(moment, self.radius, "radius"), 0.5 * positive(moment, self.height, "height")
+        return (-r, -half, -r), (r, half, r)
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """A quadric cut off at its ends."""
         r, half = positive(moment, self.radius, "radius"), 0.5 * positive(moment, self.height, "height")
         surface = moment.surface(name, self.material, self.color)
-        middle = compose(compose(place, self.local(moment)), affine((0.0, half, 0.0), (1.0, 0.0, 0.0, 0.0)))
-        yield quadric(name, surface, middle, squares=(1.0, 0.0, 1.0), constant=-r * r, half=(INFINITY, half, INFINITY))
+        whole = compose(place, self.local(moment))
+        yield quadric(name, surface, whole, squares=(1.0, 0.0, 1.0), constant=-r * r, half=(INFINITY, half, INFINITY))

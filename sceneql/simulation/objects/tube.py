@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from sceneql.failure import RunFailure
 from sceneql.frame import Segments, Shape
 from sceneql.kinds import FieldBuilder, Length, Moment, Object, Points, field
-from sceneql.simulation.placement import apply, uniform_scale
+from sceneql.simulation.placement import apply, balls_box, uniform_scale
 from sceneql.simulation.present import positive
-from sceneql.simulation.wire import chain, chain_box
+from sceneql.simulation.wire import chain
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -39,7 +39,7 @@ class Tube(Object):
 
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
         """The box around its points and radius."""
-        return chain_box(place, self._path(moment), positive(moment, self.radius, "radius"))
+        return balls_box(place, self._path(moment), positive(moment, self.radius, "radius"))
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """Its pieces as capsules. Raises ValueError in a group that is stretched unevenly."""
