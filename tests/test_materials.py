@@ -11,9 +11,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from moment import FakeMoment, const
+from moment import IDENTITY, FakeMoment, const
 from sceneql.frame import PointLight, Sky, Sun
 from sceneql.simulation.color import PALETTE, default_color, linear
+from sceneql.simulation.objects.plane import Plane
 
 WORDS = ("matte", "glossy", "metal", "mirror", "checker", "glass")
 
@@ -114,6 +115,11 @@ def test_studio_has_its_key_light_upper_left_in_front_and_a_gray_background():
     assert sun.direction[0] < 0 < min(sun.direction[1:])
     assert math.hypot(*sun.direction) == pytest.approx(1)
     assert max(sky.visible) - min(sky.visible) < 0.05
+    (floor,) = Plane().lower("floor", IDENTITY, FakeMoment())
+    # Irradiance on the open floor: a sky that is linear in the sine of the elevation counts 1/3 and 2/3.
+    dome = (np.array(sky.horizon) + 2 * np.array(sky.zenith)) / 3
+    lit = np.array(floor.surface.color) * (np.array(sun.irradiance) * sun.direction[1] / math.pi + dome)
+    np.testing.assert_allclose(lit, sky.visible, rtol=0.02)
     dark, dome = lights("studio", key=const(0.0), fill=const(2.0))
     assert dark.irradiance == (0, 0, 0)
     assert dome.zenith == pytest.approx([2 * c for c in sky.zenith])

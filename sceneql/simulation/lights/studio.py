@@ -9,12 +9,13 @@ from sceneql import frame
 from sceneql.kinds import Illumination, Moment, Scalar, field
 
 KEY_DIRECTION = (-0.50, 0.72, 0.48)
-KEY = 0.5
+KEY = 0.75
 """Brightness of a white matte surface that faces the key light, without the dome."""
 KEY_ANGLE = math.radians(8.0)
-DOME = ((0.95, 0.97, 1.0), (0.62, 0.63, 0.65), (0.32, 0.32, 0.33))
+DOME = ((0.79, 0.80, 0.82), (0.45, 0.46, 0.47), (0.26, 0.26, 0.26))
 """Radiance overhead, at the horizon and from below."""
-BACKGROUND = (0.66, 0.665, 0.675)
+BACKGROUND = (0.665, 0.665, 0.665)
+"""As bright as the stage of a plane without material (objects/plane.py), so that its horizon does not show."""
 
 
 class Studio(Illumination):
@@ -28,7 +29,7 @@ class Studio(Illumination):
         x, y, z = KEY_DIRECTION
         far = math.hypot(x, y, z)
         power = math.pi * KEY * float(moment.at(self.key))
-        yield frame.Sun((x / far, y / far, z / far), (power, 0.98 * power, 0.95 * power), KEY_ANGLE)
+        yield frame.Sun((x / far, y / far, z / far), (power, 0.99 * power, 0.97 * power), KEY_ANGLE)
         fill = float(moment.at(self.fill))
         zenith, horizon, ground = ((fill * r, fill * g, fill * b) for r, g, b in DOME)
         yield frame.Sky(zenith, horizon, ground, visible=BACKGROUND)

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import field_validator, model_validator
 
-from sceneql.kinds import FieldBuilder, FixedLength, FixedPosition, FixedScalar, Formula, Moment, Record, Symbols
+from sceneql.kinds import Axis, FieldBuilder, FixedLength, FixedScalar, Formula, Moment, Record, Symbols
 from sceneql.kinds import field as described
 from sceneql.simulation.formula import in_coordinates, written_out
 from sceneql.simulation.solid import Solid, block, length, less
@@ -16,7 +16,7 @@ class Within(Record):
     """Where the formula is looked at: a ball about the origin or a box, in units of the formula."""
 
     ball: FixedScalar | None = described("Radius of a ball about the origin.", None, above=0)
-    box: tuple[FixedPosition, FixedPosition] | None = described("Low and high corner of a box.", None)
+    box: tuple[Axis, Axis] | None = described("Low and high corner of a box.", None)
 
     @model_validator(mode="after")
     def _one_shape(self) -> Within:

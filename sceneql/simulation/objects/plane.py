@@ -16,7 +16,7 @@ from sceneql.system import Assembly
 if TYPE_CHECKING:
     from sceneql.frame import Floats
 
-STAGE = Surface(color=(0.62, 0.62, 0.63), roughness=1.0, specular=0.0)
+STAGE = Surface(color=(0.54, 0.54, 0.54), roughness=1.0, specular=0.0)
 """A plane without material or color is a matte light gray stage."""
 
 
