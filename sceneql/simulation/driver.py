@@ -59,7 +59,7 @@ def text(structure: Structure) -> str:
     lines = [f"# {module} {_digest(module)}" for module in modules]
     lines += [
         "from sceneql.kernels import kernel",
-        "from sceneql.simulation.inputs_kernels import refresh",
+        *(["from sceneql.simulation.inputs_kernels import refresh"] if structure.varying else []),
         "from sceneql.system_kernels import GAP, IMPACT, SETTLE, TERM",
     ]
     for name, short in names.items():

@@ -99,10 +99,13 @@ class _Block:
 
 @dataclass
 class IslandAssembly:
-    """The Assembly (system.py) of one island. ``offsets`` says where in y a solved model's output stands."""
+    """The Assembly (system.py) of one island.
+
+    ``places`` says where in y the output of a solved model stands (None: it is computed); it may be set until `finish`.
+    """
 
     setting: Setting
-    offsets: Callable[[Link], Sequence[int]] | None = None
+    places: Callable[[Link], NDArray[int64] | None] = lambda link: None
     _starts: list[Floats] = field(default_factory=list)
     _size: int = 0
     _bodies: int = 0
@@ -164,9 +167,13 @@ class IslandAssembly:
 
     def value(self, value: Value) -> int:
         """Store a value, a varying one to be evaluated at stage times; the offset of its first float."""
-        first = self.floats(self.initial(value))
-        if not value.constant:
-            self._varying.append((first, value))
+        if value.constant:
+            return self.floats(self.initial(value))
+        shape = value.expr.type.shape
+        # The output of a model that is solved may have no place yet.
+        later = None not in shape and self._inputs().reads_state(value.expr)
+        first = self.floats(np.zeros([k or 0 for k in shape]) if later else self.initial(value))
+        self._varying.append((first, value))
         return first
 
     def initial(self, value: Value) -> Any:
@@ -184,6 +191,10 @@ class IslandAssembly:
     def object(self, ref: Ref) -> Object:
         """The kind of an object of the script."""
         return self.setting.object(ref)
+
+    def formula(self, link: Link) -> Expr | None:
+        """A linked output as an expression of time; None for one of a model that is solved."""
+        return self.setting.formula(link)
 
     def body_count(self) -> int:
         """Number of bodies of the island so far."""
@@ -206,7 +217,7 @@ class IslandAssembly:
 
     def finish(self) -> System:
         """The island as arrays. Raises ScriptError for a value that no program can be made of."""
-        y = np.concatenate(self._starts) if self._starts else np.zeros(0)
+        y = self.start()
         inputs = self._inputs()
         program = [number for first, value in self._varying for number in inputs.program(value, first)]
         blocks = [_Block((), tuple(program))]
@@ -237,12 +248,16 @@ class IslandAssembly:
             ranges=tuple(self._ranges),
         )
 
+    def start(self) -> Floats:
+        """The state reserved so far, at the start of the run."""
+        return np.concatenate(self._starts) if self._starts else np.zeros(0)
+
     def _inputs(self) -> Inputs:
-        return Inputs(self.setting.formula, self.offsets, self._starts, self.floats)
+        return Inputs(self.setting.formula, self.places, self.start, self.floats)
 
 
 def _grouped(blocks: list[_Block], laid: list[_Block]) -> list[tuple[tuple[str, ...], int]]:
-    """The kernels in order of first use with their numbers of blocks; the blocks, in that order, are put on ``laid``."""
+    """Kernels in order of first use with their numbers of blocks; the blocks, in that order, are put on ``laid``."""
     by_kernels: dict[tuple[str, ...], list[_Block]] = {}
     for block in blocks:
         by_kernels.setdefault(block.kernels, []).append(block)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from sceneql.system import Stepper
 
 GROWTH_LIMIT = 1e12
-"""A run fails when an entry of y exceeds this times the largest entry of the start (at least 1) or of its rate's move."""
+"""A run fails when an entry of y exceeds this times the largest of the start (at least 1, or what its rate adds)."""
 
 TOUCHING = 1e-13
 """Gap that counts as touching, relative to the largest position at the start or 1 m."""
@@ -29,7 +29,7 @@ ENTRIES_A_CALL = 20_000_000
 
 MESSAGES = {
     kernels.NOT_FINITE: "a value is no longer finite: the step is unstable, or the equations have no value there",
-    kernels.GROWTH: f"the state has grown beyond {GROWTH_LIMIT:.0e} times its start: the step is unstable",
+    kernels.GROWTH: f"the state has grown beyond {GROWTH_LIMIT:.0e} times its start: {{}}",
     kernels.STEP_TOO_SMALL: "the step that the tolerance asks for is below the resolution of time: a singularity",
     kernels.STUCK: "contacts push against each other at one instant without end",
 }
@@ -44,7 +44,7 @@ class Statistics:
     """Steps tried again with a smaller length."""
     events: int = 0
     """Impacts of exact contacts."""
-    rates: int = 0
+    evaluations: int = 0
     """Evaluations of the rate."""
     seconds: float = 0.0
     """Run time of the compiled steps [s]."""
@@ -117,6 +117,8 @@ class March:
     def _start(self) -> None:
         self._started = True
         y = self._y1
+        if self.system.pairs:
+            self.driver.impact(0.0, y, -1, self.floats, self.system.ints)
         self._rate1[:] = self.rate(0.0, y)
         bad = np.flatnonzero(~np.isfinite(y) | ~np.isfinite(self._rate1))
         if len(bad):
@@ -176,11 +178,12 @@ class March:
         done.steps, done.rejected, done.events = (
             int(counts[k]) for k in (kernels.STEPS, kernels.REJECTED, kernels.EVENTS)
         )
-        done.rates = int(self.floats[0])
+        done.evaluations = int(self.floats[0])
         done.seconds += time.perf_counter() - started
         if status != kernels.REACHED:
             at = int(counts[kernels.INDEX])
-            self._fail(-1 if status == kernels.STUCK else at, MESSAGES[status])
+            why = "the equations run away" if self.stepper.adaptive else "the step is unstable"
+            self._fail(-1 if status == kernels.STUCK else at, MESSAGES[status].format(why))
 
     def _fail(self, entry: int, message: str) -> None:
         origin = self.system.origin(entry)

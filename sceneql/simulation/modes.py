@@ -116,7 +116,9 @@ def _fastest(march: March) -> tuple[Any, Any]:
         if size == 0.0:
             return np.zeros_like(direction)
         move = DIFFERENCE * scale / size * direction
-        return (march.rate(0.0, y + move) - march.rate(0.0, y - move)) * (size / (2.0 * DIFFERENCE * scale))
+        difference: Floats = march.rate(0.0, y + move) - march.rate(0.0, y - move)
+        difference *= size / (2.0 * DIFFERENCE * scale)
+        return difference
 
     operator = LinearOperator((len(y), len(y)), matvec=product, dtype=np.float64)
     start = np.random.Generator(np.random.Philox(1)).standard_normal(len(y))

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sceneql.simulation.modes import Modes, jacobian, modes_of, coupled
+from sceneql.simulation.modes import Modes, coupled, jacobian, modes_of
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -26,6 +26,8 @@ NEUTRAL = 1e-8
 """Growth per unit of (step times frequency) that counts as none, and damping (relative) that does: rounding."""
 LEAST, MOST = 1e-8, 1e3
 """Range of (step times largest frequency) that is searched; below 100 LEAST a bound is no bound."""
+RATIO = 1.3
+"""Of the steps tried one after the other: a gap of stable steps narrower than that is not seen."""
 WHOLE = 200
 """Up to so many entries a method that uses pairs is asked about the whole Jacobian where modes are overdamped."""
 
@@ -50,7 +52,7 @@ def stability(march: March, solver: Solver) -> Stability:
     system, stepper = march.system, march.stepper
     modes = modes_of(march)
     if modes is None:
-        return Stability(math.inf, 1.0, 0.0, "", None, "nothing limits the step: the rate does not change with the state")
+        return Stability(math.inf, 1.0, 0.0, "", None, "any step is stable: no force depends on the state")
     fastest = modes.fastest
     blocks = [_block(value / fastest) for value in modes.values]
     reduced = _Reduced(solver, blocks)
@@ -68,7 +70,9 @@ def stability(march: March, solver: Solver) -> Stability:
     growth = max(reduced.growth_of(block, script * fastest) for block in blocks) if script else 1.0
     mode = f"a mode of '{origin.part}' at {frequency:.4g} Hz" + (f" ({origin.span})" if origin.span else "")
     step = bound / fastest
-    return Stability(step, growth, frequency, origin.part, origin.span, _text(step, script, growth, mode, stepper.adaptive))
+    return Stability(
+        step, growth, frequency, origin.part, origin.span, _text(step, script, growth, mode, stepper.adaptive)
+    )
 
 
 def _text(bound: float, script: float, growth: float, mode: str, adaptive: bool) -> str:
@@ -79,9 +83,9 @@ def _text(bound: float, script: float, growth: float, mode: str, adaptive: bool)
         return f"no step is stable: {mode} grows under this method at every step{own}"
     limit = f"stable up to a step of {bound:.4g} s, set by {mode}"
     if adaptive:
-        return limit + "; the steps follow the tolerance and stay below"
+        return limit + "; the tolerance keeps the steps there"
     if script > bound:
-        return f"unstable: the step of {script:.4g} s exceeds {bound:.4g} s, set by {mode}; it grows by {growth:.4g} a step"
+        return f"unstable: the step of {script:.4g} s exceeds {bound:.4g} s, set by {mode}; growth {growth:.4g} a step"
     return limit
 
 
@@ -118,14 +122,14 @@ class _Reduced:
             asked.add(max(more, key=lambda k: self.growth_of(self.blocks[k], at)))
 
 
-def first_unstable(stable: Callable[[float], bool], low: float = LEAST, most: float = MOST, ratio: float = 1.3) -> float:
-    """End of the interval of stable steps from ``low`` on, to 1e-6; 0 where it is empty, inf beyond ``most``."""
+def first_unstable(stable: Callable[[float], bool]) -> float:
+    """End of the interval of stable steps from LEAST on, to 1e-6; 0 where it is empty, inf beyond MOST."""
+    low = high = LEAST
     if not stable(low):
         return 0.0
-    high = low
     while stable(high):
-        low, high = high, high * ratio
-        if low > most:
+        low, high = high, high * RATIO
+        if low > MOST:
             return math.inf
     while high - low > 1e-6 * high:
         middle = 0.5 * (low + high)

@@ -19,7 +19,7 @@ HIGHEST_ORDER = 8
 TOLERANCE = 1e-10
 """Of an order condition: coefficients may be rounded decimals."""
 
-Tree = tuple["Tree", ...]  # type: ignore[misc]
+Tree = tuple["Tree", ...]
 """A rooted tree: the trees at its root."""
 
 

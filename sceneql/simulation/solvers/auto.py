@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
-from sceneql.frame import Floats
 from sceneql.kinds import FixedScalar, Solver, field
 from sceneql.simulation.tableau import DORMAND_PRINCE
 from sceneql.system import Stepper
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
 
 
 class Auto(Solver):

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from sceneql.frame import Floats
 from sceneql.kinds import FixedTime, Solver, field
 from sceneql.simulation.tableau import CLASSIC
 from sceneql.system import Stepper
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
 
 
 class Rk4(Solver):

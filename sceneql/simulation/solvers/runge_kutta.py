@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import model_validator
 
-from sceneql.frame import Floats
 from sceneql.kinds import FixedScalar, FixedTime, Solver, field
 from sceneql.simulation.tableau import Tableau
 from sceneql.system import Stepper
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
 
 ROUNDING = 1e-9
 
@@ -24,7 +26,7 @@ class RungeKutta(Solver):
 
     a: tuple[tuple[FixedScalar, ...], ...] = field("Rows of the matrix, the first (empty or zero) included.")
     b: tuple[FixedScalar, ...] = field("Weights of the stages; their sum is 1.")
-    c: tuple[FixedScalar, ...] | None = field("Places of the stages; by default the row sums, which they must be.", None)
+    c: tuple[FixedScalar, ...] | None = field("Places of the stages, which must be the row sums of `a`.", None)
     b_hat: tuple[FixedScalar, ...] | None = field("Weights of an embedded method of lower order.", None)
     step: FixedTime = field("Length of a step, or with a tolerance of the first.", "1 ms", above=0)
     tolerance: FixedScalar | None = field("Relative error of a step; needs b_hat.", None, at_least=1e-14, below=1)
@@ -42,8 +44,7 @@ class RungeKutta(Solver):
         if abs(sum(self.b) - 1.0) > ROUNDING:
             raise ValueError(f"the weights `b` sum to {sum(self.b):.12g}, not to 1: the method would not converge")
         if self.c is not None and (
-            len(self.c) != stages
-            or any(abs(c - sum(row)) > ROUNDING for c, row in zip(self.c, self.a, strict=True))
+            len(self.c) != stages or any(abs(c - sum(row)) > ROUNDING for c, row in zip(self.c, self.a, strict=True))
         ):
             raise ValueError("`c` must be the row sums of `a`")
         if self.b_hat is not None and len(self.b_hat) != stages:

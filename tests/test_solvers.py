@@ -1,0 +1,323 @@
+"""What every solver promises: its order, its stability, its dense output, the same physics whatever the frames."""
+
+from __future__ import annotations
+
+import importlib
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from islands import TETHER, balls, final, fixed, simple, springs
+from sceneql import kernels
+from sceneql.failure import LimitRefused, RunFailure
+from sceneql.kinds import Solver
+from sceneql.simulation import solvers, tableau
+from sceneql.simulation.island import IslandAssembly
+from sceneql.simulation.march import March
+from sceneql.simulation.solvers.dopri5 import Dopri5
+from sceneql.simulation.solvers.euler import Euler
+from sceneql.simulation.solvers.midpoint import Midpoint
+from sceneql.simulation.solvers.rk4 import Rk4
+from sceneql.simulation.solvers.runge_kutta import RungeKutta
+from sceneql.simulation.solvers.semi_implicit_euler import SemiImplicitEuler
+from sceneql.simulation.stability import stability
+
+HEUN_3 = {"a": ((), (1 / 3,), (0.0, 2 / 3)), "b": (1 / 4, 0.0, 3 / 4)}
+NEEDED = {"runge_kutta": HEUN_3}
+"""Fields of the words that cannot do without."""
+
+WORDS = sorted(p.stem for p in Path(solvers.__path__[0]).glob("*.py") if not p.stem.endswith(("_kernels", "__init__")))
+CLAIMED = {"euler": 1, "semi_implicit_euler": 1, "midpoint": 2, "rk4": 4, "dopri5": 5, "runge_kutta": 3}
+
+
+def solver(word: str) -> Solver:
+    module = importlib.import_module(f"sceneql.simulation.solvers.{word}")
+    return getattr(module, "".join(part.capitalize() for part in word.split("_")))(**NEEDED.get(word, {}))
+
+
+def reference(system, end):
+    return final(system, tableau.DORMAND_PRINCE.fixed(end / 40000), end)
+
+
+PENDULUM = simple("pendulum", [1.5, 0.2], paired=True)
+PENDULUM_AT_2 = reference(PENDULUM, 2.0)
+DOUBLE = simple("double_pendulum", [0.3, 0.5, 0, 0], [9.81], paired=True)
+PROBLEMS = {
+    "forced": (simple("forced", [0.8]), 6.0, 1 / (1.25 + math.sin(6.0))),
+    "pendulum": (PENDULUM, 20.0, reference(PENDULUM, 20.0)),
+    "double pendulum": (DOUBLE, 10.0, reference(DOUBLE, 10.0)),
+}
+
+
+@pytest.mark.parametrize("word", WORDS)
+@pytest.mark.parametrize("problem", PROBLEMS)
+def test_its_order_is_the_one_it_claims(word, problem):
+    stepper = solver(word).stepper()
+    assert stepper.order == CLAIMED.get(word, stepper.order)
+    system, end, exact = PROBLEMS[problem]
+    finest = 120 if stepper.order > 2 else 960
+    error = math.inf
+    orders = []
+    while finest <= 120_000 and error > 3e-11:  # as fine as the reference lets one see
+        before, error = error, np.abs(final(system, fixed(stepper, end / finest), end) - exact).max()
+        if error > 3e-11 or not orders:
+            orders.append(math.log2(before / error) if before < math.inf else math.inf)
+        finest *= 2
+    assert orders[-1] == pytest.approx(stepper.order, abs=0.1)
+
+
+@pytest.mark.parametrize("word", WORDS)
+@pytest.mark.parametrize(("re", "im"), [(-1.0, 0.0), (-0.3, 1.0), (0.0, 1.0), (-2.0, 2.0)])
+def test_growth_is_what_a_step_does_to_the_linear_equation(word, re, im):
+    kind = solver(word)
+    jacobian = np.array([[re, -im], [im, re]])
+    for step in (0.1, 0.9, 2.3):
+        end = np.abs(final(simple("linear", [1.0, 0.0], [re, im]), fixed(kind.stepper(), step), 4 * step) @ (1, 1j))
+        assert end == pytest.approx(kind.growth(jacobian, np.array([-1, -1]), step) ** 4, rel=1e-9)
+
+
+@pytest.mark.parametrize("word", WORDS)
+@pytest.mark.parametrize(("square", "damping"), [(1e4, 0.0), (1e4, 20.0), (1e4, 400.0), (0.0, 50.0)])
+def test_the_bound_parts_stable_from_unstable_steps(word, square, damping):
+    kind = solver(word)
+    system = springs([1.0, square], [0.3, damping])
+    found = stability(March(system, fixed(kind.stepper(), 1e-3), 1.0), kind)
+    jacobian = np.block([[np.zeros((2, 2)), np.eye(2)], [-np.diag([1.0, square]), -np.diag([0.3, damping])]])
+    if found.step == 0.0:
+        assert damping == 0.0
+        assert kind.growth(jacobian, system.partner, 1e-3) > 1.0
+        return
+    assert kind.growth(jacobian, system.partner, 0.999 * found.step) <= 1.0 + 1e-9
+    assert kind.growth(jacobian, system.partner, 1.01 * found.step) > 1.0 + 1e-9
+    assert np.abs(final(system, fixed(kind.stepper(), 0.99 * found.step), 900 * found.step)).max() < 200
+
+
+def test_the_bounds_on_an_undamped_spring_are_the_textbooks_own():
+    omega = 100.0
+    system = springs([1.0, omega**2], [0.0, 0.0])
+
+    def bound(kind):
+        return stability(March(system, kind.stepper(), 1.0), kind)
+
+    assert bound(Rk4()).step == pytest.approx(2 * math.sqrt(2) / omega, rel=1e-3)
+    assert bound(SemiImplicitEuler()).step == pytest.approx(2 / omega, rel=1e-3)
+    for kind in (Euler(step=2e-3), Midpoint(step=2e-3)):
+        found = bound(kind)
+        z = omega * kind.step
+        assert found.step == 0.0
+        assert found.growth == pytest.approx(math.sqrt(1 + (z**2 if isinstance(kind, Euler) else z**4 / 4)), rel=1e-6)
+        assert "no step is stable" in found.text
+    assert (bound(Rk4()).part, bound(Rk4()).span) == ("springs", TETHER)
+    assert bound(Rk4()).frequency == pytest.approx(omega / (2 * math.pi), rel=1e-6)
+    assert "unstable" in bound(Rk4(step=0.03)).text
+
+
+def test_the_bound_of_a_large_island_is_found_without_its_matrix():
+    frequencies = np.linspace(1, 100, 900)
+    for damping in (0.0, 3.0):
+        march = March(springs(frequencies**2, np.full(900, damping)), Rk4().stepper(), 1.0)
+        z = stability(March(springs([1e4], [damping]), Rk4().stepper(), 1.0), Rk4()).step
+        assert stability(march, Rk4()).step == pytest.approx(z, rel=1e-2)
+
+
+def test_what_does_not_depend_on_the_state_limits_no_step():
+    assert stability(March(balls([1.0], 0.5).system, Rk4().stepper(), 1.0), Rk4()).step == math.inf
+
+
+@pytest.mark.parametrize("factor", [0.95, 1.05])
+def test_rk4_runs_below_its_bound_and_is_stopped_above(factor):
+    system = springs([1.0, 1e4], [0.0, 0.0])
+    march = March(system, Rk4(step=factor * 2 * math.sqrt(2) / 100).stepper(), 100.0)
+    if factor < 1:
+        assert np.abs(march.advance(100.0)[0]).max() < 200
+        return
+    with pytest.raises(RunFailure) as caught:
+        march.advance(100.0)
+    assert (caught.value.part, caught.value.span) == ("springs", TETHER)
+    assert 1 < caught.value.time < 100
+    assert "scene.yaml:3" in str(caught.value)
+
+
+@pytest.mark.parametrize("word", WORDS)
+def test_dense_output_has_the_order_that_its_ends_or_its_own_formula_allow(word):
+    stepper = solver(word).stepper()
+    system = simple("forced", [1.0])
+    inside = 4 if stepper.dense else 3
+    errors = []
+    for h in (0.1, 0.05):
+        march = March(system, fixed(stepper, h), 1.0)
+        worst = 0.0
+        for theta in (0.21, 0.37, 0.5, 0.83):
+            worst = max(worst, abs(march.advance(theta * h)[0][0] - 1 / (1 + math.sin(theta * h))))
+        errors.append(worst)
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(min(stepper.order, inside) + 1, abs=0.35)
+
+
+@pytest.mark.parametrize("word", WORDS)
+def test_frames_change_nothing(word):
+    ends = []
+    for fps in (0.5, 24, 30, 60):
+        march = March(simple("pendulum", [1.5, 0.2], paired=True), solver(word).stepper(), 2.0)
+        for k in range(int(2 * fps)):
+            march.advance(k / fps)
+        y, rate = march.advance(2.0)
+        ends.append((*y, *rate, march.statistics.steps, march.statistics.evaluations))
+    assert len(set(ends)) == 1
+
+
+def test_a_grid_that_does_not_meet_the_end_is_cut_there():
+    march = March(simple("forced", [1.0]), Rk4(step=0.3).stepper(), 1.0)
+    assert march.advance(1.0)[0][0] == pytest.approx(1 / (1 + math.sin(1.0)), abs=1e-3)
+    assert march.statistics.steps == 4
+    exact = March(simple("forced", [1.0]), Rk4(step=0.1).stepper(), 1.0)
+    exact.advance(1.0)
+    assert exact.statistics.steps == 10
+
+
+def test_dopri5_follows_the_double_pendulum():
+    start = [math.pi / 2, math.pi / 2, 0.0, 0.0]
+    exact = [-0.482971534252, -1.324048712302, 3.065288192073, 2.949271547572]
+    y = final(simple("double_pendulum", start, [9.81]), Dopri5(tolerance=1e-11).stepper(), 2.0)
+    np.testing.assert_allclose(y, exact, rtol=0, atol=1e-8)
+
+
+def test_the_error_follows_the_tolerance():
+    errors = [
+        np.abs(final(simple("pendulum", [1.5, 0.2]), Dopri5(tolerance=tol).stepper(), 2.0) - PENDULUM_AT_2).max()
+        for tol in (1e-5, 1e-7, 1e-9)
+    ]
+    for tolerance, error in zip((1e-5, 1e-7, 1e-9), errors, strict=True):
+        assert error < 20 * tolerance
+
+
+def test_steps_are_no_longer_than_the_longest_allowed():
+    march = March(simple("pendulum", [1.5, 0.2]), Dopri5(largest_step=0.01).stepper(), 1.0)
+    march.advance(1.0)
+    assert march.statistics.steps >= 100
+
+
+# --- events ---
+
+
+@pytest.mark.parametrize("stepper", [Rk4(step=1e-3).stepper(), Rk4(step=1 / 60).stepper(), Dopri5().stepper()])
+def test_a_bouncing_ball_hits_and_rests_on_time(stepper):
+    ball = balls([1.0], 0.8)
+    march = March(ball.system, stepper, 5.0)
+    for k in range(150):
+        y, _ = march.advance(k / 30)
+        assert y[0] > -1e-9
+    first = math.sqrt(2 / 9.81)
+    assert march.floats[ball.hit_at] == pytest.approx(first, abs=1e-11)
+    assert march.floats[ball.rest_at] == pytest.approx(first * (1 + 2 * 0.8 / (1 - 0.8)), abs=1e-9)
+    assert march.floats[ball.rest_at] == pytest.approx(4.063712768872, abs=1e-9)
+    assert y[0] == pytest.approx(0, abs=1e-9)
+    assert 90 < march.statistics.events < 130
+
+
+def test_balls_that_hit_together_and_apart_each_bounce():
+    ball = balls([1.0, 1.0, 0.5, 2.0], 0.7)
+    march = March(ball.system, Rk4(step=0.01).stepper(), 1.0)
+    march.advance(1.0)
+    times = march.floats[ball.hit_at : ball.hit_at + 4]
+    np.testing.assert_allclose(times, np.sqrt(2 * np.array([1.0, 1.0, 0.5, 2.0]) / 9.81), rtol=1e-11)
+
+
+def test_a_frame_at_an_impact_reads_the_flight_before_it():
+    ball = balls([1.0], 0.8)
+    march = March(ball.system, Dopri5().stepper(), 5.0)
+    for before in (1e-3, 1e-6, 1e-9):
+        t = math.sqrt(2 / 9.81) - before
+        y, _ = march.advance(t)
+        assert y[1] == pytest.approx(-9.81 * t, rel=1e-9)
+    assert march.advance(math.sqrt(2 / 9.81) + 1e-3)[0][1] > 0
+
+
+def test_a_ball_that_lies_on_the_floor_stays():
+    ball = balls([0.0], 0.8)
+    march = March(ball.system, Dopri5().stepper(), 5.0)
+    assert march.advance(5.0)[0].tolist() == [0.0, 0.0]
+    assert march.statistics.events == 1
+
+
+def test_local_contacts_act_on_every_step():
+    march = March(balls([1.0], 1.0, mode="local").system, Rk4(step=1e-3).stepper(), 5.0)
+    heights = [march.advance(k / 100)[0][0] for k in range(500)]
+    assert min(heights) > -1e-4
+    assert max(heights[100:]) > 0.9
+
+
+# --- failure ---
+
+
+def test_a_singularity_is_told_with_its_time():
+    # y' = -y^2 cos t from y(0) = -2 has a pole where sin t = 1/2
+    with pytest.raises(RunFailure, match=r"run away|singularity") as caught:
+        March(simple("forced", [-2.0]), Dopri5().stepper(), 3.0).advance(3.0)
+    assert caught.value.time == pytest.approx(math.pi / 6, abs=1e-3)
+    assert caught.value.part == "model"
+
+
+def test_a_start_without_a_rate_is_told():
+    with pytest.raises(RunFailure, match="at the start"):
+        March(simple("pendulum", [math.inf, 0.0]), Rk4().stepper(), 1.0).advance(0.0)
+
+
+def test_a_state_that_cannot_be_held_is_refused_at_once():
+    with pytest.raises(LimitRefused, match="GiB"):
+        IslandAssembly(None).room(6e12, TETHER)
+
+
+# --- the script's own tableau ---
+
+
+def test_the_orders_of_known_tableaus_are_found():
+    assert [len(tableau.trees(order)) for order in range(1, 9)] == [1, 1, 2, 4, 9, 20, 48, 115]
+    methods = (tableau.EULER, tableau.MIDPOINT, tableau.CLASSIC, tableau.DORMAND_PRINCE)
+    assert [method.order for method in methods] == [1, 2, 4, 5]
+    assert tableau.DORMAND_PRINCE.first_same_as_last
+    assert not tableau.CLASSIC.first_same_as_last
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"a": ((), (0.5, 0.5)), "b": (0.0, 1.0)}, "explicit"),
+        ({"a": ((),), "b": (0.5, 0.5)}, "one of each"),
+        ({"a": ((), (0.5,)), "b": (0.5, 0.6)}, "sum to"),
+        ({"a": ((), (0.5,)), "b": (0.0, 1.0), "c": (0.0, 1.0)}, "row sums"),
+        ({"a": ((), (0.5,)), "b": (0.0, 1.0), "tolerance": 1e-3}, "embedded"),
+        ({"a": ((), ()), "b": (0.0, 1.0)}, "it needs 1"),
+    ],
+)
+def test_a_tableau_that_is_none_is_refused(fields, message):
+    with pytest.raises(ValueError, match=message):
+        RungeKutta(**fields)
+
+
+def test_an_embedded_tableau_steps_by_its_error():
+    # Bogacki and Shampine (1989)
+    kind = RungeKutta(
+        a=((0.0,), (1 / 2,), (0.0, 3 / 4), (2 / 9, 1 / 3, 4 / 9)),
+        b=(2 / 9, 1 / 3, 4 / 9, 0.0),
+        b_hat=(7 / 24, 1 / 4, 1 / 3, 1 / 8),
+        tolerance=1e-7,
+    )
+    assert kind.stepper().order == 3
+    assert kind.stepper().last_stage == 3
+    y = final(simple("pendulum", [1.5, 0.2]), kind.stepper(), 2.0)
+    np.testing.assert_allclose(y, PENDULUM_AT_2, atol=2e-6)
+
+
+# --- what is compiled ---
+
+
+def test_a_changed_number_count_or_tolerance_compiles_nothing():
+    final(springs([1.0], [0.0]), Dopri5().stepper(), 0.1)
+    final(balls([1.0], 0.5).system, Rk4().stepper(), 0.1)
+    before = kernels.compiled.count
+    final(springs(np.arange(1.0, 50.0), np.zeros(49)), Dopri5(tolerance=1e-9).stepper(), 0.2)
+    final(springs([3.0], [0.1]), RungeKutta(**HEUN_3).stepper(), 0.3)
+    final(balls([1.0, 2.0], 0.7, g=1.62).system, Euler(step=1e-2).stepper(), 0.1)
+    assert kernels.compiled.count == before
