@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from islands import assembly
 
+from islands import assembly
 from sceneql.kinds import Value
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.quantities.evaluate import evaluate

@@ -224,6 +224,14 @@ def test_balls_that_hit_together_and_apart_each_bounce():
     np.testing.assert_allclose(times, np.sqrt(2 * np.array([1.0, 1.0, 0.5, 2.0]) / 9.81), rtol=1e-11)
 
 
+@pytest.mark.parametrize("step", [1e-3, 0.1])
+def test_many_balls_come_to_rest_together(step):
+    ball = balls([1.0] * 7, 0.8)
+    march = March(ball.system, Rk4(step=step).stepper(), 5.0)
+    march.advance(5.0)
+    np.testing.assert_allclose(march.floats[ball.rest_at : ball.rest_at + 7], 4.063712768872, rtol=0, atol=1e-9)
+
+
 def test_a_frame_at_an_impact_reads_the_flight_before_it():
     ball = balls([1.0], 0.8)
     march = March(ball.system, Dopri5().stepper(), 5.0)

@@ -146,8 +146,9 @@ def apply_impact(rate, impact, t, y, slope, floats, ints, leaving, counts):
     rate(t, y, slope, floats, ints)
     impact(t, y, pair, floats, ints)
     rate(t, y, slope, floats, ints)
-    for k in range(leaving.size):
-        leaving[k] = 0
+    if counts[REPEATS] == 0:
+        for k in range(leaving.size):
+            leaving[k] = 0
     leaving[pair] = 1
 
 
