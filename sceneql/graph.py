@@ -23,6 +23,8 @@ class Task:
     span: Span | None
     needs: tuple[str, ...] = ()
     """Names of the parts that it links or refers to."""
+    original: Kind | None = None
+    """As the script has it, where a model drives it: what the model starts from."""
 
     @property
     def family(self) -> str:
@@ -70,6 +72,8 @@ class SimulationGraph:
     """For each output with pictures, the objects and models it draws."""
     cameras: Mapping[str, str]
     """For each output with pictures, its camera's task."""
+    palette: tuple[str, ...] = ()
+    """Objects and models in the order that gives them their default colors."""
     left_out: tuple[LeftOut, ...] = ()
     warnings: tuple[Diagnostic, ...] = ()
     script_hash: str = ""

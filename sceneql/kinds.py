@@ -187,6 +187,11 @@ GRAMMAR: Mapping[type, Any] = {Paint: Quantity(dim.PLAIN, (3,)), Turn: Quantity(
 """How the default of a color (three sRGB numbers) and of a rotation (a quaternion) is written."""
 
 
+def written_name(name: str) -> str:
+    """A field's name in a script: ``from_`` is written ``from``, which Python does not allow as a name."""
+    return name.removesuffix("_")
+
+
 class Record(BaseModel):
     """A group of fields inside a word (a mass, a spring, a clock): the same types, no methods of a family."""
 
@@ -319,7 +324,7 @@ class Object(Kind):
         """Low and high corner (3,) of a world box around it; infinite where it is unbounded."""
         raise TypeError(f"{type(self).__name__} has no extent")
 
-    def children(self) -> tuple[Ref, ...]:
+    def parts(self) -> tuple[Ref, ...]:
         """Objects that are drawn by this one, and so not by themselves."""
         return ()
 

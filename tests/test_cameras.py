@@ -117,13 +117,13 @@ def test_a_camera_at_its_own_target_is_refused():
 def test_perspective_follows_an_object_that_moves():
     ball = Sphere(position=link("fall", "position", (3,)))
     moment = FakeMoment(parts={"ball": ball}, given={("fall", "position"): np.array([1.0, 2.0, 3.0])})
-    view = Perspective(follow=Ref("ball"), offset=const([0.6, 0.3, 3])).view((64, 36), moment)
+    view = Perspective(follow=Ref("ball"), from_=const([0.6, 0.3, 3])).view((64, 36), moment)
     assert view.origin == pytest.approx((1.6, 2.3, 6.0))
     np.testing.assert_allclose(seen(view, [(1, 2, 3)])[0], 0, atol=1e-12)
 
 
 def test_following_and_standing_exclude_each_other():
-    with pytest.raises(ValueError, match="offset"):
+    with pytest.raises(ValueError, match="from"):
         Perspective(follow=Ref("ball"), position=const([0, 0, 5]))
 
 

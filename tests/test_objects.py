@@ -152,7 +152,7 @@ UNEVEN = (1.3, 0.7, 0.9)
 def test_what_a_group_draws_is_the_child_under_the_groups_matrix(word, scale):
     thing, inside = SOLIDS[word]
     position, turn = (0.5, 0.2, -0.4), (0.9, 0.1, 0.5, -0.2)
-    group = Group(of=(Ref("thing"),), position=const(position), rotation=const(turn), scale=const(scale))
+    group = Group(children=(Ref("thing"),), position=const(position), rotation=const(turn), scale=const(scale))
     moment, place = FakeMoment(parts={"thing": thing}), affine((0.1, 0, 0), (1, 0, 0.2, 0), 1.1)
     points = cloud(6000, seed=3)
     matrix = np.vstack([compose(place, affine(position, turn, scale)), [0, 0, 0, 1]])
@@ -299,7 +299,7 @@ def test_blobby_of_linked_points_follows_them():
 
 def test_a_child_without_material_takes_the_groups():
     color = const([0.1, 0.2, 0.3])
-    group = Group(of=(Ref("plain"), Ref("own"), Ref("gone")), color=color)
+    group = Group(children=(Ref("plain"), Ref("own"), Ref("gone")), color=color)
     parts = {"plain": Sphere(), "own": Sphere(color=const([1, 1, 1])), "gone": Sphere(hidden=True)}
     shapes = {shape.name: shape.surface.color for shape in group.lower("group", IDENTITY, FakeMoment(parts=parts))}
     assert shapes == {"plain": (0.1, 0.2, 0.3), "own": (1.0, 1.0, 1.0)}

@@ -26,7 +26,7 @@ TURN = (0.8, 0.3, -0.4, 0.33)
 def test_coil_runs_from_its_start_to_its_end_with_its_turns_and_radius(start, end, turns, lead):
     far = np.linalg.norm(np.subtract(end, start))
     assume(far > 0.05)
-    coil = Coil(start=const(start), end=const(end), turns=float(turns), radius=const(0.1), wire=const(0.02), lead=lead)
+    coil = Coil(from_=const(start), to=const(end), turns=float(turns), radius=const(0.1), wire=const(0.02), lead=lead)
     path, _ = coil.path(FakeMoment())
     np.testing.assert_allclose(path[0], start, atol=1e-12)
     np.testing.assert_allclose(path[-1], end, atol=1e-12)
@@ -43,7 +43,7 @@ def test_coil_runs_from_its_start_to_its_end_with_its_turns_and_radius(start, en
 def test_coil_mesh_is_a_closed_wire_with_outward_normals():
     import trimesh
 
-    coil = Coil(start=const([0.3, 0.2, 1]), end=const([0.1, 1.5, 0]), wire=const(0.03))
+    coil = Coil(from_=const([0.3, 0.2, 1]), to=const([0.1, 1.5, 0]), wire=const(0.03))
     (mesh,) = coil.lower("coil", IDENTITY, FakeMoment())
     solid = trimesh.Trimesh(mesh.vertices, mesh.triangles, process=True)
     assert solid.is_watertight
@@ -61,7 +61,7 @@ def test_coil_mesh_is_a_closed_wire_with_outward_normals():
 
 
 def test_coil_pressed_to_nothing_still_has_finite_normals():
-    coil = Coil(start=const([0, 1, 0]), end=const([0, 1, 0]))
+    coil = Coil(from_=const([0, 1, 0]), to=const([0, 1, 0]))
     (mesh,) = coil.lower("coil", IDENTITY, FakeMoment())
     assert np.isfinite(mesh.vertices).all()
     assert np.isfinite(mesh.normals).all()

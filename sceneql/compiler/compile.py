@@ -39,6 +39,7 @@ def compile_script(
         islands=tuple(group for group in groups if group.models[0] in order),
         drawn=drawn,
         cameras=cameras,
+        palette=_palette(tasks),
         left_out=left_out,
         warnings=found.warnings,
         script_hash=script.hash,
@@ -47,7 +48,7 @@ def compile_script(
 
 def _drawn(tasks: Mapping[str, Task]) -> dict[str, tuple[str, ...]]:
     """What each picture draws: objects that are not hidden and no child of another, and models that nothing draws."""
-    inner = {ref.name for t in tasks.values() if isinstance(t.kind, Object) for ref in t.kind.children()}
+    inner = {ref.name for t in tasks.values() if isinstance(t.kind, Object) for ref in t.kind.parts()}
     objects = [
         t.name for t in tasks.values() if isinstance(t.kind, Object) and not t.kind.hidden and t.name not in inner
     ]
@@ -67,6 +68,12 @@ def _drawn(tasks: Mapping[str, Task]) -> dict[str, tuple[str, ...]]:
             show = task.kind.show
             result[task.name] = tuple(ref.name for ref in show) if show else (*objects, *models)
     return result
+
+
+def _palette(tasks: Mapping[str, Task]) -> tuple[str, ...]:
+    """Solid objects and models by the script's order, so that colors do not change with what is pruned."""
+    kinds = (Object, Model)
+    return tuple(t.name for t in tasks.values() if isinstance(t.kind, kinds) and getattr(t.kind, "material", 0) is None)
 
 
 def _cameras(tasks: Mapping[str, Task]) -> dict[str, str]:

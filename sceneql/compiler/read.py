@@ -15,7 +15,7 @@ from pydantic import BaseModel, ValidationError
 
 from sceneql.compiler import paint, values
 from sceneql.compiler.names import Names
-from sceneql.kinds import Formula, Kind, Paint, Quantity, Ref, Refers, Symbols, Turn, Value
+from sceneql.kinds import Formula, Kind, Paint, Quantity, Ref, Refers, Symbols, Turn, Value, written_name
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence
 from sceneql.language.tree import written as plainly
@@ -55,15 +55,17 @@ class Reader:
         ok = True
         got: dict[str, Any] = {}
         if isinstance(node, MappingNode):
-            for name in [name for name in written if name not in cls.model_fields]:
+            known = [written_name(name) for name in cls.model_fields]
+            for name in [name for name in written if name not in known]:
                 ok = False
                 self.found.error(
                     "unknown-field",
                     f"{title} has no field '{name}'",
                     node.keys[name].span,
-                    help=suggestion(name, cls.model_fields) or "it has " + ", ".join(cls.model_fields),
+                    help=suggestion(name, known) or "it has " + ", ".join(known),
                 )
-        for name, info in cls.model_fields.items():
+        for python_name, info in cls.model_fields.items():
+            name = written_name(python_name)
             if name not in written:
                 if info.is_required():
                     ok = False
@@ -73,7 +75,7 @@ class Reader:
                 continue
             reader = replace(self, owner=f"{self.owner}.{name}" if self.owner else "", symbols=symbols)
             try:
-                got[name] = reader.field(written[name], info, name)
+                got[python_name] = reader.field(written[name], info, name)
             except Unreadable:
                 ok = False
         if not ok:
@@ -102,6 +104,8 @@ class Reader:
             field = self.names.field(node.text)
             if field is not None:
                 node, outer = field
+                if isinstance(node, Scalar) and node.kind == "null":
+                    raise Unreadable  # a template's field that was not given, which is reported there
                 return replace(self, names=outer).read(node, annotation, what)
         base, marks = _unwrap(annotation)
         for mark in marks:
@@ -283,8 +287,8 @@ def _text(problem: Any) -> str:
 def _place(path: tuple[int | str, ...], node: Node | None, span: Span) -> Span:
     """The deepest node that a validation error's path leads to."""
     for step in path:
-        if isinstance(node, MappingNode) and isinstance(step, str) and step in node.entries:
-            node = node.entries[step]
+        if isinstance(node, MappingNode) and isinstance(step, str) and written_name(step) in node.entries:
+            node = node.entries[written_name(step)]
         elif isinstance(node, Sequence) and isinstance(step, int) and step < len(node.items):
             node = node.items[step]
         else:

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 
 from sceneql.compiler.catalogue import Catalogue
-from sceneql.kinds import REQUIRED, Formula, Kind, Paint, Quantity, Ref, Refers, Turn, Value
+from sceneql.kinds import REQUIRED, Formula, Kind, Paint, Quantity, Ref, Refers, Turn, Value, written_name
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError, suggestion
 
 
@@ -56,7 +56,7 @@ def _fields(cls: type[BaseModel], indent: str) -> list[str]:
             notes.append("required")
         elif default not in (None, "", (), {}) and not isinstance(default, BaseModel):
             notes.append(f"default {_plain(default)}")
-        lines.append(f"{indent}{name} ({', '.join(notes)}): {info.description}")
+        lines.append(f"{indent}{written_name(name)} ({', '.join(notes)}): {info.description}")
         for record in _records(annotation):
             lines += _fields(record, indent + "  ")
     return lines

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 
 from sceneql.compiler.catalogue import Catalogue
-from sceneql.kinds import Kind, Refers, Settings
+from sceneql.kinds import Kind, Refers, Settings, written_name
 from sceneql.report.manual import type_text
 
 TEXT: dict[str, Any] = {"type": ["string", "number", "integer"]}
@@ -63,8 +63,8 @@ def _record(cls: type[BaseModel], catalogue: Catalogue) -> dict[str, Any]:
     for name, info in cls.model_fields.items():
         annotation = Annotated[(info.annotation, *info.metadata)] if info.metadata else info.annotation
         text = f"{info.description} ({type_text(annotation)})"
-        properties[name] = {**_type(annotation, catalogue), "description": text}
-    required = [name for name, info in cls.model_fields.items() if info.is_required()]
+        properties[written_name(name)] = {**_type(annotation, catalogue), "description": text}
+    required = [written_name(name) for name, info in cls.model_fields.items() if info.is_required()]
     return {
         "type": ["object", "null"],
         "properties": properties,

@@ -58,5 +58,8 @@ def _quadric(shape: Quadric) -> tuple[Floats, Floats]:
 
 
 def _least(a: float, b: float, low: float, high: float) -> float:
-    at = low if a == 0 and b > 0 else high if a == 0 and b < 0 else min(max(-b / (2 * a), low), high) if a else 0.0
+    """The least of a p^2 + b p over an interval."""
+    if a == 0:
+        return 0.0 if b == 0 else b * (low if b > 0 else high)
+    at = min(max(-b / (2 * a), low), high)
     return a * at * at + b * at

@@ -34,6 +34,7 @@ class Run:
         self.islands = [IslandRun(graph, island) for island in graph.islands]
         self.island_of = {name: run for run in self.islands for name in run.members}
         self.orders = _orders(graph)
+        self.palette = _palette(graph)
         self._bounds: dict[str, tuple[Floats, Floats]] | None = None
 
     def moments(self, times: Iterable[float]) -> Iterator[Instant]:
@@ -60,8 +61,9 @@ class Setting:
     tasks: Mapping[str, Task]
 
     def object(self, ref: Ref) -> Object:
-        """The kind of an object of the script."""
-        return cast(Object, self.tasks[ref.name].kind)
+        """The kind of an object of the script, as written."""
+        task = self.tasks[ref.name]
+        return cast(Object, task.original or task.kind)
 
     def formula(self, link: Link) -> Expr | None:
         """The output of a kinematic model, or an object's field, as an expression; None for a dynamic model's."""
@@ -176,7 +178,7 @@ class Instant:
 
         own = None if color is None else linear(self.at(color))
         if material is None:
-            return Surface(color=own or default_color(self.run.orders.get(name, 0)), roughness=0.35)
+            return Surface(color=own or default_color(self.run.palette.get(name, 0)), roughness=0.35)
         kind = cast(Material, self.run.graph.tasks[material.name].kind)
         return kind.surface(self, own)
 
@@ -202,9 +204,13 @@ class Instant:
 
 
 def _orders(graph: SimulationGraph) -> dict[str, int]:
-    """For every drawn part its place in the row of default colors."""
-    names = dict.fromkeys(name for drawn in graph.drawn.values() for name in drawn)
-    return {name: k for k, name in enumerate(names)}
+    """All that any picture draws, in order."""
+    return {name: k for k, name in enumerate(dict.fromkeys(name for drawn in graph.drawn.values() for name in drawn))}
+
+
+def _palette(graph: SimulationGraph) -> dict[str, int]:
+    """For every object and model its place in the row of default colors, whatever is pruned: by the script's order."""
+    return {name: k for k, name in enumerate(graph.palette)}
 
 
 def _bounds(graph: SimulationGraph) -> dict[str, tuple[Floats, Floats]]:

@@ -43,7 +43,7 @@ def expand(tasks: Mapping[str, Task], catalogue: Catalogue) -> dict[str, Task]:
 
 def _surfaces(tasks: Mapping[str, Task]) -> bool:
     driven = {name for task in tasks.values() if isinstance(task.kind, Model) for name in task.kind.drives()}
-    inner = {ref.name for task in tasks.values() if isinstance(task.kind, Object) for ref in task.kind.children()}
+    inner = {ref.name for task in tasks.values() if isinstance(task.kind, Object) for ref in task.kind.parts()}
     return any(
         isinstance(t.kind, Object) and t.kind.collides and t.name not in driven | inner for t in tasks.values()
     )
@@ -59,5 +59,6 @@ def _drive(tasks: dict[str, Task]) -> dict[str, Task]:
             old: Value = getattr(target.kind, field)
             link = Value(Link(model.name, output, old.expr.type), old.span)
             needs = (*target.needs, model.name)
-            tasks[name] = replace(target, kind=target.kind.model_copy(update={field: link}), needs=needs)
+            driven = target.kind.model_copy(update={field: link})
+            tasks[name] = replace(target, kind=driven, needs=needs, original=target.kind)
     return tasks

@@ -23,7 +23,7 @@ class Perspective(Camera):
     position: Position | None = field("Where it stands.", None)
     look_at: Position | None = field("The point in the middle of the picture; by default what it shows.", None)
     follow: PartRef | None = field("A part that it moves with, and looks at.", None)
-    offset: Position = field("Its place as seen from what it follows.", "0 1 4 m")
+    from_: Position = field("Its place as seen from what it follows.", "0 1 4 m")
     fit: tuple[PartRef, ...] | None = field("The parts that must be in the picture over the whole film.", None)
     direction: Direction = field("With `fit`: from what it shows towards the camera.", "0.5 0.35 1")
     margin: FixedScalar = field("With `fit`: part of half the picture that is left free.", "0.08", at_least=0, below=1)
@@ -33,7 +33,7 @@ class Perspective(Camera):
     @model_validator(mode="after")
     def _one_place(self) -> Perspective:
         if self.follow is not None and (self.position is not None or self.fit is not None):
-            raise ValueError("a camera that follows takes its place from `offset`, not from `position` or `fit`")
+            raise ValueError("a camera that follows takes its place from `from`, not from `position` or `fit`")
         return self
 
     def view(self, size: tuple[int, int], moment: Moment) -> View:
@@ -43,7 +43,7 @@ class Perspective(Camera):
         up = moment.at(self.up)
         if self.follow is not None:
             target = framing.whereabouts(moment, self.follow)
-            origin = target + moment.at(self.offset)
+            origin = target + moment.at(self.from_)
             axes = framing.axes_towards(origin - (target if aim is None else aim), up)
         elif self.fit is None and self.position is not None:
             origin = moment.at(self.position)

@@ -19,14 +19,14 @@ PIECES_OF_FIELD = 10
 
 
 class Coil(Object):
-    """A wire from `start` to `end`: a straight lead, a helix that opens and closes within half a turn, a lead.
+    """A wire from one place to another: a straight lead, a helix that opens and closes within half a turn, a lead.
 
     However far its ends are pulled apart it keeps its turns and its radius. Its field is the distance to a chain of
     straight pieces.
     """
 
-    start: Position = field("Where it begins.", "0 1 0 m")
-    end: Position = field("Where it ends.", "0 0 0 m")
+    from_: Position = field("Where it begins.", "0 1 0 m")
+    to: Position = field("Where it ends.", "0 0 0 m")
     radius: Length = field("Radius of its turns, to the middle of the wire.", "80 mm", above=0)
     turns: FixedScalar = field("Number of turns.", "8", at_least=1, at_most=200)
     wire: Length = field("Thickness of the wire.", "20 mm", above=0)
@@ -35,7 +35,7 @@ class Coil(Object):
     def path(self, moment: Moment, pieces: int = 24) -> tuple[Floats, Floats]:
         """Points (n, 3) of the middle of the wire, ``pieces`` a turn, and vectors (n, 3) that point outwards there."""
         radius = positive(moment, self.radius, "radius")
-        return helix(moment.at(self.start), moment.at(self.end), radius, self.turns, self.lead, pieces)
+        return helix(moment.at(self.from_), moment.at(self.to), radius, self.turns, self.lead, pieces)
 
     def _wire(self, moment: Moment) -> float:
         return 0.5 * positive(moment, self.wire, "wire")

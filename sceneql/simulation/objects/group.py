@@ -20,19 +20,19 @@ class Group(Placed):
     group's. Its field is the least of its children's, times the least factor of its scale.
     """
 
-    of: tuple[ObjectRef, ...] | dict[str, ObjectRef] = field("The objects, by name or in place.", ())
+    children: tuple[ObjectRef, ...] | dict[str, ObjectRef] = field("The objects, by name or in place.", ())
     scale: Scale = field("Factor by which it is larger, or three along its own axes.", "1", above=0)
 
     def local(self, moment: Moment) -> Floats:
         """(3, 4) map from its own coordinates to its parent's."""
         return affine(moment.at(self.position), moment.at(self.rotation), moment.at(self.scale))
 
-    def children(self) -> tuple[Ref, ...]:
+    def parts(self) -> tuple[Ref, ...]:
         """Its objects."""
-        return tuple(self.of.values()) if isinstance(self.of, dict) else self.of
+        return tuple(self.children.values()) if isinstance(self.children, dict) else self.children
 
     def _objects(self, moment: Moment) -> Iterable[tuple[str, Object]]:
-        for ref in self.children():
+        for ref in self.parts():
             child = moment.object(ref)
             if child.material is None and child.color is None:
                 child = child.model_copy(update={"material": self.material, "color": self.color})
