@@ -165,8 +165,11 @@ def find_event(
             gap(t0 + high, sample, now, floats, ints)
         found = -1
         for pair in range(pairs):
-            if found < 0 and entered(now[pair], start[pair], above[pair], slop):
-                found = pair
+            if entered(now[pair], start[pair], above[pair], slop):
+                if above[pair] == 0.0 and leaving[pair] == 0:
+                    return pair, 0.0
+                if found < 0:
+                    found = pair
         if found >= 0:
             return first_of(
                 step, rate, gap, found, t0, low, high, y0, rate0, y1, rate1,
