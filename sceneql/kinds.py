@@ -324,7 +324,7 @@ class Object(Kind):
         """Low and high corner (3,) of a world box around it; infinite where it is unbounded."""
         raise TypeError(f"{type(self).__name__} has no extent")
 
-    def parts(self) -> tuple[Ref, ...]:
+    def members(self) -> tuple[Ref, ...]:
         """Objects that are drawn by this one, and so not by themselves."""
         return ()
 

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     from sceneql.frame import Floats
     from sceneql.kinds import Object, Ref, Value
+    from sceneql.quantities.expression import Expr, Link
     from sceneql.quantities.span import Span
 
 Stage = Literal["internal", "force", "close", "constrain"]
@@ -82,6 +83,12 @@ class Assembly(Protocol):
 
     def object(self, ref: Ref) -> Object:
         """The kind of an object of the script."""
+
+    def remember(self, *ints: int) -> None:
+        """Keep integers for the word's own reading: ModelState.ints (a force: for each model; a contact: of all)."""
+
+    def formula(self, link: Link) -> Expr | None:
+        """A linked output as an expression of time; None for one of a model that is solved."""
 
     def body_count(self) -> int:
         """Number of bodies of the island (contacts choose their mode by it)."""

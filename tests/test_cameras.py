@@ -49,7 +49,7 @@ def box_moment(center, sides, **more):
 
 
 @settings(max_examples=100, deadline=None)
-@given(POINT, SIDES, POINT, SIZES, st.floats(0.2, 2.0))
+@given(POINT, SIDES, POINT, SIZES, st.floats(0.2, 1.4))  # wider, the nearest corner may touch the camera first
 def test_perspective_fit_frames_the_box_and_touches_the_margin(center, sides, direction, size, angle):
     assume(np.linalg.norm(direction) > 0.1)
     moment, low, high = box_moment(center, sides)

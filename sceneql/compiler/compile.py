@@ -48,7 +48,7 @@ def compile_script(
 
 def _drawn(tasks: Mapping[str, Task]) -> dict[str, tuple[str, ...]]:
     """What each picture draws: objects that are not hidden and no child of another, and models that nothing draws."""
-    inner = {ref.name for t in tasks.values() if isinstance(t.kind, Object) for ref in t.kind.parts()}
+    inner = {ref.name for t in tasks.values() if isinstance(t.kind, Object) for ref in t.kind.members()}
     objects = [
         t.name for t in tasks.values() if isinstance(t.kind, Object) and not t.kind.hidden and t.name not in inner
     ]

@@ -43,6 +43,8 @@ from sceneql.kernels import inlined, kernel
 
 PAD = 1.0e-15
 LARGE = 1.0e300
+TINY = 1.0e-300
+"""More than underflow takes away."""
 
 
 @inlined
@@ -52,7 +54,7 @@ def product(a0, a1, ea, b0, b1, eb):
     size_a = abs(a0) + abs(a1)
     size_b = abs(b0) + abs(b1)
     e = abs(second) + ea * (size_b + eb) + eb * size_a
-    return a0 * b0 + second, a0 * b1 + a1 * b0, e + PAD * size_a * size_b
+    return a0 * b0 + second, a0 * b1 + a1 * b0, e + (PAD * size_a * size_b + TINY)
 
 
 @inlined
@@ -301,7 +303,7 @@ def segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, sur
             size = abs(a0) + abs(a1)
             c0 = a0 * a0 + second
             c1 = 2.0 * a0 * a1
-            e = second + ea * (2.0 * size + ea) + PAD * size * size
+            e = second + ea * (2.0 * size + ea) + (PAD * size * size + TINY)
         elif op == CONSTANT:
             c0 = constants[left]
             c1 = e = 0.0

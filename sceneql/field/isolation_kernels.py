@@ -112,7 +112,7 @@ def isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tol
             outcome = HIT
             a = min(max(root, a), b)
             break
-        if b - a >= 0.5 * width:
+        if b - a >= 0.5 * width or b - a <= 1.0e-4 * least:
             if b - a <= least:
                 if sign * along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, b) < 0.0:
                     outcome = HIT

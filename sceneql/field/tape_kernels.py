@@ -110,7 +110,7 @@ def value(code, constants, parts, scratch, x, y, z):
         elif op == LOG:
             v = np.log(a)
         elif op == POW:
-            v = a**b
+            v = a**b if a == a and b == b else np.nan  # IEEE has NaN^0 = 1 = 1^NaN
         elif op == ATAN2:
             v = np.arctan2(a, b)
         elif op == FLOOR:

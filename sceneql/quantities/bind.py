@@ -9,7 +9,7 @@ from dataclasses import replace
 from sceneql.quantities.diagnostic import Diagnostics, Note
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Expr, Link, Name, Number, Symbol, Type, Vector
-from sceneql.quantities.operations import CONSTANTS, OPERATIONS, TypeMismatch, common, fits_any
+from sceneql.quantities.quick_operations import CONSTANTS, OPERATIONS, TypeMismatch, common, fits_any
 from sceneql.quantities.span import Span
 
 Lookup = Callable[[tuple[str, ...], Span], Expr | None]

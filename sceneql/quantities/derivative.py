@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from sceneql.quantities.bind import fold
 from sceneql.quantities.expression import Call, Expr, Keys, Link, Number, Symbol, Type, Vector
-from sceneql.quantities.operations import OPERATIONS
+from sceneql.quantities.quick_operations import OPERATIONS
 
 ZERO, ONE = Number(0.0), Number(1.0)
 

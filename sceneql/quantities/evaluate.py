@@ -7,7 +7,7 @@ from typing import Any
 
 from sceneql.quantities.curves import evaluate_keys
 from sceneql.quantities.expression import Call, Expr, Keys, Link, Number, Symbol, Vector
-from sceneql.quantities.operations import OPERATIONS, Operation
+from sceneql.quantities.quick_operations import OPERATIONS, Operation
 
 Environment = Mapping[Any, Any] | Callable[[Symbol | Link], Any]
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError, suggestion
 from sceneql.quantities.expression import Call, Expr, Name, Number, Type, Vector
-from sceneql.quantities.operations import OPERATIONS
+from sceneql.quantities.quick_operations import OPERATIONS
 from sceneql.quantities.span import Span
 from sceneql.quantities.quick_units import NAMES, Unit, read_unit
 

@@ -165,9 +165,7 @@ def _unknown(name: str, span: Span | None, at: int) -> ScriptError:
     return _error("unknown-unit", f"there is no unit '{name}'", span, at, at + max(1, len(name)), hint)
 
 
-def _error(
-    code: str, message: str, span: Span | None, start: int, end: int, help: str | None = None
-) -> ScriptError:
+def _error(code: str, message: str, span: Span | None, start: int, end: int, help: str | None = None) -> ScriptError:
     place = None if span is None else span.part(start, end)
     return ScriptError([Diagnostic(code, message, place, help)])
 

@@ -16,7 +16,7 @@ from sceneql.report.plots import error_against_time, legend
 from sceneql.report.reference import reference
 from sceneql.report.work_precision import Measurement, measurements, solvers, warm
 
-CLEAR = 30.0
+CLEAR = 10.0
 """Errors count for the order where they are so many times the reference's own."""
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import combinations, pairwise
+from itertools import pairwise
 from math import isfinite, log, nan
 
 LARGEST_ERROR = 0.1
@@ -18,18 +18,17 @@ def observed_order(steps: Sequence[float], errors: Sequence[float], floor: float
 
     ``steps`` [s] and relative ``errors`` belong together; ``floor`` is the error below which rounding or the
     reference rules. The asymptotic range is the longest run of neighboring points, below LARGEST_ERROR and above the
-    floor, whose slopes from point to point all lie close to the run's own (SPREADS); of equally long runs the one at
-    the smallest steps.
+    floor, whose slopes from point to point all lie close to the run's own (SPREADS). It reaches down to the smallest
+    step, or to the one before: a straight piece that bends below is no order.
     """
     usable = sorted(
         (log(h), log(e))
         for h, e in zip(steps, errors, strict=True)
         if h > 0.0 and isfinite(e) and floor < e < LARGEST_ERROR
     )
-    ranges = [pair for pair in combinations(range(len(usable) + 1), 2) if pair[1] - pair[0] >= LEAST_POINTS]
-    ranges.sort(key=lambda pair: (pair[0] - pair[1], pair[0]))
+    ranges = [(first, end) for first in (0, 1) for end in range(first + LEAST_POINTS, len(usable) + 1)]
     for spread in SPREADS:
-        for first, end in ranges:
+        for first, end in sorted(ranges, key=lambda pair: pair[0] - pair[1]):
             slope = _slope(usable[first:end])
             if all(abs(_slope(two) - slope) <= spread for two in pairwise(usable[first:end])):
                 return slope

@@ -41,7 +41,7 @@ class Measurement:
     seconds: float
     """Median run time of the compiled steps, compilation left out; NaN where the run failed."""
     steps: int
-    rates: int
+    evaluations: int
     """Evaluations of dy/dt."""
 
     @property
@@ -122,7 +122,7 @@ def _measure(
         return Measurement(title, word, adaptive, setting, failure.diagnostic.message, math.nan, math.nan, 0, 0)
     done = march.march.statistics
     error = reference.error(moment, march)
-    return Measurement(title, word, adaptive, setting, "ok", error, statistics.median(times), done.steps, done.rates)
+    return Measurement(title, word, adaptive, setting, "ok", error, statistics.median(times), done.steps, done.evaluations)
 
 
 def warm(graph: SimulationGraph, island: Island, solver: Solver) -> float:

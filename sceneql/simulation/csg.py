@@ -24,13 +24,13 @@ class Combination(Solid):
             raise ValueError(f"{type(self).__name__.lower()} joins at least two objects")
         return self
 
-    def parts(self) -> tuple[Ref, ...]:
+    def members(self) -> tuple[Ref, ...]:
         """Its members."""
         return tuple(self.of.values()) if isinstance(self.of, dict) else self.of
 
     def values(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> list[int]:
         """Registers of its members' fields. Raises TypeError where a member has no inside."""
-        return [moment.object(ref).implicit(build, x, y, z, moment) for ref in self.parts()]
+        return [moment.object(ref).implicit(build, x, y, z, moment) for ref in self.members()]
 
     def extents(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
         """Low and high corners (m, 3) of its members' boxes."""
@@ -39,5 +39,5 @@ class Combination(Solid):
         from sceneql.simulation.placement import compose
 
         whole = compose(place, self.local(moment))
-        boxes = [moment.object(ref).extent(whole, moment) for ref in self.parts()]
+        boxes = [moment.object(ref).extent(whole, moment) for ref in self.members()]
         return np.array([low for low, _ in boxes]), np.array([high for _, high in boxes])

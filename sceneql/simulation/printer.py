@@ -21,7 +21,7 @@ IMPORTS = (
     "",
     "import numpy as np",
     "",
-    "from sceneql.simulation.printer_kernels import ease, smoothstep",
+    "from sceneql.simulation.printer_kernels import ease, smoothstep, truth",
 )
 
 TEXTS: Mapping[str, str] = {
@@ -45,14 +45,14 @@ TEXTS: Mapping[str, str] = {
     "max": "max({0}, {1})",
     "clamp": "min(max({0}, {1}), {2})",
     "mix": "{0} + ({1} - {0}) * {2}",
-    "step": "float({1} >= {0})",
+    "step": "truth({1} >= {0})",
     "smoothstep": "smoothstep({0}, {1}, {2})",
     "ease": "ease({0})",
-    "lt": "float({0} < {1})",
-    "le": "float({0} <= {1})",
-    "gt": "float({0} > {1})",
-    "ge": "float({0} >= {1})",
-    "eq": "float({0} == {1})",
+    "lt": "truth({0} < {1})",
+    "le": "truth({0} <= {1})",
+    "gt": "truth({0} > {1})",
+    "ge": "truth({0} >= {1})",
+    "eq": "truth({0} == {1})",
     "where": "{1} if {0} else {2}",
 }
 """The operations that a kernel may use, by the names of the one table; {0}, {1}, ... are names of floats."""

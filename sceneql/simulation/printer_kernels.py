@@ -14,3 +14,9 @@ def smoothstep(a, b, x):
 def ease(x):
     """Smoothstep from 0 to 1."""
     return smoothstep(0.0, 1.0, x)
+
+
+@inlined
+def truth(condition):
+    """1 where it holds, else 0."""
+    return 1.0 if condition else 0.0

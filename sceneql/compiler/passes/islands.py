@@ -103,7 +103,7 @@ def _touching(task: Task, tasks: Mapping[str, Task], models: list[str]) -> tuple
     if not targets:
         targets = [n for n in models if getattr(tasks[n].kind, "has_bodies", False)]
     if not surfaces and len(targets) < 2 or not ties:
-        inner = {ref.name for t in tasks.values() if isinstance(t.kind, Object) for ref in t.kind.parts()}
+        inner = {ref.name for t in tasks.values() if isinstance(t.kind, Object) for ref in t.kind.members()}
         surfaces = [
             t.name
             for t in tasks.values()

@@ -19,7 +19,8 @@ from sceneql.kinds import (
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
-from sceneql.simulation.contacts.moving import is_moving, later
+from sceneql.simulation.contacts.moving import is_moving, shifted
+from sceneql.simulation.shift import APART
 from sceneql.system import Assembly, Bodies, ModelState
 
 SHAPES = ("plane", "sphere", "box")
@@ -78,7 +79,7 @@ class Collision(Contact):
             assembly.value(self.friction),
             assembly.floats([self.thickness]),
             tally_at,
-            assembly.floats([0.0] * (pairs * PAIR if exact else bodies.count)),
+            assembly.floats([0.0] * (pairs * PAIR)),
             assembly.floats([nan] * (bodies.count * INSTANT if exact else 0)),
             len(others),
         )
@@ -88,9 +89,10 @@ class Collision(Contact):
         if exact:
             kernels = (f"{folder}.collision_kernels:gap", f"{folder}.collision_kernels:impact")
             assembly.contact("exact", kernels, ints, pairs)
-            assembly.term("constrain", f"{folder}.collision_kernels:constrain", ints)
+            assembly.term("constrain", f"{folder}.resting_kernels:constrain", ints)
         else:
             assembly.contact("local", (f"{folder}.settle_kernels:settle",), ints, pairs)
+            assembly.term("constrain", f"{folder}.resting_kernels:constrain_resting", ints)
         assembly.remember(tally_at)
 
     def read(self, output: str, state: ModelState) -> Any:
@@ -117,16 +119,14 @@ def _object(ref: Ref, assembly: Assembly) -> tuple[int, ...]:
         if not is_moving(kind):
             poses = (0, here.position_at, here.rotation_at, here.position_at, here.rotation_at)
         else:
-            before, after = _shifted(kind, -1, assembly), _shifted(kind, 1, assembly)
-            poses = (1, *before, *after)
-    except TypeError as error:
+            before, after = _shifted(kind, -APART, assembly), _shifted(kind, APART, assembly)
+            poses = (assembly.floats([APART]), *before, *after)
+    except (TypeError, ValueError) as error:
         raise ScriptError([Diagnostic("no-collider", f"'{ref.name}': {error}", ref.span)]) from None
     return (SHAPES.index(here.shape), here.position_at, here.rotation_at, here.size_at, *poses)
 
 
-def _shifted(kind: Object, steps: int, assembly: Assembly) -> tuple[int, int]:
+def _shifted(kind: Object, by: float, assembly: Assembly) -> tuple[int, int]:
     """Position and rotation of an object's collider a little earlier or later."""
-    from sceneql.simulation.contacts.surface_kernels import APART
-
-    there = later(kind, steps * APART).collider(assembly)
+    there = shifted(kind, by, assembly).collider(assembly)
     return there.position_at, there.rotation_at

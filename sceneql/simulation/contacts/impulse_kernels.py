@@ -12,6 +12,9 @@ HEAD = 14
 HITS, FIRST_TIME, LAST_TIME, LAST_SPEED, REST_TIME, TALLIES = range(6)
 """The tally in the floats; times are NaN before there was one."""
 
+STILL = 1e-9
+"""Speed [m/s] that counts as none."""
+
 
 @inlined
 def bounce(vx, vy, vz, nx, ny, nz, restitution, friction):

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from sceneql.kinds import Object, Value
-from sceneql.quantities.expression import TIME_SYMBOL, Call, Expr, Key, Keys, Number, Symbol, Vector
+from sceneql.simulation.shift import later
+from sceneql.system import Assembly
 
 
 def is_moving(kind: Object) -> bool:
@@ -13,29 +14,11 @@ def is_moving(kind: Object) -> bool:
     return any(isinstance(value, Value) and not value.constant for _, value in kind)
 
 
-def later(kind: Object, by: float) -> Object:
-    """The object with every value taken ``by`` [s] later."""
+def shifted(kind: Object, by: float, assembly: Assembly) -> Object:
+    """The object with every value taken ``by`` [s] later. Raises ValueError for one that follows a solved model."""
     changed = {
-        name: replace(value, expr=_later(value.expr, by))
+        name: replace(value, expr=later(value.expr, by, assembly.formula))
         for name, value in kind
         if isinstance(value, Value) and not value.constant
     }
     return kind.model_copy(update=changed)
-
-
-def _later(expr: Expr, by: float) -> Expr:
-    match expr:
-        case Symbol(name=name) if name == TIME_SYMBOL:
-            return Call("add", (expr, Number(by, expr.type, False)), expr.type, expr.span)
-        case Call(args=args):
-            return replace(expr, args=tuple(_later(arg, by) for arg in args))
-        case Vector(items=items):
-            return replace(expr, items=tuple(_later(item, by) for item in items))
-        case Keys(argument=argument, keys=keys):
-            return replace(expr, argument=_later(argument, by), keys=tuple(_later_key(key, by) for key in keys))
-    return expr
-
-
-def _later_key(key: Key, by: float) -> Key:
-    slopes = [None if slope is None else _later(slope, by) for slope in (key.slope_in, key.slope_out)]
-    return Key(key.time, _later(key.value, by), *slopes)

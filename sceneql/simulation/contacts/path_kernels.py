@@ -8,13 +8,12 @@ import math
 from numba import types
 
 from sceneql.kernels import inlined, kernel
+from sceneql.simulation.contacts.impulse_kernels import STILL
 from sceneql.simulation.contacts.surface_kernels import half_depth, surface
 from sceneql.system_kernels import A, F, I, N
 
 PATH = 13
 NEVER = 2.0
-STILL = 1e-9
-"""Speed [m/s] that counts as none."""
 TOUCH = 1e-12
 """Distance, as a part of the coordinates (or of a meter), below which a body touches."""
 

@@ -2,7 +2,7 @@
 
 The body's path in the step is the cubic Hermite curve of its ends; after an impact it flies on with the step's mean
 acceleration. An approach slower than what the pressing acceleration gives in two steps is no impact: the body rests
-and slides. Memory in the floats: one flag a body, 1 while it rests.
+(resting_kernels), and slides for the rest of the step.
 """
 
 import math
@@ -20,8 +20,8 @@ from sceneql.simulation.contacts.impulse_kernels import (
     PAIRS,
     POSITION,
     RADIUS,
-    REST_TIME,
     RESTITUTION,
+    STILL,
     TALLY,
     THICKNESS,
     VELOCITY,
@@ -29,7 +29,17 @@ from sceneql.simulation.contacts.impulse_kernels import (
     bounce,
     count_hit,
 )
-from sceneql.simulation.contacts.path_kernels import NEVER, PATH, STILL, first_contact, moving, place
+from sceneql.simulation.contacts.path_kernels import NEVER, PATH, first_contact, moving, place
+from sceneql.simulation.contacts.resting_kernels import (
+    ALONG,
+    FREE,
+    PAIR,
+    SLIDES,
+    STICKS,
+    come_to_rest,
+    keep,
+    set_velocity,
+)
 from sceneql.simulation.contacts.surface_kernels import OBJECT, surface, velocity
 from sceneql.system_kernels import SETTLE
 
@@ -53,20 +63,25 @@ def shift(path, ux, uy, uz, h):
 
 
 @inlined
-def earliest(reach, path, floats, ints):
-    """The first contact on the path, seen from each object as it moves: (s, its integers)."""
+def earliest(k, reach, path, floats, ints):
+    """The first contact on the path with an object that the body does not rest on: (s, the object).
+
+    The path is seen from the object as it moves.
+    """
     best = NEVER
-    at_best = HEAD
+    first = 0
     h = path[12]
     for j in range(ints[OBJECTS]):
+        if floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)] != FREE:
+            continue
         at = HEAD + OBJECT * j
         ux, uy, uz = velocity(floats, ints, at, path[0], path[1], path[2])
         shift(path, -ux, -uy, -uz, h)
         s = first_contact(path, floats, ints, at, reach)
         shift(path, ux, uy, uz, h)
         if s < best:
-            best, at_best = s, at
-    return best, at_best
+            best, first = s, j
+    return best, first
 
 
 @inlined
@@ -138,15 +153,14 @@ def slide(path, mean, nx, ny, nz, ux, uy, uz, press, friction):
 
 @inlined
 def fly(k, t1, reach, path, mean, floats, ints):
-    """Take the path through its impacts: (energy lost by mass [J/kg], whether it touched anything)."""
+    """Take the path through its impacts; the energy by mass that they take [J/kg]."""
     whole = path[12]
     lost = 0.0
-    touched = False
     for _ in range(MOST_IMPACTS):
-        s, at = earliest(reach, path, floats, ints)
+        s, j = earliest(k, reach, path, floats, ints)
         if s == NEVER:
             break
-        touched = True
+        at = HEAD + OBJECT * j
         px, py, pz = place(path, s)
         vx, vy, vz = moving(path, s)
         d, nx, ny, nz = surface(floats, ints, at, px, py, pz)
@@ -164,18 +178,17 @@ def fly(k, t1, reach, path, mean, floats, ints):
             rx, ry, rz = bounce(rx, ry, rz, nx, ny, nz, floats[ints[RESTITUTION]], floats[ints[FRICTION]])
             lost += start_with(path, rx + ux, ry + uy, rz + uz)
             count_hit(floats, ints[TALLY], t, -vn)
-            floats[ints[PAIRS] + k] = 0.0
             fly_on(path, mean[0], mean[1], mean[2], path[12])
         else:
             rx, ry, rz = rx - vn * nx, ry - vn * ny, rz - vn * nz
             lost += start_with(path, rx + ux, ry + uy, rz + uz)
             lost += slide(path, mean, nx, ny, nz, ux, uy, uz, press, floats[ints[FRICTION]])
-            if floats[ints[PAIRS] + k] == 0.0:
-                floats[ints[PAIRS] + k] = 1.0
-                floats[ints[TALLY] + REST_TIME] = t
+            memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
+            rx, ry, rz = path[9] - ux, path[10] - uy, path[11] - uz
+            come_to_rest(t, memory, rx, ry, rz, nx, ny, nz, floats, ints)
         if path[12] <= 1e-14 * whole:
             break
-    return lost, touched
+    return lost
 
 
 @inlined
@@ -201,6 +214,26 @@ def push_out(reach, path, floats, ints):
     return 0.5 * (before - path[9] ** 2 - path[10] ** 2 - path[11] ** 2)
 
 
+@inlined
+def stop(k, j, h, y0, y1, floats, ints):
+    """End the sliding of a pair whose friction has turned it round within the step of length h."""
+    memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
+    if floats[memory] != SLIDES or floats[ints[FRICTION]] == 0.0:
+        return
+    to, x = ints[VELOCITY] + 3 * k, ints[POSITION] + 3 * k
+    ux, uy, uz = velocity(floats, ints, HEAD + OBJECT * j, y1[x], y1[x + 1], y1[x + 2])
+    ax, ay, az = floats[memory + ALONG], floats[memory + ALONG + 1], floats[memory + ALONG + 2]
+    before = (y0[to] - ux) * ax + (y0[to + 1] - uy) * ay + (y0[to + 2] - uz) * az
+    after = (y1[to] - ux) * ax + (y1[to + 1] - uy) * ay + (y1[to + 2] - uz) * az
+    if after >= 0.0:
+        return
+    # It came back from where it stopped with the same deceleration.
+    back = 0.5 * after * after * h / max(before - after, -after)
+    y1[x], y1[x + 1], y1[x + 2] = y1[x] + back * ax, y1[x + 1] + back * ay, y1[x + 2] + back * az
+    set_velocity(k, ux, uy, uz, y1, floats, ints)
+    floats[memory] = STICKS
+
+
 @kernel(SETTLE)
 def settle(t0, t1, y0, rate0, y1, floats, ints):
     """Change y1 so that no body went through a surface in the step from t0 to t1."""
@@ -209,6 +242,9 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
     for k in range(ints[BODIES]):
         if floats[ints[INVERSE] + k] == 0.0:
             continue
+        for j in range(ints[OBJECTS]):
+            stop(k, j, t1 - t0, y0, y1, floats, ints)
+            keep(t1, k, j, y1, floats, ints)
         at, to = ints[POSITION] + 3 * k, ints[VELOCITY] + 3 * k
         for c in range(3):
             path[c], path[3 + c] = y0[at + c], y0[to + c]
@@ -216,11 +252,8 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
             mean[c] = (y1[to + c] - y0[to + c]) / (t1 - t0)
         path[12] = t1 - t0
         reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
-        lost, touched = fly(k, t1, reach, path, mean, floats, ints)
+        lost = fly(k, t1, reach, path, mean, floats, ints)
         lost += push_out(reach, path, floats, ints)
-        if touched or lost != 0.0:
-            y1[ints[WORK]] += floats[ints[MASS] + k] * lost
-        else:
-            floats[ints[PAIRS] + k] = 0.0
+        y1[ints[WORK]] += floats[ints[MASS] + k] * lost
         for c in range(3):
             y1[at + c], y1[to + c] = path[6 + c], path[9 + c]

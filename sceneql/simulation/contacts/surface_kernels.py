@@ -1,7 +1,8 @@
 """Surfaces that can be collided with: signed distance, normal, curvature and motion at a point.
 
 An object is nine integers: shape, then offsets into the floats of its position (3), rotation (4, unit quaternion
-[w, x, y, z]) and size; whether it moves; and the offsets of position and rotation a little earlier and later.
+[w, x, y, z]) and size; of the seconds between its poses, 0 if it never moves; of position and rotation so much earlier
+and so much later. Velocities and accelerations of a moving object are central differences of its poses.
 """
 
 import math
@@ -14,8 +15,6 @@ from sceneql.system_kernels import A, F, I, N
 PLANE, SPHERE, BOX = 0, 1, 2
 OBJECT = 9
 MOVING = 4
-APART = 1e-4
-"""Seconds between the poses of a moving object: its velocity and acceleration are central differences."""
 
 FOUR = types.UniTuple(types.float64, 4)
 THREE = types.UniTuple(types.float64, 3)
@@ -141,9 +140,10 @@ def velocity(floats, ints, at, x, y, z):
     """Velocity [m/s] of the object's own point at (x, y, z)."""
     if ints[at + MOVING] == 0:
         return 0.0, 0.0, 0.0
+    apart = floats[ints[at + MOVING]]
     a, b, c = carried(floats, ints, at, 5, x, y, z)
     p, q, r = carried(floats, ints, at, 7, x, y, z)
-    return (p - a) / (2.0 * APART), (q - b) / (2.0 * APART), (r - c) / (2.0 * APART)
+    return (p - a) / (2.0 * apart), (q - b) / (2.0 * apart), (r - c) / (2.0 * apart)
 
 
 @kernel(THREE(A, I, N, F, F, F))
@@ -151,7 +151,8 @@ def acceleration(floats, ints, at, x, y, z):
     """Acceleration [m/s^2] of the object's own point at (x, y, z)."""
     if ints[at + MOVING] == 0:
         return 0.0, 0.0, 0.0
+    apart = floats[ints[at + MOVING]]
     a, b, c = carried(floats, ints, at, 5, x, y, z)
     p, q, r = carried(floats, ints, at, 7, x, y, z)
-    square = APART * APART
+    square = apart * apart
     return (p - 2.0 * x + a) / square, (q - 2.0 * y + b) / square, (r - 2.0 * z + c) / square

@@ -23,13 +23,16 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.system import Assembly, ModelState
 
-Copies = create_model(  # `as` is a word of Python: it can be a field, but not be written as one
-    "Copies",
-    __base__=Record,
-    __doc__="How often the system stands side by side, each copy with a number of its own.",
-    count=(int, field("How many.", at_least=1)),
-    **{"as": (str, field("Name of the number of a copy in the formulas: 0, 1, ..., count - 1.", "i"))},
-)
+
+class Count(Record):
+    """How often a system stands side by side."""
+
+    count: int = field("How many.", at_least=1)
+
+
+# `as` is a word of Python: it can be a field, but cannot be written as one.
+_NUMBER: Any = {"as": (str, field("Name of a copy's number in the formulas: 0, 1, ..., count - 1.", "i"))}
+Copies = create_model("Copies", __base__=Count, __doc__="The same system several times, side by side.", **_NUMBER)
 
 with warnings.catch_warnings():
     # The script's field `gives` has the name of the class variable that other words list their outputs in; here
@@ -43,9 +46,9 @@ with warnings.catch_warnings():
         rate: dict[str, Formula] = field("Rates: `y: ...` is dy/dt, `a'': ...` is d²a/dt² (then a and a' are states).")
         where: dict[str, Formula] = field("Quantities that the formulas use, each evaluated once.", {})
         invariants: dict[str, Formula] = field("What the exact solution conserves: outputs, for `relative_drift`.", {})
-        gives: dict[str, Formula] = field("Outputs of any shape made of the states: points for objects to link to.", {})  # type: ignore[misc]
+        gives: dict[str, Formula] = field("Outputs of any shape made of the states: points for objects to link to.", {})  # type: ignore[assignment, misc]
         unit: FixedLength = field("Length that 1 stands for in the vectors that it gives.", "1 m")
-        copies: Copies | None = field("The same system several times; its number may stand in every formula.", None)  # type: ignore[valid-type]
+        copies: Copies | None = field("The same system several times; its number may stand in every formula.", None)
 
 
 class Equations(_Written):
@@ -64,8 +67,9 @@ class Equations(_Written):
     @classmethod
     def formula_symbols(cls, written: Mapping[str, Any]) -> tuple[str, ...]:
         """The free symbols of its formulas, from its fields as plain nested dicts and texts."""
-        known = states(_mapping(written.get("rate")))
-        return tuple(dict.fromkeys([*known, *_mapping(written.get("where")), *TIMES, *_index(written)]))
+        rate, start = _mapping(written.get("rate")), _mapping(written.get("start"))
+        meant = [*states(rate), *(row.rstrip("'") for row in rate), *start]  # what is wrong with them is told later
+        return tuple(dict.fromkeys([*meant, *_mapping(written.get("where")), *TIMES, *_index(written)]))
 
     @classmethod
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
@@ -85,9 +89,18 @@ class Equations(_Written):
     @cached_property
     def rows(self) -> Rows:
         """Its formulas without their places in the script."""
-        fields = (self.start, self.rate, self.where, self.invariants, self.gives)
-        exprs = [{name: formula.expr for name, formula in formulas.items()} for formulas in fields]
-        return Rows(*exprs, index=None if self.copies is None else getattr(self.copies, "as"))
+
+        def exprs(formulas: Mapping[str, Formula]) -> dict[str, Expr]:
+            return {name: formula.expr for name, formula in formulas.items()}
+
+        return Rows(
+            start=exprs(self.start),
+            rate=exprs(self.rate),
+            where=exprs(self.where),
+            invariants=exprs(self.invariants),
+            gives=exprs(self.gives),
+            index=None if self.copies is None else getattr(self.copies, "as"),
+        )
 
     @property
     def count(self) -> int:

@@ -70,7 +70,7 @@ class MassSpring(Model):
     )
     velocity: FixedVelocity = field("Velocity of all at the start.", "0 0 0 m/s")
     spin: Annotated[tuple[float, float, float], Quantity(dim.FREQUENCY, (3,))] = field(
-        "Angular velocity at the start, about the center of mass [rad/s].", "0 0 0 1/s"
+        "Angular velocity at the start, about the center of mass [rad/s].", "0 0 0 rad/s"
     )
     radius: FixedLength | None = field(
         "Radius of the masses in contacts and in the picture; by default a tenth of the shortest spring.",

@@ -27,12 +27,12 @@ class Group(Placed):
         """(3, 4) map from its own coordinates to its parent's."""
         return affine(moment.at(self.position), moment.at(self.rotation), moment.at(self.scale))
 
-    def parts(self) -> tuple[Ref, ...]:
+    def members(self) -> tuple[Ref, ...]:
         """Its objects."""
         return tuple(self.children.values()) if isinstance(self.children, dict) else self.children
 
     def _objects(self, moment: Moment) -> Iterable[tuple[str, Object]]:
-        for ref in self.parts():
+        for ref in self.members():
             child = moment.object(ref)
             if child.material is None and child.color is None:
                 child = child.model_copy(update={"material": self.material, "color": self.color})
