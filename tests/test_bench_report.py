@@ -1,0 +1,136 @@
+"""What `bench` promises: true errors, the observed order, failures listed, a table and a plot."""
+
+from __future__ import annotations
+
+import csv
+import math
+import xml.etree.ElementTree as ET
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sceneql import pipeline
+from sceneql.report import work_precision
+from sceneql.report.bench import bench
+from sceneql.report.order import observed_order
+
+SPRING = """\
+sceneql: 1
+define: {k: 4}
+clock: {end: 2 s}
+models:
+  spring:
+    equations:
+      start: {x: 1, x': 0}
+      rate: {x'': -k*x}
+solvers: {main: {rk4: {step: 1 ms}}}
+outputs: {table: {record: {of: [spring.x]}}}
+"""
+EXACT = """\
+expect:
+  x: {of: final(spring.x), value: cos(2*sqrt(k)), because: "exact, x = cos(sqrt(k) t)"}
+"""
+VELOCITY = """\
+  v: {of: "final(spring.x')", value: -sqrt(k)*sin(2*sqrt(k)), because: exact}
+"""
+HALF = """\
+expect:
+  length: {of: "final(abs(spring.x))", value: abs(cos(4)), because: conserved}
+"""
+
+
+@pytest.fixture
+def quick(monkeypatch):
+    """Fewer runs."""
+    monkeypatch.setattr(work_precision, "STEPS", tuple(2**k for k in range(4, 12)))
+    monkeypatch.setattr(work_precision, "TOLERANCES", tuple(10.0**-k for k in range(3, 13)))
+    monkeypatch.setattr(work_precision, "REPEATS", 1)
+
+
+def measured(tmp_path, script, *sets):
+    path = tmp_path / "scene.yaml"
+    path.write_text(script)
+    text = bench(pipeline.load(path, sets=sets), tmp_path)
+    with (tmp_path / "scene.bench.csv").open(newline="") as file:
+        return text, list(csv.DictReader(file))
+
+
+def test_the_observed_orders_are_the_methods_orders(tmp_path, quick):
+    text, rows = measured(tmp_path, SPRING + EXACT)
+    orders = {row["solver"]: float(row["order"]) for row in rows}
+    known = {"euler": 1, "semi_implicit_euler": 1, "midpoint": 2, "rk4": 4}
+    assert {name: orders[name] for name in known} == pytest.approx(known, abs=0.1)
+    assert orders["dopri5"] == pytest.approx(5, abs=0.25)
+    assert "against exact: x" in text
+    for solver in orders:
+        errors = [float(row["error"]) for row in rows if row["solver"] == solver]
+        assert errors == sorted(errors, reverse=True)
+    assert all(float(row["seconds"]) > 0 and int(row["steps"]) > 0 for row in rows)
+    fixed = [row for row in rows if row["adaptive"] == "False"]
+    assert all(float(row["setting"]) * int(row["steps"]) == pytest.approx(2.0) for row in fixed)
+    rk4 = [row for row in fixed if row["solver"] == "rk4"]
+    assert all(4 * int(row["steps"]) <= int(row["evaluations"]) <= 4 * int(row["steps"]) + 2 for row in rk4)
+
+
+def test_without_a_solution_the_reference_is_another_methods(tmp_path, quick):
+    text, rows = measured(tmp_path, SPRING)
+    assert "against scipy's DOP853" in text
+    by_step = {(row["solver"], row["steps"]): float(row["error"]) for row in rows}
+    _, exact = measured(tmp_path, SPRING + EXACT + '  v: {of: "final(spring.x\')", value: -2*sin(4), because: exact}\n')
+    for row in exact:
+        found = by_step[row["solver"], row["steps"]]
+        assert found == pytest.approx(float(row["error"]), rel=0.02, abs=1e-12)
+
+
+def test_a_number_that_is_not_exact_is_no_solution(tmp_path, quick):
+    text, _ = measured(tmp_path, SPRING + HALF)
+    assert "against scipy's DOP853" in text
+
+
+def test_failed_runs_are_listed_as_failed(tmp_path, quick):
+    text, rows = measured(tmp_path, SPRING, "define.k=1e4")
+    failed = [row for row in rows if row["outcome"] != "ok"]
+    assert {"rk4", "midpoint"} <= {row["solver"] for row in failed}
+    assert all(math.isnan(float(row["error"])) and "unstable" in row["outcome"] for row in failed)
+    assert all(float(row["setting"]) * 1e2 > 2.8 for row in failed if row["solver"] == "rk4")
+    assert "failed at" in text
+
+
+def test_the_plot_names_solvers_and_orders(tmp_path, quick):
+    measured(tmp_path, SPRING + EXACT)
+    tree = ET.parse(tmp_path / "scene.bench.svg")
+    texts = {"".join(node.itertext()).strip() for node in tree.iter("{http://www.w3.org/2000/svg}text")}
+    assert {"rk4, order 4.0", "euler, order 1.0", "run time [s]", "relative error at the end"} <= texts
+
+
+def test_a_scene_without_physics_has_nothing_to_measure(tmp_path):
+    (tmp_path / "still.yaml").write_text("sceneql: 1\nobjects: {ball: sphere}\noutputs: {picture: {image: {}}}\n")
+    with pytest.raises(ValueError, match="nothing to measure"):
+        bench(pipeline.load(tmp_path / "still.yaml"), tmp_path)
+
+
+@given(st.floats(0.5, 8), st.floats(1e-3, 1e3), st.floats(1e-3, 1e3))
+def test_the_order_of_a_power_law_is_its_exponent(order, scale, step):
+    steps = [step * 2.0**-k for k in range(30)]
+    errors = [scale * (h / step) ** order for h in steps]
+    usable = sum(1e-12 < e < 0.1 for e in errors)
+    found = observed_order(steps, errors)
+    assert found is None if usable < 4 else found == pytest.approx(order, abs=1e-9)
+
+
+@given(st.sampled_from([1, 2, 4, 5]), st.floats(0.1, 3))
+def test_neither_coarse_steps_nor_rounding_change_the_order(order, bend):
+    steps = [2.0**-k for k in range(1, 16)]
+    errors = [0.05 * h**order * (1 + bend * h) + 1e-15 for h in steps]
+    assert observed_order(steps, errors) == pytest.approx(order, abs=0.15)
+
+
+@given(st.lists(st.sampled_from([0.5, 8.0]), min_size=5, max_size=9))
+def test_errors_that_bend_at_the_smallest_steps_have_no_order(slopes):
+    """Slopes that jump between 0.5 and 8 at the three smallest steps are no power law, whatever stands above."""
+    exponents = [*slopes, 0.5, 8.0, 0.5, 8.0]
+    errors = [0.09]
+    for exponent in exponents:
+        errors.append(errors[-1] * 2.0**-exponent)
+    assert observed_order([2.0**-k for k in range(len(errors))], errors, 0.0) is None
