@@ -314,6 +314,17 @@ def test_a_double_root_is_undecided_at_its_place():
     assert t[0] == pytest.approx(3.0 - math.sqrt(0.49 - 0.05), abs=1e-7)
 
 
+@pytest.mark.parametrize("length", [1e-9, 1.0, 1e3])
+def test_a_touch_at_the_start_is_no_hit(length):
+    tape = implicit(lambda b, op, c: op("square", b.z))
+    assert cast(tape, [[0, 0, 0]], [[0, 0, 1]], 0.0, length)[0][0] in (MISS, UNDECIDED)
+
+
+def test_what_is_undefined_stays_so():
+    tape = implicit(lambda b, op, c: op("pow", op("sqrt", b.x), b.y))
+    assert np.isnan(field_values(tape, [[-1.0, 0.0, 0.0]])[0])
+
+
 def test_a_capsule_of_the_field_is_round_and_straight():
     parts = np.array([[-0.5, 0, 0, 0.5, 0, 0, 0.6, 1.0]])
     tape = implicit(lambda b, op, c: op("sub", c(0.3), b.density(parts, b.x, b.y, b.z)))
