@@ -66,7 +66,7 @@ def equations(written, copies=None, **defines):
     def formulas(rows):
         return {name: bound(text, symbols, **defines) for name, text in rows.items()}
 
-    exprs = {key: formulas(rows) for key, rows in written.items()}
+    exprs = {key + "_" * (key == "gives"): formulas(rows) for key, rows in written.items()}
     return Equations(**exprs, copies=None if copies is None else Copies(count=copies))
 
 

@@ -122,7 +122,9 @@ def _measure(
         return Measurement(title, word, adaptive, setting, failure.diagnostic.message, math.nan, math.nan, 0, 0)
     done = march.march.statistics
     error = reference.error(moment, march)
-    return Measurement(title, word, adaptive, setting, "ok", error, statistics.median(times), done.steps, done.evaluations)
+    return Measurement(
+        title, word, adaptive, setting, "ok", error, statistics.median(times), done.steps, done.evaluations
+    )
 
 
 def warm(graph: SimulationGraph, island: Island, solver: Solver) -> float:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from functools import cached_property
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-from pydantic import ValidationError, create_model, model_validator
+from pydantic import ValidationError, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from sceneql.kinds import FixedLength, Formula, Gives, Model, Record, Value, field, quantity_type
@@ -24,34 +23,14 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, ModelState
 
 
-class Count(Record):
-    """How often a system stands side by side."""
+class Copies(Record):
+    """The same system several times, side by side."""
 
     count: int = field("How many.", at_least=1)
+    as_: str = field("Name of a copy's number in the formulas: 0, 1, ..., count - 1.", "i")
 
 
-# `as` is a word of Python: it can be a field, but cannot be written as one.
-_NUMBER: Any = {"as": (str, field("Name of a copy's number in the formulas: 0, 1, ..., count - 1.", "i"))}
-Copies = create_model("Copies", __base__=Count, __doc__="The same system several times, side by side.", **_NUMBER)
-
-with warnings.catch_warnings():
-    # The script's field `gives` has the name of the class variable that other words list their outputs in; here
-    # `outputs` does that.
-    warnings.simplefilter("ignore", UserWarning)
-
-    class _Written(Model):
-        """The fields."""
-
-        start: dict[str, Formula] = field("State at the start: `{a: 90 deg, a': 0}`.")
-        rate: dict[str, Formula] = field("Rates: `y: ...` is dy/dt, `a'': ...` is d²a/dt² (then a and a' are states).")
-        where: dict[str, Formula] = field("Quantities that the formulas use, each evaluated once.", {})
-        invariants: dict[str, Formula] = field("What the exact solution conserves: outputs, for `relative_drift`.", {})
-        gives: dict[str, Formula] = field("Outputs of any shape made of the states: points for objects to link to.", {})  # type: ignore[assignment, misc]
-        unit: FixedLength = field("Length that 1 stands for in the vectors that it gives.", "1 m")
-        copies: Copies | None = field("The same system several times; its number may stand in every formula.", None)
-
-
-class Equations(_Written):
+class Equations(Model):
     """A system of ordinary differential equations, dy/dt = f(t, y), as a textbook writes it.
 
     States, `t` (or `time`, [s]), helper quantities and defines are plain numbers inside the formulas, in SI. A row
@@ -63,6 +42,14 @@ class Equations(_Written):
     """
 
     has_bodies = False
+
+    start: dict[str, Formula] = field("State at the start: `{a: 90 deg, a': 0}`.")
+    rate: dict[str, Formula] = field("Rates: `y: ...` is dy/dt, `a'': ...` is d²a/dt² (then a and a' are states).")
+    where: dict[str, Formula] = field("Quantities that the formulas use, each evaluated once.", {})
+    invariants: dict[str, Formula] = field("What the exact solution conserves: outputs, for `relative_drift`.", {})
+    gives_: dict[str, Formula] = field("Outputs made of the states: numbers, or points for objects to link to.", {})
+    unit: FixedLength = field("Length that 1 stands for in the vectors that it gives.", "1 m")
+    copies: Copies | None = field("The same system several times; its number may stand in every formula.", None)
 
     @classmethod
     def formula_symbols(cls, written: Mapping[str, Any]) -> tuple[str, ...]:
@@ -98,8 +85,8 @@ class Equations(_Written):
             rate=exprs(self.rate),
             where=exprs(self.where),
             invariants=exprs(self.invariants),
-            gives=exprs(self.gives),
-            index=None if self.copies is None else getattr(self.copies, "as"),
+            gives=exprs(self.gives_),
+            index=None if self.copies is None else self.copies.as_,
         )
 
     @property
