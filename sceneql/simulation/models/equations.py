@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 class Copies(Record):
     """The same system several times, side by side."""
 
-    count: int = field("How many.", at_least=1)
+    count: int = field("How many.", at_least=1, at_most=1_000_000)
     as_: str = field("Name of a copy's number in the formulas: 0, 1, ..., count - 1.", "i")
 
 
