@@ -10,22 +10,17 @@ import math
 from numba import types
 
 from sceneql.kernels import inlined, kernel
-from sceneql.system_kernels import DENSE_FUNCTION, GAP_FUNCTION, RATE_FUNCTION, STEP_FUNCTION, A, F, I, N
+from sceneql.simulation.pointers_kernels import dense_at, gap_at, rate_at, step_at
+from sceneql.system_kernels import A, F, I, N
 
 SAMPLES = 6
 """Places inside a step where the gaps are looked at; a body that enters and leaves between two of them is missed."""
 
 ULP = 2.3e-16
 
-LOCATE = types.float64(
-    STEP_FUNCTION, RATE_FUNCTION, GAP_FUNCTION, N, F, types.boolean, F, F, F, A, A, A, A, A, I, A, I, A
-)  # fmt: skip
-FIRST_OF = types.Tuple((N, F))(
-    STEP_FUNCTION, RATE_FUNCTION, GAP_FUNCTION, N, F, F, F, A, A, A, A, A, A, I, A, I, A, A, A, I, F
-)  # fmt: skip
-FIND_EVENT = types.Tuple((N, F))(
-    STEP_FUNCTION, DENSE_FUNCTION, RATE_FUNCTION, GAP_FUNCTION, F, F, A, A, A, A, A, A, A, I, A, I, A, I, F
-)  # fmt: skip
+LOCATE = types.float64(I, N, F, types.boolean, F, F, F, A, A, A, A, A, I, A, I, A)
+FIRST_OF = types.Tuple((N, F))(I, N, F, F, F, A, A, A, A, A, A, I, A, I, A, A, A, I, F)
+FIND_EVENT = types.Tuple((N, F))(I, F, F, A, A, A, A, A, A, A, I, A, I, A, I, F)
 
 
 @inlined
@@ -44,7 +39,7 @@ def entered(now, start, above, slop):
 
 @kernel(LOCATE)
 def locate(
-    step, rate, gap, pair, contact, deflate, t0, low, high,
+    functions, pair, contact, deflate, t0, low, high,
     y0, rate0, y1, work, settings, numbers, floats, ints, now,
 ):  # fmt: skip
     """Length of the step from t0 that ends in contact, on the side where the pair is still apart; y1 is its end.
@@ -53,6 +48,7 @@ def locate(
     quadratic interpolation (Chandrupatla 1997) on steps of the solver itself. 0: it never leaves contact. Negative:
     no contact up to -length.
     """
+    step, rate, gap = step_at(functions[0]), rate_at(functions[2]), gap_at(functions[3])
     step(rate, t0, high, y0, rate0, y1, work, settings, numbers, floats, ints)
     gap(t0 + high, y1, now, floats, ints)
     f2 = now[pair] - contact
@@ -111,16 +107,17 @@ def locate(
 
 @kernel(FIRST_OF)
 def first_of(
-    step, rate, gap, pair, t0, low, high, y0, rate0, y1, rate1,
+    functions, pair, t0, low, high, y0, rate0, y1, rate1,
     work, settings, numbers, floats, ints, start, now, above, leaving, slop,
 ):  # fmt: skip
     """Locate the contact of a pair and, as long as another pair is in contact even earlier, of that one."""
+    rate, gap = rate_at(functions[2]), gap_at(functions[3])
     while True:
         touched = above[pair] == 0.0
         if touched and leaving[pair] == 0:
             return pair, 0.0
         length = locate(
-            step, rate, gap, pair, reference(start[pair], slop), touched, t0, 0.0 if touched else low, high,
+            functions, pair, reference(start[pair], slop), touched, t0, 0.0 if touched else low, high,
             y0, rate0, y1, work, settings, numbers, floats, ints, now,
         )  # fmt: skip
         if length == 0.0:
@@ -140,13 +137,14 @@ def first_of(
 
 @kernel(FIND_EVENT)
 def find_event(
-    step, dense, rate, gap, t0, h, y0, rate0, y1, rate1,
+    functions, t0, h, y0, rate0, y1, rate1,
     sample, work, settings, numbers, floats, ints, gaps, leaving, slop,
 ):  # fmt: skip
     """First contact in the accepted step (t0, h): (pair, length of the step up to it), or (-1, h).
 
     With a length below h, y1 and rate1 are moved there. (pair, 0): a pair in contact presses on from the start.
     """
+    dense, gap = dense_at(functions[1]), gap_at(functions[3])
     pairs = leaving.size
     start = gaps[:pairs]
     now = gaps[pairs : 2 * pairs]
@@ -172,7 +170,7 @@ def find_event(
                     found = pair
         if found >= 0:
             return first_of(
-                step, rate, gap, found, t0, low, high, y0, rate0, y1, rate1,
+                functions, found, t0, low, high, y0, rate0, y1, rate1,
                 work, settings, numbers, floats, ints, start, now, above, leaving, slop,
             )  # fmt: skip
         for pair in range(pairs):

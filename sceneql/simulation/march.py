@@ -13,6 +13,7 @@ from sceneql.failure import RunFailure
 from sceneql.simulation import march_kernels as kernels
 from sceneql.simulation.driver import driver, function
 from sceneql.simulation.island import System
+from sceneql.simulation.pointers_kernels import addresses
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -62,6 +63,7 @@ class March:
         self._step = function(stepper.step)
         local = bool(system.structure.local)
         self._dense = kernels.hermite if stepper.dense is None or local else function(stepper.dense)
+        self._functions = addresses(self._step, self._dense, *self.driver)
         self._settings = np.array(stepper.settings, dtype=np.float64)
         self._numbers = np.array(stepper.numbers, dtype=np.int64)
         self._y0, self._rate0, self._rate1, self._sample = (np.zeros(n) for _ in range(4))
@@ -152,9 +154,7 @@ class March:
         while True:
             counts[kernels.LEFT] = max(100, ENTRIES_A_CALL // (len(self._y1) + 10))
             status = kernels.march(
-                self._step,
-                self._dense,
-                *self.driver,
+                self._functions,
                 target,
                 self.end,
                 self._y0,

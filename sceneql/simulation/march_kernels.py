@@ -12,21 +12,8 @@ from numba import types
 
 from sceneql.kernels import inlined, kernel
 from sceneql.simulation.events_kernels import find_event
-from sceneql.system_kernels import (
-    DENSE,
-    DENSE_FUNCTION,
-    GAP,
-    GAP_FUNCTION,
-    IMPACT,
-    IMPACT_FUNCTION,
-    RATE_FUNCTION,
-    SETTLE,
-    SETTLE_FUNCTION,
-    STEP_FUNCTION,
-    A,
-    F,
-    I,
-)
+from sceneql.simulation.pointers_kernels import impact_at, rate_at, settle_at, step_at
+from sceneql.system_kernels import DENSE, GAP, IMPACT, SETTLE, A, F, I
 
 T0, T1, STEP, ERROR, LARGEST, LIMIT, SLOP, CLOCKS = range(8)
 """Ends of the last step [s]; the step to try next, or the grid's; the last error; largest step [s]; largest |y|; gap
@@ -44,10 +31,7 @@ MOST_REPEATS = 100
 CHANGED_AT = 1
 """floats[1]: a contact sets it to 1 when its hold changed the state."""
 
-MARCH = types.int64(
-    STEP_FUNCTION, DENSE_FUNCTION, RATE_FUNCTION, GAP_FUNCTION, IMPACT_FUNCTION, SETTLE_FUNCTION,
-    F, F, A, A, A, A, A, A, A, I, A, I, A, I, A, I,
-)  # fmt: skip
+MARCH = types.int64(I, F, F, A, A, A, A, A, A, A, I, A, I, A, I, A, I)
 
 
 @kernel(DENSE)
@@ -154,14 +138,16 @@ def apply_impact(rate, impact, t, y, slope, floats, ints, leaving, counts):
 
 @kernel(MARCH)
 def march(
-    step, dense, rate, gap, impact, settle, target, end,
+    functions, target, end,
     y0, rate0, y1, rate1, sample, work, settings, numbers, floats, ints, gaps, leaving, clock, counts,
 ):  # fmt: skip
-    """Take steps until clock[T1] >= target; the status.
+    """Take steps until clock[T1] >= target; the status. ``functions``: addresses (pointers_kernels).
 
     y0, rate0, y1, rate1, sample are of y's size; leaving (pairs,), gaps (3 pairs,). On a failure the step is taken
     back: (clock[T1], y1, rate1) is the last good state, counts[INDEX] the entry of y (STUCK: the pair) at fault.
     """
+    step, rate = step_at(functions[0]), rate_at(functions[2])
+    impact, settle = impact_at(functions[4]), settle_at(functions[5])
     n = y0.size
     while clock[T1] < target:
         if counts[LEFT] <= 0:
@@ -196,7 +182,7 @@ def march(
             rate(t1, y1, rate1, floats, ints)
         if leaving.size > 0:
             pair, reached = find_event(
-                step, dense, rate, gap, t0, t1 - t0, y0, rate0, y1, rate1,
+                functions, t0, t1 - t0, y0, rate0, y1, rate1,
                 sample, work, settings, numbers, floats, ints, gaps, leaving, clock[SLOP],
             )  # fmt: skip
             counts[PENDING] = pair
