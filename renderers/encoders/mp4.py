@@ -1,0 +1,79 @@
+"""mp4: H.264 film, in process by PyAV behind imageio, whole under its final name or not there."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from sceneql.files import beside
+
+if TYPE_CHECKING:
+    from numpy import uint8
+    from numpy.typing import NDArray
+
+# x264's bytes depend on the number of its threads, so that is fixed; faststart lets a browser play while it loads.
+OPTIONS = {"movflags": "+faststart", "fflags": "+bitexact"}
+
+
+class Writer:
+    """Writes frames of one size at one rate; yuv420p, BT.709, playable everywhere."""
+
+    def __init__(self, path: Path, *, size: tuple[int, int], rate: float, quality: float, comment: str) -> None:
+        """Start a film. Raises ValueError for an odd size, which yuv420p cannot hold."""
+        if size[0] % 2 or size[1] % 2:
+            raise ValueError(f"a film's width and height must be even, not {size[0]} {size[1]}")
+        self.path = path
+        self.frames = 0
+        self._temporary = path.with_name(f".{path.stem}.part.mp4")
+        self._settings = (size, rate, quality, comment)
+        self._file: Any = None
+
+    def _open(self) -> Any:
+        import imageio.v3 as iio
+
+        (width, height), rate, quality, comment = self._settings
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        file = iio.imopen(self._temporary, "w", plugin="pyav", extension=".mp4")
+        file.init_video_stream("libx264", fps=float(rate), pixel_format="yuv420p")
+        stream = file._video_stream
+        stream.width, stream.height = width, height
+        stream.options = {"crf": f"{quality:g}", "preset": "medium"}
+        context = stream.codec_context
+        context.thread_count, context.thread_type = 4, "FRAME"
+        context.color_primaries = context.color_trc = context.colorspace = 1  # BT.709
+        context.color_range = 1
+        file.container_metadata["comment"] = comment
+        return file
+
+    def write(self, picture: NDArray[uint8]) -> None:
+        """Add a frame (h, w, 3)."""
+        if self._file is None:
+            self._file = self._open()
+        from av import VideoFrame
+
+        # The default conversion is that of BT.601, whose colors players would then show wrong.
+        frame = VideoFrame.from_ndarray(picture, format="rgb24")
+        planes = frame.reformat(format="yuv444p", dst_colorspace="ITU709", dst_color_range="MPEG").to_ndarray()
+        self._file.write_frame(planes, pixel_format="yuv444p")
+        self.frames += 1
+
+    def close(self) -> list[Path]:
+        """Finish; the film appears under its name."""
+        return self._finish(self.path)
+
+    def abort(self) -> list[Path]:
+        """Keep the frames so far, playable, beside the final name."""
+        if self.frames == 0:
+            self._temporary.unlink(missing_ok=True)
+            return []
+        return self._finish(beside(self.path, "partial"))
+
+    def _finish(self, path: Path) -> list[Path]:
+        if self._file is None:
+            return []
+        self._file.close()
+        with self._temporary.open("rb") as stream:
+            os.fsync(stream.fileno())
+        self._temporary.replace(path)
+        return [path]

@@ -1,0 +1,24 @@
+"""trace: the ray tracer."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from sceneql.kinds import Renderer, field
+
+
+class Trace(Renderer):
+    """Ray-traces a frame: solids exactly, meshes by a bounding hierarchy, implicit surfaces by certified first roots.
+
+    Soft shadows, light of the sky with occlusion, reflection and refraction; microfacet highlights (Walter, Marschner,
+    Li and Torrance 2007). Shadows and sky are sampled by a net and averaged over the surface around a pixel, so that a
+    film has no grain; the bytes are the same from run to run and for any number of threads.
+    """
+
+    samples: Literal[1, 2, 4, 8, 16, 32, 64] = field("Rays in a pixel in which things meet.", 8)
+
+    def draw(self, frame: Any) -> Any:
+        """The Picture of a frame: linear (h, w, 3) and the number of undecided pixels."""
+        from renderers.tracing.draw import draw
+
+        return draw(frame, self.samples)
