@@ -26,11 +26,11 @@ from sceneql.system import Assembly, Bodies, ModelState
 SHAPES = ("plane", "sphere", "box")
 """Names of shapes in the order of their numbers in the kernels."""
 
-PAIR, INSTANT = 6, 7
+PAIR, INSTANT = 7, 7
 """Floats of memory for a pair, and for a body (collision_kernels)."""
 
 TALLY = ("hits.count", "hits.first.time", "hits.last.time", "hits.last.speed", "rest.time")
-MOST_EXACT = 8
+MOST_EXACT = 64
 
 
 class Collision(Contact):
@@ -40,7 +40,7 @@ class Collision(Contact):
     friction across it; a resting mass feels the normal force that keeps it outside and Coulomb's friction (1785). The
     kinetic energy that is lost is counted as dissipated. Mode `exact` locates every impact to rounding and restarts
     the solver there, up to the end of infinitely many bounces; `local` backs each mass off to its own impact within
-    the step, for very many; `auto` is exact for up to 8 masses.
+    the step, for very many; `auto` is exact for up to 64 masses.
     """
 
     gives: ClassVar[Mapping[str, Gives]] = {

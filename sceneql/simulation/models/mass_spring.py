@@ -6,7 +6,8 @@ from collections.abc import Iterable, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
-from pydantic import ValidationInfo, field_validator, model_validator
+from pydantic import ValidationError, ValidationInfo, field_validator, model_validator
+from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from sceneql.frame import Shape
 from sceneql.kinds import (
@@ -88,10 +89,21 @@ class MassSpring(Model):
     @classmethod
     def _tie_known_masses(cls, springs: tuple[Spring, ...], info: ValidationInfo) -> tuple[Spring, ...]:
         known = info.data.get("masses") or {}
-        for spring in springs:
-            for name in spring.between:
-                if name not in known:
-                    raise ValueError(f"no mass is called '{name}'; there are {', '.join(known) or 'none with a name'}")
+        help = f"there are {', '.join(known)}" if known else "give `masses` by name"
+        wrong = [
+            InitErrorDetails(
+                type=PydanticCustomError(
+                    "unknown_mass", "no mass is called '{name}'; {help}", {"name": name, "help": help}
+                ),
+                loc=(k, "between", end),
+                input=name,
+            )
+            for k, spring in enumerate(springs)
+            for end, name in enumerate(spring.between)
+            if name not in known
+        ]
+        if wrong:
+            raise ValidationError.from_exception_data(cls.__name__, wrong)
         return springs
 
     @field_validator("pins")
@@ -154,7 +166,7 @@ class MassSpring(Model):
         import numpy as np
 
         ends = self.net.points[self.net.pairs]
-        rest = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+        rest: Floats = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         for k, spring in enumerate(self.springs):
             if spring.rest is not None:
                 rest[k] = spring.rest

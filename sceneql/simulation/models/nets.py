@@ -60,7 +60,8 @@ def turned(points: Floats, center: Sequence[float], quaternion: Sequence[float])
     import numpy as np
 
     w, axis, away = quaternion[0], np.asarray(quaternion[1:]), points - np.asarray(center)
-    return points + 2 * np.cross(axis, np.cross(axis, away) + w * away)
+    moved: Floats = points + 2 * np.cross(axis, np.cross(axis, away) + w * away)
+    return moved
 
 
 class MassPoint(Record):
@@ -184,8 +185,8 @@ class Cloth(Record):
         right = side / length if length > 1e-6 else np.array([1.0, 0.0, 0.0])
         up = np.cross(normal, right)
         columns, rows = self.cells[0] + 1, self.cells[1] + 1
-        u, v = np.meshgrid(np.linspace(0, 1, columns), np.linspace(0, 1, rows), indexing="ij")
-        u, v = u.ravel(), v.ravel()
+        across, along = np.meshgrid(np.linspace(0, 1, columns), np.linspace(0, 1, rows), indexing="ij")
+        u, v = across.ravel(), along.ravel()
         flat = (u - 0.5)[:, None] * self.size[0] * right + (v - 0.5)[:, None] * self.size[1] * up
         index = np.arange(columns * rows).reshape(columns, rows)
         a, b, c, d = index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:]

@@ -96,7 +96,8 @@ def vertex_normals(places: Floats, triangles: Ints) -> Floats:
         axis=1,
     )
     length = np.linalg.norm(normals, axis=1, keepdims=True)
-    return np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
+    unit: Floats = np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
+    return unit
 
 
 def rim_edges(triangles: Ints) -> NDArray[Any]:
@@ -105,4 +106,5 @@ def rim_edges(triangles: Ints) -> NDArray[Any]:
 
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     _, first, count = np.unique(np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True)
-    return edges[first[count == 1]]
+    rim: NDArray[Any] = edges[first[count == 1]]
+    return rim

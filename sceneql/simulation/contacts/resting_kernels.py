@@ -1,0 +1,233 @@
+"""Resting contact: the normal force that carries a body, Coulomb's friction, and what keeps it on the surface.
+
+A pair is (body k, object j), numbered k * objects + j. Its memory in the floats: state, free normal acceleration, load
+(normal force by mass), pull along the surface (force without friction by mass), direction of sliding (3).
+
+The direction of Coulomb's friction turns at a rate of friction / speed: infinitely stiff as the speed goes to 0. So a
+body slower than CREEP sticks: friction there goes against the pull, not against the velocity, and what velocity is
+left is taken away once the pull is too weak. Only one that slides to its end, with little pull, stops by itself.
+"""
+
+import math
+
+from sceneql.kernels import inlined, kernel
+from sceneql.simulation.contacts.impulse_kernels import (
+    BODIES,
+    FRICTION,
+    HEAD,
+    INVERSE,
+    MASS,
+    OBJECTS,
+    PAIRS,
+    POSITION,
+    RADIUS,
+    REST_TIME,
+    STILL,
+    TALLY,
+    THICKNESS,
+    VELOCITY,
+    WORK,
+    scale_of,
+)
+from sceneql.simulation.contacts.surface_kernels import OBJECT, acceleration, bend, surface, velocity
+from sceneql.system_kernels import TERM
+
+PRESS, LOAD, PULL, ALONG = 1, 2, 3, 4
+PAIR = 7
+FREE, SLIDES, STICKS = 0.0, 1.0, 2.0
+
+NEAR = 1e-9
+"""Distance, as a part of the coordinates, within which a free pair's normal acceleration is worth knowing."""
+
+CREEP = 1e-3
+"""Speed along the surface [m/s] below which friction goes against the pull."""
+
+SWEEPS = 50
+
+
+@inlined
+def body_of(ints, k, y):
+    """Place of body k, its velocity, and its reach's offset parts."""
+    at = ints[POSITION] + 3 * k
+    to = ints[VELOCITY] + 3 * k
+    return y[at], y[at + 1], y[at + 2], y[to], y[to + 1], y[to + 2]
+
+
+@inlined
+def set_velocity(k, x, y, z, state, floats, ints):
+    """Give body k a velocity; the kinetic energy that this takes is counted as dissipated."""
+    at = ints[VELOCITY] + 3 * k
+    before = state[at] ** 2 + state[at + 1] ** 2 + state[at + 2] ** 2
+    after = x * x + y * y + z * z
+    state[ints[WORK]] += 0.5 * floats[ints[MASS] + k] * (before - after)
+    state[at], state[at + 1], state[at + 2] = x, y, z
+
+
+@inlined
+def come_to_rest(t, memory, vx, vy, vz, nx, ny, nz, floats, ints):
+    """Note that a pair rests from t on: sliding along v (relative to the surface), or sticking."""
+    if math.isnan(floats[ints[TALLY] + REST_TIME]):
+        floats[ints[TALLY] + REST_TIME] = t
+    vn = vx * nx + vy * ny + vz * nz
+    tx, ty, tz = vx - vn * nx, vy - vn * ny, vz - vn * nz
+    slip = math.sqrt(tx * tx + ty * ty + tz * tz)
+    slides = slip >= CREEP or floats[ints[FRICTION]] == 0.0
+    floats[memory] = SLIDES if slides else STICKS
+    if slip > 0.0:
+        floats[memory + ALONG] = tx / slip
+        floats[memory + ALONG + 1] = ty / slip
+        floats[memory + ALONG + 2] = tz / slip
+
+
+@inlined
+def keep(t, k, j, y, floats, ints):
+    """Hold a resting pair on its surface, or let it go when it has left: whether anything changed."""
+    memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
+    if floats[memory] == FREE:
+        return False
+    at = HEAD + OBJECT * j
+    px, py, pz, vx, vy, vz = body_of(ints, k, y)
+    ux, uy, uz = velocity(floats, ints, at, px, py, pz)
+    d, nx, ny, nz = surface(floats, ints, at, px, py, pz)
+    d -= floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
+    rx, ry, rz = vx - ux, vy - uy, vz - uz
+    vn = rx * nx + ry * ny + rz * nz
+    small = 1e-12 * scale_of(px, py, pz)
+    if d > small and vn > STILL and floats[memory + PRESS] >= 0.0:
+        floats[memory] = FREE
+        return True
+    changed = floats[memory + PRESS] < 0.0 and (abs(d) > small or abs(vn) > small)
+    if changed:
+        to = ints[POSITION] + 3 * k
+        y[to], y[to + 1], y[to + 2] = px - d * nx, py - d * ny, pz - d * nz
+        set_velocity(k, vx - vn * nx, vy - vn * ny, vz - vn * nz, y, floats, ints)
+    rx, ry, rz = rx - vn * nx, ry - vn * ny, rz - vn * nz
+    slip = math.sqrt(rx * rx + ry * ry + rz * rz)
+    most = floats[ints[FRICTION]] * floats[memory + LOAD]
+    if slip >= CREEP or (floats[memory] == SLIDES and floats[memory + PULL] > 0.5 * most):
+        come_to_rest(t, memory, rx, ry, rz, nx, ny, nz, floats, ints)
+    elif floats[memory] == STICKS and floats[memory + PULL] <= most and slip > 0.0:
+        set_velocity(k, vx - vn * nx - rx, vy - vn * ny - ry, vz - vn * nz - rz, y, floats, ints)
+        changed = True
+    return changed
+
+
+@inlined
+def pressing(k, j, y, rate, floats, ints):
+    """Second derivative of the gap [m/s^2] and the normal (3) there."""
+    at = HEAD + OBJECT * j
+    to = ints[VELOCITY] + 3 * k
+    px, py, pz, vx, vy, vz = body_of(ints, k, y)
+    ux, uy, uz = velocity(floats, ints, at, px, py, pz)
+    ax, ay, az = acceleration(floats, ints, at, px, py, pz)
+    _, nx, ny, nz = surface(floats, ints, at, px, py, pz)
+    press = (rate[to] - ax) * nx + (rate[to + 1] - ay) * ny + (rate[to + 2] - az) * nz
+    return press + bend(floats, ints, at, px, py, pz, vx - ux, vy - uy, vz - uz), nx, ny, nz
+
+
+@inlined
+def press_of_pairs(k, near, y, rate, floats, ints):
+    """Store how each resting pair would press if nothing held it, and each free one if asked; the resting ones."""
+    resting = 0
+    px, py, pz, _, _, _ = body_of(ints, k, y)
+    reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
+    for j in range(ints[OBJECTS]):
+        memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
+        floats[memory + LOAD] = 0.0
+        if floats[memory] != FREE:
+            resting += 1
+        elif not near or surface(floats, ints, HEAD + OBJECT * j, px, py, pz)[0] - reach > NEAR * scale_of(px, py, pz):
+            continue
+        floats[memory + PRESS] = pressing(k, j, y, rate, floats, ints)[0]
+    return resting
+
+
+@inlined
+def carry(k, resting, y, rate, floats, ints):
+    """Normal forces, none negative, that leave no resting pair pressing: projected Gauss-Seidel over the pairs."""
+    to = ints[VELOCITY] + 3 * k
+    for _ in range(SWEEPS):
+        change = 0.0
+        for j in range(ints[OBJECTS]):
+            memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
+            if floats[memory] == FREE:
+                continue
+            press, nx, ny, nz = pressing(k, j, y, rate, floats, ints)
+            load = max(0.0, floats[memory + LOAD] - press)
+            add = load - floats[memory + LOAD]
+            floats[memory + LOAD] = load
+            rate[to] += add * nx
+            rate[to + 1] += add * ny
+            rate[to + 2] += add * nz
+            change = max(change, abs(add))
+        if resting == 1 or change < 1e-12:
+            break
+
+
+@inlined
+def rub(k, y, rate, floats, ints):
+    """Coulomb's friction of resting pairs: against the sliding, or up to its bound against the pull."""
+    mu = floats[ints[FRICTION]]
+    to = ints[VELOCITY] + 3 * k
+    for j in range(ints[OBJECTS]):
+        memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
+        most = mu * floats[memory + LOAD]
+        if floats[memory] == FREE or mu == 0.0:
+            continue
+        at = HEAD + OBJECT * j
+        px, py, pz, vx, vy, vz = body_of(ints, k, y)
+        ux, uy, uz = velocity(floats, ints, at, px, py, pz)
+        vx, vy, vz = vx - ux, vy - uy, vz - uz
+        ax, ay, az = acceleration(floats, ints, at, px, py, pz)
+        _, nx, ny, nz = surface(floats, ints, at, px, py, pz)
+        dx, dy, dz = rate[to] - ax, rate[to + 1] - ay, rate[to + 2] - az
+        dn = dx * nx + dy * ny + dz * nz
+        dx, dy, dz = dx - dn * nx, dy - dn * ny, dz - dn * nz
+        size = math.sqrt(dx * dx + dy * dy + dz * dz)
+        floats[memory + PULL] = size
+        if floats[memory] == STICKS:
+            most = min(most, size)
+        else:
+            ax, ay, az = floats[memory + ALONG], floats[memory + ALONG + 1], floats[memory + ALONG + 2]
+            vn = vx * nx + vy * ny + vz * nz
+            dx, dy, dz = vx - vn * nx, vy - vn * ny, vz - vn * nz
+            size = math.sqrt(dx * dx + dy * dy + dz * dz)
+            # Past the instant when it stops the force goes on, so that the stop is a clean root.
+            if size < STILL:
+                dx, dy, dz, size = ax, ay, az, 1.0
+            elif dx * ax + dy * ay + dz * az < 0.0:
+                size = -size
+        if size == 0.0:
+            continue
+        dx, dy, dz = dx / size, dy / size, dz / size
+        rate[to] -= most * dx
+        rate[to + 1] -= most * dy
+        rate[to + 2] -= most * dz
+        rate[ints[WORK]] += floats[ints[MASS] + k] * most * (dx * vx + dy * vy + dz * vz)
+
+
+@inlined
+def support(near, y, rate, floats, ints):
+    """What the surfaces do to the accelerations of the bodies."""
+    for k in range(ints[BODIES]):
+        if floats[ints[INVERSE] + k] == 0.0:
+            continue
+        resting = press_of_pairs(k, near, y, rate, floats, ints)
+        if resting > 0:
+            carry(k, resting, y, rate, floats, ints)
+            rub(k, y, rate, floats, ints)
+
+
+@kernel(TERM)
+def constrain(t, y, rate, floats, ints):
+    """Take from the acceleration of bodies that rest what pushes into the surface, and add Coulomb's friction.
+
+    For `exact` mode, whose impacts want to know how free pairs press.
+    """
+    support(True, y, rate, floats, ints)
+
+
+@kernel(TERM)
+def constrain_resting(t, y, rate, floats, ints):
+    """The same for `local` mode, where free pairs cost nothing."""
+    support(False, y, rate, floats, ints)

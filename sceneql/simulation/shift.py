@@ -1,0 +1,49 @@
+"""Expressions of time, a little earlier or later: what rates of change of any motion are found from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from sceneql.quantities.dimension import PLAIN, TIME
+from sceneql.quantities.expression import TIME_SYMBOL, Call, Expr, Key, Keys, Link, Number, Symbol, Type, Vector
+
+APART = 1e-4
+"""Seconds to either side for a central difference: its error is APART^2/6 times the third derivative."""
+
+
+def later(expr: Expr, by: float, follow: Callable[[Link], Expr | None] = lambda link: None) -> Expr:
+    """The value ``by`` [s] later. ``follow`` gives a linked output as an expression of time.
+
+    Raises ValueError for a link to something that is not a function of time.
+    """
+
+    def shifted(node: Expr) -> Expr:
+        match node:
+            case Symbol(name=name) if name == TIME_SYMBOL:
+                return Call("add", (node, Number(by, Type((), TIME), False)), node.type, node.span)
+            case Link(task=task, output=output):
+                meaning = follow(node)
+                if meaning is None:
+                    raise ValueError(f"{task}.{output} is not known as a function of time")
+                return shifted(meaning)
+            case Call(args=args):
+                return replace(node, args=tuple(shifted(arg) for arg in args))
+            case Vector(items=items):
+                return replace(node, items=tuple(shifted(item) for item in items))
+            case Keys(argument=argument, keys=keys):
+                return replace(node, argument=shifted(argument), keys=tuple(shifted_key(key) for key in keys))
+        return node
+
+    def shifted_key(key: Key) -> Key:
+        slopes = [None if slope is None else shifted(slope) for slope in (key.slope_in, key.slope_out)]
+        return Key(key.time, shifted(key.value), *slopes)
+
+    return shifted(expr)
+
+
+def rate_of_change(expr: Expr) -> Expr:
+    """d expr / d time as a central difference, good for expressions and keyframes alike. Raises ValueError for links."""
+    dimension = PLAIN if expr.type.dimension is None else expr.type.dimension
+    difference = Call("sub", (later(expr, APART), later(expr, -APART)), expr.type)
+    return Call("div", (difference, Number(2 * APART, Type((), TIME), False)), Type(expr.type.shape, dimension / TIME))
