@@ -58,7 +58,7 @@ def text(structure: Structure) -> str:
     modules = dict.fromkeys(name.partition(":")[0] for name in names)
     lines = [f"# {module} {_digest(module)}" for module in modules]
     lines += [
-        "from sceneql.kernels import kernel",
+        "from sceneql.kernels import lean",
         *(["from sceneql.simulation.inputs_kernels import refresh"] if structure.varying else []),
         "from sceneql.system_kernels import GAP, IMPACT, SETTLE, TERM",
     ]
@@ -67,7 +67,7 @@ def text(structure: Structure) -> str:
         lines.append(f"from {module} import {attribute} as {short}")
     refresh = [REFRESH] if structure.varying else []
     group = GROUPS_AT
-    lines += ["", "", "@kernel(TERM)", "def rate(t, y, rate, floats, ints):", "    floats[0] += 1.0", *refresh]
+    lines += ["", "", "@lean(TERM)", "def rate(t, y, rate, floats, ints):", "    floats[0] += 1.0", *refresh]
     lines += ["    for k in range(rate.size):", "        rate[k] = 0.0"]
     for name in structure.terms:
         lines += _blocks(group, f"{names[name]}(t, y, rate, floats, ints[ints[b] : ints[b + 1]])")
@@ -76,7 +76,7 @@ def text(structure: Structure) -> str:
         lines += _contacts(structure, names, group, refresh)
     group += len(structure.exact)
     if structure.local:
-        lines += ["", "", "@kernel(SETTLE)", "def settle(t0, t1, y0, rate0, y1, floats, ints):"]
+        lines += ["", "", "@lean(SETTLE)", "def settle(t0, t1, y0, rate0, y1, floats, ints):"]
         lines += [line.replace("(t, y,", "(t1, y1,") for line in refresh]
         for name in structure.local:
             lines += _blocks(group, f"{names[name]}(t0, t1, y0, rate0, y1, floats, ints[ints[b] : ints[b + 1]])")
@@ -90,11 +90,11 @@ def _blocks(group: int, *calls: str) -> list[str]:
 
 def _contacts(structure: Structure, names: dict[str, str], first: int, refresh: list[str]) -> list[str]:
     pair_range = (f"p = ints[ints[3] + b - ints[{first}]]", f"q = ints[ints[3] + b - ints[{first}] + 1]")
-    lines = ["", "", "@kernel(GAP)", "def gap(t, y, gaps, floats, ints):", *refresh]
+    lines = ["", "", "@lean(GAP)", "def gap(t, y, gaps, floats, ints):", *refresh]
     for group, (gap, _) in enumerate(structure.exact, first):
         call = f"{names[gap]}(t, y, gaps[p:q], floats, ints[ints[b] : ints[b + 1]])"
         lines += _blocks(group, *pair_range, call)
-    lines += ["", "", "@kernel(IMPACT)", "def impact(t, y, pair, floats, ints):", *refresh]
+    lines += ["", "", "@lean(IMPACT)", "def impact(t, y, pair, floats, ints):", *refresh]
     for group, (_, impact) in enumerate(structure.exact, first):
         call = f"{names[impact]}(t, y, pair if pair < 0 else pair - p, floats, ints[ints[b] : ints[b + 1]])"
         lines += _blocks(group, *pair_range, "if pair < 0 or p <= pair < q:", f"    {call}")

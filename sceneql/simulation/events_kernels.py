@@ -9,7 +9,7 @@ import math
 
 from numba import types
 
-from sceneql.kernels import inlined, kernel
+from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.pointers_kernels import dense_at, gap_at, rate_at, step_at
 from sceneql.system_kernels import A, F, I, N
 
@@ -23,13 +23,13 @@ FIRST_OF = types.Tuple((N, F))(I, N, F, F, F, A, A, A, A, A, A, I, A, I, A, A, A
 FIND_EVENT = types.Tuple((N, F))(I, F, F, A, A, A, A, A, A, A, I, A, I, A, I, F)
 
 
-@inlined
+@lean_inlined
 def reference(start, slop):
     """The gap that counts as contact: zero, or for a pair that touches the gap it starts with."""
     return start if start <= slop else 0.0
 
 
-@inlined
+@lean_inlined
 def entered(now, start, above, slop):
     """Whether a pair has come into contact; ``above``: it has been apart since the step's start."""
     if above > 0.0:
@@ -37,7 +37,7 @@ def entered(now, start, above, slop):
     return now < reference(start, slop) - slop
 
 
-@kernel(LOCATE)
+@lean(LOCATE)
 def locate(
     functions, pair, contact, deflate, t0, low, high,
     y0, rate0, y1, work, settings, numbers, floats, ints, now,
@@ -105,7 +105,7 @@ def locate(
     return x2
 
 
-@kernel(FIRST_OF)
+@lean(FIRST_OF)
 def first_of(
     functions, pair, t0, low, high, y0, rate0, y1, rate1,
     work, settings, numbers, floats, ints, start, now, above, leaving, slop,
@@ -135,7 +135,7 @@ def first_of(
         high = length
 
 
-@kernel(FIND_EVENT)
+@lean(FIND_EVENT)
 def find_event(
     functions, t0, h, y0, rate0, y1, rate1,
     sample, work, settings, numbers, floats, ints, gaps, leaving, slop,

@@ -8,7 +8,7 @@ import math
 
 from numba import types
 
-from sceneql.kernels import inlined, kernel
+from sceneql.kernels import lean, lean_inlined
 from sceneql.system_kernels import A, F, I, N
 
 WIDTH = 7
@@ -33,13 +33,13 @@ ROTATION = 4
 """Added to the form of keys whose values are quaternions."""
 
 
-@inlined
+@lean_inlined
 def floor(a):
     """Largest whole number not above a; numba's own costs half a second to compile."""
     return a if math.isinf(a) else a - a % 1.0
 
 
-@kernel(types.float64(N, F))
+@lean(types.float64(N, F))
 def unary(code, a):
     """An operation on one number."""
     if code == NEG:
@@ -83,7 +83,7 @@ def unary(code, a):
     return math.tanh(a)
 
 
-@kernel(types.float64(N, F, F))
+@lean(types.float64(N, F, F))
 def binary(code, a, b):
     """An operation on two numbers."""
     if code == ADD:
@@ -115,7 +115,7 @@ def binary(code, a, b):
     return 1.0 * (a == b)
 
 
-@inlined
+@lean_inlined
 def slerp(floats, a, b, s, out):
     """Constant angular speed between the unit quaternions at offsets a and b (Shoemake 1985)."""
     cosine = 0.0
@@ -130,7 +130,7 @@ def slerp(floats, a, b, s, out):
         floats[out + c] = u * floats[a + c] + v * floats[b + c]
 
 
-@kernel(types.void(A, F, N, N, N, N, N))
+@lean(types.void(A, F, N, N, N, N, N))
 def keyframes(floats, t, table, count, components, form, out):
     """The curve at t, as quantities.curves.value_at: ``table`` has the cycle, the times, values, slopes in and out."""
     times = table + 1
@@ -168,7 +168,7 @@ def keyframes(floats, t, table, count, components, form, out):
             floats[out + c] = p + (q - p) * s
 
 
-@kernel(types.void(F, A, A, I))
+@lean(types.void(F, A, A, I))
 def refresh(t, y, floats, program):
     """Run a program at a time and state."""
     for row in range(0, program.size, WIDTH):

@@ -10,7 +10,7 @@ import math
 
 from numba import types
 
-from sceneql.kernels import inlined, kernel
+from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.events_kernels import find_event
 from sceneql.simulation.pointers_kernels import impact_at, rate_at, settle_at, step_at
 from sceneql.system_kernels import DENSE, GAP, IMPACT, SETTLE, A, F, I
@@ -34,7 +34,7 @@ CHANGED_AT = 1
 MARCH = types.int64(I, F, F, A, A, A, A, A, A, A, I, A, I, A, I, A, I)
 
 
-@kernel(DENSE)
+@lean(DENSE)
 def hermite(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
     """Cubic Hermite interpolant of the step's ends: third order (Hairer, Norsett & Wanner 1993, eq. II.6.7)."""
     for k in range(y0.size):
@@ -43,29 +43,29 @@ def hermite(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
         out[k] = (1.0 - theta) * y0[k] + theta * y1[k] + theta * (theta - 1.0) * bend
 
 
-@kernel(GAP)
+@lean(GAP)
 def no_gap(t, y, gaps, floats, ints):
     """Of an island without exact contacts."""
 
 
-@kernel(IMPACT)
+@lean(IMPACT)
 def no_impact(t, y, pair, floats, ints):
     """Of an island without exact contacts."""
 
 
-@kernel(SETTLE)
+@lean(SETTLE)
 def no_settle(t0, t1, y0, rate0, y1, floats, ints):
     """Of an island without local contacts."""
 
 
-@inlined
+@lean_inlined
 def copy(source, target):
     """Entry by entry: numba's slice assignment costs seconds to compile."""
     for k in range(target.size):
         target[k] = source[k]
 
 
-@inlined
+@lean_inlined
 def first_bad(y):
     """Index of the first entry that is not finite, or -1."""
     for k in range(y.size):
@@ -74,7 +74,7 @@ def first_bad(y):
     return -1
 
 
-@inlined
+@lean_inlined
 def largest(y):
     """Index of the entry of largest magnitude."""
     best = 0
@@ -84,7 +84,7 @@ def largest(y):
     return best
 
 
-@inlined
+@lean_inlined
 def next_factor(error, previous, order, rejected):
     """Factor for the next step: PI control (Gustafsson 1991; the constants of Hairer, Norsett & Wanner's DOPRI5)."""
     if not math.isfinite(error):
@@ -96,7 +96,7 @@ def next_factor(error, previous, order, rejected):
     return min(1.0 if rejected else 10.0, max(0.2, factor))
 
 
-@inlined
+@lean_inlined
 def try_steps(step, rate, t0, t1, y0, rate0, y1, work, settings, numbers, floats, ints, clock, counts):
     """Step until the error is accepted: (end of the step, whether it is good). A fixed step is tried once."""
     adaptive = counts[ADAPTIVE] > 0
@@ -121,7 +121,7 @@ def try_steps(step, rate, t0, t1, y0, rate0, y1, work, settings, numbers, floats
         t1 = t0 + h
 
 
-@inlined
+@lean_inlined
 def apply_impact(rate, impact, t, y, slope, floats, ints, leaving, counts):
     """The impact that is due. Contacts may read what the terms left in floats for the state before it."""
     pair = counts[PENDING]
@@ -136,7 +136,7 @@ def apply_impact(rate, impact, t, y, slope, floats, ints, leaving, counts):
     leaving[pair] = 1
 
 
-@kernel(MARCH)
+@lean(MARCH)
 def march(
     functions, target, end,
     y0, rate0, y1, rate1, sample, work, settings, numbers, floats, ints, gaps, leaving, clock, counts,

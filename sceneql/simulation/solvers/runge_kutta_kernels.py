@@ -7,52 +7,50 @@ the first is not used, for stage one is ``rate0``.
 
 import math
 
-from sceneql.kernels import inlined, kernel
+from sceneql.kernels import lean, lean_inlined
 from sceneql.system_kernels import DENSE, STEP
 
 
-@inlined
-def add_stages(weights, count, h, y0, rate0, work, out):
-    """out = y0 + h * the weighted sum of the first stages."""
+@lean_inlined
+def add_stages(settings, row, count, h, y0, rate0, work, out):
+    """out = y0 + h * the sum of the first stages, weighted by settings[row:]."""
     n = y0.size
-    scaled = h * weights[0]
+    weight = h * settings[row]
     for k in range(n):
-        out[k] = y0[k] + scaled * rate0[k]
+        out[k] = y0[k] + weight * rate0[k]
     for j in range(1, count):
-        if weights[j] != 0.0:
-            scaled = h * weights[j]
+        weight = h * settings[row + j]
+        if weight != 0.0:
             at = j * n
             for k in range(n):
-                out[k] += scaled * work[at + k]
+                out[k] += weight * work[at + k]
 
 
-@kernel(STEP)
+@lean(STEP)
 def step(rate, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after a step of length h; the embedded error in the norm of Hairer, Norsett & Wanner (1993, eq. II.4.11)."""
     stages = numbers[0]
     n = y0.size
-    c = settings[2 : 2 + stages]
-    b = settings[2 + stages : 2 + 2 * stages]
+    c, b, e = 2, 2 + stages, 2 + 2 * stages
     row = 2 + 3 * stages
     for i in range(1, stages):
-        add_stages(settings[row : row + i], i, h, y0, rate0, work, y1)
+        add_stages(settings, row, i, h, y0, rate0, work, y1)
         row += i
-        rate(t + c[i] * h, y1, work[i * n : (i + 1) * n], floats, ints)
-    add_stages(b, stages, h, y0, rate0, work, y1)
+        rate(t + settings[c + i] * h, y1, work[i * n : (i + 1) * n], floats, ints)
+    add_stages(settings, b, stages, h, y0, rate0, work, y1)
     if numbers[1] == 0:
         return 0.0
-    e = settings[2 + 2 * stages : 2 + 3 * stages]
     total = 0.0
     for k in range(n):
-        error = e[0] * rate0[k]
+        error = settings[e] * rate0[k]
         for j in range(1, stages):
-            error += e[j] * work[j * n + k]
+            error += settings[e + j] * work[j * n + k]
         error *= h / (settings[1] + settings[0] * max(abs(y0[k]), abs(y1[k])))
         total += error * error
     return math.sqrt(total / n)
 
 
-@kernel(DENSE)
+@lean(DENSE)
 def dopri5_dense(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
     """The fourth-order interpolant of Dormand & Prince's pair (Hairer, Norsett & Wanner 1993, II.6, code DOPRI5)."""
     n = y0.size

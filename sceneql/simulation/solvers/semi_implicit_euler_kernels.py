@@ -1,10 +1,10 @@
 """One step of semi-implicit Euler: velocities first, then positions by the new velocities."""
 
-from sceneql.kernels import kernel
+from sceneql.kernels import lean
 from sceneql.system_kernels import STEP
 
 
-@kernel(STEP)
+@lean(STEP)
 def step(rate, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """Explicit Euler on every entry, then the positions of the island's pairs advance by their velocities at the end.
 
