@@ -12,6 +12,7 @@ from sceneql.language.tree import Node
 from sceneql.quantities.diagnostic import Diagnostics, suggestion
 from sceneql.quantities.dimension import PLAIN, TIME
 from sceneql.quantities.expression import Call, Expr, Key, Keys, Link, Number, Symbol, Type, Vector
+from sceneql.quantities.operations import CONSTANTS
 from sceneql.quantities.span import Span
 
 COMPONENTS = {"x": 0, "y": 1, "z": 2}
@@ -78,7 +79,8 @@ class Names:
                 return self._output(task, outputs, parts[size:], span)
             if task in self.parts:
                 return None  # its word is unknown, which is reported there
-        self._unknown(parts, span)
+        if head not in CONSTANTS or len(parts) > 1:
+            self._unknown(parts, span)
         return None
 
     def _output(self, task: str, outputs: Mapping[str, Gives], rest: tuple[str, ...], span: Span) -> Expr | None:

@@ -27,6 +27,7 @@ from sceneql.quantities.expression import (
     Vector,
     walk,
 )
+from sceneql.quantities.operations import CONSTANTS
 from sceneql.quantities.parser import parse_expression, parse_value
 from sceneql.quantities.printing import describe
 from sceneql.quantities.span import Span
@@ -107,7 +108,7 @@ def read_formula(
     def lookup(parts: tuple[str, ...], span: Span) -> Expr | None:
         if len(parts) == 1 and parts[0] in free:
             return Symbol("time" if parts[0] == "t" else parts[0], Type((), PLAIN), span)
-        if parts[0] not in names.defines and len(parts) == 1:
+        if parts[0] not in names.defines and parts[0] not in CONSTANTS and len(parts) == 1:
             found.error(
                 "unknown-name",
                 f"nothing is called '{parts[0]}'",

@@ -4,104 +4,115 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from typing import Any
 
-from sceneql.quantities.diagnostic import Diagnostics, Note
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, Note
+from sceneql.quantities.dimension import PLAIN
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import Call, Expr, Link, Name, Number, Symbol, Type, Vector
-from sceneql.quantities.quick_operations import CONSTANTS, OPERATIONS, TypeMismatch, common, fits_any
+from sceneql.quantities.expression import Call, Expr, Name, Number, Type, Vector, each_once
+from sceneql.quantities.operations import CONSTANTS, OPERATIONS
+from sceneql.quantities.rules import MismatchError, listed, shape_text
 from sceneql.quantities.span import Span
 
-Lookup = Callable[[tuple[str, ...], Span], Expr | None]
-"""What a dotted name means (a component such as ``a.b.x`` included); None after having reported that it is unknown."""
+Lookup = Callable[[tuple[str, ...], Span], Expr | Diagnostic | None]
+"""What a dotted name means: its typed tree, or else the Diagnostic that says why it means nothing.
+
+The Diagnostic is reported only if bind finds no meaning either: ``a.b.x`` is a component of the vector ``a.b``, and
+`pi`, `tau`, `e` are constants where nothing else is called so. None: no more is to be said of the name, unless it is
+one of these constants.
+"""
+
+COMPONENTS = {3: "xyz", 2: "xy", 4: "wxyz"}
+"""Names of a vector's components by their number."""
 
 
 def bind(expr: Expr, lookup: Lookup, found: Diagnostics) -> Expr | None:
-    """The typed tree of a parsed one, or None after reporting what is wrong."""
-    match expr:
-        case Name(parts=parts, span=span):
-            return _name(parts, span, lookup)
-        case Vector(items=items):
-            return _vector(expr, [bind(item, lookup, found) for item in items], found)
-        case Call(args=args):
-            return _call(expr, [bind(arg, lookup, found) for arg in args], found)
+    """The typed tree of a parsed one, or None after reporting all that is wrong (`dimension-mismatch`, ...).
+
+    Trees that ``lookup`` gives are kept as they are, so that what is shared stays shared.
+    """
+    bound: dict[int, Expr | None] = {}
+    for node in each_once(expr):
+        bound[id(node)] = _bound(node, bound, lookup, found)
+    return bound[id(expr)]
+
+
+def _bound(node: Expr, bound: dict[int, Expr | None], lookup: Lookup, found: Diagnostics) -> Expr | None:
+    match node:
+        case Name(parts=parts, span=span) if span is not None:
+            meaning = _meaning(parts, span, lookup)
+            if isinstance(meaning, Diagnostic):
+                found.add(meaning)
+                return None
+            return meaning
+        case Vector(items=parts) | Call(args=parts):
+            args = tuple(arg for part in parts if (arg := bound[id(part)]) is not None)
+            if len(args) < len(parts):
+                return None
+            try:
+                if isinstance(node, Vector):
+                    return Vector(args, listed(args), node.span)
+                return fold(Call(node.op, args, OPERATIONS[node.op].rule(args), node.span))
+            except MismatchError as error:
+                _report(node, parts, error, found)
+                return None
+    return node
+
+
+def _meaning(parts: tuple[str, ...], span: Span, lookup: Lookup, shorter: int = 2) -> Expr | Diagnostic | None:
+    """``shorter``: how many names may be taken off as components."""
+    expr = lookup(parts, span)
+    if expr is not None and not isinstance(expr, Diagnostic):
+        return expr
+    if len(parts) == 1 and parts[0] in CONSTANTS:
+        return Number(CONSTANTS[parts[0]], span=span)
+    if isinstance(expr, Diagnostic) and shorter and len(parts) > 1 and parts[-1] in ("w", "x", "y", "z"):
+        whole = _meaning(parts[:-1], span, lookup, shorter - 1)
+        if whole is not None and not isinstance(whole, Diagnostic):
+            return _component(whole, parts, span)
     return expr
 
 
-def _name(parts: tuple[str, ...], span: Span | None, lookup: Lookup) -> Expr | None:
-    assert span is not None
-    if len(parts) == 1 and parts[0] in CONSTANTS:
-        return Number(CONSTANTS[parts[0]], bare=False, span=span)
-    expr = lookup(parts, span)
-    # The place of a value is where it is used; a define's own place is in the define.
-    return replace(expr, span=span) if isinstance(expr, Number | Symbol | Link) else expr
-
-
-def _call(expr: Call, args: list[Expr | None], found: Diagnostics) -> Expr | None:
-    known = tuple(arg for arg in args if arg is not None)
-    if len(known) < len(args):
-        return None
-    try:
-        type_ = OPERATIONS[expr.op].rule(known)
-    except TypeMismatch as error:
-        _report(expr, known, error, found)
-        return None
-    return fold(Call(expr.op, known, type_, expr.span))
-
-
-def _vector(expr: Vector, items: list[Expr | None], found: Diagnostics) -> Expr | None:
-    known = tuple(item for item in items if item is not None)
-    if len(known) < len(items) or not known:
-        if not items:
-            found.error("syntax", "an empty list has no value", expr.span)
-        return None
-    try:
-        dimension = common(known)
-    except TypeMismatch as error:
-        _report(expr, known, error, found)
-        return None
-    shapes = {item.type.shape for item in known}
-    if len(shapes) > 1:
-        found.error("wrong-shape", "the items of a list must be alike", expr.span)
-        return None
-    return Vector(known, Type((len(known), *shapes.pop()), dimension), expr.span)
+def _component(whole: Expr, parts: tuple[str, ...], span: Span) -> Expr | Diagnostic:
+    shape = whole.type.shape
+    names = COMPONENTS.get(shape[-1] or 0, "") if shape else ""
+    if parts[-1] not in names:
+        kinds = ", ".join(f".{name}" for name in names)
+        message = f"'{'.'.join(parts[:-1])}' has no component '.{parts[-1]}'"
+        help = f"its components are {kinds}" if names else f"it is {shape_text(shape)}"
+        return Diagnostic("no-component", message, span, help)
+    index = Number(float(names.index(parts[-1])))
+    return fold(Call("component", (whole, index), Type(shape[:-1], whole.type.dimension), span))
 
 
 def fold(expr: Call) -> Expr:
-    """A scalar operation on numbers is a number."""
+    """The literal of an operation on constants alone, where its value is finite; else the call itself."""
     operation = OPERATIONS[expr.op]
-    if expr.type.shape or operation.series or not all(isinstance(arg, Number) for arg in expr.args):
+    if operation.series or None in expr.type.shape or not all(_constant(arg) for arg in expr.args):
         return expr
-    bare = all(arg.bare for arg in expr.args if isinstance(arg, Number))
-    return Number(float(evaluate(expr, {})), expr.type, bare, expr.span)
+    value = evaluate(expr, {})
+    bare = not operation.angle and all(n.bare for n in each_once(expr) if isinstance(n, Number))
+    return _literal(value, expr, bare) if _finite(value) else expr
 
 
-VERBS = {"add": "add", "sub": "subtract", "lt": "compare", "le": "compare", "gt": "compare", "ge": "compare"}
+def _constant(expr: Expr) -> bool:
+    return isinstance(expr, Number) or (isinstance(expr, Vector) and all(_constant(item) for item in expr.items))
 
 
-def _report(expr: Call | Vector, args: tuple[Expr, ...], error: TypeMismatch, found: Diagnostics) -> None:
-    from sceneql.quantities.printing import describe
-
-    first = args[error.first]
-    name = expr.op if isinstance(expr, Call) else "a list"
-    if error.second is None:
-        found.error("dimension-mismatch", f"{name} {error}", first.span or expr.span)
-        return
-    second = args[error.second]
-    if str(error):
-        found.error("shape-mismatch", f"{name}: {error}", expr.span)
-        return
-    help_ = None
-    for arg, other in ((first, second), (second, first)):
-        if isinstance(arg, Number) and arg.bare and not fits_any(arg) and math.isfinite(arg.value) and arg.span:
-            help_ = f"a bare number has no unit; write `{arg.span.text} {other.type.dimension}`"
-    verb = VERBS.get(name, f"take {name} of" if isinstance(expr, Call) else "put in one list")
-    found.error(
-        "dimension-mismatch",
-        f"cannot {verb} {describe(first.type.dimension)} and {describe(second.type.dimension)}",
-        first.span or expr.span,
-        help=help_,
-        notes=[Note("the other is here", second.span)] if second.span else [],
-    )
+def _finite(value: Any) -> bool:
+    return all(_finite(item) for item in value) if isinstance(value, tuple) else math.isfinite(value)
 
 
+def _literal(value: Any, expr: Expr, bare: bool) -> Expr:
+    dimension = expr.type.dimension
+    if isinstance(value, tuple):
+        items = tuple(_literal(item, expr, bare) for item in value)
+        return Vector(items, Type((len(items), *items[0].type.shape), dimension), expr.span)
+    return Number(value, Type((), PLAIN if dimension is None and value != 0.0 else dimension), bare, expr.span)
+
+
+def _report(node: Expr, parts: tuple[Expr, ...], error: MismatchError, found: Diagnostics) -> None:
+    """Both places are where the arguments stand in this expression; a define's own place is its own affair."""
+    second = None if error.second is None else parts[error.second].span
+    notes = [] if second is None else [Note("the other is here", second)]
+    found.error(error.code, error.message, parts[error.first].span or node.span, help=error.help, notes=notes)

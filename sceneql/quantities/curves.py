@@ -1,15 +1,18 @@
-"""Keyframes: the value of a curve through keys at a time, in plain Python and in numpy."""
+"""Keyframes: the value of a curve through keys, over floats, arrays or expressions alike."""
 
 from __future__ import annotations
 
 import math
 from bisect import bisect_right
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from sceneql.quantities.expression import Keys
+from sceneql.quantities.expression import Expr, Keys
+from sceneql.quantities.formulas import dot, ease, mix, normalize
 
 CURVES = ("step", "linear", "smooth", "cubic")
+Components = tuple[Any, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,11 +21,11 @@ class Table:
 
     times: tuple[float, ...]
     """(k,) [s], increasing."""
-    values: tuple[tuple[float, ...], ...]
+    values: tuple[Components, ...]
     """(k, c) components."""
-    slopes_in: tuple[tuple[float, ...], ...]
+    slopes_in: tuple[Components, ...]
     """(k, c) slope that a cubic arrives with at each key."""
-    slopes_out: tuple[tuple[float, ...], ...]
+    slopes_out: tuple[Components, ...]
     """(k, c) slope that it leaves with."""
     curve: int
     """Index into CURVES."""
@@ -35,98 +38,118 @@ class Table:
 def keys_table(keys: Keys) -> Table:
     """The numbers of keyframes whose times and values are constant. Raises KeyError where one is not."""
     from sceneql.quantities.evaluate import evaluate
+    from sceneql.quantities.operations import FLOATS
 
-    def vector(expr: Any) -> tuple[float, ...]:
+    def components(expr: Expr) -> Components:
         value = evaluate(expr, {})
         return value if isinstance(value, tuple) else (value,)
 
-    times = tuple(float(evaluate(key.time, {})) for key in keys.keys)
-    values = tuple(vector(key.value) for key in keys.keys)
+    return table_of(FLOATS, keys, lambda expr: float(evaluate(expr, {})), components)
+
+
+def table_of(o: Any, keys: Keys, number: Callable[[Expr], float], components: Callable[[Expr], Components]) -> Table:
+    """The table of keyframes over an arithmetic ``o``: times by ``number``, values and slopes by ``components``.
+
+    A slope that is not given is that of the chord between the neighbors (Catmull & Rom 1974, for uneven times), at
+    an end that of the last chord; where the cycle joins the last key to the first, both have the same neighbors.
+    """
+    times = tuple(number(key.time) for key in keys.keys)
+    values = tuple(components(key.value) for key in keys.keys)
+    if keys.type.shape == (4,):
+        values = _shortest(o, values)
+    cycle = 0.0 if keys.cycle is None else number(keys.cycle)
     rotation = keys.type.shape == (4,)
-    if rotation:
-        values = _shortest(values)
-    last = len(times) - 1
-
-    def slope(k: int, expr: Any) -> tuple[float, ...]:
-        if expr is not None:
-            return vector(expr)
-        a, b = max(k - 1, 0), min(k + 1, last)
-        span = times[b] - times[a]
-        return tuple((q - p) / span if span > 0 else 0.0 for p, q in zip(values[a], values[b], strict=True))
-
-    slopes_in = tuple(slope(k, key.slope_in) for k, key in enumerate(keys.keys))
-    slopes_out = tuple(slope(k, key.slope_out) for k, key in enumerate(keys.keys))
-    cycle = 0.0 if keys.cycle is None else float(evaluate(keys.cycle, {}))
+    slopes = _chords(o, times, values, closed=cycle > 0.0 and math.isclose(times[-1] - times[0], cycle))
+    slopes_in = tuple(
+        s if k.slope_in is None else components(k.slope_in) for k, s in zip(keys.keys, slopes, strict=True)
+    )
+    slopes_out = tuple(
+        s if k.slope_out is None else components(k.slope_out) for k, s in zip(keys.keys, slopes, strict=True)
+    )
     return Table(times, values, slopes_in, slopes_out, CURVES.index(keys.curve), cycle, rotation)
 
 
-def _shortest(values: tuple[tuple[float, ...], ...]) -> tuple[tuple[float, ...], ...]:
-    """Unit quaternions, each on the side of the sphere nearest to the one before (q and -q turn alike)."""
-    result: list[tuple[float, ...]] = []
-    for value in values:
-        size = math.hypot(*value) or 1.0
-        unit = tuple(c / size for c in value)
-        if result and sum(a * b for a, b in zip(result[-1], unit, strict=True)) < 0:
-            unit = tuple(-c for c in unit)
-        result.append(unit)
+def _shortest(o: Any, values: tuple[Components, ...]) -> tuple[Components, ...]:
+    """Unit quaternions, each on the side of the sphere nearest to the one before: q and -q turn alike."""
+    result = [normalize(o, values[0])]
+    for value in values[1:]:
+        unit = normalize(o, value)
+        side = o.where(o.lt(dot(o, result[-1], unit), 0.0), -1.0, 1.0)
+        result.append(tuple(o.mul(side, c) for c in unit))
     return tuple(result)
 
 
-def evaluate_keys(keys: Keys, at: Any, np: Any = None) -> Any:
-    """The curve's value at ``at`` (with ``np`` an array of instants may be given; the components come last)."""
-    table = keys_table(keys)
-    scalar = not keys.type.shape
-    if np is not None:
-        rows = [value_at(table, float(t)) for t in np.ravel(at)]
-        shape = np.shape(at) if scalar else (*np.shape(at), len(table.values[0]))
-        return np.array(rows).reshape(shape)
-    value = value_at(table, at)
-    return value[0] if scalar else value
+def _chords(o: Any, times: tuple[float, ...], values: tuple[Components, ...], closed: bool) -> list[Components]:
+    last = len(times) - 1
+
+    def chord(*pairs: tuple[int, int]) -> Components:
+        span = sum(times[b] - times[a] for a, b in pairs)
+        rises = [[o.sub(q, p) for p, q in zip(values[a], values[b], strict=True)] for a, b in pairs]
+        whole = rises[0] if len(rises) == 1 else [o.add(p, q) for p, q in zip(*rises, strict=True)]
+        return tuple(o.div(rise, span) for rise in whole)
+
+    if last == 0:
+        return [tuple(0.0 for _ in values[0])]
+    inner = [chord((k - 1, k + 1)) for k in range(1, last)]
+    if closed:
+        joint = chord((last - 1, last), (0, 1))
+        return [joint, *inner, joint]
+    return [chord((0, 1)), *inner, chord((last - 1, last))]
 
 
 def value_at(table: Table, t: float) -> tuple[float, ...]:
-    """The components (c,) at a time; held before the first and after the last key."""
-    times = table.times
-    if math.isnan(t):
-        return tuple(math.nan for _ in table.values[0])
-    if table.cycle > 0:
-        t = times[0] + (t - times[0]) % table.cycle
-    if t <= times[0]:
-        # At the very key of a curve with a jump in slope the value is the same from both sides.
-        return table.values[0]
-    if t >= times[-1]:
-        return table.values[-1]
-    k = bisect_right(times, t) - 1
-    a, b = table.values[k], table.values[k + 1]
-    span = times[k + 1] - times[k]
-    s = (t - times[k]) / span
-    curve = CURVES[table.curve]
-    if curve == "step":
+    """The components (c,) of a table of floats at a time [s]: held before the first and after the last key."""
+    from sceneql.quantities.operations import FLOATS
+
+    return interpolate(FLOATS, table, t, lambda t, times: bisect_right(times, t) - 1 if t == t else 0)
+
+
+def interpolate(
+    o: Any, table: Table, t: Any, find: Callable[[Any, tuple[float, ...]], int] | None = None
+) -> Components:
+    """The components at ``t`` over an arithmetic ``o``; ``find``: the last key not after t, where that is known."""
+    times, last = table.times, len(table.times) - 1
+    if table.cycle > 0.0:
+        t = o.add(times[0], o.mod(o.sub(t, times[0]), table.cycle))
+    t = o.max(t, times[0])
+    if find is not None:
+        return _piece(o, table, min(max(find(t, times), 0), last), t)
+    result = _piece(o, table, 0, t)
+    for k in range(1, last + 1):
+        after = o.ge(t, times[k])
+        result = tuple(o.where(after, new, old) for new, old in zip(_piece(o, table, k, t), result, strict=True))
+    return result
+
+
+def _piece(o: Any, table: Table, k: int, t: Any) -> Components:
+    """From key k on, up to the next."""
+    curve, a = CURVES[table.curve], table.values[k]
+    if curve == "step" or k == len(table.times) - 1:
         return a
+    b = table.values[k + 1]
+    span = table.times[k + 1] - table.times[k]
+    s = o.div(o.sub(t, table.times[k]), span)
     if table.rotation:
-        return _slerp(a, b, s if curve == "linear" else s * s * (3 - 2 * s))
-    if curve == "linear":
-        return tuple(p + (q - p) * s for p, q in zip(a, b, strict=True))
-    if curve == "smooth":
-        s = s * s * (3 - 2 * s)
-        return tuple(p + (q - p) * s for p, q in zip(a, b, strict=True))
-    return tuple(
-        _hermite(s, span, p, q, u, v)
-        for p, q, u, v in zip(a, b, table.slopes_out[k], table.slopes_in[k + 1], strict=True)
-    )
+        return slerp(o, a, b, s if curve == "linear" else ease(o, s))
+    if curve == "cubic":
+        rises = zip(table.slopes_out[k], table.slopes_in[k + 1], strict=True)
+        return tuple(hermite(o, s, span, p, q, m, n) for p, q, (m, n) in zip(a, b, rises, strict=True))
+    return tuple(mix(o, p, q, s if curve == "linear" else ease(o, s)) for p, q in zip(a, b, strict=True))
 
 
-def _hermite(s: float, span: float, a: float, b: float, slope_a: float, slope_b: float) -> float:
-    """The cubic with these values and slopes at the ends of a span."""
-    r = 1 - s
-    return a * r * r * (1 + 2 * s) + b * s * s * (3 - 2 * s) + span * s * r * (slope_a * r - slope_b * s)
+def hermite(o: Any, s: Any, span: float, a: Any, b: Any, slope_a: Any, slope_b: Any) -> Any:
+    """The cubic over a span with these values and slopes at its ends, at s from 0 to 1."""
+    r = o.sub(1.0, s)
+    from_a = o.mul(o.mul(o.mul(a, r), r), o.add(1.0, o.mul(2.0, s)))
+    from_b = o.mul(o.mul(o.mul(b, s), s), o.sub(3.0, o.mul(2.0, s)))
+    swing = o.mul(o.mul(o.mul(span, s), r), o.sub(o.mul(slope_a, r), o.mul(slope_b, s)))
+    return o.add(o.add(from_a, from_b), swing)
 
 
-def _slerp(a: tuple[float, ...], b: tuple[float, ...], s: float) -> tuple[float, ...]:
-    """Constant angular speed between unit quaternions (Shoemake 1985)."""
-    cosine = min(1.0, sum(p * q for p, q in zip(a, b, strict=True)))
-    angle = math.acos(max(-1.0, cosine))
-    if angle < 1e-8:
-        return tuple(p + (q - p) * s for p, q in zip(a, b, strict=True))
-    u, v = math.sin((1 - s) * angle) / math.sin(angle), math.sin(s * angle) / math.sin(angle)
-    return tuple(u * p + v * q for p, q in zip(a, b, strict=True))
+def slerp(o: Any, a: Components, b: Components, s: Any) -> Components:
+    """Constant angular speed between unit quaternions at most a quarter of a circle apart (Shoemake 1985)."""
+    angle = o.acos(o.min(1.0, dot(o, a, b)))
+    still = o.lt(angle, 1e-8)
+    u = o.div(o.sin(o.mul(o.sub(1.0, s), angle)), o.sin(angle))
+    v = o.div(o.sin(o.mul(s, angle)), o.sin(angle))
+    return tuple(o.where(still, mix(o, p, q, s), o.add(o.mul(u, p), o.mul(v, q))) for p, q in zip(a, b, strict=True))

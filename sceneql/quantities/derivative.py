@@ -1,165 +1,128 @@
-"""Symbolic derivatives of bound scalar trees, and vectors taken apart into scalars."""
+"""Symbolic derivatives of bound trees, and vectors taken apart into scalars.
+
+What comes out is made of scalar primitives of the table with plain types. Links and symbols of vector type stand in
+it as `component` calls; so do parts that have no scalar form (reductions of lists of unknown length, series).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from typing import Any
 
-from sceneql.quantities.bind import fold
-from sceneql.quantities.expression import Call, Expr, Keys, Link, Number, Symbol, Type, Vector
-from sceneql.quantities.quick_operations import OPERATIONS
+from sceneql.quantities.curves import interpolate, table_of
+from sceneql.quantities.evaluate import apply, evaluate
+from sceneql.quantities.expression import (
+    Call,
+    Expr,
+    Keys,
+    Link,
+    Number,
+    Shape,
+    Symbol,
+    Type,
+    Vector,
+    children,
+    each_once,
+)
+from sceneql.quantities.operations import OPERATIONS
+from sceneql.quantities.simplify import FORMS, ONE, TREES, ZERO, made, simplify, tree
 
-ZERO, ONE = Number(0.0), Number(1.0)
-
-
-def differentiate(expr: Expr, by: Symbol | Link) -> Expr:
-    """d expr / d by, simplified; types are plain. Raises TypeError for an operation without a derivative."""
-    return _derivative(expr, by, {})
-
-
-def _derivative(expr: Expr, by: Symbol | Link, known: dict[int, Expr]) -> Expr:
-    if id(expr) in known:
-        return known[id(expr)]
-    result: Expr = ZERO
-    if isinstance(expr, Symbol | Link):
-        result = ONE if expr == by else ZERO
-    elif isinstance(expr, Call):
-        inner = [_derivative(arg, by, known) for arg in expr.args]
-        if any(part != ZERO for part in inner):
-            partials = OPERATIONS[expr.op].partials
-            if partials is None:
-                raise TypeError(f"'{expr.op}' has no derivative")
-            for part, outer in zip(inner, partials(*expr.args), strict=True):
-                if outer is not None and part != ZERO:
-                    result = simplify(Call("add", (result, Call("mul", (_all(outer), part)))))
-    elif isinstance(expr, Keys) and any(isinstance(node, type(by)) and node == by for node in _below(expr.argument)):
-        raise TypeError("keyframes have no derivative")
-    known[id(expr)] = result
-    return result
+__all__ = ["components", "differentiate", "simplify"]
 
 
-def _below(expr: Expr) -> list[Expr]:
-    from sceneql.quantities.expression import walk
-
-    return list(walk(expr))
-
-
-def _all(expr: Expr) -> Expr:
-    """Simplify a freshly built tree from its leaves."""
-    if not isinstance(expr, Call):
-        return expr
-    return simplify(Call(expr.op, tuple(_all(arg) for arg in expr.args), expr.type, expr.span))
-
-
-def simplify(expr: Expr) -> Expr:
-    """One node, its arguments being simple: constants folded, 0 and 1 dropped."""
-    if not isinstance(expr, Call):
-        return expr
-    args = tuple(simplify(arg) for arg in expr.args)
-    expr = replace(expr, args=args)
-    if len(args) == 2:
-        a, b = args
-        match expr.op:
-            case "add":
-                if a == ZERO:
-                    return b
-                if b == ZERO:
-                    return a
-            case "sub":
-                if b == ZERO:
-                    return a
-                if a == ZERO:
-                    return simplify(Call("neg", (b,)))
-            case "mul":
-                if ZERO in (a, b):
-                    return ZERO
-                if a == ONE:
-                    return b
-                if b == ONE:
-                    return a
-            case "div":
-                if a == ZERO:
-                    return ZERO
-                if b == ONE:
-                    return a
-            case "pow":
-                if b == ONE:
-                    return a
-                if b == ZERO:
-                    return ONE
-    if expr.op == "neg" and isinstance(args[0], Call) and args[0].op == "neg":
-        return args[0].args[0]
-    return fold(expr) if not expr.type.shape else expr
+class _Unknown:
+    """Stands for a list whose length is not known."""
 
 
 def components(expr: Expr) -> tuple[Expr, ...]:
-    """The scalar trees of a vector one (a scalar: itself). Raises TypeError where they cannot be written down.
+    """The scalar trees of a vector (n,), or (of a scalar) its one tree. Keyframes become `where` of their pieces.
 
-    Links and symbols of vector type become `component` calls on them.
+    Raises TypeError for a list of unknown length.
     """
-    shape = expr.type.shape
-    if not shape:
-        return (_scalar(expr),)
-    if len(shape) != 1 or shape[0] is None:
-        raise TypeError("a list of unknown length has no components to write down")
-    match expr:
+    value = _taken_apart(expr)
+    if isinstance(value, _Unknown) or len(expr.type.shape) > 1:
+        raise TypeError("a list has no components to write down")
+    return value if isinstance(value, tuple) else (value,)
+
+
+def _taken_apart(expr: Expr) -> Any:
+    """Nested tuples of scalar trees."""
+    values: dict[int, Any] = {}
+    for node in each_once(expr):
+        values[id(node)] = _node(node, values)
+    return values[id(expr)]
+
+
+def _node(node: Expr, values: dict[int, Any]) -> Any:
+    match node:
+        case Number():
+            return node
         case Vector(items=items):
-            return tuple(_scalar(item) for item in items)
-        case Symbol() | Link():
-            return tuple(_pick(expr, k) for k in range(shape[0]))
+            parts = tuple(values[id(item)] for item in items)
+            return _Unknown() if any(isinstance(part, _Unknown) for part in parts) else parts
         case Keys():
-            return tuple(_pick(expr, k) for k in range(shape[0]))
-        case Call(op="cross", args=(a, b)):
-            u, v = components(a), components(b)
-            return tuple(
-                _of("sub", _of("mul", u[i], v[j]), _of("mul", u[j], v[i])) for i, j in ((1, 2), (2, 0), (0, 1))
-            )
-        case Call(op="normalize", args=(a,)):
-            u = components(a)
-            return tuple(_of("div", c, _norm(u)) for c in u)
-        case Call(op=op, args=args) if OPERATIONS[op].elementwise:
-            rows = [components(arg) if arg.type.shape else (_scalar(arg),) * shape[0] for arg in args]
-            return tuple(_of(op, *row) for row in zip(*rows, strict=True))
-        case Call():
-            return tuple(_pick(expr, k) for k in range(shape[0]))
-    raise TypeError(f"{expr!r} has no components to write down")
+            return _keys(node, values)
+        case Call(args=args):
+            parts = tuple(values[id(arg)] for arg in args)
+            if not OPERATIONS[node.op].series and not any(isinstance(part, _Unknown) for part in parts):
+                return _trees(apply(FORMS, node, list(parts)))
+    return _leaf(node, node.type.shape)
 
 
-def _scalar(expr: Expr) -> Expr:
-    """A scalar tree without vectors inside, where that can be."""
-    if not isinstance(expr, Call):
-        return expr
-    match expr.op:
-        case "component":
-            index = expr.args[1]
-            assert isinstance(index, Number)
-            inner = expr.args[0]
-            return expr if isinstance(inner, Symbol | Link | Keys) else components(inner)[int(index.value)]
-        case "dot":
-            u, v = components(expr.args[0]), components(expr.args[1])
-            return _total([_of("mul", a, b) for a, b in zip(u, v, strict=True)])
-        case "length":
-            return _norm(components(expr.args[0]))
-        case "distance":
-            u, v = components(expr.args[0]), components(expr.args[1])
-            return _norm([_of("sub", a, b) for a, b in zip(u, v, strict=True)])
-    return replace(expr, args=tuple(_scalar(arg) if not arg.type.shape else arg for arg in expr.args))
+def _trees(value: Any) -> Any:
+    return tuple(_trees(item) for item in value) if isinstance(value, tuple) else tree(value)
 
 
-def _pick(expr: Expr, k: int) -> Expr:
-    return Call("component", (expr, Number(float(k))), Type((), expr.type.dimension), expr.span)
+def _leaf(node: Expr, shape: Shape) -> Any:
+    if not shape:
+        return node
+    if None in shape or len(shape) > 1:
+        return _Unknown()
+    return tuple(Call("component", (node, Number(float(k)))) for k in range(shape[0] or 0))
 
 
-def _of(op: str, *args: Expr) -> Expr:
-    return simplify(Call(op, args))
+def _keys(keys: Keys, values: dict[int, Any]) -> Any:
+    def parts(expr: Expr) -> tuple[Any, ...]:
+        value = values[id(expr)]
+        return value if isinstance(value, tuple) else (value,)
+
+    table = table_of(FORMS, keys, lambda expr: float(evaluate(expr, {})), parts)
+    result = _trees(interpolate(FORMS, table, values[id(keys.argument)]))
+    return result if keys.type.shape else result[0]
 
 
-def _total(parts: Sequence[Expr]) -> Expr:
-    total = parts[0]
-    for part in parts[1:]:
-        total = _of("add", total, part)
+def differentiate(expr: Expr, by: Expr) -> Expr:
+    """d expr / d by, simplified, with plain types; of a vector (n,) the Vector of its components' derivatives.
+
+    ``by`` is a scalar Symbol or Link, or a `component` call on one. At a kink the derivative is that of one side, at
+    a jump 0. Raises TypeError for what has no derivative.
+    """
+    parts = components(expr)
+    known: dict[int, Expr] = {}
+    for node in each_once(*parts):
+        known[id(node)] = _slope(node, by, known)
+    slopes = tuple(known[id(part)] for part in parts)
+    return Vector(slopes, Type(expr.type.shape)) if expr.type.shape else slopes[0]
+
+
+def _slope(node: Expr, by: Expr, known: dict[int, Expr]) -> Expr:
+    if isinstance(node, Symbol | Link) or (isinstance(node, Call) and node.op == "component"):
+        if node == by:
+            return ONE
+        inside = node.args[0] if isinstance(node, Call) else None
+        if isinstance(inside, Call | Keys) and known[id(inside)] != ZERO:
+            raise TypeError("a component of what has no scalar form has no derivative")
+        return ZERO
+    if not isinstance(node, Call):
+        inner = [known[id(part)] for part in children(node)]
+        return ONE if any(part != ZERO for part in inner) else ZERO
+    slopes = [known[id(arg)] for arg in node.args]
+    if all(slope == ZERO for slope in slopes):
+        return ZERO
+    operation = OPERATIONS[node.op]
+    if operation.partials is None or any(arg.type.shape for arg in node.args):
+        raise TypeError(f"'{node.op}' has no derivative here")
+    total: Expr = ZERO
+    for partial, slope in zip(operation.partials(TREES, *node.args), slopes, strict=True):
+        if slope != ZERO:
+            total = made("add", total, made("mul", partial, slope))
     return total
-
-
-def _norm(parts: Sequence[Expr]) -> Expr:
-    return _of("sqrt", _total([_of("mul", c, c) for c in parts]))

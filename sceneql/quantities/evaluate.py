@@ -2,92 +2,120 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
-from sceneql.quantities.curves import evaluate_keys
-from sceneql.quantities.expression import Call, Expr, Keys, Link, Number, Symbol, Vector
-from sceneql.quantities.quick_operations import OPERATIONS, Operation
+from sceneql.quantities.curves import interpolate, table_of
+from sceneql.quantities.expression import Call, Expr, Keys, Link, Number, Shape, Symbol, Vector, each_once
+from sceneql.quantities.operations import FLOATS, OPERATIONS, Operation
 
-Environment = Mapping[Any, Any] | Callable[[Symbol | Link], Any]
+Environment = Mapping[Any, Any] | Callable[[Any], Any]
 
 
 def evaluate(expr: Expr, env: Environment, arrays: bool = False) -> Any:
-    """The value of a bound tree: a float or nested tuple of floats, or with ``arrays`` a float or float64 array.
+    """The value of a bound tree in SI: a float or nested tuple of floats, or with ``arrays`` a float or float64 array.
 
-    ``env`` gives the values of symbols and links, by node (spans do not matter). Domain errors give NaN or inf.
-    Raises KeyError for a symbol or link that ``env`` does not have.
+    ``env`` gives the value of each Symbol and Link, by node (spans do not matter): a number, nested tuples or an
+    array of the node's shape. With ``arrays`` these may have axes before those of the shape (samples, instants): all
+    operations go along them, but a reduction of a single value or of a list of unknown length takes them too. Poles
+    and bad arguments give inf and NaN as in IEEE 754. Raises KeyError for what ``env`` does not have, TypeError for an
+    unbound name and for an operation that needs a series, ValueError for lists of different lengths.
     """
     look_up = env if callable(env) else env.__getitem__
-    known: dict[int, Any] = {}  # a shared node is evaluated once
-    if not arrays:
-        return _walk(expr, look_up, known, None)
-    import numpy as np
+    if arrays:
+        from sceneql.quantities.arrays import evaluate_arrays
 
-    with np.errstate(all="ignore"):
-        value = _walk(expr, look_up, known, np)
-    return float(value) if np.ndim(value) == 0 else np.asarray(value, dtype=float)
-
-
-def _walk(expr: Expr, look_up: Callable[[Any], Any], known: dict[int, Any], np: Any) -> Any:
-    key = id(expr)
-    if key not in known:
-        known[key] = _one(expr, look_up, known, np)
-    return known[key]
-
-
-def _one(expr: Expr, look_up: Callable[[Any], Any], known: dict[int, Any], np: Any) -> Any:
-    match expr:
-        case Number(value=value):
-            return value
-        case Symbol() | Link():
-            return look_up(expr)
-        case Vector(items=items):
-            values = tuple(_walk(item, look_up, known, np) for item in items)
-            return values if np is None else np.stack(np.broadcast_arrays(*values), axis=-1) if _scalars(expr) else np.array(values)
-        case Keys():
-            return evaluate_keys(expr, _walk(expr.argument, look_up, known, np), np)
-        case Call(op=op, args=args):
-            operation = OPERATIONS[op]
-            values = tuple(_walk(arg, look_up, known, np) for arg in args)
-            if np is not None:
-                return _arrays(operation, values, np)
-            if operation.elementwise:
-                return _elementwise(operation, values)
-            return operation.python(*values)
-    raise TypeError(f"an unbound name cannot be evaluated: {expr!r}")
+        return evaluate_arrays(expr, look_up)
+    values: dict[int, Any] = {}
+    for node in each_once(expr):
+        match node:
+            case Number(value=number):
+                value: Any = number
+            case Symbol() | Link():
+                value = _floats(look_up(node))
+            case Vector(items=items):
+                value = tuple(values[id(item)] for item in items)
+            case Call(args=args):
+                value = apply(FLOATS, node, [values[id(arg)] for arg in args])
+            case Keys():
+                value = _keys(node, values)
+            case _:
+                raise TypeError(f"the name {'.'.join(node.parts)} is not bound")
+        values[id(node)] = value
+    return values[id(expr)]
 
 
-def _scalars(expr: Vector) -> bool:
-    return bool(expr.items) and all(not item.type.shape for item in expr.items)
+def _floats(value: Any) -> Any:
+    if isinstance(value, tuple | list):
+        return tuple(_floats(item) for item in value)
+    return _floats(value.tolist()) if hasattr(value, "tolist") else float(value)
 
 
-def _arrays(operation: Operation, values: tuple[Any, ...], np: Any) -> Any:
-    if isinstance(operation.arrays, str):
-        return getattr(np, operation.arrays)(*(np.asarray(v, dtype=float) for v in values))
-    return operation.arrays(np, *values)
+def _keys(keys: Keys, values: Mapping[int, Any]) -> Any:
+    def components(expr: Expr) -> tuple[Any, ...]:
+        value = values[id(expr)]
+        return value if isinstance(value, tuple) else (value,)
+
+    table = table_of(FLOATS, keys, lambda expr: float(values[id(expr)]), components)
+    result = interpolate(FLOATS, table, values[id(keys.argument)], _last_key)
+    return result if keys.type.shape else result[0]
 
 
-def _elementwise(operation: Operation, values: tuple[Any, ...]) -> Any:
-    deepest = max(values, key=_depth)
-    depth = _depth(deepest)
-    if depth == 0:
-        return operation.python(*values)
-    if operation.reduces and len(values) == 1:
-        from sceneql.quantities.numeric import flat
-
-        return operation.python(flat(values[0]))
-    rows = []
-    for k in range(len(deepest)):
-        rows.append(_elementwise(operation, tuple(v[k] if _depth(v) == depth else v for v in values)))
-    return tuple(rows)
+def _last_key(t: float, times: tuple[float, ...]) -> int:
+    return bisect_right(times, t) - 1 if t == t else 0
 
 
-def _depth(value: Any) -> int:
-    depth = 0
-    while isinstance(value, tuple):
-        depth += 1
-        if not value:
-            break
-        value = value[0]
-    return depth
+def apply(o: Any, call: Call, args: list[Any]) -> Any:
+    """An operation over an arithmetic ``o``, on values that are its numbers or nested tuples of them."""
+    operation = OPERATIONS[call.op]
+    if operation.series:
+        raise TypeError(f"'{call.op}' needs a quantity over time")
+    if call.op == "component":
+        index = call.args[1]
+        assert isinstance(index, Number)
+        return _each(lambda vector: vector[int(index.value)], args[:1], [len(call.args[0].type.shape) - 1])
+    if operation.reduces and len(args) == 1:
+        return _reduce(o, operation, args[0], call.args[0].type.shape)
+    vectors = operation.vector_args or (False,) * len(args)
+    function = getattr(o, operation.name) if operation.primitive else partial(formula_of(operation), o)
+    ranks = [len(arg.type.shape) - vector for arg, vector in zip(call.args, vectors, strict=True)]
+    return _each(function, args, ranks)
+
+
+def formula_of(operation: Operation) -> Callable[..., Any]:
+    """What a composite or reduction means. Raises TypeError for an operation without a formula."""
+    if operation.formula is None:
+        raise TypeError(f"'{operation.name}' has no formula")
+    return operation.formula
+
+
+def _each(function: Callable[..., Any], args: list[Any], ranks: list[int]) -> Any:
+    """The function on every item of the arguments' outer axes, aligned at the last."""
+    top = max(ranks)
+    if top <= 0:
+        return function(*args)
+    lengths = {len(arg) for arg, rank in zip(args, ranks, strict=True) if rank == top}
+    if len(lengths) > 1:
+        raise ValueError(f"lists of different lengths: {sorted(lengths)}")
+    inner = [rank - (rank == top) for rank in ranks]
+    pick = [rank == top for rank in ranks]
+    return tuple(
+        _each(function, [arg[k] if one else arg for arg, one in zip(args, pick, strict=True)], inner)
+        for k in range(lengths.pop())
+    )
+
+
+def _reduce(o: Any, operation: Operation, value: Any, shape: Shape) -> Any:
+    formula = formula_of(operation)
+    if operation.name == "norm":
+        return formula(o, list(_flat(value)))
+    if len(shape) < 2 or operation.name == "count":
+        return formula(o, value if shape else (value,))
+    columns = zip(*value, strict=True) if value else [()] * (shape[1] or 0)
+    return tuple(_reduce(o, operation, column, shape[1:]) for column in columns)
+
+
+def _flat(value: Any) -> list[Any]:
+    return [part for item in value for part in _flat(item)] if isinstance(value, tuple) else [value]

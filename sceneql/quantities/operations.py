@@ -1,376 +1,189 @@
-"""The one table of operations: for each its type rule, its derivative, and its evaluation on floats and on arrays.
+"""THE ONE TABLE of operations: what an expression may do, for every evaluator, checker and printer.
 
-A new operation of the expression language is one entry here (and, to be used in implicit fields, one in the tape).
+A *primitive* has a function on floats, one of numpy, and (where it has one) its partial derivatives. A *composite*
+has a formula over primitives instead, from which every evaluator and its derivative follow. A *reduction* takes the
+first axis of its one argument away.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from fractions import Fraction
+import operator
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from types import SimpleNamespace
 from typing import Any
 
-from sceneql.quantities import numeric
-from sceneql.quantities.dimension import PLAIN, Dimension
-from sceneql.quantities.expression import Call, Expr, Number, Shape, Type
+from sceneql.quantities import chance, formulas, partials, real, rules
+from sceneql.quantities.expression import Expr, Type
 
-TypeRule = Callable[[tuple[Expr, ...]], Type]
-Partials = Callable[..., tuple[Expr | None, ...]]
+MANY = 10_000
+"""Arguments of an operation that takes as many as an expression has room for."""
 
-
-class TypeMismatch(Exception):
-    """Argument ``first`` (and ``second``) of an operation do not fit; indices into its arguments."""
-
-    def __init__(self, message: str, first: int, second: int | None = None) -> None:
-        super().__init__(message)
-        self.first, self.second = first, second
+CONSTANTS = {"pi": math.pi, "tau": math.tau, "e": math.e}
+"""Names with a value in every expression; a define of the same name goes before them."""
 
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """An operation of the expression language."""
+    """One operation.
+
+    ``rule`` gives the result's type from typed arguments or raises rules.MismatchError. ``partials(o, *args)`` gives
+    the partial derivatives in any arithmetic ``o``. ``formula(o, *args)``, of a reduction ``formula(o, items)``, is
+    what a composite means. ``vector_args`` says which arguments of a composite are vectors; a vector is a tuple of its
+    components there. ``numpy`` names numpy's function. ``series``: asks for values over time. ``reduces``: with one
+    argument it is a reduction. ``infix``: written as a sign, not called by its name. ``angle``: gives radians.
+    """
 
     name: str
     least: int
     most: int
-    """Number of arguments."""
-    rule: TypeRule
-    python: Callable[..., Any]
-    """On floats (elementwise ones) or on whole values as nested tuples (the others)."""
-    arrays: str | Callable[..., Any]
-    """The numpy function of that name, or a function of (numpy, *arguments)."""
-    partials: Partials | None = None
-    """Derivatives by the arguments, given them; None in the tuple: zero almost everywhere."""
-    elementwise: bool = True
-    reduces: bool = False
-    """With one argument, makes one number of a list."""
+    rule: Callable[[tuple[Expr, ...]], Type] = field(repr=False)
+    python: Callable[..., float] | None = None
+    numpy: str | None = None
+    partials: Callable[..., tuple[Any, ...]] | None = None
+    formula: Callable[..., Any] | None = None
+    vector_args: tuple[bool, ...] = ()
+    vector_result: bool = False
     series: bool = False
-    """Takes a quantity over time; evaluated by whoever has its series (`expect`)."""
+    reduces: bool = False
+    infix: str | None = None
+    angle: bool = False
 
-
-# --- type rules ------------------------------------------------------------------------------------------------------
-
-
-def broadcast(args: tuple[Expr, ...]) -> Shape:
-    """The common shape: a scalar goes with everything, a vector with a list of vectors."""
-    shape: Shape = ()
-    for k, arg in enumerate(args):
-        other = arg.type.shape
-        if not shape or (len(other) > len(shape) and other[len(other) - len(shape) :] == shape):
-            shape = other
-        elif other and other != shape[len(shape) - len(other) :] and None not in (*other, *shape):
-            raise TypeMismatch(f"{_shape(shape)} and {_shape(other)} do not go together", 0, k)
-    return shape
-
-
-def _shape(shape: Shape) -> str:
-    return "a single value" if not shape else f"a vector of {shape[-1]}" if len(shape) == 1 else "a list of points"
-
-
-def fits_any(arg: Expr) -> bool:
-    """Whether an argument goes with every dimension: 0, or not known before the run."""
-    return arg.type.dimension is None or (isinstance(arg, Number) and arg.value == 0 and arg.bare)
-
-
-def common(args: tuple[Expr, ...]) -> Dimension | None:
-    """The one dimension that all arguments have. Raises TypeMismatch."""
-    first: int | None = None
-    for k, arg in enumerate(args):
-        if fits_any(arg):
-            continue
-        if first is None:
-            first = k
-        elif arg.type.dimension != args[first].type.dimension:
-            raise TypeMismatch("", first, k)
-    return args[first].type.dimension if first is not None else args[0].type.dimension if args else PLAIN
-
-
-def _same(args: tuple[Expr, ...]) -> Type:
-    return Type(broadcast(args), common(args))
-
-
-def _plain_arguments(args: tuple[Expr, ...]) -> None:
-    for k, arg in enumerate(args):
-        if arg.type.dimension is not None and not arg.type.dimension.plain:
-            raise TypeMismatch(f"needs a plain number, not {arg.type.dimension}", k)
-
-
-def _plain(args: tuple[Expr, ...]) -> Type:
-    _plain_arguments(args)
-    return Type(broadcast(args), PLAIN)
-
-
-def _ratio(args: tuple[Expr, ...]) -> Type:
-    """Arguments of one dimension, a plain result: atan2, comparisons."""
-    common(args)
-    return Type(broadcast(args), PLAIN)
-
-
-def _product(args: tuple[Expr, ...]) -> Type:
-    a, b = args[0].type.dimension, args[1].type.dimension
-    return Type(broadcast(args), None if a is None or b is None else a * b)
-
-
-def _quotient(args: tuple[Expr, ...]) -> Type:
-    a, b = args[0].type.dimension, args[1].type.dimension
-    return Type(broadcast(args), None if a is None or b is None else a / b)
-
-
-def _power(args: tuple[Expr, ...]) -> Type:
-    base, exponent = args
-    _plain_arguments((Number(0.0), exponent))
-    dimension = base.type.dimension
-    if dimension is not None and not dimension.plain:
-        if not isinstance(exponent, Number):
-            raise TypeMismatch(f"the exponent of a quantity in {dimension} must be a constant", 1)
-        dimension = dimension ** Fraction(exponent.value).limit_denominator(12)
-    return Type(broadcast(args), dimension)
-
-
-def _root(args: tuple[Expr, ...]) -> Type:
-    dimension = args[0].type.dimension
-    return Type(args[0].type.shape, None if dimension is None else dimension ** Fraction(1, 2))
-
-
-def _keep(args: tuple[Expr, ...]) -> Type:
-    return args[0].type
-
-
-def _sign(args: tuple[Expr, ...]) -> Type:
-    return Type(args[0].type.shape, PLAIN)
-
-
-def _where(args: tuple[Expr, ...]) -> Type:
-    _plain_arguments(args[:1])
-    return Type(broadcast(args), common((Number(0.0), *args[1:])) if not fits_any(args[1]) or not fits_any(args[2]) else PLAIN)
-
-
-def _mix(args: tuple[Expr, ...]) -> Type:
-    _plain_arguments((Number(0.0), Number(0.0), args[2]))
-    return Type(broadcast(args), common(args[:2]))
-
-
-def _smoothstep(args: tuple[Expr, ...]) -> Type:
-    common(args)
-    return Type(broadcast(args), PLAIN)
-
-
-def _extreme(args: tuple[Expr, ...]) -> Type:
-    """min, max: of several arguments elementwise, of one over the list."""
-    return Type((), args[0].type.dimension) if len(args) == 1 else _same(args)
-
-
-def _reduce(args: tuple[Expr, ...]) -> Type:
-    return Type((), args[0].type.dimension)
-
-
-def _count(args: tuple[Expr, ...]) -> Type:
-    return Type((), PLAIN)
-
-
-def _component(args: tuple[Expr, ...]) -> Type:
-    return Type(args[0].type.shape[:-1], args[0].type.dimension)
-
-
-def _vectors(args: tuple[Expr, ...]) -> None:
-    for k, arg in enumerate(args):
-        if not arg.type.shape or arg.type.shape[-1] not in (3, None):
-            raise TypeMismatch(f"needs a vector of 3, not {_shape(arg.type.shape)}", k)
-
-
-def _dot(args: tuple[Expr, ...]) -> Type:
-    _vectors(args)
-    return Type(broadcast(args)[:-1], _product(args).dimension)
-
-
-def _cross(args: tuple[Expr, ...]) -> Type:
-    _vectors(args)
-    return _product(args)
-
-
-def _length(args: tuple[Expr, ...]) -> Type:
-    _vectors(args)
-    return Type(args[0].type.shape[:-1], args[0].type.dimension)
-
-
-def _normalize(args: tuple[Expr, ...]) -> Type:
-    _vectors(args)
-    return Type(args[0].type.shape, PLAIN)
-
-
-def _distance(args: tuple[Expr, ...]) -> Type:
-    _vectors(args)
-    return Type(broadcast(args)[:-1], common(args))
-
-
-def _quaternion(args: tuple[Expr, ...]) -> Type:
-    _plain_arguments(args)
-    return Type((4,), PLAIN)
-
-
-def _rgb(args: tuple[Expr, ...]) -> Type:
-    _plain_arguments(args)
-    return Type((3,), PLAIN)
-
-
-# --- building blocks of derivatives ----------------------------------------------------------------------------------
-
-ONE, TWO = Number(1.0), Number(2.0)
-
-
-def _n(value: float) -> Number:
-    return Number(value)
-
-
-def _c(op: str, *args: Expr) -> Expr:
-    return Call(op, args)
-
-
-def _mul(a: Expr, b: Expr) -> Expr:
-    return _c("mul", a, b)
-
-
-def _div(a: Expr, b: Expr) -> Expr:
-    return _c("div", a, b)
-
-
-def _sub(a: Expr, b: Expr) -> Expr:
-    return _c("sub", a, b)
-
-
-def _add(a: Expr, b: Expr) -> Expr:
-    return _c("add", a, b)
-
-
-def _neg(a: Expr) -> Expr:
-    return _c("neg", a)
-
-
-def _square(a: Expr) -> Expr:
-    return _mul(a, a)
-
-
-def _power_partials(a: Expr, b: Expr) -> tuple[Expr | None, ...]:
-    by_base = _mul(b, _c("pow", a, _sub(b, ONE)))
-    if isinstance(b, Number):
-        return by_base, None
-    return by_base, _mul(_c("pow", a, b), _c("log", a))
-
-
-def _smoothstep_partials(a: Expr, b: Expr, x: Expr) -> tuple[Expr | None, ...]:
-    s = _div(_sub(x, a), _sub(b, a))
-    inside = _mul(_c("gt", s, _n(0.0)), _c("lt", s, ONE))
-    slope = _div(_mul(inside, _mul(_n(6.0), _mul(s, _sub(ONE, s)))), _sub(b, a))
-    return _mul(slope, _sub(s, ONE)), _neg(_mul(slope, s)), slope
-
-
-def _ease_partials(x: Expr) -> tuple[Expr | None, ...]:
-    inside = _mul(_c("gt", x, _n(0.0)), _c("lt", x, ONE))
-    return (_mul(inside, _mul(_n(6.0), _mul(x, _sub(ONE, x)))),)
-
-
-def _pick(condition: Expr, a: Expr, b: Expr) -> tuple[Expr | None, ...]:
-    return None, _c("where", condition, ONE, _n(0.0)), _c("where", condition, _n(0.0), ONE)
-
-
-# --- the table -------------------------------------------------------------------------------------------------------
-
-
-def _table() -> dict[str, Operation]:
-    rows: list[Operation] = []
-
-    def row(
-        name: str, count: int | tuple[int, int], rule: TypeRule, python: Any, arrays: Any, partials: Any = None, **kind: bool
-    ) -> None:
-        least, most = (count, count) if isinstance(count, int) else count
-        rows.append(Operation(name, least, most, rule, python, arrays, partials, **kind))
-
-    row("add", 2, _same, lambda a, b: a + b, "add", lambda a, b: (ONE, ONE))
-    row("sub", 2, _same, lambda a, b: a - b, "subtract", lambda a, b: (ONE, _n(-1.0)))
-    row("mul", 2, _product, lambda a, b: a * b, "multiply", lambda a, b: (b, a))
-    row("div", 2, _quotient, numeric.divide, "divide", lambda a, b: (_div(ONE, b), _neg(_div(a, _square(b)))))
-    row("neg", 1, _keep, lambda a: -a, "negative", lambda a: (_n(-1.0),))
-    row("pow", 2, _power, numeric.power, "power", _power_partials)
-    row("sqrt", 1, _root, numeric.guarded(math.sqrt), "sqrt", lambda a: (_div(_n(0.5), _c("sqrt", a)),))
-    row("abs", 1, _keep, abs, "abs", lambda a: (_c("sign", a),))
-    row("sign", 1, _sign, numeric.sign, "sign", lambda a: (None,))
-    row("floor", 1, _plain, numeric.guarded(numeric.floor), "floor", lambda a: (None,))
-    row("ceil", 1, _plain, numeric.guarded(numeric.ceil), "ceil", lambda a: (None,))
-    row("round", 1, _plain, numeric.guarded(numeric.rounded), "rint", lambda a: (None,))
-    row("mod", 2, _same, numeric.modulo, "mod", lambda a, b: (ONE, _neg(_c("floor", _div(a, b)))))
-    row("exp", 1, _plain, numeric.exp, "exp", lambda a: (_c("exp", a),))
-    row("log", 1, _plain, numeric.log, "log", lambda a: (_div(ONE, a),))
-    row("log10", 1, _plain, numeric.log10, "log10", lambda a: (_div(_n(1 / math.log(10)), a),))
-    row("sin", 1, _plain, numeric.guarded(math.sin), "sin", lambda a: (_c("cos", a),))
-    row("cos", 1, _plain, numeric.guarded(math.cos), "cos", lambda a: (_neg(_c("sin", a)),))
-    row("tan", 1, _plain, numeric.guarded(math.tan), "tan", lambda a: (_add(ONE, _square(_c("tan", a))),))
-    root = lambda a: _c("sqrt", _sub(ONE, _square(a)))  # noqa: E731
-    row("asin", 1, _plain, numeric.guarded(math.asin), "arcsin", lambda a: (_div(ONE, root(a)),))
-    row("acos", 1, _plain, numeric.guarded(math.acos), "arccos", lambda a: (_div(_n(-1.0), root(a)),))
-    row("atan", 1, _plain, math.atan, "arctan", lambda a: (_div(ONE, _add(ONE, _square(a))),))
-    square_sum = lambda a, b: _add(_square(a), _square(b))  # noqa: E731
-    row(
-        "atan2", 2, _ratio, math.atan2, "arctan2",
-        lambda a, b: (_div(b, square_sum(a, b)), _neg(_div(a, square_sum(a, b)))),
-    )  # fmt: skip
-    row("sinh", 1, _plain, numeric.sinh, "sinh", lambda a: (_c("cosh", a),))
-    row("cosh", 1, _plain, numeric.cosh, "cosh", lambda a: (_c("sinh", a),))
-    row("tanh", 1, _plain, math.tanh, "tanh", lambda a: (_sub(ONE, _square(_c("tanh", a))),))
-    row("hypot", 2, _same, math.hypot, "hypot", lambda a, b: (_div(a, _c("hypot", a, b)), _div(b, _c("hypot", a, b))))
-    row("step", 2, _smoothstep, lambda edge, x: float(x >= edge), lambda np, e, x: 1.0 * (x >= e), lambda e, x: (None, None))
-    row(
-        "clamp", 3, _same, numeric.clamp, lambda np, x, low, high: np.minimum(np.maximum(x, low), high),
-        lambda x, a, b: (_mul(_c("gt", x, a), _c("lt", x, b)), _c("le", x, a), _c("ge", x, b)),
-    )  # fmt: skip
-    row(
-        "mix", 3, _mix, lambda a, b, s: a + (b - a) * s, lambda np, a, b, s: a + (b - a) * s,
-        lambda a, b, s: (_sub(ONE, s), s, _sub(b, a)),
-    )  # fmt: skip
-    row("smoothstep", 3, _smoothstep, numeric.smoothstep, numeric.smoothstep_arrays, _smoothstep_partials)
-    row("ease", 1, _plain, numeric.ease, lambda np, x: numeric.smoothstep_arrays(np, 0.0, 1.0, x), _ease_partials)
-    for name, python, arrays in (
-        ("lt", lambda a, b: float(a < b), "less"),
-        ("le", lambda a, b: float(a <= b), "less_equal"),
-        ("gt", lambda a, b: float(a > b), "greater"),
-        ("ge", lambda a, b: float(a >= b), "greater_equal"),
-        ("eq", lambda a, b: float(a == b), "equal"),
-    ):
-        row(name, 2, _ratio, python, numeric.as_float(arrays), lambda a, b: (None, None))
-    row("where", 3, _where, lambda c, a, b: a if c else b, lambda np, c, a, b: np.where(c, a, b), _pick)
-    row("random", (1, 2), _plain, numeric.random, numeric.random_arrays)
-
-    row("min", (1, 16), _extreme, min, lambda np, *a: numeric.fold(np.minimum, a) if len(a) > 1 else np.min(a[0]),
-        lambda *a: (_c("le", a[0], a[1]), _c("gt", a[0], a[1])), reduces=True)  # fmt: skip
-    row("max", (1, 16), _extreme, max, lambda np, *a: numeric.fold(np.maximum, a) if len(a) > 1 else np.max(a[0]),
-        lambda *a: (_c("ge", a[0], a[1]), _c("lt", a[0], a[1])), reduces=True)  # fmt: skip
-    whole = {"elementwise": False}
-    row("sum", 1, _reduce, lambda a: math.fsum(numeric.flat(a)), lambda np, a: np.sum(a), reduces=True, **whole)
-    row("mean", 1, _reduce, lambda a: numeric.mean(numeric.flat(a)), lambda np, a: np.mean(a), reduces=True, **whole)
-    row("count", 1, _count, len, lambda np, a: float(np.shape(a)[0]), reduces=True, **whole)
-
-    row("component", 2, _component, numeric.component, lambda np, a, k: np.asarray(a)[..., int(k)], **whole)
-    row("dot", 2, _dot, numeric.dot, lambda np, a, b: np.sum(np.multiply(a, b), axis=-1), **whole)
-    row("cross", 2, _cross, numeric.cross, lambda np, a, b: np.cross(a, b), **whole)
-    row("length", 1, _length, numeric.length, lambda np, a: np.linalg.norm(a, axis=-1), **whole)
-    row("normalize", 1, _normalize, numeric.normalize, numeric.normalize_arrays, **whole)
-    row("distance", 2, _distance, lambda a, b: numeric.length(numeric.minus(a, b)),
-        lambda np, a, b: np.linalg.norm(np.subtract(a, b), axis=-1), **whole)  # fmt: skip
-    by_tuple = numeric.by_tuple
-    row("about", 2, _quaternion, numeric.about, by_tuple(numeric.about), **whole)
-    for order in ("xyz", "xzy", "yxz", "yzx", "zxy", "zyx"):
-        turn = numeric.euler(order)
-        row(f"euler_{order}", 1, _quaternion, turn, by_tuple(turn), **whole)
-    row("turn", 2, _quaternion, numeric.quaternion_product, by_tuple(numeric.quaternion_product), **whole)
-    row("hue", 1, _rgb, numeric.hue, by_tuple(numeric.hue), **whole)
-
-    for name in ("final", "initial", "spread"):
-        row(name, 1, _keep, numeric.no_series, numeric.no_series, series=True, **whole)
-    row("relative_drift", 1, _sign, numeric.no_series, numeric.no_series, series=True, **whole)
-    row("at", 2, _keep, numeric.no_series, numeric.no_series, series=True, **whole)
-    return {operation.name: operation for operation in rows}
-
-
-OPERATIONS: Mapping[str, Operation] = _table()
-CONSTANTS: Mapping[str, float] = {"pi": math.pi, "tau": math.tau, "e": math.e}
-"""Textbook constants, known as names."""
+    @property
+    def primitive(self) -> bool:
+        """Whether evaluators have a function of their own for it."""
+        return self.python is not None
+
+    def takes(self, count: int) -> bool:
+        """Whether it can have this many arguments."""
+        return self.least <= count <= self.most
+
+
+def _infix(name: str, sign: str, rule: rules.Rule, python: Any, numpy: str, derivative: Any) -> Operation:
+    count = 1 if name == "neg" else 2
+    return Operation(name, count, count, rule, python, numpy, derivative, infix=sign)
+
+
+def _compared(name: str, sign: str, python: Any, numpy: str) -> Operation:
+    rule = rules.alike("cannot compare {a} and {b}", result_plain=True)
+    return _infix(name, sign, rule, lambda a, b: float(python(a, b)), numpy, partials.flat)
+
+
+def _plain(name: str, python: Any, numpy: str, derivative: Any, *, angle: bool = False) -> Operation:
+    return Operation(name, 1, 1, rules.plain(name), python, numpy, derivative, angle=angle)
+
+
+def _two_alike(name: str, python: Any, numpy: str, derivative: Any, *, angle: bool = False) -> Operation:
+    rule = rules.some_alike(name, (0, 1), (), result_plain=angle)
+    return Operation(name, 2, 2, rule, python, numpy, derivative, angle=angle)
+
+
+def _scalar(name: str, rule: rules.Rule, formula: Any, count: int) -> Operation:
+    return Operation(name, count, count, rule, formula=formula, vector_args=(False,) * count)
+
+
+def _vector(
+    name: str, formula: Any, sizes: tuple[int | None, ...], result: tuple[int, ...], dimension: rules.Rule
+) -> Operation:
+    rule = rules.vectors(name, sizes, result, dimension)
+    flags = tuple(size is not None for size in sizes)
+    count = len(sizes)
+    return Operation(name, count, count, rule, formula=formula, vector_args=flags, vector_result=bool(result))
+
+
+def _reduction(name: str, rule: rules.Rule, formula: Any, numpy: str) -> Operation:
+    return Operation(name, 1, 1, rule, numpy=numpy, formula=formula, reduces=True)
+
+
+def _extreme(name: str, python: Any, derivative: Any) -> Operation:
+    formula = formulas.extreme(name)
+    rule = rules.least_or_most(name)
+    return Operation(name, 1, MANY, rule, python, f"{name}imum", derivative, formula, reduces=True)
+
+
+def _series(name: str, rule: rules.Rule, count: int = 1) -> Operation:
+    return Operation(name, count, count, rule, series=True)
+
+
+_ORDERS = ["".join(axes) for axes in itertools.permutations("xyz")]
+_about_rule = rules.vectors("about", (3, None), (4,), rules.signed)
+
+
+def _turned(args: tuple[Expr, ...]) -> Type:
+    rules.plain("the angle")((args[1],))
+    return _about_rule(args)
+
+
+_TABLE = (
+    _infix("add", "+", rules.alike("cannot add {a} and {b}"), operator.add, "add", partials.add),
+    _infix("sub", "-", rules.alike("cannot subtract {b} from {a}"), operator.sub, "subtract", partials.sub),
+    _infix("mul", "*", rules.multiplied, operator.mul, "multiply", partials.mul),
+    _infix("div", "/", rules.divided, real.div, "divide", partials.div),
+    _infix("neg", "-", rules.kept, operator.neg, "negative", partials.neg),
+    _infix("pow", "^", rules.raised, real.power, "power", partials.pow),
+    _compared("lt", "<", operator.lt, "less"),
+    _compared("le", "<=", operator.le, "less_equal"),
+    _compared("gt", ">", operator.gt, "greater"),
+    _compared("ge", ">=", operator.ge, "greater_equal"),
+    _compared("eq", "==", operator.eq, "equal"),
+    Operation("sqrt", 1, 1, rules.rooted, real.sqrt, "sqrt", partials.sqrt),
+    Operation("abs", 1, 1, rules.kept, abs, "abs", partials.abs),
+    Operation("sign", 1, 1, rules.signed, real.sign, "sign", partials.flat),
+    _extreme("min", real.smallest, partials.min),
+    _extreme("max", real.largest, partials.max),
+    _plain("sin", real.sin, "sin", partials.sin),
+    _plain("cos", real.cos, "cos", partials.cos),
+    _plain("tan", real.tan, "tan", partials.tan),
+    _plain("asin", real.asin, "arcsin", partials.asin, angle=True),
+    _plain("acos", real.acos, "arccos", partials.acos, angle=True),
+    _plain("atan", math.atan, "arctan", partials.atan, angle=True),
+    _two_alike("atan2", math.atan2, "arctan2", partials.atan2, angle=True),
+    _two_alike("hypot", math.hypot, "hypot", partials.hypot),
+    _two_alike("mod", real.modulo, "mod", partials.mod),
+    _plain("sinh", real.sinh, "sinh", partials.sinh),
+    _plain("cosh", real.cosh, "cosh", partials.cosh),
+    _plain("tanh", math.tanh, "tanh", partials.tanh),
+    _plain("exp", real.exp, "exp", partials.exp),
+    _plain("log", real.log, "log", partials.log),
+    _plain("log10", real.log10, "log10", partials.log10),
+    _plain("floor", real.floor, "floor", partials.flat),
+    _plain("ceil", real.ceil, "ceil", partials.flat),
+    _plain("round", real.nearest, "rint", partials.flat),
+    Operation("where", 3, 3, rules.some_alike("where", (1, 2), (0,)), real.where, "where", partials.where),
+    Operation("random", 1, 3, rules.plain("random"), chance.random, "random", partials.flat),
+    _scalar("step", rules.some_alike("step", (0, 1), (), result_plain=True), formulas.step, 2),
+    _scalar("clamp", rules.some_alike("clamp", (0, 1, 2), ()), formulas.clamp, 3),
+    _scalar("mix", rules.some_alike("mix", (0, 1), (2,)), formulas.mix, 3),
+    _scalar("ease", rules.plain("ease"), formulas.ease, 1),
+    _scalar("smoothstep", rules.some_alike("smoothstep", (0, 1, 2), (), result_plain=True), formulas.smoothstep, 3),
+    _vector("dot", formulas.dot, (0, 0), (), rules.multiplied),
+    _vector("cross", formulas.cross, (3, 3), (3,), rules.multiplied),
+    _vector("length", formulas.length, (0,), (), rules.kept),
+    _vector("distance", formulas.distance, (0, 0), (), rules.some_alike("distance", (0, 1), ())),
+    Operation("normalize", 1, 1, rules.normalized, formula=formulas.normalize, vector_args=(True,), vector_result=True),
+    Operation("component", 2, 2, rules.chosen),
+    Operation("about", 2, 2, _turned, formula=formulas.about, vector_args=(True, False), vector_result=True),
+    *(_vector(f"euler_{o}", formulas.euler(o), (3,), (4,), rules.plain(f"euler_{o}")) for o in _ORDERS),
+    _vector("turn", formulas.turn, (4, 4), (4,), rules.plain("turn")),
+    _vector("hue", formulas.hue, (None,), (3,), rules.plain("hue")),
+    _reduction("sum", rules.reduced, formulas.total, "sum"),
+    _reduction("mean", rules.reduced, formulas.mean, "mean"),
+    _reduction("norm", rules.normed, formulas.norm, "norm"),
+    _reduction("count", rules.counted, formulas.count, "count"),
+    _series("final", rules.kept),
+    _series("initial", rules.kept),
+    _series("at", rules.sampled, 2),
+    _series("relative_drift", rules.signed),
+    _series("spread", rules.kept),
+)
+
+OPERATIONS = {operation.name: operation for operation in _TABLE}
+"""Every operation by its name."""
+
+FUNCTIONS = tuple(sorted(operation.name for operation in _TABLE if operation.infix is None))
+"""The names that a script may call."""
+
+FLOATS = SimpleNamespace(**{operation.name: operation.python for operation in _TABLE if operation.primitive})
+"""The arithmetic ``o`` of floats for derivatives and formulas."""

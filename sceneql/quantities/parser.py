@@ -1,248 +1,237 @@
-"""Text to unbound tree, by precedence climbing (Pratt 1973). Our own: a script's text is never run as Python."""
+"""Text to unbound tree, by precedence climbing (Pratt 1973). Our own: a script's text is never run as Python.
+
+From loose to tight: comparisons (which do not chain), ``+ -``, ``* /``, sign, ``^`` or ``**`` (to the right), then
+names, calls, brackets and numbers with their units.
+"""
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError, suggestion
-from sceneql.quantities.expression import Call, Expr, Name, Number, Type, Vector
-from sceneql.quantities.quick_operations import OPERATIONS
+from sceneql.quantities.expression import Call, Expr, Name, Number, Vector, children, each_once
+from sceneql.quantities.literal import NUMBER, WORD, quantity, read_unit, whole_value
+from sceneql.quantities.operations import FUNCTIONS, MANY, OPERATIONS
 from sceneql.quantities.span import Span
-from sceneql.quantities.quick_units import NAMES, Unit, read_unit
+from sceneql.quantities.unit_table import UNITS
 
-LONGEST, DEEPEST, MOST = 10_000, 100, 10_000
-"""Characters, nesting and nodes of one expression."""
+LONGEST, DEEPEST = 10_000, 100
+"""Characters of one expression (each node takes one at least), and how deep its tree may be."""
 
+BINARY = {
+    "<": (10, "lt"), "<=": (10, "le"), ">": (10, "gt"), ">=": (10, "ge"), "==": (10, "eq"),
+    "+": (20, "add"), "-": (20, "sub"), "*": (30, "mul"), "/": (30, "div"), "^": (50, "pow"), "**": (50, "pow"),
+}  # fmt: skip
+SIGN = 40
 TOKEN = re.compile(
-    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*'*(?:\.[^\W\d]\w*'*|\.\d+)*)"
-    r"|(?P<op>\*\*|<=|>=|==|[-+*/^()\[\],<>])|(?P<end>$)|(?P<bad>.))",
+    rf"\s*(?:(?P<number>{NUMBER})|(?P<name>{WORD})|(?P<sign>\*\*|<=|>=|==|[-+*/^()\[\],<>])|(?P<end>\Z)|(?P<bad>.))",
     re.DOTALL,
 )
-BINARY = {
-    "<": (1, "lt"), "<=": (1, "le"), ">": (1, "gt"), ">=": (1, "ge"), "==": (1, "eq"),
-    "+": (2, "add"), "-": (2, "sub"), "*": (3, "mul"), "/": (3, "div"), "^": (5, "pow"), "**": (5, "pow"),
-}  # fmt: skip
-UNARY = 4
-NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
-VECTOR = re.compile(rf"\s*({NUMBER}(?:\s+{NUMBER})+)(?:\s+(\S+))?\s*$")
-RATIONAL = re.compile(rf"\s*({NUMBER})\s*/\s*((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s+(\S+)\s*$")
+MENDED = {"=": "write `==` to compare", "!": "write `where(a == b, 0, 1)` for a difference", "%": "write `mod(a, b)`",
+          "×": "write `*`", "·": "write `*`", "−": "write `-`", "²": "write `^2`", "³": "write `^3`"}  # fmt: skip
 
 
 def parse_value(text: str, span: Span) -> Expr:
     """A whole scalar: ``2 kN/m``, ``1/60 s``, ``0 1.2 0 m``, or an expression. Raises ScriptError."""
     if len(text) <= LONGEST:
-        vector = VECTOR.match(text)
-        if vector is not None:
-            unit = _whole_unit(vector[2], span, vector.start(2))
-            items = tuple(
-                _number(float(m[0]), unit, span.part(m.start(), m.end()))
-                for m in re.compile(NUMBER).finditer(text, vector.start(1), vector.end(1))
-            )
-            return Vector(items, span=span)
-        rational = RATIONAL.match(text)
-        if rational is not None and float(rational[2]) != 0:
-            unit = _whole_unit(rational[3], span, rational.start(3))
-            return _number(float(rational[1]) / float(rational[2]), unit, span)
+        value = whole_value(text, span)
+        if value is not None:
+            return value
     return parse_expression(text, span)
 
 
-def _whole_unit(text: str | None, span: Span, start: int) -> Unit | None:
-    if text is None:
-        return None
-    read = read_unit(text)
-    if read is None or read[1] != len(text):
-        raise _unknown_unit(text, span.part(start, start + len(text)))
-    return read[0]
-
-
 def parse_expression(text: str, span: Span) -> Expr:
-    """An expression. Raises ScriptError with one diagnostic at the very characters."""
+    """An expression. Raises ScriptError with one diagnostic at the very characters; ``text`` stands at ``span``."""
     if len(text) > LONGEST:
-        raise _error("expression-too-long", f"an expression may have {LONGEST} characters, not {len(text)}", span)
+        message = f"an expression has at most {LONGEST} characters, not {len(text)}"
+        raise ScriptError([Diagnostic("expression-too-long", message, span, "give its parts names in `define`")])
     return _Parser(text, span).whole()
-
-
-@dataclass(slots=True)
-class _Token:
-    kind: str
-    text: str
-    start: int
-    end: int
 
 
 class _Parser:
     def __init__(self, text: str, span: Span) -> None:
         self.text, self.span = text, span
-        self.nodes = 0
+        self.depth = 0
+        self.before = ""
         self.previous = 0
-        self.token = self._read(0)
+        self.kind, self.token, self.start, self.end = "", "", 0, 0
+        self._read(0)
 
     def whole(self) -> Expr:
         """The text from end to end."""
-        expr = self.expression(0, 0)
-        if self.token.kind != "end":
-            self._leftover()
+        if self.kind == "end":
+            raise self._fail("syntax", "an expression is missing here")
+        expr = self._expression(0)
+        if self.kind != "end":
+            raise self._leftover(expr)
+        depths: dict[int, int] = {}
+        for node in each_once(expr):
+            depths[id(node)] = 1 + max((depths[id(child)] for child in children(node)), default=0)
+        if depths[id(expr)] > DEEPEST:
+            raise self._too_deep(0, len(self.text))
         return expr
 
-    def expression(self, power: int, depth: int) -> Expr:
+    def _expression(self, power: int) -> Expr:
         """Operators that bind tighter than ``power``."""
-        if depth > DEEPEST:
-            raise self._fail("expression-too-deep", f"nested deeper than {DEEPEST}", self.token)
-        start = self.token.start
-        left = self.operand(depth)
-        while self.token.kind == "op" and self.token.text in BINARY:
-            binding, op = BINARY[self.token.text]
+        self.depth += 1
+        if self.depth > DEEPEST:
+            raise self._too_deep(self.start, self.end)
+        start = self.start
+        left = self._operand()
+        while self.kind == "sign" and self.token in BINARY:
+            binding, op = BINARY[self.token]
             if binding <= power:
                 break
+            sign = self.start, self.end
             self._advance()
-            right = self.expression(UNARY - 1 if op == "pow" else binding, depth + 1)
-            left = self._node(Call(op, (left, right), span=self._from(start)))
+            right = self._expression(SIGN - 1 if op == "pow" else binding)
+            left = Call(op, (left, right), span=self._from(start))
+            if binding == 10 and self.kind == "sign" and BINARY.get(self.token, (0, ""))[0] == 10:
+                raise self._fail("syntax", "comparisons do not chain", *sign, help="write `(a < b)*(b < c)`")
+        self.depth -= 1
         return left
 
-    def operand(self, depth: int) -> Expr:
-        """A number, name, call, bracket or sign."""
-        token = self.token
-        if token.kind == "number":
-            return self.literal()
-        if token.kind == "name":
+    def _operand(self) -> Expr:
+        kind, token, start = self.kind, self.token, self.start
+        if kind == "number":
+            return self._number("")
+        if kind == "name":
             self._advance()
-            if self.token.text == "(" and self.token.kind == "op":
-                return self.call(token, depth)
-            return self._node(Name(tuple(token.text.split(".")), self.span.part(token.start, token.end)))
-        if token.text in ("-", "+") and token.kind == "op":
+            if self.token == "(":
+                return self._call(token, start)
+            return Name(tuple(token.split(".")), self._from(start))
+        if token in ("-", "+") and kind == "sign":
             self._advance()
-            inner = self.expression(UNARY, depth + 1)
-            return inner if token.text == "+" else self._node(Call("neg", (inner,), span=self._from(token.start)))
-        if token.text == "(":
+            return self._signed(token, start)
+        if token == "(":
             self._advance()
-            inner = self.expression(0, depth + 1)
-            self._close(")", token)
-            return inner
-        if token.text == "[":
+            expr = self._expression(0)
+            self._close(")", start, expr)
+            self._no_unit(start, None)
+            return expr
+        if token == "[":
             self._advance()
-            items = self.items("]", token, depth)
-            unit = read_unit(self.text, self._skip(self.previous))
-            if unit is not None and self.token.kind == "name":
-                inside = " ".join(part.strip() for part in self.text[token.end : self.previous - 1].split(","))
-                name = self.text[self.token.start : unit[1]]
-                raise self._fail(
-                    "unit-after-bracket", "a unit cannot stand behind a bracket", self.token, f"write `{inside} {name}`"
-                )
-            return self._node(Vector(items, span=self._from(token.start)))
-        if token.kind == "end":
-            raise self._fail("syntax", "something is missing at the end", token)
-        raise self._fail("syntax", f"'{token.text}' cannot stand here", token)
+            items = self._items("]", start)
+            if not items:
+                raise self._fail("syntax", "an empty bracket has no value", start, self.previous)
+            self._no_unit(start, items)
+            return Vector(items, span=self._from(start))
+        raise self._fail(
+            "syntax", "something is missing at the end" if kind == "end" else f"'{token}' cannot stand here"
+        )
 
-    def call(self, name: _Token, depth: int) -> Expr:
-        """``name(...)``."""
-        opening = self.token
+    def _signed(self, sign: str, start: int) -> Expr:
+        # A sign before a literal is part of it: -20 degC is 253.15 K, not minus 293.15 K.
+        if self.kind == "number" and not self._raised():
+            return self._number(sign, start)
+        expr = self._expression(SIGN)
+        if sign == "+":
+            return expr
+        if isinstance(expr, Number):
+            return Number(-expr.value, expr.type, expr.bare, self._from(start))
+        return Call("neg", (expr,), span=self._from(start))
+
+    def _raised(self) -> bool:
+        """Whether a power follows the number (and its unit): -2^2 is -(2^2)."""
+        _, end = read_unit(self.text, self.end, self.span)
+        following = TOKEN.match(self.text, end)
+        return following is not None and following["sign"] in ("^", "**")
+
+    def _number(self, sign: str, start: int | None = None) -> Expr:
+        unit, end = read_unit(self.text, self.end, self.span)
+        first = self.start if start is None else start
+        number = quantity(sign + self.token, unit, self.span.part(first, end))
+        self.before, self.previous = self.text[first:end], end
+        self._read(end)
+        return number
+
+    def _call(self, name: str, start: int) -> Expr:
+        opening = self.start
         self._advance()
-        args = self.items(")", opening, depth)
-        operation = OPERATIONS.get(name.text)
-        if operation is None:
-            hint = suggestion(name.text, OPERATIONS)
-            raise self._fail("unknown-function", f"there is no function '{name.text}'", name, hint)
-        if not operation.least <= len(args) <= operation.most:
-            counts = str(operation.least) if operation.least == operation.most else f"{operation.least} or more"
-            raise self._fail("wrong-arity", f"{name.text} takes {counts} arguments, not {len(args)}", name)
-        return self._node(Call(name.text, args, span=self._from(name.start)))
+        args = self._items(")", opening)
+        if name not in FUNCTIONS:
+            hint = suggestion(name, FUNCTIONS)
+            raise self._fail("unknown-function", f"there is no function '{name}'", start, start + len(name), help=hint)
+        operation = OPERATIONS[name]
+        if not operation.takes(len(args)):
+            low, high = operation.least, operation.most
+            wanted = f"{low}" if low == high else f"{low} or more" if high == MANY else f"{low} to {high}"
+            message = f"{name} takes {wanted} argument{'' if wanted == '1' else 's'}, not {len(args)}"
+            raise self._fail("wrong-arity", message, start, self.previous)
+        return Call(name, args, span=self._from(start))
 
-    def items(self, closing: str, opening: _Token, depth: int) -> tuple[Expr, ...]:
-        """Expressions with commas up to the closing bracket."""
-        result: list[Expr] = []
-        if self.token.text == closing:
+    def _items(self, closing: str, opening: int) -> tuple[Expr, ...]:
+        items: list[Expr] = []
+        if self.token == closing:
             self._advance()
             return ()
         while True:
-            result.append(self.expression(0, depth + 1))
-            if self.token.kind == "op" and self.token.text == ",":
-                self._advance()
-                continue
-            self._close(closing, opening)
-            return tuple(result)
+            items.append(self._expression(0))
+            if self.token != ",":
+                self._close(closing, opening, items[-1])
+                return tuple(items)
+            self._advance()
 
-    def literal(self) -> Expr:
-        """A number, with the unit that stands directly after it."""
-        token = self.token
-        start = self._skip(token.end)
-        value = float(token.text)
-        read = read_unit(self.text, start)
-        if read is not None:
-            unit, end = read
-            after = self.text[end : end + 1]
-            if after not in ("(", ".", "_", "'") and not after.isalnum():
-                self.previous = end
-                self.token = self._read(end)
-                return self._node(_number(value, unit, self._from(token.start)))
-        self._advance()
-        if self.token.kind == "name":
-            name = self.token
-            after = self.text[self._skip(name.end) : self._skip(name.end) + 1]
-            if after != "(" and "." not in name.text:
-                raise _unknown_unit(name.text, self.span.part(name.start, name.end), token.text)
-        return self._node(_number(value, None, self._from(token.start)))
+    # --- tokens and errors ---
 
-    # --- tokens ---
-
-    def _read(self, at: int) -> _Token:
+    def _read(self, at: int) -> None:
         found = TOKEN.match(self.text, at)
-        assert found is not None
-        kind = found.lastgroup or "end"
-        if kind == "bad":
-            raise self._fail("syntax", f"'{found['bad']}' cannot stand in an expression", _Token("bad", "", *found.span("bad")))
-        return _Token(kind, found[kind], *found.span(kind))
+        assert found is not None  # the last alternative takes any character
+        self.kind = found.lastgroup or "end"
+        self.token, (self.start, self.end) = found[self.kind], found.span(self.kind)
+        if self.kind == "bad":
+            message = f"'{self.token}' cannot stand in an expression"
+            help = MENDED.get(self.token)
+            component = re.match(r"\.([xyz])\b", self.text[self.start :])
+            if component is not None and self.before in (")", "]"):
+                help = f"a component of an expression is written `component(..., {'xyz'.index(component[1])})`"
+            raise self._fail("syntax", message, help=help)
 
     def _advance(self) -> None:
-        self.previous = self.token.end
-        self.token = self._read(self.token.end)
+        self.before, self.previous = self.token, self.end
+        self._read(self.end)
 
-    def _skip(self, at: int) -> int:
-        while at < len(self.text) and self.text[at].isspace():
-            at += 1
-        return at
-
-    def _close(self, closing: str, opening: _Token) -> None:
-        if self.token.kind == "op" and self.token.text == closing:
+    def _close(self, closing: str, opening: int, last: Expr) -> None:
+        if self.token == closing:
             self._advance()
+        elif self.kind == "end":
+            raise self._fail("syntax", f"'{self.text[opening]}' is not closed", opening, opening + 1)
+        else:
+            raise self._leftover(last)
+
+    def _no_unit(self, opening: int, items: tuple[Expr, ...] | None) -> None:
+        """A unit behind a bracket is refused with the text that was meant."""
+        if self.kind != "name" or self.token not in UNITS:
             return
-        if self.token.kind == "end":
-            raise self._fail("syntax", f"'{opening.text}' is not closed", opening)
-        self._leftover()
+        _, end = read_unit(self.text, self.start, self.span)
+        inside = self.text[opening : self.previous]
+        name = self.text[self.start : end]
+        if items is not None and all(isinstance(item, Number) and item.bare for item in items):
+            better = " ".join(part.strip() for part in inside[1:-1].split(",")) + f" {name}"
+        else:
+            better = f"{inside}*(1 {name})"
+        message = "a unit stands directly after a number, not behind a bracket"
+        raise self._fail("unit-after-bracket", message, self.start, end, help=f"write `{better}`")
 
-    def _leftover(self) -> None:
-        token = self.token
-        if token.kind in ("name", "number") or token.text in ("(", "["):
-            raise self._fail("syntax", f"an operator is missing before '{token.text}'", token, "write `a*b` for a product")
-        raise self._fail("syntax", f"'{token.text}' cannot stand here", token)
+    def _leftover(self, expr: Expr) -> ScriptError:
+        if self.kind == "sign" and self.token not in "([":
+            return self._fail("syntax", f"'{self.token}' cannot stand here")
+        if isinstance(expr, Number) and self.kind == "number":
+            help = "a vector is numbers alone and one unit, `0 1.2 0 m`, or expressions in brackets, `[a, b, c]`"
+        else:
+            help = f"write `{self.before[-40:]}*{self.token[:40]}` for a product"
+        return self._fail("syntax", "two values stand side by side", help=help)
 
-    def _node(self, expr: Expr) -> Expr:
-        self.nodes += 1
-        if self.nodes > MOST:
-            raise self._fail("expression-too-long", f"more than {MOST} operations", self.token)
-        return expr
+    def _too_deep(self, start: int, end: int) -> ScriptError:
+        help = f"give its parts names in `define`; a sum of more than {DEEPEST} terms is written `sum([a, b, ...])`"
+        return self._fail("expression-too-deep", f"operations are nested deeper than {DEEPEST}", start, end, help=help)
 
     def _from(self, start: int) -> Span:
         return self.span.part(start, self.previous)
 
-    def _fail(self, code: str, message: str, token: _Token, help: str | None = None) -> ScriptError:
-        end = max(token.end, token.start + 1) if token.kind != "end" else token.start
-        return _error(code, message, self.span.part(token.start, end), help)
-
-
-def _number(value: float, unit: Unit | None, span: Span) -> Number:
-    if unit is None:
-        return Number(value, span=span)
-    return Number(value * unit.scale + unit.offset, Type((), unit.dimension), False, span)
-
-
-def _unknown_unit(text: str, span: Span, number: str = "") -> ScriptError:
-    name = re.split(r"[*/·^]", text)[0]
-    hint = suggestion(name, NAMES)
-    if hint is None:
-        hint = f"write `{number or '2'}*{text}` for a product"
-    return _error("unknown-unit", f"'{text}' is no unit", span, hint)
-
-
-def _error(code: str, message: str, span: Span, help: str | None = None) -> ScriptError:
-    return ScriptError([Diagnostic(code, message, span, help)])
+    def _fail(
+        self, code: str, message: str, start: int | None = None, end: int | None = None, *, help: str | None = None
+    ) -> ScriptError:
+        first = self.start if start is None else start
+        last = self.end if end is None else end
+        return ScriptError([Diagnostic(code, message, self.span.part(first, last), help)])

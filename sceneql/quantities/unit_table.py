@@ -26,7 +26,7 @@ _ALL = _SMALL + _LARGE
 _PI = Fraction(math.pi)
 
 # Prefixes are listed so that no likely name of a script is a unit: `dt` is a time step, never a decitonne.
-_SINGLE: tuple[tuple[str, Fraction | int | str, Dimension, str], ...] = (
+SINGLE: tuple[tuple[str, Fraction | int | str, Dimension, str], ...] = (
     ("m", 1, dim.LENGTH, _ALL + "cd"),
     ("g", "1/1000", dim.MASS, _SMALL + "k"),
     ("t", 1000, dim.MASS, ""),
@@ -82,11 +82,12 @@ _SINGLE: tuple[tuple[str, Fraction | int | str, Dimension, str], ...] = (
     ("lbf", "4.4482216152605", dim.FORCE, ""),
     ("psi", Fraction("4.4482216152605") / Fraction("0.0254") ** 2, dim.PRESSURE, ""),
 )
+"""Name, ratio to SI, dimension, prefixes."""
 
 
 def _with_prefixes() -> dict[str, tuple[Fraction, Dimension]]:
-    table = {name: (Fraction(ratio), dimension) for name, ratio, dimension, _ in _SINGLE}
-    for name, ratio, dimension, prefixes in _SINGLE:
+    table = {name: (Fraction(ratio), dimension) for name, ratio, dimension, _ in SINGLE}
+    for name, ratio, dimension, prefixes in SINGLE:
         for prefix in prefixes:
             # A unit's own name goes before a prefixed one: `min` is a minute, `cd` a candela.
             table.setdefault(prefix + name, (Fraction(ratio) * Fraction(10) ** PREFIXES[prefix], dimension))

@@ -161,7 +161,8 @@ def _unknown(name: str, span: Span | None, at: int) -> ScriptError:
     if written != name:
         hint: str | None = f"write `{written}`"
     else:
-        hint = suggestion(name, KNOWN_UNITS)
+        same = [known for known in KNOWN_UNITS if known.lower() == name.lower()]
+        hint = f"did you mean '{same[0]}'?" if same else suggestion(name, KNOWN_UNITS)
     return _error("unknown-unit", f"there is no unit '{name}'", span, at, at + max(1, len(name)), hint)
 
 

@@ -101,6 +101,7 @@ def euler(order: str, do: Do, angles: list[Any]) -> Any:
 
 LOWERINGS: Mapping[str, Callable[..., Any]] = {
     "sum": total,
+    "norm": length,
     **{f.__name__: f for f in (mean, dot, length, distance, hypot, normalize, cross, about, turn)},
     **{f.__name__: f for f in (step, clamp, mix, smoothstep, ease)},
     **{f"euler_{order}": partial(euler, order) for order in ("xyz", "xzy", "yxz", "yzx", "zxy", "zyx")},

@@ -1,0 +1,150 @@
+"""Bound trees on numpy arrays: a node of shape S has an array of any leading axes and then S."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache, reduce
+from types import SimpleNamespace
+from typing import Any
+
+from sceneql.quantities import chance
+from sceneql.quantities.curves import interpolate, table_of
+from sceneql.quantities.expression import Call, Expr, Keys, Link, Number, Shape, Symbol, Vector, each_once
+from sceneql.quantities.operations import OPERATIONS
+
+
+def evaluate_arrays(expr: Expr, look_up: Callable[[Any], Any]) -> Any:
+    """The value of a bound tree as a float or float64 array; see `evaluate`."""
+    import numpy as np
+
+    values: dict[int, Any] = {}
+    with np.errstate(all="ignore"):
+        for node in each_once(expr):
+            match node:
+                case Number(value=number):
+                    value: Any = np.float64(number)
+                case Symbol() | Link():
+                    value = np.asarray(look_up(node), dtype=np.float64)
+                case Vector(items=items):
+                    value = _side_by_side([values[id(item)] for item in items], len(node.type.shape))
+                case Call(args=args):
+                    value = _apply(node, [values[id(arg)] for arg in args])
+                case Keys():
+                    value = _keys(node, values)
+                case _:
+                    raise TypeError(f"the name {'.'.join(node.parts)} is not bound")
+            values[id(node)] = value
+    result = values[id(expr)]
+    return float(result) if np.ndim(result) == 0 else np.asarray(result, dtype=np.float64)
+
+
+@cache
+def numpy_arithmetic() -> SimpleNamespace:
+    """The primitive operations of the table on arrays: the arithmetic ``o`` of formulas and curves."""
+    import numpy as np
+
+    def folded(function: Any) -> Callable[..., Any]:
+        return lambda *args: reduce(function, args)
+
+    def counted(function: Any) -> Callable[..., Any]:
+        return lambda a, b: function(a, b).astype(np.float64)
+
+    functions: dict[str, Any] = {}
+    for operation in OPERATIONS.values():
+        if operation.primitive and operation.name not in ("where", "random"):
+            function = getattr(np, str(operation.numpy))
+            if operation.name in ("min", "max"):
+                function = folded(function)
+            elif operation.name in ("lt", "le", "gt", "ge", "eq"):
+                function = counted(function)
+            functions[operation.name] = function
+    return SimpleNamespace(**functions, where=lambda condition, a, b: np.where(condition != 0.0, a, b), random=_random)
+
+
+def _random(*counters: Any) -> Any:
+    import numpy as np
+
+    known = np.broadcast_arrays(*counters)
+    finite = np.logical_and.reduce([np.isfinite(x) for x in known])
+    words = [np.mod(np.floor(np.where(finite, x, 0.0)), 2.0**32).astype(np.uint64) for x in known]
+    first, second, key = (words + [np.zeros((), dtype=np.uint64)] * 2)[:3]
+    return np.where(finite, chance.unit(*chance.philox(first, second, key)), np.nan)
+
+
+def _apply(call: Call, args: list[Any]) -> Any:
+    import numpy as np
+
+    operation = OPERATIONS[call.op]
+    if operation.series:
+        raise TypeError(f"'{call.op}' needs a quantity over time")
+    if call.op == "component":
+        index = call.args[1]
+        assert isinstance(index, Number)
+        return args[0][..., int(index.value)]
+    if operation.reduces and len(args) == 1:
+        return _reduce(call.op, args[0], call.args[0].type.shape)
+    vectors = operation.vector_args or (False,) * len(args)
+    ranks = [len(arg.type.shape) - vector for arg, vector in zip(call.args, vectors, strict=True)]
+    parts = zip(args, ranks, vectors, strict=True)
+    args = [_aligned(arg, rank, max(ranks) - rank, int(vector)) for arg, rank, vector in parts]
+    o = numpy_arithmetic()
+    if operation.primitive:
+        return getattr(o, operation.name)(*args)
+    if operation.formula is None:
+        raise TypeError(f"'{call.op}' has no formula")
+    pieces = [
+        tuple(arg[..., k] for k in range(arg.shape[-1])) if vector else arg
+        for arg, vector in zip(args, vectors, strict=True)
+    ]
+    result = operation.formula(o, *pieces)
+    return np.stack(np.broadcast_arrays(*result), axis=-1) if operation.vector_result else result
+
+
+def _aligned(value: Any, rank: int, missing: int, core: int) -> Any:
+    """Axes of length 1 put before the outer axes of the value's shape, so that these align at the last."""
+    import numpy as np
+
+    value = np.asarray(value)
+    place = max(value.ndim - rank - core, 0)
+    return value.reshape(value.shape[:place] + (1,) * missing + value.shape[place:]) if missing else value
+
+
+def _side_by_side(items: list[Any], rank: int) -> Any:
+    """Items of shape S to one array (n, *S) behind the leading axes; ``rank`` counts n and S."""
+    import numpy as np
+
+    if not items:
+        return np.zeros(0)
+    return np.stack(np.broadcast_arrays(*items), axis=-rank)
+
+
+def _reduce(name: str, value: Any, shape: Shape) -> Any:
+    import numpy as np
+
+    value = np.asarray(value)
+    own = len(shape) if name == "norm" else min(1, len(shape))
+    first = value.ndim - len(shape)
+    axes = tuple(range(max(first, 0), first + own))
+    if not shape or shape[0] is None:
+        axes = tuple(range(first + own))
+    if name == "count":
+        return np.float64(value.size if not shape else value.shape[first])
+    if name == "norm":
+        return np.sqrt(np.sum(value * value, axis=axes))
+    if name != "sum" and any(value.shape[axis] == 0 for axis in axes):
+        return np.full(np.delete(value.shape, axes), np.nan)
+    return getattr(np, name)(value, axis=axes)
+
+
+def _keys(keys: Keys, values: dict[int, Any]) -> Any:
+    import numpy as np
+
+    o = numpy_arithmetic()
+
+    def components(expr: Expr) -> tuple[Any, ...]:
+        value = values[id(expr)]
+        return tuple(value[..., k] for k in range(value.shape[-1])) if keys.type.shape else (value,)
+
+    table = table_of(o, keys, lambda expr: float(values[id(expr)]), components)
+    result = np.broadcast_arrays(*interpolate(o, table, values[id(keys.argument)]), values[id(keys.argument)])[:-1]
+    return np.stack(result, axis=-1) if keys.type.shape else result[0]

@@ -1,0 +1,97 @@
+"""Numbers with units: the literals of expressions, and the scalars that are nothing but numbers and one unit."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+from fractions import Fraction
+
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.expression import Expr, Number, Type, Vector
+from sceneql.quantities.operations import OPERATIONS
+from sceneql.quantities.span import Span
+from sceneql.quantities.units import Unit, scan_unit, starts_unit
+
+NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+WORD = r"[^\W\d]\w*'*(?:\.(?:[^\W\d]\w*'*|\d+))*"
+_PIECE = re.compile(rf"([+-]?{NUMBER})(?:/({NUMBER}))?")
+_WORD = re.compile(WORD)
+_GAP = re.compile(r"\s*")
+EXACT = 40
+"""Digits up to which a literal is converted without an error of its own: 1.7 mm is the double nearest to 0.0017."""
+
+
+def read_unit(text: str, at: int, span: Span) -> tuple[Unit | None, int]:
+    """The unit that stands after a number which ends at ``at`` (or None), and where it ends.
+
+    A name, ``%`` or ``1/name`` there must be a unit. Raises ScriptError.
+    """
+    start = _skip(text, at)
+    word = _WORD.match(text, start)
+    if word is not None and word.group() in OPERATIONS and text[_skip(text, word.end()) :][:1] == "(":
+        message, help = "two values stand side by side", f"write `*{word.group()}(...)` for a product"
+        raise ScriptError([Diagnostic("syntax", message, span.part(*word.span()), help)])
+    if not starts_unit(text, start):
+        return None, at
+    try:
+        return scan_unit(text, start, span)
+    except ScriptError as error:
+        (found,) = error.diagnostics
+        if found.code != "unknown-unit" or word is None:
+            raise
+        hint = f"for a product write `*{word.group()[:40]}`"
+        raise ScriptError([replace(found, help=hint if found.help is None else f"{found.help}; {hint}")]) from None
+
+
+def quantity(number: str, unit: Unit | None, span: Span, divisor: str | None = None) -> Number:
+    """The literal of a number, or of a fraction, in a unit. Raises ScriptError where it is not finite."""
+    try:
+        over, under = _exact(number), Fraction(1) if divisor is None else _exact(divisor)
+        if unit is None:
+            value = float(over / under)
+        else:
+            value = unit.to_si(over / under)
+    except ZeroDivisionError:
+        raise ScriptError([Diagnostic("syntax", "this divides by zero", span)]) from None
+    except OverflowError:
+        raise ScriptError([Diagnostic("syntax", "this number is too large", span)]) from None
+    if unit is None:
+        return Number(value, Type((), None) if value == 0.0 else Type(), span=span)
+    return Number(value, Type((), unit.dimension), bare=False, span=span)
+
+
+def _exact(number: str) -> Fraction:
+    value = float(number)
+    if math.isinf(value):
+        raise OverflowError
+    # Digits and exponents without limit would make numbers without limit.
+    return Fraction(number) if len(number) <= EXACT and value != 0.0 else Fraction(value)
+
+
+def whole_value(text: str, span: Span) -> Expr | None:
+    """``1/60 s``, ``-4 0.15 0``, ``0 1.2 0 m``, ``1/s`` after numbers: numbers or fractions with one unit at most.
+
+    None where the text is not of this form or is a single number, which are expressions. Raises ScriptError.
+    """
+    pieces: list[re.Match[str]] = []
+    at = _skip(text, 0)
+    while (piece := _PIECE.match(text, at)) is not None and (at == 0 or text[at - 1].isspace()):
+        if piece.group() == "1" and text[piece.end() : piece.end() + 1] == "/" and pieces:
+            break
+        pieces.append(piece)
+        at = _skip(text, piece.end())
+    if not pieces or (len(pieces) == 1 and pieces[0][2] is None):
+        return None
+    unit, end = read_unit(text, at, span) if at < len(text) else (None, at)
+    if _skip(text, end) < len(text) or (len(pieces) == 1 and unit is None):
+        return None
+    items = [quantity(p[1], unit, span.part(*p.span()), p[2]) for p in pieces]
+    if len(items) == 1:
+        return Number(items[0].value, items[0].type, items[0].bare, span.part(pieces[0].start(), end))
+    return Vector(tuple(items), span=span.part(pieces[0].start(), end))
+
+
+def _skip(text: str, at: int) -> int:
+    found = _GAP.match(text, at)
+    return at if found is None else found.end()

@@ -1,0 +1,256 @@
+"""Type rules: the shape and dimension of an operation's result from its arguments, or a MismatchError.
+
+Shapes broadcast from the last axis: a scalar goes with anything, a vector (3,) with a list of points (None, 3). A
+dimension of None (the literal 0, or not known before the run) goes with anything.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+
+from sceneql.quantities.dimension import PLAIN, TIME, Dimension
+from sceneql.quantities.expression import Expr, Number, Shape, Type
+from sceneql.quantities.units import describe, format_quantity
+
+Args = tuple[Expr, ...]
+Rule = Callable[[Args], Type]
+LARGEST_POWER = 100
+
+
+class MismatchError(Exception):
+    """Arguments that do not go together; ``first`` and ``second`` are their indices."""
+
+    def __init__(self, code: str, message: str, first: int, second: int | None = None, help: str | None = None) -> None:
+        super().__init__(message)
+        self.code, self.message, self.first, self.second, self.help = code, message, first, second, help
+
+
+def broadcast(shapes: tuple[Shape, ...]) -> Shape:
+    """The common shape. Raises MismatchError (`shape-mismatch`)."""
+    result: Shape = ()
+    first = 0
+    for index, shape in enumerate(shapes):
+        rank = min(len(result), len(shape))
+        pairs = zip(result[len(result) - rank :], shape[len(shape) - rank :], strict=True)
+        if any((a is None) != (b is None) or a != b for a, b in pairs):
+            message = f"{shape_text(result)} and {shape_text(shape)} do not go together"
+            raise MismatchError("shape-mismatch", message, first, index)
+        if len(shape) > len(result):
+            result, first = shape, index
+    return result
+
+
+def shape_text(shape: Shape) -> str:
+    """A shape in words."""
+    if not shape:
+        return "a single value"
+    sizes = ["any number" if size is None else str(size) for size in shape]
+    return f"a list of {' by '.join(sizes)} values" if None in shape or len(shape) > 1 else f"a vector of {sizes[0]}"
+
+
+def common_dimension(args: Args, indices: tuple[int, ...], sentence: str) -> Dimension | None:
+    """The one dimension of some arguments. ``sentence`` has places {a} and {b} for what differs."""
+    first: int | None = None
+    for index in indices:
+        dimension = args[index].type.dimension
+        if dimension is None:
+            continue
+        if first is None:
+            first = index
+        elif dimension != args[first].type.dimension:
+            raise _differ(args, first, index, sentence)
+    return None if first is None else args[first].type.dimension
+
+
+def _differ(args: Args, first: int, second: int, sentence: str) -> MismatchError:
+    kinds = [args[k].type.dimension for k in (first, second)]
+    help = None
+    for index, other in ((first, kinds[1]), (second, kinds[0])):
+        arg = args[index]
+        if isinstance(arg, Number) and arg.bare and other is not None and not other.plain:
+            help = f"write `{format_quantity(arg.value, other)}`"
+    message = sentence.format(a=describe(kinds[0]), b=describe(kinds[1]))
+    return MismatchError("dimension-mismatch", message, first, second, help)
+
+
+def _shape(args: Args) -> Shape:
+    return broadcast(tuple(arg.type.shape for arg in args))
+
+
+def _plain(args: Args, indices: tuple[int, ...], name: str) -> None:
+    for index in indices:
+        dimension = args[index].type.dimension
+        if dimension is not None and not dimension.plain:
+            message = f"{name} needs a plain number, not {describe(dimension)}"
+            raise MismatchError("dimension-mismatch", message, index, None, "divide it by a quantity of its kind first")
+
+
+def alike(sentence: str, *, result_plain: bool = False) -> Rule:
+    """All arguments of one dimension, which the result has too unless it is plain."""
+
+    def rule(args: Args) -> Type:
+        dimension = common_dimension(args, tuple(range(len(args))), sentence)
+        return Type(_shape(args), PLAIN if result_plain else dimension)
+
+    return rule
+
+
+def plain(name: str) -> Rule:
+    """Plain numbers to a plain number."""
+
+    def rule(args: Args) -> Type:
+        _plain(args, tuple(range(len(args))), name)
+        return Type(_shape(args), PLAIN)
+
+    return rule
+
+
+def some_alike(name: str, same: tuple[int, ...], others: tuple[int, ...], *, result_plain: bool = False) -> Rule:
+    """The arguments ``same`` of one dimension, the ``others`` plain."""
+    sentence = f"{name} needs quantities of one kind, not {{a}} and {{b}}"
+
+    def rule(args: Args) -> Type:
+        _plain(args, others, name)
+        dimension = common_dimension(args, same, sentence)
+        return Type(_shape(args), PLAIN if result_plain else dimension)
+
+    return rule
+
+
+def multiplied(args: Args) -> Type:
+    """Product."""
+    a, b = args[0].type.dimension, args[1].type.dimension
+    return _limited(Type(_shape(args), None if a is None or b is None else a * b))
+
+
+def divided(args: Args) -> Type:
+    """Quotient."""
+    a, b = args[0].type.dimension, args[1].type.dimension
+    return _limited(Type(_shape(args), None if a is None or b is None else a / b))
+
+
+def kept(args: Args) -> Type:
+    """The type of the first argument."""
+    return args[0].type
+
+
+def signed(args: Args) -> Type:
+    """The shape of the first argument, plain."""
+    return Type(args[0].type.shape, PLAIN)
+
+
+def rooted(args: Args) -> Type:
+    """Square root."""
+    dimension = args[0].type.dimension
+    return _limited(Type(args[0].type.shape, None if dimension is None else dimension ** Fraction(1, 2)))
+
+
+def raised(args: Args) -> Type:
+    """Power; a base with a dimension needs a constant exponent that is a simple fraction."""
+    base, exponent = args
+    shape = _shape(args)
+    _plain(args, (1,), "an exponent")
+    dimension = base.type.dimension
+    if dimension is None or dimension.plain:
+        return Type(shape, dimension)
+    if not isinstance(exponent, Number):
+        message = f"{describe(dimension)} needs a constant exponent"
+        raise MismatchError("dimension-mismatch", message, 1, 0, "divide the base by a quantity of its kind first")
+    if not abs(exponent.value) <= LARGEST_POWER:
+        raise MismatchError("dimension-mismatch", f"an exponent of a quantity is at most {LARGEST_POWER}", 1)
+    power = Fraction(exponent.value).limit_denominator(60)
+    if abs(float(power) - exponent.value) > 1e-12 * max(1.0, abs(exponent.value)):
+        raise MismatchError("dimension-mismatch", "an exponent of a quantity is a simple fraction, such as 3/2", 1)
+    return _limited(Type(shape, dimension**power))
+
+
+def _limited(result: Type) -> Type:
+    exponents = () if result.dimension is None else result.dimension.exponents
+    if any(abs(e) > 1000 or e.denominator > 1000 for e in exponents):
+        raise MismatchError("dimension-mismatch", "the dimension of this has absurdly large exponents", 0)
+    return result
+
+
+def chosen(args: Args) -> Type:
+    """``component``: the index is a constant."""
+    value, index = args
+    shape = value.type.shape
+    if not shape or shape[-1] is None:
+        raise MismatchError("shape-mismatch", f"{shape_text(shape)} has no components", 0)
+    if not isinstance(index, Number) or index.value not in range(shape[-1]):
+        raise MismatchError(
+            "shape-mismatch", f"the index of a component is 0 to {shape[-1] - 1}, written as a number", 1
+        )
+    return Type(shape[:-1], value.type.dimension)
+
+
+def vectors(name: str, sizes: tuple[int | None, ...], result: tuple[int, ...], dimension: Rule) -> Rule:
+    """Arguments whose last axes have these sizes (0: any, the same for all; None: a single value), lists broadcast."""
+
+    def rule(args: Args) -> Type:
+        outer: list[Shape] = []
+        free: int | None = None
+        for index, (arg, size) in enumerate(zip(args, sizes, strict=True)):
+            shape = arg.type.shape
+            if size is None:
+                outer.append(shape)
+                continue
+            free = free if free is not None or not shape else shape[-1]
+            wanted = size or free
+            if not shape or shape[-1] is None or shape[-1] != wanted:
+                needed = f"a vector of {wanted}" if wanted else "a vector"
+                raise MismatchError("shape-mismatch", f"{name} needs {needed}, not {shape_text(shape)}", index)
+            outer.append(shape[:-1])
+        flat = dimension(tuple(Number(1.0, Type((), arg.type.dimension), bare=False) for arg in args))
+        return Type((*broadcast(tuple(outer)), *result), flat.dimension)
+
+    return rule
+
+
+def normalized(args: Args) -> Type:
+    """A vector of any dimension and size to a plain one."""
+    shape = args[0].type.shape
+    if not shape or shape[-1] is None:
+        raise MismatchError("shape-mismatch", f"normalize needs a vector, not {shape_text(shape)}", 0)
+    return Type(shape, PLAIN)
+
+
+def reduced(args: Args) -> Type:
+    """One argument: its first axis goes."""
+    return Type(args[0].type.shape[1:], args[0].type.dimension)
+
+
+def counted(args: Args) -> Type:
+    """How many."""
+    return Type((), PLAIN)
+
+
+def normed(args: Args) -> Type:
+    """All axes go."""
+    return Type((), args[0].type.dimension)
+
+
+def least_or_most(name: str) -> Rule:
+    """``min`` and ``max``: of a list, or of several arguments."""
+    several = alike(f"{name} needs quantities of one kind, not {{a}} and {{b}}")
+    return lambda args: reduced(args) if len(args) == 1 else several(args)
+
+
+def sampled(args: Args) -> Type:
+    """``at``: the type of the series; the second argument is the time."""
+    dimension = args[1].type.dimension
+    if args[1].type.shape or (dimension is not None and dimension != TIME):
+        raise MismatchError("dimension-mismatch", f"at needs a time, not {describe(dimension)}", 1)
+    return args[0].type
+
+
+def listed(args: Args) -> Type:
+    """Values side by side."""
+    shape = args[0].type.shape
+    for index, arg in enumerate(args):
+        if arg.type.shape != shape:
+            message = f"{shape_text(shape)} and {shape_text(arg.type.shape)} cannot stand side by side"
+            raise MismatchError("shape-mismatch", message, 0, index)
+    dimension = common_dimension(args, tuple(range(len(args))), "{a} and {b} cannot be components of one vector")
+    return Type((len(args), *shape), dimension)
