@@ -10,7 +10,7 @@ from sceneql.quantities.dimension import PLAIN, Dimension
 from sceneql.quantities.span import Span
 
 Shape = tuple[int | None, ...]
-"""``()`` a scalar, ``(3,)`` a vector, ``(4,)`` a quaternion [w, x, y, z], ``(None, 3)`` a list of points, ``(None,)`` a list."""
+"""``()`` a scalar, ``(3,)`` a vector, ``(4,)`` a quaternion [w, x, y, z], ``(None,)`` a list, ``(None, 3)`` points."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,7 @@ class Link:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """An operation of the one table (operations.py) on arguments; ``+`` is ``add``, ``a.x`` is ``component`` with a Number."""
+    """An operation of the one table (operations.py) on arguments; ``+`` is ``add``, ``a.x`` is ``component`` and 0."""
 
     op: str
     args: tuple[Expr, ...]
