@@ -66,6 +66,15 @@ def copy(source, target):
 
 
 @lean_inlined
+def beyond(y, limit):
+    """Number of entries that are larger than the limit or not finite: one pass that vectorizes."""
+    count = 0
+    for k in range(y.size):
+        count += not (abs(y[k]) <= limit)
+    return count
+
+
+@lean_inlined
 def first_bad(y):
     """Index of the first entry that is not finite, or -1."""
     for k in range(y.size):
@@ -98,25 +107,28 @@ def next_factor(error, previous, order, rejected):
 
 @lean_inlined
 def try_steps(step, rate, t0, t1, y0, rate0, y1, work, settings, numbers, floats, ints, clock, counts):
-    """Step until the error is accepted: (end of the step, whether it is good). A fixed step is tried once."""
+    """Step until the error is accepted: (end of the step, status). A fixed step is tried once."""
     adaptive = counts[ADAPTIVE] > 0
     rejected = False
     while True:
         h = t1 - t0
         error = step(rate, t0, h, y0, rate0, y1, work, settings, numbers, floats, ints)
-        bad = first_bad(y1)
+        large = beyond(y1, clock[LIMIT]) > 0
+        bad = first_bad(y1) if large else -1
         if bad >= 0:
             error = math.inf
         if bad < 0 and (error <= 1.0 or not adaptive):
             if adaptive:
                 clock[STEP] = h * next_factor(error, clock[ERROR], counts[ORDER], rejected)
                 clock[ERROR] = max(error, 1e-4)
-            return t1, True
+            if large:
+                counts[INDEX] = largest(y1)
+            return t1, GROWTH if large else REACHED
         counts[REJECTED] += 1
         counts[INDEX] = bad if bad >= 0 else largest(rate0)
         h *= next_factor(error, 1.0, counts[ORDER], True)
         if not adaptive or t0 + 0.1 * h <= t0:
-            return t1, False
+            return t1, STEP_TOO_SMALL if adaptive else NOT_FINITE
         rejected = True
         t1 = t0 + h
 
@@ -165,13 +177,9 @@ def march(
             grid = (counts[GRID] + 1) * clock[STEP]
             if grid > end - 1e-9 * clock[STEP]:
                 grid = end
-        t1, good = try_steps(step, rate, t0, grid, y0, rate0, y1, work, settings, numbers, floats, ints, clock, counts)
-        status = REACHED if good else NOT_FINITE if counts[ADAPTIVE] == 0 else STEP_TOO_SMALL
-        if good:
-            most = largest(y1)
-            if abs(y1[most]) > clock[LIMIT]:
-                counts[INDEX] = most
-                status = GROWTH
+        t1, status = try_steps(
+            step, rate, t0, grid, y0, rate0, y1, work, settings, numbers, floats, ints, clock, counts
+        )
         if status != REACHED:
             copy(y0, y1)
             copy(rate0, rate1)
