@@ -7,17 +7,30 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from sceneql import __version__
 
+if TYPE_CHECKING:
+    from pathlib import Path
+
 OK, RUN_FAILED, USAGE, SCRIPT_INVALID, GALLERY_DIFFERS, LIMIT_REFUSED, INTERRUPTED = 0, 1, 2, 3, 4, 5, 130
 
 F = TypeVar("F", bound=Callable[..., Any])
-SCENE = click.argument("scene", type=click.Path(path_type=Path))
+
+
+def _path(context: click.Context, parameter: click.Parameter, value: Any) -> Any:
+    """Texts to paths; pathlib is not imported for ``--help``."""
+    from pathlib import Path
+
+    if isinstance(value, tuple):
+        return tuple(Path(item) for item in value)
+    return None if value is None else Path(value)
+
+
+SCENE = click.argument("scene", callback=_path)
 
 
 def _options(command: F) -> F:
@@ -28,7 +41,8 @@ def _options(command: F) -> F:
     )(command)
     return click.option(
         "--words",
-        type=click.Path(file_okay=False, exists=True, path_type=Path),
+        type=click.Path(file_okay=False, exists=True),
+        callback=_path,
         help="A folder of words of your own (DIR/solvers/heun.py).",
     )(command)
 
@@ -85,7 +99,7 @@ def _say_kept(error: BaseException) -> None:
 @cli.command()
 @SCENE
 @_options
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="File to make, for a script with one output.")
+@click.option("-o", "--output", callback=_path, help="File to make, for a script with one output.")
 def render(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None, output: Path | None) -> None:
     """Make the outputs of a scene."""
     from sceneql import pipeline
@@ -143,7 +157,7 @@ def explain(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path
 @cli.command()
 @SCENE
 @_options
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder or stem for the CSV and the SVG.")
+@click.option("-o", "--output", callback=_path, help="Folder or stem for the CSV and the SVG.")
 def bench(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None, output: Path | None) -> None:
     """Measure error against run time: the scene's physics by every solver that applies."""
     from sceneql import pipeline
@@ -155,7 +169,7 @@ def bench(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path |
 
 @cli.command()
 @click.argument("word", required=False)
-@click.option("--words", "folder", type=click.Path(file_okay=False, exists=True, path_type=Path), help="Your own words.")
+@click.option("--words", "folder", type=click.Path(file_okay=False, exists=True), callback=_path, help="Your own words.")
 def words(word: str | None, folder: Path | None) -> None:
     """List the words of the language, or show the manual of one."""
     from sceneql.compiler.catalogue import Catalogue
@@ -192,8 +206,8 @@ def gallery() -> None:
 
 
 @gallery.command("check")
-@click.argument("scenes", nargs=-1, type=click.Path(exists=True, path_type=Path))
-@click.option("--folder", type=click.Path(path_type=Path), default=Path("gallery"), help="Where the posters are kept.")
+@click.argument("scenes", nargs=-1, type=click.Path(exists=True), callback=_path)
+@click.option("--folder", callback=_path, default="gallery", help="Where the posters are kept.")
 def gallery_check(scenes: tuple[Path, ...], folder: Path) -> None:
     """Run scenes small and short; compare posters and expected numbers."""
     from sceneql.report.gallery import check as compare
@@ -206,8 +220,8 @@ def gallery_check(scenes: tuple[Path, ...], folder: Path) -> None:
 
 
 @gallery.command("update")
-@click.argument("scenes", nargs=-1, type=click.Path(exists=True, path_type=Path))
-@click.option("--folder", type=click.Path(path_type=Path), default=Path("gallery"), help="Where the posters are kept.")
+@click.argument("scenes", nargs=-1, type=click.Path(exists=True), callback=_path)
+@click.option("--folder", callback=_path, default="gallery", help="Where the posters are kept.")
 def gallery_update(scenes: tuple[Path, ...], folder: Path) -> None:
     """Keep the posters of scenes as they are now, and write the gallery's page."""
     from sceneql.report.gallery import update
