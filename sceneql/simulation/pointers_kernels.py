@@ -4,6 +4,8 @@ numba can take functions as arguments, but asks Python for the addresses of each
 march. Here the addresses are looked up once and cross as integers.
 """
 
+from typing import Any
+
 import numba
 import numpy as np
 from numba import types
@@ -41,7 +43,7 @@ def function_at(kind):
     return at
 
 
-def addresses(*functions):
+def addresses(*functions: Any) -> Any:
     """(6,) int64 addresses of a step, dense output, rate, gap, impact and settle. Keep the functions alive."""
     if numba.config.DISABLE_JIT:
         return functions
