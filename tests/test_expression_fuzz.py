@@ -141,6 +141,10 @@ def lookup(parts: tuple[str, ...], span: Span) -> Expr | None:
     return MEANINGS.get(".".join(parts))
 
 
+def depth(value: object) -> int:
+    return 1 + depth(value[0]) if isinstance(value, tuple) else 0
+
+
 def whole_way(text: str) -> None:
     """Parse, bind, evaluate and differentiate."""
     span = span_of(text)
@@ -161,7 +165,7 @@ def whole_way(text: str) -> None:
         if "over time" in str(error) or "derivative" in str(error):
             return
         raise
-    assert len(expr.type.shape) == (0 if isinstance(value, float) else 1 + isinstance((*value, 0.0)[0], tuple))
+    assert depth(value) == len(expr.type.shape)
     if derived is not None:
         evaluate(derived, VALUES)
 

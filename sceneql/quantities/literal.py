@@ -47,11 +47,11 @@ def read_unit(text: str, at: int, span: Span) -> tuple[Unit | None, int]:
 def quantity(number: str, unit: Unit | None, span: Span, divisor: str | None = None) -> Number:
     """The literal of a number, or of a fraction, in a unit. Raises ScriptError where it is not finite."""
     try:
-        over, under = _exact(number), Fraction(1) if divisor is None else _exact(divisor)
-        if unit is None:
-            value = float(over / under)
+        if divisor is None and (unit is None or (unit.ratio == 1 and unit.shift == 0)):
+            value = _finite(number)
         else:
-            value = unit.to_si(over / under)
+            exact = _exact(number) if divisor is None else _exact(number) / _exact(divisor)
+            value = float(exact) if unit is None else unit.to_si(exact)
     except ZeroDivisionError:
         raise ScriptError([Diagnostic("syntax", "this divides by zero", span)]) from None
     except OverflowError:
@@ -61,10 +61,15 @@ def quantity(number: str, unit: Unit | None, span: Span, divisor: str | None = N
     return Number(value, Type((), unit.dimension), bare=False, span=span)
 
 
-def _exact(number: str) -> Fraction:
+def _finite(number: str) -> float:
     value = float(number)
     if math.isinf(value):
         raise OverflowError
+    return value
+
+
+def _exact(number: str) -> Fraction:
+    value = _finite(number)
     # Digits and exponents without limit would make numbers without limit.
     return Fraction(number) if len(number) <= EXACT and value != 0.0 else Fraction(value)
 

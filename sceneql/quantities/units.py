@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache
+from functools import cache, lru_cache
 
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError, suggestion
 from sceneql.quantities.dimension import PLAIN, TEMPERATURE, Dimension
@@ -91,15 +91,15 @@ def scan_unit(text: str, start: int, span: Span | None, *, spaced: bool = False)
             _alone(text, start, at, end, exponent, factors, span, join)
             ratio, shift = OFFSET_UNITS[name]
             return Unit(ratio, shift, TEMPERATURE, text[start:end]), end
-        factor, factor_dimension = UNITS[name]
         try:
-            ratio *= _power(factor, sign * exponent)
+            factor, factor_dimension = _factor(name, sign * exponent)
+            ratio = factor if factors == 1 else ratio * factor
             representable = float(ratio) != 0.0
         except OverflowError:
             representable = False
         if not representable:
             raise _error("syntax", "no double holds the ratio of this unit to SI", span, start, end)
-        dimension *= factor_dimension ** (sign * exponent)
+        dimension = factor_dimension if factors == 1 else dimension * factor_dimension
         following = join.match(text, end)
         if following is None or not (spaced or _continues(text, following.end())):
             return Unit(ratio, shift, dimension, text[start:end]), end
@@ -140,10 +140,14 @@ def _exponent(text: str, at: int, span: Span | None) -> tuple[Fraction, int]:
     return exponent, found.end()
 
 
-def _power(ratio: Fraction, exponent: Fraction) -> Fraction:
+@lru_cache(1000)
+def _factor(name: str, exponent: Fraction) -> tuple[Fraction, Dimension]:
+    ratio, dimension = UNITS[name]
+    if exponent == 1:
+        return ratio, dimension
     if exponent.denominator == 1:
-        return Fraction(ratio ** int(exponent))
-    return Fraction(float(ratio) ** float(exponent))
+        return Fraction(ratio ** int(exponent)), dimension**exponent
+    return Fraction(float(ratio) ** float(exponent)), dimension**exponent
 
 
 def _alone(
