@@ -43,7 +43,7 @@ def later(expr: Expr, by: float, follow: Callable[[Link], Expr | None] = lambda 
 
 
 def rate_of_change(expr: Expr) -> Expr:
-    """d expr / d time as a central difference, good for expressions and keyframes alike. Raises ValueError for links."""
+    """d expr / d time as a central difference, for expressions and keyframes alike. Raises ValueError for links."""
     dimension = PLAIN if expr.type.dimension is None else expr.type.dimension
     difference = Call("sub", (later(expr, APART), later(expr, -APART)), expr.type)
     return Call("div", (difference, Number(2 * APART, Type((), TIME), False)), Type(expr.type.shape, dimension / TIME))

@@ -67,7 +67,8 @@ class Collision(Contact):
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies, others: tuple[Ref, ...]) -> None:
         """Add the contacts of one model with the objects. Raises ScriptError for one that cannot be collided with."""
-        objects = [number for ref in others for number in _object(ref, assembly)]
+        written = {ref.name: ref for ref in self.between or ()}
+        objects = [number for ref in others for number in _object(written.get(ref.name, ref), assembly)]
         if not objects:
             return
         exact = self.mode == "exact" or (self.mode == "auto" and assembly.body_count() <= MOST_EXACT)
