@@ -25,7 +25,7 @@ from sceneql.quantities.simplify import simplify
 
 SHAPES = {
     "dot": [(3,), (3,)], "cross": [(3,), (3,)], "length": [(3,)], "distance": [(3,), (3,)], "normalize": [(3,)],
-    "about": [(3,), ()], "turn": [(4,), (4,)], "component": [(3,), ()],
+    "about": [(3,), ()], "turn": [(4,), (4,)], "component": [(3,), ()], "item": [(None, 3), ()],
     "sum": [(4,)], "mean": [(4,)], "norm": [(4,)], "count": [(4,)],
 }  # fmt: skip
 SHAPES |= {name: [(3,)] for name in OPERATIONS if name.startswith("euler_")}
@@ -37,7 +37,7 @@ def call_of(name: str, prefix: tuple[int | None, ...] = ()) -> tuple[Call, list[
     shapes = SHAPES.get(name, [()] * OPERATIONS[name].least if name not in ("min", "max") else [(), ()])
     symbols = [Symbol(f"s{k}", Type((*prefix, *shape))) for k, shape in enumerate(shapes)]
     args: tuple[Expr, ...] = tuple(symbols)
-    if name == "component":
+    if name in ("component", "item"):
         symbols, args = symbols[:1], (symbols[0], Number(1.0))
     return Call(name, args, OPERATIONS[name].rule(args)), symbols
 

@@ -81,6 +81,10 @@ def _apply(call: Call, args: list[Any]) -> Any:
         index = call.args[1]
         assert isinstance(index, Number)
         return args[0][..., int(index.value)]
+    if call.op == "item":
+        number = call.args[1]
+        assert isinstance(number, Number)
+        return np.take(args[0], int(number.value), axis=-len(call.args[0].type.shape))
     if operation.reduces and len(args) == 1:
         return _reduce(call.op, args[0], call.args[0].type.shape)
     vectors = operation.vector_args or (False,) * len(args)

@@ -76,6 +76,10 @@ def apply(o: Any, call: Call, args: list[Any]) -> Any:
         index = call.args[1]
         assert isinstance(index, Number)
         return _each(lambda vector: vector[int(index.value)], args[:1], [len(call.args[0].type.shape) - 1])
+    if call.op == "item":
+        number = call.args[1]
+        assert isinstance(number, Number)
+        return args[0][int(number.value)]
     if operation.reduces and len(args) == 1:
         return _reduce(o, operation, args[0], call.args[0].type.shape)
     vectors = operation.vector_args or (False,) * len(args)

@@ -164,6 +164,7 @@ _TABLE = (
     _vector("distance", formulas.distance, (0, 0), (), rules.some_alike("distance", (0, 1), ())),
     Operation("normalize", 1, 1, rules.normalized, formula=formulas.normalize, vector_args=(True,), vector_result=True),
     Operation("component", 2, 2, rules.chosen),
+    Operation("item", 2, 2, rules.picked),
     Operation("about", 2, 2, _turned, formula=formulas.about, vector_args=(True, False), vector_result=True),
     *(_vector(f"euler_{o}", formulas.euler(o), (3,), (4,), rules.plain(f"euler_{o}")) for o in _ORDERS),
     _vector("turn", formulas.turn, (4, 4), (4,), rules.plain("turn")),

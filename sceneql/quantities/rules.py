@@ -185,6 +185,17 @@ def chosen(args: Args) -> Type:
     return Type(shape[:-1], value.type.dimension)
 
 
+def picked(args: Args) -> Type:
+    """``item``: one of a list, by a constant number counted from 0."""
+    value, index = args
+    shape = value.type.shape
+    if not shape or (len(shape) == 1 and shape[0] is not None):
+        raise MismatchError("shape-mismatch", f"{shape_text(shape)} has no items", 0)
+    if not isinstance(index, Number) or index.value != int(index.value) or index.value < 0:
+        raise MismatchError("shape-mismatch", "the number of an item is whole, from 0, written as a number", 1)
+    return Type(shape[1:], value.type.dimension)
+
+
 def vectors(name: str, sizes: tuple[int | None, ...], result: tuple[int, ...], dimension: Rule) -> Rule:
     """Arguments whose last axes have these sizes (0: any, the same for all; None: a single value), lists broadcast."""
 
