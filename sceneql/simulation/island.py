@@ -252,6 +252,10 @@ class IslandAssembly:
         """The state reserved so far, at the start of the run."""
         return np.concatenate(self._starts) if self._starts else np.zeros(0)
 
+    def numbers(self) -> Floats:
+        """The floats stored so far."""
+        return np.concatenate(self._numbers)
+
     def _inputs(self) -> Inputs:
         return Inputs(self.setting.formula, self.places, self.start, self.floats)
 

@@ -100,9 +100,24 @@ class IslandRun:
                     refs = tuple(Ref(other) for other in others)
                     cast(Contact, graph.tasks[contact].kind).assemble(contact, assembly, bodies, refs)
         self.assembly = assembly
+        assembly.places = self._places
         self.march: March = March(assembly.finish(), self.solver.stepper(), graph.settings.clock.end)
         self.members = {*island.models, *(contact for contact, _, _ in island.contacts)}
         self._now: tuple[float, Floats, Floats] | None = None
+
+    def _places(self, link: Link) -> Any:
+        """Where in the state an output of one of the models stands, for values that read it at stage times."""
+        from sceneql.simulation.inputs import places
+        from sceneql.system import ModelState
+
+        kind = cast(Model, self.graph.tasks[link.task].kind)
+        bodies, ints = self.bodies.get(link.task), self.assembly.remembered(link.task)
+        floats = self.assembly.numbers()
+
+        def read(y: Floats) -> Any:
+            return kind.read(link.output, ModelState(0.0, y, y, floats, bodies, ints))
+
+        return places(read, len(self.assembly.start()))
 
     def advance(self, time: float) -> None:
         """March to an instant [s]."""
