@@ -57,15 +57,13 @@ def main() -> None:
     """The entry point of the program: exceptions become messages and exit codes."""
     try:
         code = cli.main(prog_name="sceneql", standalone_mode=False)
-    except click.exceptions.Abort:
+    except click.exceptions.Abort as error:  # click's for KeyboardInterrupt
+        _say_kept(error.__cause__)
+        click.echo("interrupted", err=True)
         code = INTERRUPTED
     except click.ClickException as error:
         error.show()
         code = error.exit_code
-    except KeyboardInterrupt as error:
-        _say_kept(error)
-        click.echo("interrupted", err=True)
-        code = INTERRUPTED
     except Exception as error:
         code = _failure(error)
     sys.exit(code if isinstance(code, int) else OK)
@@ -73,7 +71,7 @@ def main() -> None:
 
 def _failure(error: Exception) -> int:
     """Say what went wrong; the exit code. An exception that is nobody's message is a bug and is raised."""
-    from sceneql.failure import LimitRefused, RunFailure
+    from sceneql.failure import LimitRefused, RunFailure, Unsuitable
     from sceneql.quantities.diagnostic import ScriptError
 
     if isinstance(error, ScriptError):
@@ -83,7 +81,11 @@ def _failure(error: Exception) -> int:
         return SCRIPT_INVALID
     if isinstance(error, LimitRefused):
         click.echo(str(error), err=True)
+        _say_kept(error)
         return LIMIT_REFUSED
+    if isinstance(error, Unsuitable):
+        click.echo(f"error: {error}", err=True)
+        return USAGE
     if isinstance(error, RunFailure | OSError):
         click.echo(str(error) if isinstance(error, RunFailure) else f"error: {error}", err=True)
         _say_kept(error)
@@ -91,9 +93,11 @@ def _failure(error: Exception) -> int:
     raise error
 
 
-def _say_kept(error: BaseException) -> None:
+def _say_kept(error: BaseException | None) -> None:
     for path in getattr(error, "kept", ()):
         click.echo(f"kept {path}", err=True)
+    for note in getattr(error, "__notes__", ()):
+        click.echo(note, err=True)
 
 
 @cli.command()
@@ -130,7 +134,9 @@ def check(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path |
 
     graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
     _warn(graph)
-    click.echo(f"{scene}: ok, {len(graph.tasks)} parts" + (f", {len(graph.left_out)} not needed" if graph.left_out else ""))
+    click.echo(
+        f"{scene}: ok, {len(graph.tasks)} parts" + (f", {len(graph.left_out)} not needed" if graph.left_out else "")
+    )
 
 
 @cli.command()
@@ -169,7 +175,9 @@ def bench(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path |
 
 @cli.command()
 @click.argument("word", required=False)
-@click.option("--words", "folder", type=click.Path(file_okay=False, exists=True), callback=_path, help="Your own words.")
+@click.option(
+    "--words", "folder", type=click.Path(file_okay=False, exists=True), callback=_path, help="Your own words."
+)
 def words(word: str | None, folder: Path | None) -> None:
     """List the words of the language, or show the manual of one."""
     from sceneql.compiler.catalogue import Catalogue
@@ -216,7 +224,7 @@ def gallery_check(scenes: tuple[Path, ...], folder: Path) -> None:
     for line in lines:
         click.echo(line)
     if not same:
-        raise _Exit(GALLERY_DIFFERS)
+        sys.exit(GALLERY_DIFFERS)
 
 
 @gallery.command("update")
@@ -236,17 +244,6 @@ def warmup() -> None:
     from sceneql.report.warmup import warmup as compile_all
 
     click.echo(compile_all())
-
-
-class _Exit(click.ClickException):
-    """Ends the program with a code and no further words."""
-
-    def __init__(self, code: int) -> None:
-        super().__init__("")
-        self.exit_code = code
-
-    def show(self, file: Any = None) -> None:
-        """Nothing to add."""
 
 
 def _warn(graph: Any) -> None:

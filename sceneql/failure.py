@@ -21,3 +21,7 @@ class LimitRefused(Exception):
     def __init__(self, message: str, span: Span | None = None, help: str | None = None) -> None:
         self.diagnostic = Diagnostic("limit-refused", message, span, help)
         super().__init__(str(self.diagnostic))
+
+
+class Unsuitable(ValueError):
+    """What is asked for does not suit the scene: one file for several outputs, a benchmark without physics."""

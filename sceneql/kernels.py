@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Where compiled code begins: the one decorator, the cache folder, the compile account and the thread pool.
 
 Imports numba; only ``*_kernels.py`` files and those that run them import this module.

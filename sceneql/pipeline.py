@@ -1,8 +1,8 @@
 """The one file that joins the stages: load, compile, simulate, render. Also the public Python interface.
 
-    import sceneql.pipeline as sceneql
-    graph = sceneql.load("scenes/first.yaml")
-    report = sceneql.render(graph)
+import sceneql.pipeline as sceneql
+graph = sceneql.load("scenes/first.yaml")
+report = sceneql.render(graph)
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, cast
 from sceneql import __version__
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.compile import compile_script
+from sceneql.failure import Unsuitable
 from sceneql.graph import SimulationGraph
 from sceneql.kinds import FAMILIES, Camera, Clock, Illumination, Output, Picture, Renderer, Settings
 from sceneql.language.script import read_script
@@ -78,13 +79,14 @@ def render(
     """Run a graph and make its outputs, in one pass over the union of their times.
 
     ``output`` overrides the file of a single output. On a failure what was made is kept beside the final names, in
-    ``error.kept`` of the exception that goes on.
+    ``error.kept`` of the exception that goes on. Raises RunFailure, LimitRefused, OSError, and Unsuitable for one file
+    with several outputs.
     """
-    started = time.perf_counter()
+    started, compiled = time.perf_counter(), _compiled()
     report = Report()
-    outputs = {name: cast(Output, task.kind) for name, task in graph.tasks.items() if isinstance(task.kind, Output)}
+    outputs = {name: task.kind for name, task in graph.tasks.items() if isinstance(task.kind, Output)}
     if output is not None and len(outputs) > 1:
-        raise ValueError(f"--output names one file, but the script has {len(outputs)} outputs: {', '.join(outputs)}")
+        raise Unsuitable(f"one file is named, but the script has {len(outputs)} outputs: {', '.join(outputs)}")
     clock = graph.settings.clock
     times = {name: kind.times(clock) for name, kind in outputs.items()}
     instants = sorted(set().union(*times.values()))
@@ -92,9 +94,12 @@ def render(
         name: Tools(graph, name, report, _target(graph, name, len(outputs), output, folder or Path()))
         for name in outputs
     }
+    for tool in tools.values():
+        _try_folder(tool.target.parent)
     sinks: dict[str, Any] = {}
     try:
-        sinks = {name: kind.open(tools[name]) for name, kind in outputs.items()}
+        for name, kind in outputs.items():
+            sinks[name] = kind.open(tools[name])
         wanted = {name: set(at) for name, at in times.items()}
         from sceneql.simulation.run import Run
 
@@ -106,18 +111,40 @@ def render(
                     sink.take(moment)
         progress(len(instants), len(instants))
         report.steps = sum(island.march.statistics.steps for island in run.islands)
-        for sink in sinks.values():
-            report.files += sink.close()
+        for name in outputs:
+            report.files += sinks[name].close()
+            del sinks[name]
     except BaseException as error:
-        kept = [path for sink in sinks.values() for path in sink.abort()]
-        error.kept = kept  # type: ignore[attr-defined]
+        error.kept = [*report.files, *_kept(sinks, error)]  # type: ignore[attr-defined]
         raise
-    report.compile_seconds, report.compilations = _compiled()
+    seconds, count = _compiled()
+    report.compile_seconds, report.compilations = seconds - compiled[0], count - compiled[1]
     report.run_seconds = time.perf_counter() - started - report.compile_seconds
     return report
 
 
+def _try_folder(folder: Path) -> None:
+    """Raise OSError where no file can be made: before the run, not after it."""
+    import tempfile
+
+    folder.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryFile(dir=folder):
+        pass
+
+
+def _kept(sinks: dict[str, Any], error: BaseException) -> list[Path]:
+    """What is kept of open outputs. What fails here too is noted: the error that stopped the run is the one to tell."""
+    kept: list[Path] = []
+    for name, sink in sinks.items():
+        try:
+            kept += sink.abort()
+        except Exception as second:
+            error.add_note(f"nothing of '{name}' could be kept: {second}")
+    return kept
+
+
 def _compiled() -> tuple[float, int]:
+    """Seconds and number of the process's compilations."""
     import sys
 
     kernels = sys.modules.get("sceneql.kernels")
@@ -148,7 +175,7 @@ class Tools:
         target = self.target
         return target if target.suffix == f".{extension}" else target.with_name(f"{target.name}.{extension}")
 
-    def pixels(self, output: Picture, moment: Instant) -> Any:
+    def pixels(self, output: Picture, moment: Any) -> Any:
         """The developed picture (h, w, 3) uint8."""
         from renderers.develop import develop
 
@@ -182,7 +209,12 @@ def frame_of(graph: SimulationGraph, output: str, size: tuple[int, int], moment:
     from sceneql.simulation.color import linear
 
     camera = cast(Camera, graph.tasks[graph.cameras[output]].kind)
-    lights = [light for task in graph.tasks.values() if isinstance(task.kind, Illumination) for light in task.kind.lower(moment)]
+    lights = [
+        light
+        for task in graph.tasks.values()
+        if isinstance(task.kind, Illumination)
+        for light in task.kind.lower(moment)
+    ]
     if graph.settings.background is not None:
         seen = linear(moment.at(graph.settings.background))
         skies = [light for light in lights if isinstance(light, Sky)] or [Sky((0, 0, 0), (0, 0, 0), (0, 0, 0))]

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """The numba types of the system contract (system.py says what each function does)."""
 
 from numba import types
@@ -5,7 +6,7 @@ from numba import types
 F = types.float64
 N = types.int64
 A = types.float64[::1]
-I = types.int64[::1]  # noqa: E741  (the name of the type in every signature)
+I = types.int64[::1]
 
 TERM = types.void(F, A, A, A, I)
 GAP = types.void(F, A, A, A, I)

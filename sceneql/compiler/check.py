@@ -174,9 +174,7 @@ class _Checker:
 
     def _unknown(self, node: Scalar, name: str, family: str) -> None:
         if name in self.entries:
-            self.found.error(
-                "wrong-family", f"'{name}' is one of {self.family(name)}, not of {family}", node.span
-            )
+            self.found.error("wrong-family", f"'{name}' is one of {self.family(name)}, not of {family}", node.span)
             return
         choices = [n for n in self.entries if family in ("", self.family(n))]
         words = self.catalogue.words(family) if family else []

@@ -15,9 +15,7 @@ from sceneql.language.script import Script
 from sceneql.quantities.diagnostic import Diagnostics
 
 
-def compile_script(
-    script: Script, catalogue: Catalogue, found: Diagnostics, *, pruned: bool = True
-) -> SimulationGraph:
+def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, pruned: bool = True) -> SimulationGraph:
     """The graph of a script. ``pruned=False`` keeps every part (its pictures must be the same).
 
     Raises ScriptError with all that is wrong, what is in ``found`` already included.

@@ -123,7 +123,7 @@ class Names:
         return f"{task}.{next(iter(outputs), 'position')}"
 
 
-def plain(expr: Expr) -> Expr:
+def plain(expr: Any) -> Any:
     """The same tree over plain numbers in SI: textbook formulas are not homogeneous, so dimensions are dropped."""
     parts = {f.name: _plain(getattr(expr, f.name)) for f in fields(expr)}
     return replace(expr, **parts)

@@ -30,7 +30,7 @@ def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
             try:
                 components = ImageColor.getrgb(text)[:3]
             except ValueError:
-                hint = suggestion(text, ImageColor.colormap) or "write a CSS name, \"#rrggbb\" or three numbers"
+                hint = suggestion(text, ImageColor.colormap) or 'write a CSS name, "#rrggbb" or three numbers'
                 found.error("unknown-color", f"'{text}' is no color", node.span, help=hint)
                 return None
             return Value(Vector(tuple(Number(c / 255) for c in components), RGB), node.span)
@@ -78,5 +78,3 @@ def _axis(node: Node, names: Names, found: Diagnostics) -> Expr | None:
 
 def _expr(value: Value | None) -> Expr | None:
     return None if value is None else value.expr
-
-

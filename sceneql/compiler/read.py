@@ -48,7 +48,7 @@ class Reader:
         if isinstance(node, MappingNode):
             written = node.entries
         elif node is not None and not (isinstance(node, Scalar) and node.kind == "null"):
-            self._fail("wrong-shape", f"{title} takes fields, `{{name: value}}`", node.span)
+            raise self._fail("wrong-shape", f"{title} takes fields, `{{name: value}}`", node.span)
         symbols = self.symbols
         if node is not None and issubclass(cls, Kind):
             symbols = cls.formula_symbols(plainly(node))
@@ -139,7 +139,7 @@ class Reader:
         if base is str:
             if isinstance(node, Scalar):
                 return node.text
-            self._fail("wrong-shape", f"{what} is a text", node.span)
+            raise self._fail("wrong-shape", f"{what} is a text", node.span)
         if base is Any:
             return node
         raise TypeError(f"no reading for {annotation!r}")
@@ -151,14 +151,17 @@ class Reader:
         if base is Value:
             return value
         if not value.constant:
-            self._fail("not-constant", f"{what} must be constant", node.span)
+            raise self._fail("not-constant", f"{what} must be constant", node.span)
         number = value.number()
         if not values.finite(number):
-            self._fail("not-finite", f"{what} is {number}", node.span)
+            raise self._fail("not-finite", f"{what} is {number}", node.span)
         return number
 
     def _formula(self, node: Node, mark: Symbols, what: str) -> Formula:
-        expr = self._some(values.read_formula(node, self.symbols if mark.names is None else mark.names, what, self.names, self.found), node)
+        expr = self._some(
+            values.read_formula(node, self.symbols if mark.names is None else mark.names, what, self.names, self.found),
+            node,
+        )
         return Formula(expr, node.span)
 
     def _union(self, node: Node, arms: tuple[Any, ...], what: str) -> Any:
@@ -183,7 +186,7 @@ class Reader:
             if text == str(choice):
                 return choice
         hint = suggestion(text, [str(c) for c in choices]) or "one of " + ", ".join(str(c) for c in choices)
-        self._fail("unknown-choice", f"{what} cannot be '{text}'", node.span, hint)
+        raise self._fail("unknown-choice", f"{what} cannot be '{text}'", node.span, hint)
 
     def _list(self, node: Node, origin: Any, arms: tuple[Any, ...], what: str) -> Any:
         fixed = origin is tuple and not (len(arms) == 2 and arms[1] is Ellipsis)
@@ -191,10 +194,12 @@ class Reader:
             return tuple(self._spread(node, arms, what))
         items = node.items if isinstance(node, Sequence) else [node]
         if fixed and len(items) != len(arms):
-            self._fail("wrong-count", f"{what} takes {len(arms)} values, not {len(items)}", node.span)
+            raise self._fail("wrong-count", f"{what} takes {len(arms)} values, not {len(items)}", node.span)
         result, ok = [], True
         for k, item in enumerate(items):
-            reader = replace(self, owner=f"{self.owner}.{k}") if len(items) > 1 or not isinstance(item, Scalar) else self
+            reader = (
+                replace(self, owner=f"{self.owner}.{k}") if len(items) > 1 or not isinstance(item, Scalar) else self
+            )
             try:
                 result.append(reader.read(item, arms[k] if fixed else arms[0], what))
             except Unreadable:
@@ -207,7 +212,7 @@ class Reader:
         """``960 540`` for a pair of whole numbers."""
         words = node.text.replace(",", " ").split()
         if len(words) != len(arms):
-            self._fail("wrong-count", f"{what} takes {len(arms)} values, not {len(words)}", node.span)
+            raise self._fail("wrong-count", f"{what} takes {len(arms)} values, not {len(words)}", node.span)
         at, result = node.content.start, []
         for word, arm in zip(words, arms, strict=True):
             start = node.source.text.find(word, at)
@@ -218,7 +223,7 @@ class Reader:
 
     def _dict(self, node: Node, arm: Any, what: str) -> dict[str, Any]:
         if not isinstance(node, MappingNode):
-            self._fail("wrong-shape", f"{what} takes names with values, `{{name: value}}`", node.span)
+            raise self._fail("wrong-shape", f"{what} takes names with values, `{{name: value}}`", node.span)
         result, ok = {}, True
         for name, item in node.entries.items():
             try:
@@ -233,17 +238,17 @@ class Reader:
         text = node.text.lower() if isinstance(node, Scalar) else ""
         if text in TRUE or text in FALSE:
             return text in TRUE
-        self._fail("unknown-choice", f"{what} is yes or no, not '{text}'", node.span)
+        raise self._fail("unknown-choice", f"{what} is yes or no, not '{text}'", node.span)
 
     def _number(self, node: Node, base: Any, what: str) -> Any:
         value = self._some(values.read_value(node, values.PLAIN_NUMBER, what, self.names, self.found), node)
         if not value.constant:
-            self._fail("not-constant", f"{what} must be constant", node.span)
+            raise self._fail("not-constant", f"{what} must be constant", node.span)
         number = value.number()
         if base is float:
             return number
         if not values.finite(number) or number != int(number):
-            self._fail("not-whole", f"{what} must be a whole number, not {number:g}", node.span)
+            raise self._fail("not-whole", f"{what} must be a whole number, not {number:g}", node.span)
         return int(number)
 
     def _some(self, value: Any, node: Node) -> Any:
@@ -251,9 +256,9 @@ class Reader:
             raise Unreadable
         return value
 
-    def _fail(self, code: str, message: str, span: Span, help: str | None = None) -> Any:
+    def _fail(self, code: str, message: str, span: Span, help: str | None = None) -> Unreadable:
         self.found.error(code, message, span, help=help)
-        raise Unreadable
+        return Unreadable()
 
 
 def _unwrap(annotation: Any) -> tuple[Any, tuple[Any, ...]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, get_args
 
 from sceneql.compiler.names import Names, plain
@@ -91,9 +91,7 @@ def parsed_text(node: Scalar) -> str:
     return raw if " ".join(raw.split()) == " ".join(node.text.split()) else node.text
 
 
-def read_formula(
-    node: Node, symbols: Iterable[str], what: str, names: Names, found: Diagnostics
-) -> Expr | None:
+def read_formula(node: Node, symbols: Iterable[str], what: str, names: Names, found: Diagnostics) -> Expr | None:
     """A textbook formula over plain numbers: the symbols are free, defines come in as plain numbers."""
     if isinstance(node, Sequence):
         items = [read_formula(item, symbols, what, names, found) for item in node.items]
@@ -158,7 +156,7 @@ def _by_component(
             )
             return None
     quantity = Quantity(dimension or PLAIN)
-    items = []
+    items: list[Expr] = []
     for key in COMPONENTS:
         if key not in node.entries:
             items.append(Number(0.0, Type((), quantity.dimension)))
@@ -313,7 +311,7 @@ def finite(number: Any) -> bool:
     return math.isfinite(number)
 
 
-_LIMITS = {
+_LIMITS: Mapping[str, tuple[Callable[[float, float], bool], str]] = {
     "above": (lambda x, limit: x > limit, "above"),
     "at_least": (lambda x, limit: x >= limit, "at least"),
     "below": (lambda x, limit: x < limit, "below"),

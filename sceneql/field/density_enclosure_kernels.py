@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """First-order enclosures of density fields along a ray segment; see enclosure_kernels for what an enclosure claims."""
 
 from sceneql.kernels import inlined

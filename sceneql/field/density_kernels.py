@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Density fields of skeleton parts: values, gradients and enclosures.
 
 A part has the density weight (1 - d^2/R^2)^3 within its radius R and 0 beyond, d the distance to the segment from a

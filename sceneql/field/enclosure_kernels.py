@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """First-order Taylor (affine) enclosures of a tape along a ray segment.
 
 On the segment o + t d, t = tm + h tau with tau in [-1, 1], every register is enclosed as c0 + c1 tau +- e (columns 0-2

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Interval bounds of a tape over a box, rounded outward, to cull what a solid cannot reach."""
 
 import numpy as np

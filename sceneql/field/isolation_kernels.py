@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """First roots of a tape along a ray, proved by enclosures: no gradient bound is asked of anyone.
 
 From the start of the ray on, a segment is rejected when its enclosure c0 + c1 tau +- e has no zero, and the next one is

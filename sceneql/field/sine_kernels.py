@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Sine and cosine together, from multiplications and additions alone: fast, and the same bits on every machine."""
 
 import numpy as np

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np  # noqa: TID253
+import numpy as np
 
 from sceneql.field import isolation_kernels, tape_kernels
 from sceneql.field.tape_ops import SCRATCH_COLUMNS, scratch_rows

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Point values and gradients of a tape. A NaN anywhere makes the value NaN, so that undefined places are outside."""
 
 import numpy as np

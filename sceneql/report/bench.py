@@ -9,6 +9,7 @@ from dataclasses import asdict, fields
 from pathlib import Path
 
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.failure import Unsuitable
 from sceneql.files import whole
 from sceneql.graph import SimulationGraph
 from sceneql.report.order import observed_order
@@ -24,10 +25,10 @@ def bench(graph: SimulationGraph, output: Path | None = None, words: Path | None
     """Run every island by every solver that applies; write ``<scene>.bench.csv`` and ``.svg``; the report as text.
 
     ``output`` is a folder, or the files' path without extension; ``words`` a folder of the user's own words. Raises
-    ValueError for a scene without an island, RunFailure where a reference cannot reach the end.
+    Unsuitable for a scene without an island, RunFailure where a reference cannot reach the end.
     """
     if not graph.islands:
-        raise ValueError(f"nothing in {graph.name} is solved in time, so there is nothing to measure")
+        raise Unsuitable(f"nothing in {graph.name} is solved in time, so there is nothing to measure")
     catalogue = Catalogue(words)
     rows: list[Measurement] = []
     orders: dict[tuple[str, str], float | None] = {}

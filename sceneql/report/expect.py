@@ -97,7 +97,9 @@ def measure(expr: Expr, series: Mapping[Symbol | Link, Any], times: list[float])
         known[symbol] = _SERIES[node.op](value, times, node)
         return symbol
 
-    if not any(isinstance(node, Call) and (OPERATIONS[node.op].series or OPERATIONS[node.op].reduces) for node in walk(expr)):
+    if not any(
+        isinstance(node, Call) and (OPERATIONS[node.op].series or OPERATIONS[node.op].reduces) for node in walk(expr)
+    ):
         return evaluate(expr, lambda node: look_up(node)[-1], arrays=True)
     return evaluate(solve(expr), look_up, arrays=True)
 

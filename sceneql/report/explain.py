@@ -1,4 +1,4 @@
-"""The plan of a scene: what will run in which order, for which output, by which solver, and what is left out and why."""
+"""The plan of a scene: what will run, in which order, for which output, by which solver; what is left out and why."""
 
 from __future__ import annotations
 
@@ -110,5 +110,3 @@ def text(plan: dict[str, Any]) -> str:
     lines += ["", f"not loaded: {avoided['words']} words; libraries {', '.join(avoided['libraries']) or 'none'}"]
     lines.append(f"not compiled: {', '.join(avoided['kernels']) or 'nothing left out'}")
     return "\n".join(lines)
-
-

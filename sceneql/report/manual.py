@@ -76,7 +76,8 @@ def _records(annotation: Any) -> list[type[BaseModel]]:
 
 def type_text(annotation: Any) -> str:
     """A field's type in the words of a script's author."""
-    base, marks = annotation, ()
+    base: Any = annotation
+    marks: tuple[Any, ...] = ()
     if get_origin(annotation) is Annotated:
         base, *rest = get_args(annotation)
         marks = tuple(rest)

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """The closing term of point masses."""
 
 from sceneql.kernels import kernel

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Exact events: the first contact inside a step, found on dense output, located with the solver's own step.
 
 A pair whose gap at the step's start is at most ``slop`` touches. ``leaving[pair]`` is 1 when its impact was applied at

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Values that vary in time, evaluated at stage times: one interpreter of scalar programs over the island's floats.
 
 A program is rows of WIDTH integers (operation, out, a, b, c, count, form); out, a, b, c are offsets into ``floats``,

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """The one loop that marches an island in time: fixed grid or error control, exact events, local contacts, the watch.
 
 All state of a march lies in arrays of the caller, so that it can stop anywhere and go on: the last accepted step

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Compiled functions handed over as addresses.
 
 numba can take functions as arguments, but asks Python for the addresses of each at every call: 0.3 ms for the six of a

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Functions that printed kernels call."""
 
 from sceneql.kernels import inlined

@@ -44,9 +44,7 @@ def expand(tasks: Mapping[str, Task], catalogue: Catalogue) -> dict[str, Task]:
 def _surfaces(tasks: Mapping[str, Task]) -> bool:
     driven = {name for task in tasks.values() if isinstance(task.kind, Model) for name in task.kind.drives()}
     inner = {ref.name for task in tasks.values() if isinstance(task.kind, Object) for ref in task.kind.members()}
-    return any(
-        isinstance(t.kind, Object) and t.kind.collides and t.name not in driven | inner for t in tasks.values()
-    )
+    return any(isinstance(t.kind, Object) and t.kind.collides and t.name not in driven | inner for t in tasks.values())
 
 
 def _drive(tasks: dict[str, Task]) -> dict[str, Task]:

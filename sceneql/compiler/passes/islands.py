@@ -54,7 +54,9 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
             Island(
                 models=group,
                 forces=tuple((f, m) for f, targets in forces.items() for m in targets if m in group),
-                contacts=tuple((c, m, others) for c, (targets, others) in contacts.items() for m in targets if m in group),
+                contacts=tuple(
+                    (c, m, others) for c, (targets, others) in contacts.items() for m in targets if m in group
+                ),
                 solver=solver,
                 reason=reason,
             )
@@ -102,7 +104,7 @@ def _touching(task: Task, tasks: Mapping[str, Task], models: list[str]) -> tuple
     surfaces = [name for name in ties if isinstance(tasks[name].kind, Object)]
     if not targets:
         targets = [n for n in models if getattr(tasks[n].kind, "has_bodies", False)]
-    if not surfaces and len(targets) < 2 or not ties:
+    if (not surfaces and len(targets) < 2) or not ties:
         inner = {ref.name for t in tasks.values() if isinstance(t.kind, Object) for ref in t.kind.members()}
         surfaces = [
             t.name
@@ -114,7 +116,9 @@ def _touching(task: Task, tasks: Mapping[str, Task], models: list[str]) -> tuple
 
 def _solver(group: tuple[str, ...], tasks: Mapping[str, Task], found: Diagnostics) -> tuple[str, str]:
     solvers = [t for t in tasks.values() if isinstance(t.kind, Solver)]
-    named = [t for t in solvers if isinstance(t.kind, Solver) and t.kind.on and {r.name for r in t.kind.on} & set(group)]
+    named = [
+        t for t in solvers if isinstance(t.kind, Solver) and t.kind.on and {r.name for r in t.kind.on} & set(group)
+    ]
     default = [t for t in solvers if isinstance(t.kind, Solver) and t.kind.on is None]
     for candidates, reason in ((named, "named for {}"), (default, "the script's default solver")):
         if len(candidates) > 1:

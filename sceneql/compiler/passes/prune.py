@@ -9,7 +9,10 @@ from sceneql.kinds import Illumination, Model, Object, Output
 
 
 def prune(
-    tasks: Mapping[str, Task], islands: tuple[Island, ...], drawn: Mapping[str, tuple[str, ...]], cameras: Mapping[str, str]
+    tasks: Mapping[str, Task],
+    islands: tuple[Island, ...],
+    drawn: Mapping[str, tuple[str, ...]],
+    cameras: Mapping[str, str],
 ) -> tuple[dict[str, Task], dict[str, tuple[str, ...]], tuple[LeftOut, ...]]:
     """The needed tasks, each behind those it needs; for each the outputs that need it; and the rest with reasons."""
     lights = [t.name for t in tasks.values() if isinstance(t.kind, Illumination)]

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Contacts in `exact` mode: gaps and impacts for event location.
 
 A resting pair with friction slides until its speed along the last direction is zero, which is an event as well. A

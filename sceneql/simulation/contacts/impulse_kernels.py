@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """What an impact does to a velocity, and the tally of impacts."""
 
 import math

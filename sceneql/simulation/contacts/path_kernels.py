@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """The path of a body between two instants, and the first place where it meets a surface.
 
 A path is 13 floats: place and velocity at the start, place and velocity at the end, duration: a cubic Hermite curve.

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Resting contact: the normal force that carries a body, Coulomb's friction, and what keeps it on the surface.
 
 A pair is (body k, object j), numbered k * objects + j. Its memory in the floats: state, free normal acceleration, load
@@ -126,18 +127,24 @@ def pressing(k, j, y, rate, floats, ints):
 
 
 @inlined
+def away(k, j, y, floats, ints):
+    """Whether a pair is too far apart for its normal acceleration to matter."""
+    px, py, pz, _, _, _ = body_of(ints, k, y)
+    gap = surface(floats, ints, HEAD + OBJECT * j, px, py, pz)[0] - floats[ints[RADIUS] + k] - floats[ints[THICKNESS]]
+    return gap > NEAR * scale_of(px, py, pz)
+
+
+@inlined
 def press_of_pairs(k, near, y, rate, floats, ints):
     """Store how each resting pair would press if nothing held it, and each free one if asked; the resting ones."""
     resting = 0
-    px, py, pz, _, _, _ = body_of(ints, k, y)
-    reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
     for j in range(ints[OBJECTS]):
         memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
-        floats[memory + LOAD] = 0.0
         if floats[memory] != FREE:
             resting += 1
-        elif not near or surface(floats, ints, HEAD + OBJECT * j, px, py, pz)[0] - reach > NEAR * scale_of(px, py, pz):
+        elif not near or away(k, j, y, floats, ints):
             continue
+        floats[memory + LOAD] = 0.0
         floats[memory + PRESS] = pressing(k, j, y, rate, floats, ints)[0]
     return resting
 
@@ -152,7 +159,12 @@ def carry(k, resting, y, rate, floats, ints):
             memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
             if floats[memory] == FREE:
                 continue
-            press, nx, ny, nz = pressing(k, j, y, rate, floats, ints)
+            if resting == 1:
+                px, py, pz, _, _, _ = body_of(ints, k, y)
+                _, nx, ny, nz = surface(floats, ints, HEAD + OBJECT * j, px, py, pz)
+                press = floats[memory + PRESS]
+            else:
+                press, nx, ny, nz = pressing(k, j, y, rate, floats, ints)
             load = max(0.0, floats[memory + LOAD] - press)
             add = load - floats[memory + LOAD]
             floats[memory + LOAD] = load

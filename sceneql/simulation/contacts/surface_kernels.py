@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Surfaces that can be collided with: signed distance, normal, curvature and motion at a point.
 
 An object is nine integers: shape, then offsets into the floats of its position (3), rotation (4, unit quaternion

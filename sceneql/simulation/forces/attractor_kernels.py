@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """The force of an attractor."""
 
 import math

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """The force of drag."""
 
 import math

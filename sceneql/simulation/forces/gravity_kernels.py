@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """The force of uniform gravity."""
 
 import math

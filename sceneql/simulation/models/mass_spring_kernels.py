@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """The forces of springs."""
 
 import math

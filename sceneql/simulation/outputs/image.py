@@ -16,9 +16,11 @@ class Image(Picture):
     time: FixedTime | None = field("The instant; by default the end of the clock.", None, at_least=0)
 
     def times(self, clock: Clock) -> list[float]:
+        """The instants [s] that it wants."""
         return [clock.end if self.time is None else min(self.time, clock.end)]
 
     def open(self, tools: Tools) -> Sink:
+        """Start it."""
         return _Stills(self, tools, numbered=False)
 
 

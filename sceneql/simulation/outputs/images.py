@@ -16,7 +16,9 @@ class Images(Picture):
     fps: FixedScalar | None = field("Frames a second; by default the clock's.", None, above=0, at_most=1000)
 
     def times(self, clock: Clock) -> list[float]:
+        """The instants [s] that it wants."""
         return clock.frames(clock.fps if self.fps is None else self.fps)
 
     def open(self, tools: Tools) -> Sink:
+        """Start it."""
         return _Stills(self, tools, numbered=True)

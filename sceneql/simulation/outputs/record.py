@@ -19,19 +19,23 @@ class Record(Output):
     format: Literal["csv", "npz"] = field("Kind of file.", "csv")
 
     def times(self, clock: Clock) -> list[float]:
+        """The instants [s] that it wants."""
         if isinstance(self.every, str):
             return clock.frames(clock.fps)
         count = int(clock.end / self.every * (1 + 1e-12)) + 1
         return [min(k * self.every, clock.end) for k in range(count)]
 
     def open(self, tools: Tools) -> Sink:
+        """Start it."""
         return _Table(self, tools)
 
 
 class _Table:
     def __init__(self, record: Record, tools: Tools) -> None:
         self.record, self.tools = record, tools
-        self.titles = [" ".join(v.span.text.split()) if v.span is not None else f"value {k}" for k, v in enumerate(record.of)]
+        self.titles = [
+            " ".join(v.span.text.split()) if v.span is not None else f"value {k}" for k, v in enumerate(record.of)
+        ]
         self.rows: list[list[Any]] = []
 
     def take(self, moment: Moment) -> None:

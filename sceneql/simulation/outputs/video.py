@@ -28,6 +28,7 @@ class Video(Picture):
         return self
 
     def times(self, clock: Clock) -> list[float]:
+        """The instants [s] that it wants."""
         return clock.frames(self.rate(clock))
 
     def rate(self, clock: Clock) -> float:
@@ -35,15 +36,14 @@ class Video(Picture):
         return clock.fps if self.fps is None else self.fps
 
     def open(self, tools: Tools) -> Sink:
+        """Start it."""
         return _Film(self, tools)
 
 
 class _Film:
     def __init__(self, video: Video, tools: Tools) -> None:
         self.video, self.tools = video, tools
-        self.writer: Any = tools.encoder(
-            "mp4", size=video.pixels, rate=video.rate(tools.clock), quality=video.quality
-        )
+        self.writer: Any = tools.encoder("mp4", size=video.pixels, rate=video.rate(tools.clock), quality=video.quality)
 
     def take(self, moment: Moment) -> None:
         self.writer.write(self.tools.pixels(self.video, moment))

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """One step of any explicit Runge-Kutta method: the tableau is data.
 
 ``numbers`` = (stages, 1 if there is an embedded method). ``settings`` = (relative tolerance, absolute tolerance,

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """One step of semi-implicit Euler: velocities first, then positions by the new velocities."""
 
 from sceneql.kernels import lean
