@@ -1,0 +1,117 @@
+"""Last stage: pixels in which things meet are drawn anew by several rays, lit by the visibility already found."""
+
+from numba import types
+
+from renderers.tracing.filter_kernels import SLACK
+from renderers.tracing.gather_kernels import gather
+from renderers.tracing.record_kernels import OWNER, TRACED, alike
+from renderers.tracing.sampling_kernels import morton
+from renderers.tracing.scene_kernels import HEIGHT, SCENE, SCRATCH, WIDTH, part
+from renderers.tracing.shade_kernels import shade
+from renderers.tracing.visibility_kernels import look_around
+from sceneql.kernels import kernel
+
+_i = types.int64
+_rows = types.float32[:, ::1]
+_stack = types.float32[:, :, ::1]
+BRIGHTEST = 16.0
+"""Radiance to which one of a pixel's rays is limited, so that a bright spot's edge does not flicker."""
+CONTRAST = 0.08
+"""Difference of brightness, relative to the sum, at which pixels with reflections count as an edge."""
+ANEW = 8
+"""Samples of light and sky for a ray that meets what no neighboring pixel has met."""
+
+
+@part
+def contrast(radiance, k, m):
+    """Largest relative difference of two pixels over the channels."""
+    worst = 0.0
+    for c in range(3):
+        a, b = min(radiance[k, c], 4.0), min(radiance[m, c], 4.0)
+        worst = max(worst, abs(a - b) / (0.1 + a + b))
+    return worst
+
+
+@part
+def jagged(records, radiance, k, x, y, width, height):
+    """Whether a pixel's neighbors show something else than it does."""
+    glossy = records[0, k, TRACED] > 0.0
+    for j in range(max(y - 1, 0), min(y + 1, height - 1) + 1):
+        for i in range(max(x - 1, 0), min(x + 1, width - 1) + 1):
+            m = j * width + i
+            if m == k:
+                continue
+            if records[0, m, OWNER] != records[0, k, OWNER]:
+                return True
+            if records[0, k, OWNER] > 0.0 and not alike(records[0, k], records[0, m], SLACK):
+                return True
+            if glossy and contrast(radiance, k, m) > CONTRAST:
+                return True
+    return False
+
+
+@part
+def borrow(records, visibility, record, x, y, width, height, found):
+    """Fill ``found`` with the mean visibility of pixels around (x, y) that are like a record; whether there is one."""
+    count = 0
+    for c in range(len(found)):
+        found[c] = 0.0
+    for j in range(max(y - 1, 0), min(y + 1, height - 1) + 1):
+        for i in range(max(x - 1, 0), min(x + 1, width - 1) + 1):
+            m = j * width + i
+            if records[m, OWNER] > 0.0 and alike(record, records[m], SLACK):
+                count += 1
+                for c in range(len(found)):
+                    found[c] += visibility[m, c]
+    for c in range(len(found)):
+        found[c] /= max(count, 1)
+    return count > 0
+
+
+@part
+def finished(scene, scratch, records, visibility, own, k, x, y, number, found):
+    """Radiance (3) of the two records ``own`` (3, COLUMNS) of one ray through pixel (x, y)."""
+    width, height = int(scene.reals[WIDTH]), int(scene.reals[HEIGHT])
+    r, g, b = 0.0, 0.0, 0.0
+    for layer in range(2):
+        if own[layer, OWNER] == 0.0:
+            continue
+        if not borrow(records[layer], visibility[layer], own[layer], x, y, width, height, found):
+            look_around(scene, scratch, own[layer], number, ANEW, found)
+        red, green, blue = shade(scene, own[layer], found)
+        r, g, b = r + red, g + green, b + blue
+    return r, g, b
+
+
+@kernel(
+    types.int64(SCENE, SCRATCH, _i, _i, types.float64[:, ::1], _stack, _rows, _stack, _rows, types.float32[::1], _rows),
+    _nrt=False,
+)
+def smooth_rows(scene, scratch, start, stop, points, records, radiance, visibility, own, found, picture):
+    """Fill rows start..stop of ``picture`` (n, 3): as ``radiance``, edges by one ray for each of ``points`` (s, 2).
+
+    ``own`` (3, COLUMNS) and ``found`` (V,) are working memory. Returns the number of pixels drawn anew.
+    """
+    width, height = int(scene.reals[WIDTH]), int(scene.reals[HEIGHT])
+    anew = 0
+    for y in range(start, stop):
+        for x in range(width):
+            k = y * width + x
+            if not jagged(records, radiance, k, x, y, width, height):
+                for c in range(3):
+                    picture[k, c] = radiance[k, c]
+                continue
+            anew += 1
+            number = morton(x, y)
+            red, green, blue = 0.0, 0.0, 0.0
+            for s in range(len(points)):
+                px, py = x + points[s, 0], y + points[s, 1]
+                r, g, b = gather(scene, scratch, px, py, own[0], own[1], own[2], found)
+                fr, fg, fb = finished(scene, scratch, records, visibility, own, k, x, y, number, found)
+                red += min(r + fr, BRIGHTEST)
+                green += min(g + fg, BRIGHTEST)
+                blue += min(b + fb, BRIGHTEST)
+            picture[k, 0] = red / len(points)
+            picture[k, 1] = green / len(points)
+            picture[k, 2] = blue / len(points)
+    return anew

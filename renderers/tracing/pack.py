@@ -1,0 +1,242 @@
+"""From a frame's plain values to the tracer's flat arrays."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from renderers.tracing import hierarchy_kernels
+from renderers.tracing.implicit_kernels import BLOCK, occupy
+from renderers.tracing.intersect_kernels import walk
+from renderers.tracing.scene_kernels import (
+    CAMERA,
+    CELLS,
+    IMPLICIT,
+    ITEMS,
+    KIND,
+    LIGHTS,
+    MIXED,
+    POINT,
+    QUADRIC,
+    REALS_AT,
+    ROUND,
+    SHAPE,
+    SKY,
+    SUN,
+    SURFACE_AT,
+    SURFACE_SIZE,
+    TRIANGLE,
+    WALK,
+    Pointer,
+    Scene,
+    Tables,
+)
+from sceneql.field.tape_ops import SCRATCH_COLUMNS, scratch_rows
+from sceneql.frame import Frame, Implicit, Mesh, Points, Quadric, Segments, Sky, Sun, Surface, View
+from sceneql.kernels import over_tiles
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats, Ints, Light
+
+
+def pack(frame: Frame) -> tuple[Scene, int]:
+    """The scene of a frame, and the rows of scratch that its kernels need. ValueError names a shape that is none of the closed set."""
+    tables = Rows()
+    for index, shape in enumerate(frame.shapes):
+        tables.add(index, shape)
+    boxes = np.concatenate([np.empty((0, 6)), *tables.boxes])
+    bounded = np.isfinite(boxes).all(axis=1)
+    inner, endless = np.flatnonzero(bounded), np.flatnonzero(~bounded)
+    order, nodes, links = hierarchy(boxes[inner], np.array(frame.view.origin, dtype=np.float64))
+    nodes = np.concatenate([[[-np.inf] * 3 + [np.inf] * 3], nodes])
+    links = np.concatenate([[[0, -len(endless), len(endless)]], links]) + [1, len(endless), 0]
+    lights = _lights(frame.lights)
+    head = np.zeros(LIGHTS)
+    head[SKY : SKY + 14] = _sky(frame.lights)
+    head[CAMERA : CAMERA + 16] = _camera(frame.view)
+    surfaces_at = LIGHTS + lights.size
+    nodes_at = surfaces_at + SURFACE_SIZE * len(frame.shapes)
+    reals_at = nodes_at + nodes.size
+    items = np.concatenate([np.empty((0, 4), np.int64), *tables.items])
+    items = items[np.concatenate([endless, inner[order]])]
+    items[:, REALS_AT] += reals_at
+    items[:, SURFACE_AT] = surfaces_at + SURFACE_SIZE * items[:, SHAPE]
+    links_at = ITEMS + items.size
+    ranges_at = links_at + links.size
+    reals = np.concatenate([head, lights.ravel(), *tables.surfaces, nodes.ravel(), *tables.reals])
+    header = [len(nodes), len(items), len(endless), len(lights), nodes_at, links_at, 0, 0]
+    ints = np.concatenate([header, items.ravel(), links.ravel(), *tables.ranges, *tables.codes], dtype=np.int32)
+    for k, ranges in enumerate(tables.ranges):
+        ranges = ints[ranges_at + k * len(ranges) : ranges_at + (k + 1) * len(ranges)]
+        ranges[[0, 6]] += ranges_at + sum(map(len, tables.ranges))
+        ranges[[2, 4]] += reals_at
+        reals[reals_at + tables.implicits[k] + 6] = ranges_at + k * len(ranges)
+    scene = Scene(reals, ints, Pointer(walk, WALK))
+    slabs = CELLS // BLOCK
+    over_tiles(
+        len(tables.implicits) * slabs,
+        lambda tile: occupy(
+            Tables(reals, ints), scratch(tables.rows + 1), reals_at + tables.implicits[tile // slabs], tile % slabs
+        ),
+    )
+    return scene, tables.rows + 1
+
+
+def scratch(rows: int) -> Floats:
+    """Working memory of one thread for kernels on a scene."""
+    return np.zeros((rows, SCRATCH_COLUMNS))
+
+
+class Rows:
+    """The parts of a Scene in the making; places count from the first real of the items, and from the first code."""
+
+    def __init__(self) -> None:
+        self.boxes: list[Floats] = []
+        self.items: list[NDArray[np.int64]] = []
+        self.surfaces: list[Floats] = []
+        self.reals: list[Floats] = []
+        self.ranges: list[NDArray[np.int64]] = []
+        self.codes: list[NDArray[np.int32]] = []
+        self.implicits: list[int] = []
+        self.rows = 0
+        self._size = 0
+        self._code_size = 0
+
+    def add(self, index: int, shape: Any) -> None:
+        """Append shape number ``index`` of the frame."""
+        self.surfaces.append(_surface(shape.surface))
+        if isinstance(shape, Mesh):
+            self._mesh(index, shape)
+        elif isinstance(shape, Quadric):
+            self._items(index, QUADRIC, quadric_box(shape)[None, :], _quadric(shape))
+        elif isinstance(shape, Implicit):
+            self._implicit(index, shape)
+        elif isinstance(shape, Points):
+            zero = np.zeros((len(shape.centers), 3))
+            self._rounds(index, shape.centers, zero, shape.radii, shape.colors)
+        elif isinstance(shape, Segments):
+            self._rounds(index, shape.ends[:, 0], shape.ends[:, 1] - shape.ends[:, 0], shape.radii, shape.colors)
+        else:
+            raise ValueError(f"shape {index} is a {type(shape).__name__}, which is none of the closed set")
+
+    def _items(self, index: int, kind: int, boxes: Floats, reals: Floats) -> None:
+        """Items with bounds (n, 6) and reals (n, r)."""
+        count, columns = reals.shape
+        items = np.zeros((count, 4), dtype=np.int64)
+        items[:, KIND], items[:, SHAPE] = kind, index
+        items[:, REALS_AT] = self._place(reals) + columns * np.arange(count)
+        self.items.append(items)
+        self.boxes.append(boxes)
+
+    def _place(self, reals: Floats) -> int:
+        """Append reals; where they begin."""
+        begin = self._size
+        self.reals.append(np.ascontiguousarray(reals, dtype=np.float64).ravel())
+        self._size += reals.size
+        return begin
+
+    def _mesh(self, index: int, mesh: Mesh) -> None:
+        places = np.asarray(mesh.vertices, dtype=np.float64)[mesh.triangles]
+        rows = np.full((len(places), 27), np.nan)
+        rows[:, :3] = places[:, 0]
+        rows[:, 3:9] = (places[:, 1:] - places[:, :1]).reshape(-1, 6)
+        if mesh.normals is not None:
+            rows[:, 9:18] = np.asarray(mesh.normals)[mesh.triangles].reshape(-1, 9)
+        if mesh.colors is not None:
+            rows[:, 18:] = np.asarray(mesh.colors)[mesh.triangles].reshape(-1, 9)
+        self._items(index, TRIANGLE, np.concatenate([places.min(axis=1), places.max(axis=1)], axis=1), rows)
+
+    def _rounds(self, index: int, ends: Floats, axes: Floats, radii: Floats, colors: Floats | None) -> None:
+        shades = np.full((len(ends), 3), np.nan) if colors is None else colors
+        radii = np.asarray(radii, dtype=np.float64)[:, None]
+        low, high = np.minimum(ends, ends + axes) - radii, np.maximum(ends, ends + axes) + radii
+        rows = np.concatenate([ends, axes, radii, shades], axis=1)
+        self._items(index, ROUND, np.concatenate([low, high], axis=1), rows)
+
+    def _implicit(self, index: int, shape: Implicit) -> None:
+        tape = shape.tape
+        box = np.array([[*shape.low, *shape.high, 0.0]], dtype=np.float64)
+        self.implicits.append(self._size)
+        self._items(index, IMPLICIT, box[:, :6], box)
+        ranges = [self._code_size, len(tape.code), self._place(tape.constants), len(tape.constants)]
+        ranges += [self._place(tape.parts), len(tape.parts), self._code_size + tape.code.size]
+        self.ranges.append(np.array(ranges))
+        self.codes += [tape.code.ravel(), np.full(CELLS**3, MIXED, dtype=np.int32)]
+        self._code_size += tape.code.size + CELLS**3
+        self.rows = max(self.rows, scratch_rows(len(tape.code), len(tape.parts)))
+
+
+def hierarchy(boxes: Floats, eye: Floats) -> tuple[NDArray[np.int64], Floats, Ints]:
+    """(order (m,), nodes (n, 6), links (n, 3)) for items with bounds ``boxes`` (m, 6); see hierarchy_kernels."""
+    count = len(boxes)
+    order = np.arange(count)
+    nodes = np.empty((2 * count, 6))
+    links = np.empty((2 * count, 3), dtype=np.int32)
+    stack = np.empty((2 * count + 2, 2), dtype=np.int64)
+    bins = np.empty((hierarchy_kernels.BINS + 1, 7))
+    right = np.zeros(hierarchy_kernels.BINS + 1)
+    first_at = np.zeros(count + 1, dtype=np.int64)
+    boxes = np.ascontiguousarray(boxes)
+    n = hierarchy_kernels.build(boxes, order, eye, nodes, links, stack, bins, right, first_at)
+    return order, nodes[:n], links[:n]
+
+
+def quadric_box(shape: Quadric) -> Floats:
+    """(6,) world bounds of a quadric: of its local box, cut where the quadric itself ends along an axis."""
+    low, high = np.array(shape.low, dtype=np.float64), np.array(shape.high, dtype=np.float64)
+    # sum s (p + l/2s)^2 <= sum l^2/4s - constant over the axes with s > 0; bounds only without a linear rest.
+    curved = [k for k in range(3) if shape.squares[k] > 0]
+    if all(shape.linear[k] == 0 for k in range(3) if k not in curved):
+        rest = sum(shape.linear[k] ** 2 / (4 * shape.squares[k]) for k in curved) - shape.constant
+        for k in curved:
+            middle, half = -shape.linear[k] / (2 * shape.squares[k]), math.sqrt(max(rest, 0.0) / shape.squares[k])
+            low[k], high[k] = max(low[k], middle - half), min(high[k], middle + half)
+    if not (np.isfinite(low).all() and np.isfinite(high).all()):
+        return np.array([-np.inf] * 3 + [np.inf] * 3)
+    matrix = np.linalg.inv(np.asarray(shape.to_local)[:, :3])
+    middle = matrix @ (0.5 * (low + high) - np.asarray(shape.to_local)[:, 3])
+    reach = np.abs(matrix) @ (0.5 * (high - low)) * (1 + 1e-9) + 1e-12
+    return np.concatenate([middle - reach, middle + reach])
+
+
+def _quadric(shape: Quadric) -> Floats:
+    values = [*shape.squares, *shape.linear, shape.constant, *shape.low, *shape.high]
+    return np.concatenate([np.asarray(shape.to_local, dtype=np.float64).ravel(), values])[None, :]
+
+
+def _surface(s: Surface) -> Floats:
+    answer = (s.roughness, s.metallic, s.specular, s.transmission, s.index_of_refraction)
+    return np.array([*s.color, *answer, *s.emission, s.checker_size, *s.checker_color], dtype=np.float64)
+
+
+def _lights(lights: tuple[Light, ...]) -> Floats:
+    rows = []
+    for light in lights:
+        if isinstance(light, Sun):
+            direction = np.array(light.direction) / np.linalg.norm(light.direction)
+            rows.append([SUN, *direction, *light.irradiance, light.angle])
+        elif not isinstance(light, Sky):
+            rows.append([POINT, *light.position, *light.intensity, light.radius])
+    return np.array(rows, dtype=np.float64).reshape(-1, 8)
+
+
+def _sky(lights: tuple[Light, ...]) -> Floats:
+    """The sum of all skies; `visible` is the last one's that has it."""
+    row = np.zeros(14)
+    for sky in lights:
+        if isinstance(sky, Sky):
+            row[:9] += [*sky.zenith, *sky.horizon, *sky.ground]
+            row[12] = 1.0
+            if sky.visible is not None:
+                row[9:12] = sky.visible
+                row[13] = 1.0
+    return row
+
+
+def _camera(view: View) -> Floats:
+    axes = np.asarray(view.axes, dtype=np.float64).ravel()
+    return np.array([*view.origin, *axes, view.half_height, float(view.orthographic), *view.size], dtype=np.float64)

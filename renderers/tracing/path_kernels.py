@@ -1,0 +1,94 @@
+"""What happens to a ray at a surface: what is found there, and where the mirrored and the refracted ray go."""
+
+import numpy as np
+
+from renderers.tracing.record_kernels import (
+    ITEM,
+    LIFT,
+    NORMAL,
+    OWNER,
+    PLACE,
+    RADIUS,
+    SURFACE,
+    TRACED,
+    VIEW,
+    put,
+    start_of,
+)
+from renderers.tracing.scene_kernels import ENDLESS_COUNT, ITEMS, SHAPE, SURFACE_AT, part
+from renderers.tracing.shade_kernels import facing_ratio
+from renderers.tracing.surface_kernels import color_at, normal_at
+
+FADE = 0.04
+"""Sine of the angle to an endless floor below which it fades into the backdrop: a horizon without an edge."""
+
+
+@part
+def describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, radius, record):
+    """Write the record of a met item, but for its weight; returns whether the ray comes from its outer side."""
+    x, y, z = ox + t * dx, oy + t * dy, oz + t * dz
+    nx, ny, nz, fx, fy, fz, lift = normal_at(scene, scratch, item, x, y, z)
+    outside = dx * fx + dy * fy + dz * fz <= 0.0
+    if not outside:
+        nx, ny, nz, lift = -nx, -ny, -nz, 0.0
+    r, g, b = color_at(scene, item, x, y, z, nx, ny, nz, dx, dy, dz, radius)
+    put(record, x, y, z, nx, ny, nz, -dx, -dy, -dz, r, g, b)
+    record[SURFACE] = scene.ints[ITEMS + 4 * item + SURFACE_AT]
+    record[OWNER] = scene.ints[ITEMS + 4 * item + SHAPE] + 1
+    record[RADIUS] = radius
+    record[LIFT] = lift
+    record[TRACED] = 0.0
+    record[ITEM] = item
+    return outside
+
+
+@part
+def faded(scene, item, record):
+    """Share of an endless item that is seen, rather than the backdrop in front of which it vanishes."""
+    if item >= scene.ints[ENDLESS_COUNT]:
+        return 1.0
+    ratio = FADE / facing_ratio(record)
+    return np.exp(-ratio * ratio)
+
+
+@part
+def mirrored(record):
+    """Direction of the mirrored ray."""
+    nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
+    vx, vy, vz = float(record[VIEW]), float(record[VIEW + 1]), float(record[VIEW + 2])
+    nv = nx * vx + ny * vy + nz * vz
+    return 2.0 * nv * nx - vx, 2.0 * nv * ny - vy, 2.0 * nv * nz - vz
+
+
+@part
+def refracted(record, ratio):
+    """Direction of the refracted ray; ``ratio`` of indices, before over behind."""
+    nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
+    vx, vy, vz = float(record[VIEW]), float(record[VIEW + 1]), float(record[VIEW + 2])
+    nv = nx * vx + ny * vy + nz * vz
+    along = ratio * nv - np.sqrt(max(1.0 - ratio * ratio * (1.0 - nv * nv), 0.0))
+    return along * nx - ratio * vx, along * ny - ratio * vy, along * nz - ratio * vz
+
+
+@part
+def bend(scene, scratch, record):
+    """How much the normal turns within a pixel's radius along the ray: reflections spread by twice that."""
+    nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
+    rx, ry, rz = mirrored(record)
+    nv = rx * nx + ry * ny + rz * nz
+    hx, hy, hz = rx - nv * nx, ry - nv * ny, rz - nv * nz  # along the surface
+    length = np.sqrt(hx * hx + hy * hy + hz * hz)
+    if length < 1e-3:
+        hx, hy, hz, length = ny, nz, nx, 1.0
+    step = record[RADIUS] / length
+    x, y, z = record[PLACE] + step * hx, record[PLACE + 1] + step * hy, record[PLACE + 2] + step * hz
+    mx, my, mz, _, _, _, _ = normal_at(scene, scratch, int(record[ITEM]), x, y, z)
+    turn = abs(mx * nx + my * ny + mz * nz)
+    return np.sqrt(max(2.0 - 2.0 * turn, 0.0)) / max(nv, 0.1)
+
+
+@part
+def behind(record):
+    """Where a ray through a surface goes on: on its other side."""
+    x, y, z = start_of(record)
+    return 2.0 * record[PLACE] - x, 2.0 * record[PLACE + 1] - y, 2.0 * record[PLACE + 2] - z

@@ -1,0 +1,119 @@
+"""Third stage: edges of shadows that are finer than the filter's window get samples of their own; then all is shaded."""
+
+from numba import types
+
+from renderers.tracing.filter_kernels import REACH, SLACK
+from renderers.tracing.record_kernels import OWNER, RADIUS, alike
+from renderers.tracing.sampling_kernels import SIDE, morton
+from renderers.tracing.scene_kernels import HEIGHT, LIGHT_COUNT, SCENE, SCRATCH, WIDTH, part
+from renderers.tracing.shade_kernels import shade
+from renderers.tracing.visibility_kernels import FIRST_LIGHT, look_around, shadow_sample
+from sceneql.kernels import kernel
+
+_i = types.int64
+_rows = types.float32[:, ::1]
+_stack = types.float32[:, :, ::1]
+CRISP = 1.5
+FINE = 3.0
+"""Widths [pixels] of half-shadows that are searched for in 3 x 3 and in 5 x 5 pixels."""
+OWN = 16
+"""Samples of a light for each pixel of a fine edge."""
+FEW = 20.0
+"""Pixels in the filter's window below which a pixel takes OWN samples instead: small things, thin things."""
+
+
+@part
+def mixed(records, visibility, k, x, y, width, height, column, reach):
+    """Whether the one sample of a light differs within ``reach`` pixels on the same surface."""
+    for j in range(max(y - reach, 0), min(y + reach, height - 1) + 1):
+        for i in range(max(x - reach, 0), min(x + reach, width - 1) + 1):
+            m = j * width + i
+            if visibility[m, column] != visibility[k, column] and alike(records[k], records[m], SLACK):
+                return True
+    return False
+
+
+@kernel(types.void(SCENE, SCRATCH, _i, _i, _rows, _rows, _rows, _rows), _nrt=False)
+def refine_rows(scene, scratch, start, stop, records, visibility, means, fine):
+    """Rows of ``fine`` (n, V): the sky's loss, and of each light its share and whether that wants smoothing (0 or 1)."""
+    width, height = int(scene.reals[WIDTH]), int(scene.reals[HEIGHT])
+    for y in range(start, stop):
+        for x in range(width):
+            k = y * width + x
+            if records[k, OWNER] == 0.0:
+                continue
+            if means[k, 0] < FEW:
+                look_around(scene, scratch, records[k], morton(x, y), OWN, fine[k])
+                for l in range(int(scene.ints[LIGHT_COUNT])):
+                    fine[k, FIRST_LIGHT + 2 * l + 1] = 0.0
+                continue
+            for c in range(FIRST_LIGHT):
+                fine[k, c] = means[k, 1 + c]
+            for l in range(int(scene.ints[LIGHT_COUNT])):
+                column = FIRST_LIGHT + 2 * l
+                share = means[k, 1 + column]
+                fine[k, column + 1] = 0.0
+                fine[k, column] = share
+                if share > 0.9999 or share < 0.0001:
+                    continue
+                pixels = means[k, 2 + column] / (1.0 - share) / (2.0 * records[k, RADIUS])
+                if pixels >= SIDE:
+                    continue
+                reach = 1 if pixels < CRISP else (2 if pixels < FINE else REACH)
+                if reach < REACH and not mixed(records, visibility, k, x, y, width, height, column, reach):
+                    fine[k, column] = visibility[k, column]
+                    continue
+                samples = OWN if reach < REACH else OWN // 2
+                total = 0.0
+                first = morton(x, y) * samples % (SIDE * SIDE)
+                for sample in range(first, first + samples):
+                    total += shadow_sample(scene, scratch, records[k], l, sample, 1.0)[0]
+                fine[k, column] = total / samples
+                fine[k, column + 1] = 1.0 if reach == REACH else 0.0
+
+
+@part
+def settle(records, fine, lights, k, x, y, width, height, visibility):
+    """Final visibility of a record: as refined, edges of middling width averaged over 3 x 3 pixels."""
+    for c in range(len(visibility)):
+        visibility[c] = fine[k, c]
+    for l in range(lights):
+        column = FIRST_LIGHT + 2 * l
+        if fine[k, column + 1] == 0.0:
+            continue
+        total = 0.0
+        count = 0
+        for j in range(max(y - 1, 0), min(y + 1, height - 1) + 1):
+            for i in range(max(x - 1, 0), min(x + 1, width - 1) + 1):
+                m = j * width + i
+                if alike(records[k], records[m], SLACK):
+                    total += fine[m, column]
+                    count += 1
+        visibility[column] = total / count
+
+
+@kernel(types.void(SCENE, _i, _i, _stack, _stack, _stack, _rows), _nrt=False)
+def shade_rows(scene, start, stop, records, fine, visibility, radiance):
+    """Write the final visibility (2, n, V) and add both records' light to the radiance (n, 3)."""
+    width, height = int(scene.reals[WIDTH]), int(scene.reals[HEIGHT])
+    for y in range(start, stop):
+        for x in range(width):
+            k = y * width + x
+            for layer in range(2):
+                if records[layer, k, OWNER] == 0.0:
+                    continue
+                settle(
+                    records[layer],
+                    fine[layer],
+                    int(scene.ints[LIGHT_COUNT]),
+                    k,
+                    x,
+                    y,
+                    width,
+                    height,
+                    visibility[layer, k],
+                )
+                r, g, b = shade(scene, records[layer, k], visibility[layer, k])
+                radiance[k, 0] += r
+                radiance[k, 1] += g
+                radiance[k, 2] += b

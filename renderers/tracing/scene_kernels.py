@@ -1,0 +1,100 @@
+"""The scene as two flat arrays: what `pack` fills and every kernel of the tracer reads.
+
+Two, since numba passes an array as seven numbers to every function, and compile time follows their count.
+"""
+
+from typing import NamedTuple
+
+import numba
+import numpy as np
+from numba import types
+from numba.core.types.function_type import WrapperAddressProtocol
+
+part = numba.njit(nogil=True, error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+"""A function called by kernels alone: not cached by itself, not callable from Python, which halves its compile time,
+and without reference counts, which threads would fight over."""
+
+
+class Tables(NamedTuple):
+    """A frame as arrays. Lengths in meters, colors linear. Positions in them are plain indices."""
+
+    reals: np.ndarray
+    """float64: sky, camera and lights where SKY, CAMERA and LIGHTS say; then nodes, surfaces and items of all kinds."""
+    ints: np.ndarray
+    """int32: the header; four for each item; links of nodes, ranges and cells of implicit objects, code of tapes."""
+
+
+class Scene(NamedTuple):
+    """Tables, and the function that meets rays with them."""
+
+    reals: np.ndarray
+    ints: np.ndarray
+    walk: WrapperAddressProtocol
+    """intersect_kernels.walk. Called by its address, since numba would compile it, and all of root isolation, into every
+    kernel that calls it, and into every function between."""
+
+
+class Pointer(WrapperAddressProtocol):
+    """A compiled kernel as a value that other kernels can call."""
+
+    def __init__(self, dispatcher, signature):
+        self._dispatcher = dispatcher
+        self._signature = signature
+
+    def __wrapper_address__(self):
+        """Address of its C function."""
+        compiled = self._dispatcher.overloads[self._signature.args]
+        return compiled.library.get_pointer_to_function(compiled.fndesc.llvm_cfunc_wrapper_name)
+
+    def signature(self):
+        """Its type."""
+        return self._signature
+
+
+_f = types.float64
+TABLES = types.NamedTuple((types.float64[::1], types.int32[::1]), Tables)
+SCRATCH = types.float64[:, ::1]
+"""Working memory of one thread: what root isolation needs, and a last row whose first entry counts the undecided."""
+WALK = types.Tuple((_f, types.int64, _f))(
+    types.float64[::1], types.int32[::1], SCRATCH, _f, _f, _f, _f, _f, _f, _f, _f, types.boolean
+)
+SCENE = types.NamedTuple((types.float64[::1], types.int32[::1], types.FunctionType(WALK)), Scene)
+
+NODE_COUNT, ITEM_COUNT, ENDLESS_COUNT, LIGHT_COUNT, NODES_AT, LINKS_AT = range(6)
+"""The header. The first ENDLESS_COUNT items have no bounds; they stand in the first node, which has none either."""
+
+ITEMS = 8
+"""First of the items, by leaf: kind, place of its reals, place of its surface, index of its shape."""
+KIND, REALS_AT, SURFACE_AT, SHAPE = range(4)
+TRIANGLE, ROUND, QUADRIC, IMPLICIT = range(4)
+"""Kinds. Their reals:
+TRIANGLE: corner, edge, edge; normals at the corners, colors at the corners (a NaN first: there are none): 27.
+ROUND (sphere or capsule): end, axis to the other end, radius, color (NaN: the surface's): 10.
+QUADRIC: map to local (3, 4), squares, linear, constant, low, high: 25.
+IMPLICIT: low, high, place of its ranges: 7. The ranges, in ints: place of the code, its rows, place of the constants,
+their number, place of the parts, their rows, place of the cells."""
+
+LINK = 3
+"""Ints of a node: the node to go on with when this one is missed, first item, number of items (0: an inner node)."""
+
+SKY = 0
+"""Zenith, horizon, ground, visible; whether there is a sky, whether `visible` is given: 14."""
+HAS_SKY, HAS_VISIBLE = 12, 13
+CAMERA = 16
+"""Origin, right, up, back, half height, orthographic, width, height: 16."""
+WIDTH, HEIGHT = CAMERA + 14, CAMERA + 15
+LIGHTS = 32
+"""First light."""
+LIGHT = 8
+"""Reals of a light: kind, direction to it or position, irradiance or intensity, angular diameter or radius."""
+SUN, POINT = range(2)
+
+COLOR, ROUGHNESS, METALLIC, SPECULAR, TRANSMISSION = 0, 3, 4, 5, 6
+INDEX, EMISSION, CHECKER, CHECKER_COLOR = 7, 8, 11, 12
+SURFACE_SIZE = 15
+"""Reals of a surface, and how many there are."""
+
+CELLS = 24
+"""Occupancy cells along each axis of an implicit object's box."""
+EMPTY, MIXED, FULL = range(3)
+"""What an occupancy cell is proved to be: outside, nothing, inside."""

@@ -1,0 +1,165 @@
+"""Where a ray meets one item: the first crossing behind `near`, be it on the way in or out."""
+
+import numpy as np
+
+from renderers.tracing.scene_kernels import part
+
+NONE = np.inf
+
+
+@part
+def box_span(low, high, origin, inverse):
+    """(enter, leave) of a slab along one axis."""
+    a = (low - origin) * inverse
+    b = (high - origin) * inverse
+    return min(a, b), max(a, b)
+
+
+@part
+def inverse(d):
+    """1/d, finite for d = 0, so that no 0 * inf arises."""
+    return 1.0 / d if abs(d) > 1e-300 else 1e300
+
+
+@part
+def roots(a, b, c):
+    """The span where a t^2 + b t + c <= 0 for a >= 0, empty as (1, 0); by the stable formula."""
+    if a > 1e-14 * abs(b):
+        rest = b * b - 4.0 * a * c
+        if rest <= 0.0:
+            return 1.0, 0.0
+        q = -0.5 * (b + np.copysign(np.sqrt(rest), b))
+        if q == 0.0:
+            return 1.0, 0.0
+        return min(q / a, c / q), max(q / a, c / q)
+    if b > 0.0:
+        return -np.inf, -c / b
+    if b < 0.0:
+        return -c / b, np.inf
+    return (-np.inf, np.inf) if c <= 0.0 else (1.0, 0.0)
+
+
+@part
+def crossing(enter, leave, near, far):
+    """First end of a span inside (near, far), or infinity."""
+    if enter >= leave:
+        return NONE
+    if near < enter < far:
+        return enter
+    if enter <= near < leave < far:
+        return leave
+    return NONE
+
+
+@part
+def local_point(map, k, x, y, z, w):
+    """A point (w = 1) or direction (w = 0) in the local coordinates of quadric k."""
+    return (
+        map[k] * x + map[k + 1] * y + map[k + 2] * z + map[k + 3] * w,
+        map[k + 4] * x + map[k + 5] * y + map[k + 6] * z + map[k + 7] * w,
+        map[k + 8] * x + map[k + 9] * y + map[k + 10] * z + map[k + 11] * w,
+    )
+
+
+@part
+def quadric(q, k, ox, oy, oz, dx, dy, dz, near, far):
+    """Crossing of a convex quadric solid clipped by its local box."""
+    o = local_point(q, k, ox, oy, oz, 1.0)
+    d = local_point(q, k, dx, dy, dz, 0.0)
+    a = 0.0
+    b = 0.0
+    c = q[k + 18]
+    for axis in range(3):
+        s = q[k + 12 + axis]
+        l = q[k + 15 + axis]
+        a += s * d[axis] * d[axis]
+        b += (2.0 * s * o[axis] + l) * d[axis]
+        c += (s * o[axis] + l) * o[axis]
+    enter, leave = roots(a, b, c)
+    for axis in range(3):
+        e, f = box_span(q[k + 19 + axis], q[k + 22 + axis], o[axis], inverse(d[axis]))
+        enter = max(enter, e)
+        leave = min(leave, f)
+    return crossing(enter, leave, near, far)
+
+
+@part
+def round_solid(r, k, ox, oy, oz, dx, dy, dz, near, far):
+    """Crossing of a capsule (or sphere, where its axis is zero): the hull of two balls and the tube between them."""
+    ux = r[k + 3]
+    uy = r[k + 4]
+    uz = r[k + 5]
+    radius2 = r[k + 6] * r[k + 6]
+    px = ox - r[k]
+    py = oy - r[k + 1]
+    pz = oz - r[k + 2]
+    dd = dx * dx + dy * dy + dz * dz
+    pd = px * dx + py * dy + pz * dz
+    enter, leave = ball(px, py, pz, dx, dy, dz, dd, radius2)
+    uu = ux * ux + uy * uy + uz * uz
+    if uu > 0.0:
+        e, f = ball(px - ux, py - uy, pz - uz, dx, dy, dz, dd, radius2)
+        if e < f:
+            if enter < leave:
+                enter = min(enter, e)
+                leave = max(leave, f)
+            else:
+                enter, leave = e, f
+        pu = (px * ux + py * uy + pz * uz) / uu
+        du = (dx * ux + dy * uy + dz * uz) / uu
+        pp = px * px + py * py + pz * pz
+        e, f = roots(dd - du * du * uu, 2.0 * (pd - pu * du * uu), pp - pu * pu * uu - radius2)
+        if e < f:
+            # The ends of the tube lie inside the balls, so only its round side can extend the span.
+            if 0.0 <= pu + e * du <= 1.0:
+                enter = min(enter, e) if enter < leave else e
+                leave = max(leave, e)
+            if 0.0 <= pu + f * du <= 1.0:
+                enter = min(enter, f)
+                leave = max(leave, f)
+    return crossing(enter, leave, near, far)
+
+
+@part
+def ball(px, py, pz, dx, dy, dz, dd, radius2):
+    """Span inside a ball: from the point of closest approach, which keeps the digits of far and small ones."""
+    t = -(px * dx + py * dy + pz * dz) / dd
+    cx = px + t * dx
+    cy = py + t * dy
+    cz = pz + t * dz
+    rest = radius2 - (cx * cx + cy * cy + cz * cz)
+    if rest <= 0.0:
+        return np.inf, -np.inf
+    half = np.sqrt(rest / dd)
+    return t - half, t + half
+
+
+@part
+def triangle(m, k, ox, oy, oz, dx, dy, dz, near, far):
+    """Crossing of a triangle, either side (Moeller and Trumbore 1997)."""
+    ax = m[k + 3]
+    ay = m[k + 4]
+    az = m[k + 5]
+    bx = m[k + 6]
+    by = m[k + 7]
+    bz = m[k + 8]
+    px = dy * bz - dz * by
+    py = dz * bx - dx * bz
+    pz = dx * by - dy * bx
+    volume = ax * px + ay * py + az * pz
+    if volume == 0.0:
+        return NONE
+    sx = ox - m[k]
+    sy = oy - m[k + 1]
+    sz = oz - m[k + 2]
+    u = (sx * px + sy * py + sz * pz) / volume
+    if u < 0.0 or u > 1.0:
+        return NONE
+    qx = sy * az - sz * ay
+    qy = sz * ax - sx * az
+    qz = sx * ay - sy * ax
+    v = (dx * qx + dy * qy + dz * qz) / volume
+    if v < 0.0 or u + v > 1.0:
+        return NONE
+    t = (bx * qx + by * qy + bz * qz) / volume
+    return t if near < t < far else NONE

@@ -1,0 +1,161 @@
+"""How much of each light, and of the sky, a record sees."""
+
+import numpy as np
+from numba import types
+
+from renderers.tracing.light_kernels import sky_ambient, sky_radiance
+from renderers.tracing.record_kernels import NORMAL, PLACE, RADIUS, ROW, start_of
+from renderers.tracing.sampling_kernels import COUNT, DISK, JITTER, across
+from renderers.tracing.scene_kernels import (
+    EMISSION,
+    HAS_SKY,
+    ITEMS,
+    LIGHT,
+    LIGHT_COUNT,
+    LIGHTS,
+    SCENE,
+    SCRATCH,
+    SUN,
+    SURFACE_AT,
+    part,
+)
+from renderers.tracing.surface_kernels import color_at, normal_at
+from sceneql.kernels import kernel
+
+SKY = 0
+"""First of three columns of visibility: how much less than the open sky's mean radiance comes in (RGB)."""
+FIRST_LIGHT = 3
+"""Then two columns for each light: the share of it that is seen, and the width [m] of the half-shadow here."""
+AGAIN = 0.5
+"""Share of the sky that a place which hides the sky is taken to see itself."""
+
+
+@part
+def light_at(reals, l, x, y, z):
+    """(direction, distance, irradiance per channel facing it) of light l from a point."""
+    k = LIGHTS + LIGHT * l
+    ir, ig, ib = reals[k + 4], reals[k + 5], reals[k + 6]
+    if reals[k] == SUN:
+        return reals[k + 1], reals[k + 2], reals[k + 3], np.inf, ir, ig, ib
+    dx, dy, dz = reals[k + 1] - x, reals[k + 2] - y, reals[k + 3] - z
+    d2 = max(dx * dx + dy * dy + dz * dz, 1e-12)
+    d = np.sqrt(d2)
+    return dx / d, dy / d, dz / d, d, ir / d2, ig / d2, ib / d2
+
+
+@part
+def seen(scene, scratch, l, x, y, z, disk_x, disk_y):
+    """(share, distance of what hides it) of the point (disk_x, disk_y) of light l's disk from a place."""
+    dx, dy, dz, far, _, _, _ = light_at(scene.reals, l, x, y, z)
+    ax, ay, az, bx, by, bz = across(dx, dy, dz)
+    if far == np.inf:
+        size = np.tan(0.5 * scene.reals[LIGHTS + LIGHT * l + 7])
+    else:
+        size = min(scene.reals[LIGHTS + LIGHT * l + 7] / far, 1.0)
+    u, v = size * disk_x, size * disk_y
+    dx, dy, dz = dx + u * ax + v * bx, dy + u * ay + v * by, dz + u * az + v * bz
+    if far == np.inf:
+        length = np.sqrt(dx * dx + dy * dy + dz * dz)
+        dx, dy, dz = dx / length, dy / length, dz / length
+    blocker, _, share = scene.walk(scene.reals, scene.ints, scratch, x, y, z, dx, dy, dz, 0.0, far, True)
+    return share, blocker
+
+
+@part
+def shadow_width(scene, l, x, y, z, blocker):
+    """Width [m] of the half-shadow that an edge at distance ``blocker`` throws on a surface facing light l."""
+    _, _, _, far, _, _, _ = light_at(scene.reals, l, x, y, z)
+    if far == np.inf:
+        return scene.reals[LIGHTS + LIGHT * l + 7] * blocker
+    return 2.0 * scene.reals[LIGHTS + LIGHT * l + 7] * blocker / max(far - blocker, 1e-3 * far)
+
+
+@part
+def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius):
+    """Radiance (3) that a place sends back: its own light, and the lights and part of the sky reflected once, matte."""
+    nx, ny, nz, fx, fy, fz, lift = normal_at(scene, scratch, item, x, y, z)
+    if dx * fx + dy * fy + dz * fz > 0.0:
+        nx, ny, nz, fx, fy, fz = -nx, -ny, -nz, -fx, -fy, -fz
+    r, g, b = color_at(scene, item, x, y, z, nx, ny, nz, dx, dy, dz, radius)
+    er, eg, eb = sky_ambient(scene.reals, ny)
+    er, eg, eb = AGAIN * er, AGAIN * eg, AGAIN * eb
+    off = 0.05 * radius + 1e-6 * (abs(x) + abs(y) + abs(z)) + lift
+    sx, sy, sz = x + off * fx, y + off * fy, z + off * fz
+    for l in range(int(scene.ints[LIGHT_COUNT])):
+        lx, ly, lz, far, ir, ig, ib = light_at(scene.reals, l, sx, sy, sz)
+        cosine = nx * lx + ny * ly + nz * lz
+        if cosine > 0.0 and fx * lx + fy * ly + fz * lz > 0.0:
+            _, _, share = scene.walk(scene.reals, scene.ints, scratch, sx, sy, sz, lx, ly, lz, 0.0, far, True)
+            cosine *= share / np.pi
+            er += cosine * ir
+            eg += cosine * ig
+            eb += cosine * ib
+    s = scene.ints[ITEMS + 4 * item + SURFACE_AT]
+    u = scene.reals
+    return r * er + u[s + EMISSION], g * eg + u[s + EMISSION + 1], b * eb + u[s + EMISSION + 2]
+
+
+@part
+def sky_loss(scene, scratch, record, sample):
+    """How much less (3) than the sky's radiance comes in along the sample's direction, cosine-distributed."""
+    nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
+    ax, ay, az, bx, by, bz = across(nx, ny, nz)
+    u, v = DISK[sample, 0], DISK[sample, 1]
+    w = np.sqrt(max(1.0 - u * u - v * v, 0.0))
+    dx, dy, dz = u * ax + v * bx + w * nx, u * ay + v * by + w * ny, u * az + v * bz + w * nz
+    x, y, z = start_of(record)
+    t, item, _ = scene.walk(scene.reals, scene.ints, scratch, x, y, z, dx, dy, dz, 0.0, np.inf, False)
+    if item < 0:
+        return 0.0, 0.0, 0.0
+    radius = record[RADIUS] + 0.05 * t
+    r, g, b = bounced(scene, scratch, item, x + t * dx, y + t * dy, z + t * dz, dx, dy, dz, radius)
+    hr, hg, hb = sky_radiance(scene.reals, dy)
+    return hr - r, hg - g, hb - b
+
+
+@part
+def facing(scene, record, l):
+    """Whether some of light l may reach the front of a record."""
+    x, y, z = float(record[PLACE]), float(record[PLACE + 1]), float(record[PLACE + 2])
+    dx, dy, dz, _, _, _, _ = light_at(scene.reals, l, x, y, z)
+    return record[NORMAL] * dx + record[NORMAL + 1] * dy + record[NORMAL + 2] * dz > 0.0
+
+
+@part
+def shadow_sample(scene, scratch, record, l, sample, jitter):
+    """(share, width of half-shadow) of light l for one sample, from a point up to ``jitter`` pixels off.
+
+    A surface that faces away counts as lit, since shading takes care of that and no edge of shadow must be seen there.
+    """
+    if not facing(scene, record, l):
+        return 1.0, 0.0
+    x, y, z = start_of(record)
+    ax, ay, az, bx, by, bz = across(float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2]))
+    u, v = 2.0 * jitter * record[RADIUS] * JITTER[sample, 0], 2.0 * jitter * record[RADIUS] * JITTER[sample, 1]
+    x, y, z = x + u * ax + v * bx, y + u * ay + v * by, z + u * az + v * bz
+    share, blocker = seen(scene, scratch, l, x, y, z, DISK[sample, 0], DISK[sample, 1])
+    width = shadow_width(scene, l, x, y, z, blocker) if blocker < np.inf else 0.0
+    return share, width
+
+
+@kernel(types.void(SCENE, SCRATCH, ROW, types.int64, types.int64, ROW), _nrt=False)
+def look_around(scene, scratch, record, number, samples, visibility):
+    """Fill a row of visibility with the mean of a net of ``samples`` (a power of two), the one of pixel ``number``.
+
+    Several samples cover the pixel's area, one stands for its center.
+    """
+    for column in range(FIRST_LIGHT + 2 * scene.ints[LIGHT_COUNT]):
+        visibility[column] = 0.0
+    weight = 1.0 / samples
+    jitter = 0.0 if samples == 1 else 1.0
+    first = number * samples % COUNT
+    for sample in range(first, first + samples):
+        if scene.reals[HAS_SKY] != 0.0:
+            r, g, b = sky_loss(scene, scratch, record, sample)
+            visibility[SKY] += weight * r
+            visibility[SKY + 1] += weight * g
+            visibility[SKY + 2] += weight * b
+        for l in range(int(scene.ints[LIGHT_COUNT])):
+            share, width = shadow_sample(scene, scratch, record, l, sample, jitter)
+            visibility[FIRST_LIGHT + 2 * l] += weight * share
+            visibility[FIRST_LIGHT + 2 * l + 1] = max(visibility[FIRST_LIGHT + 2 * l + 1], width)
