@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from sceneql.kinds import Renderer, field
 
@@ -14,6 +14,8 @@ class Trace(Renderer):
     Li and Torrance 2007). Shadows and sky are sampled by a net and averaged over the surface around a pixel, so that a
     film has no grain; the bytes are the same from run to run and for any number of threads.
     """
+
+    kernels: ClassVar[str] = "renderers.tracing.draw"
 
     samples: Literal[1, 2, 4, 8, 16, 32, 64] = field("Rays in a pixel in which things meet.", 8)
 

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import hashlib
 import os
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -87,6 +89,26 @@ def lean(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
 
 lean_inlined = numba.njit(cache=True, nogil=True, error_model="numpy", inline="never", _nrt=False)
 """A helper of lean kernels."""
+
+
+def compile_ahead(module: str) -> Callable[[], None]:
+    """Compile a module's kernels in a process beside this one, unless that was done before; call the result to wait.
+
+    Compiling holds the interpreter's lock, so a second core can only help from a second process; what it compiles
+    comes here from the cache. The seconds waited count as compilation.
+    """
+    done = CACHE / f"{module}.compiled"
+    if done.exists() or numba.config.DISABLE_JIT:
+        return lambda: None
+    process = subprocess.Popen([sys.executable, "-c", f"import {module}"], stdin=subprocess.DEVNULL)
+
+    def wait() -> None:
+        started = time.perf_counter()
+        if process.wait() == 0:
+            done.touch()
+        compiled.seconds += time.perf_counter() - started
+
+    return cache(wait)
 
 
 def thread_count() -> int:

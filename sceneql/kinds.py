@@ -262,7 +262,10 @@ class Moment(Protocol):
         """[s]"""
 
     def at(self, value: Value) -> Any:
-        """The value now: float, or float64 array of the field's shape, SI."""
+        """The value now: float, or float64 array of the field's shape, SI. Raises RunFailure if it is not finite."""
+
+    def measure(self, value: Value) -> Any:
+        """The value now, finite or not."""
 
     def read(self, task: str, output: str) -> Any:
         """An output of a part now."""
@@ -462,6 +465,8 @@ class Renderer(Kind):
     """Draws a frame."""
 
     family: ClassVar[str] = "renderers"
+    kernels: ClassVar[str] = ""
+    """The module whose import compiles what it draws with."""
     data: ClassVar[bool] = False
     """Whether its pictures are data (depth, normals), which are not developed."""
 

@@ -16,13 +16,14 @@ from typing import TYPE_CHECKING, Any, cast
 from sceneql import __version__
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.compile import compile_script
-from sceneql.failure import Unsuitable
+from sceneql.failure import Unsuitable, failing_as
 from sceneql.graph import SimulationGraph
 from sceneql.kinds import FAMILIES, Camera, Clock, Illumination, Output, Picture, Renderer, Settings
 from sceneql.language.script import read_script
 from sceneql.quantities.diagnostic import Diagnostics
 
 if TYPE_CHECKING:
+    from sceneql.frame import Light
     from sceneql.simulation.run import Instant
 
 
@@ -99,6 +100,9 @@ def render(
     sinks: dict[str, Any] = {}
     try:
         for name, kind in outputs.items():
+            if isinstance(kind, Picture):
+                tools[name].prepare(kind)
+        for name, kind in outputs.items():
             sinks[name] = kind.open(tools[name])
         wanted = {name: set(at) for name, at in times.items()}
         from sceneql.simulation.run import Run
@@ -163,7 +167,7 @@ class Tools:
 
     def __init__(self, graph: SimulationGraph, name: str, report: Report, target: Path) -> None:
         self.graph, self.name, self.report, self.target = graph, name, report, target
-        self.catalogue = Catalogue()
+        self._compiled: Callable[[], None] | None = None
 
     @property
     def clock(self) -> Clock:
@@ -181,6 +185,7 @@ class Tools:
 
         frame = frame_of(self.graph, self.name, output.pixels, moment, self.report.frames)
         renderer = self._renderer(output)
+        self.prepare(output)()
         picture = renderer.draw(frame)
         self.report.frames += 1
         self.report.undecided += picture.undecided
@@ -194,10 +199,19 @@ class Tools:
         module = import_module(f"renderers.encoders.{word}")
         return module.Writer(self.path(word), comment=comment, **settings)
 
+    def prepare(self, output: Picture) -> Callable[[], None]:
+        """Start compiling what the output is drawn with, beside the physics; call the result to wait for it."""
+        if self._compiled is None:
+            from sceneql.kernels import compile_ahead
+
+            module = self._renderer(output).kernels
+            self._compiled = compile_ahead(module) if module else lambda: None
+        return self._compiled
+
     def _renderer(self, output: Picture) -> Renderer:
         if output.renderer is not None:
             return cast(Renderer, self.graph.tasks[output.renderer.name].kind)
-        cls = self.catalogue.load("renderers", "trace")
+        cls = Catalogue().load("renderers", "trace")
         if cls is None:
             raise LookupError("the default renderer is missing")
         return cast(Renderer, cls())
@@ -208,15 +222,17 @@ def frame_of(graph: SimulationGraph, output: str, size: tuple[int, int], moment:
     from sceneql.frame import Frame, Sky
     from sceneql.simulation.color import linear
 
-    camera = cast(Camera, graph.tasks[graph.cameras[output]].kind)
-    lights = [
-        light
-        for task in graph.tasks.values()
-        if isinstance(task.kind, Illumination)
-        for light in task.kind.lower(moment)
-    ]
+    camera = graph.tasks[graph.cameras[output]]
+    with failing_as(camera.name, moment.time, camera.span):
+        view = cast(Camera, camera.kind).view(size, moment)
+    lights: list[Light] = []
+    for task in graph.tasks.values():
+        if isinstance(task.kind, Illumination):
+            with failing_as(task.name, moment.time, task.span):
+                lights += task.kind.lower(moment)
     if graph.settings.background is not None:
-        seen = linear(moment.at(graph.settings.background))
+        with failing_as("background", moment.time, graph.settings.background.span):
+            seen = linear(moment.at(graph.settings.background))
         skies = [light for light in lights if isinstance(light, Sky)] or [Sky((0, 0, 0), (0, 0, 0), (0, 0, 0))]
         lights = [light for light in lights if not isinstance(light, Sky)]
         lights += [replace(sky, visible=seen) for sky in skies]
@@ -225,6 +241,6 @@ def frame_of(graph: SimulationGraph, output: str, size: tuple[int, int], moment:
         time=moment.time,
         shapes=tuple(moment.lower(graph.drawn[output])),
         lights=tuple(lights),
-        view=camera.view(size, moment),
+        view=view,
         seed=graph.settings.clock.seed,
     )
