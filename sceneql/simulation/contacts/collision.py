@@ -26,9 +26,6 @@ from sceneql.system import Assembly, Bodies, ModelState
 SHAPES = ("plane", "sphere", "box")
 """Names of shapes in the order of their numbers in the kernels."""
 
-PAIR, INSTANT = 7, 7
-"""Floats of memory for a pair, and for a body (collision_kernels)."""
-
 TALLY = ("hits.count", "hits.first.time", "hits.last.time", "hits.last.speed", "rest.time")
 MOST_EXACT = 64
 
@@ -67,6 +64,9 @@ class Collision(Contact):
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies, others: tuple[Ref, ...]) -> None:
         """Add the contacts of one model with the objects. Raises ScriptError for one that cannot be collided with."""
+        from sceneql.simulation.contacts.impulse_kernels import INSTANT
+        from sceneql.simulation.contacts.resting_kernels import PAIR
+
         written = {ref.name: ref for ref in self.between or ()}
         objects = [number for ref in others for number in _object(written.get(ref.name, ref), assembly)]
         if not objects:

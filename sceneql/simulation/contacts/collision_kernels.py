@@ -2,7 +2,7 @@
 """Contacts in `exact` mode: gaps and impacts for event location.
 
 A resting pair with friction slides until its speed along the last direction is zero, which is an event as well. A
-body's memory in the floats: the last accepted instant, its place and velocity then.
+body's memory in the floats: the last accepted instant, its place and velocity then (INSTANT).
 """
 
 import numpy as np
@@ -12,6 +12,7 @@ from sceneql.simulation.contacts.impulse_kernels import (
     BODIES,
     FRICTION,
     HEAD,
+    INSTANT,
     INVERSE,
     LAST,
     OBJECTS,
@@ -45,7 +46,6 @@ from sceneql.system_kernels import GAP, IMPACT
 CHANGED = 1
 """floats[1] tells the march that the state or a flag was changed."""
 
-INSTANT = 7
 NO_EVENT = 1e300
 
 LOWEST_FLIGHT = 4e-13

@@ -10,6 +10,9 @@ RESTITUTION, FRICTION, THICKNESS, TALLY, PAIRS, LAST, OBJECTS = range(7, 14)
 HEAD = 14
 """The integers of a contact: offsets of the bodies, of its numbers and its memory; the objects follow."""
 
+INSTANT = 7
+"""Floats of a body's memory in `exact` mode: the last accepted instant, its place and velocity then."""
+
 HITS, FIRST_TIME, LAST_TIME, LAST_SPEED, REST_TIME, TALLIES = range(6)
 """The tally in the floats; times are NaN before there was one."""
 

@@ -184,6 +184,8 @@ class MassSpring(Model):
         """Reserve the masses and add the forces of the springs."""
         import numpy as np
 
+        from sceneql.simulation.models.mass_spring_kernels import BLOCK
+
         net, points = self.net, self.net.points
         n, m = len(net.points), len(net.pairs)
         if self.lattice is not None and self.lattice.rotation is not None:
@@ -202,7 +204,7 @@ class MassSpring(Model):
         velocities[fixed] = 0.0
         bodies = point_masses.reserve(name, assembly, points, velocities, weights, np.full(n, self.size), fixed)
 
-        blocks = np.zeros((m, 5))
+        blocks = np.zeros((m, BLOCK))
         blocks[:, 0], blocks[:, 2], blocks[:, 4] = self.rest, net.stiffness, net.stiffness
         for spring, block in zip(self.springs, blocks, strict=False):
             if spring.stiffness is not None:
@@ -220,7 +222,7 @@ class MassSpring(Model):
         """Any output of the manual, and those of named masses and springs."""
         import numpy as np
 
-        from sceneql.simulation.models.mass_spring_kernels import energy
+        from sceneql.simulation.models.mass_spring_kernels import BLOCK, energy
 
         assert state.bodies is not None
         blocks_at, stiffness_at = state.ints
@@ -243,7 +245,7 @@ class MassSpring(Model):
             k = [spring.name for spring in self.springs].index(name)
             if what == "length":
                 return float(lengths[k])
-            own, part = state.floats[blocks_at + 5 * k + 1 : blocks_at + 5 * k + 3]
+            own, part = state.floats[blocks_at + BLOCK * k + 1 : blocks_at + BLOCK * k + 3]
             return float((own + part * state.floats[stiffness_at]) * (lengths[k] - self.rest[k]))
         return point_masses.read_named(output, tuple(self.masses or ()), state.bodies, state)
 

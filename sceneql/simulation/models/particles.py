@@ -65,7 +65,9 @@ class Particles(Model):
     mass: FixedMass = field("Mass of each, with `of` and `positions`.", "1 kg", above=0)
     velocity: FixedVelocity = field("Velocity at the start, with `of` and `positions`.", "0 0 0 m/s")
     radius: FixedLength | None = field(
-        "Radius in contacts and in the picture; by default the object's, else 0.05 m.", None, at_least=0
+        "Radius in contacts and in the picture; by default the object's (a box: half its least side), else 0.05 m.",
+        None,
+        at_least=0,
     )
     material: MaterialRef | None = field("How they look where no object draws them.", None)
     color: Color | None = field("Color in place of the material's.", None)
@@ -130,12 +132,14 @@ class Particles(Model):
             word = type(driven).__name__.lower()
             message = f"'{self.of.name}' is a {word}, which has no position that a particle could drive"
             raise ScriptError([Diagnostic("no-position", message, self.of.span)])
-        radius: Any = self.radius
-        if radius is None:
-            radius = getattr(driven, "radius", 0.0)
-        if isinstance(radius, Value):
-            radius = assembly.initial(radius)
-        return np.asarray(assembly.initial(place), dtype=float).reshape(1, 3), float(radius)
+        start = np.asarray(assembly.initial(place), dtype=float).reshape(1, 3)
+        if self.radius is not None:
+            return start, self.radius
+        for name, part in (("radius", 1.0), ("size", 0.5)):
+            extent = getattr(driven, name, None)
+            if isinstance(extent, Value):
+                return start, part * float(np.min(assembly.initial(extent)))
+        return start, 0.05
 
     def read(self, output: str, state: ModelState) -> Any:
         """Any output of the manual, and ``name.position``, ``name.velocity``, ``name.acceleration``."""
