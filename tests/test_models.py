@@ -132,7 +132,7 @@ clock: {end: 12 s}
 models:
   rope:
     mass_spring:
-      rope: {start: 0 3 0 m, end: 0 2 0 m, count: 5}
+      rope: {from: 0 3 0 m, to: 0 2 0 m, count: 5}
       mass: 0.2 kg
       stiffness: 400 N/m
       damping: 20 N*s/m

@@ -54,7 +54,9 @@ def _drive(tasks: dict[str, Task]) -> dict[str, Task]:
             continue
         for name, (field, output) in model.kind.drives().items():
             target = tasks[name]
-            old: Value = getattr(target.kind, field)
+            old: Value | None = getattr(target.kind, field, None)
+            if old is None:
+                continue  # the model says what it cannot drive
             link = Value(Link(model.name, output, old.expr.type), old.span)
             needs = (*target.needs, model.name)
             driven = target.kind.model_copy(update={field: link})

@@ -218,14 +218,14 @@ class Cloth(Record):
 class Rope(Record):
     """A line of masses, each tied to the next."""
 
-    start: FixedPosition = field("Where its first mass starts.", "0 2 0 m")
-    end: FixedPosition = field("Where its last mass starts.", "2 2 0 m")
+    from_: FixedPosition = field("Where its first mass starts.", "0 2 0 m")
+    to: FixedPosition = field("Where its last mass starts.", "2 2 0 m")
     count: int = field("Number of masses.", 20, at_least=2)
 
     @model_validator(mode="after")
     def _is_of_a_size(self) -> Rope:
         _bounded(self.mass_count())
-        if self.start == self.end:
+        if self.from_ == self.to:
             raise ValueError("a rope that ends where it starts")
         return self
 
@@ -239,7 +239,7 @@ class Rope(Record):
 
         index = np.arange(self.count)
         return Net(
-            points=np.linspace(self.start, self.end, self.count),
+            points=np.linspace(self.from_, self.to, self.count),
             pairs=np.stack([index[:-1], index[1:]], axis=1),
             stiffness=np.ones(self.count - 1),
             places={"start": index == 0, "end": index == self.count - 1},

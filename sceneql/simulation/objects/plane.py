@@ -76,10 +76,11 @@ class Plane(Object):
 
     def collider(self, assembly: Assembly) -> Collider:
         """A point on it and its normal, in the world's axes."""
-        shift = Call("mul", (self.height.expr, self.normal.expr), Type((3,), LENGTH))
+        normal = Call("normalize", (self.normal.expr,), Type((3,)))
+        shift = Call("mul", (self.height.expr, normal), Type((3,), LENGTH))
         place = Value(Call("add", (self.position.expr, shift), Type((3,), LENGTH)), self.position.span)
         return Collider(
-            "plane", assembly.value(place), assembly.floats([1.0, 0.0, 0.0, 0.0]), assembly.value(self.normal)
+            "plane", assembly.value(place), assembly.floats([1.0, 0.0, 0.0, 0.0]), assembly.value(Value(normal, self.normal.span))
         )
 
 
