@@ -16,7 +16,7 @@ RETRIES = 8
 """Undecided places passed on one ray before it counts as a miss."""
 BLOCK = 4
 """Cells along a side of the coarse blocks that are tried before their cells."""
-PAD = 1e-9
+PAD = 1e-7
 """By which a cell is enlarged, relative to its side, so that rounding in the walk does no harm."""
 
 
@@ -160,21 +160,21 @@ def implicit(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     code = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
     constants = scene.reals[k0:k1]
     parts = scene.reals[p0:p1].reshape((p1 - p0) // 8, 8)
+    b = scene.reals
+    side = min(b[k + 3] - b[k], b[k + 4] - b[k + 1], b[k + 5] - b[k + 2]) / CELLS
     enter, stop = box_part(scene, k, ox, oy, oz, dx, dy, dz, near, far)
     if not enter < stop:
         return NONE
     t = enter
     tries = 0
+    past = 0.1 * PAD * side / np.sqrt(dx * dx + dy * dy + dz * dz)  # into the next cell, within what its pad covers
     while t < stop and tries < RETRIES:
         begin, end, full = occupied(scene, k, ox, oy, oz, dx, dy, dz, t, stop)
         if not begin < stop:
             return NONE
         if full and anywhere:
             return begin
-        if not begin < end:
-            t = np.nextafter(end, np.inf)
-            tries += 1
-            continue
+        end = max(end, begin + past)
         status, root = isolate(
             code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, begin, end, TOLERANCE, 1.0, anywhere
         )
@@ -189,5 +189,5 @@ def implicit(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
             tries += 1
             t = root + 4.0 * TOLERANCE * (end - begin)
         else:
-            t = np.nextafter(end, np.inf)
+            t = end + past
     return NONE

@@ -2,6 +2,7 @@
 
 from renderers.tracing.implicit_kernels import implicit
 from renderers.tracing.scene_kernels import (
+    HALF_SPACE,
     ITEMS,
     KIND,
     LINK,
@@ -18,7 +19,7 @@ from renderers.tracing.scene_kernels import (
     Tables,
     part,
 )
-from renderers.tracing.solids_kernels import NONE, inverse, quadric, round_solid, triangle
+from renderers.tracing.solids_kernels import NONE, half_space, inverse, quadric, round_solid, triangle
 from sceneql.kernels import kernel
 
 
@@ -27,6 +28,8 @@ def meet(scene, scratch, item, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """First crossing of an item inside (near, far), or infinity; ``anywhere``: of an implicit object any inner place."""
     kind = scene.ints[ITEMS + 4 * item + KIND]
     k = scene.ints[ITEMS + 4 * item + REALS_AT]
+    if kind == HALF_SPACE:
+        return half_space(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
     if kind == TRIANGLE:
         return triangle(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
     if kind == ROUND:

@@ -13,6 +13,7 @@ from renderers.tracing.intersect_kernels import walk
 from renderers.tracing.scene_kernels import (
     CAMERA,
     CELLS,
+    HALF_SPACE,
     IMPLICIT,
     ITEMS,
     KIND,
@@ -112,7 +113,11 @@ class Rows:
         if isinstance(shape, Mesh):
             self._mesh(index, shape)
         elif isinstance(shape, Quadric):
-            self._items(index, QUADRIC, quadric_box(shape)[None, :], _quadric(shape))
+            plane = _half_space(shape)
+            if plane is None:
+                self._items(index, QUADRIC, quadric_box(shape)[None, :], _quadric(shape))
+            else:
+                self._items(index, HALF_SPACE, np.array([[-np.inf] * 3 + [np.inf] * 3]), plane)
         elif isinstance(shape, Implicit):
             self._implicit(index, shape)
         elif isinstance(shape, Points):
@@ -201,6 +206,16 @@ def quadric_box(shape: Quadric) -> Floats:
     middle = matrix @ (0.5 * (low + high) - np.asarray(shape.to_local)[:, 3])
     reach = np.abs(matrix) @ (0.5 * (high - low)) * (1 + 1e-9) + 1e-12
     return np.concatenate([middle - reach, middle + reach])
+
+
+def _half_space(shape: Quadric) -> Floats | None:
+    """(1, 4) unit normal and height of the face of a quadric that is a half-space, else None."""
+    if any(shape.squares) or not np.isinf([*shape.low, *shape.high]).all():
+        return None
+    normal = np.array([*shape.linear, 0.0]) @ np.vstack([shape.to_local, np.zeros(4)])
+    normal[3] += shape.constant
+    length = np.linalg.norm(normal[:3])
+    return None if length == 0 else np.array([[*normal[:3], -normal[3]]]) / length
 
 
 def _quadric(shape: Quadric) -> Floats:

@@ -4,7 +4,7 @@ from numba import types
 
 from renderers.tracing.filter_kernels import REACH, SLACK
 from renderers.tracing.record_kernels import OWNER, RADIUS, alike
-from renderers.tracing.sampling_kernels import SIDE, morton
+from renderers.tracing.sampling_kernels import COUNT, SIDE, morton
 from renderers.tracing.scene_kernels import HEIGHT, LIGHT_COUNT, SCENE, SCRATCH, WIDTH, part
 from renderers.tracing.shade_kernels import shade
 from renderers.tracing.visibility_kernels import FIRST_LIGHT, look_around, shadow_sample
@@ -33,6 +33,29 @@ def mixed(records, visibility, k, x, y, width, height, column, reach):
     return False
 
 
+@part
+def spread_sky(records, means, k, x, y, width, height, fine):
+    """The sky's loss over 16 x 16 pixels, where each of its samples stands once: from four means over 8 x 8."""
+    weight = 0.0
+    for c in range(FIRST_LIGHT):
+        fine[c] = 0.0
+    for corner in range(5):
+        i, j = x + REACH * (2 * (corner & 1) - 1), y + REACH * ((corner & 2) - 1)
+        if corner == 4:
+            if weight == 4.0 * SIDE * SIDE:
+                break
+            i, j = x, y  # a window cut by an edge: its middle stands in
+        if i < 0 or j < 0 or i >= width or j >= height:
+            continue
+        m = j * width + i
+        if m == k or alike(records[k], records[m], SLACK):
+            weight += means[m, 0]
+            for c in range(FIRST_LIGHT):
+                fine[c] += means[m, 0] * means[m, 1 + c]
+    for c in range(FIRST_LIGHT):
+        fine[c] /= weight
+
+
 @kernel(types.void(SCENE, SCRATCH, _i, _i, _rows, _rows, _rows, _rows), _nrt=False)
 def refine_rows(scene, scratch, start, stop, records, visibility, means, fine):
     """Rows of ``fine`` (n, V): the sky's loss, and of each light its share and whether that wants smoothing (0 or 1)."""
@@ -47,8 +70,7 @@ def refine_rows(scene, scratch, start, stop, records, visibility, means, fine):
                 for l in range(int(scene.ints[LIGHT_COUNT])):
                     fine[k, FIRST_LIGHT + 2 * l + 1] = 0.0
                 continue
-            for c in range(FIRST_LIGHT):
-                fine[k, c] = means[k, 1 + c]
+            spread_sky(records, means, k, x, y, width, height, fine[k])
             for l in range(int(scene.ints[LIGHT_COUNT])):
                 column = FIRST_LIGHT + 2 * l
                 share = means[k, 1 + column]
@@ -65,7 +87,7 @@ def refine_rows(scene, scratch, start, stop, records, visibility, means, fine):
                     continue
                 samples = OWN if reach < REACH else OWN // 2
                 total = 0.0
-                first = morton(x, y) * samples % (SIDE * SIDE)
+                first = morton(x, y) * samples % COUNT
                 for sample in range(first, first + samples):
                     total += shadow_sample(scene, scratch, records[k], l, sample, 1.0)[0]
                 fine[k, column] = total / samples

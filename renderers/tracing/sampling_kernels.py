@@ -1,8 +1,8 @@
-"""Which sample a pixel takes: one point of a 64-point net for each pixel of an 8 x 8 block.
+"""Which sample a pixel takes: one point of a net for each pixel of a square block, 8 x 8 for lights, 16 x 16 for the sky.
 
-Pixel (x, y) takes the point whose index is the Morton code of (x mod 8, y mod 8). Any window of 8 x 8 pixels then has
-each point once, and every aligned 2 x 2 or 4 x 4 block a net of its own (Ahmed and Wonka 2020), so that the filter
-leaves nothing of the pattern.
+Pixel (x, y) takes the point whose index is the Morton code of its place in the block. Any window of the block's size then
+has each point once, and every aligned block of a power of two a net of its own (Ahmed and Wonka 2020), so that the
+filter leaves nothing of the pattern.
 """
 
 import numpy as np
@@ -11,6 +11,9 @@ from renderers.tracing.scene_kernels import part
 
 SIDE = 8
 COUNT = SIDE * SIDE
+"""Samples of a light."""
+SKY_COUNT = 4 * COUNT
+"""Samples of the sky."""
 
 
 def _radical_inverse(bits, index):
@@ -28,14 +31,10 @@ def _second(index):
     return result / 2.0**32
 
 
-def _net():
-    """(COUNT, 4) points of [0, 1)^4: a (0, 2)-net, and another order of it."""
-    points = np.empty((COUNT, 4))
-    for k in range(COUNT):
-        points[k, :2] = _radical_inverse(6, k), _second(k)
-        other = (k * 37 + 11) % COUNT
-        points[k, 2:] = _second(other), _radical_inverse(6, other)
-    return points + 0.5 / COUNT
+def _net(count):
+    """(count, 2) points of [0, 1)^2: the first of Sobol's sequence, which make a net, from the middle of their cells."""
+    bits = count.bit_length() - 1
+    return np.array([(_radical_inverse(bits, k), _second(k)) for k in range(count)]) + 0.5 / count
 
 
 def _disk(points):
@@ -44,24 +43,26 @@ def _disk(points):
     return np.ascontiguousarray(np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1))
 
 
-_NET = _net()
-DISK = _disk(_NET)
-"""(COUNT, 2) points of the unit disk."""
-JITTER = np.ascontiguousarray(_NET[:, 2:] - 0.5)
-"""(COUNT, 2) points of a pixel, from its center."""
+DISK = _disk(_net(COUNT))
+"""(COUNT, 2) points of a light's disk."""
+SKY_DISK = _disk(_net(SKY_COUNT))
+"""(SKY_COUNT, 2) points of the unit disk; lifted to the hemisphere they are cosine-distributed (Malley)."""
+JITTER = _net(COUNT)[np.arange(COUNT) * 37 % COUNT, ::-1] - 0.5
+"""(COUNT, 2) points of a pixel, from its center, in another order than those of DISK."""
 
 
 def subpixels(samples):
     """(samples, 2) points of a pixel, 0..1, one in each of ``samples`` rows and columns."""
-    bits = samples.bit_length() - 1
-    points = [(_radical_inverse(bits, k), _second(k)) for k in range(samples)]
-    return np.array(points) + 0.5 / samples
+    return _net(samples)
 
 
 @part
 def morton(x, y):
-    """Index of the sample of pixel (x, y)."""
-    return (x & 1) | ((y & 1) << 1) | ((x & 2) << 1) | ((y & 2) << 2) | ((x & 4) << 2) | ((y & 4) << 3)
+    """Index of the sky's sample of pixel (x, y); its remainder by COUNT is that of the lights'."""
+    number = 0
+    for bit in range(4):
+        number |= ((x >> bit) & 1) << (2 * bit) | ((y >> bit) & 1) << (2 * bit + 1)
+    return number
 
 
 @part

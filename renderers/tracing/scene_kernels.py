@@ -66,11 +66,12 @@ NODE_COUNT, ITEM_COUNT, ENDLESS_COUNT, LIGHT_COUNT, NODES_AT, LINKS_AT = range(6
 ITEMS = 8
 """First of the items, by leaf: kind, place of its reals, place of its surface, index of its shape."""
 KIND, REALS_AT, SURFACE_AT, SHAPE = range(4)
-TRIANGLE, ROUND, QUADRIC, IMPLICIT = range(4)
+TRIANGLE, ROUND, QUADRIC, HALF_SPACE, IMPLICIT = range(5)
 """Kinds. Their reals:
 TRIANGLE: corner, edge, edge; normals at the corners, colors at the corners (a NaN first: there are none): 27.
 ROUND (sphere or capsule): end, axis to the other end, radius, color (NaN: the surface's): 10.
 QUADRIC: map to local (3, 4), squares, linear, constant, low, high: 25.
+HALF_SPACE (a quadric that is nothing else): unit normal, height of its face along that: 4.
 IMPLICIT: low, high, place of its ranges: 7. The ranges, in ints: place of the code, its rows, place of the constants,
 their number, place of the parts, their rows, place of the cells."""
 
@@ -94,7 +95,7 @@ INDEX, EMISSION, CHECKER, CHECKER_COLOR = 7, 8, 11, 12
 SURFACE_SIZE = 15
 """Reals of a surface, and how many there are."""
 
-CELLS = 24
+CELLS = 32
 """Occupancy cells along each axis of an implicit object's box."""
 EMPTY, MIXED, FULL = range(3)
 """What an occupancy cell is proved to be: outside, nothing, inside."""

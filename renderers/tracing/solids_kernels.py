@@ -84,6 +84,16 @@ def quadric(q, k, ox, oy, oz, dx, dy, dz, near, far):
 
 
 @part
+def half_space(h, k, ox, oy, oz, dx, dy, dz, near, far):
+    """Crossing of the face of a half-space."""
+    slope = h[k] * dx + h[k + 1] * dy + h[k + 2] * dz
+    if slope == 0.0:
+        return NONE
+    t = (h[k + 3] - h[k] * ox - h[k + 1] * oy - h[k + 2] * oz) / slope
+    return t if near < t < far else NONE
+
+
+@part
 def round_solid(r, k, ox, oy, oz, dx, dy, dz, near, far):
     """Crossing of a capsule (or sphere, where its axis is zero): the hull of two balls and the tube between them."""
     ux = r[k + 3]

@@ -7,6 +7,7 @@ from renderers.tracing.scene_kernels import (
     CHECKER,
     CHECKER_COLOR,
     COLOR,
+    HALF_SPACE,
     ITEMS,
     KIND,
     QUADRIC,
@@ -149,6 +150,8 @@ def normal_at(scene, scratch, item, x, y, z):
         nx, ny, nz = round_normal(scene.reals, k, x, y, z)
     elif kind == QUADRIC:
         nx, ny, nz = quadric_normal(scene.reals, k, x, y, z)
+    elif kind == HALF_SPACE:
+        nx, ny, nz = scene.reals[k], scene.reals[k + 1], scene.reals[k + 2]
     else:
         nx, ny, nz = implicit_normal(scene, scratch, k, x, y, z)
     return nx, ny, nz, nx, ny, nz, 0.0

@@ -5,7 +5,7 @@ from numba import types
 
 from renderers.tracing.light_kernels import sky_ambient, sky_radiance
 from renderers.tracing.record_kernels import NORMAL, PLACE, RADIUS, ROW, start_of
-from renderers.tracing.sampling_kernels import COUNT, DISK, JITTER, across
+from renderers.tracing.sampling_kernels import COUNT, DISK, JITTER, SKY_COUNT, SKY_DISK, across
 from renderers.tracing.scene_kernels import (
     EMISSION,
     HAS_SKY,
@@ -100,7 +100,7 @@ def sky_loss(scene, scratch, record, sample):
     """How much less (3) than the sky's radiance comes in along the sample's direction, cosine-distributed."""
     nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
     ax, ay, az, bx, by, bz = across(nx, ny, nz)
-    u, v = DISK[sample, 0], DISK[sample, 1]
+    u, v = SKY_DISK[sample, 0], SKY_DISK[sample, 1]
     w = np.sqrt(max(1.0 - u * u - v * v, 0.0))
     dx, dy, dz = u * ax + v * bx + w * nx, u * ay + v * by + w * ny, u * az + v * bz + w * nz
     x, y, z = start_of(record)
@@ -148,14 +148,14 @@ def look_around(scene, scratch, record, number, samples, visibility):
         visibility[column] = 0.0
     weight = 1.0 / samples
     jitter = 0.0 if samples == 1 else 1.0
-    first = number * samples % COUNT
-    for sample in range(first, first + samples):
+    for k in range(samples):
         if scene.reals[HAS_SKY] != 0.0:
-            r, g, b = sky_loss(scene, scratch, record, sample)
+            r, g, b = sky_loss(scene, scratch, record, (number * samples + k) % SKY_COUNT)
             visibility[SKY] += weight * r
             visibility[SKY + 1] += weight * g
             visibility[SKY + 2] += weight * b
         for l in range(int(scene.ints[LIGHT_COUNT])):
+            sample = (number * samples + k) % COUNT
             share, width = shadow_sample(scene, scratch, record, l, sample, jitter)
             visibility[FIRST_LIGHT + 2 * l] += weight * share
             visibility[FIRST_LIGHT + 2 * l + 1] = max(visibility[FIRST_LIGHT + 2 * l + 1], width)
