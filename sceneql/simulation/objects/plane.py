@@ -80,7 +80,10 @@ class Plane(Object):
         shift = Call("mul", (self.height.expr, normal), Type((3,), LENGTH))
         place = Value(Call("add", (self.position.expr, shift), Type((3,), LENGTH)), self.position.span)
         return Collider(
-            "plane", assembly.value(place), assembly.floats([1.0, 0.0, 0.0, 0.0]), assembly.value(Value(normal, self.normal.span))
+            "plane",
+            assembly.value(place),
+            assembly.floats([1.0, 0.0, 0.0, 0.0]),
+            assembly.value(Value(normal, self.normal.span)),
         )
 
 
