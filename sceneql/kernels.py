@@ -19,7 +19,9 @@ from pathlib import Path
 from typing import Any
 
 import numba
-from numba.core import event
+from numba import types
+from numba.core import cgutils, event
+from numba.extending import intrinsic
 
 PACKAGES = (Path(__file__).parent, Path(__file__).parent.parent / "renderers")
 
@@ -89,6 +91,39 @@ def lean(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
 
 lean_inlined = numba.njit(cache=True, nogil=True, error_model="numpy", inline="never", _nrt=False)
 """A helper of lean kernels."""
+
+
+def address(function: Any, kind: Any) -> Any:
+    """Address of a compiled kernel of FunctionType ``kind``, for ``function_at``. Keep the kernel alive."""
+    if numba.config.DISABLE_JIT:
+        return function
+    compiled = function.overloads[kind.signature.args]
+    return compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
+
+
+def function_at(kind: Any) -> Any:
+    """What makes of an ``address`` a function that kernels can call.
+
+    numba can take functions as arguments, but asks Python for their addresses at every call (50 us each); and a kernel
+    that another one names is compiled into it once more.
+    """
+    if numba.config.DISABLE_JIT:
+        return lambda function: function
+
+    @intrinsic
+    def at(typing: Any, address: Any) -> Any:
+        def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            value = cgutils.create_struct_proxy(kind)(context, builder)
+            pointer = builder.inttoptr(arguments[0], context.get_value_type(types.voidptr))
+            # The address is known to be one, so the code for Python functions is dropped.
+            builder.assume(cgutils.is_not_null(builder, pointer))
+            value.jit_addr = pointer
+            value.c_addr = value.py_addr = context.get_constant_null(types.voidptr)
+            return value._getvalue()
+
+        return kind(types.int64), code
+
+    return at
 
 
 def compile_ahead(module: str) -> Callable[[], None]:

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Rays of a picture's points."""
 
 import numpy as np

@@ -1,14 +1,12 @@
+# mypy: ignore-errors
 """Last stage: pixels in which things meet are drawn anew by several rays, lit by the visibility already found."""
 
 from numba import types
 
 from renderers.tracing.filter_kernels import SLACK
-from renderers.tracing.gather_kernels import gather
 from renderers.tracing.record_kernels import OWNER, TRACED, alike
 from renderers.tracing.sampling_kernels import morton
-from renderers.tracing.scene_kernels import HEIGHT, SCENE, SCRATCH, WIDTH, part
-from renderers.tracing.shade_kernels import shade
-from renderers.tracing.visibility_kernels import look_around
+from renderers.tracing.scene_kernels import HEIGHT, SCENE, SCRATCH, WIDTH, gather_at, look_at, part, shade_at
 from sceneql.kernels import kernel
 
 _i = types.int64
@@ -77,8 +75,8 @@ def finished(scene, scratch, records, visibility, own, k, x, y, number, found):
         if own[layer, OWNER] == 0.0:
             continue
         if not borrow(records[layer], visibility[layer], own[layer], x, y, width, height, found):
-            look_around(scene, scratch, own[layer], number, ANEW, found)
-        red, green, blue = shade(scene, own[layer], found)
+            look_at(scene.look)(scene, scratch, own[layer], number, ANEW, found)
+        red, green, blue = shade_at(scene.shade)(scene, own[layer], found)
         r, g, b = r + red, g + green, b + blue
     return r, g, b
 
@@ -106,7 +104,7 @@ def smooth_rows(scene, scratch, start, stop, points, records, radiance, visibili
             red, green, blue = 0.0, 0.0, 0.0
             for s in range(len(points)):
                 px, py = x + points[s, 0], y + points[s, 1]
-                r, g, b = gather(scene, scratch, px, py, own[0], own[1], own[2], found)
+                r, g, b = gather_at(scene.gather)(scene, scratch, px, py, own[0], own[1], own[2], found)
                 fr, fg, fb = finished(scene, scratch, records, visibility, own, k, x, y, number, found)
                 red += min(r + fr, BRIGHTEST)
                 green += min(g + fg, BRIGHTEST)

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Second stage: visibility averaged over 8 x 8 pixels of the same surface, where each sample of the net stands once."""
 
 from numba import types

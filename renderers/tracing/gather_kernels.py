@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """First stage of a picture: every pixel's records, the light that needs no filtering, and one sample of visibility."""
 
 import numpy as np
@@ -6,21 +7,26 @@ from numba import types
 from renderers.tracing.camera_kernels import camera_ray
 from renderers.tracing.light_kernels import backdrop, dielectric, sharpness, sky_radiance, smoothstep
 from renderers.tracing.path_kernels import behind, bend, describe, faded, mirrored, refracted
-from renderers.tracing.record_kernels import OWNER, ROW, TINT, TRACED, WEIGHT, copy_record, start_of
+from renderers.tracing.record_kernels import OWNER, TINT, TRACED, WEIGHT, copy_record, start_of
 from renderers.tracing.sampling_kernels import morton
 from renderers.tracing.scene_kernels import (
+    GATHER,
     INDEX,
     ITEMS,
     METALLIC,
     ROUGHNESS,
+    ROW,
     SCENE,
     SCRATCH,
     SURFACE_AT,
     TRANSMISSION,
     WIDTH,
+    gather_at,
+    look_at,
+    shade_at,
+    walk_at,
 )
-from renderers.tracing.shade_kernels import facing_ratio, mean_specular, shade
-from renderers.tracing.visibility_kernels import look_around
+from renderers.tracing.shade_kernels import facing_ratio, mean_specular
 from sceneql.kernels import kernel
 
 _f = types.float64
@@ -33,10 +39,7 @@ QUICK = 8
 """Samples of light and sky on surfaces that are seen only in a thing seen in another."""
 
 
-@kernel(
-    types.UniTuple(_f, 3)(SCENE, SCRATCH, _f, _f, ROW, ROW, ROW, ROW),
-    _nrt=False,
-)
+@kernel(GATHER.signature, _nrt=False)
 def gather(scene, scratch, px, py, first, second, spare, visibility):
     """Radiance (3) of the picture's point (px, py) but for its records ``first`` and ``second``, which it writes.
 
@@ -55,7 +58,7 @@ def gather(scene, scratch, px, py, first, second, spare, visibility):
     qx, qy, qz, rx, ry, rz, w2, radius2, spread2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     bounce = 0
     while True:
-        t, item, _ = scene.walk(scene.reals, scene.ints, scratch, ox, oy, oz, dx, dy, dz, 0.0, np.inf, False)
+        t, item, _ = walk_at(scene.walk)(scene.reals, scene.ints, scratch, ox, oy, oz, dx, dy, dz, 0.0, np.inf, False)
         goes_on = False
         if item < 0:
             r, g, b = backdrop(scene.reals, dy) if straight else sky_radiance(scene.reals, dy)
@@ -87,8 +90,8 @@ def gather(scene, scratch, px, py, first, second, spare, visibility):
                 copy_record(spare, second)
                 keep = False
             elif outside or not glass:
-                look_around(scene, scratch, spare, 0, QUICK, visibility)
-                r, g, b = shade(scene, spare, visibility)
+                look_at(scene.look)(scene, scratch, spare, 0, QUICK, visibility)
+                r, g, b = shade_at(scene.shade)(scene, spare, visibility)
                 cr, cg, cb = cr + r, cg + g, cb + b
             goes_on = (glass or traced > 0.0) and bounce < BOUNCES
             if goes_on:
@@ -140,10 +143,12 @@ def gather_rows(scene, scratch, start, stop, records, radiance, visibility, spar
             k = y * width + x
             number = morton(x, y)
             scratch[counter, 0] = 0.0
-            r, g, b = gather(scene, scratch, x + 0.5, y + 0.5, records[0, k], records[1, k], spare, visibility[0, k])
+            r, g, b = gather_at(scene.gather)(
+                scene, scratch, x + 0.5, y + 0.5, records[0, k], records[1, k], spare, visibility[0, k]
+            )
             undecided += scratch[counter, 0] > 0.0
             radiance[k, 0], radiance[k, 1], radiance[k, 2] = r, g, b
             for layer in range(2):
                 if records[layer, k, OWNER] > 0.0:
-                    look_around(scene, scratch, records[layer, k], number, 1, visibility[layer, k])
+                    look_at(scene.look)(scene, scratch, records[layer, k], number, 1, visibility[layer, k])
     return undecided

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """A bounding volume hierarchy by the surface area heuristic, binned (Wald 2007), as a list with skip links."""
 
 import numpy as np

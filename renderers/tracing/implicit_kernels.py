@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Rays against implicit objects: certified roots inside what an occupancy grid leaves of the object's box."""
 
 import numpy as np

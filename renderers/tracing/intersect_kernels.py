@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Rays against the whole scene: what is met first, or how much light comes through."""
 
 from renderers.tracing.implicit_kernels import implicit
@@ -55,7 +56,7 @@ def misses(nodes, k, ox, oy, oz, ix, iy, iz, near, far):
     return min(leave, max(a, b)) < max(enter, min(a, b))
 
 
-@kernel(WALK, _nrt=False)
+@kernel(WALK.signature, _nrt=False)
 def walk(reals, ints, scratch, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """(t, item, light) of the ray inside (near, far): where it first meets an item, or (inf, -1, 1).
 

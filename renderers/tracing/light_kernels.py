@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Sky and reflection: closed forms of the light that comes from all around, and of how surfaces answer it."""
 
 import numpy as np

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from renderers.tracing import hierarchy_kernels
+from renderers.tracing.addresses import addresses
 from renderers.tracing.implicit_kernels import BLOCK, occupy
-from renderers.tracing.intersect_kernels import walk
 from renderers.tracing.scene_kernels import (
     CAMERA,
     CELLS,
@@ -29,8 +29,6 @@ from renderers.tracing.scene_kernels import (
     SURFACE_AT,
     SURFACE_SIZE,
     TRIANGLE,
-    WALK,
-    Pointer,
     Scene,
     Tables,
 )
@@ -71,12 +69,12 @@ def pack(frame: Frame) -> tuple[Scene, int]:
     reals = np.concatenate([head, lights.ravel(), *tables.surfaces, nodes.ravel(), *tables.reals])
     header = [len(nodes), len(items), len(endless), len(lights), nodes_at, links_at, 0, 0]
     ints = np.concatenate([header, items.ravel(), links.ravel(), *tables.ranges, *tables.codes], dtype=np.int32)
-    for k, ranges in enumerate(tables.ranges):
-        ranges = ints[ranges_at + k * len(ranges) : ranges_at + (k + 1) * len(ranges)]
+    for k in range(len(tables.implicits)):
+        ranges = ints[ranges_at + 7 * k : ranges_at + 7 * k + 7]
         ranges[[0, 6]] += ranges_at + sum(map(len, tables.ranges))
         ranges[[2, 4]] += reals_at
-        reals[reals_at + tables.implicits[k] + 6] = ranges_at + k * len(ranges)
-    scene = Scene(reals, ints, Pointer(walk, WALK))
+        reals[reals_at + tables.implicits[k] + 6] = ranges_at + 7 * k
+    scene = Scene(reals, ints, *addresses())
     slabs = CELLS // BLOCK
     over_tiles(
         len(tables.implicits) * slabs,

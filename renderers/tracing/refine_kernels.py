@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Third stage: edges of shadows that are finer than the filter's window get samples of their own; then all is shaded."""
 
 from numba import types
@@ -5,9 +6,8 @@ from numba import types
 from renderers.tracing.filter_kernels import REACH, SLACK
 from renderers.tracing.record_kernels import OWNER, RADIUS, alike
 from renderers.tracing.sampling_kernels import COUNT, SIDE, morton
-from renderers.tracing.scene_kernels import HEIGHT, LIGHT_COUNT, SCENE, SCRATCH, WIDTH, part
-from renderers.tracing.shade_kernels import shade
-from renderers.tracing.visibility_kernels import FIRST_LIGHT, look_around, shadow_sample
+from renderers.tracing.scene_kernels import HEIGHT, LIGHT_COUNT, SCENE, SCRATCH, WIDTH, look_at, part, shade_at
+from renderers.tracing.visibility_kernels import FIRST_LIGHT, shadow_sample
 from sceneql.kernels import kernel
 
 _i = types.int64
@@ -66,7 +66,7 @@ def refine_rows(scene, scratch, start, stop, records, visibility, means, fine):
             if records[k, OWNER] == 0.0:
                 continue
             if means[k, 0] < FEW:
-                look_around(scene, scratch, records[k], morton(x, y), OWN, fine[k])
+                look_at(scene.look)(scene, scratch, records[k], morton(x, y), OWN, fine[k])
                 for l in range(int(scene.ints[LIGHT_COUNT])):
                     fine[k, FIRST_LIGHT + 2 * l + 1] = 0.0
                 continue
@@ -135,7 +135,7 @@ def shade_rows(scene, start, stop, records, fine, visibility, radiance):
                     height,
                     visibility[layer, k],
                 )
-                r, g, b = shade(scene, records[layer, k], visibility[layer, k])
+                r, g, b = shade_at(scene.shade)(scene, records[layer, k], visibility[layer, k])
                 radiance[k, 0] += r
                 radiance[k, 1] += g
                 radiance[k, 2] += b

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Which sample a pixel takes: one point of a net for each pixel of a square block, 8 x 8 for lights, 16 x 16 for the sky.
 
 Pixel (x, y) takes the point whose index is the Morton code of its place in the block. Any window of the block's size then

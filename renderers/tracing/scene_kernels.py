@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """The scene as two flat arrays: what `pack` fills and every kernel of the tracer reads.
 
 Two, since numba passes an array as seven numbers to every function, and compile time follows their count.
@@ -8,7 +9,8 @@ from typing import NamedTuple
 import numba
 import numpy as np
 from numba import types
-from numba.core.types.function_type import WrapperAddressProtocol
+
+from sceneql.kernels import function_at
 
 part = numba.njit(nogil=True, error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 """A function called by kernels alone: not cached by itself, not callable from Python, which halves its compile time,
@@ -25,40 +27,40 @@ class Tables(NamedTuple):
 
 
 class Scene(NamedTuple):
-    """Tables, and the function that meets rays with them."""
+    """Tables, and the addresses of the tracer's large functions.
+
+    A kernel that another one names is compiled into it once more, with all that it names itself; by address each is
+    compiled once.
+    """
 
     reals: np.ndarray
     ints: np.ndarray
-    walk: WrapperAddressProtocol
-    """intersect_kernels.walk. Called by its address, since numba would compile it, and all of root isolation, into every
-    kernel that calls it, and into every function between."""
+    walk: int
+    """Of intersect_kernels.walk, and so on."""
+    normal: int
+    look: int
+    shade: int
+    gather: int
 
 
-class Pointer(WrapperAddressProtocol):
-    """A compiled kernel as a value that other kernels can call."""
-
-    def __init__(self, dispatcher, signature):
-        self._dispatcher = dispatcher
-        self._signature = signature
-
-    def __wrapper_address__(self):
-        """Address of its C function."""
-        compiled = self._dispatcher.overloads[self._signature.args]
-        return compiled.library.get_pointer_to_function(compiled.fndesc.llvm_cfunc_wrapper_name)
-
-    def signature(self):
-        """Its type."""
-        return self._signature
-
-
-_f = types.float64
-TABLES = types.NamedTuple((types.float64[::1], types.int32[::1]), Tables)
+_f, _i = types.float64, types.int64
+ROW = types.float32[::1]
+"""Type of a record, and of a row of visibility."""
 SCRATCH = types.float64[:, ::1]
 """Working memory of one thread: what root isolation needs, and a last row whose first entry counts the undecided."""
-WALK = types.Tuple((_f, types.int64, _f))(
-    types.float64[::1], types.int32[::1], SCRATCH, _f, _f, _f, _f, _f, _f, _f, _f, types.boolean
+TABLES = types.NamedTuple((types.float64[::1], types.int32[::1]), Tables)
+SCENE = types.NamedTuple((types.float64[::1], types.int32[::1], _i, _i, _i, _i, _i), Scene)
+WALK = types.FunctionType(
+    types.Tuple((_f, _i, _f))(
+        types.float64[::1], types.int32[::1], SCRATCH, _f, _f, _f, _f, _f, _f, _f, _f, types.boolean
+    )
 )
-SCENE = types.NamedTuple((types.float64[::1], types.int32[::1], types.FunctionType(WALK)), Scene)
+NORMAL_AT = types.FunctionType(types.UniTuple(_f, 7)(SCENE, SCRATCH, _i, _f, _f, _f))
+LOOK_AROUND = types.FunctionType(types.void(SCENE, SCRATCH, ROW, _i, _i, ROW))
+SHADE = types.FunctionType(types.UniTuple(_f, 3)(SCENE, ROW, ROW))
+GATHER = types.FunctionType(types.UniTuple(_f, 3)(SCENE, SCRATCH, _f, _f, ROW, ROW, ROW, ROW))
+walk_at, normal_at, look_at, shade_at, gather_at = map(function_at, (WALK, NORMAL_AT, LOOK_AROUND, SHADE, GATHER))
+"""Make functions of the addresses."""
 
 NODE_COUNT, ITEM_COUNT, ENDLESS_COUNT, LIGHT_COUNT, NODES_AT, LINKS_AT = range(6)
 """The header. The first ENDLESS_COUNT items have no bounds; they stand in the first node, which has none either."""

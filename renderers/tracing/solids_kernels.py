@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """Where a ray meets one item: the first crossing behind `near`, be it on the way in or out."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# mypy: ignore-errors
 """What a ray finds where it meets an item: normal, color, and how far a smooth mesh's facets lie off its curve."""
 
 import numpy as np
@@ -10,6 +11,7 @@ from renderers.tracing.scene_kernels import (
     HALF_SPACE,
     ITEMS,
     KIND,
+    NORMAL_AT,
     QUADRIC,
     REALS_AT,
     ROUND,
@@ -19,6 +21,7 @@ from renderers.tracing.scene_kernels import (
 )
 from renderers.tracing.solids_kernels import local_point
 from sceneql.field.tape_kernels import gradient
+from sceneql.kernels import kernel
 
 TRIANGLE_NORMALS, TRIANGLE_COLORS, ROUND_COLOR = 9, 18, 7
 
@@ -139,7 +142,7 @@ def triangle_normal(scene, k, x, y, z):
     return nx, ny, nz, fx, fy, fz, max(lift, 0.0)
 
 
-@part
+@kernel(NORMAL_AT.signature, _nrt=False)
 def normal_at(scene, scratch, item, x, y, z):
     """(normal, facet normal, lift) of an item at a point of its surface; only meshes tell the first two apart."""
     kind = scene.ints[ITEMS + 4 * item + KIND]
