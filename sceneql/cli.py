@@ -72,13 +72,13 @@ def main() -> None:
 def _failure(error: Exception) -> int:
     """Say what went wrong; the exit code. An exception that is nobody's message is a bug and is raised."""
     from sceneql.failure import LimitRefused, RunFailure, Unsuitable
-    from sceneql.quantities.diagnostic import ScriptError
+    from sceneql.quantities.diagnostic import LIMITS, ScriptError
 
     if isinstance(error, ScriptError):
         click.echo(str(error), err=True)
         count = len(error.diagnostics)
         click.echo(f"\n{count} error{'s' if count > 1 else ''}", err=True)
-        return SCRIPT_INVALID
+        return LIMIT_REFUSED if all(found.code in LIMITS for found in error.diagnostics) else SCRIPT_INVALID
     if isinstance(error, LimitRefused):
         click.echo(str(error), err=True)
         _say_kept(error)

@@ -67,6 +67,8 @@ class Quantity:
     """None: any."""
     needs_unit: bool = False
     """A bare number is refused (angles, temperatures)."""
+    direction: bool = False
+    """Not all components may be 0."""
 
 
 class Paint:
@@ -82,6 +84,15 @@ class Refers:
     """Marks a ``Ref`` and the family it names; an entry written in place is allowed too."""
 
     family: str
+    also: str = ""
+    """A second family whose parts it may name."""
+
+    def __str__(self) -> str:
+        return f"{self.family} or {self.also}" if self.also else self.family
+
+
+class SceneFile:
+    """Marks a text that is the path of a file, read as a path below the scene's folder where there is a file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +130,7 @@ Damping = Annotated[Value, Quantity(dim.DAMPING)]
 Position = Annotated[Value, Quantity(dim.LENGTH, (3,))]
 Velocity = Annotated[Value, Quantity(dim.VELOCITY, (3,))]
 Acceleration = Annotated[Value, Quantity(dim.ACCELERATION, (3,))]
-Direction = Annotated[Value, Quantity(dim.PLAIN, (3,))]
+Direction = Annotated[Value, Quantity(dim.PLAIN, (3,), direction=True)]
 Points = Annotated[Value, Quantity(dim.LENGTH, (None, 3))]
 Lengths = Annotated[Value, Quantity(dim.LENGTH, (None,))]
 Color = Annotated[Value, Paint()]
@@ -145,10 +156,18 @@ ModelRef = Annotated[Ref, Refers("models")]
 CameraRef = Annotated[Ref, Refers("cameras")]
 MaterialRef = Annotated[Ref, Refers("materials")]
 RendererRef = Annotated[Ref, Refers("renderers")]
-PartRef = Annotated[Ref, Refers("")]
-"""A part of any family."""
+DrawnRef = Annotated[Ref, Refers("objects", also="models")]
+"""Something that can be seen."""
+
+File = Annotated[str, SceneFile()]
 
 REQUIRED: Any = ...
+
+MOST_MOMENTS = 1_000_000
+
+
+class Exceeds(ValueError):
+    """A size beyond what is allowed: refused with the code `limit-refused` where the script says it."""
 
 
 def field(
@@ -523,25 +542,25 @@ class Picture(Output):
     """An output that draws frames: what every picture has."""
 
     size: tuple[int, int] | Literal["360p", "480p", "720p", "1080p", "4k"] = field(
-        "Width and height [pixels], or the name of a 16:9 size.", (960, 540)
+        "Width and height [pixels], or the name of a 16:9 size.", (960, 540), at_least=2, at_most=16384
     )
     camera: CameraRef | None = field("Seen from; by default the script's first camera.", None)
     renderer: RendererRef | None = field("Drawn by; by default `trace`.", None)
-    show: tuple[PartRef, ...] | None = field("Draws only these parts; by default all that is not hidden.", None)
+    show: tuple[DrawnRef, ...] | None = field("Draws only these parts; by default all that is not hidden.", None)
     exposure: FixedScalar = field("Stops by which the picture is brightened.", "0", at_least=-20, at_most=20)
-
-    @model_validator(mode="after")
-    def _size_in_range(self) -> Picture:
-        width, height = self.pixels
-        if not (2 <= width <= 16384 and 2 <= height <= 16384):
-            raise ValueError(f"size must be from 2 to 16384 pixels a side, not {width} {height}")
-        return self
 
     @property
     def pixels(self) -> tuple[int, int]:
         """Width and height."""
         named = {"360p": (640, 360), "480p": (854, 480), "720p": (1280, 720), "1080p": (1920, 1080), "4k": (3840, 2160)}
         return named[self.size] if isinstance(self.size, str) else self.size
+
+
+def bounded_moments(count: float) -> float:
+    """The number itself. Raises Exceeds where an output would take more instants than a run can have."""
+    if not count <= MOST_MOMENTS:
+        raise Exceeds(f"{count:.3g} instants are more than the {MOST_MOMENTS:,} that an output may take")
+    return count
 
 
 class Clock(Record):
@@ -553,8 +572,8 @@ class Clock(Record):
     seed: int = field("Seed of all chance.", 0, at_least=0)
 
     def frames(self, fps: float) -> list[float]:
-        """Instants [s] of the film's frames: frame i stands at film time i/fps, before the end."""
-        count = max(1, math.ceil(round(self.end / self.speed * fps, 9)))
+        """Instants [s] of the film's frames: frame i stands at film time i/fps, before the end. Raises Exceeds."""
+        count = max(1, math.ceil(round(bounded_moments(self.end / self.speed * fps), 9)))
         return [k / fps * self.speed for k in range(count)]
 
 

@@ -61,6 +61,11 @@ class Catalogue:
         found |= {name.partition(".")[2] for name in self._installed if name.partition(".")[0] == family}
         return sorted(found)
 
+    def choices(self, family: str) -> list[str]:
+        """The words that may stand in a family's section."""
+        also = [kind.family for kind in FAMILIES if kind.also_under == family]
+        return sorted(word for name in (family, *also) for word in self.words(name))
+
     def load(self, family: str, word: str) -> type[Kind] | None:
         """The class of a word that may stand in a family's section, or None if there is none."""
         key = (family, word)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel
@@ -16,7 +17,7 @@ from sceneql.compiler.names import Names
 from sceneql.compiler.read import Reader, Unreadable
 from sceneql.compiler.values import read_expr
 from sceneql.graph import Task
-from sceneql.kinds import Gives, Kind, Object, Quantity, Ref, Settings, Value
+from sceneql.kinds import Gives, Kind, Object, Quantity, Ref, Refers, Settings, Value
 from sceneql.language.scope import Entry
 from sceneql.language.script import Script
 from sceneql.language.tree import Mapping as MappingNode
@@ -55,6 +56,7 @@ class _Checker:
         self.family_of: dict[str, str] = {}
         self.entries: dict[str, Entry] = {}
         self._done: set[str] = set()
+        self.folder = Path(script.sources[0].name).parent
         for family, entries in script.sections.items():
             for name, entry in entries.items():
                 self.family_of[name], self.entries[name] = family, entry
@@ -69,6 +71,7 @@ class _Checker:
             read=lambda node, names: read_expr(node, None, None, "define", names, found),
             found=found,
             given=script.gives,
+            broken=script.broken,
         )
 
     def settings(self) -> Settings:
@@ -76,7 +79,7 @@ class _Checker:
         for name, node in self.names.defines.items():
             self.names.define(name, node.span)
         given = {key: self.script.settings[key] for key in SETTINGS if key in self.script.settings}
-        reader = Reader(self.names, self.found, lambda node, family, name: None, "")
+        reader = Reader(self.names, self.found, lambda node, mark, name: None, "", self.folder)
         result: dict[str, Any] = {}
         for key, node in given.items():
             info = Settings.model_fields[key]
@@ -90,9 +93,14 @@ class _Checker:
         """The class of an entry's word, or None after reporting that there is none."""
         cls = self.catalogue.load(family, entry.word)
         if cls is None:
-            words = self.catalogue.words(family)
+            words = self.catalogue.choices(family)
             others = self.catalogue.families_of(entry.word)
-            hint = f"it belongs under '{others[0]}:'" if others else suggestion(entry.word, words)
+            if others:
+                hint: str | None = f"it belongs under '{others[0]}:'"
+            elif self.catalogue.load(family, entry.name) is not None:
+                hint = f"'{entry.name}' is a word, but stands where a name does: write `name: {{{entry.name}: ...}}`"
+            else:
+                hint = suggestion(entry.word, words)
             self.found.error(
                 "unknown-word",
                 f"'{entry.word}' is no word of {family}",
@@ -134,13 +142,13 @@ class _Checker:
         needs: list[str] = []
         names = replace(self.names, scope=entry.scope)
 
-        def refer(node: Node, wanted: str, anonymous: str) -> Ref | None:
-            ref = self.refer(node, wanted, anonymous, entry)
+        def refer(node: Node, mark: Refers, anonymous: str) -> Ref | None:
+            ref = self.refer(node, mark, anonymous, entry)
             if ref is not None:
                 needs.append(ref.name)
             return ref
 
-        reader = Reader(names, self.found, refer, name)
+        reader = Reader(names, self.found, refer, name, self.folder)
         try:
             kind = reader.record(entry.fields, cls, entry.word_span, entry.word)
         except Unreadable:
@@ -148,22 +156,22 @@ class _Checker:
         needs += [link.task for value in values_of(kind) for link in value.links]
         self.tasks[name] = Task(name, entry.word, kind, entry.span, tuple(dict.fromkeys(needs)))
 
-    def refer(self, node: Node, family: str, anonymous: str, entry: Entry) -> Ref | None:
+    def refer(self, node: Node, mark: Refers, anonymous: str, entry: Entry) -> Ref | None:
         """The part that a field names; one that is written in place becomes a part of its own first."""
         if isinstance(node, Scalar):
             name = entry.scope.resolve(node.text) if entry.scope is not None else node.text
-            if name in self.entries and family in ("", self.family(name)):
+            if name in self.entries and self.family(name) in (mark.family, mark.also):
                 return Ref(name, node.span)
-            if family and self.catalogue.load(family, node.text) is not None:
-                return self._in_place(Entry(anonymous, node.text, None, node.span, node.span, entry.scope), family)
-            self._unknown(node, name, family)
+            if name not in self.entries and self.catalogue.load(mark.family, node.text) is not None:
+                in_place = Entry(anonymous, node.text, None, node.span, node.span, entry.scope)
+                return self._in_place(in_place, mark.family)
+            self._unknown(node, name, mark)
             return None
-        if isinstance(node, MappingNode) and len(node.entries) == 1 and family:
+        if isinstance(node, MappingNode) and len(node.entries) == 1:
             (word, fields), (key,) = next(iter(node.entries.items())), node.keys.values()
-            return self._in_place(Entry(anonymous, word, fields, node.span, key.span, entry.scope), family)
-        self.found.error(
-            "entry-shape", f"a name, or one entry `{{word: {{fields}}}}`, stands here for a part of {family}", node.span
-        )
+            return self._in_place(Entry(anonymous, word, fields, node.span, key.span, entry.scope), mark.family)
+        message = f"a name, or one entry `{{word: {{fields}}}}`, stands here for a part of {mark}"
+        self.found.error("entry-shape", message, node.span)
         return None
 
     def _in_place(self, entry: Entry, family: str) -> Ref | None:
@@ -172,15 +180,15 @@ class _Checker:
         self.task(family, entry.name)
         return Ref(entry.name, entry.span) if entry.name in self.tasks else None
 
-    def _unknown(self, node: Scalar, name: str, family: str) -> None:
+    def _unknown(self, node: Scalar, name: str, mark: Refers) -> None:
+        if name in self.script.broken:
+            return  # it is reported where it stands
         if name in self.entries:
-            self.found.error("wrong-family", f"'{name}' is one of {self.family(name)}, not of {family}", node.span)
+            self.found.error("wrong-family", f"'{name}' is one of {self.family(name)}, not of {mark}", node.span)
             return
-        choices = [n for n in self.entries if family in ("", self.family(n))]
-        words = self.catalogue.words(family) if family else []
-        hint = suggestion(name, [*choices, *words])
-        what = f"of {family} " if family else ""
-        self.found.error("unknown-name", f"no part {what}is called '{name}'", node.span, help=hint)
+        choices = [n for n in self.entries if self.family(n) in (mark.family, mark.also)]
+        hint = suggestion(name, [*choices, *self.catalogue.words(mark.family)])
+        self.found.error("unknown-name", f"no part of {mark} is called '{name}'", node.span, help=hint)
 
 
 def values_of(part: Any) -> list[Value]:

@@ -6,13 +6,15 @@ from collections.abc import Mapping
 
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.check import check
+from sceneql.compiler.passes.circles import report_circles
 from sceneql.compiler.passes.expand import expand
 from sceneql.compiler.passes.islands import islands
 from sceneql.compiler.passes.prune import prune
 from sceneql.graph import SimulationGraph, Task
-from sceneql.kinds import Camera, Model, Object, Picture
+from sceneql.kinds import Camera, Clock, Exceeds, Model, Object, Output, Picture
 from sceneql.language.script import Script
 from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.span import Span
 
 
 def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, pruned: bool = True) -> SimulationGraph:
@@ -21,10 +23,13 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
     Raises ScriptError with all that is wrong, what is in ``found`` already included.
     """
     checked = check(script, catalogue, found)
+    report_circles(checked.tasks, found)
     tasks = expand(checked.tasks, catalogue)
     groups = islands(tasks, found)
     drawn = _drawn(tasks)
     cameras = _cameras(tasks)
+    clock = script.settings.get("clock")
+    _check_outputs(tasks, drawn, checked.settings.clock, None if clock is None else clock.span, found)
     found.raise_errors()
     order, needed_by, left_out = prune(tasks, groups, drawn, cameras)
     if not pruned:
@@ -66,6 +71,24 @@ def _drawn(tasks: Mapping[str, Task]) -> dict[str, tuple[str, ...]]:
             show = task.kind.show
             result[task.name] = tuple(ref.name for ref in show) if show else (*objects, *models)
     return result
+
+
+def _check_outputs(
+    tasks: Mapping[str, Task],
+    drawn: Mapping[str, tuple[str, ...]],
+    clock: Clock,
+    place: Span | None,
+    found: Diagnostics,
+) -> None:
+    """Refuse outputs of more instants than a run can have; warn of pictures of nothing."""
+    for task in tasks.values():
+        if isinstance(task.kind, Output):
+            try:
+                task.kind.times(clock)
+            except Exceeds as error:
+                found.error("limit-refused", f"{task.name}: {error}", task.span or place)
+            if not drawn.get(task.name, (task.name,)):
+                found.warning("nothing-drawn", f"there is nothing to draw in '{task.name}'", task.span)
 
 
 def _palette(tasks: Mapping[str, Task]) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
@@ -29,6 +29,8 @@ class Names:
     found: Diagnostics
     given: Mapping[str, Given]
     """What instances of templates give."""
+    broken: Collection[str] = ()
+    """Parts that are reported where they stand, and about which no more is said."""
     scope: Scope | None = None
     _bound: dict[str, Expr | None] = field(default_factory=dict)
     _open: list[str] = field(default_factory=list)
@@ -77,8 +79,8 @@ class Names:
             outputs = self.outputs_of(task)
             if outputs is not None:
                 return self._output(task, outputs, parts[size:], span)
-            if task in self.parts:
-                return None  # its word is unknown, which is reported there
+            if task in self.parts or task in self.broken:
+                return None  # it is reported there
         if head not in CONSTANTS or len(parts) > 1:
             self._unknown(parts, span)
         return None
@@ -109,6 +111,8 @@ class Names:
 
     def _unknown(self, parts: tuple[str, ...], span: Span) -> None:
         wanted = ".".join(parts)
+        if wanted in self.broken:
+            return
         parts_known = list(self.parts)
         if parts == ("t",):
             hint: str | None = "the time is written 'time'"

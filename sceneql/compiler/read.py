@@ -9,13 +9,29 @@ from __future__ import annotations
 import types
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
 from sceneql.compiler import paint, values
 from sceneql.compiler.names import Names
-from sceneql.kinds import Formula, Kind, Paint, Quantity, Ref, Refers, Symbols, Turn, Value, written_name
+from sceneql.compiler.paths import read_path
+from sceneql.kinds import (
+    Exceeds,
+    Formula,
+    Kind,
+    Paint,
+    Quantity,
+    Ref,
+    Refers,
+    SceneFile,
+    Symbols,
+    Turn,
+    Value,
+    written_name,
+)
+from sceneql.language.sections import empty
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence
 from sceneql.language.tree import written as plainly
@@ -35,10 +51,12 @@ class Reader:
 
     names: Names
     found: Diagnostics
-    refer: Callable[[Node, str, str], Ref | None]
-    """(node, family, the name that an entry in place would get)."""
+    refer: Callable[[Node, Refers, str], Ref | None]
+    """(node, what it may name, the name that an entry in place would get)."""
     owner: str
     """Name of the part whose fields these are."""
+    folder: Path
+    """The scene's."""
     symbols: tuple[str, ...] = ()
     """What the formulas of this kind may use besides defines."""
 
@@ -58,6 +76,10 @@ class Reader:
             known = [written_name(name) for name in cls.model_fields]
             for name in [name for name in written if name not in known]:
                 ok = False
+                if name[:1].isdecimal() and empty(written[name]):
+                    message = "a comma ends a value here; a decimal number is written with a point"
+                    self.found.error("decimal-comma", message, node.keys[name].span)
+                    continue
                 self.found.error(
                     "unknown-field",
                     f"{title} has no field '{name}'",
@@ -84,7 +106,9 @@ class Reader:
             return cls.model_validate(got)
         except ValidationError as error:
             for problem in error.errors():
-                self.found.error("invalid", _text(problem), _place(problem["loc"], node, span))
+                exceeds = isinstance(problem.get("ctx", {}).get("error"), Exceeds)
+                code = "limit-refused" if exceeds else "invalid"
+                self.found.error(code, _text(problem), _place(problem["loc"], node, span))
             raise Unreadable from None
 
     def field(self, node: Node, info: Any, name: str) -> Any:
@@ -112,11 +136,13 @@ class Reader:
             if isinstance(mark, Quantity):
                 return self._quantity(node, base, mark, what)
             if isinstance(mark, Paint):
-                return self._some(paint.read_color(node, self.names, self.found), node)
+                return self._some(paint.read_color(node, self.names, self.found))
             if isinstance(mark, Turn):
-                return self._some(paint.read_rotation(node, self.names, self.found), node)
+                return self._some(paint.read_rotation(node, self.names, self.found))
             if isinstance(mark, Refers):
-                return self._some(self.refer(node, mark.family, self.owner), node)
+                return self._some(self.refer(node, mark, self.owner))
+            if isinstance(mark, SceneFile):
+                return self._some(read_path(node, self.folder, what, self.found))
             if isinstance(mark, Symbols):
                 return self._formula(node, mark, what)
         origin, arms = get_origin(base), get_args(base)
@@ -147,7 +173,7 @@ class Reader:
     # --- one method a shape ---
 
     def _quantity(self, node: Node, base: Any, mark: Quantity, what: str) -> Any:
-        value = self._some(values.read_value(node, mark, what, self.names, self.found), node)
+        value = self._some(values.read_value(node, mark, what, self.names, self.found))
         if base is Value:
             return value
         if not value.constant:
@@ -159,8 +185,7 @@ class Reader:
 
     def _formula(self, node: Node, mark: Symbols, what: str) -> Formula:
         expr = self._some(
-            values.read_formula(node, self.symbols if mark.names is None else mark.names, what, self.names, self.found),
-            node,
+            values.read_formula(node, self.symbols if mark.names is None else mark.names, what, self.names, self.found)
         )
         return Formula(expr, node.span)
 
@@ -178,18 +203,24 @@ class Reader:
                 continue
             if not attempt.found.errors:
                 return value
-        return self.read(node, fitting[-1], what)
+        *others, last = fitting
+        if get_origin(last) is Literal and (several := [len(get_args(arm)) for arm in others if _is_fixed(arm)]):
+            return self._choice(node, get_args(last), what, f"{several[0]} values")
+        return self.read(node, last, what)
 
-    def _choice(self, node: Node, choices: tuple[Any, ...], what: str) -> Any:
+    def _choice(self, node: Node, choices: tuple[Any, ...], what: str, other: str = "") -> Any:
         text = node.text if isinstance(node, Scalar) else ""
         for choice in choices:
             if text == str(choice):
                 return choice
-        hint = suggestion(text, [str(c) for c in choices]) or "one of " + ", ".join(str(c) for c in choices)
+        every = ", ".join(str(c) for c in choices)
+        if other:
+            raise self._fail("unknown-choice", f"{what} is {other} or one of {every}, not '{text}'", node.span)
+        hint = suggestion(text, [str(c) for c in choices]) or f"one of {every}"
         raise self._fail("unknown-choice", f"{what} cannot be '{text}'", node.span, hint)
 
     def _list(self, node: Node, origin: Any, arms: tuple[Any, ...], what: str) -> Any:
-        fixed = origin is tuple and not (len(arms) == 2 and arms[1] is Ellipsis)
+        fixed = origin is tuple and arms[-1] is not Ellipsis
         if fixed and isinstance(node, Scalar):
             return tuple(self._spread(node, arms, what))
         items = node.items if isinstance(node, Sequence) else [node]
@@ -241,7 +272,7 @@ class Reader:
         raise self._fail("unknown-choice", f"{what} is yes or no, not '{text}'", node.span)
 
     def _number(self, node: Node, base: Any, what: str) -> Any:
-        value = self._some(values.read_value(node, values.PLAIN_NUMBER, what, self.names, self.found), node)
+        value = self._some(values.read_value(node, values.PLAIN_NUMBER, what, self.names, self.found))
         if not value.constant:
             raise self._fail("not-constant", f"{what} must be constant", node.span)
         number = value.number()
@@ -251,7 +282,7 @@ class Reader:
             raise self._fail("not-whole", f"{what} must be a whole number, not {number:g}", node.span)
         return int(number)
 
-    def _some(self, value: Any, node: Node) -> Any:
+    def _some(self, value: Any) -> Any:
         if value is None:
             raise Unreadable
         return value
@@ -267,6 +298,11 @@ def _unwrap(annotation: Any) -> tuple[Any, tuple[Any, ...]]:
         inner, more = _unwrap(base)
         return inner, (*marks, *more)
     return annotation, ()
+
+
+def _is_fixed(annotation: Any) -> bool:
+    """Whether a type is a tuple of a certain length."""
+    return get_origin(annotation) is tuple and get_args(annotation)[-1] is not Ellipsis
 
 
 def _could_be(annotation: Any, node: Node) -> bool:

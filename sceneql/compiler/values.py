@@ -274,6 +274,9 @@ def _fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnost
             span,
         )
         return False
+    if quantity.direction and Value(expr).constant and not any(_numbers(evaluate(expr, {}))):
+        found.error("out-of-range", f"{what} is a direction, so that it is not 0 0 0", span)
+        return False
     if quantity.needs_unit and _bare(expr):
         found.error("unit-needed", f"{what} needs a unit", span, help=f"write `{span.text} deg` or `{span.text} rad`")
         return False
@@ -336,8 +339,8 @@ def check_limits(
         for limit, bound in limits.items():
             holds, word = _LIMITS[limit]
             if not holds(number, bound):
-                unit = _unit(annotation)
-                found.error("out-of-range", f"{what} must be {word} {bound:g}{unit}, not {number:g}{unit}", span)
+                asked, given = (_told(one, annotation) for one in (bound, number))
+                found.error("out-of-range", f"{what} must be {word} {asked}, not {given}", span)
                 return
 
 
@@ -347,11 +350,19 @@ def _numbers(value: Any) -> list[float]:
     return [float(value)] if isinstance(value, int | float) and not isinstance(value, bool) else []
 
 
-def _unit(annotation: Any) -> str:
-    """The unit in which a field's range is told."""
-    for part in get_args(annotation):
-        if isinstance(part, Quantity) and part.dimension is not None and not part.dimension.plain:
-            return f" {part.dimension}"
-        if not isinstance(part, str | Quantity) and (unit := _unit(part)):
-            return unit
-    return ""
+def _told(number: float, annotation: Any) -> str:
+    """A number in SI with the unit in which a field's range is told."""
+    quantity = _quantity(annotation)
+    if quantity is None or quantity.dimension is None:
+        return f"{number:g}"
+    if quantity.needs_unit and quantity.dimension.plain:
+        return f"{math.degrees(number):g} deg"
+    return f"{number:g}" if quantity.dimension.plain else f"{number:g} {quantity.dimension}"
+
+
+def _quantity(annotation: Any) -> Quantity | None:
+    """The first quantity that a type names."""
+    parts = get_args(annotation)
+    marks = [part for part in parts if isinstance(part, Quantity)]
+    inner = (_quantity(part) for part in parts if not isinstance(part, str | Quantity))
+    return marks[0] if marks else next((found for found in inner if found is not None), None)

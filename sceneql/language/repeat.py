@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping as Table
 from dataclasses import dataclass
+from math import inf
 from typing import Final
 
 from sceneql.language.scope import Scope
@@ -56,13 +57,25 @@ def _whole(node: Node, scope: Scope | None, define: Table[str, Node], found: Dia
             value = define.get(name)
         else:
             value, scope = scope.fields[name], scope.outer
-    if not isinstance(value, Scalar) or value.kind != "integer" or not value.text.isdecimal():
+    number = _count(value) if isinstance(value, Scalar) else None
+    if number is None:
         help = "write a number, or the name of a define that is one"
         found.error("repeat-count", "a count is a whole number, 0 or more", node.span, help=help)
         return None
-    if len(value.text) > 9 or int(value.text) > MOST_COPIES:
-        message = f"{value.text[:20]} copies are more than {MOST_COPIES:,}"
+    if number > MOST_COPIES:
+        message = f"{number:,.0f} copies are more than {MOST_COPIES:,}"
         help = "a model such as `particles` holds many bodies in one part"
-        found.error("repeat-count", message, node.span, help=help)
+        found.error("limit-refused", message, node.span, help=help)
         return None
-    return int(value.text)
+    return int(number)
+
+
+def _count(value: Scalar) -> float | None:
+    """The number of a text such as ``5`` or ``1e3``; None where it is not whole, or below 0."""
+    if value.kind not in ("integer", "number") or len(value.text) > 40:
+        return None
+    try:
+        number = float(value.text)
+    except ValueError:  # hexadecimal, octal
+        return None
+    return number if number >= 0 and (number == inf or number.is_integer()) else None

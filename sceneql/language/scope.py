@@ -57,9 +57,11 @@ class Expanded:
     """Sections without templates or copies.
 
     ``gives`` holds the outputs of instances (``lantern.0.lit``); ``groups`` the names of all parts that stand for one
-    written name (``dust``: ``dust.0``, ``dust.1``, ...; ``front_left``: ``front_left.hip``, ...).
+    written name (``dust``: ``dust.0``, ``dust.1``, ...; ``front_left``: ``front_left.hip``, ...); ``broken`` those of
+    entries that were reported and left out.
     """
 
     sections: dict[str, dict[str, Entry]] = field(default_factory=dict)
     gives: dict[str, Given] = field(default_factory=dict)
     groups: dict[str, list[str]] = field(default_factory=dict)
+    broken: set[str] = field(default_factory=set)

@@ -32,7 +32,8 @@ class Script:
 
     ``sections`` holds the entries of each family in the order written, ``settings`` the other top-level values as
     nodes, ``defaults`` the fields by word (already filled into the entries), ``gives`` and ``groups`` what instances
-    give and which parts stand for one written name (see `Expanded`). ``hash`` is the SHA-256 of all texts and patches.
+    give and which parts stand for one written name, ``broken`` the names of entries that cannot be read (see
+    `Expanded`). ``hash`` is the SHA-256 of all texts and patches.
     """
 
     name: str
@@ -43,6 +44,7 @@ class Script:
     defaults: dict[str, Node]
     gives: dict[str, Given]
     groups: dict[str, list[str]]
+    broken: set[str]
     variants: tuple[str, ...]
     variant: str | None
     may_fail: bool
@@ -90,6 +92,7 @@ def read_script(
         defaults=dict(defaults.entries) if isinstance(defaults, Mapping) else {},
         gives=expanded.gives,
         groups=expanded.groups,
+        broken=expanded.broken,
         variants=variant_names(root),
         variant=variant,
         may_fail=_may_fail(root, variant),

@@ -100,6 +100,9 @@ class _Expander:
         for key in [key for key in root.entries if key in ("define", "parts", *self.families)]:
             node = root.entries[key]
             for name, written in node.keys.items() if isinstance(node, Mapping) else ():
+                if name == "time":
+                    message = "'time' is the time of the film's moments, and cannot name anything else"
+                    self.found.error("part-name", message, written.span)
                 if name in seen:
                     duplicate(name, seen[name], written, self.found)
                 else:
@@ -162,7 +165,10 @@ class _Expander:
             help = "a name is made of letters, digits and underscores, and begins with a letter"
             self.found.error("part-name", message, key.span, help=help)
             return None
-        return read_entry(f"'{name}'", node, self.found)
+        written = read_entry(f"'{name}'", node, self.found)
+        if written is None:
+            self.done.broken.add(place.front + name)
+        return written
 
     def copies(self, name: str, repeat: Node | None, place: _Place) -> Iterator[tuple[str, Scope | None]]:
         """The names in the whole script, and the scopes, of an entry's copies; without `repeat` it is just one."""

@@ -9,6 +9,19 @@ from typing import Literal
 
 from sceneql.quantities.span import Span
 
+LIMITS = frozenset(
+    {
+        "alias-expansion",
+        "expression-too-deep",
+        "expression-too-long",
+        "limit-refused",
+        "too-deep",
+        "too-large",
+        "too-many-parts",
+    }
+)
+"""Codes of errors that refuse what is too large, whether or not it would make sense."""
+
 
 @dataclass(frozen=True, slots=True)
 class Note:

@@ -11,6 +11,7 @@ from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Expr, Number, Type, Vector
 from sceneql.quantities.operations import OPERATIONS
 from sceneql.quantities.span import Span
+from sceneql.quantities.unit_names import sign_of
 from sceneql.quantities.units import Unit, scan_unit, starts_unit
 
 NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
@@ -39,6 +40,8 @@ def read_unit(text: str, at: int, span: Span) -> tuple[Unit | None, int]:
     except ScriptError as error:
         (found,) = error.diagnostics
         if found.code != "unknown-unit" or word is None:
+            raise
+        if sign_of(word.group()) is not None:
             raise
         hint = f"for a product write `*{word.group()[:40]}`"
         raise ScriptError([replace(found, help=hint if found.help is None else f"{found.help}; {hint}")]) from None

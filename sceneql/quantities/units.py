@@ -14,6 +14,7 @@ from functools import cache, lru_cache
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError, suggestion
 from sceneql.quantities.dimension import PLAIN, TEMPERATURE, Dimension
 from sceneql.quantities.span import Span
+from sceneql.quantities.unit_names import sign_of
 from sceneql.quantities.unit_table import KNOWN_UNITS, OFFSET_UNITS, QUANTITIES, UNITS
 
 __all__ = ["KNOWN_UNITS", "Unit", "describe", "format_quantity", "parse_unit", "scan_unit", "unit_of"]
@@ -166,7 +167,8 @@ def _unknown(name: str, span: Span | None, at: int) -> ScriptError:
         hint: str | None = f"write `{written}`"
     else:
         same = [known for known in KNOWN_UNITS if known.lower() == name.lower()]
-        hint = f"did you mean '{same[0]}'?" if same else suggestion(name, KNOWN_UNITS)
+        meant = sign_of(name) or (same[0] if same else None)
+        hint = f"did you mean '{meant}'?" if meant in KNOWN_UNITS else suggestion(name, KNOWN_UNITS)
     return _error("unknown-unit", f"there is no unit '{name}'", span, at, at + max(1, len(name)), hint)
 
 

@@ -9,8 +9,9 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 
 from sceneql.compiler.catalogue import Catalogue
-from sceneql.kinds import REQUIRED, Formula, Kind, Paint, Quantity, Ref, Refers, Turn, Value, written_name
-from sceneql.quantities.diagnostic import Diagnostic, ScriptError, suggestion
+from sceneql.failure import Unsuitable
+from sceneql.kinds import REQUIRED, Formula, Kind, Paint, Quantity, Ref, Refers, SceneFile, Turn, Value, written_name
+from sceneql.quantities.diagnostic import suggestion
 
 
 def listing(catalogue: Catalogue) -> str:
@@ -25,11 +26,12 @@ def listing(catalogue: Catalogue) -> str:
 
 
 def manual(catalogue: Catalogue, word: str) -> str:
-    """The manual of a word (of every family that has it). Raises ScriptError if there is none."""
+    """The manual of a word (of every family that has it). Raises Unsuitable if there is none."""
     classes = [(family, cls) for family in catalogue.families if (cls := catalogue.load(family, word)) is not None]
     if not classes:
         every = [w for family in catalogue.families for w in catalogue.words(family)]
-        raise ScriptError([Diagnostic("unknown-word", f"there is no word '{word}'", None, suggestion(word, every))])
+        hint = suggestion(word, every)
+        raise Unsuitable(f"there is no word '{word}'" + (f"; {hint}" if hint else ""))
     return "\n\n".join(_page(family, word, cls) for family, cls in classes)
 
 
@@ -92,7 +94,9 @@ def type_text(annotation: Any) -> str:
         if isinstance(mark, Turn):
             return "rotation"
         if isinstance(mark, Refers):
-            return f"one of {mark.family}" if mark.family else "a part"
+            return f"one of {mark}"
+        if isinstance(mark, SceneFile):
+            return "path of a file"
     origin, arms = get_origin(base), get_args(base)
     if origin in (Union, types.UnionType):
         return " or ".join(type_text(arm) for arm in arms if arm is not type(None))

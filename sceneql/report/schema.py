@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 
 from sceneql.compiler.catalogue import Catalogue
-from sceneql.kinds import Kind, Refers, Settings, written_name
+from sceneql.kinds import Kind, Refers, SceneFile, Settings, written_name
 from sceneql.report.manual import type_text
 
 TEXT: dict[str, Any] = {"type": ["string", "number", "integer"]}
@@ -78,7 +78,9 @@ def _type(annotation: Any, catalogue: Catalogue) -> dict[str, Any]:
     if get_origin(annotation) is Annotated:
         base, *marks = get_args(annotation)
         for mark in marks:
-            if isinstance(mark, Refers) and mark.family:
+            if isinstance(mark, SceneFile):
+                return {"type": "string"}
+            if isinstance(mark, Refers):
                 return {"anyOf": [{"type": "string"}, {"$ref": f"#/$defs/{mark.family}"}]}
         return {"type": ["string", "number", "integer", "array", "object"]}
     origin, arms = get_origin(base), get_args(base)

@@ -7,7 +7,7 @@ from typing import Any, Literal
 from pydantic import model_validator
 
 from sceneql.frame import View
-from sceneql.kinds import Camera, Direction, FixedScalar, Length, Moment, PartRef, Position, field
+from sceneql.kinds import Camera, Direction, DrawnRef, FixedScalar, Length, Moment, Position, field
 from sceneql.simulation import framing
 from sceneql.simulation.present import positive
 from sceneql.simulation.solid import triple
@@ -24,8 +24,8 @@ class Orthographic(Camera):
     look_along: Literal["x", "-x", "y", "-y", "z", "-z"] | Direction = field("The direction that it looks in.", "-z")
     height: Length | None = field("Height of what it shows; by default as much as `fit` needs.", None, above=0)
     look_at: Position | None = field("The point in the middle of the picture; by default what it shows.", None)
-    follow: PartRef | None = field("A part that it keeps in the middle.", None)
-    fit: tuple[PartRef, ...] | None = field("The parts that must be in the picture over the whole film.", None)
+    follow: DrawnRef | None = field("A part that it keeps in the middle.", None)
+    fit: tuple[DrawnRef, ...] | None = field("The parts that must be in the picture over the whole film.", None)
     margin: FixedScalar = field("With `fit`: part of half the picture that is left free.", "0.08", at_least=0, below=1)
     up: Direction = field("What is upwards in the picture; seen from above or below, -z is.", "0 1 0")
 

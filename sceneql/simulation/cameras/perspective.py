@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import model_validator
 
 from sceneql.frame import View
-from sceneql.kinds import Angle, Camera, Direction, FixedScalar, Moment, PartRef, Position, field
+from sceneql.kinds import Angle, Camera, Direction, DrawnRef, FixedScalar, Moment, Position, field
 from sceneql.simulation import framing
 from sceneql.simulation.solid import triple
 
@@ -22,9 +22,9 @@ class Perspective(Camera):
 
     position: Position | None = field("Where it stands.", None)
     look_at: Position | None = field("The point in the middle of the picture; by default what it shows.", None)
-    follow: PartRef | None = field("A part that it moves with, and looks at.", None)
+    follow: DrawnRef | None = field("A part that it moves with, and looks at.", None)
     from_: Position = field("Its place as seen from what it follows.", "0 1 4 m")
-    fit: tuple[PartRef, ...] | None = field("The parts that must be in the picture over the whole film.", None)
+    fit: tuple[DrawnRef, ...] | None = field("The parts that must be in the picture over the whole film.", None)
     direction: Direction = field("With `fit`: from what it shows towards the camera.", "0.5 0.35 1")
     margin: FixedScalar = field("With `fit`: part of half the picture that is left free.", "0.08", at_least=0, below=1)
     field_of_view: Angle = field("Vertical field of view.", "40 deg", above=0, below=math.pi)

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from sceneql.frame import View
-from sceneql.kinds import Angle, Camera, FixedScalar, FixedTime, Length, Moment, PartRef, Position, field
+from sceneql.kinds import Angle, Camera, DrawnRef, FixedScalar, FixedTime, Length, Moment, Position, field
 from sceneql.simulation import framing
 from sceneql.simulation.present import positive
 from sceneql.simulation.solid import triple
@@ -20,7 +20,7 @@ class Turntable(Camera):
     Without `distance` it stands as near as it can with that in the picture all the way round.
     """
 
-    around: PartRef | None = field("The part it goes around; by default all that is drawn.", None)
+    around: DrawnRef | None = field("The part it goes around; by default all that is drawn.", None)
     look_at: Position | None = field("The point in the middle; by default that of what it goes around.", None)
     seconds: FixedTime = field("Time of a turn.", "8 s", above=0)
     start: Angle = field("Where it begins, from +z towards +x.", "30 deg")

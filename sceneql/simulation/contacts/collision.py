@@ -7,10 +7,10 @@ from typing import Any, ClassVar, Literal
 
 from sceneql.kinds import (
     Contact,
+    DrawnRef,
     FixedLength,
     Gives,
     Object,
-    PartRef,
     Ref,
     Scalar,
     field,
@@ -48,7 +48,7 @@ class Collision(Contact):
         "rest.time": Gives(quantity_type(dim.TIME), "When the bouncing came to its end; NaN before."),
     }
 
-    between: tuple[PartRef, ...] | None = field(
+    between: tuple[DrawnRef, ...] | None = field(
         "What collides: models and objects, as `[ball, floor]`; by default all models with masses and every object "
         "that can be collided with.",
         None,

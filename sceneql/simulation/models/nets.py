@@ -13,6 +13,7 @@ from pydantic import model_validator
 
 from sceneql.kinds import (
     Axis,
+    Exceeds,
     FixedDamping,
     FixedLength,
     FixedMass,
@@ -99,7 +100,7 @@ class Spring(Record):
 
 def _bounded(count: int) -> None:
     if count > MOST_MASSES:
-        raise ValueError(f"{count:.3g} masses: at most {MOST_MASSES:,} are possible")
+        raise Exceeds(f"{count:.3g} masses: at most {MOST_MASSES:,} are possible")
 
 
 class Lattice(Record):

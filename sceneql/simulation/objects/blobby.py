@@ -45,6 +45,8 @@ class Blobby(Object):
         for name in ("radius", "weight"):
             if len(getattr(self, name).expr.type.shape) > 1:
                 raise ValueError(f"{name} is one value, or a list with one for each point")
+        if self.points.expr.type.shape[0] == 0:
+            raise ValueError("a skeleton has at least one point")
         if any(k < 0 for pair in self.segments for k in pair):
             raise ValueError("points are counted from 0")
         return self

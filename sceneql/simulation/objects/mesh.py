@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from sceneql.frame import Mesh as Triangles
 from sceneql.frame import Shape
-from sceneql.kinds import FixedAngle, Moment, field
+from sceneql.kinds import File, FixedAngle, Moment, field
 from sceneql.simulation.placement import Placed, Scale, affine, apply, compose
 
 if TYPE_CHECKING:
@@ -23,8 +23,7 @@ class Mesh(Placed):
 
     imports: ClassVar[tuple[str, ...]] = ("trimesh",)
 
-    # The checker hands over the path of a file that lies inside the scene's folder.
-    file: str = field("Path of the OBJ file, inside the scene's folder.")
+    file: File = field("Path of the OBJ file, inside the scene's folder.")
     scale: Scale = field("Factor on the file's numbers, which are taken as meters, or three.", "1", above=0)
     crease: FixedAngle = field("Edges that turn by more stay sharp.", "40 deg", at_least=0)
 

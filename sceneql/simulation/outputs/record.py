@@ -8,7 +8,7 @@ from io import StringIO
 from typing import Any, Literal
 
 from sceneql.files import beside, whole
-from sceneql.kinds import Clock, FixedTime, Measured, Moment, Output, Sink, Tools, field
+from sceneql.kinds import Clock, FixedTime, Measured, Moment, Output, Sink, Tools, bounded_moments, field
 
 
 class Record(Output):
@@ -22,7 +22,7 @@ class Record(Output):
         """The instants [s] that it wants."""
         if isinstance(self.every, str):
             return clock.frames(clock.fps)
-        count = int(clock.end / self.every * (1 + 1e-12)) + 1
+        count = int(bounded_moments(clock.end / self.every * (1 + 1e-12))) + 1
         return [min(k * self.every, clock.end) for k in range(count)]
 
     def open(self, tools: Tools) -> Sink:
@@ -39,7 +39,7 @@ class _Table:
         self.rows: list[list[Any]] = []
 
     def take(self, moment: Moment) -> None:
-        self.rows.append([moment.time, *(moment.at(value) for value in self.record.of)])
+        self.rows.append([moment.time, *(moment.measure(value) for value in self.record.of)])
 
     def close(self) -> Iterable[Any]:
         return [self._write(self.tools.path(self.record.format))]

@@ -1,0 +1,61 @@
+"""Values and objects that need themselves: refused before anything runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from sceneql.compiler.check import values_of
+from sceneql.graph import Task
+from sceneql.kinds import Model, Object
+from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.expression import Link
+from sceneql.quantities.span import Span
+
+Place = tuple[str, str]
+"""A part and one of its fields or outputs; "" is the part as a whole."""
+
+
+def report_circles(tasks: Mapping[str, Task], found: Diagnostics) -> None:
+    """Report links, and objects that hold objects, that lead back to where they start.
+
+    The outputs of a solved model come from its state: no circle goes through one.
+    """
+    done: set[Place] = set()
+    for task in tasks.values():
+        starts = [(task.name, "")]
+        if isinstance(task.kind, Object):
+            starts += [(task.name, field) for field in type(task.kind).model_fields]
+        for start in starts:
+            _walk(start, tasks, done, found)
+
+
+def _walk(start: Place, tasks: Mapping[str, Task], done: set[Place], found: Diagnostics) -> None:
+    """Depth first, without recursion: a chain of links may be long."""
+    path: list[Place] = []
+    stack: list[tuple[Place, Span | None, bool]] = [(start, None, False)]
+    while stack:
+        place, span, leaving = stack.pop()
+        if leaving:
+            path.pop()
+            done.add(place)
+        elif place in path:
+            circle = " -> ".join(".".join(part for part in one if part) for one in [*path[path.index(place) :], place])
+            found.error("circular-link", f"this needs itself: {circle}", span)
+        elif place not in done:
+            path.append(place)
+            stack.append((place, span, True))
+            stack += [(other, where, False) for other, where in _needs(place, tasks)]
+
+
+def _needs(place: Place, tasks: Mapping[str, Task]) -> Iterable[tuple[Place, Span | None]]:
+    task = tasks[place[0]]
+    kind = task.kind
+    if isinstance(kind, Model) and not kind.kinematic:
+        return []
+    if isinstance(kind, Object):
+        if not place[1]:
+            return [((ref.name, ""), ref.span) for ref in kind.members()]
+        links: list[Link] = [link for value in values_of(getattr(kind, place[1], None)) for link in value.links]
+    else:
+        links = [link for value in values_of(kind) for link in value.links]
+    return [((link.task, link.output), link.span) for link in links]

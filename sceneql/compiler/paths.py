@@ -1,0 +1,30 @@
+"""Paths of files that a script names: below the scene's folder, and there."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from sceneql.language.tree import Node, Scalar
+from sceneql.quantities.diagnostic import Diagnostics
+
+
+def read_path(node: Node, folder: Path, what: str, found: Diagnostics) -> str | None:
+    """The path of a file below the scene's folder, links followed, or None after reporting what is wrong."""
+    if not isinstance(node, Scalar) or not node.text.strip():
+        found.error("wrong-shape", f"{what} is the path of a file", node.span)
+        return None
+    path = folder / node.text
+    try:
+        inside = path.resolve().is_relative_to(folder.resolve())
+        there = inside and path.is_file()
+    except (OSError, ValueError):  # a name that no file can have
+        inside, there = True, False
+    if not inside:
+        help = "copy it beside the scene, and name it by a path below it"
+        found.error("file-outside", f"{what} stays inside the scene's folder", node.span, help=help)
+        return None
+    if not there:
+        help = f"it is looked for at {path}"
+        found.error("file-missing", f"there is no file '{node.text}'", node.span, help=help)
+        return None
+    return str(path)
