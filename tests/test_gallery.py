@@ -1,0 +1,64 @@
+"""Posters are compared by bytes, then by difference; numbers are held to what scripts say."""
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from sceneql import pipeline
+from sceneql.report.expect import outcomes
+from sceneql.report.gallery import compare
+
+SCENE = """
+models:
+  spring:
+    mass_spring:
+      masses: {wall: {position: 0 0 0 m, fixed: yes}, bob: {position: 1.5 0 0 m, mass: 1 kg}}
+      springs: [{between: [wall, bob], rest: 1 m, stiffness: 100 N/m}]
+solvers: {main: {dopri5: {tolerance: 1e-10}}}
+clock: {end: 2 s}
+outputs: {data: {record: {of: [spring.bob.position]}}}
+expect:
+  right: {of: final(spring.bob.position.x), value: 1 m + 0.5 m*cos(20), tolerance: 1e-7, because: exact}
+  wrong: {of: final(spring.bob.position.x), value: 1 m, tolerance: 1e-7, because: a mistake}
+  instant: {of: "at(spring.bob.position.x, 0.123 s)", value: 1 m + 0.5 m*cos(1.23), tolerance: 1e-7, because: exact}
+  drift: {of: max(abs(relative_drift(spring.energy))), below: 1e-7, because: conservation}
+  moves: {of: max(spring.bob.position.x), below: 1.2 m, because: a mistake}
+"""
+
+
+def test_expectations_hold_or_do_not(tmp_path):
+    path = tmp_path / "spring.yaml"
+    path.write_text(SCENE)
+    found = {outcome.name: outcome for outcome in outcomes(pipeline.load(path))}
+    assert {name for name, outcome in found.items() if outcome.holds} == {"right", "instant", "drift"}
+    assert str(found["wrong"]).startswith("DIFFERS")
+    assert "exact" in str(found["right"])
+
+
+@pytest.fixture
+def picture():
+    y, x = np.mgrid[0:90, 0:160]
+    return np.stack([x, y, x + y], axis=-1).astype(np.uint8)
+
+
+def test_same_bytes_and_noise_of_one_level_pass(tmp_path, picture):
+    kept = tmp_path / "kept.png"
+    Image.fromarray(picture).save(kept)
+    assert compare(picture, kept) == ("ok, the same bytes", True)
+    off = picture.copy()
+    off[::7, ::5, 1] += 1
+    verdict, same = compare(off, kept)
+    assert same
+    assert verdict.startswith("ok, nearly")
+
+
+def test_local_damage_another_size_and_no_poster_do_not(tmp_path, picture):
+    kept = tmp_path / "kept.png"
+    Image.fromarray(picture).save(kept)
+    damaged = picture.copy()
+    damaged[40:44, 60:64] = 255
+    assert not compare(damaged, kept)[1]
+    brighter = (255 * (picture / 255.0) ** 0.8).astype(np.uint8)
+    assert not compare(brighter, kept)[1]
+    assert not compare(picture[:80], kept)[1]
+    assert not compare(picture, tmp_path / "none.png")[1]
