@@ -55,6 +55,9 @@ def cli() -> None:
 
 def main() -> None:
     """The entry point of the program: exceptions become messages and exit codes."""
+    import os
+
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # looking for them costs more than reading a scene
     try:
         code = cli.main(prog_name="sceneql", standalone_mode=False)
     except click.exceptions.Abort as error:  # click's for KeyboardInterrupt

@@ -438,6 +438,10 @@ class Solver(Kind):
 
     on: tuple[ModelRef, ...] | None = field("The models it marches; by default all.", None)
 
+    def choice(self) -> str:
+        """What it chose to do and why, where it chooses a method by itself."""
+        return ""
+
     def stepper(self) -> Stepper:
         """Its compiled step and control."""
         raise NotImplementedError
@@ -454,6 +458,10 @@ class Camera(Kind):
     """Where the film is seen from."""
 
     family: ClassVar[str] = "cameras"
+
+    def looks_ahead(self) -> bool:
+        """Whether it frames what is drawn over the whole film, so that the physics runs once ahead of it."""
+        return True
 
     def view(self, size: tuple[int, int], moment: Moment) -> View:
         """The view of this instant."""

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from sceneql.compiler.catalogue import Catalogue
-from sceneql.compiler.check import check
+from sceneql.compiler.check import check, values_of
 from sceneql.compiler.passes.circles import report_circles
 from sceneql.compiler.passes.expand import expand
 from sceneql.compiler.passes.islands import islands
@@ -32,6 +33,7 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
     _check_outputs(tasks, drawn, checked.settings.clock, None if clock is None else clock.span, found)
     found.raise_errors()
     order, needed_by, left_out = prune(tasks, groups, drawn, cameras)
+    expected = {link.task for value in values_of(checked.settings.expect) for link in value.links}
     if not pruned:
         order = {**order, **{name: task for name, task in tasks.items() if name not in order}}
     return SimulationGraph(
@@ -43,7 +45,9 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
         drawn=drawn,
         cameras=cameras,
         palette=_palette(tasks),
-        left_out=left_out,
+        left_out=tuple(
+            replace(part, reason="only `expect` measures it") if part.name in expected else part for part in left_out
+        ),
         warnings=found.warnings,
         script_hash=script.hash,
     )
@@ -63,7 +67,9 @@ def _drawn(tasks: Mapping[str, Task]) -> dict[str, tuple[str, ...]]:
                 shown.add(need)
                 stack.append(need)
     models = [
-        t.name for t in tasks.values() if isinstance(t.kind, Model) and not t.kind.kinematic and t.name not in shown
+        t.name
+        for t in tasks.values()
+        if isinstance(t.kind, Model) and type(t.kind).lower is not Model.lower and t.name not in shown
     ]
     result = {}
     for task in tasks.values():

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from sceneql.compiler.catalogue import ROOT, Catalogue
 from sceneql.graph import SimulationGraph
-from sceneql.kinds import Output
+from sceneql.kinds import Camera, Output
 
 if TYPE_CHECKING:
     from sceneql.simulation.run import IslandRun
@@ -38,6 +38,7 @@ def explain(graph: SimulationGraph) -> dict[str, Any]:
             }
             for name, task in graph.tasks.items()
         ],
+        "ahead": [name for name in dict.fromkeys(graph.cameras.values()) if _looks_ahead(graph, name)],
         "islands": _islands(graph),
         "left_out": [{"name": part.name, "word": part.word, "why": part.reason} for part in graph.left_out],
         "avoided": {
@@ -46,6 +47,12 @@ def explain(graph: SimulationGraph) -> dict[str, Any]:
             "libraries": sorted(libraries - needed),
         },
     }
+
+
+def _looks_ahead(graph: SimulationGraph, camera: str) -> bool:
+    """Whether a camera makes the physics run once ahead of the film."""
+    task = graph.tasks.get(camera)
+    return bool(graph.islands) and task is not None and cast(Camera, task.kind).looks_ahead()
 
 
 def _kernels(words: set[tuple[str, str]]) -> set[str]:
@@ -72,10 +79,11 @@ def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
         "forces": sorted({force for force, _ in island.forces}),
         "contacts": sorted({contact for contact, _, _ in island.contacts}),
         "contact_mode": run.assembly.contact_mode,
+        "contact_why": _contact_why(graph, run),
         "states": len(run.march.system.y),
         "solver": graph.tasks[island.solver].word,
         "solver_name": island.solver,
-        "why": island.reason,
+        "why": "; ".join(filter(None, (island.reason, run.solver.choice()))),
         "order": stepper.order,
         "adaptive": stepper.adaptive,
         "step": None if stepper.adaptive else stepper.first_step,
@@ -83,6 +91,14 @@ def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
         "step_bound": bound.step if math.isfinite(bound.step) else None,
         "bound_text": bound.text,
     }
+
+
+def _contact_why(graph: SimulationGraph, run: IslandRun) -> str:
+    """Why its contacts work in this mode."""
+    kinds = [graph.tasks[contact].kind for contact, _, _ in run.island.contacts]
+    if all(getattr(kind, "mode", "auto") == "auto" for kind in kinds):
+        return f"chosen for {run.assembly.body_count()} masses"
+    return "asked for by the script"
 
 
 def text(plan: dict[str, Any]) -> str:
@@ -99,10 +115,16 @@ def text(plan: dict[str, Any]) -> str:
         if island["forces"]:
             lines.append(f"  forces: {', '.join(island['forces'])}")
         if island["contacts"]:
-            lines.append(f"  contacts: {', '.join(island['contacts'])}, {island['contact_mode']}")
-        control = f"tolerance {island['tolerance']:g}" if island["adaptive"] else f"step {island['step']:g} s"
+            lines.append(
+                f"  contacts: {', '.join(island['contacts'])}, {island['contact_mode']}: {island['contact_why']}"
+            )
+        control = (
+            f"steps by the tolerance {island['tolerance']:g}" if island["adaptive"] else f"step {island['step']:g} s"
+        )
         lines.append(f"  solver: {island['solver']} of order {island['order']}, {control}; {island['why']}")
         lines.append(f"  stability: {island['bound_text']}")
+    if plan["ahead"]:
+        lines += ["", f"the physics runs once ahead of the film: {', '.join(plan['ahead'])} frames all of it"]
     if plan["left_out"]:
         lines += ["", "left out:"]
         lines += [f"  {part['name']} ({part['word']}): {part['why']}" for part in plan["left_out"]]

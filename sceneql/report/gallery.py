@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from sceneql import pipeline
+from sceneql.failure import Unsuitable
 from sceneql.files import whole
 from sceneql.graph import SimulationGraph
 from sceneql.kinds import Picture
@@ -27,7 +28,10 @@ def scenes_of(scenes: tuple[Path, ...]) -> list[Path]:
 def poster(graph: SimulationGraph) -> Any:
     """The gallery's picture (h, w, 3) uint8 of the first output that draws."""
     settings = graph.settings.gallery
-    name, task = next((name, task) for name, task in graph.tasks.items() if isinstance(task.kind, Picture))
+    pictures = [(name, task) for name, task in graph.tasks.items() if isinstance(task.kind, Picture)]
+    if not pictures:
+        raise Unsuitable(f"{graph.name} makes no picture, so there is nothing for a gallery to keep")
+    name, task = pictures[0]
     small = task.kind.model_copy(update={"size": settings.size})
     tools = pipeline.Tools(graph, name, pipeline.Report(), Path())
     (moment,) = pipeline.simulate(graph, [min(settings.time, graph.settings.clock.end)])
@@ -36,9 +40,9 @@ def poster(graph: SimulationGraph) -> Any:
 
 def numbers(scene: Path) -> list[Outcome]:
     """What the scene's expectations measure, each in its own variant."""
-    graph = pipeline.load(scene)
-    variants = dict.fromkeys(expect.variant for expect in graph.settings.expect.values())
-    return [found for variant in variants for found in outcomes(pipeline.load(scene, variant=variant), variant)]
+    variants = dict.fromkeys(expect.variant for expect in pipeline.load(scene).settings.expect.values())
+    graphs = ((pipeline.load(scene, variant=variant, pruned=False), variant) for variant in variants)
+    return [found for graph, variant in graphs for found in outcomes(graph, variant)]
 
 
 def check(scenes: tuple[Path, ...], folder: Path) -> tuple[list[str], bool]:

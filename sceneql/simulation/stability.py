@@ -52,7 +52,7 @@ def stability(march: March, solver: Solver) -> Stability:
     system, stepper = march.system, march.stepper
     modes = modes_of(march)
     if modes is None:
-        return Stability(math.inf, 1.0, 0.0, "", None, "any step is stable: no force depends on the state")
+        return Stability(math.inf, 1.0, 0.0, "", None, "any step is stable: at the start no rate depends on the state")
     fastest = modes.fastest
     blocks = [_block(value / fastest) for value in modes.values]
     reduced = _Reduced(solver, blocks)

@@ -36,6 +36,10 @@ class Perspective(Camera):
             raise ValueError("a camera that follows takes its place from `from`, not from `position` or `fit`")
         return self
 
+    def looks_ahead(self) -> bool:
+        """Whether its place or its aim is left to what is drawn."""
+        return self.follow is None and (self.fit is not None or self.position is None or self.look_at is None)
+
     def view(self, size: tuple[int, int], moment: Moment) -> View:
         """The view of this instant. Raises ValueError where it would look at its own position."""
         half = math.tan(0.5 * float(moment.at(self.field_of_view)))

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
+
+from pydantic import field_validator
 
 from sceneql.frame import Mesh as Triangles
 from sceneql.frame import Shape
-from sceneql.kinds import File, FixedAngle, Moment, field
+from sceneql.kinds import Exceeds, File, FixedAngle, Moment, field
+from sceneql.simulation.mesh_file import LARGEST_FILE, Loaded, load
 from sceneql.simulation.placement import Placed, Scale, affine, apply, compose
 
 if TYPE_CHECKING:
@@ -27,25 +31,36 @@ class Mesh(Placed):
     scale: Scale = field("Factor on the file's numbers, which are taken as meters, or three.", "1", above=0)
     crease: FixedAngle = field("Edges that turn by more stay sharp.", "40 deg", at_least=0)
 
+    @field_validator("file")
+    @classmethod
+    def _is_no_giant(cls, file: str) -> str:
+        size = Path(file).stat().st_size
+        if size > LARGEST_FILE:
+            raise Exceeds(f"{file} has {size} bytes; a mesh may have {LARGEST_FILE}")
+        return file
+
+    def _load(self) -> Loaded:
+        """The file's triangles. Raises ValueError for a file that is no mesh."""
+        try:
+            return load(self.file, self.crease)
+        except OSError as error:
+            raise ValueError(str(error)) from error
+
     def local(self, moment: Moment) -> Floats:
         """(3, 4) map from the file's coordinates to its parent's."""
         return affine(moment.at(self.position), moment.at(self.rotation), moment.at(self.scale))
 
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
         """The box around its vertices."""
-        from sceneql.simulation.mesh_file import load
-
-        vertices = apply(compose(place, self.local(moment)), load(self.file, self.crease).vertices)
+        vertices = apply(compose(place, self.local(moment)), self._load().vertices)
         return vertices.min(axis=0), vertices.max(axis=0)
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
-        """Its triangles in the world. Raises OSError and LimitRefused as the file's loading does."""
+        """Its triangles in the world. Raises ValueError for a file that is no mesh, LimitRefused for too many."""
         import numpy as np
 
-        from sceneql.simulation.mesh_file import load
-
         whole = compose(place, self.local(moment))
-        loaded = load(self.file, self.crease)
+        loaded = self._load()
         triangles = loaded.triangles if np.linalg.det(whole[:, :3]) > 0 else loaded.triangles[:, ::-1].copy()
         normals = loaded.normals @ np.linalg.inv(whole[:, :3])
         normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)

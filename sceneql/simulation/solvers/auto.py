@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import FixedScalar, Solver, field
 from sceneql.simulation.tableau import DORMAND_PRINCE
@@ -18,9 +18,11 @@ class Auto(Solver):
     Source: Dormand & Prince (1980); see the word dopri5.
     """
 
-    reason: ClassVar[str] = "dopri5: its steps follow the tolerance, whatever the stiffness of the scene"
-
     tolerance: FixedScalar = field("Relative error of a step.", "1e-6", at_least=1e-14, below=1)
+
+    def choice(self) -> str:
+        """Its one choice so far."""
+        return "it takes dopri5, whose steps follow the tolerance in stiff scenes too"
 
     def stepper(self) -> Stepper:
         """That of dopri5."""
