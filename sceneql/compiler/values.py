@@ -31,6 +31,7 @@ from sceneql.quantities.operations import CONSTANTS
 from sceneql.quantities.parser import parse_expression, parse_value
 from sceneql.quantities.printing import describe
 from sceneql.quantities.span import Span
+from sceneql.quantities.units import unit_of
 
 PLAIN_NUMBER = Quantity(PLAIN)
 CURVES = ("step", "linear", "smooth", "cubic")
@@ -357,7 +358,7 @@ def _told(number: float, annotation: Any) -> str:
         return f"{number:g}"
     if quantity.needs_unit and quantity.dimension.plain:
         return f"{math.degrees(number):g} deg"
-    return f"{number:g}" if quantity.dimension.plain else f"{number:g} {quantity.dimension}"
+    return f"{number:g}" if quantity.dimension.plain else f"{number:g} {unit_of(quantity.dimension)}"
 
 
 def _quantity(annotation: Any) -> Quantity | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 import types
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
@@ -10,8 +11,22 @@ from pydantic import BaseModel
 
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.failure import Unsuitable
-from sceneql.kinds import REQUIRED, Formula, Kind, Paint, Quantity, Ref, Refers, SceneFile, Turn, Value, written_name
+from sceneql.kinds import (
+    REQUIRED,
+    Formula,
+    Kind,
+    Object,
+    Paint,
+    Quantity,
+    Ref,
+    Refers,
+    SceneFile,
+    Turn,
+    Value,
+    written_name,
+)
 from sceneql.quantities.diagnostic import suggestion
+from sceneql.quantities.units import unit_of
 
 
 def listing(catalogue: Catalogue) -> str:
@@ -27,7 +42,8 @@ def listing(catalogue: Catalogue) -> str:
 
 def manual(catalogue: Catalogue, word: str) -> str:
     """The manual of a word (of every family that has it). Raises Unsuitable if there is none."""
-    classes = [(family, cls) for family in catalogue.families if (cls := catalogue.load(family, word)) is not None]
+    families = [family for family in catalogue.families if word in catalogue.words(family)]
+    classes = [(family, cls) for family in families if (cls := catalogue.load(family, word)) is not None]
     if not classes:
         every = [w for family in catalogue.families for w in catalogue.words(family)]
         hint = suggestion(word, every)
@@ -36,13 +52,16 @@ def manual(catalogue: Catalogue, word: str) -> str:
 
 
 def _page(family: str, word: str, cls: type[Kind]) -> str:
-    lines = [f"{word} ({family})", "", inspect.cleandoc(cls.__doc__ or ""), "", "fields:"]
+    also = f"; may also stand under {cls.also_under}" if cls.also_under else ""
+    lines = [f"{word} ({family}{also})", "", inspect.cleandoc(cls.__doc__ or ""), "", "fields:"]
     lines += _fields(cls, "  ")
     if cls.gives:
         lines += ["", "gives:"]
         for name, gives in cls.gives.items():
-            unit = "" if gives.type.dimension is None else f" [{gives.type.dimension}]"
+            unit = "" if gives.type.dimension is None else f" [{unit_of(gives.type.dimension)}]"
             lines.append(f"  {name}{_shape(gives.type.shape)}{unit}: {gives.doc}")
+    if issubclass(cls, Object):
+        lines += ["", "Quantities among its fields are outputs too: `name.position`."]
     return "\n".join(lines)
 
 
@@ -53,7 +72,7 @@ def _fields(cls: type[BaseModel], indent: str) -> list[str]:
         extra: dict[str, Any] = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else {}
         default = extra.get("default", REQUIRED)
         notes = [type_text(annotation)]
-        notes += [f"{limit.replace('_', ' ')} {bound:g}" for limit, bound in extra.get("limits", {}).items()]
+        notes += [f"{limit.replace('_', ' ')} {bound:.12g}" for limit, bound in extra.get("limits", {}).items()]
         if default is REQUIRED:
             notes.append("required")
         elif default not in (None, "", (), {}) and not isinstance(default, BaseModel):
@@ -85,7 +104,7 @@ def type_text(annotation: Any) -> str:
         marks = tuple(rest)
     for mark in marks:
         if isinstance(mark, Quantity):
-            unit = "any quantity" if mark.dimension is None else "angle" if mark.needs_unit else str(mark.dimension)
+            unit = "any quantity" if mark.dimension is None else "angle" if mark.needs_unit else unit_of(mark.dimension)
             unit = "number" if unit == "1" else unit
             constant = "" if base is Value else "constant "
             return f"{constant}{unit}{_shape(mark.shape or ())}"
@@ -104,7 +123,11 @@ def type_text(annotation: Any) -> str:
         return " | ".join(map(str, arms))
     if origin in (list, tuple):
         many = origin is list or (len(arms) == 2 and arms[1] is Ellipsis)
-        return f"list of {type_text(arms[0])}" if many else f"{len(arms)} times {type_text(arms[0])}"
+        return (
+            f"list of {type_text(arms[0]).removeprefix('one of ')}"
+            if many
+            else f"{len(arms)} times {type_text(arms[0])}"
+        )
     if origin is dict:
         return f"names with {type_text(arms[1])}"
     if isinstance(base, type) and issubclass(base, BaseModel):
@@ -121,4 +144,5 @@ def _shape(shape: tuple[int | None, ...]) -> str:
 
 def _summary(cls: type[Kind] | None) -> str:
     text = inspect.cleandoc((cls.__doc__ if cls is not None else "") or "")
-    return text.split("\n\n")[0].replace("\n", " ").split(". ")[0].rstrip(".")
+    text = text.split("\n\n")[0].replace("\n", " ")
+    return re.split(r"\.\s+(?=[A-Z])", text)[0].rstrip(".")
