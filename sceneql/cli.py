@@ -132,10 +132,12 @@ def render(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path 
 @SCENE
 @_options
 def check(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None) -> None:
-    """Find all errors of a script without running it."""
+    """Find all errors of a script, and of each of its variants, without running it."""
     from sceneql import pipeline
 
     graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
+    for name in graph.variants if variant is None else ():
+        pipeline.load(scene, variant=name, sets=sets, words=words)
     _warn(graph)
     click.echo(
         f"{scene}: ok, {len(graph.tasks)} parts" + (f", {len(graph.left_out)} not needed" if graph.left_out else "")

@@ -77,3 +77,5 @@ class SimulationGraph:
     left_out: tuple[LeftOut, ...] = ()
     warnings: tuple[Diagnostic, ...] = ()
     script_hash: str = ""
+    variants: tuple[str, ...] = ()
+    """Names of the script's variants."""

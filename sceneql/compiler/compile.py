@@ -50,6 +50,7 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
         ),
         warnings=found.warnings,
         script_hash=script.hash,
+        variants=script.variants,
     )
 
 

@@ -276,7 +276,7 @@ def _fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnost
         )
         return False
     if quantity.direction and Value(expr).constant and not any(_numbers(evaluate(expr, {}))):
-        found.error("out-of-range", f"{what} is a direction, so that it is not 0 0 0", span)
+        found.error("out-of-range", f"{what} gives a direction, which 0 0 0 does not have", span)
         return False
     if quantity.needs_unit and _bare(expr):
         found.error("unit-needed", f"{what} needs a unit", span, help=f"write `{span.text} deg` or `{span.text} rad`")
