@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from sceneql.quantities.diagnostic import Diagnostic
 from sceneql.quantities.span import Span
 
@@ -10,9 +13,21 @@ class RunFailure(Exception):
     """A run that cannot go on. ``part``: the entry and what of it failed; ``time`` [s] of the simulation."""
 
     def __init__(self, message: str, *, part: str, time: float, span: Span | None, help: str | None = None) -> None:
-        self.part, self.time, self.span = part, time, span
+        self.message, self.part, self.time, self.span, self.help = message, part, time, span, help
         self.diagnostic = Diagnostic("run-failed", f"at {time:.6g} s, {part}: {message}", span, help)
         super().__init__(str(self.diagnostic))
+
+
+@contextmanager
+def failing_as(name: str, time: float, span: Span | None) -> Iterator[None]:
+    """Failures inside are told as those of a part at a time [s]; TypeError and ValueError are how words refuse."""
+    try:
+        yield
+    except RunFailure as error:
+        part = f"{name}.{error.part}" if error.part else name
+        raise RunFailure(error.message, part=part, time=time, span=error.span or span, help=error.help) from error
+    except (TypeError, ValueError) as error:
+        raise RunFailure(str(error), part=name, time=time, span=span) from error
 
 
 class LimitRefused(Exception):

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from sceneql.failure import RunFailure, failing_as
 from sceneql.graph import Island, SimulationGraph, Task
 from sceneql.kinds import Contact, Force, Material, Model, Object, Ref, Solver, Value
 from sceneql.quantities.evaluate import evaluate
@@ -155,7 +156,14 @@ class Instant:
     _states: dict[str, ModelState] = field(default_factory=dict)
 
     def at(self, value: Value) -> Any:
-        """The value now: float or float64 array, SI."""
+        """The value now: float or float64 array, SI. Raises RunFailure if it is not finite."""
+        now = self._evaluate(value.expr)
+        if not np.isfinite(now).all():
+            raise RunFailure("a value is not finite now", part="", time=self.time, span=value.span)
+        return now
+
+    def measure(self, value: Value) -> Any:
+        """The value now, finite or not."""
         return self._evaluate(value.expr)
 
     def _evaluate(self, expr: Expr) -> Any:
@@ -205,11 +213,12 @@ class Instant:
         """The shapes of the named objects and models."""
         shapes: list[Drawn] = []
         for name in names:
-            kind = self.run.graph.tasks[name].kind
-            if isinstance(kind, Object):
-                shapes += kind.lower(name, IDENTITY, self)
-            elif isinstance(kind, Model):
-                shapes += kind.lower(name, self.state(name), self)
+            task = self.run.graph.tasks[name]
+            with failing_as(name, self.time, task.span):
+                if isinstance(task.kind, Object):
+                    shapes += task.kind.lower(name, IDENTITY, self)
+                elif isinstance(task.kind, Model):
+                    shapes += task.kind.lower(name, self.state(name), self)
         return shapes
 
     @cached_property
@@ -229,14 +238,26 @@ def _palette(graph: SimulationGraph) -> dict[str, int]:
 
 
 def _bounds(graph: SimulationGraph) -> dict[str, tuple[Floats, Floats]]:
+    """Bounds over the run; of its start alone where the run fails, since what explodes fits into no picture."""
     ahead = Run(graph)
     end = graph.settings.clock.end
-    result: dict[str, tuple[Floats, Floats]] = {}
-    for moment in ahead.moments(end * k / (BOUNDS_MOMENTS - 1) for k in range(BOUNDS_MOMENTS)):
-        for name in ahead.orders:
-            for shape in moment.lower([name]):
-                low, high = box_of(shape)
-                if np.isfinite(low).all() and np.isfinite(high).all():
-                    old = result.get(name, (low, high))
-                    result[name] = np.minimum(old[0], low), np.maximum(old[1], high)
+    moments = ahead.moments(end * k / (BOUNDS_MOMENTS - 1) for k in range(BOUNDS_MOMENTS))
+    start = result = _widened({}, next(moments))
+    try:
+        for moment in moments:
+            result = _widened(result, moment)
+    except RunFailure:
+        return start
+    return result
+
+
+def _widened(bounds: Mapping[str, tuple[Floats, Floats]], moment: Instant) -> dict[str, tuple[Floats, Floats]]:
+    """Bounds that hold what is drawn at a moment too."""
+    result = dict(bounds)
+    for name in moment.run.orders:
+        for shape in moment.lower([name]):
+            low, high = box_of(shape)
+            if np.isfinite(low).all() and np.isfinite(high).all():
+                old = result.get(name, (low, high))
+                result[name] = np.minimum(old[0], low), np.maximum(old[1], high)
     return result
