@@ -27,7 +27,7 @@ SHAPES = ("plane", "sphere", "box")
 """Names of shapes in the order of their numbers in the kernels."""
 
 TALLY = ("hits.count", "hits.first.time", "hits.last.time", "hits.last.speed", "rest.time")
-MOST_EXACT = 64
+MOST_EXACT = 8
 
 
 class Collision(Contact):
@@ -37,7 +37,7 @@ class Collision(Contact):
     friction across it; a resting mass feels the normal force that keeps it outside and Coulomb's friction (1785). The
     kinetic energy that is lost is counted as dissipated. Mode `exact` locates every impact to rounding and restarts
     the solver there, up to the end of infinitely many bounces; `local` backs each mass off to its own impact within
-    the step, for very many; `auto` is exact for up to 64 masses.
+    the step, for very many; `auto` is exact for up to 8 masses.
     """
 
     gives: ClassVar[Mapping[str, Gives]] = {
