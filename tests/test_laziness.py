@@ -1,0 +1,96 @@
+"""What a scene does not need is not imported, run or drawn: seen through sys.modules of fresh processes."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+from sceneql import pipeline
+
+BALL = "objects:\n  ball: {sphere: {radius: 0.2 m, position: 0 1 0 m}}\n"
+STILL = BALL + "outputs: {still: {image: {size: 32 18, time: 0 s}}}\n"
+FALL = """
+models:
+  fall: {particles: {list: {stone: {position: 0 1 0 m}}}}
+  unseen: {particles: {list: {stone: {position: 0 2 0 m}}}}
+forces: [gravity]
+solvers: {main: {rk4: {step: 10 ms}}, spare: {euler: {step: 1 ms, on: [unseen]}}}
+clock: {end: 1 s}
+objects:
+  ball: {sphere: {radius: 0.1 m, position: fall.stone.position}}
+  ghost: {sphere: {hidden: yes}}
+outputs: {data: {record: {of: [fall.stone.position, ball.radius], every: 0.1 s}}}
+"""
+
+
+def modules_after(tmp_path, script, *command):
+    """Names in sys.modules after a command on a script, in a process of its own."""
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(script)
+    code = (
+        "import json, sys\nfrom sceneql import cli\n"
+        f"sys.argv = ['sceneql', {command[0]!r}, {str(scene)!r}, *{list(command[1:])!r}]\n"
+        "try: cli.main()\nexcept SystemExit as end: assert not end.code, end.code\n"
+        "print(json.dumps(sorted(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
+    return set(json.loads(done.stdout.splitlines()[-1]))
+
+
+def test_check_imports_neither_numpy_nor_numba(tmp_path):
+    names = modules_after(tmp_path, FALL, "check")
+    assert not names & {"numpy", "numba", "scipy", "trimesh", "imageio", "av", "matplotlib", "rich"}
+
+
+def test_a_picture_without_physics_imports_no_solver_no_mesh_and_no_video(tmp_path):
+    names = modules_after(tmp_path, STILL, "render")
+    assert (tmp_path / "scene.png").is_file()
+    assert not names & {"trimesh", "av", "imageio", "matplotlib"}  # numba itself asks for scipy
+    assert not [name for name in names if name.startswith(("sceneql.simulation.solvers.", "sceneql.simulation.march"))]
+
+
+def test_only_the_words_that_are_needed_are_loaded(tmp_path):
+    names = modules_after(tmp_path, FALL, "render")
+    assert "sceneql.simulation.solvers.runge_kutta_kernels" in names
+    assert not [name for name in names if name.startswith("renderers.")]
+    assert not {n for n in names if n.startswith("sceneql.simulation.contacts.")}
+
+
+def test_pruned_and_unpruned_runs_give_the_same_bytes(tmp_path):
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(FALL)
+    tables = []
+    for pruned in (True, False):
+        graph = pipeline.load(scene, pruned=pruned)
+        assert ("unseen" in graph.tasks) is not pruned
+        (path,) = pipeline.render(graph, folder=tmp_path / str(pruned)).files
+        tables.append(path.read_bytes())
+    assert tables[0] == tables[1]
+    assert tables[0].count(b"\n") == 12
+
+
+def test_pruned_and_unpruned_pictures_have_the_same_bytes(tmp_path):
+    scene = tmp_path / "scene.yaml"
+    spare = STILL.replace("objects:\n", "objects:\n  spare: {sphere: {hidden: yes}}\n")
+    scene.write_text(spare + "materials: {unused: mirror}\n")
+    pictures = []
+    for pruned in (True, False):
+        (path,) = pipeline.render(pipeline.load(scene, pruned=pruned), folder=tmp_path / str(pruned)).files
+        pictures.append(path.read_bytes())
+    assert pictures[0] == pictures[1]
+
+
+def test_what_is_left_out_is_listed_with_its_reason(tmp_path):
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(FALL)
+    left = {part.name: part.reason for part in pipeline.load(scene).left_out}
+    assert left["ghost"].startswith("hidden")
+    assert set(left) >= {"unseen", "spare", "ghost"}
+
+
+def test_an_error_in_an_unused_part_is_an_error(tmp_path):
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(FALL + "materials: {unused: {glossy: {rougness: 1}}}\n")
+    with pytest.raises(Exception, match="rougness"):
+        pipeline.load(scene)

@@ -1,0 +1,149 @@
+"""The program as its users meet it: commands, exit codes, files that are whole or not there, messages."""
+
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import yaml
+
+from sceneql.compiler.catalogue import Catalogue
+from sceneql.report.schema import schema
+
+SCENES = Path(__file__).parent.parent / "scenes"
+STILL = "objects:\n  ball: {sphere: {radius: 0.2 m, position: 0 1 0 m}}\noutputs: {still: {image: {size: 32 18, time: 0 s}}}\n"
+SPRING = """
+define: {{dt: {step}}}
+clock: {{end: {end}, fps: 10}}
+models:
+  swing:
+    mass_spring:
+      masses: {{wall: {{position: 0 0 0 m, fixed: yes}}, bob: {{position: 1.2 0 0 m, mass: 1 kg}}}}
+      springs: [{{between: [wall, bob], rest: 0 m, stiffness: 100 N/m}}]
+solvers: {{main: {{{solver}: {{step: dt}}}}}}
+outputs: {{{output}}}
+"""
+RECORD = "data: {record: {of: [swing.bob.position]}}"
+BOUND = 2 * math.sqrt(2) / 10
+"""Largest stable step [s] of rk4 on an oscillation of 10 rad/s."""
+
+
+def sceneql(folder, *args, code=0):
+    done = subprocess.run(
+        [sys.executable, "-m", "sceneql.cli", *args], cwd=folder, capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == code, done.stdout + done.stderr
+    assert "Traceback" not in done.stderr
+    return done.stdout + done.stderr
+
+
+def test_render_sets_variants_and_names(tmp_path):
+    (tmp_path / "still.yaml").write_text(STILL + "variants: {wide: {outputs.still.size: 64 18}}\n")
+    assert "made still.png" in sceneql(tmp_path, "render", "still.yaml")
+    sceneql(tmp_path, "render", "still.yaml", "--variant", "wide", "-o", "wide.png")
+    sceneql(tmp_path, "render", "still.yaml", "--set", "outputs.still.size=16 18", "-o", "thin.png")
+    from PIL import Image
+
+    for name, width in (("still", 32), ("wide", 64), ("thin", 16)):
+        with Image.open(tmp_path / f"{name}.png") as picture:
+            assert picture.width == width
+    assert not list(tmp_path.glob(".*.part*"))
+
+
+def test_exit_codes_of_mistakes(tmp_path):
+    (tmp_path / "bad.yaml").write_text("objects: {ball: {sphere: {radus: 1 m}}}\n")
+    assert "did you mean 'radius'?" in sceneql(tmp_path, "check", "bad.yaml", code=3)
+    sceneql(tmp_path, "check", "none.yaml", code=3)
+    sceneql(tmp_path, "frobnicate", code=2)
+    assert "did you mean 'blobby'" in sceneql(tmp_path, "words", "bloby", code=2)
+    (tmp_path / "big.yaml").write_text("models: {net: {mass_spring: {lattice: {count: 10000 10000 10000}}}}\n")
+    assert "big.yaml:1:" in sceneql(tmp_path, "check", "big.yaml", code=5)
+
+
+def test_a_step_within_the_bound_runs_and_one_beyond_it_fails_where_it_is_written(tmp_path):
+    (tmp_path / "in.yaml").write_text(SPRING.format(step=f"{0.95 * BOUND} s", end="200 s", solver="rk4", output=RECORD))
+    sceneql(tmp_path, "render", "in.yaml")
+    (tmp_path / "out.yaml").write_text(
+        SPRING.format(step=f"{1.05 * BOUND} s", end="2000 s", solver="rk4", output=RECORD)
+    )
+    said = sceneql(tmp_path, "render", "out.yaml", code=1)
+    assert "run-failed" in said
+    assert "swing" in said
+    assert "--> out.yaml:" in said
+    assert not (tmp_path / "out.csv").exists()
+    assert (tmp_path / "out.partial.csv").is_file()
+
+
+def test_explain_tells_the_bound(tmp_path):
+    (tmp_path / "s.yaml").write_text(SPRING.format(step="10 ms", end="1 s", solver="rk4", output=RECORD))
+    (island,) = json.loads(sceneql(tmp_path, "explain", "s.yaml", "--json"))["islands"]
+    assert island["step_bound"] == pytest.approx(BOUND, rel=0.01)
+    said = sceneql(tmp_path, "explain", "s.yaml", "--set", "solvers.main={euler: {step: 10 ms}}")
+    assert "no step is stable" in said
+    assert f"{math.sqrt(1 + 0.1**2):.5f}"[:7] in said
+
+
+def test_a_failed_film_keeps_its_frames(tmp_path):
+    import av
+
+    film = "film: {video: {size: 64 36, renderer: normals}}"
+    (tmp_path / "f.yaml").write_text(SPRING.format(step="0.3 s", end="2000 s", solver="euler", output=film))
+    said = sceneql(tmp_path, "render", "f.yaml", code=1)
+    assert "kept f.partial.mp4" in said
+    assert not (tmp_path / "f.mp4").exists()
+    with av.open(tmp_path / "f.partial.mp4") as kept:
+        assert sum(1 for _ in kept.decode(video=0)) > 10
+
+
+def test_an_interrupted_film_keeps_its_frames(tmp_path):
+    film = "film: {video: {size: 64 36, fps: 1000, renderer: normals}}"
+    (tmp_path / "f.yaml").write_text(SPRING.format(step="1 ms", end="100 s", solver="rk4", output=film))
+    process = subprocess.Popen(
+        [sys.executable, "-m", "sceneql.cli", "render", "f.yaml"], cwd=tmp_path, stderr=subprocess.PIPE, text=True
+    )
+    while not (tmp_path / ".f.part.mp4").exists() and process.poll() is None:
+        time.sleep(0.05)
+    time.sleep(1.0)
+    os.kill(process.pid, signal.SIGINT)
+    said = process.communicate(timeout=60)[1]
+    assert process.returncode == 130, said
+    assert "kept f.partial.mp4" in said
+    assert not (tmp_path / "f.mp4").exists()
+
+
+def test_new_writes_a_script_that_checks(tmp_path):
+    sceneql(tmp_path, "new", "mine")
+    assert "mine.yaml: ok" in sceneql(tmp_path, "check", "mine.yaml")
+    assert json.loads((tmp_path / "sceneql.schema.json").read_text())["title"]
+    assert "is there already" in sceneql(tmp_path, "new", "mine", code=1)
+
+
+def test_every_word_has_its_page(tmp_path):
+    catalogue = Catalogue()
+    listing = sceneql(tmp_path, "words")
+    from sceneql.report.manual import manual
+
+    for family in catalogue.families:
+        for word in catalogue.words(family):
+            assert word in listing
+            assert "fields:" in manual(catalogue, word)
+
+
+def test_the_schema_knows_all_that_scenes_use():
+    properties = schema(Catalogue())["properties"]
+    definitions = schema(Catalogue())["$defs"]
+    for path in SCENES.glob("*.yaml"):
+        for section, entries in yaml.safe_load(path.read_text()).items():
+            assert section in properties, (path, section)
+            if section not in definitions:
+                continue
+            words = definitions[section]["anyOf"][1]["properties"]
+            for entry in entries.values() if isinstance(entries, dict) else entries:
+                if isinstance(entry, dict):
+                    (word, fields), *_ = [(w, f) for w, f in entry.items() if w != "repeat"]
+                    assert set(fields or {}) <= set(words[word]["properties"]), (path, word)
