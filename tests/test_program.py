@@ -16,7 +16,11 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.report.schema import schema
 
 SCENES = Path(__file__).parent.parent / "scenes"
-STILL = "objects:\n  ball: {sphere: {radius: 0.2 m, position: 0 1 0 m}}\noutputs: {still: {image: {size: 32 18, time: 0 s}}}\n"
+STILL = """
+objects:
+  ball: {sphere: {radius: 0.2 m, position: 0 1 0 m}}
+outputs: {still: {image: {size: 32 18, time: 0 s}}}
+"""
 SPRING = """
 define: {{dt: {step}}}
 clock: {{end: {end}, fps: 10}}

@@ -2,6 +2,7 @@
 
 import math
 import re
+from itertools import pairwise
 from pathlib import Path
 
 from sceneql import pipeline
@@ -31,5 +32,5 @@ def test_a_solver_in_one_file(tmp_path):
         graph = pipeline.load(scene, sets=[f"solvers.main.step={step}"], words=tmp_path)
         (moment,) = pipeline.simulate(graph, [1.0])
         errors.append(abs(moment.read("spring", "bob.position")[0] - (1 + 0.5 * math.cos(10))))
-    orders = [math.log2(a / b) for a, b in zip(errors, errors[1:], strict=False)]
+    orders = [math.log2(a / b) for a, b in pairwise(errors)]
     assert all(abs(order - 2) < 0.1 for order in orders), (errors, orders)
