@@ -36,13 +36,14 @@ class Writer:
         self.path.parent.mkdir(parents=True, exist_ok=True)
         file = iio.imopen(self._temporary, "w", plugin="pyav", extension=".mp4")
         file.init_video_stream("libx264", fps=float(rate), pixel_format="yuv420p")
-        stream = file._video_stream
+        stream: Any = file._video_stream
         stream.width, stream.height = width, height
         stream.options = {"crf": f"{quality:g}", "preset": "medium"}
         context = stream.codec_context
         context.thread_count, context.thread_type = 4, "FRAME"
         context.color_primaries = context.color_trc = context.colorspace = 1  # BT.709
         context.color_range = 1
+        file._container.options.update(OPTIONS)
         file.container_metadata["comment"] = comment
         return file
 

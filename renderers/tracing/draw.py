@@ -2,43 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from renderers.tracing import edges_kernels, filter_kernels, gather_kernels, refine_kernels
+from renderers.tracing.edges_kernels import smooth_rows
+from renderers.tracing.filter_kernels import deepen, widen
+from renderers.tracing.gather_kernels import gather_rows
 from renderers.tracing.pack import pack, scratch
+from renderers.tracing.picture import Picture, over_rows
 from renderers.tracing.record_kernels import COLUMNS
+from renderers.tracing.refine_kernels import refine_rows, shade_rows
 from renderers.tracing.sampling_kernels import subpixels
-from renderers.tracing.scene_kernels import LIGHT_COUNT
+from renderers.tracing.scene_kernels import LIGHT_COUNT, Scene
 from renderers.tracing.visibility_kernels import FIRST_LIGHT
-from sceneql.kernels import over_tiles
 
 if TYPE_CHECKING:
-    from numpy import float32
-    from numpy.typing import NDArray
-
     from sceneql.frame import Frame
 
-BAND = 8
-"""Rows that a thread takes at a time."""
+
+class Buffers:
+    """Working memory of a picture: layer 0 is of what the camera sees, layer 1 of what is seen in that."""
+
+    def __init__(self, count: int, columns: int) -> None:
+        self.shape = count, columns
+        self.records = np.zeros((2, count, COLUMNS), dtype=np.float32)
+        self.radiance = np.empty((count, 3), dtype=np.float32)
+        self.visibility = np.zeros((2, count, columns), dtype=np.float32)
+        self.fine = np.zeros((2, count, columns), dtype=np.float32)
+        self.sums = np.zeros((count, columns + 1), dtype=np.float32)
+        self.means = np.zeros((count, columns + 1), dtype=np.float32)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Picture:
-    """What a renderer makes of a frame."""
-
-    linear: NDArray[float32]
-    """(h, w, 3): scene-referred linear RGB, or data."""
-    undecided: int = 0
-    """Pixels in whose rays root isolation met a place that it could not decide."""
+_kept: list[Buffers] = []
+"""The last picture's: fresh memory costs the system a tenth of a frame's time."""
 
 
-def over_rows(height: int, work: Callable[[int, int], object]) -> None:
-    """Call ``work(start, stop)`` for bands of rows."""
-    over_tiles(-(-height // BAND), lambda band: work(band * BAND, min(band * BAND + BAND, height)))
+def _buffers(count: int, columns: int) -> Buffers:
+    kept = _kept.pop() if _kept else None
+    return kept if kept is not None and kept.shape == (count, columns) else Buffers(count, columns)
 
 
 def draw(frame: Frame, samples: int = 8) -> Picture:
@@ -49,52 +51,42 @@ def draw(frame: Frame, samples: int = 8) -> Picture:
     """
     scene, rows = pack(frame)
     width, height = frame.view.size
-    count = width * height
-    records = np.zeros((2, count, COLUMNS), dtype=np.float32)
     columns = FIRST_LIGHT + 2 * int(scene.ints[LIGHT_COUNT])
-    visibility = np.zeros((2, count, columns), dtype=np.float32)
-    radiance = np.empty((count, 3), dtype=np.float32)
+    buffers = _buffers(width * height, columns)
     undecided: list[int] = []
-    over_rows(
-        height,
-        lambda start, stop: undecided.append(
-            gather_kernels.gather_rows(
-                scene, scratch(rows), start, stop, records, radiance, visibility, np.empty(COLUMNS, np.float32)
-            )
-        ),
-    )
-    fine = np.zeros_like(visibility)
-    sums = np.zeros((count, columns + 1), dtype=np.float32)
-    means = np.zeros_like(sums)
+
+    def gather(start: int, stop: int) -> None:
+        b, spare = buffers, np.empty(COLUMNS, np.float32)
+        undecided.append(gather_rows(scene, scratch(rows), start, stop, b.records, b.radiance, b.visibility, spare))
+
+    over_rows(height, gather)
     for layer in range(2):
-        own, seen = records[layer], visibility[layer]
-        over_rows(height, lambda start, stop: filter_kernels.widen(start, stop, width, own, seen, sums))
-        over_rows(height, lambda start, stop: filter_kernels.deepen(start, stop, width, height, own, sums, means))
-        over_rows(
-            height,
-            lambda start, stop: refine_kernels.refine_rows(
-                scene, scratch(rows), start, stop, own, seen, means, fine[layer]
-            ),
-        )
-    over_rows(
-        height, lambda start, stop: refine_kernels.shade_rows(scene, start, stop, records, fine, visibility, radiance)
-    )
+        _filter(scene, rows, buffers, layer, width, height)
+
+    def shade(start: int, stop: int) -> None:
+        shade_rows(scene, start, stop, buffers.records, buffers.fine, buffers.visibility, buffers.radiance)
+
+    over_rows(height, shade)
     points = subpixels(samples)
-    linear = np.empty((count, 3), dtype=np.float32)
+    linear = np.empty((width * height, 3), dtype=np.float32)
+
+    def smooth(start: int, stop: int) -> None:
+        own, found = np.empty((3, COLUMNS), np.float32), np.empty(columns, np.float32)
+        b = buffers
+        smooth_rows(scene, scratch(rows), start, stop, points, b.records, b.radiance, b.visibility, own, found, linear)
+
+    over_rows(height, smooth)
+    _kept[:] = [buffers]
+    return Picture(linear.reshape(height, width, 3), sum(undecided))
+
+
+def _filter(scene: Scene, rows: int, buffers: Buffers, layer: int, width: int, height: int) -> None:
+    """The filtered visibility of a layer's records, in buffers.fine."""
+    records, visibility, fine = buffers.records[layer], buffers.visibility[layer], buffers.fine[layer]
+    sums, means = buffers.sums, buffers.means
+    over_rows(height, lambda start, stop: widen(start, stop, width, records, visibility, sums))
+    over_rows(height, lambda start, stop: deepen(start, stop, width, height, records, sums, means))
     over_rows(
         height,
-        lambda start, stop: edges_kernels.smooth_rows(
-            scene,
-            scratch(rows),
-            start,
-            stop,
-            points,
-            records,
-            radiance,
-            visibility,
-            np.empty((3, COLUMNS), np.float32),
-            np.empty(columns, np.float32),
-            linear,
-        ),
+        lambda start, stop: refine_rows(scene, scratch(rows), start, stop, records, visibility, means, fine),
     )
-    return Picture(linear.reshape(height, width, 3), int(sum(undecided)))

@@ -16,18 +16,19 @@ BRIGHTEST = 16.0
 """Radiance to which one of a pixel's rays is limited, so that a bright spot's edge does not flicker."""
 CONTRAST = 0.08
 """Difference of brightness, relative to the sum, at which pixels with reflections count as an edge."""
+TRIAL = 4
+"""Rays after which a pixel is left that shows, after all, one smooth thing."""
 ANEW = 8
 """Samples of light and sky for a ray that meets what no neighboring pixel has met."""
 
 
 @part
-def contrast(radiance, k, m):
-    """Largest relative difference of two pixels over the channels."""
-    worst = 0.0
-    for c in range(3):
-        a, b = min(radiance[k, c], 4.0), min(radiance[m, c], 4.0)
-        worst = max(worst, abs(a - b) / (0.1 + a + b))
-    return worst
+def contrast(radiance, k, red, green, blue):
+    """Largest relative difference of a pixel from a radiance over the channels."""
+    r, g, b = min(radiance[k, 0], 4.0), min(radiance[k, 1], 4.0), min(radiance[k, 2], 4.0)
+    red, green, blue = min(red, 4.0), min(green, 4.0), min(blue, 4.0)
+    worst = max(abs(r - red) / (0.1 + r + red), abs(g - green) / (0.1 + g + green))
+    return max(worst, abs(b - blue) / (0.1 + b + blue))
 
 
 @part
@@ -43,7 +44,7 @@ def jagged(records, radiance, k, x, y, width, height):
                 return True
             if records[0, k, OWNER] > 0.0 and not alike(records[0, k], records[0, m], SLACK):
                 return True
-            if glossy and contrast(radiance, k, m) > CONTRAST:
+            if glossy and contrast(radiance, k, radiance[m, 0], radiance[m, 1], radiance[m, 2]) > CONTRAST:
                 return True
     return False
 
@@ -102,14 +103,21 @@ def smooth_rows(scene, scratch, start, stop, points, records, radiance, visibili
             anew += 1
             number = morton(x, y)
             red, green, blue = 0.0, 0.0, 0.0
+            used = 0
+            plain = True
             for s in range(len(points)):
+                if used == TRIAL and plain:
+                    break
                 px, py = x + points[s, 0], y + points[s, 1]
                 r, g, b = gather_at(scene.gather)(scene, scratch, px, py, own[0], own[1], own[2], found)
                 fr, fg, fb = finished(scene, scratch, records, visibility, own, k, x, y, number, found)
-                red += min(r + fr, BRIGHTEST)
-                green += min(g + fg, BRIGHTEST)
-                blue += min(b + fb, BRIGHTEST)
-            picture[k, 0] = red / len(points)
-            picture[k, 1] = green / len(points)
-            picture[k, 2] = blue / len(points)
+                r, g, b = min(r + fr, BRIGHTEST), min(g + fg, BRIGHTEST), min(b + fb, BRIGHTEST)
+                red, green, blue = red + r, green + g, blue + b
+                used += 1
+                plain = (
+                    plain and alike(records[0, k], own[0], SLACK) and contrast(radiance, k, r, g, b) < 0.5 * CONTRAST
+                )
+            picture[k, 0] = red / used
+            picture[k, 1] = green / used
+            picture[k, 2] = blue / used
     return anew

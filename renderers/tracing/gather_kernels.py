@@ -35,6 +35,8 @@ _rows = types.float32[:, ::1]
 _stack = types.float32[:, :, ::1]
 BOUNCES = 8
 """Surfaces that a ray meets behind the first one, at the most."""
+FAINT = 0.025
+"""Weight of a mirrored ray below which the sky's reflection stands for what it would meet; above twice that not."""
 QUICK = 8
 """Samples of light and sky on surfaces that are seen only in a thing seen in another."""
 
@@ -58,7 +60,7 @@ def gather(scene, scratch, px, py, first, second, spare, visibility):
     qx, qy, qz, rx, ry, rz, w2, radius2, spread2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     bounce = 0
     while True:
-        t, item, _ = walk_at(scene.walk)(scene.reals, scene.ints, scratch, ox, oy, oz, dx, dy, dz, 0.0, np.inf, False)
+        t, item, _ = walk_at(scene.walk)(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, np.inf, False)
         goes_on = False
         if item < 0:
             r, g, b = backdrop(scene.reals, dy) if straight else sky_radiance(scene.reals, dy)
@@ -82,7 +84,7 @@ def gather(scene, scratch, px, py, first, second, spare, visibility):
                 traced = 1.0 if bounce == 0 or not outside else 0.0
             elif bounce < BOUNCES:
                 traced = sharpness(scene.reals[s + ROUGHNESS])
-                traced *= smoothstep(0.01, 0.02, traced * max(wr * sr, max(wg * sg, wb * sb)))
+                traced *= smoothstep(FAINT, 2.0 * FAINT, traced * max(wr * sr, max(wg * sg, wb * sb)))
             spare[TRACED] = traced
             if bounce == 0:
                 copy_record(spare, first)
@@ -107,7 +109,8 @@ def gather(scene, scratch, px, py, first, second, spare, visibility):
                         qx, qy, qz = start_of(spare)
                         rx, ry, rz = mirrored(spare)
                         w2, radius2, spread2 = back * wr, radius, spread + 2.0 * turn
-                    share = (1.0 - back) * clear
+                    # What is mirrored inside is not followed: it leaves elsewhere, and is taken to leave here.
+                    share = clear * (1.0 - back) if outside or bounce == 0 else clear
                     wr, wg, wb = share * wr, share * wg, share * wb
                     if outside:
                         wr, wg, wb = wr * spare[TINT], wg * spare[TINT + 1], wb * spare[TINT + 2]
@@ -131,7 +134,7 @@ def gather(scene, scratch, px, py, first, second, spare, visibility):
 
 @kernel(types.float64(SCENE, SCRATCH, _i, _i, _stack, _rows, _stack, ROW), _nrt=False)
 def gather_rows(scene, scratch, start, stop, records, radiance, visibility, spare):
-    """Fill rows start..stop of a picture (h, w): records (2, h w, COLUMNS), radiance (h w, 3), visibility (2, h w, ...).
+    """Fill rows start..stop of a picture (h, w): records (2, h w, COLUMNS), radiance (h w, 3), visibility (2, h w, V).
 
     Returns the number of pixels with an undecided root. Radiance holds what needs no visibility.
     """

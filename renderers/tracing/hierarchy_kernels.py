@@ -116,9 +116,9 @@ def divide(boxes, order, start, stop, axis, bin, eye):
 def build(boxes, order, eye, nodes, links, stack, bins, right, first_at):
     """Number of nodes written for items with bounds ``boxes`` (m, 6); ``order`` (m,) becomes the order by leaf.
 
-    Nodes stand in depth-first order, the child nearer to ``eye`` first, so that a walk without a stack meets near things
-    early. ``nodes`` (2m, 6) and ``links`` (2m, 3) as in Scene; ``stack`` (2m, 2), ``bins`` (BINS + 1, 7), ``right``
-    (BINS,) and ``first_at`` (m + 1,) are working memory.
+    Nodes stand in depth-first order, the child on the side of ``eye`` first, so that a walk without a stack meets near
+    things early. ``nodes`` (2m, 6) and ``links`` (2m, 3) as in Scene; ``stack`` (2m + 2, 2), ``bins`` (BINS + 1, 7),
+    ``right`` (BINS + 1,) and ``first_at`` (m + 1,) are working memory.
     """
     count = len(order)
     n = 0

@@ -4,7 +4,7 @@
 import numpy as np
 from numba import types
 
-from renderers.tracing.scene_kernels import CELLS, EMPTY, FULL, MIXED, SCRATCH, TABLES, part
+from renderers.tracing.scene_kernels import CELLS, CROSSING, EMPTY, FULL, MIXED, SCENE, SCRATCH, part
 from renderers.tracing.solids_kernels import NONE, box_span, inverse
 from sceneql.field.interval_kernels import box
 from sceneql.field.isolation_kernels import exit_root, isolate
@@ -62,9 +62,9 @@ def region(scene, scratch, k, i, j, l, side):
     return FULL if status == WHOLE and high < 0.0 else MIXED
 
 
-@kernel(types.void(TABLES, SCRATCH, types.int64, types.int64), _nrt=False)
+@kernel(types.void(SCENE, SCRATCH, types.int64, types.int64), _nrt=False)
 def occupy(scene, scratch, k, slab):
-    """Fill slab ``slab`` (BLOCK layers of cells along x) of implicit object k: coarse blocks first, then their cells."""
+    """Fill a slab (BLOCK layers of cells along x) of implicit object k: coarse blocks first, then their cells."""
     base = cells_at(scene, k)
     for bj in range(0, CELLS, BLOCK):
         for bl in range(0, CELLS, BLOCK):
@@ -81,7 +81,7 @@ def occupy(scene, scratch, k, slab):
 @part
 def step_to(d, low, cell, side, origin, inv):
     """t at which the ray leaves a cell along one axis."""
-    return (low + (cell + (1 if d > 0.0 else 0)) * side - origin) * inv
+    return (low + (cell + (1 if d >= 0.0 else 0)) * side - origin) * inv
 
 
 @part
@@ -120,17 +120,17 @@ def occupied(scene, k, ox, oy, oz, dx, dy, dz, start, stop):
         if state == FULL:
             return begin, min(leave, stop), True
         if tx <= ty and tx <= tz:
-            i += 1 if dx > 0.0 else -1
+            i += 1 if dx >= 0.0 else -1
             tx += wx
             if i < 0 or i >= CELLS:
                 break
         elif ty <= tz:
-            j += 1 if dy > 0.0 else -1
+            j += 1 if dy >= 0.0 else -1
             ty += wy
             if j < 0 or j >= CELLS:
                 break
         else:
-            l += 1 if dz > 0.0 else -1
+            l += 1 if dz >= 0.0 else -1
             tz += wz
             if l < 0 or l >= CELLS:
                 break
@@ -154,8 +154,8 @@ def box_part(scene, k, ox, oy, oz, dx, dy, dz, near, far):
     return max(enter, e), min(leave, f)
 
 
-@part
-def implicit(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
+@kernel(CROSSING.signature, _nrt=False)
+def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """Crossing of implicit object k behind ``near``; with ``anywhere`` of any place inside, not the first."""
     c0, c1, k0, k1, p0, p1 = tape_of(scene, k)
     code = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)

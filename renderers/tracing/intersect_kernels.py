@@ -1,7 +1,6 @@
 # mypy: ignore-errors
 """Rays against the whole scene: what is met first, or how much light comes through."""
 
-from renderers.tracing.implicit_kernels import implicit
 from renderers.tracing.scene_kernels import (
     HALF_SPACE,
     ITEMS,
@@ -17,7 +16,7 @@ from renderers.tracing.scene_kernels import (
     TRANSMISSION,
     TRIANGLE,
     WALK,
-    Tables,
+    crossing_at,
     part,
 )
 from renderers.tracing.solids_kernels import NONE, half_space, inverse, quadric, round_solid, triangle
@@ -26,7 +25,7 @@ from sceneql.kernels import kernel
 
 @part
 def meet(scene, scratch, item, ox, oy, oz, dx, dy, dz, near, far, anywhere):
-    """First crossing of an item inside (near, far), or infinity; ``anywhere``: of an implicit object any inner place."""
+    """First crossing of an item inside (near, far), or inf; ``anywhere``: of an implicit object any inner place."""
     kind = scene.ints[ITEMS + 4 * item + KIND]
     k = scene.ints[ITEMS + 4 * item + REALS_AT]
     if kind == HALF_SPACE:
@@ -37,7 +36,7 @@ def meet(scene, scratch, item, ox, oy, oz, dx, dy, dz, near, far, anywhere):
         return round_solid(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
     if kind == QUADRIC:
         return quadric(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
-    return implicit(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere)
+    return crossing_at(scene.crossing)(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere)
 
 
 @part
@@ -57,13 +56,12 @@ def misses(nodes, k, ox, oy, oz, ix, iy, iz, near, far):
 
 
 @kernel(WALK.signature, _nrt=False)
-def walk(reals, ints, scratch, ox, oy, oz, dx, dy, dz, near, far, anywhere):
+def walk(scene, scratch, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """(t, item, light) of the ray inside (near, far): where it first meets an item, or (inf, -1, 1).
 
     With ``anywhere``, for shadow rays, the walk ends as soon as something opaque is met, no matter where; ``light`` is
     the share that comes through: clear glass dims it, but does not stop it.
     """
-    scene = Tables(reals, ints)
     ix = inverse(dx)
     iy = inverse(dy)
     iz = inverse(dz)

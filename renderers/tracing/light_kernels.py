@@ -58,7 +58,7 @@ def mean_reflectance(roughness, nv):
 
 @part
 def highlight(nl, nv, nh, width):
-    """GGX distribution times masking over 4 nl nv, without Fresnel's factor (Walter et al. 2007; Heitz 2014, eq. 99)."""
+    """GGX distribution times masking over 4 nl nv, without Fresnel (Walter et al. 2007; Heitz 2014, eq. 99)."""
     a2 = width * width
     d = nh * nh * (a2 - 1.0) + 1.0
     shadowing = nl * np.sqrt(a2 + (1.0 - a2) * nv * nv) + nv * np.sqrt(a2 + (1.0 - a2) * nl * nl)

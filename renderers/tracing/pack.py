@@ -30,7 +30,6 @@ from renderers.tracing.scene_kernels import (
     SURFACE_SIZE,
     TRIANGLE,
     Scene,
-    Tables,
 )
 from sceneql.field.tape_ops import SCRATCH_COLUMNS, scratch_rows
 from sceneql.frame import Frame, Implicit, Mesh, Points, Quadric, Segments, Sky, Sun, Surface, View
@@ -42,8 +41,14 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints, Light
 
 
+UNBOUNDED = np.repeat([-np.inf, np.inf], 3)
+
+
 def pack(frame: Frame) -> tuple[Scene, int]:
-    """The scene of a frame, and the rows of scratch that its kernels need. ValueError names a shape that is none of the closed set."""
+    """The scene of a frame, and the rows of scratch that its kernels need.
+
+    ValueError names a shape that is none of the closed set.
+    """
     tables = Rows()
     for index, shape in enumerate(frame.shapes):
         tables.add(index, shape)
@@ -51,8 +56,9 @@ def pack(frame: Frame) -> tuple[Scene, int]:
     bounded = np.isfinite(boxes).all(axis=1)
     inner, endless = np.flatnonzero(bounded), np.flatnonzero(~bounded)
     order, nodes, links = hierarchy(boxes[inner], np.array(frame.view.origin, dtype=np.float64))
-    nodes = np.concatenate([[[-np.inf] * 3 + [np.inf] * 3], nodes])
-    links = np.concatenate([[[0, -len(endless), len(endless)]], links]) + [1, len(endless), 0]
+    nodes = np.concatenate([UNBOUNDED[None, :], nodes])
+    first = np.array([[0, -len(endless), len(endless)]])
+    links = np.concatenate([first, links]) + np.array([1, len(endless), 0])
     lights = _lights(frame.lights)
     head = np.zeros(LIGHTS)
     head[SKY : SKY + 14] = _sky(frame.lights)
@@ -78,9 +84,7 @@ def pack(frame: Frame) -> tuple[Scene, int]:
     slabs = CELLS // BLOCK
     over_tiles(
         len(tables.implicits) * slabs,
-        lambda tile: occupy(
-            Tables(reals, ints), scratch(tables.rows + 1), reals_at + tables.implicits[tile // slabs], tile % slabs
-        ),
+        lambda tile: occupy(scene, scratch(tables.rows + 1), reals_at + tables.implicits[tile // slabs], tile % slabs),
     )
     return scene, tables.rows + 1
 
@@ -115,7 +119,7 @@ class Rows:
             if plane is None:
                 self._items(index, QUADRIC, quadric_box(shape)[None, :], _quadric(shape))
             else:
-                self._items(index, HALF_SPACE, np.array([[-np.inf] * 3 + [np.inf] * 3]), plane)
+                self._items(index, HALF_SPACE, UNBOUNDED[None, :], plane)
         elif isinstance(shape, Implicit):
             self._implicit(index, shape)
         elif isinstance(shape, Points):
@@ -196,10 +200,10 @@ def quadric_box(shape: Quadric) -> Floats:
     if all(shape.linear[k] == 0 for k in range(3) if k not in curved):
         rest = sum(shape.linear[k] ** 2 / (4 * shape.squares[k]) for k in curved) - shape.constant
         for k in curved:
-            middle, half = -shape.linear[k] / (2 * shape.squares[k]), math.sqrt(max(rest, 0.0) / shape.squares[k])
-            low[k], high[k] = max(low[k], middle - half), min(high[k], middle + half)
+            top, half = -shape.linear[k] / (2 * shape.squares[k]), math.sqrt(max(rest, 0.0) / shape.squares[k])
+            low[k], high[k] = max(low[k], top - half), min(high[k], top + half)
     if not (np.isfinite(low).all() and np.isfinite(high).all()):
-        return np.array([-np.inf] * 3 + [np.inf] * 3)
+        return UNBOUNDED
     matrix = np.linalg.inv(np.asarray(shape.to_local)[:, :3])
     middle = matrix @ (0.5 * (low + high) - np.asarray(shape.to_local)[:, 3])
     reach = np.abs(matrix) @ (0.5 * (high - low)) * (1 + 1e-9) + 1e-12

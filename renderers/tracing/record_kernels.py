@@ -1,15 +1,16 @@
 # mypy: ignore-errors
 """A record: all that lighting a surface point needs, once rays have found it. One pixel has two.
 
-The first is what the camera sees, the second what is seen in it (by reflection or refraction) first. Light and shadow are
-found for whole pictures of records and filtered there, before anything is shaded.
+The first is what the camera sees, the second what is seen in it (by reflection or refraction) first. Light and shadow
+are found for whole pictures of records and filtered there, before anything is shaded.
 """
 
 from renderers.tracing.scene_kernels import part
 
 PLACE, NORMAL, VIEW, TINT, WEIGHT, SURFACE, OWNER, RADIUS, LIFT, TRACED, ITEM = 0, 3, 6, 9, 12, 15, 16, 17, 18, 19, 20
-"""Columns: point, shading normal, direction to the viewer, color, weight in the pixel, place of the surface, shape index + 1 (0:
-no record), radius of the pixel's cone there, lift of shadow rays, share of the reflection that is traced, item."""
+"""Columns: point, shading normal, direction to the viewer, color, weight in the pixel, place of the surface, shape
+index + 1 (0: no record), radius of the pixel's cone there, lift of shadow rays, share of the reflection that is
+traced, item."""
 COLUMNS = 21
 
 

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Third stage: edges of shadows that are finer than the filter's window get samples of their own; then all is shaded."""
+"""Third stage: edges of shadows finer than the filter's window get samples of their own; then all is shaded."""
 
 from numba import types
 
@@ -58,7 +58,7 @@ def spread_sky(records, means, k, x, y, width, height, fine):
 
 @kernel(types.void(SCENE, SCRATCH, _i, _i, _rows, _rows, _rows, _rows), _nrt=False)
 def refine_rows(scene, scratch, start, stop, records, visibility, means, fine):
-    """Rows of ``fine`` (n, V): the sky's loss, and of each light its share and whether that wants smoothing (0 or 1)."""
+    """Rows of ``fine`` (n, V): the sky's loss; of each light its share, and whether that wants smoothing (0 or 1)."""
     width, height = int(scene.reals[WIDTH]), int(scene.reals[HEIGHT])
     for y in range(start, stop):
         for x in range(width):

@@ -1,8 +1,8 @@
 # mypy: ignore-errors
-"""Which sample a pixel takes: one point of a net for each pixel of a square block, 8 x 8 for lights, 16 x 16 for the sky.
+"""Which sample a pixel takes: one point of a net for each pixel of a block, 8 x 8 for lights, 16 x 16 for the sky.
 
-Pixel (x, y) takes the point whose index is the Morton code of its place in the block. Any window of the block's size then
-has each point once, and every aligned block of a power of two a net of its own (Ahmed and Wonka 2020), so that the
+Pixel (x, y) takes the point whose index is the Morton code of its place in the block. Any window of the block's size
+then has each point once, and every aligned block of a power of two a net of its own (Ahmed and Wonka 2020), so that the
 filter leaves nothing of the pattern.
 """
 
@@ -33,7 +33,7 @@ def _second(index):
 
 
 def _net(count):
-    """(count, 2) points of [0, 1)^2: the first of Sobol's sequence, which make a net, from the middle of their cells."""
+    """(count, 2) points of [0, 1)^2: the first of Sobol's sequence, which make a net, in the middle of their cells."""
     bits = count.bit_length() - 1
     return np.array([(_radical_inverse(bits, k), _second(k)) for k in range(count)]) + 0.5 / count
 
@@ -52,7 +52,7 @@ JITTER = _net(COUNT)[np.arange(COUNT) * 37 % COUNT, ::-1] - 0.5
 """(COUNT, 2) points of a pixel, from its center, in another order than those of DISK."""
 
 
-def subpixels(samples):
+def subpixels(samples: int):
     """(samples, 2) points of a pixel, 0..1, one in each of ``samples`` rows and columns."""
     return _net(samples)
 

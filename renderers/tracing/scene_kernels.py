@@ -17,30 +17,29 @@ part = numba.njit(nogil=True, error_model="numpy", _nrt=False, no_cpython_wrappe
 and without reference counts, which threads would fight over."""
 
 
-class Tables(NamedTuple):
-    """A frame as arrays. Lengths in meters, colors linear. Positions in them are plain indices."""
-
-    reals: np.ndarray
-    """float64: sky, camera and lights where SKY, CAMERA and LIGHTS say; then nodes, surfaces and items of all kinds."""
-    ints: np.ndarray
-    """int32: the header; four for each item; links of nodes, ranges and cells of implicit objects, code of tapes."""
-
-
 class Scene(NamedTuple):
-    """Tables, and the addresses of the tracer's large functions.
+    """A frame as arrays (lengths in meters, colors linear), and the addresses of the tracer's large functions.
 
     A kernel that another one names is compiled into it once more, with all that it names itself; by address each is
     compiled once.
     """
 
     reals: np.ndarray
+    """float64: sky, camera and lights where SKY, CAMERA and LIGHTS say; then nodes, surfaces and items of all kinds."""
     ints: np.ndarray
+    """int32: the header; four for each item; links of nodes, ranges and cells of implicit objects, code of tapes."""
+    crossing: int
+    """Of implicit_kernels.crossing."""
     walk: int
-    """Of intersect_kernels.walk, and so on."""
+    """Of intersect_kernels.walk."""
     normal: int
+    """Of surface_kernels.normal_at."""
     look: int
+    """Of visibility_kernels.look_around."""
     shade: int
+    """Of shade_kernels.shade."""
     gather: int
+    """Of gather_kernels.gather."""
 
 
 _f, _i = types.float64, types.int64
@@ -48,18 +47,16 @@ ROW = types.float32[::1]
 """Type of a record, and of a row of visibility."""
 SCRATCH = types.float64[:, ::1]
 """Working memory of one thread: what root isolation needs, and a last row whose first entry counts the undecided."""
-TABLES = types.NamedTuple((types.float64[::1], types.int32[::1]), Tables)
-SCENE = types.NamedTuple((types.float64[::1], types.int32[::1], _i, _i, _i, _i, _i), Scene)
-WALK = types.FunctionType(
-    types.Tuple((_f, _i, _f))(
-        types.float64[::1], types.int32[::1], SCRATCH, _f, _f, _f, _f, _f, _f, _f, _f, types.boolean
-    )
-)
-NORMAL_AT = types.FunctionType(types.UniTuple(_f, 7)(SCENE, SCRATCH, _i, _f, _f, _f))
-LOOK_AROUND = types.FunctionType(types.void(SCENE, SCRATCH, ROW, _i, _i, ROW))
+SCENE = types.NamedTuple((types.float64[::1], types.int32[::1], _i, _i, _i, _i, _i, _i), Scene)
+_ray = (_f,) * 8
+CROSSING = types.FunctionType(_f(SCENE, SCRATCH, _i, *_ray, types.boolean))
+WALK = types.FunctionType(types.Tuple((_f, _i, _f))(SCENE, SCRATCH, *_ray, types.boolean))
+NORMAL = types.FunctionType(types.UniTuple(_f, 7)(SCENE, SCRATCH, _i, _f, _f, _f))
+LOOK = types.FunctionType(types.void(SCENE, SCRATCH, ROW, _i, _i, ROW))
 SHADE = types.FunctionType(types.UniTuple(_f, 3)(SCENE, ROW, ROW))
 GATHER = types.FunctionType(types.UniTuple(_f, 3)(SCENE, SCRATCH, _f, _f, ROW, ROW, ROW, ROW))
-walk_at, normal_at, look_at, shade_at, gather_at = map(function_at, (WALK, NORMAL_AT, LOOK_AROUND, SHADE, GATHER))
+FUNCTIONS = (CROSSING, WALK, NORMAL, LOOK, SHADE, GATHER)
+crossing_at, walk_at, normal_at, look_at, shade_at, gather_at = map(function_at, FUNCTIONS)
 """Make functions of the addresses."""
 
 NODE_COUNT, ITEM_COUNT, ENDLESS_COUNT, LIGHT_COUNT, NODES_AT, LINKS_AT = range(6)

@@ -11,7 +11,7 @@ from renderers.tracing.scene_kernels import (
     HALF_SPACE,
     ITEMS,
     KIND,
-    NORMAL_AT,
+    NORMAL,
     QUADRIC,
     REALS_AT,
     ROUND,
@@ -142,7 +142,7 @@ def triangle_normal(scene, k, x, y, z):
     return nx, ny, nz, fx, fy, fz, max(lift, 0.0)
 
 
-@kernel(NORMAL_AT.signature, _nrt=False)
+@kernel(NORMAL.signature, _nrt=False)
 def normal_at(scene, scratch, item, x, y, z):
     """(normal, facet normal, lift) of an item at a point of its surface; only meshes tell the first two apart."""
     kind = scene.ints[ITEMS + 4 * item + KIND]

@@ -13,7 +13,7 @@ from renderers.tracing.scene_kernels import (
     LIGHT,
     LIGHT_COUNT,
     LIGHTS,
-    LOOK_AROUND,
+    LOOK,
     SUN,
     SURFACE_AT,
     normal_at,
@@ -58,7 +58,7 @@ def seen(scene, scratch, l, x, y, z, disk_x, disk_y):
     if far == np.inf:
         length = np.sqrt(dx * dx + dy * dy + dz * dz)
         dx, dy, dz = dx / length, dy / length, dz / length
-    blocker, _, share = walk_at(scene.walk)(scene.reals, scene.ints, scratch, x, y, z, dx, dy, dz, 0.0, far, True)
+    blocker, _, share = walk_at(scene.walk)(scene, scratch, x, y, z, dx, dy, dz, 0.0, far, True)
     return share, blocker
 
 
@@ -86,7 +86,7 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius):
         lx, ly, lz, far, ir, ig, ib = light_at(scene.reals, l, sx, sy, sz)
         cosine = nx * lx + ny * ly + nz * lz
         if cosine > 0.0 and fx * lx + fy * ly + fz * lz > 0.0:
-            _, _, share = walk_at(scene.walk)(scene.reals, scene.ints, scratch, sx, sy, sz, lx, ly, lz, 0.0, far, True)
+            _, _, share = walk_at(scene.walk)(scene, scratch, sx, sy, sz, lx, ly, lz, 0.0, far, True)
             cosine *= share / np.pi
             er += cosine * ir
             eg += cosine * ig
@@ -105,7 +105,7 @@ def sky_loss(scene, scratch, record, sample):
     w = np.sqrt(max(1.0 - u * u - v * v, 0.0))
     dx, dy, dz = u * ax + v * bx + w * nx, u * ay + v * by + w * ny, u * az + v * bz + w * nz
     x, y, z = start_of(record)
-    t, item, _ = walk_at(scene.walk)(scene.reals, scene.ints, scratch, x, y, z, dx, dy, dz, 0.0, np.inf, False)
+    t, item, _ = walk_at(scene.walk)(scene, scratch, x, y, z, dx, dy, dz, 0.0, np.inf, False)
     if item < 0:
         return 0.0, 0.0, 0.0
     radius = record[RADIUS] + 0.05 * t
@@ -139,7 +139,7 @@ def shadow_sample(scene, scratch, record, l, sample, jitter):
     return share, width
 
 
-@kernel(LOOK_AROUND.signature, _nrt=False)
+@kernel(LOOK.signature, _nrt=False)
 def look_around(scene, scratch, record, number, samples, visibility):
     """Fill a row of visibility with the mean of a net of ``samples`` (a power of two), the one of pixel ``number``.
 

@@ -1,0 +1,71 @@
+# mypy: ignore-errors
+"""The development of pixels, compiled; see develop.py for what it does."""
+
+import numpy as np
+from numba import types
+
+from sceneql.kernels import inlined, kernel
+
+SHOULDER = 0.6
+"""Where the tone curve leaves the straight line."""
+WHITENING = 0.15
+"""How fast what is brighter than white loses its hue."""
+
+
+@inlined
+def toned(r, g, b):
+    """A color of any brightness, brought to 0..1."""
+    peak = max(r, max(g, b))
+    if peak <= SHOULDER:
+        return r, g, b
+    top = SHOULDER + (1.0 - SHOULDER) * np.tanh((peak - SHOULDER) / (1.0 - SHOULDER))
+    share = top / peak
+    white = 1.0 - np.exp(-WHITENING * max(peak - 1.0, 0.0))
+    return (
+        r * share + white * (top - r * share),
+        g * share + white * (top - g * share),
+        b * share + white * (top - b * share),
+    )
+
+
+STEPS = 4096
+_x = np.linspace(0.0, 1.0, STEPS + 1)
+SRGB = np.append(np.where(_x <= 0.0031308, 12.92 * _x, 1.055 * _x ** (1.0 / 2.4) - 0.055), 1.0)
+"""The sRGB transfer curve (IEC 61966-2-1) in STEPS pieces, off by less than 0.01 of an 8-bit level between them."""
+
+
+@inlined
+def encoded(x):
+    """The sRGB transfer curve of a value in 0..1."""
+    place = x * STEPS
+    k = int(place)
+    return SRGB[k] + (place - k) * (SRGB[k + 1] - SRGB[k])
+
+
+@inlined
+def threshold(x, y):
+    """Bayer's 8 x 8 threshold of a pixel in (0, 1): the bits of x ^ y and y interleaved, lowest first."""
+    rank = 0
+    for bit in range(3):
+        rank = 4 * rank + 2 * (((x ^ y) >> bit) & 1) + ((y >> bit) & 1)
+    return (rank + 0.5) / 64.0
+
+
+@inlined
+def known(x):
+    """A number for what is none or below zero: black."""
+    return min(x, 65504.0) if x > 0.0 else 0.0
+
+
+@kernel(
+    types.void(types.float32[:, :, ::1], types.float64, types.uint8[:, :, ::1], types.int64, types.int64), _nrt=False
+)
+def develop_rows(linear, gain, pixels, start, stop):
+    """Fill rows start..stop of pixels (h, w, 3)."""
+    for y in range(start, stop):
+        for x in range(linear.shape[1]):
+            r, g, b = toned(gain * known(linear[y, x, 0]), gain * known(linear[y, x, 1]), gain * known(linear[y, x, 2]))
+            dither = threshold(x, y)
+            pixels[y, x, 0] = int(min(255.0 * encoded(r) + dither, 255.0))
+            pixels[y, x, 1] = int(min(255.0 * encoded(g) + dither, 255.0))
+            pixels[y, x, 2] = int(min(255.0 * encoded(b) + dither, 255.0))

@@ -1,0 +1,25 @@
+"""normals: surface normals as colors."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+from sceneql.kinds import Renderer, field
+
+
+class Normals(Renderer):
+    """Draws world normals n as colors (n + 1)/2: right is red, up green, towards +z blue; black where nothing is.
+
+    Data: not developed. Normals face the viewer.
+    """
+
+    kernels: ClassVar[str] = "renderers.tracing.normals"
+    data: ClassVar[bool] = True
+
+    samples: Literal[1, 2, 4, 8, 16, 32, 64] = field("Rays in a pixel; 1 keeps every normal's length.", 1)
+
+    def draw(self, frame: Any) -> Any:
+        """The Picture of a frame: (h, w, 3) in 0..1 and the number of undecided pixels."""
+        from renderers.tracing.normals import draw_normals
+
+        return draw_normals(frame, self.samples)

@@ -1,0 +1,30 @@
+"""The picture of normals: the tracer's intersection without its light."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from renderers.tracing.normals_kernels import normal_rows
+from renderers.tracing.pack import pack, scratch
+from renderers.tracing.picture import Picture, over_rows
+from renderers.tracing.sampling_kernels import subpixels
+
+if TYPE_CHECKING:
+    from sceneql.frame import Frame
+
+
+def draw_normals(frame: Frame, samples: int = 1) -> Picture:
+    """(n + 1)/2 of the world normals that a frame shows, 0 where it shows nothing; ``samples`` rays in a pixel."""
+    scene, rows = pack(frame)
+    width, height = frame.view.size
+    points = subpixels(samples)
+    picture = np.empty((height, width, 3), dtype=np.float32)
+    undecided: list[int] = []
+
+    def band(start: int, stop: int) -> None:
+        undecided.append(normal_rows(scene, scratch(rows), start, stop, points, picture))
+
+    over_rows(height, band)
+    return Picture(picture, sum(undecided))

@@ -1,0 +1,45 @@
+# mypy: ignore-errors
+"""A picture of normals."""
+
+import numpy as np
+from numba import types
+
+from renderers.tracing.camera_kernels import camera_ray
+from renderers.tracing.scene_kernels import SCENE, SCRATCH, WIDTH, normal_at, part, walk_at
+from sceneql.kernels import kernel
+
+
+@part
+def seen_normal(scene, scratch, px, py):
+    """(whether the picture's point shows a surface, its unit normal (3) on the viewer's side)."""
+    ox, oy, oz, dx, dy, dz, _, _ = camera_ray(scene.reals, px, py)
+    t, item, _ = walk_at(scene.walk)(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, np.inf, False)
+    if item < 0:
+        return False, 0.0, 0.0, 0.0
+    nx, ny, nz, fx, fy, fz, _ = normal_at(scene.normal)(scene, scratch, item, ox + t * dx, oy + t * dy, oz + t * dz)
+    side = 1.0 if dx * fx + dy * fy + dz * fz <= 0.0 else -1.0
+    return True, side * nx, side * ny, side * nz
+
+
+@kernel(
+    types.int64(SCENE, SCRATCH, types.int64, types.int64, types.float64[:, ::1], types.float32[:, :, ::1]), _nrt=False
+)
+def normal_rows(scene, scratch, start, stop, points, picture):
+    """Fill rows start..stop of picture (h, w, 3) with (normal + 1)/2, black where nothing is; a mean over ``points``.
+
+    Returns the number of pixels with an undecided root.
+    """
+    counter = scratch.shape[0] - 1
+    undecided = 0
+    for y in range(start, stop):
+        for x in range(int(scene.reals[WIDTH])):
+            scratch[counter, 0] = 0.0
+            red, green, blue = 0.0, 0.0, 0.0
+            for s in range(len(points)):
+                hit, nx, ny, nz = seen_normal(scene, scratch, x + points[s, 0], y + points[s, 1])
+                if hit:
+                    red, green, blue = red + nx + 1.0, green + ny + 1.0, blue + nz + 1.0
+            share = 0.5 / len(points)
+            picture[y, x, 0], picture[y, x, 1], picture[y, x, 2] = share * red, share * green, share * blue
+            undecided += scratch[counter, 0] > 0.0
+    return undecided

@@ -1,0 +1,31 @@
+"""What a renderer makes of a frame, and the bands of rows in which it does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from sceneql.kernels import over_tiles
+
+if TYPE_CHECKING:
+    from numpy import float32
+    from numpy.typing import NDArray
+
+BAND = 16
+"""Rows that a thread takes at a time."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Picture:
+    """What a renderer makes of a frame."""
+
+    linear: NDArray[float32]
+    """(h, w, 3): scene-referred linear RGB, or data."""
+    undecided: int = 0
+    """Pixels in whose rays root isolation met a place that it could not decide."""
+
+
+def over_rows(height: int, work: Callable[[int, int], object]) -> None:
+    """Call ``work(start, stop)`` for bands of rows, on the thread pool."""
+    over_tiles(-(-height // BAND), lambda band: work(band * BAND, min(band * BAND + BAND, height)))

@@ -1,0 +1,250 @@
+"""Laws of the tracer: areas, shadows, energy, mirrors, and pictures that repeat to the bit."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import stage
+from renderers.normals import Normals
+from renderers.trace import Trace
+from renderers.tracing.intersect_kernels import walk
+from renderers.tracing.pack import pack, scratch
+from sceneql.frame import Mesh, PointLight, Points, Segments, Sky, Surface
+from stage import GLOW, WHITE, frame, sun, view
+
+UNIFORM = Sky((1.0, 1.0, 1.0), (1.0, 1.0, 1.0), (1.0, 1.0, 1.0))
+MIRROR = Surface(color=(1.0, 1.0, 1.0), roughness=0.0, metallic=1.0)
+
+
+def draw(*shapes, **more):
+    samples = more.pop("samples", 8)
+    return Trace(samples=samples).draw(frame(*shapes, **more)).linear
+
+
+def area(picture, seen):
+    """Area of what glows in an orthographic picture."""
+    return picture[..., 0].sum(dtype=float) * (2 * seen.half_height / seen.size[1]) ** 2
+
+
+@pytest.mark.parametrize(
+    ("shape", "exact"),
+    [
+        (stage.sphere(), math.pi),
+        (stage.points(GLOW, [(0, 0, 0)], [1.0]), math.pi),
+        (stage.implicit_sphere(GLOW), math.pi),
+        (stage.round_mesh(GLOW), math.pi),
+        (stage.torus(GLOW, 1.0, 0.4), 5.0265482457),
+        (stage.cylinder(GLOW, 0.5, 2.0), 2.0),
+        (stage.box(GLOW, (0.1, 0, 0), (1.3, 0.7, 1)), 0.91),
+        (stage.segment(GLOW, (-0.5, 0, 0), (0.5, 0, 0), 0.4), 0.8 + math.pi * 0.16),
+    ],
+    ids=["quadric", "point", "implicit", "mesh", "torus", "cylinder", "box", "capsule"],
+)
+def test_silhouettes_have_their_exact_area(shape, exact):
+    seen = view(size=(120, 120))
+    assert area(draw(shape, seen=seen, samples=16), seen) == pytest.approx(exact, rel=4e-3)
+
+
+def test_a_sphere_looks_the_same_whatever_it_is_made_of():
+    lights = (sun((0.4, 0.8, 0.6), (2.0, 2.0, 2.0)), UNIFORM)
+    clay = Surface(color=(0.7, 0.5, 0.3), roughness=0.6)
+    quadric = draw(stage.sphere(clay), lights=lights)
+    for other in (stage.points(clay, [(0, 0, 0)], [1.0]), stage.implicit_sphere(clay), stage.round_mesh(clay)):
+        assert np.abs(draw(other, lights=lights) - quadric).mean() < 3e-3
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.05, 0.15])
+def test_a_sphere_throws_a_shadow_of_the_right_size_to_the_right_place(angle):
+    # From above; the sun stands 45 degrees high, so the shadow lies 3 m off and is an ellipse of area pi r^2 sqrt(2).
+    seen = view((3, 9, 0), (3, 0, 0), size=(96, 96), half_height=1.5, up=(0, 0, -1))
+    light = sun((-1, 1, 0), (math.pi * math.sqrt(2),) * 3, angle)
+    picture = draw(stage.floor(), stage.sphere(WHITE, (0, 3, 0), 0.5), lights=[light], seen=seen)[..., 0]
+    assert picture[:8].min() > 0.999
+    dark = 1 - picture
+    assert dark.sum() * (3 / 96) ** 2 == pytest.approx(math.pi * 0.25 * math.sqrt(2), rel=0.015)
+    x = (np.arange(96) + 0.5) * 3 / 96 - 1.5
+    assert (dark.sum(axis=0) * x).sum() / dark.sum() == pytest.approx(0.0, abs=0.02)
+    assert (dark.sum(axis=1) * x).sum() / dark.sum() == pytest.approx(0.0, abs=0.01)
+
+
+def test_a_point_light_falls_with_the_square_of_the_distance():
+    seen = view((0, 9, 0), (0, 0, 0), size=(32, 32), half_height=0.1, up=(0, 0, -1))
+    near, far = (
+        draw(stage.floor(), lights=[PointLight((0, h, 0), (math.pi,) * 3, 0.01)], seen=seen)[16, 16, 0] for h in (1, 3)
+    )
+    assert near == pytest.approx(1.0, rel=0.01)
+    assert far == pytest.approx(1 / 9, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [stage.sphere(WHITE), stage.round_mesh(WHITE), stage.blob(WHITE), stage.torus(WHITE, 0.8, 0.3)],
+    ids=["sphere", "mesh", "blob", "torus"],
+)
+def test_in_a_furnace_white_things_are_hardly_to_be_seen(shape):
+    picture = draw(shape, lights=[UNIFORM])
+    assert picture.max() < 1.002
+    assert picture.mean() > (0.999 if shape.name in ("sphere", "mesh") else 0.93)
+
+
+def test_in_a_furnace_glass_and_mirrors_give_all_light_back():
+    for surface in (Surface(color=(1, 1, 1), roughness=0.0, transmission=1.0), MIRROR):
+        picture = draw(stage.sphere(surface), lights=[UNIFORM])
+        assert picture.min() > 0.97
+        assert picture.max() < 1.03
+
+
+def test_a_mirror_shows_what_stands_before_it():
+    wall = stage.box(MIRROR, (0, 0, -0.5), (8, 8, 1))
+    lamp = stage.sphere(GLOW, (0.7, 0.2, 1.0), 0.2)
+    picture = draw(wall, lamp, seen=view((-1.0, 0, 4.0), (0, 0, 0), (200, 100), 0.5, orthographic=False))
+    camera = view((-1.0, 0, 4.0), (0, 0, 0), (200, 100), 0.5, orthographic=False)
+    for place in ((0.7, 0.2, 1.0), (0.7, 0.2, -1.0)):
+        x, y, z = camera.axes @ (np.array(place) - np.array(camera.origin))
+        column, row = 100 + x / -z / 0.5 * 50, 50 - y / -z / 0.5 * 50
+        assert picture[int(row), int(column)] == pytest.approx((1.0, 1.0, 1.0), abs=0.02)
+
+
+def test_a_checkered_floor_fades_into_its_mean_and_the_horizon_has_no_edge():
+    surface = replace(WHITE, checker_size=0.5, checker_color=(0.2, 0.2, 0.2))
+    seen = view((0, 1.5, 0), (0, 1.3, -5), (128, 128), 0.4, orthographic=False)
+    picture = draw(stage.floor(surface), lights=[UNIFORM], seen=seen)[..., 0]
+    horizon = int(np.flatnonzero(picture[:, 64] < 0.999)[0])
+    strip = picture[horizon : horizon + 7]
+    assert strip.std(axis=1).max() < 0.02  # no pattern where the squares are smaller than a pixel
+    assert np.abs(np.diff(picture[horizon - 2 : horizon + 8], axis=0)).max() < 0.2
+    assert picture[-20:].min() < 0.25 < 0.9 < picture[-20:].max()
+
+
+def test_soft_shadow_and_sky_light_have_no_grain():
+    lights = [sun((-0.5, 0.9, 0.6), (2.2,) * 3, 0.12), Sky((0.8,) * 3, (0.9,) * 3, (0.3,) * 3)]
+    seen = view((2.2, 1.7, 3.2), (0, 0.3, 0), (240, 135), 0.32, orthographic=False)
+    shapes = stage.floor(replace(WHITE, color=(0.6,) * 3)), stage.blob(WHITE, (0, 0.85, 0))
+    picture = draw(*shapes, lights=lights, seen=seen)[..., 0]
+    normals = Normals().draw(frame(*shapes, seen=seen)).linear
+    on_floor = (normals == normals[-1, 0]).all(axis=-1)
+    bumps = sum(np.roll(picture, shift, axis) for shift, axis in ((1, 0), (-1, 0), (1, 1), (-1, 1))) / 4 - picture
+    inner = on_floor & np.all([np.roll(on_floor, s, a) for s in (-1, 1) for a in (0, 1)], axis=0)
+    inner[[0, -1]] = inner[:, [0, -1]] = False
+    assert picture[inner].min() < 0.4 < 0.7 < picture[inner].max()  # there is a shadow
+    assert np.quantile(np.abs(bumps[inner]), 0.9) < 0.0015
+    assert np.sqrt((bumps[inner] ** 2).mean()) < 0.004
+
+
+def scene_of_all_kinds():
+    clay = Surface(color=(0.7, 0.5, 0.3), roughness=0.2)
+    glass = Surface(color=(1, 1, 1), roughness=0.0, transmission=1.0)
+    return frame(
+        stage.floor(replace(WHITE, checker_size=0.3), -1.0),
+        stage.blob(clay),
+        stage.sphere(MIRROR, (1.2, -0.5, 0.3), 0.5),
+        stage.sphere(glass, (-1.1, -0.6, 0.8), 0.4),
+        stage.points(clay, [(0.2 * k - 1, -0.9, 1.2) for k in range(9)], [0.08] * 9),
+        stage.segment(clay, (-1.5, -0.5, 0), (-1.4, 0.8, 0.2), 0.05),
+        lights=[sun((-0.5, 0.9, 0.6), (2.0,) * 3, 0.1), PointLight((1, 2, 1), (1,) * 3), UNIFORM],
+        seen=view((1, 1, 5), (0, -0.1, 0), (99, 61), 0.3, orthographic=False),
+    )
+
+
+def test_the_bytes_are_the_same_again_and_for_any_number_of_threads(monkeypatch):
+    pictures = []
+    for threads in ("1", "2", "2", "5"):
+        monkeypatch.setenv("SCENEQL_THREADS", threads)
+        pictures.append(Trace().draw(scene_of_all_kinds()).linear.tobytes())
+    assert len(set(pictures)) == 1
+
+
+def test_all_kinds_in_one_picture_give_light_of_finite_brightness():
+    picture = Trace().draw(scene_of_all_kinds())
+    assert np.isfinite(picture.linear).all()
+    assert picture.linear.min() >= 0
+    assert picture.undecided == 0
+
+
+def rays(count, seed):
+    random = np.random.default_rng(seed)
+    origins = random.uniform(-3, 3, (count, 3))
+    directions = random.normal(size=(count, 3))
+    return np.hstack([origins, directions / np.linalg.norm(directions, axis=1)[:, None]])
+
+
+def met(shapes, ray, anywhere=False):
+    scene, rows = shapes if isinstance(shapes, tuple) else pack(frame(shapes))
+    return walk(scene, scratch(rows), *ray, 0.0, math.inf, anywhere)
+
+
+def test_the_hierarchy_finds_what_trying_all_finds():
+    random = np.random.default_rng(7)
+    corners = random.uniform(-2, 2, (40, 1, 3)) + random.normal(size=(40, 3, 3)) * 0.4
+    singles = [Mesh("m", GLOW, c, np.array([[0, 1, 2]], dtype=np.int32)) for c in corners]
+    singles += [stage.points(GLOW, [random.uniform(-2, 2, 3)], [random.uniform(0.05, 0.4)]) for _ in range(30)]
+    singles += [stage.segment(GLOW, *random.uniform(-2, 2, (2, 3)), random.uniform(0.02, 0.2)) for _ in range(30)]
+    triangles = np.arange(120, dtype=np.int32).reshape(40, 3)
+    whole = (
+        Mesh("m", GLOW, corners.reshape(-1, 3), triangles),
+        Points("p", GLOW, np.vstack([s.centers for s in singles[40:70]]), np.hstack([s.radii for s in singles[40:70]])),
+        Segments("s", GLOW, np.vstack([s.ends for s in singles[70:]]), np.hstack([s.radii for s in singles[70:]])),
+    )
+    all_of_them, apart = pack(frame(*whole)), [pack(frame(single)) for single in singles]
+    hits = 0
+    for ray in rays(120, 1):
+        t = met(all_of_them, ray)[0]
+        assert t == pytest.approx(min(met(one, ray)[0] for one in apart), rel=1e-12)
+        dark = met(all_of_them, ray, anywhere=True)[2] == 0.0
+        assert dark == (t < math.inf)
+        hits += dark
+    assert 20 < hits < 110
+
+
+def test_no_shadow_ray_slips_through_an_implicit_object():
+    scene = pack(frame(stage.blob(GLOW)))
+    hits = 0
+    for ray in rays(4000, 2):
+        ray[:3] = 2.0 * ray[:3] / np.linalg.norm(ray[:3])
+        ray[3:] = -ray[:3] / 2.0 + 0.3 * ray[3:]
+        t, _, _ = met(scene, ray)
+        assert (met(scene, ray, anywhere=True)[2] == 0.0) == (t < math.inf)
+        hits += t < math.inf
+    assert 1000 < hits < 3900
+
+
+def test_an_implicit_object_is_cut_and_capped_at_its_box():
+    whole = stage.implicit_sphere(GLOW, 1.0)
+    cut = replace(whole, high=(1.2, 1.2, 0.5))
+    t, _, _ = met(cut, (0.1, 0.2, 5.0, 0.0, 0.0, -1.0))
+    assert t == pytest.approx(4.5, rel=1e-12)
+    normal = Normals().draw(frame(cut)).linear[48, 48]
+    assert normal == pytest.approx((0.5, 0.5, 1.0), abs=1e-6)
+
+
+def test_rays_find_the_way_out_of_solids():
+    for shape in (stage.sphere(), stage.implicit_sphere(GLOW), stage.points(GLOW, [(0, 0, 0)], [1.0])):
+        t, _, _ = met(shape, (0.2, 0.0, 0.0, 1.0, 0.0, 0.0))
+        assert t == pytest.approx(0.8, rel=1e-9)
+    inside = view((0.2, 0.1, 0.0), (0, 0, -1), (32, 32), 0.5, orthographic=False)
+    for shape in (stage.sphere(WHITE), stage.implicit_sphere(WHITE), stage.round_mesh(WHITE)):
+        assert np.isfinite(draw(shape, lights=[UNIFORM], seen=inside)).all()
+
+
+def test_an_empty_scene_is_all_sky_or_the_backdrop():
+    assert draw().max() == 0.0
+    assert draw(lights=[replace(UNIFORM, visible=(0.1, 0.2, 0.3))]) == pytest.approx(
+        np.broadcast_to((0.1, 0.2, 0.3), (96, 96, 3)), rel=1e-6
+    )
+
+
+def test_normals_are_those_of_the_sphere():
+    seen = view(size=(64, 64))
+    place = (np.arange(64) + 0.5) * 3 / 64 - 1.5
+    x, y = np.meshgrid(place, -place)
+    for shape in (stage.sphere(), stage.implicit_sphere(GLOW), stage.points(GLOW, [(0, 0, 0)], [1.0])):
+        picture = Normals().draw(frame(shape, seen=seen)).linear
+        inside = x**2 + y**2 < 0.98
+        n = 2 * picture[inside].astype(float) - 1
+        exact = np.stack([x, y, np.sqrt(np.maximum(1 - x**2 - y**2, 0))], axis=-1)[inside]
+        assert np.abs(n - exact).max() < 1e-5
+        assert (picture[x**2 + y**2 > 1.02] == 0).all()
