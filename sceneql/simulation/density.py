@@ -29,7 +29,8 @@ def reaches(parts: Floats, threshold: float) -> Floats:
             count = np.full(len(parts), np.count_nonzero(giving))
         else:
             count = np.count_nonzero((gaps < reach[:, None] + radii) & giving, axis=1)
-        share = np.divide(threshold, count * weights, out=np.ones(len(parts)), where=giving & (count > 0))
+        with np.errstate(over="ignore"):  # a weight next to nothing reaches nowhere
+            share = np.divide(threshold, count * weights, out=np.ones(len(parts)), where=giving & (count > 0))
         reach = radii * np.sqrt(np.maximum(0.0, 1.0 - np.cbrt(share)))
     return reach
 
