@@ -168,6 +168,7 @@ class Tools:
     def __init__(self, graph: SimulationGraph, name: str, report: Report, target: Path) -> None:
         self.graph, self.name, self.report, self.target = graph, name, report, target
         self._compiled: Callable[[], None] | None = None
+        self._frames = 0
 
     @property
     def clock(self) -> Clock:
@@ -183,10 +184,11 @@ class Tools:
         """The developed picture (h, w, 3) uint8."""
         from renderers.develop import develop
 
-        frame = frame_of(self.graph, self.name, output.pixels, moment, self.report.frames)
+        frame = frame_of(self.graph, self.name, output.pixels, moment, self._frames)
         renderer = self._renderer(output)
         self.prepare(output)()
         picture = renderer.draw(frame)
+        self._frames += 1
         self.report.frames += 1
         self.report.undecided += picture.undecided
         return develop(picture.linear, exposure=output.exposure, data=renderer.data)

@@ -68,7 +68,11 @@ class Writer:
         if self.frames == 0:
             self._temporary.unlink(missing_ok=True)
             return []
-        return self._finish(beside(self.path, "partial"))
+        try:
+            return self._finish(beside(self.path, "partial"))
+        except OSError:
+            self._temporary.unlink(missing_ok=True)
+            raise
 
     def _finish(self, path: Path) -> list[Path]:
         if self._file is None:
