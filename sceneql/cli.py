@@ -193,14 +193,17 @@ def words(word: str | None, folder: Path | None) -> None:
 
 
 @cli.command()
-def schema() -> None:
+@click.option(
+    "--words", "folder", type=click.Path(file_okay=False, exists=True), callback=_path, help="Your own words."
+)
+def schema(folder: Path | None) -> None:
     """Print the JSON Schema of scripts, for editors."""
     import json
 
     from sceneql.compiler.catalogue import Catalogue
     from sceneql.report.schema import schema as build
 
-    click.echo(json.dumps(build(Catalogue()), indent=1))
+    click.echo(json.dumps(build(Catalogue(folder)), indent=1))
 
 
 @cli.command()

@@ -57,6 +57,12 @@ def test_only_the_words_that_are_needed_are_loaded(tmp_path):
     assert not {n for n in names if n.startswith("sceneql.simulation.contacts.")}
 
 
+def test_explain_imports_neither_renderer_nor_encoder(tmp_path):
+    names = modules_after(tmp_path, FALL.replace("outputs: {", "outputs: {film: {video: {size: 32 18}}, "), "explain")
+    assert not names & {"PIL", "av", "imageio", "matplotlib", "trimesh"}
+    assert not [name for name in names if name.startswith("renderers.tracing")]
+
+
 def test_pruned_and_unpruned_runs_give_the_same_bytes(tmp_path):
     scene = tmp_path / "scene.yaml"
     scene.write_text(FALL)

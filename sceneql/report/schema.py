@@ -13,6 +13,13 @@ from sceneql.kinds import Kind, Refers, SceneFile, Settings, written_name
 from sceneql.report.manual import type_text
 
 TEXT: dict[str, Any] = {"type": ["string", "number", "integer"]}
+REPEAT: dict[str, Any] = {
+    "type": "object",
+    "properties": {"count": TEXT, "as": {"type": "string"}},
+    "required": ["count"],
+    "additionalProperties": False,
+    "description": "Copies of the entry, numbered from 0 by the name given as `as`.",
+}
 
 
 def schema(catalogue: Catalogue) -> dict[str, Any]:
@@ -29,14 +36,16 @@ def schema(catalogue: Catalogue) -> dict[str, Any]:
     properties |= _record(Settings, catalogue)["properties"]
     definitions = {}
     for family in catalogue.families:
-        words = catalogue.words(family)
+        guests = [other for other, cls in catalogue.families.items() if cls.also_under == family]
+        words = [word for name in (family, *guests) for word in catalogue.words(name)]
         kinds = {word: cls for word in words if (cls := catalogue.load(family, word)) is not None}
         definitions[family] = {
             "anyOf": [
                 {"enum": words},
                 {
                     "type": "object",
-                    "properties": {word: _kind(cls, catalogue) for word, cls in kinds.items()},
+                    "properties": {"repeat": REPEAT, **{word: _kind(cls, catalogue) for word, cls in kinds.items()}},
+                    "additionalProperties": False,
                 },
             ]
         }
@@ -79,6 +88,8 @@ def _type(annotation: Any, catalogue: Catalogue) -> dict[str, Any]:
         base, *marks = get_args(annotation)
         for mark in marks:
             if isinstance(mark, SceneFile):
+                return {"type": "string"}
+            if isinstance(mark, Refers) and not mark.family:
                 return {"type": "string"}
             if isinstance(mark, Refers):
                 return {"anyOf": [{"type": "string"}, {"$ref": f"#/$defs/{mark.family}"}]}
