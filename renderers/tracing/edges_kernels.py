@@ -76,7 +76,7 @@ def finished(scene, scratch, records, visibility, own, k, x, y, number, found):
         if own[layer, OWNER] == 0.0:
             continue
         if not borrow(records[layer], visibility[layer], own[layer], x, y, width, height, found):
-            look_at(scene.look)(scene, scratch, own[layer], number, ANEW, found)
+            look_at(scene.look)(scene, scratch, own[layer], number, ANEW, ANEW, found)
         red, green, blue = shade_at(scene.shade)(scene, own[layer], found)
         r, g, b = r + red, g + green, b + blue
     return r, g, b

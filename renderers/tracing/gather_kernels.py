@@ -92,7 +92,7 @@ def gather(scene, scratch, px, py, first, second, spare, visibility):
                 copy_record(spare, second)
                 keep = False
             elif outside or not glass:
-                look_at(scene.look)(scene, scratch, spare, 0, QUICK, visibility)
+                look_at(scene.look)(scene, scratch, spare, 0, QUICK, QUICK, visibility)
                 r, g, b = shade_at(scene.shade)(scene, spare, visibility)
                 cr, cg, cb = cr + r, cg + g, cb + b
             goes_on = (glass or traced > 0.0) and bounce < BOUNCES
@@ -132,7 +132,7 @@ def gather(scene, scratch, px, py, first, second, spare, visibility):
             wr, wg, wb, radius, spread = w2, w2, w2, radius2, spread2
 
 
-@kernel(types.float64(SCENE, SCRATCH, _i, _i, _stack, _rows, _stack, ROW), _nrt=False)
+@kernel(_i(SCENE, SCRATCH, _i, _i, _stack, _rows, _stack, ROW), _nrt=False)
 def gather_rows(scene, scratch, start, stop, records, radiance, visibility, spare):
     """Fill rows start..stop of a picture (h, w): records (2, h w, COLUMNS), radiance (h w, 3), visibility (2, h w, V).
 
@@ -153,5 +153,5 @@ def gather_rows(scene, scratch, start, stop, records, radiance, visibility, spar
             radiance[k, 0], radiance[k, 1], radiance[k, 2] = r, g, b
             for layer in range(2):
                 if records[layer, k, OWNER] > 0.0:
-                    look_at(scene.look)(scene, scratch, records[layer, k], number, 1, visibility[layer, k])
+                    look_at(scene.look)(scene, scratch, records[layer, k], number, 1, 1, visibility[layer, k])
     return undecided

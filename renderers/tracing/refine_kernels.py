@@ -19,7 +19,7 @@ FINE = 3.0
 OWN = 16
 """Samples of a light for each pixel of a fine edge."""
 FEW = 20.0
-"""Pixels in the filter's window below which a pixel takes OWN samples instead: small things, thin things."""
+"""Pixels in the filter's window below which a pixel takes samples of the sky of its own: small things, thin things."""
 
 
 @part
@@ -66,11 +66,13 @@ def refine_rows(scene, scratch, start, stop, records, visibility, means, fine):
             if records[k, OWNER] == 0.0:
                 continue
             if means[k, 0] < FEW:
-                look_at(scene.look)(scene, scratch, records[k], morton(x, y), OWN, fine[k])
-                for l in range(int(scene.ints[LIGHT_COUNT])):
-                    fine[k, FIRST_LIGHT + 2 * l + 1] = 0.0
-                continue
-            spread_sky(records, means, k, x, y, width, height, fine[k])
+                samples = OWN if means[k, 0] < 0.5 * FEW else OWN // 2
+                look_at(scene.look)(scene, scratch, records[k], morton(x, y), samples, 0, fine[k])
+                for c in range(FIRST_LIGHT):
+                    joined = samples * fine[k, c] + means[k, 0] * means[k, 1 + c]
+                    fine[k, c] = joined / (samples + means[k, 0])
+            else:
+                spread_sky(records, means, k, x, y, width, height, fine[k])
             for l in range(int(scene.ints[LIGHT_COUNT])):
                 column = FIRST_LIGHT + 2 * l
                 share = means[k, 1 + column]

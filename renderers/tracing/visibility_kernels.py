@@ -140,23 +140,23 @@ def shadow_sample(scene, scratch, record, l, sample, jitter):
 
 
 @kernel(LOOK.signature, _nrt=False)
-def look_around(scene, scratch, record, number, samples, visibility):
-    """Fill a row of visibility with the mean of a net of ``samples`` (a power of two), the one of pixel ``number``.
+def look_around(scene, scratch, record, number, of_sky, of_lights, visibility):
+    """Fill a row of visibility with means of nets of so many samples (powers of two), those of pixel ``number``.
 
     Several samples cover the pixel's area, one stands for its center.
     """
     for column in range(FIRST_LIGHT + 2 * scene.ints[LIGHT_COUNT]):
         visibility[column] = 0.0
-    weight = 1.0 / samples
-    jitter = 0.0 if samples == 1 else 1.0
-    for k in range(samples):
-        if scene.reals[HAS_SKY] != 0.0:
-            r, g, b = sky_loss(scene, scratch, record, (number * samples + k) % SKY_COUNT)
-            visibility[SKY] += weight * r
-            visibility[SKY + 1] += weight * g
-            visibility[SKY + 2] += weight * b
-        for l in range(int(scene.ints[LIGHT_COUNT])):
-            sample = (number * samples + k) % COUNT
-            share, width = shadow_sample(scene, scratch, record, l, sample, jitter)
-            visibility[FIRST_LIGHT + 2 * l] += weight * share
-            visibility[FIRST_LIGHT + 2 * l + 1] = max(visibility[FIRST_LIGHT + 2 * l + 1], width)
+    if scene.reals[HAS_SKY] != 0.0:
+        for k in range(of_sky):
+            r, g, b = sky_loss(scene, scratch, record, (number * of_sky + k) % SKY_COUNT)
+            visibility[SKY] += r / of_sky
+            visibility[SKY + 1] += g / of_sky
+            visibility[SKY + 2] += b / of_sky
+    jitter = 0.0 if of_lights == 1 else 1.0
+    for l in range(int(scene.ints[LIGHT_COUNT])):
+        column = FIRST_LIGHT + 2 * l
+        for k in range(of_lights):
+            share, width = shadow_sample(scene, scratch, record, l, (number * of_lights + k) % COUNT, jitter)
+            visibility[column] += share / of_lights
+            visibility[column + 1] = max(visibility[column + 1], width)
