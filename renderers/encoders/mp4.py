@@ -34,7 +34,7 @@ class Writer:
 
         (width, height), rate, quality, comment = self._settings
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        file = iio.imopen(self._temporary, "w", plugin="pyav", extension=".mp4")
+        file: Any = iio.imopen(self._temporary, "w", plugin="pyav", extension=".mp4")
         file.init_video_stream("libx264", fps=float(rate), pixel_format="yuv420p")
         stream: Any = file._video_stream
         stream.width, stream.height = width, height
