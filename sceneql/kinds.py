@@ -69,6 +69,8 @@ class Quantity:
     """A bare number is refused (angles, temperatures)."""
     direction: bool = False
     """Not all components may be 0."""
+    over_time: bool = False
+    """May look over the whole run, as with `final`."""
 
 
 class Paint:
@@ -150,6 +152,8 @@ FixedVelocity = Annotated[tuple[float, float, float], Quantity(dim.VELOCITY, (3,
 
 Measured = Annotated[Value, Quantity(None, None)]
 """Any output or expression: what a record writes."""
+Expected = Annotated[Value, Quantity(None, None, over_time=True)]
+"""Any expression, over the whole run too: what an expectation compares."""
 
 ObjectRef = Annotated[Ref, Refers("objects")]
 ModelRef = Annotated[Ref, Refers("models")]
@@ -595,10 +599,10 @@ class Gallery(Record):
 class Expect(Record):
     """A number that the scene must give, and where that is known from."""
 
-    of: Measured = field("What is measured: an expression of outputs, with final(), max(), at(x, 2 s), ...")
-    value: Measured | None = field("What it must be.", None)
+    of: Expected = field("What is measured: an expression of outputs, with final(), max(), at(x, 2 s), ...")
+    value: Expected | None = field("What it must be.", None)
     tolerance: FixedScalar = field("How far it may be off, as a number in SI.", "1e-6", at_least=0)
-    below: Measured | None = field("In place of a value: what it must stay below.", None)
+    below: Expected | None = field("In place of a value: what it must stay below.", None)
     because: str = field("Why: exact, independent source, conservation, ...")
     variant: str | None = field("The variant that it holds for; by default the script as it stands.", None)
 

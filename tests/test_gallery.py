@@ -22,6 +22,18 @@ expect:
   wrong: {of: final(spring.bob.position.x), value: 1 m, tolerance: 1e-7, because: a mistake}
   instant: {of: "at(spring.bob.position.x, 0.123 s)", value: 1 m + 0.5 m*cos(1.23), tolerance: 1e-7, because: exact}
   drift: {of: max(abs(relative_drift(spring.energy))), below: 1e-7, because: conservation}
+  slows: {of: max(spring.bob.position.x), below: initial(spring.bob.position.x) + 1 nm, because: exact}
+  turns:
+    of: at(spring.bob.position.x, 0.2 s)
+    value: 2 m - at(spring.bob.position.x, pi/10*1 s + 0.2 s)
+    tolerance: 1e-7
+    because: exact, half a period later
+  place:
+    of: length([final(spring.bob.position.x) - 1 m, 0 m, 0 m])
+    value: 0.5 m*abs(cos(20))
+    tolerance: 1e-7
+    because: exact
+  late: {of: "at(spring.bob.position.x, 3 s)", below: 9 m, because: the run ends before}
   moves: {of: max(spring.bob.position.x), below: 1.2 m, because: a mistake}
 """
 
@@ -29,8 +41,17 @@ expect:
 def test_expectations_hold_or_do_not(tmp_path):
     path = tmp_path / "spring.yaml"
     path.write_text(SCENE)
-    found = {outcome.name: outcome for outcome in outcomes(pipeline.load(path))}
-    assert {name for name, outcome in found.items() if outcome.holds} == {"right", "instant", "drift"}
+    graph = pipeline.load(path)
+    found = {outcome.name: outcome for outcome in outcomes(graph)}
+    assert [(warning.code, warning.span.text) for warning in graph.warnings] == [("beyond-end", "3 s")]
+    assert {name for name, outcome in found.items() if outcome.holds} == {
+        "right",
+        "instant",
+        "drift",
+        "slows",
+        "turns",
+        "place",
+    }
     assert str(found["wrong"]).startswith("DIFFERS")
     assert "exact" in str(found["right"])
 

@@ -14,6 +14,7 @@ from pydantic import BaseModel
 
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.names import Names
+from sceneql.compiler.over_time import check_instants
 from sceneql.compiler.read import Reader, Unreadable
 from sceneql.compiler.values import read_expr
 from sceneql.graph import Task
@@ -87,7 +88,10 @@ class _Checker:
                 result[key] = reader.field(node, info, key)
             except Unreadable:
                 continue
-        return Settings.model_validate(result)
+        settings = Settings.model_validate(result)
+        for expect in settings.expect.values() if "clock" in result or "clock" not in given else ():
+            check_instants(expect, settings.clock.end, self.found)
+        return settings
 
     def kind(self, family: str, entry: Entry) -> type[Kind] | None:
         """The class of an entry's word, or None after reporting that there is none."""

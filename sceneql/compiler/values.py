@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any, get_args
 
 from sceneql.compiler.names import Names, plain
+from sceneql.compiler.over_time import momentary
 from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence
@@ -43,6 +44,8 @@ def read_value(node: Node, quantity: Quantity, what: str, names: Names, found: D
     """A value of the quantity's type, or None after reporting what is wrong."""
     expr = read_expr(node, quantity.shape, quantity.dimension, what, names, found)
     if expr is None or not _fits(expr, quantity, what, node.span, found):
+        return None
+    if not quantity.over_time and not momentary(expr, node.span, found):
         return None
     return Value(expr, node.span)
 
@@ -119,11 +122,12 @@ def read_formula(node: Node, symbols: Iterable[str], what: str, names: Names, fo
         return None if expr is None else plain(expr)
 
     try:
-        return bind(parse_expression(parsed_text(node), node.content), lookup, found)
+        expr = bind(parse_expression(parsed_text(node), node.content), lookup, found)
     except ScriptError as error:
         for diagnostic in error.diagnostics:
             found.add(diagnostic)
         return None
+    return expr if expr is None or momentary(expr, node.span, found) else None
 
 
 def _vector(items: list[Expr], what: str, span: Span, found: Diagnostics) -> Expr | None:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from sceneql import pipeline
 from sceneql.graph import SimulationGraph
 from sceneql.kinds import Expect
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import Call, Expr, Link, Symbol, walk
+from sceneql.quantities.expression import Call, Expr, Link, Symbol, Vector, walk
 from sceneql.quantities.operations import OPERATIONS
 
 
@@ -46,10 +47,11 @@ def outcomes(graph: SimulationGraph, variant: str | None = None) -> list[Outcome
         return []
     clock = graph.settings.clock
     instants = {*clock.frames(clock.fps), clock.end}
-    for expect in wanted.values():
-        instants |= {_instant(node) for node in walk(expect.of.expr) if isinstance(node, Call) and node.op == "at"}
+    values = [value for e in wanted.values() for value in (e.of, e.value, e.below) if value is not None]
+    nodes = [node for value in values for node in walk(value.expr)]
+    instants |= {_instant(node) for node in nodes if isinstance(node, Call) and node.op == "at"}
     times = sorted(t for t in instants if t <= clock.end)
-    links = {node for expect in wanted.values() for node in walk(expect.of.expr) if isinstance(node, Link)}
+    links = {node for node in nodes if isinstance(node, Link)}
     series = _sample(graph, times, links)
     return [_outcome(name, expect, series, times) for name, expect in wanted.items()]
 
@@ -77,15 +79,20 @@ def _outcome(name: str, expect: Expect, series: Mapping[Symbol | Link, Any], tim
 
 
 def measure(expr: Expr, series: Mapping[Symbol | Link, Any], times: list[float]) -> Any:
-    """The value of an expression over series (times, ...); one without an operation on time is read at the end."""
+    """The value of an expression over series (times, ...); one without an operation on time is read at the end.
+
+    What is asked for after the end of the run is NaN.
+    """
     known: dict[Symbol, Any] = {}
 
     def look_up(node: Symbol | Link) -> Any:
         if isinstance(node, Symbol) and node in known:
             return known[node]
-        return series[Symbol("time")] if isinstance(node, Symbol) else _of(series, node)
+        return series[Symbol("time")] if isinstance(node, Symbol) else series[node]
 
     def solve(node: Expr) -> Expr:
+        if isinstance(node, Vector):
+            return replace(node, items=tuple(solve(item) for item in node.items))
         if not isinstance(node, Call):
             return node
         args = tuple(solve(arg) for arg in node.args)
@@ -104,12 +111,13 @@ def measure(expr: Expr, series: Mapping[Symbol | Link, Any], times: list[float])
     return evaluate(solve(expr), look_up, arrays=True)
 
 
-def _of(series: Mapping[Symbol | Link, Any], link: Link) -> Any:
-    return series[link]
-
-
 def _instant(node: Call) -> float:
     return float(evaluate(node.args[1], {}))
+
+
+def _at(value: Any, times: list[float], node: Call) -> Any:
+    instant = _instant(node)
+    return value[times.index(instant)] if instant <= times[-1] else value[-1] * math.nan
 
 
 def _drift(value: Any, times: list[float], node: Call) -> Any:
@@ -123,7 +131,7 @@ def _drift(value: Any, times: list[float], node: Call) -> Any:
 _SERIES: Mapping[str, Any] = {
     "final": lambda value, times, node: value[-1],
     "initial": lambda value, times, node: value[0],
-    "at": lambda value, times, node: value[times.index(_instant(node))],
+    "at": _at,
     "relative_drift": _drift,
     "spread": lambda value, times, node: value.max(axis=0) - value.min(axis=0),
 }

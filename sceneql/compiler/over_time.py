@@ -1,0 +1,39 @@
+"""Operations over a whole run (`final`, `at`, `relative_drift`, ...): only `expect` has the run before it."""
+
+from __future__ import annotations
+
+from sceneql.kinds import Expect
+from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Call, Expr, Link, Symbol, each_once
+from sceneql.quantities.operations import OPERATIONS
+from sceneql.quantities.span import Span
+
+
+def momentary(expr: Expr, span: Span, found: Diagnostics) -> bool:
+    """Whether an expression has a value at an instant; what asks for the whole run is reported."""
+    calls = [node for node in each_once(expr) if isinstance(node, Call) and OPERATIONS[node.op].series]
+    for call in calls:
+        message = f"'{call.op}' looks over the whole run, which `expect` alone can"
+        found.error("over-time", message, call.span or span)
+    return not calls
+
+
+def check_instants(expect: Expect, end: float, found: Diagnostics) -> None:
+    """Report the instants of ``at(x, instant)`` that are not constant or before 0; warn of those after ``end`` [s]."""
+    for value in (expect.of, expect.value, expect.below):
+        if value is not None:
+            for call in each_once(value.expr):
+                if isinstance(call, Call) and call.op == "at":
+                    _check_instant(call.args[1], end, call.args[1].span or call.span or value.span, found)
+
+
+def _check_instant(instant: Expr, end: float, span: Span | None, found: Diagnostics) -> None:
+    if any(isinstance(node, Symbol | Link) for node in each_once(instant)):
+        found.error("not-constant", "the instant of 'at' must be constant", span)
+        return
+    at = evaluate(instant, {})
+    if not at >= 0:
+        found.error("out-of-range", f"the instant of 'at' must be at least 0 s, not {at:g} s", span)
+    elif at > end:  # no error: runs are cut short by --set clock.end
+        found.warning("beyond-end", f"this is not measured: the run ends at {end:g} s", span)
