@@ -123,7 +123,8 @@ def render(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path 
         line += f", {report.frames} frames"
     if report.steps:
         line += f", {report.steps} steps"
-    click.echo(f"{line}; compile {report.compile_seconds:.2f} s ({report.compilations} functions)")
+    line += f"; compile {report.compile_seconds:.2f} s"
+    click.echo(line + (f" ({report.compilations} functions)" if report.compilations else ""))
     if report.undecided:
         click.echo(f"{report.undecided} pixels undecided: proved neither hit nor miss at the tolerance")
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -167,7 +168,6 @@ class Tools:
 
     def __init__(self, graph: SimulationGraph, name: str, report: Report, target: Path) -> None:
         self.graph, self.name, self.report, self.target = graph, name, report, target
-        self._compiled: Callable[[], None] | None = None
         self._frames = 0
 
     @property
@@ -203,12 +203,8 @@ class Tools:
 
     def prepare(self, output: Picture) -> Callable[[], None]:
         """Start compiling what the output is drawn with, beside the physics; call the result to wait for it."""
-        if self._compiled is None:
-            from sceneql.kernels import compile_ahead
-
-            module = self._renderer(output).kernels
-            self._compiled = compile_ahead(module) if module else lambda: None
-        return self._compiled
+        module = self._renderer(output).kernels
+        return _compile_ahead(module) if module else lambda: None
 
     def _renderer(self, output: Picture) -> Renderer:
         if output.renderer is not None:
@@ -217,6 +213,14 @@ class Tools:
         if cls is None:
             raise LookupError("the default renderer is missing")
         return cast(Renderer, cls())
+
+
+@cache
+def _compile_ahead(module: str) -> Callable[[], None]:
+    """Start compiling a renderer's kernels, once for all outputs that it draws."""
+    from sceneql.kernels import compile_ahead
+
+    return compile_ahead(module)
 
 
 def frame_of(graph: SimulationGraph, output: str, size: tuple[int, int], moment: Instant, index: int) -> Any:

@@ -60,7 +60,8 @@ class _Checker:
         self.folder = Path(script.sources[0].name).parent
         for family, entries in script.sections.items():
             for name, entry in entries.items():
-                self.family_of[name], self.entries[name] = family, entry
+                self.family_of.setdefault(name, family)  # a name used twice is reported by the language
+                self.entries.setdefault(name, entry)
         define = script.settings.get("define")
         if define is not None and not isinstance(define, MappingNode):
             found.error("wrong-shape", "define takes names with values, `{name: value}`", define.span)
