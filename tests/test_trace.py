@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+import os
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -248,3 +251,29 @@ def test_normals_are_those_of_the_sphere():
         exact = np.stack([x, y, np.sqrt(np.maximum(1 - x**2 - y**2, 0))], axis=-1)[inside]
         assert np.abs(n - exact).max() < 1e-5
         assert (picture[x**2 + y**2 > 1.02] == 0).all()
+
+
+def small_scene():
+    clay = Surface(color=(0.7, 0.5, 0.3), roughness=0.2)
+    glass = Surface(color=(1, 1, 1), roughness=0.0, transmission=1.0)
+    return frame(
+        stage.floor(replace(WHITE, checker_size=0.3), -1.0),
+        stage.implicit_sphere(clay, 0.5, 0.6),
+        stage.sphere(glass, (-1.0, -0.5, 0.5), 0.4),
+        stage.segment(MIRROR, (0.8, -0.5, 0), (0.9, 0.5, 0.2), 0.3),
+        stage.round_mesh(clay, 0.7, 3),
+        lights=[sun((-0.5, 0.9, 0.6), (2.0,) * 3, 0.1), PointLight((1, 2, 1), (1,) * 3), UNIFORM],
+        seen=view((1, 1, 5), (0, -0.1, 0), (6, 4), 0.3, orthographic=False),
+    )
+
+
+def test_compiled_or_not_the_picture_is_the_same():
+    """In plain Python an index out of bounds is an error; compiled it would go unseen."""
+    code = (
+        "import sys, test_trace as t; "
+        "sys.stdout.buffer.write(t.Trace(samples=2).draw(t.small_scene()).linear.tobytes())"
+    )
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": os.pathsep.join([*sys.path])}
+    plain = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, env=environment).stdout
+    compiled = Trace(samples=2).draw(small_scene()).linear
+    assert np.frombuffer(plain, dtype=np.float32) == pytest.approx(compiled.ravel(), abs=1e-5)

@@ -78,12 +78,14 @@ def gather(scene, scratch, px, py, first, second, spare, visibility):
             clear = scene.reals[s + TRANSMISSION]
             glass = clear > (0.0 if bounce == 0 else 0.5)
             nv = facing_ratio(spare)
-            sr, sg, sb = mean_specular(scene.reals, spare, nv)
+            sr, sg, sb = 0.0, 0.0, 0.0
             traced = 0.0
             if glass:
                 traced = 1.0 if bounce == 0 or not outside else 0.0
             elif bounce < BOUNCES:
                 traced = sharpness(scene.reals[s + ROUGHNESS])
+                if traced > 0.0:
+                    sr, sg, sb = mean_specular(scene.reals, spare, nv)
                 traced *= smoothstep(FAINT, 2.0 * FAINT, traced * max(wr * sr, max(wg * sg, wb * sb)))
             spare[TRACED] = traced
             if bounce == 0:
