@@ -38,7 +38,8 @@ class Writer:
         file.init_video_stream("libx264", fps=float(rate), pixel_format="yuv420p")
         stream: Any = file._video_stream
         stream.width, stream.height = width, height
-        stream.options = {"crf": f"{quality:g}", "preset": "medium"}
+        # Without mbtree=0 x264 was seen to give other bytes from run to run for the same frames, even on one thread.
+        stream.options = {"crf": f"{quality:g}", "preset": "medium", "x264-params": "mbtree=0"}
         context = stream.codec_context
         context.thread_count, context.thread_type = 4, "FRAME"
         context.color_primaries = context.color_trc = context.colorspace = 1  # BT.709
