@@ -4,13 +4,12 @@
 from numba import types
 
 from renderers.tracing.record_kernels import OWNER, alike
+from renderers.tracing.sampling_kernels import SIDE
 from sceneql.kernels import kernel
 
 _i = types.int64
 _rows = types.float32[:, ::1]
-WINDOW = 8
-"""Pixels along a side of the window."""
-REACH = WINDOW // 2
+REACH = SIDE // 2
 SLACK = 3.0
 """Distance off a plane [pixel radii] up to which a neighbor counts as of the same surface."""
 

@@ -3,9 +3,9 @@
 
 from numba import types
 
-from renderers.tracing.filter_kernels import REACH, SLACK, WINDOW
+from renderers.tracing.filter_kernels import REACH, SLACK
 from renderers.tracing.record_kernels import OWNER, RADIUS, alike
-from renderers.tracing.sampling_kernels import COUNT, morton
+from renderers.tracing.sampling_kernels import COUNT, SIDE, morton
 from renderers.tracing.scene_kernels import HEIGHT, LIGHT_COUNT, SCENE, SCRATCH, WIDTH, look_at, part, shade_at
 from renderers.tracing.visibility_kernels import FIRST_LIGHT, shadow_sample
 from sceneql.kernels import kernel
@@ -34,15 +34,15 @@ def mixed(records, visibility, k, x, y, width, height, column, reach):
 
 
 @part
-def spread(records, means, k, x, y, width, height, fine):
-    """Mean visibility over 16 x 16 pixels, where each sample of the net stands once: from four means over 8 x 8."""
+def spread_sky(records, means, k, x, y, width, height, fine):
+    """The sky's loss over 16 x 16 pixels, where each of its samples stands once: from four means over 8 x 8."""
     weight = 0.0
-    for c in range(len(fine)):
+    for c in range(FIRST_LIGHT):
         fine[c] = 0.0
     for corner in range(5):
         i, j = x + REACH * (2 * (corner & 1) - 1), y + REACH * ((corner & 2) - 1)
         if corner == 4:
-            if weight == 4.0 * WINDOW * WINDOW:
+            if weight == 4.0 * SIDE * SIDE:
                 break
             i, j = x, y  # a window cut by an edge: its middle stands in
         if i < 0 or j < 0 or i >= width or j >= height:
@@ -50,9 +50,9 @@ def spread(records, means, k, x, y, width, height, fine):
         m = j * width + i
         if m == k or alike(records[k], records[m], SLACK):
             weight += means[m, 0]
-            for c in range(len(fine)):
+            for c in range(FIRST_LIGHT):
                 fine[c] += means[m, 0] * means[m, 1 + c]
-    for c in range(len(fine)):
+    for c in range(FIRST_LIGHT):
         fine[c] /= weight
 
 
@@ -68,29 +68,20 @@ def refine_rows(scene, scratch, start, stop, records, visibility, means, fine):
             if means[k, 0] < FEW:
                 samples = OWN if means[k, 0] < 0.5 * FEW else OWN // 2
                 look_at(scene.look)(scene, scratch, records[k], morton(x, y), samples, 0, fine[k])
-                for c in range(FIRST_LIGHT, fine.shape[1]):
-                    fine[k, c] = means[k, 1 + c]
                 for c in range(FIRST_LIGHT):
                     joined = samples * fine[k, c] + means[k, 0] * means[k, 1 + c]
                     fine[k, c] = joined / (samples + means[k, 0])
             else:
-                spread(records, means, k, x, y, width, height, fine[k])
+                spread_sky(records, means, k, x, y, width, height, fine[k])
             for l in range(int(scene.ints[LIGHT_COUNT])):
                 column = FIRST_LIGHT + 2 * l
                 share = means[k, 1 + column]
-                wide, hidden, width_sum = fine[k, column], 1.0 - share, means[k, 2 + column]
-                even = share > 0.9999 or share < 0.0001
-                if even:
-                    hidden, width_sum = 1.0 - wide, fine[k, column + 1]
                 fine[k, column + 1] = 0.0
                 fine[k, column] = share
-                if hidden < 0.0001 or wide < 0.0001:
+                if share > 0.9999 or share < 0.0001:
                     continue
-                pixels = width_sum / hidden / (2.0 * records[k, RADIUS])
-                if pixels >= WINDOW:
-                    fine[k, column] = share + min(pixels / WINDOW - 1.0, 1.0) * (wide - share)
-                    continue
-                if even:
+                pixels = means[k, 2 + column] / (1.0 - share) / (2.0 * records[k, RADIUS])
+                if pixels >= SIDE:
                     continue
                 reach = 1 if pixels < CRISP else (2 if pixels < FINE else REACH)
                 if reach < REACH and not mixed(records, visibility, k, x, y, width, height, column, reach):

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Which sample a pixel takes: one point of a net for each pixel of a block of 16 x 16.
+"""Which sample a pixel takes: one point of a net for each pixel of a block, 8 x 8 for lights, 16 x 16 for the sky.
 
 Pixel (x, y) takes the point whose index is the Morton code of its place in the block. Any window of the block's size
 then has each point once, and every aligned block of a power of two a net of its own (Ahmed and Wonka 2020), so that the
@@ -10,8 +10,11 @@ import numpy as np
 
 from renderers.tracing.scene_kernels import part
 
-SIDE = 16
+SIDE = 8
 COUNT = SIDE * SIDE
+"""Samples of a light."""
+SKY_COUNT = 4 * COUNT
+"""Samples of the sky."""
 
 
 def _radical_inverse(bits, index):
@@ -42,8 +45,10 @@ def _disk(points):
 
 
 DISK = _disk(_net(COUNT))
-"""(COUNT, 2) points of the unit disk; lifted to the hemisphere they are cosine-distributed (Malley)."""
-JITTER = _net(COUNT)[np.arange(COUNT) * 149 % COUNT, ::-1] - 0.5
+"""(COUNT, 2) points of a light's disk."""
+SKY_DISK = _disk(_net(SKY_COUNT))
+"""(SKY_COUNT, 2) points of the unit disk; lifted to the hemisphere they are cosine-distributed (Malley)."""
+JITTER = _net(COUNT)[np.arange(COUNT) * 37 % COUNT, ::-1] - 0.5
 """(COUNT, 2) points of a pixel, from its center, in another order than those of DISK."""
 
 
@@ -54,7 +59,7 @@ def subpixels(samples: int):
 
 @part
 def morton(x, y):
-    """Index of the sample of pixel (x, y)."""
+    """Index of the sky's sample of pixel (x, y); its remainder by COUNT is that of the lights'."""
     number = 0
     for bit in range(4):
         number |= ((x >> bit) & 1) << (2 * bit) | ((y >> bit) & 1) << (2 * bit + 1)

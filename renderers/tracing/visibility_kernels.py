@@ -5,7 +5,7 @@ import numpy as np
 
 from renderers.tracing.light_kernels import sky_ambient, sky_radiance
 from renderers.tracing.record_kernels import NORMAL, PLACE, RADIUS, start_of
-from renderers.tracing.sampling_kernels import COUNT, DISK, JITTER, across
+from renderers.tracing.sampling_kernels import COUNT, DISK, JITTER, SKY_COUNT, SKY_DISK, across
 from renderers.tracing.scene_kernels import (
     EMISSION,
     HAS_SKY,
@@ -101,7 +101,7 @@ def sky_loss(scene, scratch, record, sample):
     """How much less (3) than the sky's radiance comes in along the sample's direction, cosine-distributed."""
     nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
     ax, ay, az, bx, by, bz = across(nx, ny, nz)
-    u, v = DISK[sample, 0], DISK[sample, 1]
+    u, v = SKY_DISK[sample, 0], SKY_DISK[sample, 1]
     w = np.sqrt(max(1.0 - u * u - v * v, 0.0))
     dx, dy, dz = u * ax + v * bx + w * nx, u * ay + v * by + w * ny, u * az + v * bz + w * nz
     x, y, z = start_of(record)
@@ -149,7 +149,7 @@ def look_around(scene, scratch, record, number, of_sky, of_lights, visibility):
         visibility[column] = 0.0
     if scene.reals[HAS_SKY] != 0.0:
         for k in range(of_sky):
-            r, g, b = sky_loss(scene, scratch, record, (number * of_sky + k) % COUNT)
+            r, g, b = sky_loss(scene, scratch, record, (number * of_sky + k) % SKY_COUNT)
             visibility[SKY] += r / of_sky
             visibility[SKY + 1] += g / of_sky
             visibility[SKY + 2] += b / of_sky
