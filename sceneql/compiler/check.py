@@ -127,7 +127,7 @@ class _Checker:
         if cls is None:
             return None
         fields = self.entries[name].fields
-        outputs = dict(cls.outputs({} if fields is None else written(fields)))
+        outputs = dict(cls.outputs(written(fields) if isinstance(fields, MappingNode) else {}))
         if issubclass(cls, Object):
             for field_name, info in cls.model_fields.items():
                 for mark in info.metadata:

@@ -68,7 +68,7 @@ class Reader:
         elif node is not None and not (isinstance(node, Scalar) and node.kind == "null"):
             raise self._fail("wrong-shape", f"{title} takes fields, `{{name: value}}`", node.span)
         symbols = self.symbols
-        if node is not None and issubclass(cls, Kind):
+        if isinstance(node, MappingNode) and issubclass(cls, Kind):
             symbols = cls.formula_symbols(plainly(node))
         ok = True
         got: dict[str, Any] = {}

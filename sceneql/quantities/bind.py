@@ -96,7 +96,9 @@ def fold(expr: Call) -> Expr:
 
 
 def _constant(expr: Expr) -> bool:
-    return isinstance(expr, Number) or (isinstance(expr, Vector) and all(_constant(item) for item in expr.items))
+    if isinstance(expr, Vector):
+        return bool(expr.items) and all(_constant(item) for item in expr.items)
+    return isinstance(expr, Number)
 
 
 def _finite(value: Any) -> bool:
