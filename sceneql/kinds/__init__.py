@@ -1,0 +1,69 @@
+"""The vocabulary's grammar: what a word of each family is, and the types its fields may have.
+
+A word is one file with one class, named as the file in CamelCase (``mass_spring.py``: ``MassSpring``), derived from a
+family class of this package. The class is the schema and the manual: fields with type, default, range and a line of
+text; ``gives``, its outputs; its docstring. When adding a word read ``types.py`` and ``word.py``, then its family.
+"""
+
+from __future__ import annotations
+
+from sceneql.kinds.moment import Moment
+from sceneql.kinds.objects import Collider, FieldBuilder, Object
+from sceneql.kinds.outputs import Output, Picture, Sink, Tools
+from sceneql.kinds.physics import Contact, Force, Model, Solver
+from sceneql.kinds.pictures import Camera, Illumination, Material, Renderer
+from sceneql.kinds.settings import MOST_MOMENTS, Clock, Exceeds, Expect, Gallery, Settings, bounded_moments
+from sceneql.kinds.types import (
+    Acceleration,
+    Angle,
+    Axis,
+    CameraRef,
+    Color,
+    Damping,
+    Direction,
+    DrawnRef,
+    Expected,
+    File,
+    FixedAngle,
+    FixedDamping,
+    FixedFrequency,
+    FixedLength,
+    FixedMass,
+    FixedPosition,
+    FixedScalar,
+    FixedStiffness,
+    FixedTime,
+    FixedVelocity,
+    Length,
+    Lengths,
+    Mass,
+    MaterialRef,
+    Measured,
+    ModelRef,
+    ObjectRef,
+    Points,
+    Position,
+    Power,
+    RendererRef,
+    Rotation,
+    Scalar,
+    Speed,
+    Stiffness,
+    Time,
+    Velocity,
+)
+from sceneql.kinds.values import Formula, Paint, Quantity, Ref, Refers, SceneFile, Symbols, Turn, Value
+from sceneql.kinds.word import GRAMMAR, REQUIRED, Gives, Kind, Record, field, literal, quantity_type, written_name
+
+FAMILIES: tuple[type[Kind], ...] = (
+    Object,
+    Model,
+    Force,
+    Contact,
+    Solver,
+    Camera,
+    Illumination,
+    Material,
+    Renderer,
+    Output,
+)

@@ -1,0 +1,37 @@
+"""One instant of the run, as words see it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, Protocol
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Surface
+    from sceneql.kinds.objects import Object
+    from sceneql.kinds.values import Ref, Value
+
+
+class Moment(Protocol):
+    """One instant of the run, as words see it."""
+
+    @property
+    def time(self) -> float:
+        """[s]"""
+
+    def at(self, value: Value) -> Any:
+        """The value now: float, or float64 array of the field's shape, SI. Raises RunFailure if it is not finite."""
+
+    def measure(self, value: Value) -> Any:
+        """The value now, finite or not."""
+
+    def read(self, task: str, output: str) -> Any:
+        """An output of a part now."""
+
+    def object(self, ref: Ref) -> Object:
+        """The kind of an object."""
+
+    def surface(self, name: str, material: Ref | None, color: Value | None) -> Surface:
+        """The surface of object ``name``: its material's, with the color replaced where given; a default by order."""
+
+    def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
+        """Low and high corner (3,) of what the named objects draw over the whole film (infinite planes left out)."""

@@ -1,0 +1,86 @@
+"""The family of objects: what is drawn, collided with and moved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, Protocol
+
+from sceneql.kinds.types import Color, MaterialRef
+from sceneql.kinds.values import Ref
+from sceneql.kinds.word import Kind, field
+from sceneql.quantities.expression import Expr
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.frame import Shape as Drawn
+    from sceneql.kinds.moment import Moment
+    from sceneql.system import Assembly
+
+
+class FieldBuilder(Protocol):
+    """What an object needs to write its implicit field (sceneql.field.builder.TapeBuilder)."""
+
+    def constant(self, value: float) -> int:
+        """Register of a number."""
+
+    def op(self, name: str, *registers: int) -> int:
+        """Register of an operation of the one table."""
+
+    def expression(self, expr: Expr, symbols: Mapping[str, int]) -> int:
+        """Register of a scalar expression whose symbols have registers."""
+
+    def affine(self, matrix: Floats, x: int, y: int, z: int) -> tuple[int, int, int]:
+        """Registers of a point mapped by a (3, 4) matrix."""
+
+    def density(self, parts: Floats, x: int, y: int, z: int) -> int:
+        """Register of a density field: parts (p, 8) as in frame.Tape."""
+
+
+class Object(Kind):
+    """Something to draw, to collide with, to be moved."""
+
+    family: ClassVar[str] = "objects"
+    collides: ClassVar[bool] = False
+    """Whether contacts that name no surface take it as one (it has a collider)."""
+
+    material: MaterialRef | None = field("How it looks; by default glossy, in a color by order.", None)
+    color: Color | None = field("Color in place of the material's.", None)
+    hidden: bool = field("Not drawn (but may be used by others).", False)
+
+    def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Drawn]:
+        """Closed-set shapes of this instant; ``place`` (3, 4) maps the parent's coordinates to the world."""
+        raise TypeError(f"{type(self).__name__} cannot be drawn")
+
+    def implicit(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
+        """Register of a field that is negative inside; (x, y, z) are registers of a point in the parent's coordinates.
+
+        Near the surface it should behave like a distance. Raises TypeError where the object has no inside.
+        """
+        raise TypeError(f"{type(self).__name__} has no inside")
+
+    def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
+        """Low and high corner (3,) of a world box around it; infinite where it is unbounded."""
+        raise TypeError(f"{type(self).__name__} has no extent")
+
+    def members(self) -> tuple[Ref, ...]:
+        """Objects that are drawn by this one, and so not by themselves."""
+        return ()
+
+    def collider(self, assembly: Assembly) -> Collider:
+        """Its surface for contacts. Raises TypeError where the object cannot be collided with."""
+        raise TypeError(f"{type(self).__name__} cannot be collided with")
+
+
+@dataclass(frozen=True, slots=True)
+class Collider:
+    """A surface for contacts: ``shape`` names the gap function of the collision kernels; offsets into the floats.
+
+    ``position_at``: 3 floats, center; ``rotation_at``: 4 floats, quaternion; ``size_at``: shape-specific (plane:
+    normal (3); sphere: radius; box: half sides (3)).
+    """
+
+    shape: str
+    position_at: int
+    rotation_at: int
+    size_at: int

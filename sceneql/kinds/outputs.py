@@ -1,0 +1,75 @@
+"""The family of outputs: films, pictures, tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
+
+from sceneql.kinds.types import CameraRef, DrawnRef, FixedScalar, RendererRef
+from sceneql.kinds.word import Kind, field
+
+if TYPE_CHECKING:
+    from sceneql.kinds.moment import Moment
+    from sceneql.kinds.settings import Clock
+
+
+class Tools(Protocol):
+    """What the pipeline lends to an output."""
+
+    @property
+    def clock(self) -> Clock:
+        """Film time and simulation time."""
+
+    def path(self, extension: str) -> Any:
+        """Path of the output's file."""
+
+    def pixels(self, output: Picture, moment: Moment) -> Any:
+        """The developed picture (h, w, 3) uint8 of this output's camera, renderer and size."""
+
+    def encoder(self, word: str, **settings: Any) -> Any:
+        """A writer with ``write``, ``close`` (whole under its final name) and ``abort`` (what was made, beside it)."""
+
+
+class Sink(Protocol):
+    """An open output. The paths that it returns are those of the files it has made."""
+
+    def take(self, moment: Moment) -> None:
+        """One instant of those asked for."""
+
+    def close(self) -> Iterable[Any]:
+        """Finish: files appear under their final names."""
+
+    def abort(self) -> Iterable[Any]:
+        """The run failed: keep what was made beside the final name."""
+
+
+class Output(Kind):
+    """Something that is made: a film, a picture, a table."""
+
+    family: ClassVar[str] = "outputs"
+
+    def times(self, clock: Clock) -> list[float]:
+        """The instants [s] of the simulation that it wants, increasing, from 0 to ``clock.end``."""
+        raise NotImplementedError
+
+    def open(self, tools: Tools) -> Sink:
+        """Start it."""
+        raise NotImplementedError
+
+
+class Picture(Output):
+    """An output that draws frames: what every picture has."""
+
+    size: tuple[int, int] | Literal["360p", "480p", "720p", "1080p", "4k"] = field(
+        "Width and height [pixels], or the name of a 16:9 size.", (960, 540), at_least=2, at_most=16384
+    )
+    camera: CameraRef | None = field("Seen from; by default the script's first camera.", None)
+    renderer: RendererRef | None = field("Drawn by; by default `trace`.", None)
+    show: tuple[DrawnRef, ...] | None = field("Draws only these parts; by default all that is not hidden.", None)
+    exposure: FixedScalar = field("Stops by which the picture is brightened.", "0", at_least=-20, at_most=20)
+
+    @property
+    def pixels(self) -> tuple[int, int]:
+        """Width and height."""
+        named = {"360p": (640, 360), "480p": (854, 480), "720p": (1280, 720), "1080p": (1920, 1080), "4k": (3840, 2160)}
+        return named[self.size] if isinstance(self.size, str) else self.size

@@ -1,0 +1,104 @@
+"""The families of physics: models, forces, contacts, solvers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from sceneql.kinds.types import ModelRef
+from sceneql.kinds.values import Ref
+from sceneql.kinds.word import Kind, field
+from sceneql.quantities.expression import Expr
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.frame import Shape as Drawn
+    from sceneql.kinds.moment import Moment
+    from sceneql.system import Assembly, Bodies, ModelState, Stepper
+
+
+class Model(Kind):
+    """Something with a state in time. `kinematic` ones are functions of time; the others are solved."""
+
+    family: ClassVar[str] = "models"
+    kinematic: ClassVar[bool] = False
+    has_bodies: ClassVar[bool] = True
+    """Whether forces that name no model act on it."""
+
+    def assemble(self, name: str, assembly: Assembly) -> Bodies | None:
+        """Reserve state, give initial values, add the terms of its own rate; the point masses forces may act on."""
+        raise TypeError(f"{type(self).__name__} has no state")
+
+    def read(self, output: str, state: ModelState) -> Any:
+        """An output at a state: float or float64 array."""
+        raise TypeError(f"{type(self).__name__} gives no {output}")
+
+    def formula(self, output: str) -> Expr:
+        """An output of a kinematic model as an expression of time."""
+        raise TypeError(f"{type(self).__name__} is not a function of time")
+
+    def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Drawn]:
+        """How it draws itself where no object of the script does."""
+        return ()
+
+    def drives(self) -> Mapping[str, tuple[str, str]]:
+        """Fields of objects that it sets: ``{object name: (field, output)}``."""
+        return {}
+
+
+class Force(Kind):
+    """Adds to the rate of models."""
+
+    family: ClassVar[str] = "forces"
+
+    on: tuple[ModelRef, ...] | None = field("The models it acts on; by default all that have masses.", None)
+
+    def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
+        """Add its terms for one model."""
+        raise NotImplementedError
+
+    def potential(self, bodies: Bodies, state: ModelState) -> float:
+        """Potential energy [J] of the model in this force at a state; 0 where there is none."""
+        return 0.0
+
+
+class Contact(Kind):
+    """Gives events and impulses."""
+
+    family: ClassVar[str] = "contacts"
+    also_under: ClassVar[str] = "forces"
+
+    def ties(self) -> tuple[Ref, ...]:
+        """The models and objects it acts between; empty: all models and the floor."""
+        raise NotImplementedError
+
+    def assemble(self, name: str, assembly: Assembly, bodies: Bodies, others: tuple[Ref, ...]) -> None:
+        """Add gaps and impacts (or local backing off) of one model against the others."""
+        raise NotImplementedError
+
+    def read(self, output: str, state: ModelState) -> Any:
+        """An output at a state."""
+        raise TypeError(f"{type(self).__name__} gives no {output}")
+
+
+class Solver(Kind):
+    """Marches a system in time. Sees only its rate, its Jacobian, its invariants and its events."""
+
+    family: ClassVar[str] = "solvers"
+
+    on: tuple[ModelRef, ...] | None = field("The models it marches; by default all.", None)
+
+    def choice(self) -> str:
+        """What it chose to do and why, where it chooses a method by itself."""
+        return ""
+
+    def stepper(self) -> Stepper:
+        """Its compiled step and control."""
+        raise NotImplementedError
+
+    def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
+        """Largest growth factor of a step of the linear system y' = jacobian y (its spectral radius).
+
+        ``partner`` (n,) int: for a position entry of y the index of its velocity, else -1.
+        """
+        raise NotImplementedError

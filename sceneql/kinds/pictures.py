@@ -1,0 +1,60 @@
+"""The families of pictures: cameras, lights, materials, renderers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from sceneql.kinds.word import Kind
+
+if TYPE_CHECKING:
+    from sceneql.frame import RGB, Light, Surface, View
+    from sceneql.kinds.moment import Moment
+
+
+class Camera(Kind):
+    """Where the film is seen from."""
+
+    family: ClassVar[str] = "cameras"
+
+    def looks_ahead(self) -> bool:
+        """Whether it frames what is drawn over the whole film, so that the physics runs once ahead of it."""
+        return True
+
+    def view(self, size: tuple[int, int], moment: Moment) -> View:
+        """The view of this instant."""
+        raise NotImplementedError
+
+
+class Illumination(Kind):
+    """A light (named so because frame.Light is what it lowers to)."""
+
+    family: ClassVar[str] = "lights"
+
+    def lower(self, moment: Moment) -> Iterable[Light]:
+        """Closed-set lights of this instant."""
+        raise NotImplementedError
+
+
+class Material(Kind):
+    """How a surface looks."""
+
+    family: ClassVar[str] = "materials"
+
+    def surface(self, moment: Moment, color: RGB | None) -> Surface:
+        """The surface record; ``color``, linear, replaces the material's own where given."""
+        raise NotImplementedError
+
+
+class Renderer(Kind):
+    """Draws a frame."""
+
+    family: ClassVar[str] = "renderers"
+    kernels: ClassVar[str] = ""
+    """The module whose import compiles what it draws with."""
+    data: ClassVar[bool] = False
+    """Whether its pictures are data (depth, normals), which are not developed."""
+
+    def draw(self, frame: Any) -> Any:
+        """The Picture of a frame."""
+        raise NotImplementedError

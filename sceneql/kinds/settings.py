@@ -1,0 +1,71 @@
+"""The top-level keys of a script that are not parts."""
+
+from __future__ import annotations
+
+import math
+
+from pydantic import model_validator
+
+from sceneql.kinds.types import Color, Expected, FixedScalar, FixedTime
+from sceneql.kinds.word import Record, field
+
+MOST_MOMENTS = 1_000_000
+
+
+class Exceeds(ValueError):
+    """A size beyond what is allowed: refused with the code `limit-refused` where the script says it."""
+
+
+def bounded_moments(count: float) -> float:
+    """The number itself. Raises Exceeds where an output would take more instants than a run can have."""
+    if not count <= MOST_MOMENTS:
+        raise Exceeds(f"{count:.3g} instants are more than the {MOST_MOMENTS:,} that an output may take")
+    return count
+
+
+class Clock(Record):
+    """Film time and simulation time."""
+
+    end: FixedTime = field("Length of the simulation.", "4 s", above=0)
+    fps: FixedScalar = field("Film frames a second.", "30", above=0, at_most=1000)
+    speed: FixedScalar = field("Seconds of simulation in a second of film.", "1", above=0)
+    seed: int = field("Seed of all chance.", 0, at_least=0)
+
+    def frames(self, fps: float) -> list[float]:
+        """Instants [s] of the film's frames: frame i stands at film time i/fps, before the end. Raises Exceeds."""
+        count = max(1, math.ceil(round(bounded_moments(self.end / self.speed * fps), 9)))
+        return [k / fps * self.speed for k in range(count)]
+
+
+class Gallery(Record):
+    """The small and short version of a scene that the gallery keeps."""
+
+    size: tuple[int, int] = field("Width and height of the poster [pixels].", (320, 180), above=0)
+    time: FixedTime = field("The instant of the poster.", "1 s", at_least=0)
+
+
+class Expect(Record):
+    """A number that the scene must give, and where that is known from."""
+
+    of: Expected = field("What is measured: an expression of outputs, with final(), max(), at(x, 2 s), ...")
+    value: Expected | None = field("What it must be.", None)
+    tolerance: FixedScalar = field("How far it may be off, as a number in SI.", "1e-6", at_least=0)
+    below: Expected | None = field("In place of a value: what it must stay below.", None)
+    because: str = field("Why: exact, independent source, conservation, ...")
+    variant: str | None = field("The variant that it holds for; by default the script as it stands.", None)
+
+    @model_validator(mode="after")
+    def _one_target(self) -> Expect:
+        if (self.value is None) == (self.below is None):
+            raise ValueError("an expectation has either 'value' or 'below'")
+        return self
+
+
+class Settings(Record):
+    """The top-level keys of a script that are not parts."""
+
+    about: str = field("One sentence on the scene.", "")
+    clock: Clock = field("Film time and simulation time.", Clock())
+    gallery: Gallery = field("The gallery's version of the scene.", Gallery())
+    expect: dict[str, Expect] = field("Numbers that the scene must give.", {})
+    background: Color | None = field("What the camera sees where nothing is; by default the sky.", None)

@@ -1,0 +1,53 @@
+"""The types of fields by name: a value in time of each quantity, its constant twin (``Fixed...``), references."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from sceneql.kinds.values import Paint, Quantity, Ref, Refers, SceneFile, Turn, Value
+from sceneql.quantities import dimension as dim
+
+Scalar = Annotated[Value, Quantity(dim.PLAIN)]
+Length = Annotated[Value, Quantity(dim.LENGTH)]
+Time = Annotated[Value, Quantity(dim.TIME)]
+Mass = Annotated[Value, Quantity(dim.MASS)]
+Angle = Annotated[Value, Quantity(dim.PLAIN, needs_unit=True)]
+Speed = Annotated[Value, Quantity(dim.VELOCITY)]
+Power = Annotated[Value, Quantity(dim.POWER)]
+Stiffness = Annotated[Value, Quantity(dim.STIFFNESS)]
+Damping = Annotated[Value, Quantity(dim.DAMPING)]
+Position = Annotated[Value, Quantity(dim.LENGTH, (3,))]
+Velocity = Annotated[Value, Quantity(dim.VELOCITY, (3,))]
+Acceleration = Annotated[Value, Quantity(dim.ACCELERATION, (3,))]
+Direction = Annotated[Value, Quantity(dim.PLAIN, (3,), direction=True)]
+Points = Annotated[Value, Quantity(dim.LENGTH, (None, 3))]
+Lengths = Annotated[Value, Quantity(dim.LENGTH, (None,))]
+Color = Annotated[Value, Paint()]
+Rotation = Annotated[Value, Turn()]
+Axis = Annotated[tuple[float, float, float], Quantity(dim.PLAIN, (3,))]
+
+FixedScalar = Annotated[float, Quantity(dim.PLAIN)]
+FixedLength = Annotated[float, Quantity(dim.LENGTH)]
+FixedTime = Annotated[float, Quantity(dim.TIME)]
+FixedMass = Annotated[float, Quantity(dim.MASS)]
+FixedAngle = Annotated[float, Quantity(dim.PLAIN, needs_unit=True)]
+FixedStiffness = Annotated[float, Quantity(dim.STIFFNESS)]
+FixedDamping = Annotated[float, Quantity(dim.DAMPING)]
+FixedFrequency = Annotated[float, Quantity(dim.FREQUENCY)]
+FixedPosition = Annotated[tuple[float, float, float], Quantity(dim.LENGTH, (3,))]
+FixedVelocity = Annotated[tuple[float, float, float], Quantity(dim.VELOCITY, (3,))]
+
+Measured = Annotated[Value, Quantity(None, None)]
+"""Any output or expression: what a record writes."""
+Expected = Annotated[Value, Quantity(None, None, over_time=True)]
+"""Any expression, over the whole run too: what an expectation compares."""
+
+ObjectRef = Annotated[Ref, Refers("objects")]
+ModelRef = Annotated[Ref, Refers("models")]
+CameraRef = Annotated[Ref, Refers("cameras")]
+MaterialRef = Annotated[Ref, Refers("materials")]
+RendererRef = Annotated[Ref, Refers("renderers")]
+DrawnRef = Annotated[Ref, Refers("objects", also="models")]
+"""Something that can be seen."""
+
+File = Annotated[str, SceneFile()]

@@ -1,0 +1,99 @@
+"""What a field may hold: values in time, references, formulas; and the marks that say which."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from sceneql.quantities.dimension import Dimension
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Expr, Link, Shape, Symbol, walk
+from sceneql.quantities.span import Span
+
+
+@dataclass(frozen=True, slots=True)
+class Value:
+    """A value in time: a constant, an expression of `time`, a link to another part's output, or keyframes."""
+
+    expr: Expr
+    span: Span | None = None
+
+    @property
+    def constant(self) -> bool:
+        """Whether it depends neither on time nor on another part."""
+        return not any(isinstance(node, Symbol | Link) for node in walk(self.expr))
+
+    @property
+    def links(self) -> tuple[Link, ...]:
+        """The outputs of other parts that it reads."""
+        return tuple(node for node in walk(self.expr) if isinstance(node, Link))
+
+    def number(self) -> Any:
+        """The float, or nested tuple of floats, of a constant value, in SI."""
+        return evaluate(self.expr, {})
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """Type of a field that holds a quantity: dimension and shape.
+
+    On a ``Value`` it may vary in time; on a ``float`` or ``tuple`` it must be constant and is stored in SI.
+    """
+
+    dimension: Dimension | None
+    """None: any."""
+    shape: Shape | None = ()
+    """None: any."""
+    needs_unit: bool = False
+    """A bare number is refused (angles, temperatures)."""
+    direction: bool = False
+    """Not all components may be 0."""
+    over_time: bool = False
+    """May look over the whole run, as with `final`."""
+
+
+class Paint:
+    """Marks a color: CSS name, ``#rrggbb``, three sRGB numbers or an expression such as ``hue(i/7)``."""
+
+
+class Turn:
+    """Marks a rotation: ``{about: z, angle: 30 deg}``, intrinsic ``{xyz: ...}``, or a quaternion ``[w, x, y, z]``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Refers:
+    """Marks a ``Ref`` and the family it names; an entry written in place is allowed too."""
+
+    family: str
+    also: str = ""
+    """A second family whose parts it may name."""
+
+    def __str__(self) -> str:
+        return f"{self.family} or {self.also}" if self.also else self.family
+
+
+class SceneFile:
+    """Marks a text that is the path of a file, read as a path below the scene's folder where there is a file."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ref:
+    """A named part of the script."""
+
+    name: str
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Formula:
+    """A textbook formula of an `implicit` or `equations` entry: bound over plain numbers, symbols free."""
+
+    expr: Expr
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Symbols:
+    """Marks a ``Formula`` and names the free symbols that it may use besides defines; ``None``: the kind binds them."""
+
+    names: tuple[str, ...] | None

@@ -1,0 +1,120 @@
+"""A word: fields with their line of the manual, default and range; outputs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from sceneql.kinds.values import Paint, Quantity, Turn, Value
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.bind import bind
+from sceneql.quantities.diagnostic import Diagnostics, ScriptError
+from sceneql.quantities.dimension import Dimension
+from sceneql.quantities.expression import Shape, Type
+from sceneql.quantities.parser import parse_value
+from sceneql.quantities.span import Source, Span
+
+REQUIRED: Any = ...
+
+
+def field(
+    doc: str,
+    default: Any = REQUIRED,
+    *,
+    above: float | None = None,
+    at_least: float | None = None,
+    below: float | None = None,
+    at_most: float | None = None,
+) -> Any:
+    """A field with its line of the manual, its default *as a script would write it*, and its range in SI.
+
+    A text default (``"0.5 m"``) is read by the field's own grammar; None means that the field may be left out.
+    Ranges hold for every component; a value that varies in time is checked where it is evaluated.
+    """
+    limits = {"above": above, "at_least": at_least, "below": below, "at_most": at_most}
+    extra: Any = {"limits": {k: v for k, v in limits.items() if v is not None}, "default": default}
+    if default is REQUIRED:
+        return Field(description=doc, json_schema_extra=extra)
+    return Field(default=default, description=doc, json_schema_extra=extra)
+
+
+def literal(text: str, quantity: Quantity) -> Value:
+    """The Value of a text without names, as in a default. Raises ScriptError."""
+    source = Source("default", text)
+    found = Diagnostics()
+    expr = bind(parse_value(text, Span(source, 0, len(text))), lambda parts, span: None, found)
+    found.raise_errors()
+    if expr is None:
+        raise ScriptError([])
+    return Value(expr)
+
+
+GRAMMAR: Mapping[type, Any] = {Paint: Quantity(dim.PLAIN, (3,)), Turn: Quantity(dim.PLAIN, (4,))}
+"""How the default of a color (three sRGB numbers) and of a rotation (a quaternion) is written."""
+
+
+def written_name(name: str) -> str:
+    """A field's name in a script: ``from_`` is written ``from``, which Python does not allow as a name."""
+    return name.removesuffix("_")
+
+
+class Record(BaseModel):
+    """A group of fields inside a word (a mass, a spring, a clock): the same types, no methods of a family."""
+
+    # Schemas are built when a word is first used: most words of the vocabulary never are.
+    model_config = ConfigDict(frozen=True, strict=True, extra="forbid", arbitrary_types_allowed=True, defer_build=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _read_defaults(cls, given: Any) -> Any:
+        if not isinstance(given, dict):
+            return given
+        filled = dict(given)
+        for name, info in cls.model_fields.items():
+            if name in filled or not isinstance(info.default, str):
+                continue
+            for mark in info.metadata:
+                if isinstance(mark, Quantity | Paint | Turn):
+                    value = literal(info.default, GRAMMAR.get(type(mark), mark))
+                    filled[name] = value if info.annotation is Value else value.number()
+        return filled
+
+
+@dataclass(frozen=True, slots=True)
+class Gives:
+    """An output of a word: its type and its line of the manual."""
+
+    type: Type
+    doc: str
+
+
+def quantity_type(dimension: Dimension, shape: Shape = ()) -> Type:
+    """Type of an output."""
+    return Type(shape, dimension)
+
+
+class Kind(Record):
+    """A word: its fields, its outputs, its manual."""
+
+    family: ClassVar[str] = ""
+    also_under: ClassVar[str] = ""
+    """Another section whose entries may be of this family too (a collision is a force to most)."""
+    gives: ClassVar[Mapping[str, Gives]] = {}
+    imports: ClassVar[tuple[str, ...]] = ()
+    """Libraries that its running methods import and that scenes without it do without (told by `explain`)."""
+
+    @classmethod
+    def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
+        """The outputs of an entry. ``written`` is its fields as plain nested dicts, lists and texts.
+
+        Words whose outputs have the script's own names (``spring.bob.position``) add them here.
+        """
+        return cls.gives
+
+    @classmethod
+    def formula_symbols(cls, written: Mapping[str, Any]) -> tuple[str, ...]:
+        """The free symbols of its formulas that are marked ``Symbols(None)``; ``written`` as in `outputs`."""
+        return ()
