@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 import subprocess
 import sys
 import threading
@@ -15,6 +16,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -23,26 +25,47 @@ from numba import types
 from numba.core import cgutils, event
 from numba.extending import intrinsic
 
-PACKAGES = (Path(__file__).parent, Path(__file__).parent.parent / "renderers")
+OURS = ("sceneql", "renderers", "sceneql_generated")
+IMPORTED = re.compile(r"^from ([\w.]+) import", re.MULTILINE)
 
 
-def cache_folder() -> Path:
-    """Folder of compiled code, named by a hash of all kernel sources and of numba's version.
-
-    numba's own cache does not notice a change in a function imported from another file; the hash does.
-    """
-    digest = hashlib.sha256(f"{numba.__version__} {numba.config.DISABLE_JIT}".encode())
-    for package in PACKAGES:
-        for path in sorted([*package.rglob("*_kernels.py"), *package.glob("kernels.py")]):
-            digest.update(path.read_bytes())
+def _cache_home() -> Path:
+    """Folder of all compiled code of this version of numba; SCENEQL_CACHE moves it."""
     home = os.environ.get("SCENEQL_CACHE") or os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    folder = Path(home) / "sceneql" / f"kernels-{digest.hexdigest()[:16]}"
+    mode = "plain" if numba.config.DISABLE_JIT else "compiled"
+    folder = Path(home) / "sceneql" / f"numba-{numba.__version__}-{mode}"
     folder.mkdir(parents=True, exist_ok=True)
     return folder
 
 
-CACHE = cache_folder()
-numba.config.CACHE_DIR = str(CACHE)
+CACHE = _cache_home()
+
+
+@cache
+def _sources(module: str) -> frozenset[Path]:
+    """The files that compiled code of a module is made of: its own, and those of ours that they import."""
+    found: dict[str, Path] = {}
+    todo = [module]
+    tops = {*OURS, module.partition(".")[0]}
+    while todo:
+        name = todo.pop()
+        spec = None if name in found or name.partition(".")[0] not in tops else find_spec(name)
+        if spec is not None and spec.origin is not None:
+            found[name] = Path(spec.origin)
+            todo += IMPORTED.findall(found[name].read_text(encoding="utf-8"))
+    return frozenset(found.values())
+
+
+@cache
+def cache_folder(module: str) -> Path:
+    """Folder of a module's compiled code, named by a hash of all that it is made of.
+
+    numba's own cache does not notice a change in a function imported from another file; the hash does.
+    """
+    digest = hashlib.sha256()
+    for text in sorted(path.read_bytes() for path in _sources(module)):
+        digest.update(text)
+    return CACHE / f"{module.rpartition('.')[2]}-{digest.hexdigest()[:16]}"
 
 
 class CompileAccount(event.Listener):
@@ -77,11 +100,17 @@ def kernel(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any
 
     Fastmath stays off, so that the bits do not depend on the machine.
     """
-    return numba.njit(signature, cache=True, nogil=True, error_model="numpy", **options)  # type: ignore[no-any-return]
+
+    def compile(function: Callable[..., Any]) -> Any:
+        numba.config.CACHE_DIR = str(cache_folder(function.__module__))
+        return numba.njit(signature, cache=True, nogil=True, error_model="numpy", **options)(function)
+
+    return compile
 
 
-inlined = numba.njit(cache=True, nogil=True, error_model="numpy", inline="never")
-"""A helper of kernels of the same file: compiled with its caller, for the types it is called with."""
+def inlined(function: Callable[..., Any]) -> Any:
+    """A helper of kernels of the same file: compiled with its caller, for the types it is called with."""
+    return kernel(None)(function)
 
 
 def lean(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
@@ -89,8 +118,9 @@ def lean(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     return kernel(signature, _nrt=False, **options)
 
 
-lean_inlined = numba.njit(cache=True, nogil=True, error_model="numpy", inline="never", _nrt=False)
-"""A helper of lean kernels."""
+def lean_inlined(function: Callable[..., Any]) -> Any:
+    """A helper of lean kernels."""
+    return lean(None)(function)
 
 
 def address(function: Any, kind: Any) -> Any:
@@ -132,7 +162,7 @@ def compile_ahead(module: str) -> Callable[[], None]:
     Compiling holds the interpreter's lock, so a second core can only help from a second process; what it compiles
     comes here from the cache. The seconds waited count as compilation.
     """
-    done = CACHE / f"{module}.compiled"
+    done = cache_folder(module) / "all.compiled"
     if done.exists() or numba.config.DISABLE_JIT:
         return lambda: None
     process = subprocess.Popen([sys.executable, "-c", f"import {module}"], stdin=subprocess.DEVNULL)
@@ -140,6 +170,7 @@ def compile_ahead(module: str) -> Callable[[], None]:
     def wait() -> None:
         started = time.perf_counter()
         if process.wait() == 0:
+            done.parent.mkdir(parents=True, exist_ok=True)
             done.touch()
         compiled.seconds += time.perf_counter() - started
 
