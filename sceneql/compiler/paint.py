@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from sceneql.compiler.keyframes import read_keys
 from sceneql.compiler.names import Names
-from sceneql.compiler.values import parsed_text, read_keys, read_value
+from sceneql.compiler.values import parsed_text, read_value, time_reader
 from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar
@@ -20,7 +21,11 @@ ORDERS = ("xyz", "xzy", "yxz", "yzx", "zxy", "zyx")
 def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
     """An sRGB color (3,) from 0 to 1: a CSS name, ``#rrggbb``, or a vector value."""
     if isinstance(node, MappingNode) and "keys" in node.entries:
-        expr = read_keys(node, "color", lambda item: _expr(read_color(item, names, found)), None, RGB, names, found)
+
+        def key(item: Node) -> Expr | None:
+            return _expr(read_color(item, names, found))
+
+        expr = read_keys(node, "color", key, None, time_reader(names, found), RGB, found)
         return None if expr is None else Value(expr, node.span)
     if isinstance(node, Scalar):
         text = node.text.strip()
@@ -42,9 +47,11 @@ def read_rotation(node: Node, names: Names, found: Diagnostics) -> Value | None:
     if not isinstance(node, MappingNode):
         return read_value(node, Quantity(PLAIN, (4,)), "rotation", names, found)
     if "keys" in node.entries:
-        expr = read_keys(
-            node, "rotation", lambda item: _expr(read_rotation(item, names, found)), None, QUATERNION, names, found
-        )
+
+        def key(item: Node) -> Expr | None:
+            return _expr(read_rotation(item, names, found))
+
+        expr = read_keys(node, "rotation", key, None, time_reader(names, found), QUATERNION, found)
         return None if expr is None else Value(expr, node.span)
     given = list(node.entries)
     if sorted(given) == ["about", "angle"]:

@@ -14,7 +14,8 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
-from sceneql.compiler import paint, values
+from sceneql.compiler import limits, paint, values
+from sceneql.compiler.formulas import read_formula
 from sceneql.compiler.names import Names
 from sceneql.compiler.paths import read_path
 from sceneql.kinds import (
@@ -116,8 +117,8 @@ class Reader:
         annotation = Annotated[(info.annotation, *info.metadata)] if info.metadata else info.annotation
         errors = len(self.found.errors)
         value = self.read(node, annotation, name)
-        limits = (info.json_schema_extra or {}).get("limits", {})
-        values.check_limits(value, limits, name, annotation, node.span, self.found)
+        bounds = (info.json_schema_extra or {}).get("limits", {})
+        limits.check_limits(value, bounds, name, annotation, node.span, self.found)
         if len(self.found.errors) > errors:
             raise Unreadable
         return value
@@ -179,13 +180,13 @@ class Reader:
         if not value.constant:
             raise self._fail("not-constant", f"{what} must be constant", node.span)
         number = value.number()
-        if not values.finite(number):
+        if not limits.finite(number):
             raise self._fail("not-finite", f"{what} is {number}", node.span)
         return number
 
     def _formula(self, node: Node, mark: Symbols, what: str) -> Formula:
         expr = self._some(
-            values.read_formula(node, self.symbols if mark.names is None else mark.names, what, self.names, self.found)
+            read_formula(node, self.symbols if mark.names is None else mark.names, what, self.names, self.found)
         )
         return Formula(expr, node.span)
 
@@ -278,7 +279,7 @@ class Reader:
         number = value.number()
         if base is float:
             return number
-        if not values.finite(number) or number != int(number):
+        if not limits.finite(number) or number != int(number):
             raise self._fail("not-whole", f"{what} must be a whole number, not {number:g}", node.span)
         return int(number)
 

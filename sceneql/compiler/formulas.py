@@ -1,0 +1,52 @@
+"""Nodes to textbook formulas, as `implicit` and `equations` take them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from sceneql.compiler.names import Names, plain
+from sceneql.compiler.over_time import momentary
+from sceneql.compiler.values import parsed_text
+from sceneql.language.tree import Node, Scalar, Sequence
+from sceneql.quantities.bind import bind
+from sceneql.quantities.diagnostic import Diagnostics, ScriptError, suggestion
+from sceneql.quantities.dimension import PLAIN
+from sceneql.quantities.expression import Expr, Symbol, Type, Vector
+from sceneql.quantities.operations import CONSTANTS
+from sceneql.quantities.parser import parse_expression
+from sceneql.quantities.span import Span
+
+
+def read_formula(node: Node, symbols: Iterable[str], what: str, names: Names, found: Diagnostics) -> Expr | None:
+    """A textbook formula over plain numbers: the symbols are free, defines come in as plain numbers."""
+    if isinstance(node, Sequence):
+        items = [read_formula(item, symbols, what, names, found) for item in node.items]
+        if any(item is None for item in items):
+            return None
+        return Vector(tuple(item for item in items if item is not None), Type((len(items),), PLAIN), node.span)
+    if not isinstance(node, Scalar):
+        found.error("wrong-shape", f"{what} is a formula", node.span)
+        return None
+    free = set(symbols)
+
+    def lookup(parts: tuple[str, ...], span: Span) -> Expr | None:
+        if len(parts) == 1 and parts[0] in free:
+            return Symbol("time" if parts[0] == "t" else parts[0], Type((), PLAIN), span)
+        if parts[0] not in names.defines and parts[0] not in CONSTANTS and len(parts) == 1:
+            found.error(
+                "unknown-name",
+                f"nothing is called '{parts[0]}'",
+                span,
+                help=suggestion(parts[0], [*free, *names.defines]) or "free here are " + ", ".join(sorted(free)),
+            )
+            return None
+        expr = names.lookup(parts, span)
+        return None if expr is None else plain(expr)
+
+    try:
+        expr = bind(parse_expression(parsed_text(node), node.content), lookup, found)
+    except ScriptError as error:
+        for diagnostic in error.diagnostics:
+            found.add(diagnostic)
+        return None
+    return expr if expr is None or momentary(expr, node.span, found) else None

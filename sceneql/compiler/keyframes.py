@@ -1,0 +1,87 @@
+"""Nodes to keyframes: ``{keys: {time: value, ...}, curve: smooth, cycle: 2 s, delay: 1 s}``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from sceneql.kinds import Value
+from sceneql.language.tree import Mapping as MappingNode
+from sceneql.language.tree import Node, Scalar
+from sceneql.quantities.diagnostic import Diagnostics, suggestion
+from sceneql.quantities.dimension import TIME
+from sceneql.quantities.expression import Call, Expr, Key, Keys, Symbol, Type
+
+CURVES = ("step", "linear", "smooth", "cubic")
+KEY_FIELDS = ("value", "slope", "slope_in", "slope_out")
+
+Read = Callable[[Node], Expr | None]
+"""Reads the value, or the slope, of one key; None after reporting."""
+ReadTime = Callable[[Node, str], Value | None]
+"""Reads a time that the messages call by the given name."""
+
+
+def read_keys(
+    node: MappingNode, what: str, value: Read, slope: Read | None, time: ReadTime, type_: Type, found: Diagnostics
+) -> Expr | None:
+    """Keyframes; ``value`` and ``slope`` read one key's, ``time`` a time. Key times are constant and increase."""
+    ok = True
+    for key in node.entries:
+        if key not in ("keys", "curve", "cycle", "delay"):
+            hint = suggestion(key, ("keys", "curve", "cycle", "delay"))
+            found.error("unknown-field", f"keyframes have no field '{key}'", node.keys[key].span, help=hint)
+            ok = False
+    table = node.entries["keys"]
+    if not isinstance(table, MappingNode) or not table.entries:
+        found.error("wrong-shape", "keys are written `{time: value, ...}`", table.span)
+        return None
+    fields = KEY_FIELDS if slope is not None else KEY_FIELDS[:1]
+    keys: list[Key] = []
+    last = -math.inf
+    for name, item in table.entries.items():
+        at = time(table.keys[name], "a key's time")
+        slopes: dict[str, Expr | None] = {}
+        if isinstance(item, MappingNode) and "value" in item.entries:
+            for extra in [key for key in item.entries if key not in fields]:
+                hint = suggestion(extra, fields)
+                found.error("unknown-field", f"a key has no field '{extra}'", item.keys[extra].span, help=hint)
+                ok = False
+            if slope is not None:
+                slopes = {key: slope(item.entries[key]) for key in KEY_FIELDS[1:] if key in item.entries}
+            item = item.entries["value"]
+        read = value(item)
+        if at is None or read is None or any(s is None for s in slopes.values()):
+            ok = False
+            continue
+        if not at.constant:
+            found.error("not-constant", "a key's time must be constant", table.keys[name].span)
+            ok = False
+            continue
+        now = at.number()
+        if now <= last:
+            found.error("keys-order", "the times of keys must increase", table.keys[name].span)
+            ok = False
+        last = now
+        both = slopes.get("slope")
+        keys.append(Key(at.expr, read, slopes.get("slope_in", both), slopes.get("slope_out", both)))
+    curve = _curve(node, found)
+    cycle, delay = (time(node.entries[name], name) if name in node.entries else None for name in ("cycle", "delay"))
+    if not ok or curve is None:
+        return None
+    argument: Expr = Symbol("time", Type((), TIME))
+    if delay is not None:
+        argument = Call("sub", (argument, delay.expr), Type((), TIME))
+    return Keys(argument, tuple(keys), curve, None if cycle is None else cycle.expr, type_, node.span)
+
+
+def _curve(node: MappingNode, found: Diagnostics) -> Any:
+    if "curve" not in node.entries:
+        return "smooth"
+    item = node.entries["curve"]
+    text = item.text if isinstance(item, Scalar) else ""
+    if text in CURVES:
+        return text
+    hint = suggestion(text, CURVES) or "one of " + ", ".join(CURVES)
+    found.error("unknown-choice", f"curve cannot be '{text}'", item.span, help=hint)
+    return None

@@ -1,0 +1,75 @@
+"""Numbers within a field's range: finite, and inside the limits that the field gives."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any, get_args
+
+from sceneql.kinds import Quantity, Value
+from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.span import Span
+from sceneql.quantities.units import unit_of
+
+
+def finite(number: Any) -> bool:
+    """Whether a number, or all numbers of nested tuples, are finite."""
+    if isinstance(number, tuple):
+        return all(finite(item) for item in number)
+    return math.isfinite(number)
+
+
+_LIMITS: Mapping[str, tuple[Callable[[float, float], bool], str]] = {
+    "above": (lambda x, limit: x > limit, "above"),
+    "at_least": (lambda x, limit: x >= limit, "at least"),
+    "below": (lambda x, limit: x < limit, "below"),
+    "at_most": (lambda x, limit: x <= limit, "at most"),
+}
+
+
+def check_limits(
+    value: Any, limits: Mapping[str, float], what: str, annotation: Any, span: Span, found: Diagnostics
+) -> None:
+    """Report a constant that lies outside its field's range, or is not finite."""
+    if isinstance(value, Value):
+        if not value.constant:
+            return
+        value = evaluate(value.expr, {})
+        if not finite(value):
+            found.error("not-finite", f"{what} is not a finite number", span)
+            return
+    if not limits:
+        return
+    for number in numbers(value):
+        for limit, bound in limits.items():
+            holds, word = _LIMITS[limit]
+            if not holds(number, bound):
+                asked, given = (_told(one, annotation) for one in (bound, number))
+                found.error("out-of-range", f"{what} must be {word} {asked}, not {given}", span)
+                return
+
+
+def numbers(value: Any) -> list[float]:
+    """The numbers of a number or of nested tuples, in order; anything else has none."""
+    if isinstance(value, tuple | list):
+        return [number for item in value for number in numbers(item)]
+    return [float(value)] if isinstance(value, int | float) and not isinstance(value, bool) else []
+
+
+def _told(number: float, annotation: Any) -> str:
+    """A number in SI with the unit in which a field's range is told."""
+    quantity = _quantity(annotation)
+    if quantity is None or quantity.dimension is None:
+        return f"{number:g}"
+    if quantity.needs_unit and quantity.dimension.plain:
+        return f"{math.degrees(number):g} deg"
+    return f"{number:g}" if quantity.dimension.plain else f"{number:g} {unit_of(quantity.dimension)}"
+
+
+def _quantity(annotation: Any) -> Quantity | None:
+    """The first quantity that a type names."""
+    parts = get_args(annotation)
+    marks = [part for part in parts if isinstance(part, Quantity)]
+    inner = (_quantity(part) for part in parts if not isinstance(part, str | Quantity))
+    return marks[0] if marks else next((found for found in inner if found is not None), None)
