@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import importlib
+from pathlib import Path
 
-from sceneql.kernels import PACKAGES, compiled
+import renderers
+import sceneql
+from sceneql.kernels import compiled
 
 
 def warmup() -> str:
     """Import every kernel file of the package; what was compiled and how long it took."""
-    for package in PACKAGES:
-        for path in sorted(package.rglob("*_kernels.py")):
-            name = ".".join(path.relative_to(package.parent).with_suffix("").parts)
-            importlib.import_module(name)
+    for package in (sceneql, renderers):
+        root = Path(str(package.__file__)).parent
+        for path in sorted(root.rglob("*_kernels.py")):
+            importlib.import_module(".".join(path.relative_to(root.parent).with_suffix("").parts))
     return f"compiled {compiled.count} functions in {compiled.seconds:.1f} s"
