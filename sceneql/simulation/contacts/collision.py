@@ -90,10 +90,10 @@ class Collision(Contact):
         if exact:
             kernels = (f"{folder}.collision_kernels:gap", f"{folder}.collision_kernels:impact")
             assembly.contact("exact", kernels, ints, pairs)
-            assembly.term("constrain", f"{folder}.resting_kernels:constrain", ints)
+            assembly.term("constrain", f"{folder}.collision_kernels:constrain", ints)
         else:
             assembly.contact("local", (f"{folder}.settle_kernels:settle",), ints, pairs)
-            assembly.term("constrain", f"{folder}.resting_kernels:constrain_resting", ints)
+            assembly.term("constrain", f"{folder}.settle_kernels:constrain", ints)
         assembly.remember(tally_at)
 
     def read(self, output: str, state: ModelState) -> Any:

@@ -39,9 +39,10 @@ from sceneql.simulation.contacts.resting_kernels import (
     come_to_rest,
     keep,
     set_velocity,
+    support,
 )
 from sceneql.simulation.contacts.surface_kernels import MOVING, OBJECT, surface, velocity
-from sceneql.system_kernels import GAP, IMPACT
+from sceneql.system_kernels import GAP, IMPACT, TERM
 
 CHANGED = 1
 """floats[1] tells the march that the state or a flag was changed."""
@@ -157,3 +158,9 @@ def impact(t, y, pair, floats, ints):
         come_to_rest(t, memory, vx, vy, vz, nx, ny, nz, floats, ints)
         set_velocity(k, vx + ux, vy + uy, vz + uz, y, floats, ints)
     note_instant(t, k, y, floats, ints)
+
+
+@kernel(TERM)
+def constrain(t, y, rate, floats, ints):
+    """What the surfaces do to the accelerations; impacts want to know how free pairs press."""
+    support(True, y, rate, floats, ints)

@@ -11,7 +11,7 @@ left is taken away once the pull is too weak. Only one that slides to its end, w
 
 import math
 
-from sceneql.kernels import inlined, kernel
+from sceneql.kernels import inlined
 from sceneql.simulation.contacts.impulse_kernels import (
     BODIES,
     FRICTION,
@@ -31,7 +31,6 @@ from sceneql.simulation.contacts.impulse_kernels import (
     scale_of,
 )
 from sceneql.simulation.contacts.surface_kernels import OBJECT, acceleration, bend, surface, velocity
-from sceneql.system_kernels import TERM
 
 PRESS, LOAD, PULL, ALONG = 1, 2, 3, 4
 PAIR = 7
@@ -220,7 +219,10 @@ def rub(k, y, rate, floats, ints):
 
 @inlined
 def support(near, y, rate, floats, ints):
-    """What the surfaces do to the accelerations of the bodies."""
+    """Take from the acceleration of bodies that rest what pushes into the surface, and add Coulomb's friction.
+
+    With ``near`` it is also noted how free pairs would press.
+    """
     for k in range(ints[BODIES]):
         if floats[ints[INVERSE] + k] == 0.0:
             continue
@@ -228,18 +230,3 @@ def support(near, y, rate, floats, ints):
         if resting > 0:
             carry(k, resting, y, rate, floats, ints)
             rub(k, y, rate, floats, ints)
-
-
-@kernel(TERM)
-def constrain(t, y, rate, floats, ints):
-    """Take from the acceleration of bodies that rest what pushes into the surface, and add Coulomb's friction.
-
-    For `exact` mode, whose impacts want to know how free pairs press.
-    """
-    support(True, y, rate, floats, ints)
-
-
-@kernel(TERM)
-def constrain_resting(t, y, rate, floats, ints):
-    """The same for `local` mode, where free pairs cost nothing."""
-    support(False, y, rate, floats, ints)

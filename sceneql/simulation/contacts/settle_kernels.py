@@ -40,9 +40,10 @@ from sceneql.simulation.contacts.resting_kernels import (
     come_to_rest,
     keep,
     set_velocity,
+    support,
 )
 from sceneql.simulation.contacts.surface_kernels import MOVING, OBJECT, surface, velocity
-from sceneql.system_kernels import SETTLE
+from sceneql.system_kernels import SETTLE, TERM
 
 MOST_IMPACTS = 8
 """Impacts of a body in one step; after that it is only kept outside."""
@@ -279,3 +280,9 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
         y1[ints[WORK]] += floats[ints[MASS] + k] * lost
         for c in range(3):
             y1[at + c], y1[to + c] = path[6 + c], path[9 + c]
+
+
+@kernel(TERM)
+def constrain(t, y, rate, floats, ints):
+    """What the surfaces do to the accelerations; free pairs cost nothing."""
+    support(False, y, rate, floats, ints)
