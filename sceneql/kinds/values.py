@@ -3,16 +3,31 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Expr, Link, Shape, Symbol, walk
 from sceneql.quantities.span import Span
 
+if TYPE_CHECKING:
+    from pydantic_core import CoreSchema
+
+
+class Checked:
+    """What the compiler has made and checked. Models ask only whether it is one: looking inside costs a check its time."""
+
+    __slots__ = ()
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> CoreSchema:
+        from pydantic_core.core_schema import is_instance_schema
+
+        return is_instance_schema(cls)
+
 
 @dataclass(frozen=True, slots=True)
-class Value:
+class Value(Checked):
     """A value in time: a constant, an expression of `time`, a link to another part's output, or keyframes."""
 
     expr: Expr
@@ -77,7 +92,7 @@ class SceneFile:
 
 
 @dataclass(frozen=True, slots=True)
-class Ref:
+class Ref(Checked):
     """A named part of the script."""
 
     name: str
@@ -85,7 +100,7 @@ class Ref:
 
 
 @dataclass(frozen=True, slots=True)
-class Formula:
+class Formula(Checked):
     """A textbook formula of an `implicit` or `equations` entry: bound over plain numbers, symbols free."""
 
     expr: Expr
