@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from sceneql.compiler.css_colors import NAMED, css_color
 from sceneql.compiler.keyframes import read_keys
 from sceneql.compiler.names import Names
 from sceneql.compiler.values import parsed_text, read_value, time_reader
@@ -30,15 +31,12 @@ def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
     if isinstance(node, Scalar):
         text = node.text.strip()
         if text.startswith("#") or (text.isidentifier() and text not in names.defines):
-            from PIL import ImageColor
-
-            try:
-                components = ImageColor.getrgb(text)[:3]
-            except ValueError:
-                hint = suggestion(text, ImageColor.colormap) or 'write a CSS name, "#rrggbb" or three numbers'
+            components = css_color(text)
+            if components is None:
+                hint = suggestion(text, NAMED) or 'write a CSS name, "#rrggbb" or three numbers'
                 found.error("unknown-color", f"'{text}' is no color", node.span, help=hint)
                 return None
-            return Value(Vector(tuple(Number(c / 255) for c in components), RGB), node.span)
+            return Value(Vector(tuple(Number(c) for c in components), RGB), node.span)
     return read_value(node, Quantity(PLAIN, (3,)), "color", names, found)
 
 
