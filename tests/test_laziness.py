@@ -40,7 +40,17 @@ def modules_after(tmp_path, script, *command):
 
 def test_check_imports_neither_numpy_nor_numba(tmp_path):
     names = modules_after(tmp_path, FALL, "check")
-    assert not names & {"numpy", "numba", "scipy", "trimesh", "imageio", "av", "matplotlib", "rich"}
+    assert not names & {"numpy", "numba", "scipy", "trimesh", "imageio", "av", "matplotlib", "rich", "PIL"}
+
+
+def test_check_imports_nothing_that_only_runs_need(tmp_path):
+    looks = (
+        "materials: {paint: {glossy: {color: tomato}}}\nlights: [studio]\ncameras: {front: perspective}\n"
+        + FALL.replace("objects:\n", "objects:\n  floor: plane\n")
+    )
+    names = modules_after(tmp_path, looks, "check")
+    assert "sceneql.simulation.materials.glossy" in names
+    assert not names & {"sceneql.frame", "sceneql.system", "sceneql.kernels", "sceneql.simulation.run"}
 
 
 def test_a_picture_without_physics_imports_no_solver_no_mesh_and_no_video(tmp_path):

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Checked:
-    """What the compiler has made and checked. Models ask only whether it is one: looking inside costs a check its time."""
+    """What the compiler has made and checked: pydantic asks only whether it is one, since looking inside takes time."""
 
     __slots__ = ()
 

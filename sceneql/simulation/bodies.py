@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, Any
 from sceneql.kinds import Gives, quantity_type
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Type
-from sceneql.system import Bodies
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.quantities.span import Span
-    from sceneql.system import Assembly, ModelState
+    from sceneql.system import Assembly, Bodies, ModelState
 
 ANGULAR_MOMENTUM = dim.MOMENTUM * dim.LENGTH
 
@@ -61,6 +60,8 @@ def reserve(
     ``positions`` and ``velocities`` (n, 3) [m], [m/s]; ``masses`` (n,) [kg]; ``radii`` (n,) [m]; ``fixed`` (n,) bool.
     """
     import numpy as np
+
+    from sceneql.system import Bodies
 
     n = len(masses)
     start = np.concatenate([np.ravel(positions), np.ravel(velocities), [0.0]])

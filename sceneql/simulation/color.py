@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
-from sceneql.frame import RGB
+if TYPE_CHECKING:
+    from sceneql.frame import RGB
+
 
 PALETTE = ("#e4572e", "#2978b5", "#f2a71b", "#3a9d6b", "#8c55a8", "#14a3a8", "#d6457f", "#7f9c2c")
 """sRGB colors of parts that have none of their own, by their order."""

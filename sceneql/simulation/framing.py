@@ -7,9 +7,10 @@ from itertools import product
 from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import Object, Ref, Value
+from sceneql.simulation.solid import triple
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats
+    from sceneql.frame import Floats, View
     from sceneql.kinds import Moment
 
 NEAREST = 1e-3
@@ -94,3 +95,10 @@ def seen_slopes(half_height: float, size: tuple[int, int], margin: float) -> tup
     """Half width and half height of the picture's inner part, at the distance 1."""
     inner = half_height * (1 - margin)
     return inner * size[0] / size[1], inner
+
+
+def view(origin: Any, axes: Floats, size: tuple[int, int], half_height: float, *, orthographic: bool = False) -> View:
+    """The view from a point (3,) [m]."""
+    from sceneql.frame import View
+
+    return View(triple(origin), axes, size, half_height, orthographic)

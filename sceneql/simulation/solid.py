@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from sceneql import frame
 from sceneql.simulation.placement import Placed, compose, inverse, mapped_box
 
 if TYPE_CHECKING:
+    from sceneql import frame
     from sceneql.frame import Floats, Surface
     from sceneql.kinds import FieldBuilder, Moment, Object
 
@@ -48,6 +48,7 @@ def traced(solid: Object, name: str, place: Floats, moment: Moment) -> Iterable[
     """
     import numpy as np
 
+    from sceneql import frame
     from sceneql.field.builder import TapeBuilder
 
     low, high = solid.extent(place, moment)
@@ -73,6 +74,8 @@ def quadric(
     half: tuple[float, float, float] = (INFINITY, INFINITY, INFINITY),
 ) -> frame.Quadric:
     """A convex quadric solid within -half..half, both in the coordinates that ``place`` maps to the world."""
+    from sceneql import frame
+
     low = (-half[0], -half[1], -half[2])
     return frame.Quadric(name, surface, inverse(place), squares, linear, constant, low, half)
 

@@ -9,10 +9,9 @@ from itertools import combinations_with_replacement
 from math import inf, prod
 from typing import TYPE_CHECKING
 
-from sceneql.system import Stepper
-
 if TYPE_CHECKING:
     from sceneql.frame import Floats
+    from sceneql.system import Stepper
 
 KERNELS = "sceneql.simulation.solvers.runge_kutta_kernels"
 HIGHEST_ORDER = 8
@@ -88,6 +87,8 @@ class Tableau:
         return float(np.abs(np.polyval(powers[::-1], z)).max(initial=0.0))
 
     def _stepper(self, embedded: tuple[float, ...] | None, relative: float, absolute: float) -> Stepper:
+        from sceneql.system import Stepper
+
         differences = [b - other for b, other in zip(self.b, embedded or self.b, strict=True)]
         lower = [entry for row in self.a for entry in row]
         return Stepper(

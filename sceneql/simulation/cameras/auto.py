@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
-from sceneql.frame import View
 from sceneql.kinds import Angle, Camera, FixedScalar, Moment, field
 from sceneql.simulation import framing
-from sceneql.simulation.solid import triple
+
+if TYPE_CHECKING:
+    from sceneql.frame import View
 
 THREE_QUARTER = (0.55, 0.38, 1.0)
 FRONT = (0.0, 0.1, 1.0)
@@ -32,4 +34,4 @@ class Auto(Camera):
         axes = framing.axes_towards(FRONT if depth < FLAT * min(width, height) else THREE_QUARTER)
         slopes = framing.seen_slopes(half, size, self.margin)
         origin, _ = framing.fitted(framing.corners(low, high), axes, slopes)
-        return View(triple(origin), axes, size, half)
+        return framing.view(origin, axes, size, half)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import model_validator
 
-from sceneql.frame import View
 from sceneql.kinds import Camera, Direction, DrawnRef, FixedScalar, Length, Moment, Position, field
 from sceneql.simulation import framing
 from sceneql.simulation.present import positive
-from sceneql.simulation.solid import triple
+
+if TYPE_CHECKING:
+    from sceneql.frame import View
 
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
@@ -67,4 +68,4 @@ class Orthographic(Camera):
         depths = np.concatenate([points, framing.corners(*framing.bounds(moment, None))]) @ axes[2]
         room = max(float(np.ptp(depths)), 1.0)
         origin = middle @ axes[:2] + (float(depths.max()) + room) * axes[2]
-        return View(triple(origin), axes, size, half, orthographic=True)
+        return framing.view(origin, axes, size, half, orthographic=True)

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import model_validator
 
-from sceneql.frame import View
 from sceneql.kinds import Angle, Camera, Direction, DrawnRef, FixedScalar, Moment, Position, field
 from sceneql.simulation import framing
-from sceneql.simulation.solid import triple
+
+if TYPE_CHECKING:
+    from sceneql.frame import View
 
 
 class Perspective(Camera):
@@ -63,4 +64,4 @@ class Perspective(Camera):
             axes = framing.axes_towards(towards, up)
             slopes = framing.seen_slopes(half, size, self.margin)
             origin, _ = framing.fitted(framing.corners(low, high), axes, slopes, aim)
-        return View(triple(origin), axes, size, half)
+        return framing.view(origin, axes, size, half)

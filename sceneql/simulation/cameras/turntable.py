@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from sceneql.frame import View
 from sceneql.kinds import Angle, Camera, DrawnRef, FixedScalar, FixedTime, Length, Moment, Position, field
 from sceneql.simulation import framing
 from sceneql.simulation.present import positive
-from sceneql.simulation.solid import triple
+
+if TYPE_CHECKING:
+    from sceneql.frame import View
 
 AZIMUTHS = 72
 
@@ -43,7 +44,7 @@ class Turntable(Camera):
             distance = max(framing.fitted(points, axes, slopes, aim)[1] for axes in every)
         azimuth = float(moment.at(self.start)) + 2 * math.pi * moment.time / self.seconds
         axes = framing.axes_towards(_towards(azimuth, tilt))
-        return View(triple(aim + distance * axes[2]), axes, size, half)
+        return framing.view(aim + distance * axes[2], axes, size, half)
 
 
 def _towards(azimuth: float, tilt: float) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from sceneql.kinds import (
     Contact,
@@ -21,7 +21,9 @@ from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
 from sceneql.simulation.contacts.moving import is_moving, shifted
 from sceneql.simulation.shift import APART
-from sceneql.system import Assembly, Bodies, ModelState
+
+if TYPE_CHECKING:
+    from sceneql.system import Assembly, Bodies, ModelState
 
 SHAPES = ("plane", "sphere", "box")
 """Names of shapes in the order of their numbers in the kernels."""

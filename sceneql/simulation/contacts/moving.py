@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from sceneql.kinds import Object, Value
 from sceneql.simulation.shift import later
-from sceneql.system import Assembly
+
+if TYPE_CHECKING:
+    from sceneql.system import Assembly
 
 
 def is_moving(kind: Object) -> bool:

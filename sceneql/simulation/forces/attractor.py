@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from sceneql.kinds import FixedLength, FixedScalar, Force, Position, Quantity, Value, field
 from sceneql.quantities import dimension as dim
-from sceneql.system import Assembly, Bodies, ModelState
+
+if TYPE_CHECKING:
+    from sceneql.system import Assembly, Bodies, ModelState
 
 
 class Attractor(Force):

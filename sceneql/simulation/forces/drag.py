@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import model_validator
 
 from sceneql.kinds import Damping, Force, Quantity, Value, field
 from sceneql.quantities import dimension as dim
-from sceneql.system import Assembly, Bodies
+
+if TYPE_CHECKING:
+    from sceneql.system import Assembly, Bodies
 
 
 class Drag(Force):

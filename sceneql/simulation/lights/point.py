@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
-from sceneql import frame
 from sceneql.kinds import Color, Illumination, Length, Moment, Position, Power, field
 from sceneql.simulation.color import linear
+
+if TYPE_CHECKING:
+    from sceneql import frame
 
 
 class Point(Illumination):
@@ -24,6 +27,8 @@ class Point(Illumination):
 
     def lower(self, moment: Moment) -> Iterable[frame.Light]:
         """One point light."""
+        from sceneql import frame
+
         intensity = float(moment.at(self.power)) / (4 * math.pi)
         x, y, z = (float(c) for c in moment.at(self.position))
         r, g, b = linear(moment.at(self.color))

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
-from sceneql import frame
 from sceneql.kinds import Color, Illumination, Moment, Scalar, Value, field
 from sceneql.simulation.color import linear
+
+if TYPE_CHECKING:
+    from sceneql import frame
 
 
 class Sky(Illumination):
@@ -24,6 +27,8 @@ class Sky(Illumination):
 
     def lower(self, moment: Moment) -> Iterable[frame.Light]:
         """One sky."""
+        from sceneql import frame
+
         factor = float(moment.at(self.strength))
 
         def light(color: Value) -> frame.RGB:

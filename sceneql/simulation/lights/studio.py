@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
-from sceneql import frame
 from sceneql.kinds import Illumination, Moment, Scalar, field
+
+if TYPE_CHECKING:
+    from sceneql import frame
 
 KEY_DIRECTION = (-0.50, 0.72, 0.48)
 KEY = 0.75
@@ -26,6 +29,8 @@ class Studio(Illumination):
 
     def lower(self, moment: Moment) -> Iterable[frame.Light]:
         """The key light and the dome."""
+        from sceneql import frame
+
         x, y, z = KEY_DIRECTION
         far = math.hypot(x, y, z)
         power = math.pi * KEY * float(moment.at(self.key))

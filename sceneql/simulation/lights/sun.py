@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
-from sceneql import frame
 from sceneql.kinds import Angle, Color, Direction, Illumination, Moment, Scalar, field
 from sceneql.simulation.color import linear
+
+if TYPE_CHECKING:
+    from sceneql import frame
 
 
 class Sun(Illumination):
@@ -25,6 +28,8 @@ class Sun(Illumination):
 
     def lower(self, moment: Moment) -> Iterable[frame.Light]:
         """One distant light. Raises ValueError for a direction of zero."""
+        from sceneql import frame
+
         if self.direction is not None:
             x, y, z = (float(c) for c in moment.at(self.direction))
         else:

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from sceneql.frame import RGB, Surface
+from typing import TYPE_CHECKING
+
 from sceneql.kinds import Color, FixedLength, Material, Moment, Scalar, field
 from sceneql.simulation.color import linear
+
+if TYPE_CHECKING:
+    from sceneql.frame import RGB, Surface
 
 
 class Checker(Material):
@@ -17,6 +21,8 @@ class Checker(Material):
 
     def surface(self, moment: Moment, color: RGB | None) -> Surface:
         """Matte at roughness 1, else a dielectric; a color given stands for the first squares."""
+        from sceneql.frame import Surface
+
         roughness = min(max(float(moment.at(self.roughness)), 0.0), 1.0)
         return Surface(
             color=color or linear(moment.at(self.color)),

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from sceneql.frame import RGB, Surface
+from typing import TYPE_CHECKING
+
 from sceneql.kinds import Color, FixedScalar, Material, Moment, field
 from sceneql.simulation.color import linear
+
+if TYPE_CHECKING:
+    from sceneql.frame import RGB, Surface
 
 
 class Glass(Material):
@@ -16,6 +20,8 @@ class Glass(Material):
 
     def surface(self, moment: Moment, color: RGB | None) -> Surface:
         """A dielectric that transmits; its reflectance at normal incidence is ((n - 1)/(n + 1))^2 (Fresnel 1823)."""
+        from sceneql.frame import Surface
+
         n = self.index_of_refraction
         return Surface(
             color=color or linear(moment.at(self.color)),

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from sceneql.frame import RGB, Surface
+from typing import TYPE_CHECKING
+
 from sceneql.kinds import Color, FixedScalar, Material, Moment, Scalar, field
 from sceneql.simulation.color import linear
+
+if TYPE_CHECKING:
+    from sceneql.frame import RGB, Surface
 
 
 class Glossy(Material):
@@ -16,5 +20,7 @@ class Glossy(Material):
 
     def surface(self, moment: Moment, color: RGB | None) -> Surface:
         """A dielectric."""
+        from sceneql.frame import Surface
+
         roughness = min(max(float(moment.at(self.roughness)), 0.0), 1.0)
         return Surface(color=color or linear(moment.at(self.color)), roughness=roughness, specular=self.specular)

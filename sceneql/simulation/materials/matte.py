@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from sceneql.frame import RGB, Surface
+from typing import TYPE_CHECKING
+
 from sceneql.kinds import Color, Material, Moment, field
 from sceneql.simulation.color import linear
+
+if TYPE_CHECKING:
+    from sceneql.frame import RGB, Surface
 
 
 class Matte(Material):
@@ -14,4 +18,6 @@ class Matte(Material):
 
     def surface(self, moment: Moment, color: RGB | None) -> Surface:
         """Rough, without specular reflection."""
+        from sceneql.frame import Surface
+
         return Surface(color=color or linear(moment.at(self.color)), roughness=1.0, specular=0.0)

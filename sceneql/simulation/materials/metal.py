@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from sceneql.frame import RGB, Surface
+from typing import TYPE_CHECKING
+
 from sceneql.kinds import Color, Material, Moment, Scalar, field
 from sceneql.simulation.color import linear
+
+if TYPE_CHECKING:
+    from sceneql.frame import RGB, Surface
 
 
 class Metal(Material):
@@ -15,5 +19,7 @@ class Metal(Material):
 
     def surface(self, moment: Moment, color: RGB | None) -> Surface:
         """A conductor."""
+        from sceneql.frame import Surface
+
         roughness = min(max(float(moment.at(self.roughness)), 0.0), 1.0)
         return Surface(color=color or linear(moment.at(self.color)), roughness=roughness, metallic=1.0)

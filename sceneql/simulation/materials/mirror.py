@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from sceneql.frame import RGB, Surface
+from typing import TYPE_CHECKING
+
 from sceneql.kinds import Color, Material, Moment, field
 from sceneql.simulation.color import linear
+
+if TYPE_CHECKING:
+    from sceneql.frame import RGB, Surface
 
 
 class Mirror(Material):
@@ -14,4 +18,6 @@ class Mirror(Material):
 
     def surface(self, moment: Moment, color: RGB | None) -> Surface:
         """A metal without roughness."""
+        from sceneql.frame import Surface
+
         return Surface(color=color or linear(moment.at(self.color)), roughness=0.0, metallic=1.0)

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import ValidationError, ValidationInfo, field_validator, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
-from sceneql.frame import Shape
 from sceneql.kinds import (
     Color,
     Damping,
@@ -29,10 +28,10 @@ from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Type
 from sceneql.simulation import bodies as point_masses
 from sceneql.simulation.models.nets import CORNERS, EDGES, SIDES, Cloth, Lattice, MassPoint, Net, Rope, Spring, turned
-from sceneql.system import Assembly, Bodies, ModelState
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats
+    from sceneql.frame import Floats, Shape
+    from sceneql.system import Assembly, Bodies, ModelState
 
 PLACES = {"lattice": SIDES, "cloth": (*EDGES, *CORNERS), "rope": ("start", "end")}
 SPRING_OUTPUTS = {

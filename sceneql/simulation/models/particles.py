@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import model_validator
 
-from sceneql.frame import Points as Spheres
 from sceneql.kinds import (
     Color,
     FixedLength,
@@ -26,10 +25,11 @@ from sceneql.kinds import (
 )
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.simulation import bodies as masses
-from sceneql.system import Assembly, Bodies, ModelState
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
+    from sceneql.frame import Points as Spheres
+    from sceneql.system import Assembly, Bodies, ModelState
 
 
 class Particle(Record):
@@ -152,6 +152,8 @@ class Particles(Model):
 
     def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Spheres]:
         """Spheres of the particles' radii."""
+        from sceneql.frame import Points as Spheres
+
         assert state.bodies is not None
         surface = moment.surface(name, self.material, self.color)
         yield Spheres(

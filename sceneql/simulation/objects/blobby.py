@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Annotated
 from pydantic import model_validator
 
 from sceneql.failure import RunFailure
-from sceneql.frame import Shape
 from sceneql.kinds import FieldBuilder, FixedScalar, Moment, Object, Points, Quantity, Value, field
 from sceneql.quantities import dimension as dim
 from sceneql.simulation.placement import balls_box
 from sceneql.simulation.solid import traced
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats
+    from sceneql.frame import Floats, Shape
 
 LengthOrLengths = Annotated[Value, Quantity(dim.LENGTH, None)]
 NumberOrNumbers = Annotated[Value, Quantity(dim.PLAIN, None)]

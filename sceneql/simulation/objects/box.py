@@ -6,16 +6,15 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from sceneql.failure import RunFailure
-from sceneql.frame import Shape
 from sceneql.kinds import Collider, FieldBuilder, Moment, Position, Value, field
 from sceneql.quantities.dimension import LENGTH
 from sceneql.quantities.expression import Call, Number, Type
 from sceneql.simulation.placement import compose
 from sceneql.simulation.solid import Solid, block, quadric, triple
-from sceneql.system import Assembly
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats
+    from sceneql.frame import Floats, Shape
+    from sceneql.system import Assembly
 
 
 class Box(Solid):

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from sceneql.frame import Mesh, Shape
 from sceneql.kinds import FieldBuilder, FixedScalar, Length, Moment, Object, Position, field
 from sceneql.simulation.placement import apply, balls_box
 from sceneql.simulation.present import positive
 from sceneql.simulation.wire import chain, helix, swept
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats
+    from sceneql.frame import Floats, Shape
 
 PIECES_OF_FIELD = 10
 """Straight pieces a turn has in its implicit field."""
@@ -51,6 +50,8 @@ class Coil(Object):
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """A smooth mesh."""
         import numpy as np
+
+        from sceneql.frame import Mesh
 
         vertices, normals, triangles = swept(*self.path(moment), self._wire(moment))
         if np.linalg.det(place[:, :3]) < 0:

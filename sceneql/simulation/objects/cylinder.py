@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from sceneql.frame import Shape
 from sceneql.kinds import FieldBuilder, Length, Moment, field
 from sceneql.simulation.placement import compose
 from sceneql.simulation.present import positive
 from sceneql.simulation.solid import INFINITY, Solid, largest, length, less, quadric
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats
+    from sceneql.frame import Floats, Shape
 
 
 class Cylinder(Solid):

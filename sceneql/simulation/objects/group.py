@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from sceneql.frame import Shape
 from sceneql.kinds import FieldBuilder, Moment, Object, ObjectRef, Ref, field
 from sceneql.simulation.placement import Placed, Scale, affine, compose, inverse
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats
+    from sceneql.frame import Floats, Shape
 
 
 class Group(Placed):

@@ -8,14 +8,12 @@ from typing import TYPE_CHECKING, ClassVar
 
 from pydantic import field_validator
 
-from sceneql.frame import Mesh as Triangles
-from sceneql.frame import Shape
 from sceneql.kinds import Exceeds, File, FixedAngle, Moment, field
 from sceneql.simulation.mesh_file import LARGEST_FILE, Loaded, load
 from sceneql.simulation.placement import Placed, Scale, affine, apply, compose
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats
+    from sceneql.frame import Floats, Shape
 
 
 class Mesh(Placed):
@@ -58,6 +56,8 @@ class Mesh(Placed):
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """Its triangles in the world. Raises ValueError for a file that is no mesh, LimitRefused for too many."""
         import numpy as np
+
+        from sceneql.frame import Mesh as Triangles
 
         whole = compose(place, self.local(moment))
         loaded = self._load()

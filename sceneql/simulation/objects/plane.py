@@ -5,19 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, ClassVar
 
-from sceneql.frame import Shape, Surface
 from sceneql.kinds import Collider, Direction, FieldBuilder, Length, Moment, Object, Position, Value, field
 from sceneql.quantities.dimension import LENGTH
 from sceneql.quantities.expression import Call, Type
 from sceneql.simulation.placement import compose
 from sceneql.simulation.solid import INFINITY, quadric
-from sceneql.system import Assembly
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats
-
-STAGE = Surface(color=(0.54, 0.54, 0.54), roughness=1.0, specular=0.0)
-"""A plane without material or color is a matte light gray stage."""
+    from sceneql.frame import Floats, Shape
+    from sceneql.system import Assembly
 
 
 class Plane(Object):
@@ -65,9 +61,13 @@ class Plane(Object):
         """A half-space."""
         import numpy as np
 
+        from sceneql.frame import Surface
+
         n, level = self._level(moment)
-        plain = self.material is None and self.color is None
-        surface = STAGE if plain else moment.surface(name, self.material, self.color)
+        if self.material is None and self.color is None:  # a stage: matte, light gray
+            surface = Surface(color=(0.54, 0.54, 0.54), roughness=1.0, specular=0.0)
+        else:
+            surface = moment.surface(name, self.material, self.color)
         beside = np.cross(n, np.eye(3)[np.argmin(np.abs(n))])
         beside /= np.linalg.norm(beside)
         own = np.column_stack([beside, n, np.cross(beside, n), level * n])

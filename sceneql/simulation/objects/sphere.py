@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from sceneql.frame import Shape
 from sceneql.kinds import Collider, FieldBuilder, Length, Moment, field
 from sceneql.simulation.placement import compose
 from sceneql.simulation.present import positive
 from sceneql.simulation.solid import Solid, length, less, quadric
-from sceneql.system import Assembly
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats
+    from sceneql.frame import Floats, Shape
+    from sceneql.system import Assembly
 
 
 class Sphere(Solid):

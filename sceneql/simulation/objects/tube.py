@@ -6,14 +6,13 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from sceneql.failure import RunFailure
-from sceneql.frame import Segments, Shape
 from sceneql.kinds import FieldBuilder, Length, Moment, Object, Points, field
 from sceneql.simulation.placement import apply, balls_box, uniform_scale
 from sceneql.simulation.present import positive
 from sceneql.simulation.wire import chain
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats
+    from sceneql.frame import Floats, Shape
 
 
 class Tube(Object):
@@ -44,6 +43,8 @@ class Tube(Object):
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """Its pieces as capsules. Raises ValueError in a group that is stretched unevenly."""
         import numpy as np
+
+        from sceneql.frame import Segments
 
         path = apply(place, self._path(moment))
         radius = positive(moment, self.radius, "radius") * uniform_scale(place)

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import FixedTime, Solver, field
 from sceneql.simulation.tableau import CLASSIC
-from sceneql.system import Stepper
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
+    from sceneql.system import Stepper
 
 
 class Rk4(Solver):

@@ -9,10 +9,10 @@ from pydantic import model_validator
 
 from sceneql.kinds import FixedScalar, FixedTime, Solver, field
 from sceneql.simulation.tableau import Tableau
-from sceneql.system import Stepper
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
+    from sceneql.system import Stepper
 
 ROUNDING = 1e-9
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import FixedTime, Solver, field
-from sceneql.system import Stepper
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
+    from sceneql.system import Stepper
 
 
 class SemiImplicitEuler(Solver):
@@ -23,6 +23,8 @@ class SemiImplicitEuler(Solver):
 
     def stepper(self) -> Stepper:
         """Fixed steps; the rate at the step's start is all that it needs."""
+        from sceneql.system import Stepper
+
         return Stepper(
             step="sceneql.simulation.solvers.semi_implicit_euler_kernels:step",
             dense=None,
