@@ -26,6 +26,8 @@ $(VENV)/installed: pyproject.toml
 	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || { echo "this Python cannot make virtual environments; on Debian: sudo apt-get install python3-venv" >&2; exit 1; }
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e .
+	@# An editable install leaves the bytecode to the first run, which may not be allowed to keep it.
+	$(BIN)/python -m compileall -q sceneql renderers
 	touch $@
 
 $(VENV)/installed-test: $(VENV)/installed
