@@ -25,6 +25,8 @@ from numba import types
 from numba.core import cgutils, event
 from numba.extending import intrinsic
 
+from sceneql.compiling import Compiler, collecting_later
+
 OURS = ("sceneql", "renderers", "sceneql_generated")
 IMPORTED = re.compile(r"^from ([\w.]+) import", re.MULTILINE)
 
@@ -103,14 +105,19 @@ def kernel(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any
 
     def compile(function: Callable[..., Any]) -> Any:
         numba.config.CACHE_DIR = str(cache_folder(function.__module__))
-        return numba.njit(signature, cache=True, nogil=True, error_model="numpy", **options)(function)
+        with collecting_later():
+            return numba.njit(signature, cache=True, **COMMON, **options)(function)
 
     return compile
 
 
-def inlined(function: Callable[..., Any]) -> Any:
-    """A helper of kernels of the same file: compiled with its caller, for the types it is called with."""
-    return kernel(None)(function)
+COMMON = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True, "pipeline_class": Compiler}
+
+inlined = numba.njit(no_cpython_wrapper=True, **COMMON)
+"""A helper of kernels: compiled with its caller, for the types it is called with; not callable from Python."""
+
+woven = numba.njit(inline="always", **COMMON)
+"""Put into its caller before compilation: for small functions around a large one, whose code they would repeat."""
 
 
 def lean(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
@@ -118,9 +125,8 @@ def lean(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     return kernel(signature, _nrt=False, **options)
 
 
-def lean_inlined(function: Callable[..., Any]) -> Any:
-    """A helper of lean kernels."""
-    return lean(None)(function)
+lean_inlined = numba.njit(no_cpython_wrapper=True, _nrt=False, **COMMON)
+"""A helper of lean kernels."""
 
 
 def address(function: Any, kind: Any) -> Any:

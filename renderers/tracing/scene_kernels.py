@@ -6,15 +6,13 @@ Two, since numba passes an array as seven numbers to every function, and compile
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 from numba import types
 
-from sceneql.kernels import function_at
+from sceneql.kernels import function_at, lean_inlined
 
-part = numba.njit(nogil=True, error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-"""A function called by kernels alone: not cached by itself, not callable from Python, which halves its compile time,
-and without reference counts, which threads would fight over."""
+part = lean_inlined
+"""A function called by kernels alone: without reference counts, which threads would fight over."""
 
 
 class Scene(NamedTuple):

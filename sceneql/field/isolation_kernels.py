@@ -6,20 +6,15 @@ twice as long; else the segment is cut where the enclosure allows no zero, and h
 that lies before a root returned is proved to be outside, up to the tolerance.
 """
 
-import numba
-
 from sceneql.field.enclosure_kernels import segment
 from sceneql.field.tape_kernels import TAPE, value
 from sceneql.field.tape_ops import HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
-from sceneql.kernels import kernel
+from sceneql.kernels import kernel, woven
 
 EVALUATIONS = 2000
 """Enclosures spent on one ray before it is left undecided."""
 FINE = 5.0e-13
 """Half the width of a bracket, relative to its place on the ray, at which a root is polished."""
-
-woven = numba.njit(cache=True, nogil=True, error_model="numpy", inline="always")
-"""Put into its caller before compilation: for small functions around a large one, whose code they would repeat."""
 
 
 @woven
