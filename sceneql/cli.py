@@ -116,6 +116,7 @@ def render(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path 
     _warn(graph)
     with bar(graph.name) as progress:
         report = pipeline.render(graph, output=output, progress=progress)
+    _warn(report)
     for path in report.files:
         click.echo(f"made {path}")
     line = f"run {report.run_seconds:.2f} s"
@@ -255,8 +256,8 @@ def warmup() -> None:
     click.echo(compile_all())
 
 
-def _warn(graph: Any) -> None:
-    for warning in graph.warnings:
+def _warn(told: Any) -> None:
+    for warning in told.warnings:
         click.echo(str(warning), err=True)
 
 

@@ -21,7 +21,7 @@ from sceneql.failure import Unsuitable, failing_as
 from sceneql.graph import SimulationGraph
 from sceneql.kinds import FAMILIES, Camera, Clock, Illumination, Output, Picture, Renderer, Settings
 from sceneql.language.script import read_script
-from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
 
 if TYPE_CHECKING:
     from sceneql.frame import Light
@@ -62,6 +62,9 @@ class Report:
     run_seconds: float = 0.0
     """Wall time, compilation left out."""
     steps: int = 0
+    present: dict[str, bool] = field(default_factory=dict)
+    """Implicit solids that were drawn, and whether any frame may show something of them."""
+    warnings: tuple[Diagnostic, ...] = ()
 
 
 def simulate(graph: SimulationGraph, times: Iterable[float]) -> Iterator[Instant]:
@@ -106,6 +109,7 @@ def render(
         for name, kind in outputs.items():
             sinks[name] = kind.open(tools[name])
         wanted = {name: set(at) for name, at in times.items()}
+        from sceneql.simulation.presence import missing
         from sceneql.simulation.run import Run
 
         run = Run(graph)
@@ -122,6 +126,7 @@ def render(
     except BaseException as error:
         error.kept = [*report.files, *_kept(sinks, error)]  # type: ignore[attr-defined]
         raise
+    report.warnings = missing(report.present, graph.tasks)
     seconds, count = _compiled()
     report.compile_seconds, report.compilations = seconds - compiled[0], count - compiled[1]
     report.run_seconds = time.perf_counter() - started - report.compile_seconds
@@ -183,11 +188,13 @@ class Tools:
     def pixels(self, output: Picture, moment: Any) -> Any:
         """The developed picture (h, w, 3) uint8."""
         from renderers.develop import develop
+        from sceneql.simulation.presence import look
 
         frame = frame_of(self.graph, self.name, output.pixels, moment, self._frames)
         renderer = self._renderer(output)
         self.prepare(output)()
         picture = renderer.draw(frame)
+        look(frame.shapes, self.report.present)
         self._frames += 1
         self.report.frames += 1
         self.report.undecided += picture.undecided
@@ -228,6 +235,7 @@ def frame_of(graph: SimulationGraph, output: str, size: tuple[int, int], moment:
     from sceneql.frame import Frame, Sky
     from sceneql.simulation.color import linear
 
+    shapes = tuple(moment.lower(graph.drawn[output]))  # first: what cannot be drawn is no failure of the camera's
     camera = graph.tasks[graph.cameras[output]]
     with failing_as(camera.name, moment.time, camera.span):
         view = cast(Camera, camera.kind).view(size, moment)
@@ -245,7 +253,7 @@ def frame_of(graph: SimulationGraph, output: str, size: tuple[int, int], moment:
     return Frame(
         index=index,
         time=moment.time,
-        shapes=tuple(moment.lower(graph.drawn[output])),
+        shapes=shapes,
         lights=tuple(lights),
         view=view,
         seed=graph.settings.clock.seed,

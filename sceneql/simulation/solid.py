@@ -41,7 +41,7 @@ class Solid(Placed):
         return traced(self, name, place, moment)
 
 
-def traced(solid: Object, name: str, place: Floats, moment: Moment) -> Iterable[frame.Shape]:
+def traced(solid: Object, name: str, place: Floats, moment: Moment) -> Iterable[frame.Implicit]:
     """Any object with a field, as a tape in a box a little larger than itself; nothing where the box is empty.
 
     Raises TypeError where it is unbounded.

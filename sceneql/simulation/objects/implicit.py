@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import field_validator, model_validator
 
 from sceneql.kinds import Axis, FieldBuilder, FixedLength, FixedScalar, Formula, Moment, Record, Symbols
 from sceneql.kinds import field as described
-from sceneql.simulation.formula import in_coordinates, written_out
-from sceneql.simulation.solid import Solid, block, length, less
+from sceneql.quantities.expression import Link, Symbol, walk
+from sceneql.simulation.formula import COORDINATES, in_coordinates, written_out
+from sceneql.simulation.solid import Solid, block, length, less, traced
+
+if TYPE_CHECKING:
+    from sceneql import frame
 
 
 class Within(Record):
@@ -71,3 +76,19 @@ class Implicit(Solid):
         """The box around its bounds."""
         low, high = self.bounds.corners
         return tuple(self.unit * c for c in low), tuple(self.unit * c for c in high)
+
+    def lower(self, name: str, place: frame.Floats, moment: Moment) -> Iterable[frame.Shape]:
+        """Its tape in the box around its bounds. Raises RunFailure where it is nowhere defined there, at any time."""
+        from sceneql.failure import RunFailure
+        from sceneql.field.emptiness import nowhere_defined
+
+        for shape in traced(self, name, place, moment):
+            if self._holds_still() and nowhere_defined(shape.tape, shape.low, shape.high):
+                message = "the formula is defined nowhere in its bounds, so there is nothing to draw"
+                raise RunFailure(message, part="field", time=moment.time, span=self.field.span)
+            yield shape
+
+    def _holds_still(self) -> bool:
+        """Whether its formula depends on nothing but the place."""
+        nodes = [node for node in walk(self.field.expr) if isinstance(node, Symbol | Link)]
+        return all(isinstance(node, Symbol) and node.name in COORDINATES for node in nodes)

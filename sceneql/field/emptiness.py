@@ -1,0 +1,80 @@
+"""Proofs that a tape's solid {f < 0} has nothing in a box, for Python callers.
+
+Imports numpy and numba: to be imported by the function that needs it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from heapq import heappop, heappush
+from typing import TYPE_CHECKING
+
+from sceneql.field import interval_kernels, tape_kernels
+from sceneql.field.solid import scratch
+from sceneql.field.tape_ops import NOWHERE, WHOLE
+
+if TYPE_CHECKING:
+    from sceneql.frame import Tape
+
+BOXES = 4096
+"""Boxes that a proof may take; without one by then the answer is no."""
+SHALLOW = 1e-12
+"""A solid nowhere deeper than this is taken for empty."""
+
+Corner = tuple[float, float, float]
+
+
+def proved_empty(tape: Tape, low: Corner, high: Corner) -> bool:
+    """Whether f is proved to be nowhere negative, where it is defined at all, in the box low..high [m]."""
+    return _all_settled(
+        tape, low, high, lambda least, status: status == NOWHERE or least >= -SHALLOW, lambda value, status: value < 0.0
+    )
+
+
+def nowhere_defined(tape: Tape, low: Corner, high: Corner) -> bool:
+    """Whether f is proved to be undefined in all of the box low..high [m]."""
+    return _all_settled(
+        tape,
+        low,
+        high,
+        lambda least, status: status == NOWHERE,
+        lambda value, status: status == WHOLE or value == value,
+    )
+
+
+def _all_settled(
+    tape: Tape,
+    low: Corner,
+    high: Corner,
+    settled: Callable[[float, int], bool],
+    refuted: Callable[[float, int], bool],
+) -> bool:
+    """Branch and bound (Land and Doig 1960): halve boxes until all are settled, the least first; no once refuted.
+
+    ``settled`` gets the least value that f may have in a box and where it is defined, ``refuted`` the value in its
+    middle and where it is defined.
+    """
+    program = (tape.code, tape.constants, tape.parts, scratch(tape))
+    boxes: list[tuple[float, int, Corner, Corner]] = [(0.0, 0, low, high)]
+    for count in range(1, BOXES, 2):
+        if not boxes:
+            return True
+        _, _, first, last = heappop(boxes)
+        sides = [b - a for a, b in zip(first, last, strict=True)]
+        axis = sides.index(max(sides))
+        middle = 0.5 * (first[axis] + last[axis])
+        for part, (a, b) in enumerate(((first[axis], middle), (middle, last[axis]))):
+            one, two = _moved(first, axis, a), _moved(last, axis, b)
+            least, _, status = interval_kernels.box(*program, *(c for pair in zip(one, two, strict=True) for c in pair))
+            if settled(least, status):
+                continue
+            center = (0.5 * (c + d) for c, d in zip(one, two, strict=True))
+            if refuted(tape_kernels.value(*program, *center), status):
+                return False
+            heappush(boxes, (least, count + part, one, two))
+    return False
+
+
+def _moved(corner: Corner, axis: int, place: float) -> Corner:
+    x, y, z = (place if k == axis else c for k, c in enumerate(corner))
+    return x, y, z
