@@ -180,6 +180,66 @@ def test_turntable_at_a_given_distance():
     assert view.origin == pytest.approx((0, 0, 4))
 
 
+@settings(max_examples=20, deadline=None)
+@given(POINT, SIDES, SIZES, st.floats(0, 8))
+def test_turntable_follows_at_the_distance_that_its_box_asks_for(place, sides, size, time):
+    ball = Sphere(position=link("fall", "position", (3,)))
+    moment, low, high = box_moment((3, -2, 1), sides, parts={"ball": ball}, given={("fall", "position"): place})
+    moment.time = time
+    view = Turntable(follow=Ref("ball"), fit=(Ref("a"),)).view(size, moment)
+    check_axes(view)
+    away = np.subtract(view.origin, place)
+    np.testing.assert_allclose(view.axes[2] * np.linalg.norm(away), away, atol=1e-9)
+    standing = Turntable(fit=(Ref("a"),)).view(size, moment)
+    assert np.linalg.norm(away) == pytest.approx(np.linalg.norm(standing.origin - (low + high) / 2))
+
+
+def test_turntable_goes_around_one_part_with_others_in_the_picture():
+    boxes = {"a": ((0, 0, 0), (1, 1, 1)), "b": ((-3, 0, -1), (2, 4, 1))}
+
+    class Boxes(FakeMoment):
+        def bounds(self, names):
+            return np.min([boxes[n][0] for n in names], axis=0), np.max([boxes[n][1] for n in names], axis=0)
+
+    view = Turntable(around=Ref("a"), fit=(Ref("a"), Ref("b"))).view((640, 360), Boxes())
+    np.testing.assert_allclose(seen(view, [(0.5, 0.5, 0.5)])[0], 0, atol=1e-9)
+    places, depth = seen(view, framing.corners(*boxes["b"]))
+    assert (depth > 0).all()
+    assert np.abs(places).max() <= 0.93
+
+
+@pytest.mark.parametrize("other", [{"around": Ref("a")}, {"look_at": const([0, 0, 0])}])
+def test_turntable_has_one_middle(other):
+    with pytest.raises(ValueError, match="follows"):
+        Turntable(follow=Ref("ball"), **other)
+
+
+STILL = {"parts": {"ball": Sphere(position=const([1, 2, 3]))}}
+
+
+@pytest.mark.parametrize(
+    "camera",
+    [
+        Turntable(follow=Ref("ball"), distance=const(3.0)),
+        Turntable(look_at=const([0, 0, 0]), distance=const(3.0)),
+        Perspective(follow=Ref("ball")),
+        Perspective(position=const([0, 0, 5]), look_at=const([0, 0, 0])),
+    ],
+)
+def test_a_camera_that_needs_no_look_ahead_does_not_ask_for_bounds(camera):
+    class Blind(FakeMoment):
+        def bounds(self, names):
+            raise AssertionError("asked for bounds")
+
+    assert not camera.looks_ahead()
+    check_axes(camera.view((64, 36), Blind(**STILL)))
+
+
+@pytest.mark.parametrize("camera", [Perspective, Orthographic, Turntable])
+def test_every_camera_can_look_at_follow_and_fit(camera):
+    assert {"look_at", "follow", "fit"} <= set(camera.model_fields)
+
+
 @pytest.mark.parametrize(("sides", "front"), [((2, 2, 0.2), True), ((2, 2, 2), False), ((0.4, 3, 0.4), False)])
 def test_auto_frames_all_and_sees_what_is_flat_from_the_front(sides, front):
     moment, low, high = box_moment((0, 1, 0), sides)
