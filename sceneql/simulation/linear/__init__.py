@@ -1,0 +1,1 @@
+"""Linear systems of implicit methods: factorizations and iterations in compiled code."""
