@@ -208,7 +208,53 @@ objects: {cabin: {sphere: {position: lift.position, radius: 0.1 m}}}
     np.testing.assert_array_equal(drawn, place)
 
 
+PATH = (
+    "models: {{path: {{motion: {{along: {}, progress: {}}}}}}}\nclock: {{end: 4 s}}\n"
+    "objects: {{ball: {{sphere: {{position: path.position}}}}}}\n"
+)
+
+
+def test_a_motion_along_a_straight_path_goes_by_the_share_of_its_length(tmp_path):
+    script = PATH.format("[0 0 0 m, 1 0 2 m, 4 0 8 m]", "{keys: {0 s: 0, 4 s: 1}, curve: linear}")
+    for time, (place, velocity) in zip(
+        (1, 2, 3), watch(tmp_path, script, [1, 2, 3], "path.position", "path.velocity"), strict=True
+    ):
+        np.testing.assert_allclose(place, np.array([1, 0, 2]) * time, atol=1e-12)
+        np.testing.assert_allclose(velocity, [1, 0, 2], atol=1e-6)
+
+
+def test_a_motion_meets_the_points_of_its_path_and_stays_at_the_ends(tmp_path):
+    points = [(-4, 0.15, 0), (0, 0.15, 0.4), (0, 3, 0.4)]
+    lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    middle = lengths[0] / lengths.sum()
+    script = PATH.format(f"{[list(p) for p in points]}", "2*(time/(1 s)) - 1")
+    places = [place for (place,) in watch(tmp_path, script, [0, 0.5, (1 + middle) / 2, 1, 3], "path.position")]
+    np.testing.assert_allclose(places, [points[k] for k in (0, 0, 1, 2, 2)], atol=1e-12)
+
+
+def test_a_closed_path_is_smooth_where_laps_meet_and_goes_on(tmp_path):
+    script = PATH.format("[1 0 0 m, 0 1 0 m, -1 0 0 m, 0 -1 0 m, 1 0 0 m]", "time/(2 s)")
+    outputs = watch(tmp_path, script, [0.3, 1.999, 2.001, 2.3], "path.position", "path.velocity")
+    (early, _), (before, up), (after, on), (late, _) = outputs
+    np.testing.assert_allclose(late, early, atol=1e-12)
+    np.testing.assert_allclose(up, on, atol=0.05)
+    assert np.linalg.norm(after - before) < 0.01
+
+
+def test_a_force_follows_a_path_inside_the_steps(tmp_path):
+    """A pull that grows as the distance towards p(t) = t along x: x'' = t - x from rest, so x = t - sin t."""
+    script = PATH.format("[0 0 0 m, 4 0 0 m, 10 0 0 m]", "{keys: {0 s: 0, 10 s: 1}, curve: linear}") + (
+        "forces: {pull: {attractor: {position: path.position, exponent: -1}}}\nsolvers: {main: {rk4: {step: 20 ms}}}\n"
+    )
+    script = script.replace("models: {", "models: {dot: {particles: {list: {one: {position: 0 0 0 m}}}}, ")
+    for time, (place,) in zip((1, 3, 4), watch(tmp_path, script, [1, 3, 4], "dot.one.position"), strict=True):
+        np.testing.assert_allclose(place, [time - math.sin(time), 0, 0], atol=1e-7)
+
+
 WRONG = {
+    "{motion: {along: [0 0 0 m]}}": "two points or more",
+    "{motion: {along: [0 0 0 m, 0 0 0 m, 1 0 0 m]}}": "another than the one before",
+    "{motion: {along: [0 0 0 m, 1 0 0 m], position: 0 0 0 m}}": "either `position` or `along`",
     "{mass_spring: {masses: {a: {}, b: {}}, springs: [{between: [a, a]}]}}": "from 'a' to itself",
     "{mass_spring: {masses: {a: {}, b: {}}, springs: [{between: [a, bob]}]}}": "no mass is called 'bob'",
     "{mass_spring: {masses: {a: {mass: 0 kg}}}}": "above 0",
