@@ -90,7 +90,7 @@ def test_a_film_warns_of_solids_that_it_never_shows(tmp_path):
     assert report.frames == 2
     assert [(w.code, w.severity, w.message.split("'")[1]) for w in report.warnings] == [
         ("empty-solid", "warning", "nothing"),
-        ("empty-solid", "warning", "pair.children.apart"),
+        ("empty-solid", "warning", "apart"),
     ]
     assert "s.yaml:5:" in str(report.warnings[0])
 

@@ -10,6 +10,7 @@ from typing import Final
 
 from sceneql.language.compose import compose
 from sceneql.language.include import OutsideError, Read, folder_reader, read_included, read_source
+from sceneql.language.nesting import unnested
 from sceneql.language.patch import VARIANT_OPTIONS, Patch, apply_patch, parse_set, variant, variant_names
 from sceneql.language.scope import Entry, Expanded, Given, Scope
 from sceneql.language.sections import NAMED, join
@@ -79,7 +80,7 @@ def read_script(
     _check_sections(root, families, settings, found)
     patches = _patches(root, variant, sets, families, settings, found)
     patched = _patched(root, patches, families, settings, found)
-    expanded = expand(patched, families, found)
+    expanded = expand(unnested(patched, families, found), families, found)
     if raising:
         found.raise_errors()
     defaults = patched.entries.get("defaults")

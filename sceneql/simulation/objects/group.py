@@ -15,8 +15,10 @@ if TYPE_CHECKING:
 class Group(Placed):
     """Objects in coordinates of their own, scaled, turned and moved together.
 
-    A point p of a child stands at position + rotation (scale p). Children keep their materials; one without gets the
-    group's. Its field is the least of its children's, times the least factor of its scale.
+    A point p of a child stands at position + rotation (scale p). A child that is written in place under a name is a
+    part of that name, for others to link to; its position is told in the group's coordinates. Children keep their
+    materials; one without gets the group's. Its field is the least of its children's, times the least factor of its
+    scale.
     """
 
     children: tuple[ObjectRef, ...] | dict[str, ObjectRef] = field("The objects, by name or in place.", ())
