@@ -6,12 +6,12 @@ neither the code that comes out nor what kernels may contain, but for closures, 
 """
 
 import gc
+import operator
 from contextlib import contextmanager
 
 from numba import types
 from numba.core.compiler import CompilerBase
 from numba.core.compiler_machinery import PassManager
-from numba.core.registry import cpu_target
 from numba.core.typed_passes import (
     IRLegalization,
     NativeLowering,
@@ -67,26 +67,27 @@ def collecting_later():
             gc.enable()
 
 
-def remember_signatures(typing):
-    """Let numba's typing context keep what an operation on numbers gives.
+def remember_signatures():
+    """Let numba keep what an operation on numbers, or the picking of an element, gives.
 
-    It tries up to twenty rules at every ``a + b``, those for strings, lists and sets of this program's numbers too.
+    At every ``a + b`` it tries up to twenty rules, those for strings, lists and sets among them, and that twice.
     """
-    resolve = typing.resolve_function_type
+    resolve = types.Function.get_call_type
     known = {}
 
-    def remembering(function, args, keywords):
-        if keywords or not all(isinstance(arg, (types.Number, types.Boolean)) for arg in args):
-            return resolve(function, args, keywords)
-        kind = function if isinstance(function, types.Type) else typing.resolve_value_type(function)
-        if not isinstance(kind, types.Function):
-            return resolve(function, args, keywords)
-        key = kind, tuple(args)
+    def remembering(self, typing, args, keywords):
+        plain = PLAIN_OR_PACKED if self.typing_key in (operator.getitem, operator.setitem) else PLAIN
+        if keywords or not all(isinstance(arg, plain) for arg in args):
+            return resolve(self, typing, args, keywords)
+        key = self, typing, tuple(args)
         if key not in known:
-            known[key] = resolve(kind, args, keywords)
+            known[key] = resolve(self, typing, args, keywords)
         return known[key]
 
-    typing.resolve_function_type = remembering
+    types.Function.get_call_type = remembering
 
 
-remember_signatures(cpu_target.typing_context)
+PLAIN = (types.Number, types.Boolean)
+PLAIN_OR_PACKED = (*PLAIN, types.Array, types.BaseTuple)
+
+remember_signatures()
