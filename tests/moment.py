@@ -56,6 +56,9 @@ class FakeMoment:
     def object(self, ref: Ref) -> Any:
         return self.parts[ref.name]
 
+    def place(self, name: str) -> Any:
+        return IDENTITY
+
     def surface(self, name: str, material: Ref | None, color: Value | None) -> Surface:
         return Surface() if color is None else Surface(color=tuple(self.at(color)))
 

@@ -93,3 +93,21 @@ def test_a_child_with_the_name_of_another_part_is_an_error():
     text = "objects: {floor: plane, pair: {group: {children: {floor: {plane: {}}}}}}\n"
     with pytest.raises(ScriptError, match="'floor' is used twice"):
         read_script(Source("s.yaml", text))
+
+
+def test_cameras_see_a_joint_where_its_groups_have_put_it(tmp_path):
+    cameras = (
+        "cameras:\n"
+        "  beside: {perspective: {follow: right.toe, from: 0 0 2 m}}\n"
+        "  around: {turntable: {around: right.knee, distance: 3 m}}\n"
+        "  joint: {orthographic: {follow: right.knee, height: 1 m}}\n"
+        "outputs: {a: {image: {camera: beside}}, b: {image: {camera: around}}, c: {image: {camera: joint}}}\n"
+    )
+    (tmp_path / "s.yaml").write_text(NESTED + cameras)
+    graph = load(tmp_path / "s.yaml")
+    (moment,) = Run(graph).moments([0.0])
+    knee, toe = (0.4 + 0.22, 0.45, -0.16 - 0.05), (0.4 + 0.42, 0.45 + 0.05, -0.16 - 0.05 + 0.02)
+    views = [graph.tasks[name].kind.view((64, 36), moment) for name in ("beside", "around", "joint")]
+    np.testing.assert_allclose(views[0].origin, np.add(toe, (0, 0, 2)), atol=1e-12)
+    np.testing.assert_allclose(views[1].origin - 3 * views[1].axes[2], toe, atol=1e-9)  # all that the knee draws
+    np.testing.assert_allclose(np.subtract(views[2].origin, knee) @ views[2].axes[:2].T, 0, atol=1e-12)

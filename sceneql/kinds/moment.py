@@ -30,6 +30,9 @@ class Moment(Protocol):
     def object(self, ref: Ref) -> Object:
         """The kind of an object."""
 
+    def place(self, name: str) -> Floats:
+        """(3, 4) map to the world from the coordinates that an object's position is told in: its group's, or these."""
+
     def surface(self, name: str, material: Ref | None, color: Value | None) -> Surface:
         """The surface of object ``name``: its material's, with the color replaced where given; a default by order."""
 

@@ -7,6 +7,7 @@ from itertools import product
 from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import Object, Ref, Value
+from sceneql.simulation.placement import apply
 from sceneql.simulation.solid import triple
 
 if TYPE_CHECKING:
@@ -78,15 +79,14 @@ def fitted(points: Floats, axes: Floats, slopes: tuple[float, float], aim: Any =
 
 
 def whereabouts(moment: Moment, ref: Ref) -> Any:
-    """(3,) place of a part now: its position, the middle of its box, or the center of its masses."""
+    """(3,) place of a part in the world now: its position, the middle of its box, or the center of its masses."""
     part: Any = moment.object(ref)
     if isinstance(part, Object):
+        place = moment.place(ref.name)
         position = getattr(part, "position", None)
         if isinstance(position, Value):
-            return moment.at(position)
-        import numpy as np
-
-        low, high = part.extent(np.eye(3, 4), moment)
+            return apply(place, moment.at(position))
+        low, high = part.extent(place, moment)
         return (low + high) / 2
     return moment.read(ref.name, "center" if "center" in part.gives else "position")
 

@@ -16,6 +16,7 @@ from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Expr, Link, Symbol
 from sceneql.simulation.bounds import box_of
 from sceneql.simulation.color import default_color, linear
+from sceneql.simulation.placement import Placed, compose
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Surface
@@ -36,6 +37,7 @@ class Run:
         self.island_of = {name: run for run in self.islands for name in run.members}
         self.orders = _orders(graph)
         self.palette = _palette(graph)
+        self.holders = _holders(graph)
         self._bounds: dict[str, tuple[Floats, Floats]] | None = None
 
     def moments(self, times: Iterable[float]) -> Iterator[Instant]:
@@ -209,6 +211,13 @@ class Instant:
         """Low and high corner (3,) of what the parts draw over the whole film; of all that is drawn for no names."""
         return self.run.bounds(list(names) or list(self.run.orders))
 
+    def place(self, name: str) -> Floats:
+        """(3, 4) map to the world from the coordinates that an object's position is told in."""
+        holder = self.run.holders.get(name)
+        if holder is None:
+            return IDENTITY
+        return compose(self.place(holder), cast(Placed, self.run.graph.tasks[holder].kind).local(self))
+
     def lower(self, names: Iterable[str]) -> list[Drawn]:
         """The shapes of the named objects and models."""
         shapes: list[Drawn] = []
@@ -230,6 +239,15 @@ class Instant:
 def _orders(graph: SimulationGraph) -> dict[str, int]:
     """All that any picture draws, in order."""
     return {name: k for k, name in enumerate(dict.fromkeys(name for drawn in graph.drawn.values() for name in drawn))}
+
+
+def _holders(graph: SimulationGraph) -> dict[str, str]:
+    """For every object inside another the one that draws it (the first of several)."""
+    holders: dict[str, str] = {}
+    for name, task in graph.tasks.items():
+        for ref in task.kind.members() if isinstance(task.kind, Object) else ():
+            holders.setdefault(ref.name, name)
+    return holders
 
 
 def _palette(graph: SimulationGraph) -> dict[str, int]:
@@ -258,6 +276,14 @@ def _widened(bounds: Mapping[str, tuple[Floats, Floats]], moment: Instant) -> di
         for shape in moment.lower([name]):
             low, high = box_of(shape)
             if np.isfinite(low).all() and np.isfinite(high).all():
-                old = result.get(name, (low, high))
-                result[name] = np.minimum(old[0], low), np.maximum(old[1], high)
+                for part in {name, *_around(shape.name, moment.run.holders)}:
+                    old = result.get(part, (low, high))
+                    result[part] = np.minimum(old[0], low), np.maximum(old[1], high)
     return result
+
+
+def _around(name: str, holders: Mapping[str, str]) -> Iterator[str]:
+    """A part, and those that hold it, outwards."""
+    while name:
+        yield name
+        name = holders.get(name, "")
