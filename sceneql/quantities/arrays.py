@@ -65,7 +65,7 @@ def _random(*counters: Any) -> Any:
     import numpy as np
 
     known = np.broadcast_arrays(*counters)
-    finite = np.logical_and.reduce([np.isfinite(x) for x in known])
+    finite = np.all([np.isfinite(x) for x in known], axis=0)
     words = [np.mod(np.floor(np.where(finite, x, 0.0)), 2.0**32).astype(np.uint64) for x in known]
     first, second, key = (words + [np.zeros((), dtype=np.uint64)] * 2)[:3]
     return np.where(finite, chance.unit(*chance.philox(first, second, key)), np.nan)

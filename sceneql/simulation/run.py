@@ -54,7 +54,8 @@ class Run:
         corners = [self._bounds[name] for name in names if name in self._bounds]
         if not corners:
             return np.full(3, -1.0), np.full(3, 1.0)
-        return np.min([low for low, _ in corners], axis=0), np.max([high for _, high in corners], axis=0)
+        lows, highs = np.array([low for low, _ in corners]), np.array([high for _, high in corners])
+        return lows.min(axis=0), highs.max(axis=0)
 
 
 @dataclass(frozen=True, slots=True)

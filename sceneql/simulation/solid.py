@@ -58,7 +58,7 @@ def traced(solid: Object, name: str, place: Floats, moment: Moment) -> Iterable[
         raise TypeError(f"{name} is unbounded, and cannot be drawn: intersect it with a box")
     build = TapeBuilder()
     value = solid.implicit(build, *build.affine(inverse(place), build.x, build.y, build.z), moment)
-    room = MARGIN * float((high - low).max())
+    room = MARGIN * float(np.max(high - low))
     surface = moment.surface(name, solid.material, solid.color)
     yield frame.Implicit(name, surface, build.finish(value), triple(low - room), triple(high + room))
 

@@ -64,7 +64,7 @@ class Orthographic(Camera):
             half = 0.5 * positive(moment, self.height, "height")
         else:
             reach = np.abs(across - middle).max(axis=0) / framing.seen_slopes(1.0, size, self.margin)
-            half = max(float(reach.max()), framing.NEAREST)
+            half = max(float(np.max(reach)), framing.NEAREST)
         depths = np.concatenate([points, framing.corners(*framing.bounds(moment, None))]) @ axes[2]
         room = max(float(np.ptp(depths)), 1.0)
         origin = middle @ axes[:2] + (float(depths.max()) + room) * axes[2]

@@ -177,7 +177,7 @@ class MassSpring(Model):
         if self.radius is not None:
             return self.radius
         some = self.rest[self.rest > 0]
-        return 0.1 * float(some.min()) if len(some) else 0.05
+        return 0.1 * min(map(float, some)) if len(some) else 0.05
 
     def assemble(self, name: str, assembly: Assembly) -> Bodies:
         """Reserve the masses and add the forces of the springs."""
@@ -238,7 +238,7 @@ class MassSpring(Model):
         if output == "stretch":
             stretched = self.rest > 0
             parts = np.abs(lengths[stretched] - self.rest[stretched]) / self.rest[stretched]
-            return float(parts.max()) if len(parts) else 0.0
+            return float(np.max(parts)) if len(parts) else 0.0
         name, _, what = output.rpartition(".")
         if what in SPRING_OUTPUTS:
             k = [spring.name for spring in self.springs].index(name)

@@ -68,7 +68,7 @@ class Blobby(Object):
         ends = np.concatenate([pairs, np.column_stack([lone, lone])])
         radii, weights = self._each(self.radius, n, moment), self._each(self.weight, n, moment)
         if not (np.isfinite(radii).all() and (radii > 0).all()):
-            raise self._failure(f"a radius must be above 0, but one is {radii.min():g} m now", self.radius, moment)
+            raise self._failure(f"a radius must be above 0, but one is {np.min(radii):g} m now", self.radius, moment)
         return np.column_stack(
             [points[ends[:, 0]], points[ends[:, 1]], radii[ends].mean(axis=1), weights[ends].mean(axis=1)]
         )
