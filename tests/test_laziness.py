@@ -7,6 +7,7 @@ import sys
 import pytest
 
 from sceneql import pipeline
+from sceneql.compiler.catalogue import Catalogue
 
 BALL = "objects:\n  ball: {sphere: {radius: 0.2 m, position: 0 1 0 m}}\n"
 STILL = BALL + "outputs: {still: {image: {size: 32 18, time: 0 s}}}\n"
@@ -51,6 +52,25 @@ def test_check_imports_nothing_that_only_runs_need(tmp_path):
     names = modules_after(tmp_path, looks, "check")
     assert "sceneql.simulation.materials.glossy" in names
     assert not names & {"sceneql.frame", "sceneql.system", "sceneql.kernels", "sceneql.simulation.run"}
+
+
+def kinds_of_schema(schema):
+    """The types of all parts of a pydantic core schema."""
+    if isinstance(schema, list | tuple):
+        return set().union(*map(kinds_of_schema, schema))
+    if not isinstance(schema, dict):
+        return set()
+    return {str(schema.get("type"))}.union(*map(kinds_of_schema, schema.values()))
+
+
+def test_no_word_looks_inside_what_the_compiler_has_checked():
+    """A schema of values with their trees and places takes ten times as long to build as that of the word."""
+    catalogue = Catalogue()
+    for family in catalogue.families:
+        for word in catalogue.words(family):
+            cls = catalogue.load(family, word)
+            cls.model_rebuild()
+            assert not kinds_of_schema(cls.__pydantic_core_schema__) & {"dataclass", "definitions"}, word
 
 
 def test_a_picture_without_physics_imports_no_solver_no_mesh_and_no_video(tmp_path):
