@@ -114,7 +114,7 @@ def test_an_interrupted_film_keeps_its_frames(tmp_path):
         time.sleep(0.05)
     time.sleep(1.0)
     os.kill(process.pid, signal.SIGINT)
-    said = process.communicate(timeout=60)[1]
+    said = process.communicate(timeout=300)[1]
     assert process.returncode == 130, said
     assert "kept f.partial.mp4" in said
     assert not (tmp_path / "f.mp4").exists()
