@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import Literal
 
 from sceneql.quantities.span import Span
@@ -135,5 +134,7 @@ def _place(diagnostic: Diagnostic) -> tuple[str, int]:
 
 def suggestion(name: str, choices: Iterable[str]) -> str | None:
     """``did you mean 'radius'?`` for the nearest of the choices, or None."""
+    from difflib import get_close_matches
+
     close = get_close_matches(name, list(choices), n=1, cutoff=0.6)
     return f"did you mean '{close[0]}'?" if close else None
