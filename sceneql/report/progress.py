@@ -1,15 +1,50 @@
-"""A progress bar, on a terminal only."""
+"""A progress bar, on a terminal only, and an interrupt that is heard."""
 
 from __future__ import annotations
 
+import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 
 @contextmanager
 def bar(title: str) -> Iterator[Callable[[int, int], None]]:
-    """A function of (done, total) that draws a bar on standard error while the block runs."""
+    """A function of (done, total) that draws a bar on standard error while the block runs.
+
+    It raises KeyboardInterrupt after a Ctrl-C that was lost: one that falls into a callback of a library in C (of the
+    compiler, say) is printed there and forgotten.
+    """
+    with _remembered() as lost, _drawn(title) as draw:
+
+        def step(done: int, total: int) -> None:
+            if lost():
+                raise KeyboardInterrupt
+            draw(done, total)
+
+        yield step
+
+
+@contextmanager
+def _remembered() -> Iterator[Callable[[], bool]]:
+    """Whether Ctrl-C was pressed inside the block."""
+    pressed = False
+
+    def press(number: int, frame: Any) -> None:
+        nonlocal pressed
+        pressed = True
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGINT, press)
+    try:
+        yield lambda: pressed
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+@contextmanager
+def _drawn(title: str) -> Iterator[Callable[[int, int], None]]:
     if not sys.stderr.isatty():
         yield lambda done, total: None
         return

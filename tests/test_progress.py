@@ -1,0 +1,19 @@
+"""An interrupt stops a run even where a library has swallowed it."""
+
+import os
+import signal
+from contextlib import suppress
+
+import pytest
+
+from sceneql.report.progress import bar
+
+
+def test_a_swallowed_interrupt_is_raised_at_the_next_frame():
+    before = signal.getsignal(signal.SIGINT)
+    with pytest.raises(KeyboardInterrupt), bar("film") as progress:
+        progress(0, 2)
+        with suppress(KeyboardInterrupt):  # as a callback from C does
+            os.kill(os.getpid(), signal.SIGINT)
+        progress(1, 2)
+    assert signal.getsignal(signal.SIGINT) is before
