@@ -4,6 +4,7 @@ import math
 import os
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -153,7 +154,27 @@ def test_gradient_agrees_with_differences(tape, point):
         return
     central, wide, second = (f[:3] - f[3:6]) / (2 * h), (f[6:9] - f[9:12]) / (4 * h), f[:3] + f[3:6] - 2 * f[12]
     smooth = (np.abs(central - wide) < 1e-6 * (1 + np.abs(central))) & (np.abs(second) < 1e-6 * (1 + np.abs(central)))
+    undefined = np.isnan(slope)
+    if (
+        undefined.any()
+    ):  # there is no slope where a step on the way is infinite, though the end be finite: atan2(1/0, 1)
+        assert not np.isfinite([field_values(replace(tape, code=tape.code[:k]), point[None]) for k in rows(tape)]).all()
+    smooth &= ~undefined
     assert np.abs(np.array(slope) - central)[smooth] == pytest.approx(0.0, abs=1e-4 * (1 + np.abs(central).max()))
+
+
+def rows(tape):
+    """Lengths of the beginnings of a tape."""
+    return range(1, len(tape.code) + 1)
+
+
+def test_a_slope_is_undefined_behind_an_infinite_step():
+    build = TapeBuilder()
+    one = build.constant(1.0)
+    tape = build.finish(build.op("atan2", build.op("log", build.constant(0.0)), one))
+    found, *slope = gradient(*arguments(tape), 0.1, 0.2, 0.3)
+    assert found == pytest.approx(-math.pi / 2)
+    assert np.isnan(slope).all()
 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if name not in JUMPS])
