@@ -10,8 +10,9 @@ import operator
 from contextlib import contextmanager
 
 from numba import types
+from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase
-from numba.core.compiler_machinery import PassManager
+from numba.core.compiler_machinery import PassManager, register_pass
 from numba.core.typed_passes import (
     IRLegalization,
     NativeLowering,
@@ -28,7 +29,7 @@ from numba.core.untyped_passes import (
     TranslateByteCode,
 )
 
-PASSES = (
+FRONT = (
     TranslateByteCode,
     FixupArgs,
     IRProcessing,
@@ -38,21 +39,61 @@ PASSES = (
     NopythonTypeInference,
     PreLowerStripPhis,
     IRLegalization,
-    NativeLowering,
-    NoPythonBackend,
 )
 
 
-class Compiler(CompilerBase):
+class HelperLibrary(JITCodeLibrary):
+    """Code of a helper: it goes into its callers, is made good there, and never becomes machine code of its own."""
+
+    def _optimize_final_module(self):
+        passes, builder = self._codegen._module_pass_manager(
+            loop_vectorize=False, slp_vectorize=False, opt=self._codegen._opt_level, cost="cheap"
+        )
+        passes.run(self._final_module, builder)
+
+    def _finalize_final_module(self):
+        self._finalize_dynamic_globals()
+        self._finalized = True
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class HelperLowering(NativeLowering):
+    """Lower a helper to a HelperLibrary."""
+
+    def run_pass(self, state):
+        """Leave the code in state.library, and in state.cr what callers know it by."""
+        state.flags = state.flags.copy()
+        state.flags.no_compile = True
+        state.library = HelperLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        super().run_pass(state)
+        name = [].clear  # numba asks for a builtin function; this one refuses arguments, should Python ever call it
+        state.targetctx.insert_user_function(name, state.cr.fndesc, [state.library])
+        state.cr = state.cr._replace(cfunc=name)
+        return True
+
+
+def _pipeline(*passes):
+    manager = PassManager("kernels")
+    for one in passes:
+        manager.add_pass(one, one.__name__)
+    manager.finalize()
+    return [manager]
+
+
+class KernelCompiler(CompilerBase):
     """For ``pipeline_class`` of numba.jit."""
 
     def define_pipelines(self):
         """The one list of passes."""
-        passes = PassManager("kernels")
-        for one in PASSES:
-            passes.add_pass(one, one.__name__)
-        passes.finalize()
-        return [passes]
+        return _pipeline(*FRONT, NativeLowering, NoPythonBackend)
+
+
+class HelperCompiler(CompilerBase):
+    """The same for functions that only compiled ones call."""
+
+    def define_pipelines(self):
+        """The one list of passes."""
+        return _pipeline(*FRONT, HelperLowering, NoPythonBackend)
 
 
 @contextmanager

@@ -25,7 +25,7 @@ from numba import types
 from numba.core import cgutils, event
 from numba.extending import intrinsic
 
-from sceneql.compiling import Compiler, collecting_later
+from sceneql.compiling import HelperCompiler, KernelCompiler, collecting_later
 
 OURS = ("sceneql", "renderers", "sceneql_generated")
 IMPORTED = re.compile(r"^from ([\w.]+) import", re.MULTILINE)
@@ -106,14 +106,15 @@ def kernel(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any
     def compile(function: Callable[..., Any]) -> Any:
         numba.config.CACHE_DIR = str(cache_folder(function.__module__))
         with collecting_later():
-            return numba.njit(signature, cache=True, **COMMON, **options)(function)
+            return numba.njit(signature, cache=True, pipeline_class=KernelCompiler, **COMMON, **options)(function)
 
     return compile
 
 
-COMMON = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True, "pipeline_class": Compiler}
+COMMON = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+HELPER = {**COMMON, "no_cpython_wrapper": True, "pipeline_class": HelperCompiler}
 
-inlined = numba.njit(no_cpython_wrapper=True, **COMMON)
+inlined = numba.njit(**HELPER)
 """A helper of kernels: compiled with its caller, for the types it is called with; not callable from Python."""
 
 woven = numba.njit(inline="always", **COMMON)
@@ -125,7 +126,7 @@ def lean(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     return kernel(signature, _nrt=False, **options)
 
 
-lean_inlined = numba.njit(no_cpython_wrapper=True, _nrt=False, **COMMON)
+lean_inlined = numba.njit(_nrt=False, **HELPER)
 """A helper of lean kernels."""
 
 
