@@ -90,6 +90,9 @@ class Assembly(Protocol):
     def formula(self, link: Link) -> Expr | None:
         """A linked output as an expression of time; None for one of a model that is solved."""
 
+    def step_at_most(self, seconds: float) -> None:
+        """Say that steps of a length chosen by a tolerance must not be longer: something happens that it cannot see."""
+
     def body_count(self) -> int:
         """Number of bodies of the island (contacts choose their mode by it)."""
 

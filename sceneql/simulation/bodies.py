@@ -75,7 +75,7 @@ def reserve(
         velocity_at=velocity_at,
         work_at=position_at + 6 * n,
         mass_at=assembly.floats(masses),
-        inverse_at=assembly.floats(np.where(fixed, 0.0, 1.0 / masses)),
+        inverse_at=assembly.floats(np.divide(1.0, masses, out=np.zeros(n), where=~np.asarray(fixed))),
         radius_at=assembly.floats(radii),
     )
     ints = (position_at, velocity_at, n, bodies.inverse_at)
@@ -145,7 +145,7 @@ def read(output: str, bodies: Bodies, state: ModelState, own_potential: float = 
         case "angular_momentum":
             return np.sum(m[:, None] * np.cross(x, v), axis=0)
         case "center":
-            return np.sum(m[:, None] * x, axis=0) / np.sum(m)
+            return np.average(x, axis=0, weights=m) if np.sum(m) > 0 else np.zeros(3)
         case "count":
             return float(bodies.count)
     raise KeyError(output)

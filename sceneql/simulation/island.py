@@ -81,6 +81,8 @@ class System:
     partner: NDArray[int64]
     """(n,) for a position its velocity's index, else -1."""
     ranges: tuple[tuple[int, int, str, tuple[Span | None, ...]], ...]
+    largest_step: float = float("inf")
+    """[s], of steps that a tolerance chooses."""
 
     def origin(self, index: int) -> Origin:
         """Part and line of an entry of y."""
@@ -117,6 +119,7 @@ class IslandAssembly:
     _exact: list[_Block] = field(default_factory=list)
     _local: list[_Block] = field(default_factory=list)
     _varying: list[tuple[int, Value]] = field(default_factory=list)
+    _largest_step: float = float("inf")
     _word: tuple[str, Span | None, str | None] = ("island", None, None)
     _remembered: dict[tuple[str, str | None], tuple[int, ...]] = field(default_factory=dict)
 
@@ -196,6 +199,10 @@ class IslandAssembly:
         """A linked output as an expression of time; None for one of a model that is solved."""
         return self.setting.formula(link)
 
+    def step_at_most(self, seconds: float) -> None:
+        """Bound the steps that a tolerance chooses (system.Assembly)."""
+        self._largest_step = min(self._largest_step, seconds)
+
     def body_count(self) -> int:
         """Number of bodies of the island so far."""
         return self._bodies
@@ -246,6 +253,7 @@ class IslandAssembly:
             pairs=sum(pairs),
             partner=partner,
             ranges=tuple(self._ranges),
+            largest_step=self._largest_step,
         )
 
     def start(self) -> Floats:

@@ -79,7 +79,7 @@ class March:
         self._counts[kernels.LAST_STAGE] = stepper.last_stage
         self._counts[kernels.PENDING] = -1
         self._clock[kernels.ERROR] = 1e-4
-        self._clock[kernels.LARGEST] = stepper.largest_step
+        self._clock[kernels.LARGEST] = min(stepper.largest_step, system.largest_step)
         self._started = False
         self._floats_time = math.nan
 

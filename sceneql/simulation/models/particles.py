@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from pydantic import model_validator
+from pydantic import field_validator, model_validator
 
+from sceneql.failure import LimitRefused
 from sceneql.kinds import (
     Color,
+    Exceeds,
     FixedLength,
     FixedMass,
     FixedPosition,
@@ -22,14 +24,20 @@ from sceneql.kinds import (
     Record,
     Value,
     field,
+    quantity_type,
 )
+from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.simulation import bodies as masses
+from sceneql.simulation.fill import Fill, filled
+from sceneql.simulation.models.emitter import Aging, Emit, bounded
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.frame import Points as Spheres
     from sceneql.system import Assembly, Bodies, ModelState
+
+SOURCES = ("list", "of", "positions", "fill", "emit")
 
 
 class Particle(Record):
@@ -54,34 +62,50 @@ class Particles(Model):
     """Point masses: m a = F (Newton 1687), where F is what the scene's forces and contacts do to them.
 
     They are listed by name (``list``), or come from an object that they then drive (``of``: its place at the start and
-    its radius are read from it), or from points (``positions``), all with the same mass.
+    its radius are read from it), from points (``positions``), from an object that they fill (``fill``), or are born and
+    die (``emit``); but for the listed ones all have the same mass. What is not yet born or has died feels and does
+    nothing, is not drawn, and is in no output; births bring energy and deaths take it.
     """
 
-    gives: ClassVar[Mapping[str, Gives]] = masses.BODY_OUTPUTS
+    gives: ClassVar[Mapping[str, Gives]] = {
+        **masses.BODY_OUTPUTS,
+        "ages": Gives(quantity_type(dim.TIME, (None,)), "Time since each was born, or since the start."),
+    }
 
     list: dict[str, Particle] | None = field("Particles by name.", None)
     of: ObjectRef | None = field("The object that is the particle, and that it drives.", None)
     positions: Points | None = field("Where particles start, when they need no names.", None)
-    mass: FixedMass = field("Mass of each, with `of` and `positions`.", "1 kg", above=0)
-    velocity: FixedVelocity = field("Velocity at the start, with `of` and `positions`.", "0 0 0 m/s")
+    fill: Fill | None = field("An object that they fill at the start.", None)
+    emit: Emit | None = field("A source from which they come.", None)
+    mass: FixedMass = field("Mass of each that is not listed.", "1 kg", above=0)
+    velocity: FixedVelocity = field("Velocity at the start, but for listed and emitted ones.", "0 0 0 m/s")
     radius: FixedLength | None = field(
         "Radius in contacts and in the picture; by default the object's (a box: half its least side), else 0.05 m.",
         None,
         at_least=0,
     )
+    aging: Aging | None = field("How emitted ones change with their age.", None)
     material: MaterialRef | None = field("How they look where no object draws them.", None)
     color: Color | None = field("Color in place of the material's.", None)
 
+    @field_validator("fill")
+    @classmethod
+    def _can_be_held(cls, fill: Fill | None) -> Fill | None:
+        bounded(fill.count or 0 if fill is not None else 0)
+        return fill
+
     @model_validator(mode="after")
     def _come_from_one_place(self) -> Particles:
-        given = [name for name in ("list", "of", "positions") if getattr(self, name) is not None]
+        given = [name for name in SOURCES if getattr(self, name) is not None]
         if len(given) != 1:
             raise ValueError(
-                "particles come from one of `list`, `of` and `positions`"
+                "particles come from one of `list`, `of`, `positions`, `fill` and `emit`"
                 + (f", not from {' and '.join(given)}" if given else "")
             )
         if self.list is not None and not self.list:
             raise ValueError("the list of particles is empty")
+        if self.aging is not None and self.emit is None:
+            raise ValueError("only particles that are emitted have an age")
         return self
 
     @classmethod
@@ -106,7 +130,16 @@ class Particles(Model):
                 radii=np.array([default if p.radius is None else p.radius for p in each]),
                 fixed=np.array([p.fixed for p in each]),
             )
-        if self.positions is not None:
+        if self.emit is not None:
+            n = int(self.emit.capacity())
+            nothing = np.zeros((n, 3))
+            where = nothing + (assembly.initial(self.emit.from_) if self.emit.from_.constant else 0.0)
+            room = masses.reserve(name, assembly, where, nothing, np.zeros(n), np.zeros(n), np.ones(n, dtype=bool))
+            self.emit.assemble(name, assembly, room, self.mass, default)
+            return room
+        if self.fill is not None:
+            places = filled(self.fill, name, assembly, self._bound)
+        elif self.positions is not None:
             places = np.asarray(assembly.initial(self.positions), dtype=float).reshape(-1, 3)
         else:
             places, default = self._object(assembly)
@@ -120,6 +153,14 @@ class Particles(Model):
             radii=np.full(n, default),
             fixed=np.zeros(n, dtype=bool),
         )
+
+    def _bound(self, count: float) -> None:
+        """Raise LimitRefused for more particles than can be held."""
+        try:
+            bounded(count)
+        except Exceeds as error:
+            span = None if self.fill is None else self.fill.object.span
+            raise LimitRefused(str(error), span, "use a larger spacing") from None
 
     def _object(self, assembly: Assembly) -> tuple[Floats, float]:
         """Place (1, 3) and radius of the object at the start."""
@@ -143,22 +184,36 @@ class Particles(Model):
 
     def read(self, output: str, state: ModelState) -> Any:
         """Any output of the manual, and ``name.position``, ``name.velocity``, ``name.acceleration``."""
-        assert state.bodies is not None
+        bodies, state, ages = self._seen(state)
+        if output == "ages":
+            return ages
         if output in masses.BODY_OUTPUTS:
-            return masses.read(output, state.bodies, state)
+            return masses.read(output, bodies, state)
         if "." not in output:
-            return masses.read_named(f"of.{output}", ("of",), state.bodies, state)
-        return masses.read_named(output, tuple(self.list or ()), state.bodies, state)
+            return masses.read_named(f"of.{output}", ("of",), bodies, state)
+        return masses.read_named(output, tuple(self.list or ()), bodies, state)
+
+    def _seen(self, state: ModelState) -> tuple[Bodies, ModelState, Floats]:
+        """The particles that are there, as bodies of a state, and their ages (n,) [s]."""
+        import numpy as np
+
+        assert state.bodies is not None
+        if self.emit is not None:
+            return self.emit.living(state.bodies, state)
+        return state.bodies, state, np.full(state.bodies.count, state.t)
 
     def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Spheres]:
-        """Spheres of the particles' radii."""
+        """Spheres of the particles' radii, those that age in classes of age."""
         from sceneql.frame import Points as Spheres
 
-        assert state.bodies is not None
-        surface = moment.surface(name, self.material, self.color)
-        yield Spheres(
-            name, surface, masses.positions(state.bodies, state).copy(), masses.radii(state.bodies, state).copy()
-        )
+        bodies, state, ages = self._seen(state)
+        places, radii = masses.positions(bodies, state).copy(), masses.radii(bodies, state).copy()
+        if self.aging is None:
+            yield Spheres(name, moment.surface(name, self.material, self.color), places, radii)
+            return
+        for color, some, sizes in self.aging.classes(ages, radii):
+            surface = moment.surface(name, self.material, self.color if color is None else color)
+            yield Spheres(name, surface, places[some], sizes)
 
     def drives(self) -> Mapping[str, tuple[str, str]]:
         """The position of the object that is the particle."""

@@ -48,6 +48,12 @@ class Mesh(Placed):
         """(3, 4) map from the file's coordinates to its parent's."""
         return affine(moment.at(self.position), moment.at(self.rotation), moment.at(self.scale))
 
+    def triangles_at(self, moment: Moment) -> Floats:
+        """(m, 3, 3) corners of its triangles in its parent's coordinates, for what fills it."""
+        loaded = self._load()
+        corners: Floats = apply(self.local(moment), loaded.vertices)[loaded.triangles]
+        return corners
+
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
         """The box around its vertices."""
         vertices = apply(compose(place, self.local(moment)), self._load().vertices)

@@ -1,0 +1,203 @@
+"""Emitters: particles that are born and die while the scene runs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from pydantic import model_validator
+
+from sceneql.kinds import (
+    Color,
+    Exceeds,
+    FixedAngle,
+    FixedFrequency,
+    FixedScalar,
+    FixedTime,
+    Length,
+    ObjectRef,
+    Position,
+    Record,
+    Value,
+    Velocity,
+    field,
+)
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Link, Number, Type, Vector, walk
+from sceneql.simulation.fill import Fill, chance_key, draws, filled
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.system import Assembly, Bodies, ModelState
+
+SAMPLES, COLORS = 257, 32
+"""Ages at which radii are evaluated, and classes of age with a color each."""
+
+STEPS = 50
+"""Least number of steps in a life, where the solver chooses them: a birth within a step is of third order in it."""
+
+POOL = 4096
+"""Places of an object that births are drawn from."""
+
+BYTES = 900
+"""Memory of a particle: its part of the state and of a solver's stages, its numbers, its picture."""
+LARGEST_MEMORY = 8 * 2**30
+
+
+def _aged(value: Value, age: float) -> Any:
+    """A value whose `time` is an age [s]."""
+    return evaluate(value.expr, lambda node: age, arrays=True)
+
+
+def bounded(count: float) -> None:
+    """Raise Exceeds for more particles than memory is allowed for."""
+    if count * BYTES > LARGEST_MEMORY:
+        raise Exceeds(
+            f"{count:.3g} particles need about {count * BYTES / 2**30:.3g} GiB; at most {LARGEST_MEMORY >> 30} GiB, "
+            f"{LARGEST_MEMORY / BYTES:.2g} particles, are allowed"
+        )
+
+
+class Aging(Record):
+    """How a particle changes with its age: here `time` counts from its birth, in values and keyframes alike."""
+
+    color: Color | None = field("Its color, in place of the model's.", None)
+    radius: Length | None = field("Its radius in the picture, in place of the model's.", None)
+
+    @model_validator(mode="after")
+    def _is_of_age_alone(self) -> Aging:
+        for name in ("color", "radius"):
+            value = getattr(self, name)
+            if value is not None and any(isinstance(node, Link) for node in walk(value.expr)):
+                raise ValueError(f"the {name} of an age reads no other part")
+        return self
+
+    def classes(self, ages: Floats, radii: Floats) -> Iterable[tuple[Value | None, Any, Floats]]:
+        """The particles by classes of like color: the color, the indices of its particles, and their radii.
+
+        ``ages`` [s] and ``radii`` [m], each (n,).
+        """
+        import numpy as np
+
+        if not len(ages):
+            return
+        samples = np.linspace(0.0, float(ages.max()), SAMPLES)
+        if self.radius is not None:
+            sizes = [_aged(self.radius, age) for age in samples]
+            radii = np.maximum(np.interp(ages, samples, sizes), 0.0)
+        if self.color is None:
+            yield None, slice(None), radii
+            return
+        width = max(samples[-1], 1e-300) / COLORS
+        which = np.minimum((ages / width).astype(int), COLORS - 1)
+        for k in np.unique(which):
+            some = np.flatnonzero(which == k)
+            shade = tuple(Number(float(c)) for c in _aged(self.color, (k + 0.5) * width))
+            yield Value(Vector(shade, Type((3,)))), some, radii[some]
+
+
+class Emit(Record):
+    """Births and deaths. Birth j is at `start` + j/`rate` exactly, wherever the frames and the steps of the solver lie.
+
+    Chance is counter-based: what birth j draws depends on the part's name, the seed and j alone.
+    """
+
+    rate: FixedFrequency = field("Births a second.", "100 Hz", above=0)
+    from_: Position = field("Where they are born.", "0 0 0 m")
+    within: ObjectRef | None = field(
+        "An object within which they are born, as it stands at the start; `from` is added.", None
+    )
+    velocity: Velocity = field("Their mean velocity at birth.", "0 3 0 m/s")
+    spread: FixedAngle = field(
+        "Half angle of the cone that they are thrown into, evenly.", "0 deg", at_least=0, at_most=math.pi
+    )
+    variation: FixedScalar = field(
+        "Largest relative deviation of the speed and of the lifetime.", "0", at_least=0, below=1
+    )
+    lifetime: FixedTime = field("How long they live.", "4 s", above=0)
+    start: FixedTime = field("Time of the first birth.", "0 s", at_least=0)
+    until: FixedTime | None = field("No births after it.", None, above=0)
+    count: int | None = field("No more births than that.", None, at_least=1)
+    most: int | None = field(
+        "How many may live at once; the oldest goes for one too many. By default as many as will.", None, at_least=1
+    )
+    seed: int = field("Another number, another shower.", 0, at_least=0)
+
+    @model_validator(mode="after")
+    def _can_be_held(self) -> Emit:
+        if self.until is not None and self.until <= self.start:
+            raise ValueError("`until` must be after `start`")
+        bounded(self.capacity())
+        return self
+
+    def total(self) -> float:
+        """How many are born in all; may be infinite."""
+        births = math.inf if self.until is None else math.floor((self.until - self.start) * self.rate * (1 + 1e-12)) + 1
+        return min(births, math.inf if self.count is None else self.count)
+
+    def capacity(self) -> float:
+        """How many live at once, at most."""
+        alive = math.ceil(self.rate * self.lifetime * (1 + self.variation)) + 1
+        return min(alive, self.total(), math.inf if self.most is None else self.most)
+
+    def assemble(self, name: str, assembly: Assembly, bodies: Bodies, mass: float, radius: float) -> None:
+        """Add births and deaths to the bodies, which are the room for them."""
+        import numpy as np
+
+        pool = np.zeros((1, 3))
+        if self.within is not None:
+            pool = filled(Fill(object=self.within, count=POOL, seed=self.seed), name, assembly, bounded)
+        spec = [self.rate, self.start, self.total(), self.lifetime, self.variation, 1 - math.cos(self.spread)]
+        # Of a source that is solved itself, the place at time 0 is not known here: its first step starts from its end.
+        solved = [
+            link for value in (self.from_, self.velocity) for link in value.links if assembly.formula(link) is None
+        ]
+        before = [-1.0] * 7 if solved else [0.0, *assembly.initial(self.from_), *assembly.initial(self.velocity)]
+        ints = (
+            bodies.position_at,
+            bodies.velocity_at,
+            bodies.count,
+            bodies.mass_at,
+            bodies.inverse_at,
+            bodies.radius_at,
+            assembly.floats([*spec, mass, radius]),
+            assembly.value(self.from_),
+            assembly.value(self.velocity),
+            assembly.floats(pool),
+            len(pool),
+            assembly.floats([0.0, 0.0, *before]),
+            assembly.floats(np.full(bodies.count, np.inf)),
+            chance_key(name, self.seed),
+        )
+        assembly.step_at_most(self.lifetime / STEPS)
+        assembly.contact("local", ("sceneql.simulation.models.emitter_kernels:emit",), ints, 0)
+        assembly.remember(*ints)
+
+    def living(self, bodies: Bodies, state: ModelState) -> tuple[Bodies, ModelState, Floats]:
+        """The particles that live at the state's time as bodies of a state of their own, and their ages (n,) [s]."""
+        import numpy as np
+
+        from sceneql.simulation.models.emitter_kernels import AGE, BORN, FIRST, KEY, MEMORY_AT
+
+        ints, n = state.ints, bodies.count
+        first, born = (int(state.floats[ints[MEMORY_AT] + k]) for k in (FIRST, BORN))
+        births = np.arange(max(0, born - n), born)
+        ages = state.t - self.start - births / self.rate
+        luck = draws(births.astype(np.uint64), AGE, ints[KEY])
+        alive = (ages >= 0) & (ages < self.lifetime * (1 + self.variation * (2 * luck - 1)))
+        births, ages = births[alive], ages[alive]
+        slots = births % n
+        x, v = (state.y[at : at + 3 * n].reshape(-1, 3)[slots] for at in (bodies.position_at, bodies.velocity_at))
+        a = state.rate[bodies.velocity_at : bodies.velocity_at + 3 * n].reshape(-1, 3)[slots]
+        # Births of the last step still owe the acceleration of their first moments (emitter_kernels.emit).
+        owed = np.where(births >= first, ages, 0.0)[:, None]
+        x, v = x + 0.5 * a * owed**2, v + a * owed
+        m = len(births)
+        numbers = [state.floats[at : at + n][slots] for at in (bodies.mass_at, bodies.inverse_at, bodies.radius_at)]
+        compact = replace(bodies, count=m, position_at=0, velocity_at=3 * m, work_at=6 * m)
+        compact = replace(compact, mass_at=0, inverse_at=m, radius_at=2 * m)
+        y = np.concatenate([x.ravel(), v.ravel(), state.y[bodies.work_at : bodies.work_at + 1]])
+        rate = np.concatenate([v.ravel(), a.ravel(), [0.0]])
+        return compact, replace(state, y=y, rate=rate, floats=np.concatenate(numbers)), ages
