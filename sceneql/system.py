@@ -11,9 +11,18 @@ Kernel signatures (numba; the types are in system_kernels.py), all ``-> None`` u
     gap(t, y, gaps, floats, ints)           writes signed distances [m] of its contact pairs, > 0 apart (exact mode)
     impact(t, y, pair, floats, ints)        changes y by the impulse of that pair (exact mode)
     settle(t0, t1, y0, rate0, y1, floats, ints)   backs each mass off to its own impact within the step (local mode)
-    step(rate, t, h, y0, rate0, y1, work, settings, numbers, floats, ints) -> error   one step of a solver: writes y1;
-                                            the error is scaled by the tolerance (accept when <= 1), 0 for fixed steps
+    step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints) -> error   one step of a solver: writes
+                                            y1; the error is scaled by the tolerance (accept when <= 1), 0 for fixed
+                                            steps
     dense(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out)   the solution inside the step, 0 <= theta <= 1
+
+    slopes(t, y, entries, floats, ints)     adds the derivatives of one term (see Slopes)
+    jacobian(functions, t, y, values, floats, ints)   the derivative of the island's rate (see Pattern)
+
+A step gets what it may call as addresses: ``rate = rate_at(functions[AT_RATE])`` and, of a Stepper with ``jacobian``,
+``jacobian = jacobian_at(functions[AT_JACOBIAN])`` (simulation/pointers_kernels.py); pass `functions` on to jacobian.
+It may be called again from the same start with another h (a rejected step; the search for an event), and `dense`
+belongs to the latest call. After an event y0 is not the y1 of the step before.
 
 Stages: the terms run in the order `internal` (a model's own), `force`, `close` (a model turns newtons into
 accelerations by its inverse masses and writes dx/dt = v), `constrain` (a resting contact removes what pushes in).
@@ -25,7 +34,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
+
+    from numpy import int64
+    from numpy.typing import NDArray
 
     from sceneql.frame import Floats
     from sceneql.kinds import Object, Ref, Value
@@ -54,6 +66,44 @@ class Bodies:
     """floats[radius_at + k]: collision radius [m]."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Slopes:
+    """The derivatives of one term's addition to the rate: where they stand, and the kernel that computes them.
+
+    The kernel has the signature of a term, ``(t, y, entries, floats, ints)``, and adds to entries[i] (its own slice
+    (k,), zero before) the derivative of what the term adds to rate[rows[i]] with respect to y[columns[i]]: for forces
+    newtons per meter and per m/s, since the island multiplies by inverse masses and adds dx/dt = v. Places may repeat
+    (their entries are summed) and stay the same for the run; rows of the energy taken out (Bodies.work_at) are left
+    out. It stands in a kernel file of its own, which explicit solvers then never load.
+    """
+
+    kernel: str
+    """``"package.module:function"``."""
+    rows: Any
+    """(k,) int; empty where nothing that the term adds depends on y."""
+    columns: Any
+    """(k,) int."""
+    ints: Sequence[int] | None = None
+    """The kernel's integers; None: those of the term."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pattern:
+    """Where an island's Jacobian may differ from zero, in compressed sparse rows, all of the diagonal included.
+
+    Row i has its values at starts[i] : starts[i + 1], in the order of their columns.
+    """
+
+    starts: NDArray[int64]
+    """(n + 1,)."""
+    columns: NDArray[int64]
+    """(count,)."""
+    room: int
+    """Length of the array ``values`` that the jacobian is called with: the values first, then scratch of its own."""
+    exact: bool
+    """False: by differences of the rate, the pattern is full."""
+
+
 class Assembly(Protocol):
     """The island under construction, as words see it."""
 
@@ -75,8 +125,21 @@ class Assembly(Protocol):
     def initial(self, value: Value) -> Any:
         """The value at the start of the run: float or float64 array."""
 
-    def term(self, stage: Stage, kernel: str, ints: Sequence[int]) -> None:
-        """Add a term to the rate; ``kernel`` is ``"package.module:function"``."""
+    def term(
+        self,
+        stage: Stage,
+        kernel: str,
+        ints: Sequence[int],
+        jacobian: Slopes | Callable[[], Slopes | None] | None = None,
+    ) -> None:
+        """Add a term to the rate; ``kernel`` is ``"package.module:function"``.
+
+        ``jacobian``: its derivatives, or what gives them if a solver asks; None: unknown, then the island uses
+        differences of the whole rate.
+        """
+
+    def inertia(self, velocity_at: int, inverse_at: int, count: int) -> None:
+        """Say that a close term multiplies rate[velocity_at + 3k : +3] by floats[inverse_at + k]: slopes likewise."""
 
     def contact(self, mode: Literal["exact", "local"], kernels: Sequence[str], ints: Sequence[int], pairs: int) -> None:
         """Add contacts: kernels (gap, impact) with the number of pairs for `exact`, (settle,) for `local`."""
@@ -115,6 +178,18 @@ class ModelState:
 
 
 @dataclass(frozen=True, slots=True)
+class Prepared:
+    """What a step works with on one island."""
+
+    settings: Any
+    """Floats for the step, which it may change."""
+    numbers: Any
+    """Integers for the step, which it may change."""
+    work: int
+    """Floats of scratch, zero before the first step."""
+
+
+@dataclass(frozen=True, slots=True)
 class Stepper:
     """A solver as the run sees it."""
 
@@ -134,8 +209,16 @@ class Stepper:
     adaptive: bool = False
     tolerance: float = 0.0
     """Relative tolerance of an adaptive method."""
-    absolute: float = 0.0
-    """Absolute tolerance."""
+    absolute: float | tuple[float, ...] = 0.0
+    """Absolute tolerance, or one of each entry of y."""
     largest_step: float = float("inf")
+    jacobian: bool = False
+    """Whether the step calls the island's Jacobian (System.pattern)."""
+    prepare: str | None = None
+    """``"package.module:function"``, called with (System, Stepper) -> Prepared in place of settings, numbers and work:
+    for what depends on the island, such as the ordering of a factorization."""
+    controls: bool = False
+    """Whether an adaptive step leaves in work[0] the length [s] to try next, after acceptance or rejection; else
+    the march controls by the error."""
     last_stage: int = -1
     """Array of ``work`` that after a step holds the rate at its end (first same as last); -1: none does."""

@@ -18,8 +18,10 @@ GAP_FUNCTION = types.FunctionType(GAP)
 IMPACT_FUNCTION = types.FunctionType(IMPACT)
 SETTLE_FUNCTION = types.FunctionType(SETTLE)
 
-STEP = types.float64(RATE_FUNCTION, F, F, A, A, A, A, A, I, A, I)
+JACOBIAN = types.void(I, F, A, A, A, I)
+STEP = types.float64(I, F, F, A, A, A, A, A, I, A, I)
 DENSE = types.void(F, F, A, A, A, A, A, A, I, A)
 
+JACOBIAN_FUNCTION = types.FunctionType(JACOBIAN)
 STEP_FUNCTION = types.FunctionType(STEP)
 DENSE_FUNCTION = types.FunctionType(DENSE)

@@ -61,7 +61,7 @@ def reserve(
     """
     import numpy as np
 
-    from sceneql.system import Bodies
+    from sceneql.system import Bodies, Slopes
 
     n = len(masses)
     start = np.concatenate([np.ravel(positions), np.ravel(velocities), [0.0]])
@@ -79,8 +79,23 @@ def reserve(
         radius_at=assembly.floats(radii),
     )
     ints = (position_at, velocity_at, n, bodies.inverse_at)
-    assembly.term("close", "sceneql.simulation.bodies_kernels:close", ints)
+    assembly.inertia(velocity_at, bodies.inverse_at, n)
+    places = np.arange(3 * n)
+    slopes = Slopes("sceneql.simulation.bodies_slopes_kernels:close", position_at + places, velocity_at + places)
+    assembly.term("close", "sceneql.simulation.bodies_kernels:close", ints, slopes)
     return bodies
+
+
+def own_blocks(bodies: Bodies, column_at: int) -> tuple[Any, Any]:
+    """Rows and columns (9n,) of the 3x3 blocks of each body's force, row by row, by its own entries at ``column_at``.
+
+    For Slopes of a force that depends on each body alone; ``column_at``: position_at or velocity_at.
+    """
+    import numpy as np
+
+    first = 3 * np.arange(bodies.count)[:, None]
+    i, j = np.divmod(np.arange(9), 3)
+    return (bodies.velocity_at + first + i).ravel(), (column_at + first + j).ravel()
 
 
 def positions(bodies: Bodies, state: ModelState) -> Floats:

@@ -1,11 +1,12 @@
-"""The generated driver of an island: four kernels that call the island's own kernels on their integers.
+"""The generated driver of an island: kernels that call the island's own kernels on their integers.
 
 Its text depends on the `Structure` alone, so that it is written and compiled once for all scenes of that structure.
 
-Layout of ``ints``: [triples_at, triple_count, table_at, ranges_at, first of each group (absolute indices into the
-table), ...]; at triples_at (position, velocity, count) of the pairs; at table_at the start of every block and the end
-of the last; at ranges_at the first pair of every exact contact and the end. Block 0 is the program of the values that
-vary in time; a group is a run of blocks with the same kernel.
+Layout of ``ints``: [triples_at, triple_count, table_at, ranges_at, slopes_at, first of each group (absolute indices
+into the table), ...]; at triples_at (position, velocity, count) of the pairs; at table_at the start of every block and
+the end of the last; at ranges_at the first pair of every exact contact and the end. Block 0 is the program of the
+values that vary in time; a group is a run of blocks with the same kernel. At slopes_at the section of the Jacobian,
+which has a module of its own (jacobian.py), so that explicit solvers compile nothing of it.
 """
 
 from __future__ import annotations
@@ -17,9 +18,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from sceneql.simulation.generated import load, write
-from sceneql.simulation.island import Structure
+from sceneql.simulation.island import GROUPS_AT, Structure, System
+from sceneql.simulation.jacobian import HEAD
 
-GROUPS_AT = 4
 REFRESH = "    refresh(t, y, floats, ints[ints[ints[2]] : ints[ints[2] + 1]])"
 
 
@@ -50,21 +51,54 @@ def driver(structure: Structure) -> Driver:
     return Driver(source.rate, gap, impact, source.settle if structure.local else module.no_settle)
 
 
+def jacobian(system: System) -> Any:
+    """The Jacobian of an island that was asked for it; None where it is too large to be found by differences."""
+    if system.pattern is None:
+        return None
+    if system.pattern.exact:
+        return _exact_jacobian(system.structure)
+    return load("sceneql.simulation.slopes_kernels").differences
+
+
+@cache
+def _exact_jacobian(structure: Structure) -> Any:
+    return load(write("jacobian", jacobian_text(structure))).jacobian
+
+
+def jacobian_text(structure: Structure) -> str:
+    """The text of the Jacobian's module."""
+    names = {name: f"kernel_{k}" for k, name in enumerate(structure.slopes or ())}
+    lines = [
+        *_imports(names),
+        "from sceneql.kernels import lean",
+        *(["from sceneql.simulation.inputs_kernels import refresh"] if structure.varying else []),
+        "from sceneql.simulation.slopes_kernels import gather",
+        "from sceneql.system_kernels import JACOBIAN",
+        *("", "", "@lean(JACOBIAN)", "def jacobian(functions, t, y, values, floats, ints):"),
+        *([REFRESH] if structure.varying else []),
+        "    s = ints[4]",
+        "    for k in range(ints[s] + ints[s + 1]):",
+        "        values[k] = 0.0",
+    ]
+    for group, short in enumerate(names.values(), HEAD):
+        lines += [
+            f"    for b in range(ints[s + {group}], ints[s + {group + 1}], 4):",
+            f"        {short}(t, y, values[ints[b + 2] : ints[b + 3]], floats, ints[ints[b] : ints[b + 1]])",
+        ]
+    return "\n".join([*lines, "    gather(values, floats, ints, s)"]) + "\n"
+
+
 def text(structure: Structure) -> str:
     """The module's text."""
     names: dict[str, str] = {}
     for name in (*structure.terms, *(name for pair in structure.exact for name in pair), *structure.local):
         names.setdefault(name, f"kernel_{len(names)}")
-    modules = dict.fromkeys(name.partition(":")[0] for name in names)
-    lines = [f"# {module} {_digest(module)}" for module in modules]
-    lines += [
+    lines = [
+        *_imports(names),
         "from sceneql.kernels import lean",
         *(["from sceneql.simulation.inputs_kernels import refresh"] if structure.varying else []),
         "from sceneql.system_kernels import GAP, IMPACT, SETTLE, TERM",
     ]
-    for name, short in names.items():
-        module, _, attribute = name.partition(":")
-        lines.append(f"from {module} import {attribute} as {short}")
     refresh = [REFRESH] if structure.varying else []
     group = GROUPS_AT
     lines += ["", "", "@lean(TERM)", "def rate(t, y, rate, floats, ints):", "    floats[0] += 1.0", *refresh]
@@ -82,6 +116,16 @@ def text(structure: Structure) -> str:
             lines += _blocks(group, f"{names[name]}(t0, t1, y0, rate0, y1, floats, ints[ints[b] : ints[b + 1]])")
             group += 1
     return "\n".join(lines) + "\n"
+
+
+def _imports(names: dict[str, str]) -> list[str]:
+    """The kernels' hashes (as comments: a changed kernel makes another module) and imports."""
+    modules = dict.fromkeys(name.partition(":")[0] for name in names)
+    lines = [f"# {module} {_digest(module)}" for module in modules]
+    for name, short in names.items():
+        module, _, attribute = name.partition(":")
+        lines.append(f"from {module} import {attribute} as {short}")
+    return lines
 
 
 def _blocks(group: int, *calls: str) -> list[str]:

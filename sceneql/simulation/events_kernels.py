@@ -21,7 +21,7 @@ import math
 from numba import types
 
 from sceneql.kernels import lean, lean_inlined
-from sceneql.simulation.pointers_kernels import dense_at, gap_at, rate_at, step_at
+from sceneql.simulation.pointers_kernels import AT_DENSE, AT_GAP, AT_RATE, AT_STEP, dense_at, gap_at, rate_at, step_at
 from sceneql.system_kernels import A, F, I, N
 
 SAMPLES = 6
@@ -59,8 +59,8 @@ def locate(
     quadratic interpolation (Chandrupatla 1997) on steps of the solver itself. 0: it never leaves contact. Negative:
     no contact up to -length.
     """
-    step, rate, gap = step_at(functions[0]), rate_at(functions[2]), gap_at(functions[3])
-    step(rate, t0, high, y0, rate0, y1, work, settings, numbers, floats, ints)
+    step, gap = step_at(functions[AT_STEP]), gap_at(functions[AT_GAP])
+    step(functions, t0, high, y0, rate0, y1, work, settings, numbers, floats, ints)
     gap(t0 + high, y1, now, floats, ints)
     f2 = now[pair] - contact
     if f2 >= 0.0:
@@ -70,7 +70,7 @@ def locate(
     if deflate:
         f2 /= x2
     while True:
-        step(rate, t0, x1, y0, rate0, y1, work, settings, numbers, floats, ints)
+        step(functions, t0, x1, y0, rate0, y1, work, settings, numbers, floats, ints)
         gap(t0 + x1, y1, now, floats, ints)
         f1 = now[pair] - contact
         if deflate:
@@ -86,7 +86,7 @@ def locate(
     fraction = 0.5
     while True:
         x = x1 + fraction * (x2 - x1)
-        step(rate, t0, x, y0, rate0, y1, work, settings, numbers, floats, ints)
+        step(functions, t0, x, y0, rate0, y1, work, settings, numbers, floats, ints)
         gap(t0 + x, y1, now, floats, ints)
         f = now[pair] - contact
         if deflate:
@@ -112,7 +112,7 @@ def locate(
         fraction = min(1.0 - least, max(least, fraction))
     if f1 >= 0.0:
         return x1
-    step(rate, t0, x2, y0, rate0, y1, work, settings, numbers, floats, ints)
+    step(functions, t0, x2, y0, rate0, y1, work, settings, numbers, floats, ints)
     return x2
 
 
@@ -122,7 +122,7 @@ def first_of(
     work, settings, numbers, floats, ints, start, now, above, leaving, slop,
 ):  # fmt: skip
     """Locate the contact of a pair and, as long as another pair is in contact even earlier, of that one."""
-    rate, gap = rate_at(functions[2]), gap_at(functions[3])
+    rate, gap = rate_at(functions[AT_RATE]), gap_at(functions[AT_GAP])
     while True:
         touched = above[pair] == 0.0
         if touched and leaving[pair] == 0:
@@ -155,7 +155,7 @@ def find_event(
 
     With a length below h, y1 and rate1 are moved there. (pair, 0): a pair in contact presses on from the start.
     """
-    dense, gap = dense_at(functions[1]), gap_at(functions[3])
+    dense, gap = dense_at(functions[AT_DENSE]), gap_at(functions[AT_GAP])
     pairs = leaving.size
     start = gaps[:pairs]
     now = gaps[pairs : 2 * pairs]

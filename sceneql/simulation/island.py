@@ -18,6 +18,7 @@ from sceneql.failure import LimitRefused
 from sceneql.kinds import Object, Ref, Value
 from sceneql.quantities.expression import Expr, Link
 from sceneql.simulation.inputs import Inputs
+from sceneql.simulation.jacobian import full, section
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -25,13 +26,15 @@ if TYPE_CHECKING:
 
     from sceneql.frame import Floats
     from sceneql.quantities.span import Span
-    from sceneql.system import Stage
+    from sceneql.system import Pattern, Slopes, Stage
 
 STAGES: tuple[Stage, ...] = ("internal", "force", "close", "constrain")
 LARGEST_MEMORY = 8 * 2**30
 """[bytes] of the state and of a solver's stages."""
 VECTORS = 12
 """Arrays of the state's size that a run keeps: ends and rates of a step, and the stages of a solver."""
+GROUPS_AT = 5
+"""Integers before those of the groups (driver.py)."""
 RESERVED_FLOATS = 2
 """floats[0] counts rate evaluations; floats[1] is set by a contact that changed the state (march_kernels)."""
 
@@ -56,6 +59,8 @@ class Structure:
     local: tuple[str, ...]
     varying: bool
     """Whether values vary in time."""
+    slopes: tuple[str, ...] | None = None
+    """The kernels of the Jacobian; None: it is not asked for, or found by differences."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +88,8 @@ class System:
     ranges: tuple[tuple[int, int, str, tuple[Span | None, ...]], ...]
     largest_step: float = float("inf")
     """[s], of steps that a tolerance chooses."""
+    pattern: Pattern | None = None
+    """Of its Jacobian; None: not asked for, or too large to be found by differences."""
 
     def origin(self, index: int) -> Origin:
         """Part and line of an entry of y."""
@@ -97,6 +104,7 @@ class _Block:
     kernels: tuple[str, ...]
     ints: tuple[int, ...]
     pairs: int = 0
+    slopes: Slopes | Callable[[], Slopes | None] | None = None
 
 
 @dataclass
@@ -113,6 +121,7 @@ class IslandAssembly:
     _bodies: int = 0
     _ranges: list[tuple[int, int, str, tuple[Span | None, ...]]] = field(default_factory=list)
     _pairs: list[tuple[int, int, int]] = field(default_factory=list)
+    _masses: list[tuple[int, int, int]] = field(default_factory=list)
     _numbers: list[Floats] = field(default_factory=lambda: [np.zeros(RESERVED_FLOATS)])
     _stored: int = RESERVED_FLOATS
     _terms: dict[Stage, list[_Block]] = field(default_factory=lambda: {stage: [] for stage in STAGES})
@@ -183,9 +192,19 @@ class IslandAssembly:
         """The value at the start of the run: float or float64 array."""
         return self._inputs().at_start(value)
 
-    def term(self, stage: Stage, kernel: str, ints: Sequence[int]) -> None:
+    def term(
+        self,
+        stage: Stage,
+        kernel: str,
+        ints: Sequence[int],
+        jacobian: Slopes | Callable[[], Slopes | None] | None = None,
+    ) -> None:
         """Add a term to the rate."""
-        self._terms[stage].append(_Block((kernel,), tuple(ints)))
+        self._terms[stage].append(_Block((kernel,), tuple(ints), slopes=jacobian))
+
+    def inertia(self, velocity_at: int, inverse_at: int, count: int) -> None:
+        """Say which rows of the Jacobian inverse masses multiply (system.Assembly)."""
+        self._masses.append((velocity_at, inverse_at, count))
 
     def contact(self, mode: Literal["exact", "local"], kernels: Sequence[str], ints: Sequence[int], pairs: int) -> None:
         """Add contacts."""
@@ -222,9 +241,10 @@ class IslandAssembly:
         modes = [mode for mode, blocks in (("exact", self._exact), ("local", self._local)) if blocks]
         return " and ".join(modes) or "none"
 
-    def finish(self) -> System:
-        """The island as arrays. Raises ScriptError for a value that no program can be made of."""
+    def finish(self, jacobian: bool = False) -> System:
+        """The island as arrays, with its Jacobian if asked for. Raises ScriptError for a value without a program."""
         y = self.start()
+        slopes = self._slopes() if jacobian else None
         inputs = self._inputs()
         program = [number for first, value in self._varying for number in inputs.program(value, first)]
         blocks = [_Block((), tuple(program))]
@@ -236,11 +256,17 @@ class IslandAssembly:
         pairs = [block.pairs for block in blocks[first_exact:]]
         local = _grouped(self._local, blocks)
         first_blocks = list(accumulate((count for _, count in (*groups, *exact, *local)), initial=1))
+        ints = _lay_out(self._pairs, blocks, first_blocks, pairs)
+        found, derived = full(len(y)) if jacobian else None, None
+        if slopes is not None:
+            found, derived, more = section(len(ints), len(y), slopes, self._masses)
+            ints = np.concatenate([ints, more])
         structure = Structure(
             tuple(kernels[0] for kernels, _ in groups),
             tuple((kernels[0], kernels[1]) for kernels, _ in exact),
             tuple(kernels[0] for kernels, _ in local),
             bool(self._varying),
+            derived,
         )
         partner = np.full(len(y), -1, dtype=np.int64)
         for position, velocity, count in self._pairs:
@@ -249,11 +275,12 @@ class IslandAssembly:
             structure=structure,
             y=y,
             floats=np.concatenate(self._numbers),
-            ints=_lay_out(self._pairs, blocks, first_blocks, pairs),
+            ints=ints,
             pairs=sum(pairs),
             partner=partner,
             ranges=tuple(self._ranges),
             largest_step=self._largest_step,
+            pattern=found,
         )
 
     def start(self) -> Floats:
@@ -263,6 +290,19 @@ class IslandAssembly:
     def numbers(self) -> Floats:
         """The floats stored so far."""
         return np.concatenate(self._numbers)
+
+    def _slopes(self) -> list[tuple[Slopes, Sequence[int]]] | None:
+        """The slopes of all terms with their integers; None where those of one are not known."""
+        found = []
+        for block in (block for stage in STAGES for block in self._terms[stage]):
+            slopes = block.slopes() if callable(block.slopes) else block.slopes
+            if slopes is None:
+                return None
+            found.append((slopes, block.ints if slopes.ints is None else slopes.ints))
+        inputs = self._inputs()
+        if any(inputs.reads_state(value.expr) for _, value in self._varying):
+            return None
+        return [one for one in found if len(one[0].rows)]
 
     def _inputs(self) -> Inputs:
         return Inputs(self.setting.formula, self.places, self.start, self.floats)
@@ -282,14 +322,14 @@ def _lay_out(
     triples: list[tuple[int, int, int]], blocks: list[_Block], first_blocks: list[int], pairs: list[int]
 ) -> NDArray[int64]:
     """The one array of integers: see driver.py."""
-    head = 4 + len(first_blocks)
+    head = GROUPS_AT + len(first_blocks)
     triples_at = head
     table_at = triples_at + 3 * len(triples)
     ranges_at = table_at + len(blocks) + 1
     data_at = ranges_at + len(pairs) + 1
     table = list(accumulate((len(block.ints) for block in blocks), initial=data_at))
     parts = [
-        [triples_at, len(triples), table_at, ranges_at],
+        [triples_at, len(triples), table_at, ranges_at, table[-1]],
         [table_at + block for block in first_blocks],
         [number for triple in triples for number in triple],
         table,

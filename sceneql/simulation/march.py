@@ -11,9 +11,10 @@ import numpy as np
 
 from sceneql.failure import RunFailure
 from sceneql.simulation import march_kernels as kernels
-from sceneql.simulation.driver import driver, function
+from sceneql.simulation.driver import driver, function, jacobian
 from sceneql.simulation.island import System
 from sceneql.simulation.pointers_kernels import addresses
+from sceneql.system import Prepared
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -61,14 +62,19 @@ class March:
         self.driver = driver(system.structure)
         n = len(system.y)
         self._step = function(stepper.step)
+        self._jacobian = jacobian(system) if stepper.jacobian else None
         local = bool(system.structure.local)
         self._dense = kernels.hermite if stepper.dense is None or local else function(stepper.dense)
-        self._functions = addresses(self._step, self._dense, *self.driver)
-        self._settings = np.array(stepper.settings, dtype=np.float64)
-        self._numbers = np.array(stepper.numbers, dtype=np.int64)
+        self._functions = addresses(self._step, self._dense, *self.driver, self._jacobian)
+        if stepper.prepare is None:
+            prepared = Prepared(stepper.settings, stepper.numbers, max(1, stepper.work) * n)
+        else:
+            prepared = function(stepper.prepare)(system, stepper)
+        self._settings = np.array(prepared.settings, dtype=np.float64)
+        self._numbers = np.array(prepared.numbers, dtype=np.int64)
         self._y0, self._rate0, self._rate1, self._sample = (np.zeros(n) for _ in range(4))
         self._y1 = system.y.copy()
-        self._work = np.zeros(max(1, stepper.work) * n)
+        self._work = np.zeros(prepared.work)
         self._gaps = np.zeros(3 * system.pairs)
         self._leaving = np.zeros(system.pairs, dtype=np.int64)
         self._clock = np.zeros(kernels.CLOCKS)
@@ -78,6 +84,7 @@ class March:
         self._counts[kernels.LOCAL] = local
         self._counts[kernels.LAST_STAGE] = stepper.last_stage
         self._counts[kernels.PENDING] = -1
+        self._counts[kernels.CONTROLS] = stepper.controls
         self._clock[kernels.ERROR] = 1e-4
         self._clock[kernels.LARGEST] = min(stepper.largest_step, system.largest_step)
         self._started = False
@@ -134,7 +141,7 @@ class March:
     def _first_step(self) -> float:
         """The first step of an adaptive method (Hairer, Norsett & Wanner 1993, II.4, "starting step size")."""
         y, rate, stepper = self._y1, self._rate1, self.stepper
-        scale = stepper.absolute + stepper.tolerance * np.abs(y)
+        scale = np.asarray(stepper.absolute) + stepper.tolerance * np.abs(y)
 
         def norm(x: Floats) -> float:
             return math.sqrt(float(np.mean((x / scale) ** 2))) if len(x) else 0.0

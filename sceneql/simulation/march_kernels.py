@@ -13,16 +13,28 @@ from numba import types
 
 from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.events_kernels import find_event
-from sceneql.simulation.pointers_kernels import impact_at, rate_at, settle_at, step_at
+from sceneql.simulation.pointers_kernels import (
+    AT_IMPACT,
+    AT_RATE,
+    AT_SETTLE,
+    AT_STEP,
+    impact_at,
+    rate_at,
+    settle_at,
+    step_at,
+)
 from sceneql.system_kernels import DENSE, GAP, IMPACT, SETTLE, A, F, I
 
 T0, T1, STEP, ERROR, LARGEST, LIMIT, SLOP, CLOCKS = range(8)
 """Ends of the last step [s]; the step to try next, or the grid's; the last error; largest step [s]; largest |y|; gap
 that counts as touching [m]."""
 
-STEPS, REJECTED, EVENTS, REPEATS, LEFT, INDEX, GRID, ADAPTIVE, ORDER, LOCAL, LAST_STAGE, PENDING, COUNTS = range(13)
-"""Tallies; impacts since time moved; steps left in this call; the entry that a failure names; grid points passed; what
-solver and island are; the pair whose impact is due (-1: none)."""
+STEPS, REJECTED, EVENTS, REPEATS, LEFT, INDEX, GRID, PENDING = range(8)
+"""Tallies; impacts since time moved; steps left in this call; the entry that a failure names; grid points passed; the
+pair whose impact is due (-1: none)."""
+
+ADAPTIVE, ORDER, LOCAL, LAST_STAGE, CONTROLS, COUNTS = range(8, 14)
+"""What solver and island are (system.Stepper)."""
 
 REACHED, PAUSED, NOT_FINITE, GROWTH, STEP_TOO_SMALL, STUCK = range(6)
 
@@ -107,27 +119,31 @@ def next_factor(error, previous, order, rejected):
 
 
 @lean_inlined
-def try_steps(step, rate, t0, t1, y0, rate0, y1, work, settings, numbers, floats, ints, clock, counts):
+def try_steps(step, functions, t0, t1, y0, rate0, y1, work, settings, numbers, floats, ints, clock, counts):
     """Step until the error is accepted: (end of the step, status). A fixed step is tried once."""
     adaptive = counts[ADAPTIVE] > 0
     rejected = False
     while True:
         h = t1 - t0
-        error = step(rate, t0, h, y0, rate0, y1, work, settings, numbers, floats, ints)
+        error = step(functions, t0, h, y0, rate0, y1, work, settings, numbers, floats, ints)
         large = beyond(y1, clock[LIMIT]) > 0
         bad = first_bad(y1) if large else -1
         if bad >= 0:
             error = math.inf
         if bad < 0 and (error <= 1.0 or not adaptive):
             if adaptive:
-                clock[STEP] = h * next_factor(error, clock[ERROR], counts[ORDER], rejected)
+                controls = counts[CONTROLS] > 0
+                clock[STEP] = work[0] if controls else h * next_factor(error, clock[ERROR], counts[ORDER], rejected)
                 clock[ERROR] = max(error, 1e-4)
             if large:
                 counts[INDEX] = largest(y1)
             return t1, GROWTH if large else REACHED
         counts[REJECTED] += 1
         counts[INDEX] = bad if bad >= 0 else largest(rate0)
-        h *= next_factor(error, 1.0, counts[ORDER], True)
+        if counts[CONTROLS] > 0 and bad < 0:
+            h = min(work[0], 0.9 * h)
+        else:
+            h *= next_factor(error, 1.0, counts[ORDER], True)
         if not adaptive or t0 + 0.1 * h <= t0:
             return t1, STEP_TOO_SMALL if adaptive else NOT_FINITE
         rejected = True
@@ -159,8 +175,8 @@ def march(
     y0, rate0, y1, rate1, sample are of y's size; leaving (pairs,), gaps (3 pairs,). On a failure the step is taken
     back: (clock[T1], y1, rate1) is the last good state, counts[INDEX] the entry of y (STUCK: the pair) at fault.
     """
-    step, rate = step_at(functions[0]), rate_at(functions[2])
-    impact, settle = impact_at(functions[4]), settle_at(functions[5])
+    step, rate = step_at(functions[AT_STEP]), rate_at(functions[AT_RATE])
+    impact, settle = impact_at(functions[AT_IMPACT]), settle_at(functions[AT_SETTLE])
     n = y0.size
     while clock[T1] < target:
         if counts[LEFT] <= 0:
@@ -179,7 +195,7 @@ def march(
             if grid > end - 1e-9 * clock[STEP]:
                 grid = end
         t1, status = try_steps(
-            step, rate, t0, grid, y0, rate0, y1, work, settings, numbers, floats, ints, clock, counts
+            step, functions, t0, grid, y0, rate0, y1, work, settings, numbers, floats, ints, clock, counts
         )
         if status != REACHED:
             copy(y0, y1)

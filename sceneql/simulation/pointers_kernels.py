@@ -15,19 +15,31 @@ from sceneql.system_kernels import (
     DENSE_FUNCTION,
     GAP_FUNCTION,
     IMPACT_FUNCTION,
+    JACOBIAN_FUNCTION,
     RATE_FUNCTION,
     SETTLE_FUNCTION,
     STEP_FUNCTION,
 )
 
-KINDS = (STEP_FUNCTION, DENSE_FUNCTION, RATE_FUNCTION, GAP_FUNCTION, IMPACT_FUNCTION, SETTLE_FUNCTION)
+KINDS = (
+    STEP_FUNCTION,
+    DENSE_FUNCTION,
+    RATE_FUNCTION,
+    GAP_FUNCTION,
+    IMPACT_FUNCTION,
+    SETTLE_FUNCTION,
+    JACOBIAN_FUNCTION,
+)
+AT_STEP, AT_DENSE, AT_RATE, AT_GAP, AT_IMPACT, AT_SETTLE, AT_JACOBIAN = range(len(KINDS))
+"""Places in the array of addresses: ``rate = rate_at(functions[AT_RATE])``."""
 
 
 def addresses(*functions: Any) -> Any:
-    """(6,) int64 addresses of a step, dense output, rate, gap, impact and settle. Keep the functions alive."""
+    """(7,) int64 addresses of KINDS; 0 for None, which must not be called. Keep the functions alive."""
     if numba.config.DISABLE_JIT:
         return functions
-    return np.array([address(f, kind) for f, kind in zip(functions, KINDS, strict=True)], dtype=np.int64)
+    found = [0 if f is None else address(f, kind) for f, kind in zip(functions, KINDS, strict=True)]
+    return np.array(found, dtype=np.int64)
 
 
-step_at, dense_at, rate_at, gap_at, impact_at, settle_at = (function_at(kind) for kind in KINDS)
+step_at, dense_at, rate_at, gap_at, impact_at, settle_at, jacobian_at = (function_at(kind) for kind in KINDS)

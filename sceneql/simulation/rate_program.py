@@ -40,6 +40,8 @@ class Kernel:
     constants: tuple[float, ...]
     inputs: tuple[Expr, ...]
     """Values read from other parts; the offset of each follows in ``ints``."""
+    places: tuple[int, ...] = ()
+    """Of a Jacobian's m rows: m * row + column of each entry, ascending."""
 
 
 def rate_kernel(system: RateSystem) -> Kernel:
@@ -52,7 +54,7 @@ def rate_kernel(system: RateSystem) -> Kernel:
 
 
 def jacobian_kernel(system: RateSystem) -> Kernel:
-    """Kernel that adds each copy's d(dy/dt)/dy to ``out`` (copies * m * m,), dense, row by row.
+    """Kernel that adds each copy's d(dy/dt)/dy to ``out`` (copies * k,): the k entries that are not zero by form.
 
     By the chain rule over the helper quantities w, df/dy = ∂f/∂y + Σ ∂f/∂w · dw/dy, each dw/dy is derived and
     evaluated once however often w is used. Raises TypeError for an operation without a derivative.
@@ -81,8 +83,9 @@ def jacobian_kernel(system: RateSystem) -> Kernel:
 
     entries = [total(row, state) for row in rows for state in system.states]
     printer = _printer(system, {**meanings, **derived}, constants)
-    lines = [f"out[block + {k}] += {printer.name(entry)}" for k, entry in enumerate(entries) if entry != ZERO]
-    return _kernel("jacobian", system, printer, lines)
+    places = tuple(place for place, entry in enumerate(entries) if entry != ZERO)
+    lines = [f"out[block + {k}] += {printer.name(entries[place])}" for k, place in enumerate(places)]
+    return _kernel("jacobian", system, printer, lines, places)
 
 
 def _lift(system: RateSystem, constants: Constants) -> tuple[dict[str, Expr], list[Expr]]:
@@ -99,7 +102,9 @@ def _printer(system: RateSystem, meanings: Mapping[str, Expr], constants: Consta
     return Printer(names, meanings, constants)
 
 
-def _kernel(function: str, system: RateSystem, printer: Printer, outputs: Sequence[str]) -> Kernel:
+def _kernel(
+    function: str, system: RateSystem, printer: Printer, outputs: Sequence[str], places: tuple[int, ...] = ()
+) -> Kernel:
     size = len(system.states)
     constants = printer.constants
     lines = [
@@ -115,9 +120,9 @@ def _kernel(function: str, system: RateSystem, printer: Printer, outputs: Sequen
         "    for copy in range(ints[2]):",
         "        number = float(copy)",
         f"        first = ints[1] + copy * {size}",
-        f"        block = copy * {size * size}",
+        *([f"        block = copy * {len(places)}"] if places else []),
         *(f"        s{k} = y[first + {k}]" for k in range(size)),
         *(f"        {line}" for line in (*printer.lines, *outputs)),
     ]
     module = generated.write(function, "\n".join(lines) + "\n")
-    return Kernel(f"{module}:{function}", tuple(constants.values), tuple(constants.inputs))
+    return Kernel(f"{module}:{function}", tuple(constants.values), tuple(constants.inputs), places)

@@ -105,7 +105,8 @@ class IslandRun:
                     cast(Contact, graph.tasks[contact].kind).assemble(contact, assembly, bodies, refs)
         self.assembly = assembly
         assembly.places = self._places
-        self.march: March = March(assembly.finish(), self.solver.stepper(), graph.settings.clock.end)
+        stepper = self.solver.stepper()
+        self.march: March = March(assembly.finish(stepper.jacobian), stepper, graph.settings.clock.end)
         self.members = {*island.models, *(contact for contact, _, _ in island.contacts)}
         self._now: tuple[float, Floats, Floats] | None = None
 

@@ -26,13 +26,22 @@ class Attractor(Force):
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add the pull on every mass."""
+        from sceneql.simulation import bodies as masses
+        from sceneql.system import Slopes
+
         ints = (bodies.position_at, bodies.velocity_at, bodies.count, bodies.mass_at)
         parameters = (
             assembly.value(self.position),
             assembly.value(self.strength),
             assembly.floats([self.exponent, self.softening]),
         )
-        assembly.term("force", "sceneql.simulation.forces.attractor_kernels:attractor", (*ints, *parameters))
+        slopes = "sceneql.simulation.forces.attractor_slopes_kernels:attractor"
+        assembly.term(
+            "force",
+            "sceneql.simulation.forces.attractor_kernels:attractor",
+            (*ints, *parameters),
+            lambda: Slopes(slopes, *masses.own_blocks(bodies, bodies.position_at)),
+        )
         assembly.remember(*parameters)
 
     def potential(self, bodies: Bodies, state: ModelState) -> float:

@@ -34,6 +34,15 @@ class Drag(Force):
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add the force to every mass, and its power to the dissipated energy."""
+        from sceneql.simulation import bodies as masses
+        from sceneql.system import Slopes
+
         ints = (bodies.velocity_at, bodies.count, bodies.work_at, bodies.inverse_at)
         parameters = (assembly.value(self.linear), assembly.value(self.quadratic))
-        assembly.term("force", "sceneql.simulation.forces.drag_kernels:drag", (*ints, *parameters))
+        slopes = "sceneql.simulation.forces.drag_slopes_kernels:drag"
+        assembly.term(
+            "force",
+            "sceneql.simulation.forces.drag_kernels:drag",
+            (*ints, *parameters),
+            lambda: Slopes(slopes, *masses.own_blocks(bodies, bodies.velocity_at)),
+        )

@@ -32,11 +32,14 @@ class Gravity(Force):
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add F = m g to every mass."""
+        from sceneql.system import Slopes
+
         vector = self.direction if self.acceleration is None else self.acceleration
         given = int(self.acceleration is not None)
         ints = (bodies.velocity_at, bodies.count, bodies.mass_at, given)
         parameters = (assembly.value(vector), assembly.value(self.strength))
-        assembly.term("force", "sceneql.simulation.forces.gravity_kernels:gravity", (*ints, *parameters))
+        kernel = "sceneql.simulation.forces.gravity_kernels:gravity"
+        assembly.term("force", kernel, (*ints, *parameters), Slopes("", (), ()))
         assembly.remember(given, *parameters)
 
     def potential(self, bodies: Bodies, state: ModelState) -> float:

@@ -20,7 +20,8 @@ from sceneql.simulation.formula_rows import TIMES, Problem, Rows, states
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.system import Assembly, ModelState
+    from sceneql.simulation.rate_program import RateSystem
+    from sceneql.system import Assembly, ModelState, Slopes
 
 
 class Copies(Record):
@@ -136,9 +137,11 @@ class Equations(Model):
         for copy in range(self.count if positions else 0):
             first = at + copy * len(names)
             assembly.pair(first, first + positions, positions)
-        kernel = rate_kernel(RateSystem(tuple(rows.states), tuple(rows.rates()), rows.where, rows.index))
+        system = RateSystem(tuple(rows.states), tuple(rows.rates()), rows.where, rows.index)
+        kernel = rate_kernel(system)
         inputs = [assembly.value(Value(expr)) for expr in kernel.inputs]
-        assembly.term("internal", kernel.name, (assembly.floats(kernel.constants), at, self.count, *inputs))
+        ints = (assembly.floats(kernel.constants), at, self.count, *inputs)
+        assembly.term("internal", kernel.name, ints, lambda: _slopes(system, at, self.count, assembly))
         links = [assembly.value(Value(link)) for link in rows.links()]
         assembly.remember(at, *links)
 
@@ -195,6 +198,24 @@ class Equations(Model):
         else:
             result = column(rows.invariants[output] if output in rows.invariants else Symbol(output))
         return result if self.copies is not None else result[0]
+
+
+def _slopes(system: RateSystem, at: int, count: int, assembly: Assembly) -> Slopes | None:
+    """The symbolic Jacobian of each copy; None where an operation has no derivative."""
+    import numpy as np
+
+    from sceneql.simulation.rate_program import jacobian_kernel
+    from sceneql.system import Slopes
+
+    try:
+        kernel = jacobian_kernel(system)
+    except TypeError:
+        return None
+    rows, columns = np.divmod(np.array(kernel.places, dtype=np.int64), len(system.states))
+    first = at + len(system.states) * np.arange(count)[:, None]
+    inputs = [assembly.value(Value(expr)) for expr in kernel.inputs]
+    ints = (assembly.floats(kernel.constants), at, count, *inputs)
+    return Slopes(kernel.name, (first + rows).ravel(), (first + columns).ravel(), ints)
 
 
 def _no_link(link: Link) -> Any:

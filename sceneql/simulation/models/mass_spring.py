@@ -31,7 +31,7 @@ from sceneql.simulation.models.nets import CORNERS, EDGES, SIDES, Cloth, Lattice
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Shape
-    from sceneql.system import Assembly, Bodies, ModelState
+    from sceneql.system import Assembly, Bodies, ModelState, Slopes
 
 PLACES = {"lattice": SIDES, "cloth": (*EDGES, *CORNERS), "rope": ("start", "end")}
 SPRING_OUTPUTS = {
@@ -213,7 +213,13 @@ class MassSpring(Model):
         blocks_at, stiffness_at = assembly.floats(blocks.ravel()), assembly.value(self.stiffness)
         ints = (bodies.position_at, bodies.velocity_at, bodies.work_at, blocks_at, stiffness_at)
         more = (assembly.value(self.damping), m, *net.pairs.ravel().tolist())
-        assembly.term("internal", "sceneql.simulation.models.mass_spring_kernels:springs", (*ints, *more))
+        damped = bool(np.any(blocks[:, 3])) or not self.damping.constant or assembly.initial(self.damping) != 0.0
+        assembly.term(
+            "internal",
+            "sceneql.simulation.models.mass_spring_kernels:springs",
+            (*ints, *more),
+            lambda: _slopes(net, bodies, damped),
+        )
         assembly.remember(blocks_at, stiffness_at)
         return bodies
 
@@ -265,3 +271,21 @@ class MassSpring(Model):
         elif self.look != "masses":
             radius = self.size if self.rope is not None else 0.15 * self.size
             yield spring_look.lines(name, surface, places[self.net.pairs], radius)
+
+
+def _slopes(net: Net, bodies: Bodies, damped: bool) -> Slopes:
+    """Of each spring four blocks of 3x3 by positions; if damped, as many by velocities."""
+    import numpy as np
+
+    from sceneql.system import Slopes
+
+    ends = 3 * net.pairs
+    places = np.arange(3)
+    rows = np.repeat(np.repeat(ends, 2, axis=1)[:, :, None] + places, 3, axis=2).ravel() + bodies.velocity_at
+    columns = np.tile(np.tile(ends, 2)[:, :, None] + places, 3).ravel()
+    by = [bodies.position_at, bodies.velocity_at] if damped else [bodies.position_at]
+    return Slopes(
+        "sceneql.simulation.models.mass_spring_slopes_kernels:springs",
+        np.tile(rows, len(by)),
+        np.concatenate([columns + at for at in by]),
+    )

@@ -9,6 +9,7 @@ the first is not used, for stage one is ``rate0``.
 import math
 
 from sceneql.kernels import lean, lean_inlined
+from sceneql.simulation.pointers_kernels import AT_RATE, rate_at
 from sceneql.system_kernels import DENSE, STEP
 
 
@@ -28,8 +29,9 @@ def add_stages(settings, row, count, h, y0, rate0, work, out):
 
 
 @lean(STEP)
-def step(rate, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
+def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after a step of length h; the embedded error in the norm of Hairer, Norsett & Wanner (1993, eq. II.4.11)."""
+    rate = rate_at(functions[AT_RATE])
     stages = numbers[0]
     n = y0.size
     c, b, e = 2, 2 + stages, 2 + 2 * stages

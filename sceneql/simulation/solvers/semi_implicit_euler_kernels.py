@@ -6,7 +6,7 @@ from sceneql.system_kernels import STEP
 
 
 @lean(STEP)
-def step(rate, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
+def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """Explicit Euler on every entry, then the positions of the island's pairs advance by their velocities at the end.
 
     The pairs stand at the head of ``ints``: ints[1] triples (position, velocity, count) from ints[0] on.
