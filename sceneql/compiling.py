@@ -66,7 +66,8 @@ class HelperLowering(NativeLowering):
         state.flags.no_compile = True
         state.library = HelperLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
         super().run_pass(state)
-        name = [].clear  # numba asks for a builtin function; this one refuses arguments, should Python ever call it
+        # numba asks for a builtin function, one of its own for each helper: this one raises KeyError in Python.
+        name = f"{{{state.func_id.func_name} is for kernels only}}".format
         state.targetctx.insert_user_function(name, state.cr.fndesc, [state.library])
         state.cr = state.cr._replace(cfunc=name)
         return True
