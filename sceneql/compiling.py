@@ -1,8 +1,8 @@
 # mypy: ignore-errors
 """How numba compiles our kernels: its own steps, less those that our code has no use for.
 
-Three quarters of the time that numba takes are spent in Python. What is left out here makes a third less, and changes
-neither the code that comes out nor what kernels may contain, but for closures, comprehensions, ``with`` and raises.
+Most of the time that numba takes is spent in Python. What is left out here is half of it all, and changes neither what
+kernels compute nor what they may contain, but for closures, comprehensions, ``with`` and raises of computed errors.
 """
 
 import gc
