@@ -42,8 +42,8 @@ MOST_REPEATS = 100
 """Impacts for each pair at one instant before the contacts count as contradictory."""
 
 CHANGED_AT = 1
-"""floats[1]: a contact sets it to 1 when its hold changed the state. Before a settle that is to change nothing it is the
-end of the step, which contacts lower to where it should end instead; 0 before the one that counts."""
+"""floats[1]: a contact sets it to 1 when its hold changed the state. Before a settle that is to change nothing it is
+the end of the step, which contacts lower to where it should end instead; 0 before the one that counts."""
 
 MARCH = types.int64(I, F, F, A, A, A, A, A, A, A, I, A, I, A, I, A, I)
 
