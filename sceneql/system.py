@@ -10,8 +10,7 @@ Kernel signatures (numba; the types are in system_kernels.py), all ``-> None`` u
     term(t, y, rate, floats, ints)          adds its part to rate (n,). Forces add newtons to the velocity entries
     gap(t, y, gaps, floats, ints)           writes signed distances [m] of its contact pairs, > 0 apart (exact mode)
     impact(t, y, pair, floats, ints)        changes y by the impulse of that pair (exact mode)
-    settle(t0, t1, y0, rate0, y1, floats, ints)   backs each mass off to its own impact within the step (local mode);
-                                            where floats[1] > 0 it only lowers that to when the step should end
+    settle(t0, t1, y0, rate0, y1, floats, ints)   backs each mass off to its own impact within the step (local mode)
     step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints) -> error   one step of a solver: writes
                                             y1; the error is scaled by the tolerance (accept when <= 1), 0 for fixed
                                             steps
@@ -156,6 +155,15 @@ class Assembly(Protocol):
 
     def step_at_most(self, seconds: float) -> None:
         """Say that steps of a length chosen by a tolerance must not be longer: something happens that it cannot see."""
+
+    def start(self) -> Any:
+        """The state reserved so far (n,), at the start of the run."""
+
+    def line(self) -> Span | None:
+        """Where in the script the word stands that is being assembled."""
+
+    def places(self, link: Link) -> Any:
+        """Where in y the output of a model of the island stands, as indices of its shape; None where it is computed."""
 
     def body_count(self) -> int:
         """Number of bodies of the island (contacts choose their mode by it)."""

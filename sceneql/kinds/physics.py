@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from sceneql.kinds.types import ModelRef
@@ -51,10 +51,21 @@ class Force(Kind):
 
     family: ClassVar[str] = "forces"
 
+    mutual: ClassVar[bool] = False
+    """Whether the masses that it acts on act on one another: then their models are solved together."""
+
     on: tuple[ModelRef, ...] | None = field("The models it acts on; by default all that have masses.", None)
+
+    def targets(self) -> tuple[str, ...] | None:
+        """Names of the models it acts on; None: all that have masses."""
+        return None if self.on is None else tuple(ref.name for ref in self.on)
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add its terms for one model."""
+        raise NotImplementedError
+
+    def assemble_together(self, name: str, assembly: Assembly, everyone: Sequence[Bodies]) -> None:
+        """Add its terms for all models at once, where it is `mutual`."""
         raise NotImplementedError
 
     def potential(self, bodies: Bodies, state: ModelState) -> float:

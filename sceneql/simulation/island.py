@@ -222,6 +222,10 @@ class IslandAssembly:
         """Bound the steps that a tolerance chooses (system.Assembly)."""
         self._largest_step = min(self._largest_step, seconds)
 
+    def line(self) -> Span | None:
+        """Where in the script the word stands that is being assembled."""
+        return self._word[1]
+
     def body_count(self) -> int:
         """Number of bodies of the island so far."""
         return self._bodies

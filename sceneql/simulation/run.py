@@ -92,23 +92,33 @@ class IslandRun:
         for name in island.models:
             with assembly.word(name, graph.tasks[name].span):
                 self.bodies[name] = cast(Model, graph.tasks[name].kind).assemble(name, assembly)
-        for force, model in island.forces:
-            bodies = self.bodies[model]
-            if bodies is not None:
-                with assembly.word(force, graph.tasks[force].span, model):
-                    cast(Force, graph.tasks[force].kind).assemble(force, assembly, bodies)
+        self.assembly = assembly
+        assembly.places = self._places
+        for force in dict.fromkeys(force for force, _ in island.forces):
+            self._add_force(force)
         for contact, model, others in island.contacts:
             bodies = self.bodies[model]
             if bodies is not None:
                 with assembly.word(contact, graph.tasks[contact].span):
                     refs = tuple(Ref(other) for other in others)
                     cast(Contact, graph.tasks[contact].kind).assemble(contact, assembly, bodies, refs)
-        self.assembly = assembly
-        assembly.places = self._places
         stepper = self.solver.stepper()
         self.march: March = March(assembly.finish(stepper.jacobian), stepper, graph.settings.clock.end)
         self.members = {*island.models, *(contact for contact, _, _ in island.contacts)}
         self._now: tuple[float, Floats, Floats] | None = None
+
+    def _add_force(self, force: str) -> None:
+        """Add a force on the masses of all its models."""
+        task = self.graph.tasks[force]
+        kind = cast(Force, task.kind)
+        everyone = [self.bodies[model] for name, model in self.island.forces if name == force]
+        masses = [bodies for bodies in everyone if bodies is not None]
+        if kind.mutual and masses:
+            with self.assembly.word(force, task.span):
+                kind.assemble_together(force, self.assembly, masses)
+        for bodies in masses if not kind.mutual else ():
+            with self.assembly.word(force, task.span, bodies.model):
+                kind.assemble(force, self.assembly, bodies)
 
     def _places(self, link: Link) -> Any:
         """Where in the state an output of one of the models stands, for values that read it at stage times."""
@@ -146,8 +156,9 @@ class IslandRun:
         potential = 0.0
         for force, model in self.island.forces:
             if model == name:
-                view = replace(state, ints=self.assembly.remembered(force, model))
-                potential += cast(Force, self.graph.tasks[force].kind).potential(bodies, view)
+                kind = cast(Force, self.graph.tasks[force].kind)
+                view = replace(state, ints=self.assembly.remembered(force, None if kind.mutual else model))
+                potential += kind.potential(bodies, view)
         return replace(state, potential=potential)
 
 

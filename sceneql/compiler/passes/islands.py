@@ -12,8 +12,8 @@ from sceneql.quantities.diagnostic import Diagnostics, Note
 def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]:
     """The islands of a script's dynamic models, in script order.
 
-    Models are tied by a force or contact whose values read one and act on the other, by a contact between two of
-    them, and by values of their own that read another's outputs.
+    Models are tied by a force or contact whose values read one and act on the other, by a mutual force, by a contact
+    between two of them, and by values of their own that read another's outputs.
     """
     models = [t for t in tasks.values() if isinstance(t.kind, Model) and not t.kind.kinematic]
     names = [t.name for t in models]
@@ -37,6 +37,10 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
         for other in reads(force, tasks):
             for target in targets:
                 tie(target, other)
+        kind = tasks[force].kind
+        if isinstance(kind, Force) and kind.mutual:
+            for target in targets[1:]:
+                tie(targets[0], target)
     for targets, others in contacts.values():
         if len(targets) > 1 and not others:
             for target in targets[1:]:
@@ -67,8 +71,9 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
 def acts_on(force: Task, models: list[Task]) -> tuple[str, ...]:
     """The models that a force acts on: those it names, else all that have masses."""
     assert isinstance(force.kind, Force)
-    if force.kind.on is not None:
-        return tuple(ref.name for ref in force.kind.on)
+    named = force.kind.targets()
+    if named is not None:
+        return named
     return tuple(t.name for t in models if isinstance(t.kind, Model) and t.kind.has_bodies)
 
 

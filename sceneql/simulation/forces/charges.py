@@ -1,0 +1,42 @@
+"""Numbers of single masses in the fields of forces: one for all, or a list with one for each."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+from sceneql.kinds import Quantity, Value
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.unit_table import CHARGE, VOLTAGE
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.system import Assembly, Bodies, ModelState
+
+Charges = Annotated[Value, Quantity(CHARGE, None)]
+ElectricField = Annotated[Value, Quantity(VOLTAGE / dim.LENGTH, (3,))]
+MagneticField = Annotated[Value, Quantity(VOLTAGE * dim.TIME / dim.AREA, (3,))]
+
+
+def each(assembly: Assembly, value: Value, count: int, what: str) -> tuple[int, int]:
+    """Store one number for all masses or one for each: the offset of the first, and 1 where there are many, else 0.
+
+    Raises ScriptError when there are neither one nor ``count``.
+    """
+    import numpy as np
+
+    given = np.size(assembly.initial(value))
+    if given not in (1, count):
+        text = f"{given} {what}s are given for {count} masses"
+        help = f"give one {what} for all, or a list with one for each"
+        raise ScriptError([Diagnostic("list-length", text, value.span, help)])
+    return assembly.value(value), int(given > 1)
+
+
+def of_moving(bodies: Bodies, state: ModelState, at: int, step: int) -> Floats:
+    """(n,) the numbers that `each` stored, 0 for a fixed mass."""
+    import numpy as np
+
+    inverse = state.floats[bodies.inverse_at : bodies.inverse_at + bodies.count]
+    numbers = state.floats[at + step * np.arange(bodies.count)]
+    return np.where(inverse > 0, numbers, 0.0)

@@ -1,0 +1,74 @@
+"""electric: the force of an electric field on charges."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+from pydantic import model_validator
+
+from sceneql.kinds import Force, Formula, Symbols, field
+from sceneql.simulation.forces.charges import Charges, ElectricField, each, of_moving
+
+if TYPE_CHECKING:
+    from sceneql.system import Assembly, Bodies, ModelState
+
+
+class Electric(Force):
+    """The force of an electric field: F = q E (Lorentz 1895).
+
+    The field is uniform (``field``), or three formulas of x y z t in V/m (``formula``), or minus the gradient of a
+    formula in V (``potential``). The energy of charges in a uniform field or a potential is -q E . x or q phi; what a
+    field by formula does to them is counted in the work.
+    """
+
+    charge: Charges = field("Charge of every mass, or a list with one for each.")
+    field_: ElectricField | None = field("The same field everywhere; it may vary in time.", None)
+    formula: Annotated[Formula, Symbols(("x", "y", "z", "t"))] | None = field("Its components [V/m].", None)
+    potential_: Annotated[Formula, Symbols(("x", "y", "z", "t"))] | None = field("Its potential [V].", None)
+
+    @model_validator(mode="after")
+    def _is_said_once(self) -> Electric:
+        if sum(given is not None for given in (self.field_, self.formula, self.potential_)) != 1:
+            raise ValueError("an electric field is said in one way: `field`, `formula` or `potential`")
+        formula, count = (self.formula, 3) if self.formula is not None else (self.potential_, 1)
+        if formula is not None:
+            from sceneql.simulation.point_program import problem
+
+            if (text := problem(formula, count)) is not None:
+                raise ValueError(text)
+        return self
+
+    def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
+        """Add q E to every mass."""
+        charge = each(assembly, self.charge, bodies.count, "charge")
+        if self.field_ is not None:
+            at = assembly.value(self.field_)
+            ints = (bodies.velocity_at, bodies.count, *charge, at)
+            assembly.term("force", "sceneql.simulation.forces.electric_kernels:electric", ints)
+            assembly.remember(*charge, at)
+            return
+        from sceneql.quantities.derivative import components
+        from sceneql.simulation.point_program import CHARGE, add_force, downhill, scaled, store_links
+
+        assembly.remember(*charge)
+        if self.potential_ is not None:
+            rows = downhill(self.potential_)
+            assembly.remember(*store_links(assembly, self.potential_))
+        else:
+            assert self.formula is not None
+            rows = components(self.formula.expr)
+        add_force(assembly, bodies, scaled(rows, CHARGE), charge, counted=self.potential_ is None)
+
+    def potential(self, bodies: Bodies, state: ModelState) -> float:
+        """Sum of -q E . x, or of q phi [J]; 0 where the work is counted."""
+        from sceneql.simulation import bodies as masses
+        from sceneql.simulation.point_program import potential_at
+
+        charges = of_moving(bodies, state, state.ints[0], state.ints[1])
+        places = masses.positions(bodies, state)
+        if self.field_ is not None:
+            at = state.ints[2]
+            return -float(charges @ (places @ state.floats[at : at + 3]))
+        if self.potential_ is not None:
+            return float(charges @ potential_at(self.potential_, places, state, state.ints[2:]))
+        return 0.0

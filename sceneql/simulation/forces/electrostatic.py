@@ -1,0 +1,49 @@
+"""electrostatic: charges act on one another."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from sceneql.kinds import FixedLength, Force, Quantity, Value, field
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.unit_table import CHARGE
+from sceneql.simulation.forces.charges import Charges, each
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from sceneql.system import Assembly, Bodies, ModelState
+
+
+class Electrostatic(Force):
+    """Forces between charges: F = k q1 q2 / r^2, away from each other where the signs are equal (Coulomb 1785).
+
+    k is 1/(4 pi epsilon_0). With ``softening`` s the potential energy is k q1 q2 / sqrt(r^2 + s^2); half of the energy
+    of a pair is each charge's. Magnetic forces between the moving charges are left out.
+    """
+
+    mutual: ClassVar[bool] = True
+
+    charge: Charges = field("Charge of every mass, or a list with one for each of each model.")
+    constant: Annotated[Value, Quantity(dim.FORCE * dim.AREA / CHARGE**2)] = field(
+        "Coulomb's constant k.", "8.9875517862e9 N*m^2/C^2"
+    )
+    softening: FixedLength = field("Length below which the force no longer grows.", "0 m", at_least=0)
+
+    def assemble_together(self, name: str, assembly: Assembly, everyone: Sequence[Bodies]) -> None:
+        """Add the forces between all charges. Raises ScriptError where two stand at one place without softening."""
+        from sceneql.simulation.nbody.pairs import Pairs
+
+        pairs = Pairs(
+            sign=-1,
+            constant_at=assembly.value(self.constant),
+            softening=self.softening,
+            weights=[each(assembly, self.charge, bodies.count, "charge") for bodies in everyone],
+        )
+        pairs.add(assembly, everyone, assembly.line())
+
+    def potential(self, bodies: Bodies, state: ModelState) -> float:
+        """Half the energy of every pair for each of its charges [J]."""
+        from sceneql.simulation.nbody.pairs import energy
+
+        return energy(bodies, state)

@@ -1,0 +1,57 @@
+"""magnetic: the force of a magnetic field on moving charges."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+from pydantic import model_validator
+
+from sceneql.kinds import Force, Formula, Symbols, field
+from sceneql.quantities.expression import Call, Expr, Symbol
+from sceneql.simulation.forces.charges import Charges, MagneticField, each
+
+if TYPE_CHECKING:
+    from sceneql.system import Assembly, Bodies
+
+
+class Magnetic(Force):
+    """The force of a magnetic field: F = q v x B (Lorentz 1895). It does no work.
+
+    The field is uniform (``field``), or three formulas of x y z t in T (``formula``). In a uniform field charges run
+    round at the angular frequency q B / m.
+    """
+
+    charge: Charges = field("Charge of every mass, or a list with one for each.")
+    field_: MagneticField | None = field("The same field everywhere; it may vary in time.", None)
+    formula: Annotated[Formula, Symbols(("x", "y", "z", "t"))] | None = field("Its components [T].", None)
+
+    @model_validator(mode="after")
+    def _is_said_once(self) -> Magnetic:
+        if (self.field_ is None) == (self.formula is None):
+            raise ValueError("a magnetic field is said in one way: `field` or `formula`")
+        if self.formula is not None:
+            from sceneql.simulation.point_program import problem
+
+            if (text := problem(self.formula, 3)) is not None:
+                raise ValueError(text)
+        return self
+
+    def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
+        """Add q v x B to every mass."""
+        charge = each(assembly, self.charge, bodies.count, "charge")
+        if self.field_ is not None:
+            ints = (bodies.velocity_at, bodies.count, *charge, assembly.value(self.field_))
+            assembly.term("force", "sceneql.simulation.forces.magnetic_kernels:magnetic", ints)
+            return
+        from sceneql.quantities.derivative import components
+        from sceneql.simulation.point_program import CHARGE, add_force, scaled
+
+        assert self.formula is not None
+        turned = _cross([Symbol("vx"), Symbol("vy"), Symbol("vz")], list(components(self.formula.expr)))
+        add_force(assembly, bodies, scaled(turned, CHARGE), charge, counted=False)
+
+
+def _cross(a: list[Expr], b: list[Expr]) -> list[Expr]:
+    """The vector product."""
+    pairs = ((1, 2), (2, 0), (0, 1))
+    return [Call("sub", (Call("mul", (a[i], b[j])), Call("mul", (a[j], b[i])))) for i, j in pairs]

@@ -1,0 +1,56 @@
+"""repulsion: masses push each other away at short range."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from sceneql.kinds import FixedLength, FixedScalar, Force, Quantity, Value, field
+from sceneql.quantities import dimension as dim
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from sceneql.system import Assembly, Bodies, ModelState
+
+
+class Repulsion(Force):
+    """Masses nearer than ``range`` push each other away with F = strength (1 - r/range)^exponent.
+
+    The energy of a pair is strength range/(exponent + 1) (1 - r/range)^(exponent + 1), half of it each mass's. Pairs
+    are found by cell lists (Hockney & Eastwood 1981), so the cost grows with the number of masses alone. Masses at the
+    same place do not move each other, by symmetry.
+    """
+
+    mutual: ClassVar[bool] = True
+
+    strength: Annotated[Value, Quantity(dim.FORCE)] = field("Force at no distance.", "1 N", at_least=0)
+    range: FixedLength = field("Distance at which it ends.", "0.1 m", above=0)
+    exponent: FixedScalar = field("How it fades: 1 linearly, more the softer.", "1", at_least=1, at_most=20)
+
+    def assemble_together(self, name: str, assembly: Assembly, everyone: Sequence[Bodies]) -> None:
+        """Add the forces between all masses."""
+        import numpy as np
+
+        from sceneql.simulation.forces.repulsion_kernels import repulsion_tile
+        from sceneql.simulation.neighbors import table
+        from sceneql.simulation.threads_kernels import threads, tile_address
+        from sceneql.simulation.together import layout
+
+        bodies = layout(everyone)
+        n = bodies[0]
+        size, first, second = table(n)
+        energies = assembly.floats(np.zeros(n))
+        ints = (
+            *(assembly.value(self.strength), assembly.floats([self.range, self.exponent]), energies),
+            *(assembly.floats(np.zeros(count)) for count in (3 * n, 3 * n, n, size + 1)),
+            *(size, first, second, *threads(), tile_address(repulsion_tile)),
+        )
+        assembly.term("force", "sceneql.simulation.forces.repulsion_kernels:repulsion", (*ints, *bodies))
+        assembly.remember(energies, *bodies)
+
+    def potential(self, bodies: Bodies, state: ModelState) -> float:
+        """Half the energy of every pair for each of its masses [J]."""
+        from sceneql.simulation.together import first_of
+
+        at = state.ints[0] + first_of(bodies, state.ints[1:])
+        return float(state.floats[at : at + bodies.count].sum())

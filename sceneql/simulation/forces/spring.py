@@ -1,0 +1,81 @@
+"""spring: a spring between masses of different models, or from a mass to a place."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+from pydantic import model_validator
+
+from sceneql.kinds import Damping, FixedLength, Force, Position, Stiffness, Value, field
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.expression import Link
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from sceneql.system import Assembly, Bodies, ModelState
+
+
+class Spring(Force):
+    """A spring between two places: F = stiffness (l - rest) + damping dl/dt along it (Hooke 1678).
+
+    ``from`` and ``to`` are positions of masses, as `cage.corner.position`, of any models; one of them may be a place of
+    its own. Half of its energy belongs to each mass; all of it to the only one. The models are solved together. What
+    the damping takes is counted as dissipated.
+    """
+
+    mutual: ClassVar[bool] = True
+
+    from_: Position = field("The position of a mass, or a place.")
+    to: Position = field("The position of a mass, or a place.")
+    stiffness: Stiffness = field("Force for a stretch.", "100 N/m", at_least=0)
+    damping: Damping = field("Force for a speed of stretching.", "0 N*s/m", at_least=0)
+    rest: FixedLength | None = field("Length without force; by default that at the start.", None, at_least=0)
+
+    @model_validator(mode="after")
+    def _has_a_mass(self) -> Spring:
+        if not self.targets():
+            raise ValueError("a spring needs a mass at one of its ends, as `from: cage.corner.position`")
+        return self
+
+    def targets(self) -> tuple[str, ...]:
+        """The models of the masses at its ends."""
+        links = (end.expr for end in (self.from_, self.to))
+        return tuple(dict.fromkeys(link.task for link in links if isinstance(link, Link)))
+
+    def assemble_together(self, name: str, assembly: Assembly, everyone: Sequence[Bodies]) -> None:
+        """Add the spring. Raises ScriptError where an end is computed of masses but is none."""
+        import numpy as np
+
+        ends = [self._end(value, assembly, everyone) for value in (self.from_, self.to)]
+        span = self.from_.span
+        if ends[0][0] == ends[1][0] >= 0:
+            raise ScriptError([Diagnostic("same-mass", "a spring leads from a mass to itself", self.to.span or span)])
+        if max(end[0] for end in ends) < 0:
+            raise ScriptError([Diagnostic("no-mass", "a spring needs a mass at one of its ends", span)])
+        length = float(np.linalg.norm(np.subtract(assembly.initial(self.to), assembly.initial(self.from_))))
+        rest = assembly.floats([length if self.rest is None else self.rest])
+        values = (assembly.value(self.stiffness), assembly.value(self.damping), rest)
+        ints = (*ends[0], *ends[1], *values)
+        assembly.term("force", "sceneql.simulation.forces.spring_kernels:spring", ints)
+        assembly.remember(*ints)
+
+    def _end(self, value: Value, assembly: Assembly, everyone: Sequence[Bodies]) -> tuple[int, int, int]:
+        """Offsets of position and velocity in y and of the work; or -1, the place in the floats, -1."""
+        places = assembly.places(value.expr) if isinstance(value.expr, Link) else None
+        if places is not None:
+            at = int(places[0])
+            for bodies in everyone:
+                if bodies.position_at <= at < bodies.position_at + 3 * bodies.count:
+                    return at, at - bodies.position_at + bodies.velocity_at, bodies.work_at
+        return -1, assembly.value(value), -1
+
+    def potential(self, bodies: Bodies, state: ModelState) -> float:
+        """Half stiffness stretch^2 [J], the part of this model's masses."""
+        import numpy as np
+
+        ends = (state.ints[0:3], state.ints[3:6])
+        places = [state.y[at : at + 3] if at >= 0 else state.floats[other : other + 3] for at, other, _ in ends]
+        stretch = float(np.linalg.norm(places[1] - places[0])) - state.floats[state.ints[8]]
+        owned = sum(work == bodies.work_at for _, _, work in ends) / sum(work >= 0 for _, _, work in ends)
+        return float(0.5 * state.floats[state.ints[6]] * stretch**2 * owned)

@@ -1,0 +1,1 @@
+"""Forces of 1/r^2 between all masses."""

@@ -1,0 +1,23 @@
+"""Cell lists: numbers for a table of cells in which the 27 cells around any one have places of their own."""
+
+from __future__ import annotations
+
+from itertools import product
+
+LEAST = 256
+
+
+def table(count: int) -> tuple[int, int, int]:
+    """Size M (a power of two) and factors P, Q: cell (i, j, k) stands at (i + P j + Q k) mod M.
+
+    Cells that are at most two apart along each axis never share a place, so no pair of neighbors is met twice.
+    """
+    size = LEAST
+    while size < 2 * count:
+        size *= 2
+    steps = [step for step in product(range(-2, 3), repeat=3) if any(step)]
+    first = int(0.6180339887 * size) | 1
+    second = int(0.7548776662 * size) | 1
+    while any((i + j * first + k * second) % size == 0 for i, j, k in steps):
+        second = (second + 2) % size
+    return size, first, second

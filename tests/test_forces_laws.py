@@ -1,0 +1,249 @@
+"""Laws over every force word: energy, Newton's third law, exact motions, errors told in place."""
+
+import math
+
+import numpy as np
+import pytest
+
+from runs import complaint, watch
+from sceneql.compiler.catalogue import Catalogue
+from sceneql.pipeline import load
+from sceneql.quantities.diagnostic import ScriptError
+from sceneql.simulation.run import Run
+
+SCENE = """
+clock: {{end: 0.6 s}}
+models:
+  gas:
+    particles:
+      positions:
+        - [0 m, 0 m, 0 m]
+        - [0.2 m, 0.3 m, 0.1 m]
+        - [0.1 m, -0.3 m, 0.4 m]
+        - [0.3 m, 0.1 m, 0 m]
+      velocity: 0.1 0.2 0.4 m/s
+      mass: 2 kg
+  net:
+    mass_spring:
+      masses: {{bob: {{position: 0.5 0.5 0.5 m, mass: 1 kg}}, wall: {{position: 0.6 0.4 0.1 m, fixed: yes}}}}
+      springs: [{{between: [bob, wall], stiffness: 20 N/m}}]
+forces:
+  it: {force}
+solvers: {{main: {{dopri5: {{tolerance: 1e-10}}}}}}
+"""
+
+FORCES = {
+    "attractor": "{attractor: {position: 1 0 0 m, strength: 0.5 m^3/s^2}}",
+    "drag": "{drag: {linear: 0.5 N*s/m, quadratic: 0.2 kg/m}}",
+    "electric": "{electric: {charge: 0.3 C, field: 1 2 3 V/m}}",
+    "electric potential": '{electric: {charge: 0.3 C, potential: "x^2 + y^2 - 2*z^2 + sin(x*y)"}}',
+    "electric formula": '{electric: {charge: 0.3 C, formula: ["-y", "x*t", "1"]}}',
+    "electrostatic": "{electrostatic: {charge: 0.3 C, constant: 1}}",
+    "force": '{force: {components: ["-vx*abs(vx)*m", "sin(3*t)", "x*y"]}}',
+    "force potential": '{force: {potential: "m*exp(-x^2)*y"}}',
+    "gravity": "gravity",
+    "magnetic": "{magnetic: {charge: 2 C, field: 1 2 3 T}}",
+    "magnetic formula": '{magnetic: {charge: 2 C, formula: ["x", "y", "-2*z"]}}',
+    "mutual_gravity": "{mutual_gravity: {constant: 0.02}}",
+    "repulsion": "{repulsion: {strength: 5 N, range: 0.6 m, exponent: 3}}",
+    "spring": "{spring: {from: net.bob.position, to: 0 1 0 m, damping: 1 N*s/m, rest: 0.2 m}}",
+    "turbulence": "{turbulence: {speed: 2 m/s, octaves: 2, lifetime: 1 s, linear: 0.5 N*s/m}}",
+    "vortex": "{vortex: {circulation: 2 m^2/s, updraft: 1 m/s, linear: 0.5 N*s/m}}",
+    "wind": "{wind: {velocity: 1 0 0.5 m/s, linear: 0.5 N*s/m, quadratic: 0.1 kg/m, gusts: 0.4, period: 0.2 s}}",
+}
+each_force = pytest.mark.parametrize("name", FORCES)
+
+
+def test_every_force_word_is_here():
+    assert {name.split()[0] for name in FORCES} == set(Catalogue().words("forces"))
+
+
+@each_force
+def test_energy_is_conserved_once_the_work_is_counted(tmp_path, name):
+    script = SCENE.format(force=FORCES[name])
+    first, middle, last = watch(tmp_path, script, [0, 0.3, 0.6], "gas.energy", "net.energy")
+    assert sum(middle) == pytest.approx(sum(first), abs=2e-8)
+    assert sum(last) == pytest.approx(sum(first), abs=2e-8)
+
+
+@each_force
+def test_it_is_told_apart_from_no_force(tmp_path, name):
+    acting, free = (
+        watch(tmp_path, SCENE.format(force=force), [0.6], "gas.velocities", "net.bob.velocity")[0]
+        for force in (FORCES[name], "{drag: {linear: 0 N*s/m}}")
+    )
+    assert max(np.abs(a - b).max() for a, b in zip(acting, free, strict=True)) > 1e-3
+
+
+@pytest.mark.parametrize("name", ["mutual_gravity", "electrostatic", "repulsion"])
+def test_forces_between_masses_keep_the_momentum_of_all(tmp_path, name):
+    script = SCENE.format(force=FORCES[name]).replace("stiffness: 20 N/m", "stiffness: 1e-30 N/m")
+    first, last = watch(tmp_path, script.replace(", fixed: yes", ""), [0, 0.6], "gas.momentum", "net.momentum")
+    np.testing.assert_allclose(sum(last), sum(first), rtol=0, atol=1e-13)
+
+
+def test_two_masses_run_round_their_center_by_kepler(tmp_path):
+    # Total mass 4, distance 2, G = 1: omega^2 = G M / d^3 = 1/2, the light one three times as far out.
+    omega = math.sqrt(0.5)
+    script = f"""
+clock: {{end: {2 * math.pi / omega} s}}
+models:
+  heavy: {{particles: {{list: {{a: {{mass: 3 kg, position: 0.5 0 0 m, velocity: [0, {0.5 * omega}, 0]}}}}}}}}
+  light: {{particles: {{list: {{b: {{mass: 1 kg, position: -1.5 0 0 m, velocity: [0, {-1.5 * omega}, 0]}}}}}}}}
+forces: {{pull: {{mutual_gravity: {{constant: 1}}}}}}
+solvers: {{main: {{dopri5: {{tolerance: 1e-12}}}}}}
+"""
+    ((a, b, u, v),) = watch(
+        tmp_path,
+        script,
+        [math.pi / omega],
+        "heavy.a.position",
+        "light.b.position",
+        "heavy.potential",
+        "light.potential",
+    )
+    np.testing.assert_allclose(a, [-0.5, 0, 0], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(b, [1.5, 0, 0], rtol=0, atol=1e-9)
+    assert u == pytest.approx(-0.75)
+    assert v == pytest.approx(-0.75)
+
+
+def test_a_charge_runs_round_in_a_magnetic_field_and_drifts_across_an_electric_one(tmp_path):
+    script = """
+clock: {end: 2 s}
+models: {ion: {particles: {list: {a: {mass: 2 kg, velocity: 3 0 0 m/s}}}}}
+forces:
+  b: {magnetic: {charge: 4 C, field: 0 0 1.5 T}}
+  e: {electric: {charge: 4 C, field: 0 6 0 V/m}}
+solvers: {main: {dopri5: {tolerance: 1e-12}}}
+"""
+    ((v, x),) = watch(tmp_path, script, [2], "ion.a.velocity", "ion.a.position")
+    # In the frame of the drift E x B / B^2 = (4, 0, 0) the velocity (-1, 0, 0) turns by -q B t / m = -6.
+    np.testing.assert_allclose(v, [4 - math.cos(6), math.sin(6), 0], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(x, [8 - math.sin(6) / 3, (1 - math.cos(6)) / 3, 0], rtol=0, atol=1e-9)
+
+
+def test_formulas_are_the_fields_that_they_say(tmp_path):
+    def end(forces: str) -> np.ndarray:
+        script = SCENE.format(force=f"{{drag: {{linear: 0 N*s/m}}}}\n{forces}")
+        return watch(tmp_path, script, [0.6], "gas.positions")[0][0]
+
+    uniform = end("  b: {magnetic: {charge: 2 C, field: 1 2 3 T}}\n  e: {electric: {charge: 2 C, field: 0 1 5 V/m}}")
+    formulas = end(
+        '  b: {magnetic: {charge: 2 C, formula: ["1", "2", "3"]}}\n'
+        '  e: {electric: {charge: 2 C, potential: "-y - 5*z"}}'
+    )
+    np.testing.assert_allclose(formulas, uniform, rtol=0, atol=1e-9)
+    weight = end('  g: {force: {potential: "9.81*m*y"}}')
+    np.testing.assert_allclose(weight, end("  g: gravity"), rtol=0, atol=1e-9)
+
+
+def test_charges_may_be_given_one_by_one(tmp_path):
+    script = """
+clock: {end: 1 s}
+models: {ions: {particles: {positions: [[0 m, 0 m, 0 m], [1 m, 0 m, 0 m]], mass: 1 kg}}}
+forces: {e: {electric: {charge: [1 C, -2 C], field: 0 1 0 V/m}}}
+solvers: {main: {rk4: {step: 0.1 s}}}
+"""
+    ((v,),) = watch(tmp_path, script, [1], "ions.velocities")
+    np.testing.assert_allclose(v, [[0, 1, 0], [0, -2, 0]], atol=1e-12)
+
+
+def test_air_takes_masses_along(tmp_path):
+    def final(force: str) -> np.ndarray:
+        script = f"""
+clock: {{end: 20 s}}
+models: {{dust: {{particles: {{list: {{a: {{position: 1 0 0 m, mass: 1 g}}}}}}}}}}
+forces: {{air: {force}}}
+solvers: {{main: {{dopri5: {{tolerance: 1e-8}}}}}}
+"""
+        return watch(tmp_path, script, [20], "dust.a.velocity")[0][0]
+
+    np.testing.assert_allclose(final("{wind: {velocity: 3 1 0 m/s, linear: 0.1 N*s/m}}"), [3, 1, 0], atol=1e-6)
+    still = final("{turbulence: {speed: 0 m/s, velocity: 0 2 0 m/s, linear: 0.1 N*s/m}}")
+    np.testing.assert_allclose(still, [0, 2, 0], atol=1e-6)
+    up = final("{vortex: {position: 1 0 0 m, updraft: 2 m/s, linear: 0.1 N*s/m}}")
+    np.testing.assert_allclose(up, [0, 2, 0], atol=1e-6)
+
+
+def test_a_spring_ties_models_and_swings_by_the_reduced_mass(tmp_path):
+    script = """
+clock: {end: 1 s}
+models:
+  one: {particles: {list: {a: {mass: 2 kg}}}}
+  two: {particles: {list: {b: {mass: 6 kg, position: 1.2 0 0 m}}}}
+forces: {tie: {spring: {from: one.a.position, to: two.b.position, stiffness: 54 N/m, rest: 1 m}}}
+solvers: {main: {dopri5: {tolerance: 1e-12}}}
+"""
+    ((a, b, u, v),) = watch(tmp_path, script, [1], "one.a.position", "two.b.position", "one.energy", "two.energy")
+    # Reduced mass 1.5 kg: omega = 6/s.
+    assert b[0] - a[0] == pytest.approx(1 + 0.2 * math.cos(6), abs=1e-9)
+    assert u + v == pytest.approx(0.5 * 54 * 0.04, abs=1e-9)
+
+
+def test_gusts_and_eddies_do_not_depend_on_where_the_film_looks(tmp_path):
+    script = SCENE.format(force=FORCES["wind"]) + "  \n"
+    script = script.replace("forces:", f"forces:\n  t: {FORCES['turbulence']}")
+    once = watch(tmp_path, script, [0.6], "gas.positions")[0][0]
+    often = watch(tmp_path, script, [0.1, 0.2, 0.21, 0.5, 0.6], "gas.positions")[-1][0]
+    np.testing.assert_array_equal(once, often)
+    other = watch(tmp_path, script.replace("gusts: 0.4", "gusts: 0.4, seed: 3"), [0.6], "gas.positions")[0][0]
+    assert np.abs(other - once).max() > 1e-6
+
+
+WRONG = {
+    "{electric: {charge: 1 C}}": "said in one way",
+    "{electric: {charge: 1 C, field: 1 0 0 V/m, potential: x}}": "said in one way",
+    "{electric: {field: 1 0 0 V/m}}": "needs 'charge'",
+    "{electric: {charge: 1 kg, field: 1 0 0 V/m}}": "charge",
+    '{electric: {charge: 1 C, formula: ["x", "y"]}}': "3 formulas are needed",
+    '{electric: {charge: 1 C, formula: ["x", "y", "w"]}}': "nothing is called 'w'",
+    "{magnetic: {charge: 1 C}}": "said in one way",
+    "{force: {}}": "said in one way",
+    '{force: {components: ["vx", "u", "1"]}}': "nothing is called 'u'",
+    "{wind: {velocity: 1 0 0 m/s}}": "needs a coefficient",
+    "{repulsion: {range: 0 m}}": "above 0",
+    "{spring: {from: 0 0 0 m, to: 0 1 0 m}}": "a mass at one of its ends",
+    "{turbulence: {size: 0 m}}": "above 0",
+    "{mutual_gravity: {softening: -1 m}}": "at least 0",
+    "{vortex: {axis: 0 0 0}}": "axis",
+}
+
+
+@pytest.mark.parametrize("entry", WRONG)
+def test_a_wrong_force_is_told_with_its_place(tmp_path, entry):
+    said = complaint(tmp_path, f"models: {{a: {{particles: {{list: {{b: {{}}}}}}}}}}\nforces:\n  bad: {entry}\n")
+    assert WRONG[entry] in said
+    assert "scene.yaml:3:" in said
+
+
+NOT_STARTED = {
+    "{mutual_gravity: {}}": "start at one place",
+    "{electrostatic: {charge: 1 C}}": "start at one place",
+    "{electric: {charge: [1 C, 2 C, 3 C], field: 1 0 0 V/m}}": "3 charges are given for 2 masses",
+    "{spring: {from: a.b.position, to: a.b.position}}": "from a mass to itself",
+    "{spring: {from: a.center, to: 0 1 0 m}}": "a mass at one of its ends",
+}
+
+
+@pytest.mark.parametrize("entry", NOT_STARTED)
+def test_what_has_no_force_at_the_start_is_told_before_it(tmp_path, entry):
+    path = tmp_path / "scene.yaml"
+    path.write_text(
+        f"models: {{a: {{particles: {{list: {{b: {{}}, c: {{}}}}}}}}}}\nforces:\n  bad: {entry}\n", encoding="utf-8"
+    )
+    with pytest.raises(ScriptError) as told:
+        Run(load(path))
+    assert NOT_STARTED[entry] in str(told.value)
+    assert "scene.yaml:3:" in str(told.value)
+
+
+def test_softened_masses_may_start_at_one_place(tmp_path):
+    script = """
+clock: {end: 1 s}
+models: {a: {particles: {list: {b: {}, c: {}}}}}
+forces: {pull: {mutual_gravity: {constant: 1, softening: 1 cm}}}
+solvers: {main: {rk4: {step: 0.1 s}}}
+"""
+    ((x,),) = watch(tmp_path, script, [1], "a.positions")
+    np.testing.assert_array_equal(x, 0)

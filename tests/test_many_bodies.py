@@ -1,0 +1,136 @@
+"""Kernels of forces between many masses, and of curl noise, against plain sums and differences."""
+
+import numpy as np
+import pytest
+
+from sceneql.simulation.forces import repulsion_kernels, turbulence_kernels
+from sceneql.simulation.nbody import direct_kernels
+from sceneql.simulation.neighbors import table
+from sceneql.simulation.threads_kernels import threads, tile_address
+from sceneql.simulation.together import layout
+from sceneql.system import Bodies
+
+
+def bodies(count, position_at, velocity_at):
+    return Bodies("m", count, position_at, velocity_at, 0, 0, 0, 0)
+
+
+def island(n, seed=1):
+    """Two models of n bodies together: y, masses, and their layout."""
+    rng = np.random.default_rng(seed)
+    a = n // 3
+    y = rng.normal(size=6 * n + 2)
+    models = [bodies(a, 0, 3 * a), bodies(n - a, 6 * a + 1, 6 * a + 1 + 3 * (n - a))]
+    places = np.concatenate([y[m.position_at :][: 3 * m.count] for m in models]).reshape(-1, 3)
+    return y, rng.random(n) + 0.5, models, places
+
+
+def forces(rate, models):
+    return np.concatenate([rate[m.velocity_at :][: 3 * m.count] for m in models]).reshape(-1, 3)
+
+
+def gravity(n, softening=0.05, count=2):
+    y, m, models, places = island(n)
+    room = -(-n // direct_kernels.LANES) * direct_kernels.LANES
+    floats = np.concatenate([[2.0, softening], m, np.zeros(4 * room)])
+    entry, _ = threads()
+    numbers = (0, 1, 1, 2 + n, 2 + n + 3 * room, room, entry, count, tile_address(direct_kernels.direct_tile))
+    weights = (2, 1, 2 + models[0].count, 1)
+    ints = np.array([*numbers, *layout(models), *weights], dtype=np.int64)
+    rate = np.zeros_like(y)
+    direct_kernels.direct(0.0, y, rate, floats, ints)
+    apart = places[None] - places[:, None]
+    square = (apart**2).sum(axis=2) + softening**2
+    exact = 2.0 * m[:, None] * np.einsum("j,ijc->ic", m, apart / square[..., None] ** 1.5)
+    return forces(rate, models), exact, (y, floats, ints, m, square)
+
+
+@pytest.mark.parametrize("n", [3, 32, 33, 500, 1500])
+def test_direct_sums_are_exact_to_rounding(n):
+    found, exact, _ = gravity(n)
+    scale = np.abs(exact).max(axis=1, keepdims=True)
+    np.testing.assert_allclose(found / scale, exact / scale, rtol=0, atol=2e-14)
+    assert np.abs(found.sum(axis=0)).max() <= 1e-15 * np.abs(found).sum()
+
+
+def test_threads_do_not_change_a_bit():
+    assert np.array_equal(gravity(1500, count=1)[0], gravity(1500, count=5)[0])
+
+
+def test_bodies_at_one_place_do_not_pull_each_other():
+    y, m, models, _ = island(40)
+    y[: 3 * models[0].count] = 0.25
+    room = direct_kernels.LANES
+    floats = np.concatenate([[2.0, 0.0], m, np.zeros(4 * room)])
+    entry, count = threads()
+    numbers = (0, 1, 1, 42, 42 + 3 * room, room, entry, count, tile_address(direct_kernels.direct_tile))
+    ints = np.array([*numbers, *layout(models), 2, 1, 2 + models[0].count, 1], dtype=np.int64)
+    rate = np.zeros_like(y)
+    direct_kernels.direct(0.0, y, rate, floats, ints)
+    assert np.isfinite(rate).all()
+    each = forces(rate, models)[: models[0].count] / m[: models[0].count, None]
+    np.testing.assert_allclose(each, np.broadcast_to(each[0], each.shape), rtol=1e-12)
+
+
+def test_potentials_are_the_plain_sums():
+    _, _, (y, floats, ints, m, square) = gravity(50)
+    found = np.zeros(50)
+    direct_kernels.potentials(y, floats, ints, found)
+    inverse = 1.0 / np.sqrt(square)
+    np.fill_diagonal(inverse, 0.0)
+    np.testing.assert_allclose(found, inverse @ m, rtol=1e-13)
+
+
+@pytest.mark.parametrize("n", [2, 40, 3000])
+def test_repulsion_finds_every_pair_in_reach_once(n):
+    y, _, models, places = island(n)
+    reach, exponent = 0.5, 2.0
+    size, p, q = table(n)
+    at = np.cumsum([4, n, 3 * n, 3 * n, n, size + 1])
+    floats = np.zeros(at[-1])
+    floats[:4] = [3.0, 0.0, reach, exponent]
+    numbers = [0, 2, *at[:5].tolist(), size, p, q, *threads(), tile_address(repulsion_kernels.repulsion_tile)]
+    ints = np.array([*numbers, *layout(models)], dtype=np.int64)
+    rate = np.zeros_like(y)
+    repulsion_kernels.repulsion(0.0, y, rate, floats, ints)
+    expected, energy = np.zeros((n, 3)), 0.0
+    for k in range(n):
+        away = places[k] - places
+        r = np.linalg.norm(away, axis=1)
+        near = (r < reach) & (r > 0)
+        left = 1 - r[near] / reach
+        expected[k] = (3.0 * left[:, None] ** exponent * away[near] / r[near, None]).sum(axis=0)
+        energy += 0.5 * (3.0 * reach / 3.0 * left**3).sum()
+    np.testing.assert_allclose(forces(rate, models), expected, rtol=0, atol=1e-11)
+    assert floats[4 : 4 + n].sum() == pytest.approx(energy, rel=1e-12)
+
+
+def curl_noise(points, angle=0.4, octaves=1, seed=5):
+    rows = -(-len(points) // turbulence_kernels.LANES) * turbulence_kernels.LANES
+    y = np.zeros((rows, 3))
+    y[: len(points)] = points
+    out = np.zeros(3 * rows)
+    turbulence_kernels.velocities(angle, y.ravel(), out, np.zeros(1), np.array([octaves, seed]))
+    return out.reshape(-1, 3)[: len(points)]
+
+
+def test_curl_noise_has_no_divergence_and_the_speed_it_says():
+    points = np.random.default_rng(3).uniform(-20, 20, size=(2000, 3))
+    h = 1e-3
+    slopes = [curl_noise(points + h * e) - curl_noise(points - h * e) for e in np.eye(3)]
+    gradients = np.stack(slopes, axis=1) / (2 * h)
+    divergence = np.trace(gradients, axis1=1, axis2=2)
+    size = np.linalg.norm(gradients, axis=(1, 2))
+    # Single precision leaves 1e-7 of the speed, divided by 2 h; a kink of the slope none.
+    assert np.abs(divergence).max() < 2e-3 * size.max()
+    assert np.sqrt((curl_noise(points, octaves=1) ** 2).sum(axis=1).mean()) == pytest.approx(1, rel=0.05)
+    assert np.sqrt((curl_noise(points, octaves=4) ** 2).sum(axis=1).mean()) == pytest.approx(1, rel=0.05)
+    assert np.abs(curl_noise(points).mean(axis=0)).max() < 0.05
+
+
+def test_curl_noise_is_smooth_across_cells_and_differs_by_seed_and_time():
+    line = np.linspace(-2, 2, 4001)[:, None] * [1.0, 0.3, 0.2]
+    steps = np.abs(np.diff(curl_noise(line), axis=0)).max()
+    assert steps < 0.02
+    assert np.abs(curl_noise(line) - curl_noise(line, seed=6)).max() > 0.3
+    assert np.abs(curl_noise(line) - curl_noise(line, angle=2.0)).max() > 0.3
