@@ -11,6 +11,7 @@ from sceneql.compiler.passes.circles import report_circles
 from sceneql.compiler.passes.expand import expand
 from sceneql.compiler.passes.islands import islands
 from sceneql.compiler.passes.prune import prune
+from sceneql.compiler.passes.stable_steps import warn_of_steps
 from sceneql.graph import SimulationGraph, Task
 from sceneql.kinds import Camera, Clock, Exceeds, Model, Object, Output, Picture
 from sceneql.language.script import Script
@@ -32,6 +33,7 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
     clock = script.settings.get("clock")
     _check_outputs(tasks, drawn, checked.settings.clock, None if clock is None else clock.span, found)
     found.raise_errors()
+    warn_of_steps(script, tasks, groups, checked.settings.clock.end, catalogue.words("solvers"), found)
     order, needed_by, left_out = prune(tasks, groups, drawn, cameras)
     expected = {link.task for value in values_of(checked.settings.expect) for link in value.links}
     if not pruned:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from sceneql.kinds.stable_step import Oscillation
 from sceneql.kinds.types import ModelRef
 from sceneql.kinds.values import Ref
 from sceneql.kinds.word import Kind, field
@@ -36,6 +37,10 @@ class Model(Kind):
     def formula(self, output: str) -> Expr:
         """An output of a kinematic model as an expression of time."""
         raise TypeError(f"{type(self).__name__} is not a function of time")
+
+    def fastest(self, name: str) -> Iterable[Oscillation]:
+        """Bounds on its fastest oscillations by its own fields, for `check`: without numpy, and quickly."""
+        return ()
 
     def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Drawn]:
         """How it draws itself where no object of the script does."""
@@ -113,3 +118,10 @@ class Solver(Kind):
         ``partner`` (n,) int: for a position entry of y the index of its velocity, else -1.
         """
         raise NotImplementedError
+
+    def oscillation(self, frequency: float, decay: float, step: float) -> float | None:
+        """Growth factor of a fixed step on x'' = -frequency^2 x - decay x', in plain Python for `check`.
+
+        None where no bound is told before the run: implicit methods, and those whose steps follow a tolerance.
+        """
+        return None

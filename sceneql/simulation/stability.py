@@ -8,12 +8,12 @@ step's.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sceneql.kinds.stable_step import LEAST, MOST, NEUTRAL, first_unstable
 from sceneql.simulation.modes import Modes, coupled, jacobian, modes_of
 
 if TYPE_CHECKING:
@@ -22,12 +22,6 @@ if TYPE_CHECKING:
     from sceneql.quantities.span import Span
     from sceneql.simulation.march import March
 
-NEUTRAL = 1e-8
-"""Growth per unit of (step times frequency) that counts as none, and damping (relative) that does: rounding."""
-LEAST, MOST = 1e-8, 1e3
-"""Range of (step times largest frequency) that is searched; below 100 LEAST a bound is no bound."""
-RATIO = 1.3
-"""Of the steps tried one after the other: a gap of stable steps narrower than that is not seen."""
 WHOLE = 200
 """Up to so many entries a method that uses pairs is asked about the whole Jacobian where modes are overdamped."""
 
@@ -100,7 +94,7 @@ class _Reduced:
         return self.solver.growth(block[0], block[1], step)
 
     def bound(self) -> float:
-        """Largest stable scaled step; 0 where it is rounding alone that would allow one."""
+        """Largest stable scaled step; 0 where it is rounding alone that would allow one (below 100 LEAST)."""
         sharp = self._bound(NEUTRAL)
         if sharp < 100 * LEAST or self._bound(NEUTRAL / 100) < 0.8 * sharp:
             return 0.0
@@ -120,21 +114,6 @@ class _Reduced:
             if not more or bound == 0.0:
                 return bound
             asked.add(max(more, key=lambda k: self.growth_of(self.blocks[k], at)))
-
-
-def first_unstable(stable: Callable[[float], bool]) -> float:
-    """End of the interval of stable steps from LEAST on, to 1e-6; 0 where it is empty, inf beyond MOST."""
-    low = high = LEAST
-    if not stable(low):
-        return 0.0
-    while stable(high):
-        low, high = high, high * RATIO
-        if low > MOST:
-            return math.inf
-    while high - low > 1e-6 * high:
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if stable(middle) else (low, middle)
-    return low
 
 
 def _block(value: complex) -> tuple[Floats, Any]:

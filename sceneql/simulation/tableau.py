@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from cmath import sqrt
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
@@ -79,12 +80,28 @@ class Tableau:
         import numpy as np
 
         z = step * np.linalg.eigvals(jacobian)
+        return float(np.abs(np.polyval(self.stability_function[::-1], z)).max(initial=0.0))
+
+    def oscillation(self, frequency: float, decay: float, step: float) -> float:
+        """max |R(step * lambda)| over the roots of lambda^2 + decay lambda + frequency^2, in plain Python."""
+        root = sqrt(complex(0.25 * decay * decay - frequency * frequency))
+        return max(abs(self._amplification(step * (sign * root - 0.5 * decay))) for sign in (1, -1))
+
+    @cached_property
+    def stability_function(self) -> tuple[float, ...]:
+        """Coefficients of R, that of z^0 first."""
         powers = [1.0]
         stage = (1.0,) * self.stages
         for _ in range(self.stages):
             powers.append(sum(b * s for b, s in zip(self.b, stage, strict=True)))
             stage = self._inner(stage)
-        return float(np.abs(np.polyval(powers[::-1], z)).max(initial=0.0))
+        return tuple(powers)
+
+    def _amplification(self, z: complex) -> complex:
+        total = 0j
+        for power in reversed(self.stability_function):
+            total = total * z + power
+        return total
 
     def _stepper(self, embedded: tuple[float, ...] | None, relative: float, absolute: float) -> Stepper:
         from sceneql.system import Stepper

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
@@ -24,6 +25,7 @@ from sceneql.kinds import (
     field,
     quantity_type,
 )
+from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Type
 from sceneql.simulation import bodies as point_masses
@@ -253,6 +255,73 @@ class MassSpring(Model):
             own, part = state.floats[blocks_at + BLOCK * k + 1 : blocks_at + BLOCK * k + 3]
             return float((own + part * state.floats[stiffness_at]) * (lengths[k] - self.rest[k]))
         return point_masses.read_named(output, tuple(self.masses or ()), state.bodies, state)
+
+    def fastest(self, name: str) -> tuple[Oscillation, ...]:
+        """The fastest spring, and the one that is damped most, by the stiffness at both its ends.
+
+        (angular frequency)^2 <= max over springs of the sum over springs at its ends of k |cos| / m: the rows of the
+        matrix that acts on the springs' stretches (Gershgorin 1931; Anderson & Morley 1985). Sharp for a single spring.
+        """
+        stiffness = self.stiffness.number() if self.stiffness.constant else None
+        damping = self.damping.number() if self.damping.constant else None
+        if self.masses is None:
+            if stiffness is None or damping is None:
+                return ()
+            factor = self._shaped().stiffest() / self.mass
+            shape = next(shape for shape in PLACES if getattr(self, shape) is not None)
+            found = Oscillation(math.sqrt(factor * stiffness), factor * damping, f"the springs of '{name}'", (shape,))
+            return (found,)
+        given = [
+            (
+                stiffness if spring.stiffness is None else spring.stiffness,
+                damping if spring.damping is None else spring.damping,
+            )
+            for spring in self.springs
+        ]
+        told = [(k, c) for k, c in given if k is not None and c is not None]
+        if len(told) < len(given) or not told:
+            return ()
+        squares, decays = (self._rows([pair[which] for pair in told]) for which in (0, 1))
+        worst = {max(range(len(told)), key=rows.__getitem__) for rows in (squares, decays) if any(rows)}
+        return tuple(
+            Oscillation(math.sqrt(squares[k]), decays[k], f"spring {self._spring_name(k)}", ("springs", k))
+            for k in sorted(worst)
+        )
+
+    def _spring_name(self, k: int) -> str:
+        spring = self.springs[k]
+        return f"'{spring.name}'" if spring.name else f"'{spring.between[0]}'-'{spring.between[1]}'"
+
+    def _rows(self, weights: Sequence[float]) -> list[float]:
+        """For each spring the sum over springs at its ends of weight |cos of the angle between them| / mass."""
+        masses = self.masses or {}
+        pinned = {pin if pin in masses else list(masses)[int(pin)] for pin in self.pins}
+        inverse = {
+            name: 0.0 if mass.fixed or name in pinned else 1.0 / (self.mass if mass.mass is None else mass.mass)
+            for name, mass in masses.items()
+        }
+        directions: list[tuple[float, ...]] = []
+        at: dict[str, list[int]] = {name: [] for name in masses}
+        for k, spring in enumerate(self.springs):
+            start, end = (masses[name].position for name in spring.between)
+            length = math.dist(start, end)
+            directions.append(tuple((b - a) / length for a, b in zip(start, end, strict=True)) if length else ())
+            for name in spring.between:
+                at[name].append(k)
+
+        def cosine(k: int, other: int) -> float:
+            if not directions[k] or not directions[other]:
+                return 1.0
+            return abs(sum(a * b for a, b in zip(directions[k], directions[other], strict=True)))
+
+        return [
+            sum(
+                weights[other] * (1.0 if other == k else cosine(k, other)) * inverse[name]
+                for name in spring.between
+                for other in at[name]
+            )
+            for k, spring in enumerate(self.springs)
+        ]
 
     def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Shape]:
         """A cloth as a sheet, else masses as spheres and springs as coils or lines."""

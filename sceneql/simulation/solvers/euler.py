@@ -29,3 +29,7 @@ class Euler(Solver):
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """max |1 + h lambda|."""
         return EULER.growth(jacobian, step)
+
+    def oscillation(self, frequency: float, decay: float, step: float) -> float:
+        """That of the tableau."""
+        return EULER.oscillation(frequency, decay, step)

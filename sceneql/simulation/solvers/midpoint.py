@@ -28,3 +28,7 @@ class Midpoint(Solver):
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """max |R(h lambda)|, R(z) = 1 + z + z^2/2."""
         return MIDPOINT.growth(jacobian, step)
+
+    def oscillation(self, frequency: float, decay: float, step: float) -> float:
+        """That of the tableau."""
+        return MIDPOINT.oscillation(frequency, decay, step)

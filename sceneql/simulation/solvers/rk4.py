@@ -28,3 +28,7 @@ class Rk4(Solver):
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """max |R(h lambda)|, R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24."""
         return CLASSIC.growth(jacobian, step)
+
+    def oscillation(self, frequency: float, decay: float, step: float) -> float:
+        """That of the tableau."""
+        return CLASSIC.oscillation(frequency, decay, step)

@@ -68,3 +68,7 @@ class RungeKutta(Solver):
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """max |R(h lambda)| with the stability function of the tableau."""
         return self.tableau.growth(jacobian, step)
+
+    def oscillation(self, frequency: float, decay: float, step: float) -> float | None:
+        """That of the tableau, for fixed steps."""
+        return None if self.tolerance is not None else self.tableau.oscillation(frequency, decay, step)

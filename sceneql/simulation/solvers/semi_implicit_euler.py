@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from cmath import sqrt
 from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import FixedTime, Solver, field
@@ -41,3 +42,10 @@ class SemiImplicitEuler(Solver):
         matrix = np.eye(len(change)) + change
         matrix[positions] += step * change[np.asarray(partner)[positions]]
         return float(np.abs(np.linalg.eigvals(matrix)).max(initial=0.0))
+
+    def oscillation(self, frequency: float, decay: float, step: float) -> float:
+        """Larger root of g^2 - (2 - step decay - (step frequency)^2) g + 1 - step decay."""
+        product = 1.0 - step * decay
+        half = 0.5 * (1.0 + product - (step * frequency) ** 2)
+        root = sqrt(complex(half * half - product))
+        return max(abs(half + root), abs(half - root))

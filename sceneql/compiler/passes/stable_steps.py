@@ -1,0 +1,101 @@
+"""Warnings of fixed steps that the script's own numbers show to be unstable, before anything runs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import cast
+
+from sceneql.graph import Island, Task
+from sceneql.kinds import Force, Model, Solver
+from sceneql.kinds.stable_step import Oscillation, stable_step
+from sceneql.language.scope import Entry
+from sceneql.language.script import Script
+from sceneql.language.tree import Mapping as MappingNode
+from sceneql.language.tree import Node, Sequence
+from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.span import Span
+
+SLACK = 1.0 + 1e-6
+NOTABLE = 10.0
+"""Growth over the whole run from which on a method that is stable at no step is warned of."""
+STIFF = ("implicit_euler", "tr_bdf2", "radau", "auto")
+"""Solvers without a bound to name as a remedy, where there are such words."""
+
+
+def warn_of_steps(
+    script: Script,
+    tasks: Mapping[str, Task],
+    groups: Iterable[Island],
+    end: float,
+    words: Iterable[str],
+    found: Diagnostics,
+) -> None:
+    """Warn where an island's step exceeds the bound that its models tell by their own fields.
+
+    ``end`` [s] of the run; ``words`` are those of the solvers' family.
+    """
+    remedy = [word for word in STIFF if word in set(words)]
+    for island in groups:
+        solver = tasks[island.solver]
+        step = getattr(solver.kind, "step", None)
+        if not isinstance(step, float) or cast(Solver, solver.kind).oscillation(1.0, 0.0, 1e-3) is None:
+            continue
+        damped = any(type(cast(Force, tasks[force].kind)).potential is Force.potential for force, _ in island.forces)
+        for name in island.models:
+            entry = script.sections.get("models", {}).get(name)
+            for fastest in cast(Model, tasks[name].kind).fastest(name):
+                wrong = _wrong(cast(Solver, solver.kind), solver.word, step, fastest, end, damped)
+                if wrong is not None:
+                    message, smaller = wrong
+                    place = (None if entry is None else _place(entry, fastest.at)) or tasks[name].span
+                    origin = "" if place is None else f" ({place.source.name}:{place.line})"
+                    help = f"{'take a smaller step, or ' if smaller else ''}let {' or '.join(remedy)} march it"
+                    text = message.format(what=f"{fastest.what}{origin}")
+                    found.warning("unstable-step", text, solver.span or place, help=help)
+                    break
+
+
+def _wrong(
+    solver: Solver, word: str, step: float, fastest: Oscillation, end: float, damped: bool
+) -> tuple[str, bool] | None:
+    """What is wrong with the step, if anything, and whether a smaller one is right.
+
+    ``damped``: something else may damp the oscillation.
+    """
+    scale = max(fastest.frequency, fastest.decay)
+
+    def growth(scaled: float) -> float:
+        return cast(float, solver.oscillation(fastest.frequency, fastest.decay, scaled / scale))
+
+    bound = stable_step(growth) / scale
+    if bound > 0.0:
+        if step <= bound * SLACK:
+            return None
+        return f"dt = {duration(step)} exceeds {duration(bound)}, set by {{what}}", True
+    logarithm = math.log10(growth(step * scale)) * end / step
+    if damped or logarithm < math.log10(NOTABLE):
+        return None
+    swing = f"{{what}} swings 1e{logarithm:.0f} times as far after {duration(end)}"
+    return f"{word} is stable at no step: with dt = {duration(step)} {swing}", False
+
+
+def _place(entry: Entry, path: Iterable[str | int]) -> Span | None:
+    """Where a field stands; the entry itself where it is not written."""
+    node: Node | None = entry.fields
+    for step in path:
+        if isinstance(node, MappingNode) and step in node.entries:
+            node = node.entries[step]
+        elif isinstance(node, Sequence) and isinstance(step, int):
+            node = node.items[step]
+        else:
+            return entry.span
+    return None if node is None else node.span
+
+
+def duration(seconds: float) -> str:
+    """``0.63 ms``: three digits, in the unit in which they are easiest to read."""
+    for unit, scale in (("s", 1.0), ("ms", 1e3), ("us", 1e6)):
+        if seconds * scale >= 0.1:
+            return f"{seconds * scale:.3g} {unit}"
+    return f"{seconds * 1e9:.3g} ns"

@@ -1,0 +1,136 @@
+"""Steps told to be stable or not: by `check` from the script alone, by `explain` from the spectrum, and by running."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sceneql import pipeline
+from sceneql.compiler.catalogue import Catalogue
+from sceneql.failure import RunFailure
+from sceneql.kinds.stable_step import stable_step
+from sceneql.simulation.models.mass_spring import MassSpring
+from sceneql.simulation.run import Run
+from sceneql.simulation.stability import stability
+
+PENDULUM = """\
+sceneql: 1
+define: {k: 1e6 N/m, dt: 1 ms, c: 0 N*s/m}
+clock: {end: 2 s}
+models:
+  swing:
+    mass_spring:
+      masses: {pivot: {fixed: yes}, bob: {position: 1 0 0 m, mass: 1 kg}}
+      springs:
+        - {between: [pivot, bob], stiffness: k, damping: c, name: tether}
+forces: [gravity]
+solvers: {main: {rk4: {step: dt}}}
+outputs: {table: {record: {of: [swing.bob.position]}}}
+"""
+NETS = {
+    "lattice": "{count: 4 5 3, spacing: 0.3 m, shear: 0.7}",
+    "cloth": "{cells: 5 6, size: 2 3 m, shear: 0.5, bend: 0.1}",
+    "rope": "{from: 0 0 0 m, to: 1 0 0 m, count: 12}",
+}
+ONE_NET = "models: {{net: {{mass_spring: {{{net}: {how}, stiffness: 200 N/m, damping: 0.1 N*s/m}}}}}}\n"
+CHAIN = """\
+models:
+  net:
+    mass_spring:
+      masses: {a: {fixed: yes}, b: {position: 1 0 0 m}, c: {position: 2 1 0 m, mass: 20 g}, d: {position: 2 2 1 m}}
+      springs: [{between: [a, b]}, {between: [b, c], stiffness: 3 kN/m}, {between: [c, d]}, {between: [d, b]}]
+"""
+TAIL = "solvers: {main: {rk4: {step: 1 ms}}}\nclock: {end: 1 s}\noutputs: {data: {record: {of: [net.energy]}}}\n"
+
+
+def loaded(tmp_path, script, *sets):
+    path = tmp_path / "scene.yaml"
+    path.write_text(script)
+    return pipeline.load(path, sets=sets)
+
+
+def warnings(graph):
+    return [found.message.replace(found.span.source.name, "scene.yaml") for found in graph.warnings]
+
+
+def test_a_step_beyond_the_bound_is_warned_of_with_the_spring_that_sets_it(tmp_path):
+    assert warnings(loaded(tmp_path, PENDULUM)) == []
+    graph = loaded(tmp_path, PENDULUM, "define.dt=1/60 s")
+    assert warnings(graph) == ["dt = 16.7 ms exceeds 2.83 ms, set by spring 'tether' (scene.yaml:9)"]
+    assert "smaller step" in graph.warnings[0].help
+    assert graph.warnings[0].span.text == "main"
+    half = loaded(tmp_path, PENDULUM, "solvers.main={semi_implicit_euler: {step: 3 ms}}")
+    assert warnings(half) == ["dt = 3 ms exceeds 2 ms, set by spring 'tether' (scene.yaml:9)"]
+
+
+def test_a_method_without_a_stable_step_says_how_far_it_swings(tmp_path):
+    (message,) = warnings(loaded(tmp_path, PENDULUM, "solvers.main={euler: {step: 1 ms}}"))
+    assert message == (
+        "euler is stable at no step: with dt = 1 ms spring 'tether' (scene.yaml:9) swings 1e301 times as far after 2 s"
+    )
+    assert warnings(loaded(tmp_path, PENDULUM, "solvers.main={euler: {step: 1 ms}}", "define.k=1 N/m")) == []
+    # A damped spring has a bound, and drag may damp one.
+    damped = ("solvers.main={euler: {step: 1 ms}}", "define.c=100 N*s/m")
+    assert warnings(loaded(tmp_path, PENDULUM, *damped)) == [
+        "dt = 1 ms exceeds 0.1 ms, set by spring 'tether' (scene.yaml:9)"
+    ]
+    drag = PENDULUM.replace("[gravity]", "[gravity, {drag: {linear: 1 N*s/m}}]")
+    assert warnings(loaded(tmp_path, drag, damped[0])) == []
+
+
+def test_adaptive_steps_are_not_warned_of(tmp_path):
+    assert warnings(loaded(tmp_path, PENDULUM, "define.dt=1 s", "solvers.main=dopri5")) == []
+
+
+@pytest.mark.parametrize("script", [*(ONE_NET.format(net=net, how=how) for net, how in NETS.items()), CHAIN])
+def test_the_bound_of_the_script_holds_and_is_near_the_spectrum(tmp_path, script):
+    """Frequencies told by fields alone are not below those of the Jacobian, and at most 30 % above."""
+    graph = loaded(tmp_path, script + TAIL)
+    (island,) = Run(graph).islands
+    model = next(task.kind for task in graph.tasks.values() if isinstance(task.kind, MassSpring))
+    told = max(fast.frequency for fast in model.fastest("net"))
+    from sceneql.simulation.modes import jacobian
+
+    matrix = jacobian(island.march)
+    of = island.march.system.partner
+    positions = np.flatnonzero(of >= 0)
+    sharp = math.sqrt(np.abs(np.linalg.eigvals(matrix[np.ix_(of[positions], positions)])).max())
+    assert sharp * (1 - 1e-6) <= told <= 1.3 * sharp
+
+
+@pytest.mark.parametrize("word", ["euler", "midpoint", "rk4", "semi_implicit_euler"])
+@given(st.floats(0.1, 10.0), st.floats(0.0, 30.0), st.floats(1e-3, 3.0))
+def test_growth_without_numpy_is_the_growth(word, frequency, decay, scaled):
+    solver = Catalogue().load("solvers", word).model_validate({})
+    step = scaled / max(frequency, decay)
+    matrix = np.array([[0.0, 1.0], [-(frequency**2), -decay]])
+    growth = solver.growth(matrix, np.array([1, -1]), step)
+    assert solver.oscillation(frequency, decay, step) == pytest.approx(growth, rel=1e-6)
+
+
+def test_known_stable_steps():
+    known = {"rk4": 2 * math.sqrt(2), "semi_implicit_euler": 2.0, "euler": 0.0, "midpoint": 0.0}
+    for word, bound in known.items():
+        solver = Catalogue().load("solvers", word).model_validate({})
+        assert stable_step(lambda z, solver=solver: solver.oscillation(1.0, 0.0, z)) == pytest.approx(bound, abs=1e-4)
+
+
+@pytest.mark.parametrize("word", ["rk4", "semi_implicit_euler"])
+def test_runs_hold_below_the_bound_and_fail_above(tmp_path, word):
+    """A spring without length and nothing else: linear, so that what grows at all fails."""
+    script = PENDULUM.replace("forces: [gravity]\n", "").replace("stiffness: k", "stiffness: k, rest: 0 m")
+    graph = loaded(tmp_path, script, f"solvers.main={{{word}: {{step: dt}}}}", "clock.end=10 s")
+    bound = stability(*(lambda run: (run.march, run.solver))(Run(graph).islands[0])).step
+    for factor in (0.95, 1.05):
+        again = loaded(tmp_path, script, f"solvers.main={{{word}: {{step: {factor * bound!r} s}}}}", "clock.end=10 s")
+        run = Run(again)
+        if factor < 1:
+            (moment,) = run.moments([10.0])
+            assert abs(moment.read("swing", "bob.position")[0]) < 1.1
+            assert not again.warnings
+        else:
+            with pytest.raises(RunFailure, match="unstable"):
+                list(run.moments([10.0]))
+            assert warnings(again)
