@@ -39,7 +39,7 @@ BOUND = 2 * math.sqrt(2) / 10
 
 def sceneql(folder, *args, code=0):
     done = subprocess.run(
-        [sys.executable, "-m", "sceneql.cli", *args], cwd=folder, capture_output=True, text=True, timeout=300
+        [sys.executable, "-m", "sceneql", *args], cwd=folder, capture_output=True, text=True, timeout=300
     )
     assert done.returncode == code, done.stdout + done.stderr
     assert "Traceback" not in done.stderr
@@ -108,7 +108,7 @@ def test_an_interrupted_film_keeps_its_frames(tmp_path):
     film = "film: {video: {size: 64 36, fps: 1000, renderer: normals}}"
     (tmp_path / "f.yaml").write_text(SPRING.format(step="1 ms", end="100 s", solver="rk4", output=film))
     process = subprocess.Popen(
-        [sys.executable, "-m", "sceneql.cli", "render", "f.yaml"], cwd=tmp_path, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-m", "sceneql", "render", "f.yaml"], cwd=tmp_path, stderr=subprocess.PIPE, text=True
     )
     while not (tmp_path / ".f.part.mp4").exists() and process.poll() is None:
         time.sleep(0.05)
