@@ -102,6 +102,9 @@ class Pattern:
     """Length of the array ``values`` that the jacobian is called with: the values first, then scratch of its own."""
     exact: bool
     """False: by differences of the rate, the pattern is full."""
+    tallies: NDArray[int64]
+    """Entries of y that have no slopes at all, such as the energy taken out: nothing depends on them, and what they
+    depend on is left out."""
 
 
 class Assembly(Protocol):

@@ -43,7 +43,7 @@ def simple(kernel: str, start: Sequence[float], numbers: Sequence[float] = (), p
     if paired:
         island.pair(0, len(start) // 2, len(start) // 2)
     island.term("internal", f"solver_kernels:{kernel}", (island.floats(numbers),))
-    return island.finish()
+    return island.finish(jacobian=True)
 
 
 def springs(squares: Sequence[float], dampings: Sequence[float]) -> System:
@@ -56,7 +56,7 @@ def springs(squares: Sequence[float], dampings: Sequence[float]) -> System:
     island.pair(position, velocity, n)
     at = island.floats(np.column_stack([squares, dampings]))
     island.term("internal", "solver_kernels:oscillators", (n, position, velocity, at))
-    return island.finish()
+    return island.finish(jacobian=True)
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ def balls(heights: Sequence[float], restitution: float, g: float = 9.81, mode: s
         island.contact("exact", kernels, ints, len(heights))
     else:
         island.contact("local", ("solver_kernels:floor_settle",), ints, len(heights))
-    return Balls(island.finish(), ints[3], ints[4])
+    return Balls(island.finish(jacobian=True), ints[3], ints[4])
 
 
 def fixed(stepper: Stepper, step: float) -> Stepper:

@@ -31,7 +31,13 @@ def full(size: int) -> Pattern | None:
     if size > BY_DIFFERENCES:
         return None
     starts = np.arange(size + 1, dtype=np.int64) * size
-    return Pattern(starts, np.tile(np.arange(size, dtype=np.int64), size), size * size + 3 * size, exact=False)
+    return Pattern(
+        starts,
+        np.tile(np.arange(size, dtype=np.int64), size),
+        size * size + 3 * size,
+        False,
+        np.zeros(0, dtype=np.int64),
+    )
 
 
 def section(
@@ -77,5 +83,6 @@ def _pattern(size: int, slopes: Sequence[Slopes]) -> tuple[Pattern, NDArray[int6
     kept, places = np.unique(rows * size + columns, return_inverse=True)
     starts = np.searchsorted(kept, np.arange(size + 1, dtype=np.int64) * size)
     entries = len(rows) - size
-    found = Pattern(starts.astype(np.int64), kept % max(size, 1), len(kept) + entries, exact=True)
+    tallies = np.setdiff1d(diagonal, np.concatenate([rows[:entries], columns[:entries]]))
+    found = Pattern(starts.astype(np.int64), kept % max(size, 1), len(kept) + entries, True, tallies)
     return found, places[:entries].astype(np.int64)

@@ -140,7 +140,7 @@ def try_steps(step, functions, t0, t1, y0, rate0, y1, work, settings, numbers, f
             return t1, GROWTH if large else REACHED
         counts[REJECTED] += 1
         counts[INDEX] = bad if bad >= 0 else largest(rate0)
-        if counts[CONTROLS] > 0 and bad < 0:
+        if counts[CONTROLS] > 0:
             h = min(work[0], 0.9 * h)
         else:
             h *= next_factor(error, 1.0, counts[ORDER], True)

@@ -1,0 +1,82 @@
+"""radau: the implicit method Radau IIA of order 5, for stiff systems."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from sceneql.kinds import FixedScalar, FixedTime, Solver, field
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.simulation.island import System
+    from sceneql.system import Prepared, Stepper
+
+KERNELS = "sceneql.simulation.solvers.radau_kernels"
+
+
+class Radau(Solver):
+    """Radau IIA of order 5: stiffly accurate and L-stable, so that stiffness never limits its steps.
+
+    Three implicit stages a step, solved by Newton's iteration on the island's Jacobian, which serves as long as the
+    iteration contracts well. The error of a step is held below ``absolute + tolerance |y|`` in the root mean square of
+    all entries. Source: Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.8.
+    """
+
+    tolerance: FixedScalar = field("Relative error of a step.", "1e-6", at_least=1e-14, below=1)
+    absolute: FixedScalar | tuple[FixedScalar, ...] | None = field(
+        "Absolute error of a step, in SI units, or one for each number of the state in turn; by default the number of "
+        "the relative.",
+        None,
+    )
+    first_step: FixedTime | None = field("Length of the first step; by default it is chosen.", None, above=0)
+    largest_step: FixedTime | None = field("No step is longer; by default any may be.", None, above=0)
+
+    def stepper(self) -> Stepper:
+        """Steps by the error of the embedded method."""
+        from sceneql.system import Stepper
+
+        return Stepper(
+            step=f"{KERNELS}:step",
+            dense=f"{KERNELS}:dense",
+            order=5,
+            first_step=self.first_step or 0.0,
+            adaptive=True,
+            tolerance=self.tolerance,
+            absolute=self.tolerance if self.absolute is None else self.absolute,
+            largest_step=self.largest_step or float("inf"),
+            jacobian=True,
+            prepare=f"{__name__}:prepare",
+            controls=True,
+        )
+
+    def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
+        """max |R(h lambda)| with R(z) = (1 + 2z/5 + z^2/20) / (1 - 3z/5 + 3z^2/20 - z^3/60)."""
+        import numpy as np
+
+        z = step * np.linalg.eigvals(jacobian).astype(complex)
+        return float(np.abs((1 + z * (0.4 + z / 20)) / (1 - z * (0.6 - z * (0.15 - z / 60)))).max(initial=0.0))
+
+
+def prepare(system: System, stepper: Stepper) -> Prepared:
+    """What the step works with: see radau_kernels.py."""
+    import numpy as np
+
+    from sceneql.simulation.solvers.radau_kernels import MEMORY
+    from sceneql.system import Prepared
+
+    n, pattern = len(system.y), system.pattern
+    assert pattern is not None
+    rtol = stepper.tolerance if stepper.adaptive else 1e-12
+    rounding = float(np.finfo(float).eps)
+    newton = max(10 * rounding / rtol, min(0.03, rtol**0.5))
+    absolute = np.broadcast_to(np.asarray(stepper.absolute if stepper.adaptive else rtol), n)
+    rows = np.repeat(np.arange(n), np.diff(pattern.starts))
+    nonzero = len(pattern.columns)
+    numbers = [
+        np.array([not stepper.adaptive, pattern.room, nonzero, len(pattern.tallies)]),
+        np.zeros(2 * n),
+        rows * n + pattern.columns,
+        pattern.tallies,
+    ]
+    work = MEMORY + 15 * n + pattern.room + 3 * n * n
+    return Prepared(np.concatenate([[rtol, newton], absolute]), np.concatenate(numbers), work)

@@ -1,0 +1,287 @@
+"""Stiff systems: digits against time, ours beside SciPy's Radau and CVODE in one run.
+
+    python tests/bench/bench_ode.py [problem ...]
+
+Digits are -log10 of the largest relative error at the end. Times are medians of the run alone: of the compiled march,
+and of the peers' calls with the rate and the analytic Jacobian in Python. Exact values: Hairer & Wanner's test set.
+"""
+
+from __future__ import annotations
+
+import math
+import statistics
+import sys
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from sksundae.cvode import CVODE
+
+from sceneql.pipeline import load
+from sceneql.simulation.march import March
+from sceneql.simulation.run import IslandRun
+
+REPEATS = 9
+TOLERANCES = [10.0 ** (-k / 2) for k in range(6, 25)]
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A system as a script, and for the peers as functions."""
+
+    start: dict
+    rate: dict
+    rhs: object
+    jacobian: object
+    end: float
+    exact: tuple
+    absolute: float | tuple = 1.0
+    """Absolute tolerances, in units of the relative one."""
+    fixed_absolute: float | None = None
+    digits: float = 0.0
+
+    def absolutes(self, rtol: float) -> list[float]:
+        if self.fixed_absolute is not None:
+            return [self.fixed_absolute] * len(self.start)
+        return list(rtol * np.broadcast_to(self.absolute, len(self.start)))
+
+    def score(self, y) -> float:
+        exact = np.array(self.exact)
+        return -math.log10(max(float(np.max(np.abs((np.asarray(y) - exact) / exact))), 1e-16))
+
+
+def van_der_pol(y):
+    return [y[1], ((1 - y[0] ** 2) * y[1] - y[0]) / 1e-6]
+
+
+def van_der_pol_jacobian(y):
+    return [[0, 1], [(-2 * y[0] * y[1] - 1) / 1e-6, (1 - y[0] ** 2) / 1e-6]]
+
+
+def robertson(y):
+    a, b = -0.04 * y[0] + 1e4 * y[1] * y[2], 3e7 * y[1] ** 2
+    return [a, -a - b, b]
+
+
+def robertson_jacobian(y):
+    a, b, c = -0.04, 1e4 * y[2], 1e4 * y[1]
+    return [[a, b, c], [-a, -b - 6e7 * y[1], -c], [0, 6e7 * y[1], 0]]
+
+
+def hires(y):
+    return [
+        -1.71 * y[0] + 0.43 * y[1] + 8.32 * y[2] + 0.0007,
+        1.71 * y[0] - 8.75 * y[1],
+        -10.03 * y[2] + 0.43 * y[3] + 0.035 * y[4],
+        8.32 * y[1] + 1.71 * y[2] - 1.12 * y[3],
+        -1.745 * y[4] + 0.43 * y[5] + 0.43 * y[6],
+        -280 * y[5] * y[7] + 0.69 * y[3] + 1.71 * y[4] - 0.43 * y[5] + 0.69 * y[6],
+        280 * y[5] * y[7] - 1.81 * y[6],
+        -280 * y[5] * y[7] + 1.81 * y[6],
+    ]
+
+
+def hires_jacobian(y):
+    p, q = 280 * y[7], 280 * y[5]
+    return [
+        [-1.71, 0.43, 8.32, 0, 0, 0, 0, 0],
+        [1.71, -8.75, 0, 0, 0, 0, 0, 0],
+        [0, 0, -10.03, 0.43, 0.035, 0, 0, 0],
+        [0, 8.32, 1.71, -1.12, 0, 0, 0, 0],
+        [0, 0, 0, 0, -1.745, 0.43, 0.43, 0],
+        [0, 0, 0, 0.69, 1.71, -p - 0.43, 0.69, -q],
+        [0, 0, 0, 0, 0, p, -1.81, q],
+        [0, 0, 0, 0, 0, -p, 1.81, -q],
+    ]
+
+
+def oregonator(y):
+    return [
+        77.27 * (y[1] + y[0] * (1 - 8.375e-6 * y[0] - y[1])),
+        (y[2] - (1 + y[0]) * y[1]) / 77.27,
+        0.161 * (y[0] - y[2]),
+    ]
+
+
+def oregonator_jacobian(y):
+    return [
+        [77.27 * (1 - 2 * 8.375e-6 * y[0] - y[1]), 77.27 * (1 - y[0]), 0],
+        [-y[1] / 77.27, -(1 + y[0]) / 77.27, 1 / 77.27],
+        [0.161, 0, -0.161],
+    ]
+
+
+PROBLEMS = {
+    "van_der_pol": Problem(
+        {"y": 2, "z": 0},
+        {"y": "z", "z": "((1-y^2)*z-y)/1e-6"},
+        van_der_pol,
+        van_der_pol_jacobian,
+        2.0,
+        (1.706167732170483, -0.8928097010247975),
+        absolute=(1.0, 1e-3),
+        digits=9.0,
+    ),
+    "robertson": Problem(
+        {"a": 1, "b": 0, "c": 0},
+        {"a": "-0.04*a + 1e4*b*c", "b": "0.04*a - 1e4*b*c - 3e7*b^2", "c": "3e7*b^2"},
+        robertson,
+        robertson_jacobian,
+        1e11,
+        (2.083340149701255e-8, 8.333360770334713e-14, 0.9999999791665050),
+        fixed_absolute=1e-18,
+        digits=8.5,
+    ),
+    "hires": Problem(
+        {f"y{k}": {1: 1, 8: 0.0057}.get(k, 0) for k in range(1, 9)},
+        {
+            "y1": "-1.71*y1 + 0.43*y2 + 8.32*y3 + 0.0007",
+            "y2": "1.71*y1 - 8.75*y2",
+            "y3": "-10.03*y3 + 0.43*y4 + 0.035*y5",
+            "y4": "8.32*y2 + 1.71*y3 - 1.12*y4",
+            "y5": "-1.745*y5 + 0.43*y6 + 0.43*y7",
+            "y6": "-280*y6*y8 + 0.69*y4 + 1.71*y5 - 0.43*y6 + 0.69*y7",
+            "y7": "280*y6*y8 - 1.81*y7",
+            "y8": "-280*y6*y8 + 1.81*y7",
+        },
+        hires,
+        hires_jacobian,
+        321.8122,
+        (
+            7.371312573325668e-4,
+            1.442485726316185e-4,
+            5.888729740967575e-5,
+            1.175651343283149e-3,
+            2.386356198831331e-3,
+            6.238968252742796e-3,
+            2.849998395185769e-3,
+            2.850001604814231e-3,
+        ),
+        digits=8.0,
+    ),
+    "oregonator": Problem(
+        {"a": 1, "b": 2, "c": 3},
+        {
+            "a": "77.27*(b + a*(1 - 8.375e-6*a - b))",
+            "b": "(c - (1 + a)*b)/77.27",
+            "c": "0.161*(a - c)",
+        },
+        oregonator,
+        oregonator_jacobian,
+        360.0,
+        (1.000814870318523, 1228.178521549917, 132.0554942846706),
+        digits=8.2,
+    ),
+}
+
+
+def ours(problem: Problem, folder: Path):
+    """Runs by tolerance: digits and milliseconds of the march."""
+    path = folder / "scene.yaml"
+
+    def run(rtol: float) -> tuple[float, float]:
+        absolute = ", ".join(f"{a:.17g}" for a in problem.absolutes(rtol))
+        start = ", ".join(f"{name}: {value}" for name, value in problem.start.items())
+        rate = ", ".join(f'{name}: "{text}"' for name, text in problem.rate.items())
+        path.write_text(
+            f"clock: {{end: {problem.end:.17g} s, fps: {10 / problem.end:.17g}}}\n"
+            f"models: {{system: {{equations: {{start: {{{start}}}, rate: {{{rate}}}}}}}}}\n"
+            f"solvers: {{main: {{radau: {{tolerance: {rtol:.17g}, absolute: [{absolute}]}}}}}}\n",
+            encoding="utf-8",
+        )
+        graph = load(path, pruned=False)
+        island = IslandRun(graph, graph.islands[0])
+        times = []
+        for _ in range(REPEATS):
+            march = March(island.march.system, island.solver.stepper(), problem.end)
+            y, _ = march.advance(problem.end)
+            times.append(1e3 * march.statistics.seconds)
+        return problem.score(y), statistics.median(times)
+
+    run(1e-3)
+    return run
+
+
+def timed(call) -> tuple[object, float]:
+    times = []
+    for _ in range(REPEATS):
+        started = time.perf_counter()
+        result = call()
+        times.append(1e3 * (time.perf_counter() - started))
+        if sum(times) > 4000:
+            break
+    return result, statistics.median(times)
+
+
+def scipys(problem: Problem):
+    start = list(problem.start.values())
+
+    def run(rtol: float) -> tuple[float, float]:
+        result, ms = timed(
+            lambda: solve_ivp(
+                lambda t, y: problem.rhs(y),
+                (0, problem.end),
+                start,
+                method="Radau",
+                jac=lambda t, y: np.array(problem.jacobian(y), dtype=float),
+                rtol=rtol,
+                atol=problem.absolutes(rtol),
+            )
+        )
+        return problem.score(result.y[:, -1]), ms
+
+    return run
+
+
+def cvodes(problem: Problem):
+    start = np.array(list(problem.start.values()), dtype=float)
+
+    def rate(t, y, out):
+        out[:] = problem.rhs(y)
+
+    def jacobian(t, y, rate, out):
+        out[:, :] = problem.jacobian(y)
+
+    def run(rtol: float) -> tuple[float, float]:
+        options = {"rtol": rtol, "atol": np.array(problem.absolutes(rtol)), "jacfn": jacobian, "max_num_steps": 10**6}
+        result, ms = timed(lambda: CVODE(rate, **options).solve([0.0, problem.end], start))
+        return problem.score(result.y[-1]) if result.success else math.nan, ms
+
+    return run
+
+
+def at_digits(curve: list[tuple[float, float]], digits: float) -> float:
+    """Milliseconds at so many digits, by straight lines through (digits, log ms)."""
+    points = sorted(curve)
+    xs, ys = [d for d, _ in points], [math.log(ms) for _, ms in points]
+    return math.exp(float(np.interp(digits, xs, ys)))
+
+
+def main(names: list[str]) -> None:
+    for name in names or PROBLEMS:
+        problem = PROBLEMS[name]
+        with tempfile.TemporaryDirectory() as folder:
+            run = ours(problem, Path(folder))
+            table = {rtol: run(rtol) for rtol in (1e-4, 1e-7, 1e-10)}
+        digits, ms = table[1e-7]
+        print(f"{name}: radau " + ", ".join(f"{rtol:g}: {d:.2f} digits {t:.3f} ms" for rtol, (d, t) in table.items()))
+        peer = scipys(problem)
+        curve = [peer(rtol) for rtol in (1e-6, 10**-6.5, 1e-7, 10**-7.5)]
+        reached = at_digits(curve, digits)
+        print("  scipy Radau " + ", ".join(f"{d:.2f}@{t:.1f}" for d, t in curve))
+        peer = cvodes(problem)
+        tried = [peer(rtol) for rtol in TOLERANCES]
+        tried = [one for one in tried if math.isfinite(one[0])]
+        nearest = min(tried, key=lambda one: abs(one[0] - digits))
+        print("  CVODE " + ", ".join(f"{d:.2f}@{t:.1f}" for d, t in tried))
+        print(
+            f"  digits {digits:.2f} (bar {problem.digits}); {reached / ms:.0f}x SciPy's Radau (bar 60), "
+            f"{nearest[1] / ms:.1f}x CVODE with {nearest[0]:.2f} digits (bar 15)"
+        )
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
