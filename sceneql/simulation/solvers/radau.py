@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from pydantic import field_validator
+
+from sceneql.failure import LimitRefused, RunFailure
 from sceneql.kinds import FixedScalar, FixedTime, Solver, field
 
 if TYPE_CHECKING:
@@ -11,6 +14,8 @@ if TYPE_CHECKING:
     from sceneql.simulation.island import System
     from sceneql.system import Prepared, Stepper
 
+LARGEST = 400
+"""Entries of y."""
 KERNELS = "sceneql.simulation.solvers.radau_kernels"
 
 
@@ -30,6 +35,13 @@ class Radau(Solver):
     )
     first_step: FixedTime | None = field("Length of the first step; by default it is chosen.", None, above=0)
     largest_step: FixedTime | None = field("No step is longer; by default any may be.", None, above=0)
+
+    @field_validator("absolute")
+    @classmethod
+    def _is_positive(cls, absolute: float | tuple[float, ...] | None) -> float | tuple[float, ...] | None:
+        if absolute is not None and not all(a > 0 for a in (absolute if isinstance(absolute, tuple) else (absolute,))):
+            raise ValueError("an absolute tolerance must be greater than 0")
+        return absolute
 
     def stepper(self) -> Stepper:
         """Steps by the error of the embedded method."""
@@ -65,10 +77,18 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     from sceneql.system import Prepared
 
     n, pattern = len(system.y), system.pattern
-    assert pattern is not None
+    if pattern is None or n > LARGEST:
+        raise LimitRefused(
+            f"radau factors full matrices: {n} numbers are more than the {LARGEST} it is good for",
+            None,
+            "use tr_bdf2, or fewer masses",
+        )
+    if isinstance(stepper.absolute, tuple) and len(stepper.absolute) != n:
+        message = f"`absolute` has {len(stepper.absolute)} numbers, one for each of the state's {n} is needed"
+        raise RunFailure(message, part="radau", time=0.0, span=None)
     rtol = stepper.tolerance if stepper.adaptive else 1e-12
     rounding = float(np.finfo(float).eps)
-    newton = max(10 * rounding / rtol, min(0.03, rtol**0.5))
+    newton = max(10 * rounding / rtol, min(3e-3, 0.1 * rtol**0.5))
     absolute = np.broadcast_to(np.asarray(stepper.absolute if stepper.adaptive else rtol), n)
     rows = np.repeat(np.arange(n), np.diff(pattern.starts))
     nonzero = len(pattern.columns)
