@@ -10,7 +10,8 @@ Kernel signatures (numba; the types are in system_kernels.py), all ``-> None`` u
     term(t, y, rate, floats, ints)          adds its part to rate (n,). Forces add newtons to the velocity entries
     gap(t, y, gaps, floats, ints)           writes signed distances [m] of its contact pairs, > 0 apart (exact mode)
     impact(t, y, pair, floats, ints)        changes y by the impulse of that pair (exact mode)
-    settle(t0, t1, y0, rate0, y1, floats, ints)   backs each mass off to its own impact within the step (local mode)
+    settle(t0, t1, y0, rate0, y1, floats, ints)   backs each mass off to its own impact within the step (local mode);
+                                            where floats[1] > 0 it only lowers that to when the step should end
     step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints) -> error   one step of a solver: writes
                                             y1; the error is scaled by the tolerance (accept when <= 1), 0 for fixed
                                             steps
@@ -161,6 +162,9 @@ class Assembly(Protocol):
 
     def start(self) -> Any:
         """The state reserved so far (n,), at the start of the run."""
+
+    def numbers(self) -> Any:
+        """The floats stored so far; of values that vary in time, those at the start."""
 
     def line(self) -> Span | None:
         """Where in the script the word stands that is being assembled."""

@@ -42,7 +42,8 @@ MOST_REPEATS = 100
 """Impacts for each pair at one instant before the contacts count as contradictory."""
 
 CHANGED_AT = 1
-"""floats[1]: a contact sets it to 1 when its hold changed the state."""
+"""floats[1]: a contact sets it to 1 when its hold changed the state. Before a settle that is to change nothing it is
+the end of the step, which contacts lower to where it should end instead; 0 before the one that counts."""
 
 MARCH = types.int64(I, F, F, A, A, A, A, A, A, A, I, A, I, A, I, A, I)
 
@@ -223,6 +224,13 @@ def march(
             if reached < t1 - t0:
                 t1 = t0 + reached
         if counts[LOCAL] > 0:
+            floats[CHANGED_AT] = t1
+            settle(t0, t1, y0, rate0, y1, floats, ints)
+            if floats[CHANGED_AT] < t1:
+                t1 = floats[CHANGED_AT]
+                counts[PENDING] = -1
+                step(functions, t0, t1 - t0, y0, rate0, y1, work, settings, numbers, floats, ints)
+            floats[CHANGED_AT] = 0.0
             settle(t0, t1, y0, rate0, y1, floats, ints)
             rate(t1, y1, rate1, floats, ints)
         if leaving.size > 0:

@@ -10,23 +10,16 @@ from sceneql.kinds import (
     DrawnRef,
     FixedLength,
     Gives,
-    Object,
     Ref,
     Scalar,
     field,
     quantity_type,
 )
 from sceneql.quantities import dimension as dim
-from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
-from sceneql.simulation.contacts.moving import is_moving, shifted
-from sceneql.simulation.shift import APART
 
 if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies, ModelState
-
-SHAPES = ("plane", "sphere", "box")
-"""Names of shapes in the order of their numbers in the kernels."""
 
 TALLY = ("hits.count", "hits.first.time", "hits.last.time", "hits.last.speed", "rest.time")
 MOST_EXACT = 8
@@ -66,13 +59,14 @@ class Collision(Contact):
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies, others: tuple[Ref, ...]) -> None:
         """Add the contacts of one model with the objects. Raises ScriptError for one that cannot be collided with."""
-        from sceneql.simulation.contacts.impulse_kernels import INSTANT
+        from sceneql.simulation.contacts.colliders import surfaces
+        from sceneql.simulation.contacts.impulse_kernels import HEAD, INSTANT
         from sceneql.simulation.contacts.resting_kernels import PAIR
 
-        written = {ref.name: ref for ref in self.between or ()}
-        objects = [number for ref in others for number in _object(written.get(ref.name, ref), assembly)]
-        if not objects:
+        if not others:
             return
+        written = {ref.name: ref for ref in self.between or ()}
+        objects = surfaces([written.get(ref.name, ref) for ref in others], assembly, HEAD)
         exact = self.mode == "exact" or (self.mode == "auto" and assembly.body_count() <= MOST_EXACT)
         nan = float("nan")
         tally_at = assembly.floats([0.0, nan, nan, 0.0, nan])
@@ -83,7 +77,7 @@ class Collision(Contact):
             assembly.floats([self.thickness]),
             tally_at,
             assembly.floats([0.0] * (pairs * PAIR)),
-            assembly.floats([nan] * (bodies.count * INSTANT if exact else 0)),
+            assembly.floats([nan] * (bodies.count * INSTANT) if exact else [0.0] * 3),
             len(others),
         )
         masses = (bodies.position_at, bodies.velocity_at, bodies.work_at, bodies.mass_at, bodies.inverse_at)
@@ -112,24 +106,3 @@ class Collision(Contact):
             return 0.0 if output == "hits.last.speed" else float("nan")
         best = known[np.argmin(times[known]) if output == "hits.first.time" else np.argmax(times[known])]
         return float(column[best])
-
-
-def _object(ref: Ref, assembly: Assembly) -> tuple[int, ...]:
-    """The integers of an object (surface_kernels)."""
-    kind = assembly.object(ref)
-    try:
-        here = kind.collider(assembly)
-        if not is_moving(kind):
-            poses = (0, here.position_at, here.rotation_at, here.position_at, here.rotation_at)
-        else:
-            before, after = _shifted(kind, -APART, assembly), _shifted(kind, APART, assembly)
-            poses = (assembly.floats([APART]), *before, *after)
-    except (TypeError, ValueError) as error:
-        raise ScriptError([Diagnostic("no-collider", f"'{ref.name}': {error}", ref.span)]) from None
-    return (SHAPES.index(here.shape), here.position_at, here.rotation_at, here.size_at, *poses)
-
-
-def _shifted(kind: Object, by: float, assembly: Assembly) -> tuple[int, int]:
-    """Position and rotation of an object's collider a little earlier or later."""
-    there = shifted(kind, by, assembly).collider(assembly)
-    return there.position_at, there.rotation_at

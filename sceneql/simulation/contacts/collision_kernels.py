@@ -41,7 +41,7 @@ from sceneql.simulation.contacts.resting_kernels import (
     set_velocity,
     support,
 )
-from sceneql.simulation.contacts.surface_kernels import MOVING, OBJECT, surface, velocity
+from sceneql.simulation.contacts.shape_kernels import MOVING, OBJECT, surface, velocity
 from sceneql.system_kernels import GAP, IMPACT, TERM
 
 CHANGED = 1

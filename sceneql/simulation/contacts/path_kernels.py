@@ -10,7 +10,7 @@ from numba import types
 
 from sceneql.kernels import inlined, kernel
 from sceneql.simulation.contacts.impulse_kernels import STILL
-from sceneql.simulation.contacts.surface_kernels import half_depth, surface
+from sceneql.simulation.contacts.shape_kernels import DEPTH, clear, surface
 from sceneql.system_kernels import A, F, I, N
 
 PATH = 13
@@ -92,39 +92,54 @@ def root(path, floats, ints, at, reach, contact, deflate, low, f_low, high, f_hi
     return last
 
 
+@inlined
+def clear_piece(path, length, s, ds, floats, ints, at, reach):
+    """Whether it is proved that a body of that reach is clear of the object from s to s + ds."""
+    x, y, z = place(path, s + 0.5 * ds)
+    return clear(floats, ints, at, x, y, z, 0.5 * ds * length + reach)
+
+
 @kernel(types.float64(A, A, I, N, F))
 def first_contact(path, floats, ints, at, reach):
     """Where on the path (0 <= s <= 1) a body of that reach first enters the object at ints[at:]; NEVER if nowhere.
 
-    The gap changes no faster than the body moves, so a step of gap/speed cannot miss; below that, steps of half the
-    object's depth cannot jump over it. A body that touches at the start and approaches has s = 0; one that leaves
-    is followed until it comes back.
+    Pieces of the path are proved to be clear of the object, halved where they are not, down to those that are shorter
+    than half the object's depth, which cannot jump over it: there the gap is looked at. A body that touches at the
+    start and approaches has s = 0; one that leaves is followed until it comes back.
     """
+    length = length_bound(path)
+    if clear_piece(path, length, 0.0, 1.0, floats, ints, at, reach):
+        return NEVER
     x, y, z = place(path, 0.0)
     d, nx, ny, nz = surface(floats, ints, at, x, y, z)
-    gap = d - reach
-    last = gap_at(path, 1.0, floats, ints, at, reach)
-    length = length_bound(path)
-    if gap > 0.0 and last > 0.0 and gap + last > length:
-        return NEVER
+    start = d - reach
     touch = TOUCH * max(1.0, max(abs(x), max(abs(y), abs(z))))
-    leaving = gap <= touch
+    leaving = start <= touch
     approach = (path[3] * nx + path[4] * ny + path[5] * nz) * path[12]
     if leaving and approach < -STILL * path[12]:
         return 0.0
     if length == 0.0:
         return NEVER
-    smallest = min(0.125, (half_depth(floats, ints, at) + reach) / length)
-    contact = min(gap, 0.0)
+    smallest = min(0.125, (floats[ints[at + DEPTH]] + reach) / length)
+    contact = min(start, 0.0)
     slack = touch if leaving else 0.0
-    start, low, above, s = gap, 0.0, gap, 0.0
+    low, s, ds = 0.0, 0.0, 0.5
     while s < 1.0:
-        s = min(1.0, s + max(gap / length, smallest))
+        ds = min(ds, 1.0 - s)
+        while ds > smallest and not clear_piece(path, length, s, ds, floats, ints, at, reach):
+            ds *= 0.5
+        if ds > smallest:
+            s, ds = s + ds, 2.0 * ds
+            leaving, contact, slack, low = False, 0.0, 0.0, s
+            continue
+        s = min(1.0, s + smallest)
         gap = gap_at(path, s, floats, ints, at, reach)
         if gap < contact - slack:
             if leaving:  # not yet apart: the root at the start is divided out
                 return root(path, floats, ints, at, reach, start, True, 0.0, approach, s, (gap - start) / s)
+            above = gap_at(path, low, floats, ints, at, reach)
             return root(path, floats, ints, at, reach, 0.0, False, low, above, s, gap)
         if gap > touch:
-            leaving, contact, slack, low, above = False, 0.0, 0.0, s, gap
+            leaving, contact, slack, low = False, 0.0, 0.0, s
+        ds = 2.0 * smallest
     return NEVER

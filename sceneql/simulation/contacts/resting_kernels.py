@@ -2,7 +2,8 @@
 """Resting contact: the normal force that carries a body, Coulomb's friction, and what keeps it on the surface.
 
 A pair is (body k, object j), numbered k * objects + j. Its memory in the floats: state, free normal acceleration, load
-(normal force by mass), pull along the surface (force without friction by mass), direction of sliding (3).
+(normal force by mass), pull along the surface (force without friction by mass), direction of sliding (3), load at the
+end of the step before (`local` mode; NaN where there was none).
 
 The direction of Coulomb's friction turns at a rate of friction / speed: infinitely stiff as the speed goes to 0. So a
 body slower than CREEP sticks: friction there goes against the pull, not against the velocity, and what velocity is
@@ -11,7 +12,9 @@ left is taken away once the pull is too weak. Only one that slides to its end, w
 
 import math
 
-from sceneql.kernels import inlined
+from numba import types
+
+from sceneql.kernels import inlined, kernel
 from sceneql.simulation.contacts.impulse_kernels import (
     BODIES,
     FRICTION,
@@ -30,11 +33,13 @@ from sceneql.simulation.contacts.impulse_kernels import (
     WORK,
     scale_of,
 )
-from sceneql.simulation.contacts.surface_kernels import OBJECT, acceleration, bend, surface, velocity
+from sceneql.simulation.contacts.shape_kernels import FOUR, OBJECT, acceleration, bend, surface, velocity
+from sceneql.system_kernels import A, F, I, N
 
-PRESS, LOAD, PULL, ALONG = 1, 2, 3, 4
-PAIR = 7
-FREE, SLIDES, STICKS = 0.0, 1.0, 2.0
+PRESS, LOAD, PULL, ALONG, EARLIER = 1, 2, 3, 4, 7
+PAIR = 8
+FREE, SLIDES, STICKS, CREEPS = 0.0, 1.0, 2.0, 3.0
+"""CREEPS, in `local` mode: slides, but so slowly that friction is left to the end of the step (slide_kernels)."""
 
 NEAR = 1e-9
 """Distance, as a part of the coordinates, within which a free pair's normal acceleration is worth knowing."""
@@ -63,7 +68,7 @@ def set_velocity(k, x, y, z, state, floats, ints):
     state[at], state[at + 1], state[at + 2] = x, y, z
 
 
-@inlined
+@kernel(types.void(F, N, F, F, F, F, F, F, A, I))
 def come_to_rest(t, memory, vx, vy, vz, nx, ny, nz, floats, ints):
     """Note that a pair rests from t on: sliding along v (relative to the surface), or sticking."""
     if math.isnan(floats[ints[TALLY] + REST_TIME]):
@@ -73,13 +78,14 @@ def come_to_rest(t, memory, vx, vy, vz, nx, ny, nz, floats, ints):
     slip = math.sqrt(tx * tx + ty * ty + tz * tz)
     slides = slip >= CREEP or floats[ints[FRICTION]] == 0.0
     floats[memory] = SLIDES if slides else STICKS
+    floats[memory + EARLIER] = math.nan
     if slip > 0.0:
         floats[memory + ALONG] = tx / slip
         floats[memory + ALONG + 1] = ty / slip
         floats[memory + ALONG + 2] = tz / slip
 
 
-@inlined
+@kernel(types.boolean(F, N, N, A, A, I))
 def keep(t, k, j, y, floats, ints):
     """Hold a resting pair on its surface, or let it go when it has left: whether anything changed."""
     memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
@@ -100,7 +106,11 @@ def keep(t, k, j, y, floats, ints):
     if changed:
         to = ints[POSITION] + 3 * k
         y[to], y[to + 1], y[to + 2] = px - d * nx, py - d * ny, pz - d * nz
+        # What presses does work on that way.
+        y[ints[WORK]] -= floats[ints[MASS] + k] * floats[memory + PRESS] * d
         set_velocity(k, vx - vn * nx, vy - vn * ny, vz - vn * nz, y, floats, ints)
+    if floats[memory] == CREEPS:
+        return changed
     rx, ry, rz = rx - vn * nx, ry - vn * ny, rz - vn * nz
     slip = math.sqrt(rx * rx + ry * ry + rz * rz)
     most = floats[ints[FRICTION]] * floats[memory + LOAD]
@@ -112,7 +122,7 @@ def keep(t, k, j, y, floats, ints):
     return changed
 
 
-@inlined
+@kernel(FOUR(N, N, A, A, A, I))
 def pressing(k, j, y, rate, floats, ints):
     """Second derivative of the gap [m/s^2] and the normal (3) there."""
     at = HEAD + OBJECT * j
@@ -183,7 +193,7 @@ def rub(k, y, rate, floats, ints):
     for j in range(ints[OBJECTS]):
         memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
         most = mu * floats[memory + LOAD]
-        if floats[memory] == FREE or mu == 0.0:
+        if floats[memory] == FREE or floats[memory] == CREEPS or mu == 0.0:
             continue
         at = HEAD + OBJECT * j
         px, py, pz, vx, vy, vz = body_of(ints, k, y)
@@ -217,7 +227,7 @@ def rub(k, y, rate, floats, ints):
         rate[ints[WORK]] += floats[ints[MASS] + k] * most * (dx * vx + dy * vy + dz * vz)
 
 
-@inlined
+@kernel(types.void(types.boolean, A, A, A, I))
 def support(near, y, rate, floats, ints):
     """Take from the acceleration of bodies that rest what pushes into the surface, and add Coulomb's friction.
 

@@ -51,5 +51,12 @@ class Box(Solid):
 
     def collider(self, assembly: Assembly) -> Collider:
         """Center, rotation and half sides."""
-        half = Value(Call("mul", (Number(0.5), self.size.expr), Type((3,), LENGTH)), self.size.span)
-        return Collider("box", assembly.value(self.position), assembly.value(self.rotation), assembly.value(half))
+        half = Call("mul", (Number(0.5), self.size.expr), Type((3,), LENGTH))
+        least = Call("min", (half,), Type((), LENGTH))
+        return Collider(
+            "box",
+            assembly.value(self.position),
+            assembly.value(self.rotation),
+            assembly.value(Value(half, self.size.span)),
+            assembly.value(Value(least, self.size.span)),
+        )

@@ -8,19 +8,20 @@ from typing import TYPE_CHECKING, ClassVar
 
 from pydantic import field_validator
 
-from sceneql.kinds import Exceeds, File, FixedAngle, Moment, field
+from sceneql.kinds import Collider, Exceeds, File, FixedAngle, Moment, field
 from sceneql.simulation.mesh_file import LARGEST_FILE, Loaded, load
 from sceneql.simulation.placement import Placed, Scale, affine, apply, compose
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Shape
+    from sceneql.system import Assembly
 
 
 class Mesh(Placed):
     """Triangles of an OBJ file. Edges that turn by less than `crease` are shaded smooth, others stay sharp.
 
-    It has no inside, so it is no member of a union, intersection or difference. A file of more than 64 MiB or 4 million
-    triangles is refused.
+    It has no field, so it is no member of a union, intersection or difference; a closed one can be collided with. A
+    file of more than 64 MiB or 4 million triangles is refused.
     """
 
     imports: ClassVar[tuple[str, ...]] = ("trimesh",)
@@ -72,3 +73,14 @@ class Mesh(Placed):
         normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
         surface = moment.surface(name, self.material, self.color)
         yield Triangles(name, surface, apply(whole, loaded.vertices), triangles, normals)
+
+    def collider(self, assembly: Assembly) -> Collider:
+        """Its triangles. Raises ValueError for a mesh that is open, or whose scale varies."""
+        from sceneql.simulation.contacts.shapes.mesh import collider
+
+        if not self.scale.constant:
+            raise ValueError("a mesh whose scale varies in time cannot be collided with")
+        loaded = self._load()
+        vertices = loaded.vertices * assembly.initial(self.scale)
+        place = assembly.value(self.position), assembly.value(self.rotation)
+        return collider(vertices, loaded.triangles, *place, assembly)

@@ -84,6 +84,7 @@ class Plane(Object):
             assembly.value(place),
             assembly.floats([1.0, 0.0, 0.0, 0.0]),
             assembly.value(Value(normal, self.normal.span)),
+            assembly.floats([INFINITY]),
         )
 
 

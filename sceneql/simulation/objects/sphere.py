@@ -48,6 +48,5 @@ class Sphere(Solid):
 
     def collider(self, assembly: Assembly) -> Collider:
         """Center, rotation and radius."""
-        return Collider(
-            "sphere", assembly.value(self.position), assembly.value(self.rotation), assembly.value(self.radius)
-        )
+        radius = assembly.value(self.radius)
+        return Collider("sphere", assembly.value(self.position), assembly.value(self.rotation), radius, radius)

@@ -1,0 +1,86 @@
+"""The integers by which contact kernels know the surfaces of objects (shape_kernels)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from sceneql.kinds import Collider, Object, Ref, Value
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.simulation.contacts.shapes import implicit
+from sceneql.simulation.shift import APART, later
+
+if TYPE_CHECKING:
+    from sceneql.system import Assembly
+
+
+def surfaces(refs: Sequence[Ref], assembly: Assembly, at: int) -> tuple[int, ...]:
+    """The objects' integers, to stand at ``at`` in a contact's, each shape's further ones behind those of all.
+
+    Raises ScriptError for an object that cannot be collided with.
+    """
+    from sceneql.simulation.contacts.shape_kernels import OBJECT
+
+    heads: list[int] = []
+    tail: list[int] = []
+    for ref in refs:
+        head, data = _surface(ref, assembly)
+        heads += [*head, at + len(refs) * OBJECT + len(tail)]
+        tail += data
+    return (*heads, *tail)
+
+
+def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """All but the last of an object's integers, and the further ones of its shape."""
+    from sceneql.simulation.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, SURFACE_TYPE, number_of
+
+    kind = assembly.object(ref)
+    try:
+        here = _collider(kind, assembly)
+        if not is_moving(kind):
+            poses = (0, here.position_at, here.rotation_at, here.position_at, here.rotation_at)
+        else:
+            before, after = _shifted(kind, -APART, assembly), _shifted(kind, APART, assembly)
+            poses = (assembly.floats([APART]), *before, *after)
+    except (TypeError, ValueError) as error:
+        raise ScriptError([Diagnostic("no-collider", f"'{ref.name}': {error}", ref.span)]) from None
+    shape = import_module(f"sceneql.simulation.contacts.shapes.{here.shape}_kernels")
+    signatures = {"surface": SURFACE_TYPE, "bend": BEND_TYPE, "clear": CLEAR_TYPE}
+    numbers = [number_of(getattr(shape, name), signature) for name, signature in signatures.items()]
+    places = (here.position_at, here.rotation_at, here.size_at, here.depth_at)
+    return (*numbers, *places, *poses), here.data
+
+
+def _has_own(kind: Object) -> bool:
+    return type(kind).collider is not Object.collider
+
+
+def _collider(kind: Object, assembly: Assembly) -> Collider:
+    """An object's own collider, or that of its field. Raises TypeError, ValueError."""
+    return kind.collider(assembly) if _has_own(kind) else implicit.collider(kind, assembly)
+
+
+def _shifted(kind: Object, by: float, assembly: Assembly) -> tuple[int, int]:
+    """Position and rotation of an object's collider a little earlier or later."""
+    there = shifted(kind, by, assembly)
+    if not _has_own(kind):
+        return implicit.place(there, assembly)
+    collider = there.collider(assembly)
+    return collider.position_at, collider.rotation_at
+
+
+def is_moving(kind: Object) -> bool:
+    """Whether any of its values varies in time."""
+    return any(isinstance(value, Value) and not value.constant for _, value in kind)
+
+
+def shifted(kind: Object, by: float, assembly: Assembly) -> Object:
+    """The object with every value taken ``by`` [s] later. Raises ValueError for one that follows a solved model."""
+    changed = {
+        name: replace(value, expr=later(value.expr, by, assembly.formula))
+        for name, value in kind
+        if isinstance(value, Value) and not value.constant
+    }
+    return kind.model_copy(update=changed)

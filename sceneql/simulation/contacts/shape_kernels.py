@@ -1,0 +1,133 @@
+# mypy: ignore-errors
+"""What contacts know of a surface: three kernels of its shape, reached by address, and how it moves.
+
+A shape's file has
+
+    surface(floats, ints, at, x, y, z) -> d, nx, ny, nz   signed distance [m] of a point, > 0 outside, and the unit
+                                    normal outwards there; of a field that is no distance: near its surface, as good
+                                    as one
+    bend(floats, ints, at, x, y, z, vx, vy, vz)   v . H v [m/s^2] with H the second derivative of the distance: how
+                                    fast a straight path leaves the surface
+    clear(floats, ints, at, x, y, z, radius)   whether it is proved that no point of the object is within radius [m];
+                                    asked of bodies that come from outside
+
+An object is OBJECT integers at ints[at:]: the three addresses; offsets into the floats of position (3), rotation (4,
+unit quaternion [w, x, y, z]), size (the shape's own) and depth (how deep a point can be inside, or less); of the
+seconds between its poses, 0 if it never moves; of position and rotation so much earlier and so much later; and the
+place in ints of further integers of the shape. Velocities and accelerations are central differences of the poses.
+"""
+
+from typing import Any
+
+import numba
+from numba import types
+
+from sceneql.kernels import address, function_at, inlined, kernel
+from sceneql.system_kernels import A, F, I, N
+
+SURFACE, BEND, CLEAR, PLACE, ROTATION, SIZE, DEPTH, MOVING, BEFORE = range(9)
+AFTER = BEFORE + 2
+DATA = AFTER + 2
+OBJECT = DATA + 1
+
+FOUR = types.UniTuple(F, 4)
+THREE = types.UniTuple(F, 3)
+SURFACE_TYPE = FOUR(A, I, N, F, F, F)
+BEND_TYPE = F(A, I, N, F, F, F, F, F, F)
+CLEAR_TYPE = types.boolean(A, I, N, F, F, F, F)
+
+_uncompiled: list[Any] = []
+"""Functions that stand for their addresses where numba is switched off."""
+
+
+def number_of(function: Any, signature: Any) -> int:
+    """The integer by which kernels find another kernel of that signature."""
+    if not numba.config.DISABLE_JIT:
+        return int(address(function, types.FunctionType(signature)))
+    _uncompiled.append(function)
+    return len(_uncompiled) - 1
+
+
+def kernel_at(signature: Any) -> Any:
+    """What makes of a ``number_of`` the kernel."""
+    return _uncompiled.__getitem__ if numba.config.DISABLE_JIT else function_at(types.FunctionType(signature))
+
+
+surface_at, bend_at, clear_at = kernel_at(SURFACE_TYPE), kernel_at(BEND_TYPE), kernel_at(CLEAR_TYPE)
+
+
+@inlined
+def surface(floats, ints, at, x, y, z):
+    """Signed distance and normal of the object at ints[at:]."""
+    return surface_at(ints[at + SURFACE])(floats, ints, at, x, y, z)
+
+
+@inlined
+def bend(floats, ints, at, x, y, z, vx, vy, vz):
+    """How fast a straight path leaves the surface of the object at ints[at:]."""
+    return bend_at(ints[at + BEND])(floats, ints, at, x, y, z, vx, vy, vz)
+
+
+@inlined
+def clear(floats, ints, at, x, y, z, radius):
+    """Whether it is proved that the object at ints[at:] has no point within a radius."""
+    return clear_at(ints[at + CLEAR])(floats, ints, at, x, y, z, radius)
+
+
+@inlined
+def turn(floats, at, x, y, z):
+    """A vector turned by the quaternion at floats[at:]."""
+    w, a, b, c = floats[at], floats[at + 1], floats[at + 2], floats[at + 3]
+    p = b * z - c * y + w * x
+    q = c * x - a * z + w * y
+    r = a * y - b * x + w * z
+    return x + 2.0 * (b * r - c * q), y + 2.0 * (c * p - a * r), z + 2.0 * (a * q - b * p)
+
+
+@inlined
+def unturn(floats, at, x, y, z):
+    """A vector turned back."""
+    w, a, b, c = floats[at], -floats[at + 1], -floats[at + 2], -floats[at + 3]
+    p = b * z - c * y + w * x
+    q = c * x - a * z + w * y
+    r = a * y - b * x + w * z
+    return x + 2.0 * (b * r - c * q), y + 2.0 * (c * p - a * r), z + 2.0 * (a * q - b * p)
+
+
+@inlined
+def inward(floats, ints, at, x, y, z):
+    """A point in the object's own coordinates."""
+    p = ints[at + PLACE]
+    return unturn(floats, ints[at + ROTATION], x - floats[p], y - floats[p + 1], z - floats[p + 2])
+
+
+@inlined
+def carried(floats, ints, at, pose, x, y, z):
+    """Where a point that is fixed to the object stands in its pose BEFORE or AFTER."""
+    a, b, c = inward(floats, ints, at, x, y, z)
+    a, b, c = turn(floats, ints[at + pose + 1], a, b, c)
+    p = ints[at + pose]
+    return a + floats[p], b + floats[p + 1], c + floats[p + 2]
+
+
+@kernel(THREE(A, I, N, F, F, F))
+def velocity(floats, ints, at, x, y, z):
+    """Velocity [m/s] of the object's own point at (x, y, z)."""
+    if ints[at + MOVING] == 0:
+        return 0.0, 0.0, 0.0
+    apart = floats[ints[at + MOVING]]
+    a, b, c = carried(floats, ints, at, BEFORE, x, y, z)
+    p, q, r = carried(floats, ints, at, AFTER, x, y, z)
+    return (p - a) / (2.0 * apart), (q - b) / (2.0 * apart), (r - c) / (2.0 * apart)
+
+
+@kernel(THREE(A, I, N, F, F, F))
+def acceleration(floats, ints, at, x, y, z):
+    """Acceleration [m/s^2] of the object's own point at (x, y, z)."""
+    if ints[at + MOVING] == 0:
+        return 0.0, 0.0, 0.0
+    apart = floats[ints[at + MOVING]]
+    a, b, c = carried(floats, ints, at, BEFORE, x, y, z)
+    p, q, r = carried(floats, ints, at, AFTER, x, y, z)
+    square = apart * apart
+    return (p - 2.0 * x + a) / square, (q - 2.0 * y + b) / square, (r - 2.0 * z + c) / square
