@@ -222,7 +222,19 @@ def test_masses_fall_on_a_ball_in_both_modes_alike(tmp_path):
     np.testing.assert_allclose(ends[0], ends[1], atol=1e-9)
 
 
-def test_what_cannot_be_collided_with_is_told_with_its_place(tmp_path):
-    script = ball("{between: [ball, ring]}", "{ring: {torus: {}}}", "position: 0 1 0 m", 1, DOPRI5)
-    with pytest.raises(ScriptError, match=r"'ring': Torus cannot be collided with(.|\n)*scene.yaml:5"):
+@pytest.mark.parametrize(
+    ("objects", "text"),
+    [
+        ("{ring: {torus: {tube: 0.1 m + 0.01 m/s*time}}}", "'ring': a surface that changes its shape in time"),
+        ("{ring: {mesh: {file: open.obj}}}", "'ring': its mesh is open: 3 edges"),
+        ("{ring: {mesh: {file: twice.obj}}}", "'ring': its mesh has edges with more than two triangles"),
+        ("{ring: {torus: {position: 0.5 1 0 m}}}", "mass 0 of 'ball' starts inside 'ring', 0.15 m deep"),
+        ("{ring: {plane: {height: 2 m}}}", "mass 0 of 'ball' starts inside 'ring', 1 m deep"),
+    ],
+)
+def test_what_cannot_be_collided_with_is_told_with_its_place(tmp_path, objects, text):
+    (tmp_path / "open.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    (tmp_path / "twice.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n")
+    script = ball("{between: [ball, ring]}", objects, "position: 0 1 0 m", 0.1, DOPRI5)
+    with pytest.raises(ScriptError, match=text + r"(.|\n)*scene.yaml:5"):
         watch(tmp_path, script, [1], "ball.a.position")

@@ -32,6 +32,20 @@ def surfaces(refs: Sequence[Ref], assembly: Assembly, at: int) -> tuple[int, ...
     return (*heads, *tail)
 
 
+def must_be_outside(model: str, refs: Sequence[Ref], ints: Sequence[int], assembly: Assembly) -> None:
+    """Raise ScriptError where a moving body starts with its center inside an object; ``ints`` are the contact's."""
+    import numpy as np
+
+    from sceneql.simulation.contacts.start_kernels import deepest
+
+    depth, body, other = deepest(assembly.start(), assembly.numbers(), np.array(ints, dtype=np.int64))
+    if depth > 0.0:
+        ref = refs[other]
+        text = f"mass {body} of '{model}' starts inside '{ref.name}', {depth:.3g} m deep"
+        help = f"move it outside, or name under `between` what may touch, without '{ref.name}'"
+        raise ScriptError([Diagnostic("starts-inside", text, ref.span or assembly.line(), help)])
+
+
 def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """All but the last of an object's integers, and the further ones of its shape."""
     from sceneql.simulation.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, SURFACE_TYPE, number_of
@@ -45,7 +59,7 @@ def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, 
             before, after = _shifted(kind, -APART, assembly), _shifted(kind, APART, assembly)
             poses = (assembly.floats([APART]), *before, *after)
     except (TypeError, ValueError) as error:
-        raise ScriptError([Diagnostic("no-collider", f"'{ref.name}': {error}", ref.span)]) from None
+        raise ScriptError([Diagnostic("no-collider", f"'{ref.name}': {error}", ref.span or assembly.line())]) from None
     shape = import_module(f"sceneql.simulation.contacts.shapes.{here.shape}_kernels")
     signatures = {"surface": SURFACE_TYPE, "bend": BEND_TYPE, "clear": CLEAR_TYPE}
     numbers = [number_of(getattr(shape, name), signature) for name, signature in signatures.items()]

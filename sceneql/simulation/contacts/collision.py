@@ -1,4 +1,4 @@
-"""collision: masses bounce off, slide on and rest on planes, spheres and boxes."""
+"""collision: masses bounce off, slide on and rest on objects."""
 
 from __future__ import annotations
 
@@ -26,13 +26,18 @@ MOST_EXACT = 8
 
 
 class Collision(Contact):
-    """Impacts and resting contact of masses with planes, spheres and boxes; the radius of a mass counts.
+    """Impacts and resting contact of masses with objects of any shape; the radius of a mass counts.
 
     An impact turns the normal velocity round, scaled by the restitution (Newton 1687), with an impulse of Coulomb's
     friction across it; a resting mass feels the normal force that keeps it outside and Coulomb's friction (1785). The
     kinetic energy that is lost is counted as dissipated. Mode `exact` locates every impact to rounding and restarts
     the solver there, up to the end of infinitely many bounces; `local` backs each mass off to its own impact within
     the step, for very many; `auto` is exact for up to 8 masses.
+
+    Planes, spheres, boxes and closed meshes have exact distances. Any other object with an inside is touched where its
+    field is zero; a mass with a radius at that distance from it, but in front of the sharp edges of combined solids,
+    where it is the field over its slope. An object may move, but not change its shape. A fast mass sees what is thicker
+    than a ten-thousandth of the object's size.
     """
 
     gives: ClassVar[Mapping[str, Gives]] = {
@@ -44,8 +49,8 @@ class Collision(Contact):
     }
 
     between: tuple[DrawnRef, ...] | None = field(
-        "What collides: models and objects, as `[ball, floor]`; by default all models with masses and every object "
-        "that can be collided with.",
+        "What collides: models and objects, as `[ball, floor]`; by default all models with masses and all planes, "
+        "spheres and boxes.",
         None,
     )
     restitution: Scalar = field("Normal speed after an impact as a part of that before.", "0.5", at_least=0, at_most=1)
@@ -59,14 +64,15 @@ class Collision(Contact):
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies, others: tuple[Ref, ...]) -> None:
         """Add the contacts of one model with the objects. Raises ScriptError for one that cannot be collided with."""
-        from sceneql.simulation.contacts.colliders import surfaces
+        from sceneql.simulation.contacts.colliders import must_be_outside, surfaces
         from sceneql.simulation.contacts.impulse_kernels import HEAD, INSTANT
         from sceneql.simulation.contacts.resting_kernels import PAIR
 
         if not others:
             return
         written = {ref.name: ref for ref in self.between or ()}
-        objects = surfaces([written.get(ref.name, ref) for ref in others], assembly, HEAD)
+        touched = [written.get(ref.name, ref) for ref in others]
+        objects = surfaces(touched, assembly, HEAD)
         exact = self.mode == "exact" or (self.mode == "auto" and assembly.body_count() <= MOST_EXACT)
         nan = float("nan")
         tally_at = assembly.floats([0.0, nan, nan, 0.0, nan])
@@ -82,6 +88,7 @@ class Collision(Contact):
         )
         masses = (bodies.position_at, bodies.velocity_at, bodies.work_at, bodies.mass_at, bodies.inverse_at)
         ints = (*masses, bodies.radius_at, bodies.count, *numbers, *objects)
+        must_be_outside(bodies.model, touched, ints, assembly)
         folder = "sceneql.simulation.contacts"
         if exact:
             kernels = (f"{folder}.collision_kernels:gap", f"{folder}.collision_kernels:impact")

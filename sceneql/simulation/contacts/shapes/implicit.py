@@ -76,7 +76,9 @@ def collider(kind: Object, assembly: Assembly) -> Collider:
         len(tape.code),
         *packed(tape).tolist(),
     )
-    return Collider("implicit", *place(kind, assembly), assembly.floats([size]), assembly.floats([SMALLEST * size]), data)
+    return Collider(
+        "implicit", *place(kind, assembly), assembly.floats([size]), assembly.floats([SMALLEST * size]), data
+    )
 
 
 def place(kind: Object, assembly: Assembly) -> tuple[int, int]:

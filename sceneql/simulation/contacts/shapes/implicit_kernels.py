@@ -105,9 +105,7 @@ def nearest(floats, ints, at, x, y, z):
     apart = 1e-5 * size
     for _ in range(MOST_NEWTON):
         for k in range(3):
-            _, u, v, w = slope(
-                floats, ints, at, px + apart * (k == 0), py + apart * (k == 1), pz + apart * (k == 2)
-            )
+            _, u, v, w = slope(floats, ints, at, px + apart * (k == 0), py + apart * (k == 1), pz + apart * (k == 2))
             h[0, k], h[1, k], h[2, k] = m * (u - a) / apart, m * (v - b) / apart, m * (w - c) / apart
             h[k, k] += 1.0
         ux, uy, uz = solve(h, a, b, c)

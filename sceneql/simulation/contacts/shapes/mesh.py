@@ -52,7 +52,7 @@ def collider(vertices: Floats, triangles: Ints, position_at: int, rotation_at: i
 def _welded(vertices: Floats, triangles: Ints) -> tuple[Floats, Ints]:
     """Vertices at one place made one; triangles without area left out."""
     places, same = np.unique(vertices, axis=0, return_inverse=True)
-    triangles = same.reshape(-1)[triangles]
+    triangles = same.reshape(-1)[triangles].astype(np.int32)
     corners = places[triangles]
     area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
     return places, triangles[area > 0.0]
