@@ -3,88 +3,67 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError, ValidationInfo, field_validator, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
-from sceneql.kinds import (
-    Color,
-    Damping,
-    FixedLength,
-    FixedMass,
-    FixedVelocity,
-    Gives,
-    MaterialRef,
-    Model,
-    Moment,
-    Quantity,
-    Stiffness,
-    field,
-    quantity_type,
-)
+from sceneql.kinds import Damping, FixedMass, Gives, Stiffness, field, quantity_type
 from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
-from sceneql.quantities.expression import Type
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.simulation import bodies as point_masses
-from sceneql.simulation.models.nets import CORNERS, EDGES, SIDES, Cloth, Lattice, MassPoint, Net, Rope, Spring, turned
+from sceneql.simulation.models.nets import (
+    CORNERS,
+    EDGES,
+    SIDES,
+    Cloth,
+    Filling,
+    Lattice,
+    MassPoint,
+    Net,
+    Rope,
+    Spring,
+    alike,
+    turned,
+)
+from sceneql.simulation.springs import SpringModel, check_pins
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats, Shape
-    from sceneql.system import Assembly, Bodies, ModelState, Slopes
+    from sceneql.frame import Floats
+    from sceneql.system import Assembly, ModelState
 
-PLACES = {"lattice": SIDES, "cloth": (*EDGES, *CORNERS), "rope": ("start", "end")}
+PLACES: Mapping[str, tuple[str, ...]] = {
+    "lattice": SIDES,
+    "cloth": (*EDGES, *CORNERS),
+    "rope": ("start", "end"),
+    "solid": SIDES,
+}
 SPRING_OUTPUTS = {
     "length": Gives(quantity_type(dim.LENGTH), "Length of the spring."),
     "tension": Gives(quantity_type(dim.FORCE), "Force of its stretch, > 0 when it pulls (without damping)."),
 }
-MOST_COILS = 40
 
 
-class MassSpring(Model):
+class MassSpring(SpringModel):
     """Point masses tied by springs: m a = F + sum of (k (L - L0) + c dL/dt) along each spring.
 
-    Named masses and springs, or a whole ``lattice``, ``cloth`` or ``rope``. Damping acts along the springs, so that it
-    leaves momentum and angular momentum alone; its power is counted as dissipated. Sources: Hooke, De potentia
-    restitutiva (1678); Provot, Deformation constraints in a mass-spring model (1995).
+    Named masses and springs, a whole ``lattice``, ``cloth`` or ``rope``, or a ``solid`` of any shape. Damping acts
+    along the springs, so that it leaves momentum and angular momentum alone; its power is counted as dissipated.
+    Sources: Hooke, De potentia restitutiva (1678); Provot, Deformation constraints in a mass-spring model (1995).
     """
-
-    gives: ClassVar[Mapping[str, Gives]] = {
-        **point_masses.BODY_OUTPUTS,
-        "stretch": Gives(Type(), "Largest |L - L0| / L0 of a spring."),
-        "springs": Gives(quantity_type(dim.LENGTH, (None, 2, 3)), "The two ends of every spring."),
-    }
 
     masses: dict[str, MassPoint] | None = field("Masses by name.", None)
     springs: tuple[Spring, ...] = field("Springs between named masses.", ())
     lattice: Lattice | None = field("A block of masses.", None)
     cloth: Cloth | None = field("A sheet of masses.", None)
     rope: Rope | None = field("A line of masses.", None)
+    solid: Filling | None = field("A block of masses in the shape of an object.", None)
     mass: FixedMass = field("Mass of each that says nothing else.", "0.1 kg", above=0)
     stiffness: Stiffness = field("Force for a stretch, of each spring that says nothing else.", "100 N/m", above=0)
     damping: Damping = field("Force for a speed of stretching, likewise.", "0 N*s/m", at_least=0)
-    pins: tuple[str, ...] = field(
-        "Masses that never move: names; of a lattice left, right, bottom, top, back, front; of a cloth left, right, "
-        "bottom, top and corners such as top_left; of a rope start, end; or a number, counted from 0.",
-        (),
-    )
-    velocity: FixedVelocity = field("Velocity of all at the start.", "0 0 0 m/s")
-    spin: Annotated[tuple[float, float, float], Quantity(dim.FREQUENCY, (3,))] = field(
-        "Angular velocity at the start, about the center of mass [rad/s].", "0 0 0 rad/s"
-    )
-    radius: FixedLength | None = field(
-        "Radius of the masses in contacts and in the picture; by default a tenth of the shortest spring.",
-        None,
-        at_least=0,
-    )
-    look: Literal["auto", "coil", "line", "masses"] = field(
-        "How it draws itself: springs as coils or lines, or not at all; auto: coils when few, a cloth as a sheet.",
-        "auto",
-    )
-    material: MaterialRef | None = field("How it looks where no object draws it.", None)
-    color: Color | None = field("Color in place of the material's.", None)
 
     @field_validator("springs")
     @classmethod
@@ -107,34 +86,21 @@ class MassSpring(Model):
             raise ValidationError.from_exception_data(cls.__name__, wrong)
         return springs
 
-    @field_validator("pins")
-    @classmethod
-    def _pin_known_masses(cls, pins: tuple[str, ...], info: ValidationInfo) -> tuple[str, ...]:
-        known: set[str] = set(info.data.get("masses") or ())
-        known |= {place for shape, places in PLACES.items() if info.data.get(shape) for place in places}
-        for pin in pins:
-            if pin not in known and not pin.isdecimal():
-                raise ValueError(f"no mass is called '{pin}'; a pin is one of {', '.join(sorted(known))}, or a number")
-        return pins
-
     @model_validator(mode="after")
     def _is_one_net(self) -> MassSpring:
         given = [name for name in ("masses", *PLACES) if getattr(self, name) is not None]
         if len(given) != 1:
             said = f", not {' and '.join(given)}" if given else ""
-            raise ValueError(f"a mass_spring has one of `masses`, `lattice`, `cloth` and `rope`{said}")
+            raise ValueError(f"a mass_spring has one of `masses`, `lattice`, `cloth`, `rope` and `solid`{said}")
         if self.masses is not None and not self.masses:
             raise ValueError("no masses are given")
-        count = len(self.masses) if self.masses is not None else self._shaped().mass_count()
+        check_pins(self.pins, (*(self.masses or ()), *(PLACES.get(given[0], ()))))
+        shape = self.lattice or self.cloth or self.rope
+        count = len(self.masses) if self.masses is not None else shape.mass_count() if shape else None
         for pin in self.pins:
-            if pin.isdecimal() and int(pin) >= count and pin not in (self.masses or ()):
+            if count is not None and pin.isdecimal() and int(pin) >= count and pin not in (self.masses or ()):
                 raise ValueError(f"pin {pin}: the {count} masses are counted from 0")
         return self
-
-    def _shaped(self) -> Lattice | Cloth | Rope:
-        shaped = self.lattice or self.cloth or self.rope
-        assert shaped is not None
-        return shaped
 
     @classmethod
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
@@ -145,13 +111,42 @@ class MassSpring(Model):
         more = {f"{name}.{output}": gives for name in named for output, gives in SPRING_OUTPUTS.items()}
         return {**cls.gives, **point_masses.named_outputs(written.get("masses")), **more}
 
-    @cached_property
-    def net(self) -> Net:
+    def make(self, assembly: Assembly) -> tuple[Net, Floats, Floats]:
+        """The net with the numbers of single masses and springs."""
+        import numpy as np
+
+        net = self._net(assembly)
+        weights = np.full(len(net.points), self.mass)
+        blocks = alike(net)
+        if self.lattice is not None and self.lattice.rotation is not None:
+            points = turned(net.points, self.lattice.center, assembly.initial(self.lattice.rotation))
+            net = replace(net, points=points)
+        for k, mass in enumerate((self.masses or {}).values()):
+            weights[k] = self.mass if mass.mass is None else mass.mass
+        for spring, block in zip(self.springs, blocks, strict=False):
+            if spring.rest is not None:
+                block[0] = spring.rest
+            if spring.stiffness is not None:
+                block[1:3] = spring.stiffness, 0.0
+            if spring.damping is not None:
+                block[3:5] = spring.damping, 0.0
+        return net, weights, blocks
+
+    def _net(self, assembly: Assembly) -> Net:
         """Masses and springs, before any rotation at the start."""
         import numpy as np
 
-        if self.masses is None:
-            return self._shaped().net()
+        if self.solid is not None:
+            net = self.solid.net(assembly)
+            for pin in self.pins:
+                if pin.isdecimal() and int(pin) >= len(net.points):
+                    message = f"pin {pin}: the {len(net.points)} masses are counted from 0"
+                    raise ScriptError([Diagnostic("invalid", message, self.solid.object.span)])
+            return net
+        shape = self.lattice or self.cloth or self.rope
+        if shape is not None:
+            return shape.net()
+        assert self.masses is not None
         names = list(self.masses)
         pairs = [[names.index(end) for end in spring.between] for spring in self.springs]
         return Net(
@@ -161,100 +156,50 @@ class MassSpring(Model):
             places={name: k for k, name in enumerate(names)},
         )
 
-    @cached_property
-    def rest(self) -> Floats:
-        """(m,) lengths of the springs without force [m]."""
-        import numpy as np
+    def shared(self, assembly: Assembly) -> tuple[int, int]:
+        """Its own stiffness and damping."""
+        return assembly.value(self.stiffness), assembly.value(self.damping)
 
-        ends = self.net.points[self.net.pairs]
-        rest: Floats = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
-        for k, spring in enumerate(self.springs):
-            if spring.rest is not None:
-                rest[k] = spring.rest
-        return rest
+    def damped(self, blocks: Floats) -> bool:
+        """Whether any spring may be damped, now or later."""
+        always = self.damping.constant and self.damping.number() == 0.0
+        return super().damped(blocks) or (not always and bool(blocks[:, 4].any()))
 
-    @cached_property
-    def size(self) -> float:
-        """Radius of the masses [m]."""
-        if self.radius is not None:
-            return self.radius
-        some = self.rest[self.rest > 0]
-        return 0.1 * min(map(float, some)) if len(some) else 0.05
+    def start_velocities(self, count: int) -> Floats:
+        """Those of single masses, else the model's."""
+        velocities = super().start_velocities(count)
+        for k, mass in enumerate((self.masses or {}).values()):
+            if mass.velocity is not None:
+                velocities[k] = mass.velocity
+        return velocities
 
-    def assemble(self, name: str, assembly: Assembly) -> Bodies:
-        """Reserve the masses and add the forces of the springs."""
-        import numpy as np
-
-        from sceneql.simulation.models.mass_spring_kernels import BLOCK
-
-        net, points = self.net, self.net.points
-        n, m = len(net.points), len(net.pairs)
-        if self.lattice is not None and self.lattice.rotation is not None:
-            points = turned(points, self.lattice.center, assembly.initial(self.lattice.rotation))
-        fixed = np.zeros(n, dtype=bool)
-        for pin in self.pins:
-            fixed[net.places[pin] if pin in net.places else int(pin)] = True
-        each = tuple((self.masses or {}).values())
-        weights = np.full(n, self.mass)
-        velocities = np.tile(self.velocity, (n, 1))
-        for k, mass in enumerate(each):
+    def held(self, net: Net) -> Any:
+        """Pins and fixed masses."""
+        fixed = super().held(net)
+        for k, mass in enumerate((self.masses or {}).values()):
             fixed[k] |= mass.fixed
-            weights[k] = self.mass if mass.mass is None else mass.mass
-            velocities[k] = self.velocity if mass.velocity is None else mass.velocity
-        velocities += np.cross(self.spin, points - np.average(points, axis=0, weights=weights))
-        velocities[fixed] = 0.0
-        bodies = point_masses.reserve(name, assembly, points, velocities, weights, np.full(n, self.size), fixed)
-
-        blocks = np.zeros((m, BLOCK))
-        blocks[:, 0], blocks[:, 2], blocks[:, 4] = self.rest, net.stiffness, net.stiffness
-        for spring, block in zip(self.springs, blocks, strict=False):
-            if spring.stiffness is not None:
-                block[1:3] = spring.stiffness, 0.0
-            if spring.damping is not None:
-                block[3:5] = spring.damping, 0.0
-        blocks_at, stiffness_at = assembly.floats(blocks.ravel()), assembly.value(self.stiffness)
-        ints = (bodies.position_at, bodies.velocity_at, bodies.work_at, blocks_at, stiffness_at)
-        more = (assembly.value(self.damping), m, *net.pairs.ravel().tolist())
-        damped = bool(np.any(blocks[:, 3])) or not self.damping.constant or assembly.initial(self.damping) != 0.0
-        assembly.term(
-            "internal",
-            "sceneql.simulation.models.mass_spring_kernels:springs",
-            (*ints, *more),
-            lambda: _slopes(net, bodies, damped),
-        )
-        assembly.remember(blocks_at, stiffness_at)
-        return bodies
+        return fixed
 
     def read(self, output: str, state: ModelState) -> Any:
         """Any output of the manual, and those of named masses and springs."""
         import numpy as np
 
-        from sceneql.simulation.models.mass_spring_kernels import BLOCK, energy
+        from sceneql.simulation.models.mass_spring_kernels import BLOCK
 
         assert state.bodies is not None
-        blocks_at, stiffness_at = state.ints
-        if output in point_masses.BODY_OUTPUTS:
-            own = 0.0
-            if output in ("potential", "energy"):
-                at = state.bodies.position_at
-                own = energy(state.y, at, state.floats, blocks_at, stiffness_at, self.net.pairs)
-            return point_masses.read(output, state.bodies, state, own)
-        ends = point_masses.positions(state.bodies, state)[self.net.pairs]
-        if output == "springs":
-            return ends
-        lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
-        if output == "stretch":
-            stretched = self.rest > 0
-            parts = np.abs(lengths[stretched] - self.rest[stretched]) / self.rest[stretched]
-            return float(np.max(parts)) if len(parts) else 0.0
+        if output in self.gives:
+            return super().read(output, state)
         name, _, what = output.rpartition(".")
-        if what in SPRING_OUTPUTS:
-            k = [spring.name for spring in self.springs].index(name)
-            if what == "length":
-                return float(lengths[k])
-            own, part = state.floats[blocks_at + BLOCK * k + 1 : blocks_at + BLOCK * k + 3]
-            return float((own + part * state.floats[stiffness_at]) * (lengths[k] - self.rest[k]))
-        return point_masses.read_named(output, tuple(self.masses or ()), state.bodies, state)
+        if what not in SPRING_OUTPUTS:
+            return point_masses.read_named(output, tuple(self.masses or ()), state.bodies, state)
+        blocks_at, stiffness_at, _ = state.ints
+        k = [spring.name for spring in self.springs].index(name)
+        a, b = point_masses.positions(state.bodies, state)[self.net.pairs[k]]
+        length = float(np.linalg.norm(b - a))
+        if what == "length":
+            return length
+        own, part = state.floats[blocks_at + BLOCK * k + 1 : blocks_at + BLOCK * k + 3]
+        return float((own + part * state.floats[stiffness_at]) * (length - self.rest[k]))
 
     def fastest(self, name: str) -> tuple[Oscillation, ...]:
         """The fastest spring, and the one that is damped most, by the stiffness at both its ends.
@@ -267,9 +212,11 @@ class MassSpring(Model):
         if self.masses is None:
             if stiffness is None or damping is None:
                 return ()
-            factor = self._shaped().stiffest() / self.mass
-            shape = next(shape for shape in PLACES if getattr(self, shape) is not None)
-            found = Oscillation(math.sqrt(factor * stiffness), factor * damping, f"the springs of '{name}'", (shape,))
+            shape = self.solid or self.lattice or self.cloth or self.rope
+            assert shape is not None
+            factor = shape.stiffest() / self.mass
+            field_name = next(shape for shape in PLACES if getattr(self, shape) is not None)
+            found = Oscillation(math.sqrt(factor * stiffness), factor * damping, f"the springs of '{name}'", (field_name,))
             return (found,)
         given = [
             (
@@ -322,39 +269,3 @@ class MassSpring(Model):
             )
             for k, spring in enumerate(self.springs)
         ]
-
-    def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Shape]:
-        """A cloth as a sheet, else masses as spheres and springs as coils or lines."""
-        from sceneql.simulation.models import spring_look
-
-        assert state.bodies is not None
-        surface = moment.surface(name, self.material, self.color)
-        places = point_masses.positions(state.bodies, state).copy()
-        if self.net.triangles is not None and self.look == "auto":
-            yield spring_look.sheet(name, surface, places, self.net.triangles, 0.5 * self.size)
-            return
-        yield spring_look.spheres(name, surface, places, self.size)
-        few = len(self.net.pairs) <= MOST_COILS
-        if self.look == "coil" or (self.look == "auto" and few and self.rope is None):
-            yield spring_look.coils(name, surface, places[self.net.pairs], self.rest, self.size)
-        elif self.look != "masses":
-            radius = self.size if self.rope is not None else 0.15 * self.size
-            yield spring_look.lines(name, surface, places[self.net.pairs], radius)
-
-
-def _slopes(net: Net, bodies: Bodies, damped: bool) -> Slopes:
-    """Of each spring four blocks of 3x3 by positions; if damped, as many by velocities."""
-    import numpy as np
-
-    from sceneql.system import Slopes
-
-    ends = 3 * net.pairs
-    places = np.arange(3)
-    rows = np.repeat(np.repeat(ends, 2, axis=1)[:, :, None] + places, 3, axis=2).ravel() + bodies.velocity_at
-    columns = np.tile(np.tile(ends, 2)[:, :, None] + places, 3).ravel()
-    by = [bodies.position_at, bodies.velocity_at] if damped else [bodies.position_at]
-    return Slopes(
-        "sceneql.simulation.models.mass_spring_slopes_kernels:springs",
-        np.tile(rows, len(by)),
-        np.concatenate([columns + at for at in by]),
-    )

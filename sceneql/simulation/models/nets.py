@@ -21,6 +21,7 @@ from sceneql.kinds import (
     FixedScalar,
     FixedStiffness,
     FixedVelocity,
+    ObjectRef,
     Quantity,
     Record,
     Rotation,
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats, Ints
+    from sceneql.system import Assembly
 
 MOST_MASSES = 5_000_000
 SIDES = ("left", "right", "bottom", "top", "back", "front")
@@ -54,6 +56,18 @@ class Net:
     """Names for pins: indices or masks of points."""
     triangles: Ints | None = None
     """(k, 3) of a surface, counterclockwise seen from where it faces."""
+    line: bool = False
+    """Whether it is a rope."""
+
+
+def alike(net: Net) -> Floats:
+    """(m, 5) blocks (springs.SpringModel.make) of springs at rest as they stand, all with the model's numbers."""
+    import numpy as np
+
+    blocks = np.zeros((len(net.pairs), 5))
+    blocks[:, 0] = np.linalg.norm(net.points[net.pairs[:, 1]] - net.points[net.pairs[:, 0]], axis=1)
+    blocks[:, 2] = blocks[:, 4] = net.stiffness
+    return blocks
 
 
 def turned(points: Floats, center: Sequence[float], quaternion: Sequence[float]) -> Floats:
@@ -98,9 +112,74 @@ class Spring(Record):
         return self
 
 
-def _bounded(count: int) -> None:
+def _bounded(count: float) -> None:
     if count > MOST_MASSES:
         raise Exceeds(f"{count:.3g} masses: at most {MOST_MASSES:,} are possible")
+
+
+def neighbors(cells: Any, shear: float) -> tuple[NDArray[int64], Floats]:
+    """Springs (m, 2) between points of whole coordinates (n, 3) that differ by at most 1, and their parts (m,).
+
+    A part is 1 along an axis and ``shear`` along diagonals, which are left out for 0.
+    """
+    import numpy as np
+
+    index = np.full(np.max(cells, axis=0) + 1, -1, dtype=np.int64)
+    index[tuple(cells.T)] = np.arange(len(cells))
+    steps = [s for s in product((-1, 0, 1), repeat=3) if s > (0, 0, 0)]
+    pairs, parts = [np.zeros((0, 2), dtype=np.int64)], [np.zeros(0)]
+    for step in sorted(steps, key=lambda s: (sum(map(abs, s)), s)):
+        part = 1.0 if sum(map(abs, step)) == 1 else shear
+        if part == 0:
+            continue
+        here = tuple(slice(max(0, -s), c - max(0, s)) for s, c in zip(step, index.shape, strict=True))
+        there = tuple(slice(max(0, s), c - max(0, -s)) for s, c in zip(step, index.shape, strict=True))
+        found = np.stack([index[here].ravel(), index[there].ravel()], axis=1)
+        found = found[(found >= 0).all(axis=1)]
+        pairs.append(found)
+        parts.append(np.full(len(found), part))
+    return np.concatenate(pairs), np.concatenate(parts)
+
+
+def side_masks(cells: Any) -> dict[str, Any]:
+    """Masks by the names of SIDES, of points with whole coordinates (n, 3)."""
+    low, high = cells.min(axis=0), cells.max(axis=0)
+    masks = [mask for axis in range(3) for mask in (cells[:, axis] == low[axis], cells[:, axis] == high[axis])]
+    return dict(zip(SIDES, masks, strict=True))
+
+
+class Filling(Record):
+    """Masses at the places of a cubic grid inside an object, tied as those of a lattice."""
+
+    object: ObjectRef = field("The object; usually a hidden one.")
+    spacing: FixedLength = field("Distance of neighbors.", "0.1 m", above=0)
+    shear: FixedScalar = field(
+        "Stiffness of the diagonals as a part of the edges'; 0 leaves them out.", "1", at_least=0
+    )
+
+    def stiffest(self) -> float:
+        """Bound on (angular frequency)^2 mass / stiffness: that of an endless lattice."""
+        return Lattice(count=(3, 3, 3), shear=self.shear).stiffest()
+
+    def net(self, assembly: Assembly) -> Net:
+        """Raises ScriptError for an object that holds no two neighbors, LimitRefused for too many masses."""
+        from sceneql.failure import LimitRefused
+        from sceneql.simulation.fill import Inside, grid
+
+        def bound(count: float) -> None:
+            try:
+                _bounded(count)
+            except Exceeds as error:
+                raise LimitRefused(str(error), self.object.span, "use a larger spacing") from None
+
+        inside = Inside(self.object, assembly)
+        points, cells = grid(inside, self.spacing, bound)
+        if not len(points):
+            raise inside.refusal("no place of the grid lies in it; make the spacing smaller")
+        pairs, parts = neighbors(cells, self.shear)
+        if not len(pairs):
+            raise inside.refusal("no two neighbors of the grid lie in it; make the spacing smaller")
+        return Net(points=points, pairs=pairs, stiffness=parts, places=side_masks(cells))
 
 
 class Lattice(Record):
@@ -134,26 +213,13 @@ class Lattice(Record):
 
         count = np.array(self.count)
         grid = np.stack(np.meshgrid(*(np.arange(c) for c in count), indexing="ij"), axis=-1).reshape(-1, 3)
-        index = np.arange(len(grid)).reshape(self.count)
-        steps = [s for s in product((-1, 0, 1), repeat=3) if s > (0, 0, 0)]
-        pairs, parts = [], []
-        for step in sorted(steps, key=lambda s: (sum(map(abs, s)), s)):
-            part = 1.0 if sum(map(abs, step)) == 1 else self.shear
-            if part == 0:
-                continue
-            here = tuple(slice(max(0, -s), c - max(0, s)) for s, c in zip(step, self.count, strict=True))
-            there = tuple(slice(max(0, s), c - max(0, -s)) for s, c in zip(step, self.count, strict=True))
-            found = np.stack([index[here].ravel(), index[there].ravel()], axis=1)
-            pairs.append(found)
-            parts.append(np.full(len(found), part))
+        pairs, parts = neighbors(grid, self.shear)
         last = count - 1
-        masks = [grid[:, 0] == 0, grid[:, 0] == last[0], grid[:, 1] == 0, grid[:, 1] == last[1]]
-        masks += [grid[:, 2] == 0, grid[:, 2] == last[2]]
         return Net(
             points=np.array(self.center) + self.spacing * (grid - last / 2),
-            pairs=np.concatenate(pairs),
-            stiffness=np.concatenate(parts),
-            places=dict(zip(SIDES, masks, strict=True)),
+            pairs=pairs,
+            stiffness=parts,
+            places=side_masks(grid),
         )
 
 
@@ -263,6 +329,7 @@ class Rope(Record):
             pairs=np.stack([index[:-1], index[1:]], axis=1),
             stiffness=np.ones(self.count - 1),
             places={"start": index == 0, "end": index == self.count - 1},
+            line=True,
         )
 
 

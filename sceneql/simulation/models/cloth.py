@@ -1,0 +1,91 @@
+"""cloth: a sheet that resists stretching, shearing and bending."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Annotated
+
+from pydantic import model_validator
+
+from sceneql.kinds import Axis, FixedLength, FixedPosition, FixedScalar, FixedStiffness, Quantity, Rotation, field
+from sceneql.quantities import dimension as dim
+from sceneql.simulation.models.nets import CORNERS, EDGES, Net, turned
+from sceneql.simulation.models.nets import Cloth as Sheet
+from sceneql.simulation.springs import SpringModel, check_pins
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.system import Assembly
+
+
+class Cloth(SpringModel):
+    """A rectangle of cloth, whose weight and stiffnesses belong to the cloth: a finer mesh is the same cloth.
+
+    Masses stand at the corners of the cells. Springs along the cells' sides carry the ``stretch``, a tension in N/m
+    over the strain: k = stretch * width / length of the strip that a spring stands for. Springs along the diagonals
+    carry the ``shear`` likewise (k = shear: exact for square cells), and springs over two cells resist folding (Provot
+    1995). Damping is a part of the critical one of each spring with the masses at its ends, c = 2 damping sqrt(k m).
+    """
+
+    size: Annotated[tuple[float, float], Quantity(dim.LENGTH, (2,))] = field("Width and height.", "2 2 m", above=0)
+    cells: tuple[int, int] = field("Cells across the width and the height.", (20, 20), at_least=1)
+    center: FixedPosition = field("Where its middle starts.", "0 2 0 m")
+    facing: Axis = field("Where its front faces: y lies flat, z hangs with its top up.", "0 1 0")
+    rotation: Rotation | None = field("How it is turned besides, at the start.", None)
+    mass: Annotated[float, Quantity(dim.MASS / dim.LENGTH / dim.LENGTH)] = field(
+        "Mass of a square meter.", "0.2 kg/m^2", above=0
+    )
+    stretch: FixedStiffness = field("Tension, over a width, for a relative stretch.", "400 N/m", above=0)
+    shear: FixedStiffness = field("Shear force, over a width, for a shear angle.", "40 N/m", at_least=0)
+    bend: FixedStiffness = field("Stiffness over two cells, as that of `stretch`.", "4 N/m", at_least=0)
+    damping: FixedScalar = field("Damping as a part of the critical one.", "0.02", at_least=0)
+    thickness: FixedLength = field("Its thickness, in contacts and in the picture.", "5 mm", above=0)
+
+    @model_validator(mode="after")
+    def _has_its_corners(self) -> Cloth:
+        self._sheet()
+        check_pins(self.pins, (*EDGES, *CORNERS))
+        count = (self.cells[0] + 1) * (self.cells[1] + 1)
+        for pin in self.pins:
+            if pin.isdecimal() and int(pin) >= count:
+                raise ValueError(f"pin {pin}: the {count} masses are counted from 0")
+        return self
+
+    def _sheet(self) -> Sheet:
+        return Sheet(
+            size=self.size,
+            cells=self.cells,
+            center=self.center,
+            facing=self.facing,
+            shear=float(self.shear > 0),
+            bend=float(self.bend > 0),
+        )
+
+    def make(self, assembly: Assembly) -> tuple[Net, Floats, Floats]:
+        """The sheet with numbers by the areas that masses and springs stand for."""
+        import numpy as np
+
+        net = self._sheet().net()
+        columns, rows = self.cells
+        wide, high = self.size[0] / columns, self.size[1] / rows
+        place = np.stack(np.divmod(np.arange(len(net.points)), rows + 1), axis=1)
+        # The part of a strip that lies inside the cloth, for each mass across and along.
+        parts = np.where((place == 0) | (place == (columns, rows)), 0.5, 1.0)
+        weights = self.mass * wide * high * parts.prod(axis=1)
+        a, b = net.pairs.T
+        step = place[b] - place[a]
+        along, across = np.abs(step[:, 0]) * wide, np.abs(step[:, 1]) * high
+        level, upright = step[:, 1] == 0, step[:, 0] == 0
+        length = np.hypot(along, across)
+        modulus = np.where(np.abs(step).max(axis=1) == 2, self.bend, self.stretch)
+        strip = np.where(level, high * parts[a, 1], wide * parts[a, 0])
+        stiffness = np.where(level | upright, modulus * strip / length, self.shear)
+        critical = 2 * np.sqrt(stiffness * weights[a] * weights[b] / (weights[a] + weights[b]))
+        zero = np.zeros(len(length))
+        if self.rotation is not None:
+            net = replace(net, points=turned(net.points, self.center, assembly.initial(self.rotation)))
+        return net, weights, np.column_stack([length, stiffness, zero, self.damping * critical, zero])
+
+    def mass_radius(self) -> float:
+        """Half its thickness [m]."""
+        return 0.5 * self.thickness if self.radius is None else self.radius

@@ -1,0 +1,258 @@
+"""What every model of masses and springs has in common: pins, tears, forces, outputs, looks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+from pydantic import PrivateAttr
+
+from sceneql.kinds import (
+    Color,
+    FixedLength,
+    FixedScalar,
+    FixedVelocity,
+    Gives,
+    MaterialRef,
+    Model,
+    Moment,
+    Quantity,
+    Record,
+    field,
+    quantity_type,
+)
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.expression import Type
+from sceneql.simulation import bodies as point_masses
+from sceneql.simulation.fill import chance_key, draws
+from sceneql.simulation.pins import Pin, guide, pinned, start_velocity
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Shape
+    from sceneql.simulation.models.nets import Net
+    from sceneql.system import Assembly, Bodies, ModelState, Slopes
+
+MOST_COILS = 40
+
+
+class Tear(Record):
+    """When springs break, for good: at the end of the solver's step in which one is stretched too far."""
+
+    at: FixedScalar = field("Its length then, as a part of its rest length.", "1.5", above=1)
+    variation: FixedScalar = field(
+        "Largest relative deviation of that from spring to spring.", "0", at_least=0, below=1
+    )
+    seed: int = field("Another number, other weak springs.", 0, at_least=0)
+
+
+def check_pins(pins: Iterable[str], known: Sequence[str]) -> None:
+    """Raise ValueError for a pin that is neither one of the names nor a number."""
+    for pin in pins:
+        if pin not in known and not pin.isdecimal():
+            raise ValueError(f"no mass is called '{pin}'; a pin is one of {', '.join(sorted(known))}, or a number")
+
+
+class SpringModel(Model):
+    """Point masses tied by springs."""
+
+    gives: ClassVar[Mapping[str, Gives]] = {
+        **point_masses.BODY_OUTPUTS,
+        "stretch": Gives(Type(), "Largest |L - L0| / L0 of a spring that holds."),
+        "springs": Gives(quantity_type(dim.LENGTH, (None, 2, 3)), "The two ends of every spring that holds."),
+        "torn": Gives(Type(), "Number of springs that have torn."),
+    }
+
+    pins: tuple[str, ...] | dict[str, Pin] = field(
+        "Masses that are held: names, or `name: {shift: ..., until: ...}`. Names are those of the masses; of a lattice "
+        "left, right, bottom, top, back, front; of a cloth left, right, bottom, top and corners such as top_left; of a "
+        "rope start, end; or a number, counted from 0.",
+        (),
+    )
+    tear: Tear | None = field("When springs break; by default never.", None)
+    velocity: FixedVelocity = field("Velocity of all at the start.", "0 0 0 m/s")
+    spin: Annotated[tuple[float, float, float], Quantity(dim.FREQUENCY, (3,))] = field(
+        "Angular velocity at the start, about the center of mass [rad/s].", "0 0 0 rad/s"
+    )
+    radius: FixedLength | None = field(
+        "Radius of the masses in contacts and in the picture; by default a tenth of the shortest spring.",
+        None,
+        at_least=0,
+    )
+    look: Literal["auto", "coil", "line", "masses"] = field(
+        "How it draws itself: springs as coils or lines, or not at all; auto: coils when few, a cloth as a sheet.",
+        "auto",
+    )
+    material: MaterialRef | None = field("How it looks where no object draws it.", None)
+    color: Color | None = field("Color in place of the material's.", None)
+
+    _made: tuple[Net, Floats] | None = PrivateAttr(None)
+
+    def make(self, assembly: Assembly) -> tuple[Net, Floats, Floats]:
+        """The net as it stands at the start, the masses (n,) [kg], and the springs' blocks (m, 5).
+
+        A block is rest length [m], stiffness [N/m], its part of the model's, damping [N s/m], its part of the model's.
+        """
+        raise NotImplementedError
+
+    def shared(self, assembly: Assembly) -> tuple[int, int]:
+        """Offsets of the model's stiffness and damping in the floats."""
+        return (assembly.floats([0.0]),) * 2
+
+    def damped(self, blocks: Floats) -> bool:
+        """Whether any spring may be damped."""
+        return bool(blocks[:, 3].any())
+
+    def start_velocities(self, count: int) -> Floats:
+        """(n, 3) [m/s], before the spin."""
+        import numpy as np
+
+        return np.tile(self.velocity, (count, 1)).astype(float)
+
+    def held(self, net: Net) -> Any:
+        """(n,) bool: the masses that are held at the start."""
+        import numpy as np
+
+        fixed = np.zeros(len(net.points), dtype=bool)
+        for pin in self.pins:
+            fixed[pinned(pin, net)] = True
+        return fixed
+
+    @property
+    def net(self) -> Net:
+        """Masses and springs; there is none before the island is assembled."""
+        assert self._made is not None
+        return self._made[0]
+
+    @property
+    def rest(self) -> Floats:
+        """(m,) lengths of the springs without force [m]."""
+        assert self._made is not None
+        return self._made[1]
+
+    def mass_radius(self) -> float:
+        """Radius of the masses [m]."""
+        if self.radius is not None:
+            return self.radius
+        some = self.rest[self.rest > 0]
+        return 0.1 * float(some.min()) if len(some) else 0.05
+
+    def assemble(self, name: str, assembly: Assembly) -> Bodies:
+        """Reserve the masses and add the forces of the springs."""
+        import numpy as np
+
+        net, weights, blocks = self.make(assembly)
+        self._made = (net, blocks[:, 0].copy())
+        fixed = self.held(net)
+        n, m = len(net.points), len(net.pairs)
+        velocities = self.start_velocities(n)
+        velocities += np.cross(self.spin, net.points - np.average(net.points, axis=0, weights=weights))
+        velocities[fixed] = 0.0
+        for pin, how in self.pins.items() if isinstance(self.pins, dict) else ():
+            velocities[pinned(pin, net)] = start_velocity(how, assembly)
+        bodies = point_masses.reserve(
+            name, assembly, net.points, velocities, weights, np.full(n, self.mass_radius()), fixed
+        )
+        blocks_at = assembly.floats(blocks.ravel())
+        stiffness_at, damping_at = self.shared(assembly)
+        ends = net.pairs.ravel().tolist()
+        ints = (bodies.position_at, bodies.velocity_at, bodies.work_at, blocks_at, stiffness_at, damping_at, m, *ends)
+        kernel = "sceneql.simulation.models.mass_spring_kernels:springs"
+        assembly.term("internal", kernel, ints, lambda: _slopes(net, bodies, self.damped(blocks)))
+        torn_at = assembly.floats([0.0])
+        if self.tear is not None:
+            luck = draws(np.arange(m, dtype=np.uint64), 0, chance_key(name, self.tear.seed))
+            limits = self.tear.at * (1 + self.tear.variation * (2 * luck - 1)) * blocks[:, 0]
+            more = (assembly.floats(np.maximum(limits, blocks[:, 0])), torn_at)
+            places = (bodies.position_at, bodies.work_at, blocks_at, stiffness_at)
+            assembly.contact("local", ("sceneql.simulation.models.tear_kernels:tear",), (*places, *more, m, *ends), 0)
+        if isinstance(self.pins, dict):
+            guide(self.pins, net, assembly, bodies)
+        assembly.remember(blocks_at, stiffness_at, torn_at)
+        return bodies
+
+    def holding(self, state: ModelState) -> Any:
+        """(m,) bool: the springs that have not torn."""
+        import numpy as np
+
+        from sceneql.simulation.models.mass_spring_kernels import BLOCK
+
+        m, at = len(self.net.pairs), state.ints[0]
+        if self.tear is None:
+            return np.ones(m, dtype=bool)
+        return state.floats[at : at + BLOCK * m].reshape(m, BLOCK)[:, 1:3].any(axis=1)
+
+    def read(self, output: str, state: ModelState) -> Any:
+        """Any output of the manual."""
+        import numpy as np
+
+        from sceneql.simulation.models.mass_spring_kernels import energy
+
+        assert state.bodies is not None
+        blocks_at, stiffness_at, torn_at = state.ints
+        if output in point_masses.BODY_OUTPUTS:
+            own = 0.0
+            if output in ("potential", "energy"):
+                at = state.bodies.position_at
+                own = energy(state.y, at, state.floats, blocks_at, stiffness_at, self.net.pairs)
+            return point_masses.read(output, state.bodies, state, own)
+        if output == "torn":
+            return float(state.floats[torn_at])
+        holding = self.holding(state)
+        ends = point_masses.positions(state.bodies, state)[self.net.pairs[holding]]
+        if output == "springs":
+            return ends
+        if output == "stretch":
+            lengths, rest = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1), self.rest[holding]
+            stretched = rest > 0
+            return float(np.max(np.abs(lengths[stretched] / rest[stretched] - 1), initial=0.0))
+        raise KeyError(output)
+
+    def triangles(self, state: ModelState) -> Any:
+        """(k, 3) triangles of its surface that have no torn side; None where it has no surface."""
+        import numpy as np
+
+        net = self.net
+        if net.triangles is None or self.tear is None:
+            return net.triangles
+        n = len(net.points)
+        torn = np.sort(net.pairs[~self.holding(state)], axis=1) @ [n, 1]
+        sides = np.sort(net.triangles[:, [[0, 1], [1, 2], [2, 0]]].astype(np.int64), axis=2) @ [n, 1]
+        return net.triangles[~np.isin(sides, torn).any(axis=1)]
+
+    def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Shape]:
+        """A cloth as a sheet, else masses as spheres and springs as coils or lines."""
+        from sceneql.simulation.models import spring_look
+
+        assert state.bodies is not None
+        surface = moment.surface(name, self.material, self.color)
+        places = point_masses.positions(state.bodies, state).copy()
+        triangles = self.triangles(state)
+        if triangles is not None and self.look == "auto":
+            yield spring_look.sheet(name, surface, places, triangles, 0.5 * self.mass_radius())
+            return
+        yield spring_look.spheres(name, surface, places, self.mass_radius())
+        holding = self.holding(state)
+        ends, rest = places[self.net.pairs[holding]], self.rest[holding]
+        line = self.net.line
+        if self.look == "coil" or (self.look == "auto" and len(self.net.pairs) <= MOST_COILS and not line):
+            yield spring_look.coils(name, surface, ends, rest, self.mass_radius())
+        elif self.look != "masses":
+            yield spring_look.lines(name, surface, ends, self.mass_radius() if line else 0.15 * self.mass_radius())
+
+
+def _slopes(net: Net, bodies: Bodies, damped: bool) -> Slopes:
+    """Of each spring four blocks of 3x3 by positions; if damped, as many by velocities."""
+    import numpy as np
+
+    from sceneql.system import Slopes
+
+    ends = 3 * net.pairs
+    places = np.arange(3)
+    rows = np.repeat(np.repeat(ends, 2, axis=1)[:, :, None] + places, 3, axis=2).ravel() + bodies.velocity_at
+    columns = np.tile(np.tile(ends, 2)[:, :, None] + places, 3).ravel()
+    by = [bodies.position_at, bodies.velocity_at] if damped else [bodies.position_at]
+    return Slopes(
+        "sceneql.simulation.models.mass_spring_slopes_kernels:springs",
+        np.tile(rows, len(by)),
+        np.concatenate([columns + at for at in by]),
+    )
