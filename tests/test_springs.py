@@ -183,3 +183,13 @@ def test_wrong_springs_are_told_with_their_place(tmp_path, entry):
     said = complaint(tmp_path, f"objects: {{b: sphere}}\nmodels:\n  bad: {entry}\n")
     assert WRONG[entry] in said
     assert "scene.yaml:3:" in said
+
+
+def test_an_implicit_method_leads_pins_and_tears_too(tmp_path):
+    script = LED.format(shift="[0.2 m * sin(3*time/(1 s)), 0 m, 0 m]", until="")
+    implicit = script.replace("rk4: {step: 1 ms}", "radau: {tolerance: 1e-7}")
+    ((x,), (there,)) = (watch(tmp_path, one, [1.5], "chain.positions")[0] for one in (script, implicit))
+    np.testing.assert_allclose(there, x, atol=1e-5)
+    torn, energy = watch(tmp_path, TETHER.replace("rk4: {step: 1 ms}", "radau"), [1], "sling.torn", "sling.energy")[0]
+    assert torn == 1
+    assert energy == pytest.approx(9, rel=1e-3)

@@ -48,6 +48,8 @@ def guide(pins: Mapping[str, Pin], net: Net, assembly: Assembly, bodies: Bodies)
     """
     import numpy as np
 
+    from sceneql.system import Slopes
+
     folder = "sceneql.simulation.pins_kernels"
     for name, pin in pins.items():
         masses = pinned(name, net)
@@ -58,8 +60,9 @@ def guide(pins: Mapping[str, Pin], net: Net, assembly: Assembly, bodies: Bodies)
         places = (bodies.position_at, bodies.velocity_at, bodies.work_at, bodies.mass_at, bodies.inverse_at)
         until = assembly.floats([float("inf") if pin.until is None else pin.until])
         ints = (*places, *shifts, assembly.floats([APART]), starts, until, len(masses), *masses.tolist())
-        assembly.term("internal", f"{folder}:toil", ints)
-        assembly.term("constrain", f"{folder}:lead", ints)
+        alone = Slopes("", (), ())
+        assembly.term("internal", f"{folder}:toil", ints, alone)
+        assembly.term("constrain", f"{folder}:lead", ints, alone)
         assembly.contact("local", (f"{folder}:put",), ints, 0)
 
 

@@ -9,6 +9,9 @@ they are let go; the number of masses, and the masses. One that has been let go 
 from sceneql.kernels import inlined, kernel
 from sceneql.system_kernels import SETTLE, TERM
 
+CHANGED_AT = 1
+"""floats[1]: above 0 in a settling that is to change nothing (march_kernels)."""
+
 EARLIER, NOW, LATER, APART, STARTS, UNTIL, COUNT, MASSES = range(5, 13)
 
 
@@ -53,6 +56,8 @@ def lead(t, y, rate, floats, ints):
 @kernel(SETTLE)
 def put(t0, t1, y0, rate0, y1, floats, ints):
     """Put the pins where they must be at the end of a step (keyframes may have kinks), and let go of them in time."""
+    if floats[CHANGED_AT] > 0.0:
+        return
     for k in range(ints[COUNT]):
         mass = ints[MASSES + k]
         if floats[ints[4] + mass] > 0.0:

@@ -9,6 +9,9 @@ from numba import types
 from sceneql.kernels import inlined, kernel
 from sceneql.system_kernels import SETTLE
 
+CHANGED_AT = 1
+"""floats[1]: above 0 in a settling that is to change nothing (march_kernels)."""
+
 RATE, START, TOTAL, LIFETIME, VARIATION, NARROW, MASS, RADIUS, SPEC = range(9)
 """What an emitter is: births a second; the first one's time; how many; mean lifetime, largest relative deviation of it
 and of the speed; 1 - cos of the cone's half angle; mass and radius of a particle."""
@@ -101,6 +104,8 @@ def emit(t0, t1, y0, rate0, y1, floats, ints):
     step has flown straight since, and gets the acceleration that it finds at the step's end in the next step, for the
     whole time: exact under a uniform force, else of third order. One that died in the step before is taken out.
     """
+    if floats[CHANGED_AT] > 0.0:
+        return
     position_at, velocity_at, count = ints[0], ints[1], ints[2]
     mass_at, inverse_at, radius_at = ints[3], ints[4], ints[5]
     spec, place, mean, pool = ints[SPEC_AT], ints[FROM_AT], ints[MEAN_AT], ints[POOL_AT]

@@ -216,7 +216,9 @@ class MassSpring(SpringModel):
             assert shape is not None
             factor = shape.stiffest() / self.mass
             field_name = next(shape for shape in PLACES if getattr(self, shape) is not None)
-            found = Oscillation(math.sqrt(factor * stiffness), factor * damping, f"the springs of '{name}'", (field_name,))
+            found = Oscillation(
+                math.sqrt(factor * stiffness), factor * damping, f"the springs of '{name}'", (field_name,)
+            )
             return (found,)
         given = [
             (

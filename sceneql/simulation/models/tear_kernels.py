@@ -7,6 +7,9 @@ from sceneql.kernels import kernel
 from sceneql.simulation.models.mass_spring_kernels import BLOCK
 from sceneql.system_kernels import SETTLE
 
+CHANGED_AT = 1
+"""floats[1]: above 0 in a settling that is to change nothing (march_kernels)."""
+
 
 @kernel(SETTLE)
 def tear(t0, t1, y0, rate0, y1, floats, ints):
@@ -15,6 +18,8 @@ def tear(t0, t1, y0, rate0, y1, floats, ints):
     ints: position_at, work_at, blocks_at, stiffness_at, limits_at, torn_at, count, then the two masses of each. The
     energy is added at both ends of the step, as frames inside it see the spring torn already.
     """
+    if floats[CHANGED_AT] > 0.0:
+        return
     position_at, work_at, blocks_at, limits_at = ints[0], ints[1], ints[2], ints[4]
     for s in range(ints[6]):
         block = blocks_at + BLOCK * s
