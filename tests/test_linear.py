@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.sparse import csr_array, kron
 
 from sceneql.simulation.linear import dense_kernels as dense
+from sceneql.simulation.linear import fronts, fronts_kernels
+from sceneql.simulation.linear import krylov_kernels as krylov
 
 UNIT = 2.3e-16
 
@@ -51,3 +56,61 @@ def test_pivots_are_sought():
     assert dense.factor(a, 2, pivots)
     dense.solve(a, 2, pivots, x)
     assert x.tolist() == [5.0, 3.0]
+
+
+def net(columns, rows, seed):
+    """A sheet of 3 unknowns a mass, tied to its eight neighbors: a CSR pattern with random values."""
+    index = np.arange(columns * rows).reshape(columns, rows)
+    steps = ((0, 1), (1, 0), (1, 1), (1, -1))
+    pairs = []
+    for i, j in steps:
+        here = index[: columns - i, max(0, -j) : rows - max(0, j)]
+        there = index[i:, max(0, j) : rows + min(0, j)]
+        pairs.append(np.stack([here.ravel(), there.ravel()]))
+    first, second = np.concatenate(pairs, axis=1)
+    own = np.arange(index.size)
+    places = (np.concatenate([first, second, own]), np.concatenate([second, first, own]))
+    graph = csr_array((np.ones(len(places[0])), places), shape=(index.size, index.size))
+    matrix = csr_array(kron(graph, np.ones((3, 3))))
+    matrix.sort_indices()
+    matrix.data = np.random.default_rng(seed).standard_normal(matrix.nnz)
+    return matrix
+
+
+@settings(max_examples=25, deadline=None)
+@given(columns=st.integers(1, 14), rows=st.integers(1, 14), seed=st.integers(0, 2**32), symmetric=st.booleans())
+def test_fronts_solve_to_rounding(columns, rows, seed, symmetric):
+    pattern = net(columns, rows, seed)
+    matrix = csr_array(0.5 * (pattern + pattern.T)) if symmetric else pattern.copy()
+    matrix.setdiag(matrix.diagonal() + 30.0)
+    plan = fronts.plan(pattern)
+    factors, work, numbers = np.zeros(plan.factors), np.zeros(plan.work), plan.numbers.copy()
+    right = np.random.default_rng(seed).standard_normal(matrix.shape[0])
+    x = right.copy()
+    assert fronts_kernels.factor(numbers, matrix.data, factors, work, symmetric)
+    fronts_kernels.solve(numbers, factors, x, work, symmetric)
+    assert np.abs(matrix @ x - right).max() <= 1e-12
+
+
+def test_fronts_refuse_a_singular_matrix():
+    pattern = net(3, 3, 0)
+    plan = fronts.plan(pattern)
+    factors, work = np.zeros(plan.factors), np.zeros(plan.work)
+    for symmetric in (True, False):
+        assert not fronts_kernels.factor(plan.numbers, np.zeros(pattern.nnz), factors, work, symmetric)
+
+
+@pytest.mark.parametrize("symmetric", [True, False])
+def test_iterations_converge(symmetric):
+    matrix = net(12, 12, 5)
+    if symmetric:
+        matrix = csr_array(0.5 * (matrix + matrix.T))
+    matrix.setdiag(matrix.diagonal() + 30.0)
+    n = matrix.shape[0]
+    diagonal = [np.flatnonzero(matrix.indices[a:b] == i)[0] + a for i, (a, b) in enumerate(pairwise(matrix.indptr))]
+    plan = np.concatenate([[n], matrix.indptr, diagonal, matrix.indices]).astype(np.int64)
+    right = np.random.default_rng(1).standard_normal(n)
+    factors, x = np.zeros(matrix.nnz), right.copy()
+    krylov.factor(plan, matrix.data, factors)
+    assert krylov.solve(plan, matrix.data, factors, x, np.zeros(8 * n), symmetric)
+    assert np.abs(matrix @ x - right).max() <= 1e-9
