@@ -12,6 +12,7 @@ from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    import numpy
     from numpy import int64
     from numpy.typing import NDArray
 
@@ -121,6 +122,19 @@ def _inverse_masses(system: System) -> Floats:
     return inverse
 
 
+def _known(system: System) -> NDArray[numpy.bool_]:
+    """(values,) which values of the Jacobian come from slopes; the others are zeros of the diagonal."""
+    import numpy as np
+
+    assert system.pattern is not None
+    known = np.full(len(system.pattern.columns), not system.pattern.exact)
+    if system.pattern.exact:
+        section = system.ints[4]
+        at = system.ints[section + 2]
+        known[system.ints[at : at + system.ints[section + 1]]] = True
+    return known
+
+
 def _reduce(system: System, inverse: Floats) -> _Reduced:
     import numpy as np
 
@@ -129,14 +143,15 @@ def _reduce(system: System, inverse: Floats) -> _Reduced:
     n = len(system.y)
     rows = np.repeat(np.arange(n, dtype=np.int64), np.diff(starts))
     places = np.arange(len(columns), dtype=np.int64)
-    off = rows != columns
+    known = _known(system)
+    off = (rows != columns) & known
     partner = system.partner
     # A position whose row has nothing but its velocity.
     alien = np.bincount(rows[off & (columns != partner[rows])], minlength=n) > 0
     has_one = np.bincount(rows[off & (columns == partner[rows])], minlength=n) > 0
     position = (partner >= 0) & ~alien & has_one
     fixed = inverse == 0.0
-    used = np.bincount(columns[off], minlength=n) + np.bincount(rows[off], minlength=n) > 0
+    used = np.bincount(columns[known], minlength=n) + np.bincount(rows[known], minlength=n) > 0
     tally = ~used & (partner < 0) & ~np.isin(np.arange(n), partner[partner >= 0])
     in_core = ~position & ~fixed & ~tally
     core = np.flatnonzero(in_core)
@@ -147,8 +162,8 @@ def _reduce(system: System, inverse: Floats) -> _Reduced:
     found = off & position[rows] & (columns == partner[rows])
     one[rows[found]] = places[found]
     eliminated = np.flatnonzero(position)
-    direct = in_core[rows] & in_core[columns]
-    through = in_core[rows] & position[columns] & in_core[partner[columns]]
+    direct = known & in_core[rows] & in_core[columns]
+    through = known & in_core[rows] & position[columns] & in_core[partner[columns]]
     bare = columns[through]
     return _Reduced(
         core=core,
