@@ -28,7 +28,7 @@ HEUN_3 = {"a": ((), (1 / 3,), (0.0, 2 / 3)), "b": (1 / 4, 0.0, 3 / 4)}
 NEEDED = {"runge_kutta": HEUN_3}
 """Fields of the words that cannot do without."""
 
-DENSE = {"radau": 3}
+DENSE = {"radau": 3, "implicit_midpoint": 1}
 """Order of dense output where it is neither the cubic Hermite interpolant's nor 4."""
 
 WORDS = sorted(p.stem for p in Path(solvers.__path__[0]).glob("*.py") if not p.stem.endswith(("_kernels", "__init__")))
@@ -78,7 +78,10 @@ def test_growth_is_what_a_step_does_to_the_linear_equation(word, re, im):
     jacobian = np.array([[re, -im], [im, re]])
     for step in (0.1, 0.9, 2.3):
         end = np.abs(final(simple("linear", [1.0, 0.0], [re, im]), fixed(kind.stepper(), step), 4 * step) @ (1, 1j))
-        assert end == pytest.approx(kind.growth(jacobian, np.array([-1, -1]), step) ** 4, rel=1e-9)
+        # A method that trusts the Jacobian shows what differences leave of it.
+        accuracy = 1e-7 if kind.stepper().jacobian else 0.0
+        expected = kind.growth(jacobian, np.array([-1, -1]), step) ** 4
+        assert end == pytest.approx(expected, rel=1e-9, abs=accuracy)
 
 
 @pytest.mark.parametrize("word", WORDS)

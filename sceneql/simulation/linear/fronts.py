@@ -163,7 +163,7 @@ def _laid_out(pattern: Any, scalars: Rows, fronts: list[_Front], first: Rows) ->
     for k in range(count):
         table[FIELDS * k + 7 : FIELDS * k + 9] = last_child[k], before[k]
     largest = max((len(r) for r in rows), default=0)
-    parts = [table, scalars, np.concatenate(rows), np.concatenate([np.zeros(0, np.int64), *maps]),
+    parts: list[Any] = [table, scalars, np.concatenate(rows), np.concatenate([np.zeros(0, np.int64), *maps]),
              np.concatenate(entries), np.zeros(n, dtype=np.int64)]  # fmt: skip
     starts = list(accumulate((len(part) for part in parts), initial=HEAD))
     head = [n, count, *starts[1:6], most]
