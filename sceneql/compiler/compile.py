@@ -57,13 +57,17 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
 
 
 def _drawn(tasks: Mapping[str, Task]) -> dict[str, tuple[str, ...]]:
-    """What each picture draws: objects that are not hidden and no child of another, and models that nothing draws."""
+    """What each picture draws: objects that are not hidden and no child of another, and models that nothing draws.
+
+    What decorates (a trail, an arrow) does not draw the model that it belongs to.
+    """
     inner = {ref.name for t in tasks.values() if isinstance(t.kind, Object) for ref in t.kind.members()}
     objects = [
         t.name for t in tasks.values() if isinstance(t.kind, Object) and not t.kind.hidden and t.name not in inner
     ]
     shown: set[str] = set()
-    stack = list(objects)
+    shown_by = {t.name for t in tasks.values() if isinstance(t.kind, Object) and not t.kind.decorates}
+    stack = [name for name in objects if name in shown_by]
     while stack:
         for need in tasks[stack.pop()].needs:
             if need not in shown:

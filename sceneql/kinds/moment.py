@@ -24,6 +24,9 @@ class Moment(Protocol):
     def measure(self, value: Value) -> Any:
         """The value now, finite or not."""
 
+    def past(self, value: Value) -> list[tuple[float, Any]]:
+        """(time [s], value) at the instants before that an object asked for (`Object.remembers`), oldest first."""
+
     def read(self, task: str, output: str) -> Any:
         """An output of a part now."""
 

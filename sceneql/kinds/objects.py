@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Protocol
 
 from sceneql.kinds.types import Color, MaterialRef
-from sceneql.kinds.values import Ref
+from sceneql.kinds.values import Ref, Value
 from sceneql.kinds.word import Kind, field
 from sceneql.quantities.expression import Expr
 
@@ -44,6 +44,9 @@ class Object(Kind):
     collides: ClassVar[bool] = False
     """Whether contacts that name no surface take it as one (it has a collider)."""
 
+    decorates: ClassVar[bool] = False
+    """Whether a model that it reads draws itself all the same."""
+
     material: MaterialRef | None = field("How it looks; by default glossy, in a color by order.", None)
     color: Color | None = field("Color in place of the material's.", None)
     hidden: bool = field("Not drawn (but may be used by others).", False)
@@ -65,6 +68,10 @@ class Object(Kind):
 
     def members(self) -> tuple[Ref, ...]:
         """Objects that are drawn by this one, and so not by themselves."""
+        return ()
+
+    def remembers(self) -> Iterable[tuple[Value, float, float]]:
+        """Values that it needs of the past (`Moment.past`): how far back [s], and how often [s]."""
         return ()
 
     def collider(self, assembly: Assembly) -> Collider:

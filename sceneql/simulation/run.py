@@ -16,6 +16,7 @@ from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Expr, Link, Symbol
 from sceneql.simulation.bounds import box_of
 from sceneql.simulation.color import default_color, linear
+from sceneql.simulation.history import History
 from sceneql.simulation.placement import Placed, compose
 
 if TYPE_CHECKING:
@@ -38,14 +39,20 @@ class Run:
         self.orders = _orders(graph)
         self.palette = _palette(graph)
         self.holders = _holders(graph)
+        self.history = History(graph)
         self._bounds: dict[str, tuple[Floats, Floats]] | None = None
 
     def moments(self, times: Iterable[float]) -> Iterator[Instant]:
         """The instants [s] asked for, in order; times do not decrease. Raises RunFailure."""
         for time in times:
-            for island in self.islands:
-                island.advance(time)
-            yield Instant(self, time)
+            for before, keys in self.history.due(time):
+                self.history.see(self._moment(before), keys)
+            yield self._moment(time)
+
+    def _moment(self, time: float) -> Instant:
+        for island in self.islands:
+            island.advance(time)
+        return Instant(self, time)
 
     def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
         """Low and high corner (3,) of what the parts draw over the whole run, found by a run ahead of its own."""
@@ -190,6 +197,10 @@ class Instant:
                 return self.time
             raise KeyError(node.name)
         return self.read(node.task, node.output)
+
+    def past(self, value: Value) -> list[tuple[float, Any]]:
+        """(time [s], value) at the instants before that an object asked for, oldest first."""
+        return self.run.history.past(value, self.time)
 
     def read(self, task: str, output: str) -> Any:
         """An output of a part now."""

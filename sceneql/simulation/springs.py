@@ -60,6 +60,7 @@ class SpringModel(Model):
         "stretch": Gives(Type(), "Largest |L - L0| / L0 of a spring that holds."),
         "springs": Gives(quantity_type(dim.LENGTH, (None, 2, 3)), "The two ends of every spring that holds."),
         "torn": Gives(Type(), "Number of springs that have torn."),
+        "triangles": Gives(Type((None, 3)), "Of a cloth's surface, by numbers of masses, those that have not torn."),
     }
 
     pins: tuple[str, ...] | dict[str, Pin] = field(
@@ -195,6 +196,9 @@ class SpringModel(Model):
                 at = state.bodies.position_at
                 own = energy(state.y, at, state.floats, blocks_at, stiffness_at, self.net.pairs)
             return point_masses.read(output, state.bodies, state, own)
+        if output == "triangles":
+            found = self.triangles(state)
+            return np.zeros((0, 3)) if found is None else found.astype(float)
         if output == "torn":
             return float(state.floats[torn_at])
         holding = self.holding(state)

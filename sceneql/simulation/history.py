@@ -1,0 +1,51 @@
+"""What parts of a picture remember of the run: values at even instants of the physics, whatever the frames are."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Any
+
+from sceneql.kinds import Object, Value
+
+if TYPE_CHECKING:
+    from sceneql.graph import SimulationGraph
+    from sceneql.kinds import Moment
+
+SLACK = 1e-9
+
+
+class History:
+    """The values that objects ask to be remembered (`Object.remembers`), as far back as they ask."""
+
+    def __init__(self, graph: SimulationGraph) -> None:
+        asked = [one for task in graph.tasks.values() if isinstance(task.kind, Object) for one in task.kind.remembers()]
+        self._kept: dict[int, tuple[Value, float, float, deque[tuple[float, Any]]]] = {
+            id(value): (value, keep, every, deque()) for value, keep, every in asked
+        }
+        self._seen = dict.fromkeys(self._kept, -1)
+
+    def due(self, time: float) -> Iterator[tuple[float, list[int]]]:
+        """Instants [s] after the last up to ``time`` that must be seen on the way there, and whose they are."""
+        wanted: dict[float, list[int]] = {}
+        for key, (_, keep, every, _) in self._kept.items():
+            first = max(self._seen[key] + 1, math.ceil((time - keep) / every - SLACK))
+            last = math.floor(time / every - SLACK)
+            for k in range(first, last + 1):
+                wanted.setdefault(k * every, []).append(key)
+            self._seen[key] = max(last, self._seen[key])
+        yield from sorted(wanted.items())
+
+    def see(self, moment: Moment, keys: Iterable[int]) -> None:
+        """Remember the values at an instant."""
+        for key in keys:
+            value, keep, every, kept = self._kept[key]
+            kept.append((moment.time, moment.at(value)))
+            while kept[0][0] < moment.time - keep - every:
+                kept.popleft()
+
+    def past(self, value: Value, now: float) -> list[tuple[float, Any]]:
+        """(time [s], value) of the instants remembered up to ``now``, oldest first, for a value that was asked for."""
+        _, keep, _, kept = self._kept[id(value)]
+        return [(time, seen) for time, seen in kept if now - keep - SLACK <= time <= now]
