@@ -1,7 +1,7 @@
 """Coefficients of Dormand and Prince's method of order 8 with its estimates of orders 5 and 3 and its interpolant.
 
-Source: Dormand & Prince (1989), Lect. Notes Math. 1386, 10-23, in the form of Hairer, Norsett & Wanner, Solving Ordinary
-Differential Equations I (1993), II.5 and II.6 (code DOP853).
+Source: Dormand & Prince (1989), Lect. Notes Math. 1386, 10-23, in the form of Hairer, Norsett & Wanner, Solving
+Ordinary Differential Equations I (1993), II.5 and II.6 (code DOP853).
 """
 
 from sceneql.simulation.tableau import Tableau
