@@ -9,7 +9,10 @@ from runs import complaint, watch
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.pipeline import load
 from sceneql.quantities.diagnostic import ScriptError
-from sceneql.simulation.run import Run
+from sceneql.simulation.driver import jacobian
+from sceneql.simulation.march import March
+from sceneql.simulation.run import IslandRun, Run
+from sceneql.simulation.solvers.rk4 import Rk4
 
 SCENE = """
 clock: {{end: 0.6 s}}
@@ -45,6 +48,7 @@ FORCES = {
     "magnetic": "{magnetic: {charge: 2 C, field: 1 2 3 T}}",
     "magnetic formula": '{magnetic: {charge: 2 C, formula: ["x", "y", "-2*z"]}}',
     "mutual_gravity": "{mutual_gravity: {constant: 0.02}}",
+    "mutual_gravity tree": "{mutual_gravity: {constant: 0.02, method: tree, softening: 1 cm}}",
     "repulsion": "{repulsion: {strength: 5 N, range: 0.6 m, exponent: 3}}",
     "spring": "{spring: {from: net.bob.position, to: 0 1 0 m, damping: 1 N*s/m, rest: 0.2 m}}",
     "turbulence": "{turbulence: {speed: 2 m/s, octaves: 2, lifetime: 1 s, linear: 0.5 N*s/m}}",
@@ -206,6 +210,7 @@ WRONG = {
     "{spring: {from: 0 0 0 m, to: 0 1 0 m}}": "a mass at one of its ends",
     "{turbulence: {size: 0 m}}": "above 0",
     "{mutual_gravity: {softening: -1 m}}": "at least 0",
+    "{mutual_gravity: {opening: 2}}": "at most 1",
     "{vortex: {axis: 0 0 0}}": "axis",
 }
 
@@ -247,3 +252,48 @@ solvers: {main: {rk4: {step: 0.1 s}}}
 """
     ((x,),) = watch(tmp_path, script, [1], "a.positions")
     np.testing.assert_array_equal(x, 0)
+
+
+def slopes_known(name: str) -> bool:
+    """Whether a force gives its derivatives; between all masses and in eddies the island takes differences."""
+    return not name.startswith(("mutual_gravity", "electrostatic", "repulsion", "turbulence"))
+
+
+@pytest.mark.parametrize("name", [*filter(slopes_known, FORCES)])
+def test_the_derivatives_are_those_of_the_rate(tmp_path, name):
+    path = tmp_path / "scene.yaml"
+    path.write_text(SCENE.format(force=FORCES[name]).replace("wall: {", "wall: {mass: 3 kg, "), encoding="utf-8")
+    graph = load(path, pruned=False)
+    for island in graph.islands:
+        run = IslandRun(graph, island)
+        march = March(run.assembly.finish(jacobian=True), Rk4().stepper(), 1.0)
+        pattern, system = march.system.pattern, march.system
+        assert pattern.exact
+        y = system.y + 0.1 * np.random.default_rng(3).standard_normal(len(system.y))
+        values = np.full(pattern.room, np.nan)
+        jacobian(system)(march._functions, 0.3, y, values, march.floats.copy(), system.ints)
+        found = np.zeros((len(y), len(y)))
+        rows = np.repeat(np.arange(len(y)), np.diff(pattern.starts))
+        found[rows, pattern.columns] = values[: len(rows)]
+        h = 1e-5
+        expected = np.column_stack(
+            [(march.rate(0.3, y + h * d) - march.rate(0.3, y - h * d)) / (2 * h) for d in np.eye(len(y))]
+        )
+        expected[[bodies.work_at for bodies in run.bodies.values() if bodies is not None]] = 0.0
+        np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-6)
+
+
+def test_what_is_not_yet_born_does_nothing(tmp_path):
+    def momenta(force: str) -> list:
+        script = f"""
+clock: {{end: 0.4 s}}
+models:
+  one: {{particles: {{list: {{a: {{position: 0.1 0 0 m}}}}}}}}
+  later: {{particles: {{emit: {{rate: 1 Hz, from: 0 0 0 m, start: 0.5 s, velocity: 1 0 0 m/s}}}}}}
+forces: {{it: {force}}}
+solvers: {{main: {{rk4: {{step: 10 ms}}}}}}
+"""
+        return watch(tmp_path, script, [0.4], "one.momentum")[0]
+
+    for force in (FORCES["mutual_gravity"], FORCES["electrostatic"], FORCES["repulsion"]):
+        np.testing.assert_array_equal(momenta(force)[0], 0)

@@ -4,15 +4,18 @@ import numpy as np
 import pytest
 
 from sceneql.simulation.forces import repulsion_kernels, turbulence_kernels
-from sceneql.simulation.nbody import direct_kernels
+from sceneql.simulation.nbody import direct_kernels, octree_kernels, tree_kernels
 from sceneql.simulation.neighbors import table
 from sceneql.simulation.threads_kernels import threads, tile_address
 from sceneql.simulation.together import layout
 from sceneql.system import Bodies
 
+HEAD = 4
+"""Numbers before the masses in floats."""
 
-def bodies(count, position_at, velocity_at):
-    return Bodies("m", count, position_at, velocity_at, 0, 0, 0, 0)
+
+def bodies(count, position_at, velocity_at, mass_at):
+    return Bodies("m", count, position_at, velocity_at, 0, mass_at, 0, 0)
 
 
 def island(n, seed=1):
@@ -20,7 +23,8 @@ def island(n, seed=1):
     rng = np.random.default_rng(seed)
     a = n // 3
     y = rng.normal(size=6 * n + 2)
-    models = [bodies(a, 0, 3 * a), bodies(n - a, 6 * a + 1, 6 * a + 1 + 3 * (n - a))]
+    after = 6 * a + 1
+    models = [bodies(a, 0, 3 * a, HEAD), bodies(n - a, after, after + 3 * (n - a), HEAD + a)]
     places = np.concatenate([y[m.position_at :][: 3 * m.count] for m in models]).reshape(-1, 3)
     return y, rng.random(n) + 0.5, models, places
 
@@ -32,10 +36,11 @@ def forces(rate, models):
 def gravity(n, softening=0.05, count=2):
     y, m, models, places = island(n)
     room = -(-n // direct_kernels.LANES) * direct_kernels.LANES
-    floats = np.concatenate([[2.0, softening], m, np.zeros(4 * room)])
+    floats = np.concatenate([[2.0, softening, 0.0, 0.0], m, np.zeros(4 * room)])
     entry, _ = threads()
-    numbers = (0, 1, 1, 2 + n, 2 + n + 3 * room, room, entry, count, tile_address(direct_kernels.direct_tile))
-    weights = (2, 1, 2 + models[0].count, 1)
+    after = HEAD + n
+    numbers = (0, 1, 1, after, after + 3 * room, room, entry, count, tile_address(direct_kernels.direct_tile))
+    weights = (HEAD, 1, HEAD + models[0].count, 1)
     ints = np.array([*numbers, *layout(models), *weights], dtype=np.int64)
     rate = np.zeros_like(y)
     direct_kernels.direct(0.0, y, rate, floats, ints)
@@ -61,10 +66,10 @@ def test_bodies_at_one_place_do_not_pull_each_other():
     y, m, models, _ = island(40)
     y[: 3 * models[0].count] = 0.25
     room = direct_kernels.LANES
-    floats = np.concatenate([[2.0, 0.0], m, np.zeros(4 * room)])
+    floats = np.concatenate([[2.0, 0.0, 0.0, 0.0], m, np.zeros(4 * room)])
     entry, count = threads()
-    numbers = (0, 1, 1, 42, 42 + 3 * room, room, entry, count, tile_address(direct_kernels.direct_tile))
-    ints = np.array([*numbers, *layout(models), 2, 1, 2 + models[0].count, 1], dtype=np.int64)
+    numbers = (0, 1, 1, 44, 44 + 3 * room, room, entry, count, tile_address(direct_kernels.direct_tile))
+    ints = np.array([*numbers, *layout(models), HEAD, 1, HEAD + models[0].count, 1], dtype=np.int64)
     rate = np.zeros_like(y)
     direct_kernels.direct(0.0, y, rate, floats, ints)
     assert np.isfinite(rate).all()
@@ -82,13 +87,15 @@ def test_potentials_are_the_plain_sums():
 
 
 @pytest.mark.parametrize("n", [2, 40, 3000])
-def test_repulsion_finds_every_pair_in_reach_once(n):
-    y, _, models, places = island(n)
+def test_repulsion_finds_every_pair_of_masses_in_reach_once(n):
+    y, m, models, places = island(n)
+    m[1::5] = 0.0
     reach, exponent = 0.5, 2.0
     size, p, q = table(n)
-    at = np.cumsum([4, n, 3 * n, 3 * n, n, size + 1])
+    at = np.cumsum([HEAD + n, n, 3 * n, 3 * n, n, size + 1])
     floats = np.zeros(at[-1])
-    floats[:4] = [3.0, 0.0, reach, exponent]
+    floats[:HEAD] = [3.0, 0.0, reach, exponent]
+    floats[HEAD : HEAD + n] = m
     numbers = [0, 2, *at[:5].tolist(), size, p, q, *threads(), tile_address(repulsion_kernels.repulsion_tile)]
     ints = np.array([*numbers, *layout(models)], dtype=np.int64)
     rate = np.zeros_like(y)
@@ -97,12 +104,12 @@ def test_repulsion_finds_every_pair_in_reach_once(n):
     for k in range(n):
         away = places[k] - places
         r = np.linalg.norm(away, axis=1)
-        near = (r < reach) & (r > 0)
+        near = (r < reach) & (r > 0) & (m > 0) & (m[k] > 0)
         left = 1 - r[near] / reach
         expected[k] = (3.0 * left[:, None] ** exponent * away[near] / r[near, None]).sum(axis=0)
         energy += 0.5 * (3.0 * reach / 3.0 * left**3).sum()
     np.testing.assert_allclose(forces(rate, models), expected, rtol=0, atol=1e-11)
-    assert floats[4 : 4 + n].sum() == pytest.approx(energy, rel=1e-12)
+    assert floats[at[0] : at[1]].sum() == pytest.approx(energy, rel=1e-12)
 
 
 def curl_noise(points, angle=0.4, octaves=1, seed=5):
@@ -134,3 +141,69 @@ def test_curl_noise_is_smooth_across_cells_and_differs_by_seed_and_time():
     assert steps < 0.02
     assert np.abs(curl_noise(line) - curl_noise(line, seed=6)).max() > 0.3
     assert np.abs(curl_noise(line) - curl_noise(line, angle=2.0)).max() > 0.3
+
+
+def tree(n, opening, count=2):
+    """Gravity of a clustered cloud by the tree and by plain sums, with the potentials."""
+    y, m, models, _ = island(n)
+    for model in models:
+        place = y[model.position_at :][: 3 * model.count].reshape(-1, 3)
+        place *= (np.linalg.norm(place, axis=1) ** 2)[:, None]
+    places = np.concatenate([y[model.position_at :][: 3 * model.count] for model in models]).reshape(-1, 3)
+    softening, most = 0.02, n // 2 + 64
+    parts = [3 * n, n, octree_kernels.NODE * most, 3 * n, n, n, n + 2, n]
+    at = np.cumsum([HEAD + n, *parts])
+    floats = np.zeros(at[-1])
+    floats[:3] = [2.0, softening, opening]
+    floats[HEAD : HEAD + n] = m
+    numbers = [0, 1, 1, at[0], at[1], n, 2, at[2], most, *at[3:8].tolist()]
+    entry, _ = threads()
+    numbers += [entry, count, tile_address(tree_kernels.tree_tile)]
+    ints = np.array([*numbers, *layout(models), HEAD, 1, HEAD + models[0].count, 1], dtype=np.int64)
+    rate = np.zeros_like(y)
+    tree_kernels.tree(0.0, y, rate, floats, ints)
+    apart = places[None] - places[:, None]
+    inverse = 1.0 / np.sqrt((apart**2).sum(axis=2) + softening**2)
+    exact = 2.0 * m[:, None] * np.einsum("j,ijc->ic", m, apart * inverse[..., None] ** 3)
+    np.fill_diagonal(inverse, 0.0)
+    found = forces(rate, models)
+    return found, exact, floats[at[7] : at[7] + n], inverse @ m
+
+
+@pytest.mark.parametrize(("opening", "error"), [(0.3, 2e-4), (0.65, 2e-3), (1.0, 1e-2)])
+def test_the_tree_errs_by_its_opening(opening, error):
+    found, exact, potential, exact_potential = tree(2000, opening)
+    wrong = np.linalg.norm(found - exact, axis=1) / np.linalg.norm(exact, axis=1)
+    assert 1e-9 < np.sqrt(np.mean(wrong**2)) < error
+    assert np.abs(potential / exact_potential - 1).max() < error
+
+
+@pytest.mark.parametrize("n", [3, 17, 300])
+def test_a_tree_that_opens_everything_is_the_plain_sum(n):
+    found, exact, potential, exact_potential = tree(n, 1e-9)
+    scale = np.abs(exact).max(axis=1, keepdims=True)
+    np.testing.assert_allclose(found / scale, exact / scale, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(potential, exact_potential, rtol=1e-13)
+
+
+def test_threads_do_not_change_a_bit_of_the_tree():
+    assert np.array_equal(tree(2000, 0.65, count=1)[0], tree(2000, 0.65, count=3)[0])
+
+
+def test_bodies_at_one_place_end_the_division():
+    y = np.zeros(6 * 100)
+    y[: 3 * 50] = 1.0
+    keys, order = np.empty(100, dtype=np.int64), np.empty(100, dtype=np.int64)
+    places = y[: 3 * 100].reshape(100, 3).T.ravel()
+    floats = np.concatenate([places, np.ones(100), np.zeros(octree_kernels.NODE * 200 + 200)])
+    octree_kernels.sort_by_key(floats, 100, 100, 0, keys, order)
+    count = octree_kernels.build(floats, 100, keys, 400, 200)
+    assert count == 3
+    nodes = floats[400:].reshape(-1)[: octree_kernels.NODE * count].reshape(count, -1)
+    assert nodes[1:, octree_kernels.CHILDREN].sum() == 0
+    assert nodes[0, octree_kernels.BEGIN] == 0
+    assert nodes[0, octree_kernels.END] == 100
+    starts = np.zeros(12)
+    floats = np.concatenate([floats, starts])
+    found = octree_kernels.groups(floats, count, 400, len(floats) - 12)
+    assert floats[-12 : -11 + found].tolist() == [0, 50, 100]

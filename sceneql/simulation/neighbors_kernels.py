@@ -16,15 +16,17 @@ def cell_of(x, edge):
 
 @inlined
 def sort_by_cell(floats, n, points, edge, size, p, q, sorted_at, order_at, start_at):
-    """Sort points by cell. All are offsets into floats.
+    """Sort points by cell, those whose x is finite. All are offsets into floats.
 
     ``points``: all x, y, z (3 n); written are ``sorted_at`` (3 n) the same in order of cells, ``order_at`` (n) the
-    number of each, ``start_at`` (size + 1) the first of each place of the table (neighbors.table).
+    number of each, ``start_at`` (size + 1) the first of each place of the table (neighbors.table) and their number.
     """
     mask = size - 1
     place = np.empty(n, dtype=np.int64)
     start = np.zeros(size + 1, dtype=np.int64)
     for k in range(n):
+        if not math.isfinite(floats[points + k]):
+            continue
         i = cell_of(floats[points + k], edge)
         j = cell_of(floats[points + n + k], edge)
         l = cell_of(floats[points + 2 * n + k], edge)
@@ -35,6 +37,8 @@ def sort_by_cell(floats, n, points, edge, size, p, q, sorted_at, order_at, start
     for k in range(size + 1):
         floats[start_at + k] = start[k]
     for k in range(n):
+        if not math.isfinite(floats[points + k]):
+            continue
         to = start[place[k]]
         start[place[k]] += 1
         floats[order_at + to] = k

@@ -6,13 +6,13 @@ work_at, charge_at, charge_step (0: one charge for all), then the offset of ever
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import Formula, Value
 from sceneql.quantities.derivative import components, differentiate
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import TIME_SYMBOL, Call, Expr, Link, Symbol, walk
+from sceneql.quantities.expression import TIME_SYMBOL, Call, Expr, Link, Number, Symbol, walk
 from sceneql.simulation import generated
 from sceneql.simulation.printer import IMPORTS, Constants, Printer, printable
 
@@ -24,6 +24,7 @@ PLACE = ("x", "y", "z")
 MOTION = (*PLACE, "vx", "vy", "vz")
 CHARGE = Symbol("q")
 HEAD = 9
+ZERO = Number(0.0)
 NAMES = {name: f"own_{name}" for name in (*MOTION, "m", "q")} | {TIME_SYMBOL: "t"}
 """The kernel's names of a mass's own numbers: `y` is the state."""
 
@@ -54,18 +55,49 @@ def add_force(
     assembly: Assembly, bodies: Bodies, rows: Sequence[Expr], charge: tuple[int, int] = (0, 0), *, counted: bool
 ) -> None:
     """Add the force [N] of three scalar rows to every mass; ``counted``: what it gives is counted in the work."""
+    from sceneql.system import Slopes
+
     constants = Constants()
-    lifted = [constants.lift(row) for row in rows]
     printer = Printer(NAMES, {}, constants)
-    forces = [printer.name(row) for row in lifted]
-    outputs = [f"rate[velocity_at + 3 * k + {c}] += {force}" for c, force in enumerate(forces)]
+    forces = [printer.name(row) for row in [constants.lift(row) for row in rows]]
+    outputs = [f"out[velocity_at + 3 * k + {c}] += {force}" for c, force in enumerate(forces)]
     if counted:
         power = " + ".join(f"{force} * {NAMES[v]}" for force, v in zip(forces, MOTION[3:], strict=True))
-        outputs.append(f"rate[ints[6]] -= {power}")
+        outputs.append(f"out[ints[6]] -= {power}")
     head = (bodies.position_at, bodies.velocity_at, bodies.count, bodies.mass_at, bodies.inverse_at, bodies.work_at)
-    module = _kernel(printer, outputs)
-    inputs = [assembly.value(Value(expr)) for expr in constants.inputs]
-    assembly.term("force", module, (assembly.floats(constants.values), *head, *charge, *inputs))
+
+    def store(constants: Constants) -> tuple[int, ...]:
+        inputs = [assembly.value(Value(expr)) for expr in constants.inputs]
+        return (assembly.floats(constants.values), *head, *charge, *inputs)
+
+    # The numbers of the derivatives are stored with those of the force: when a solver asks for them it is too late.
+    entries, kernel, more = _slopes(rows)
+    ints = store(more)
+
+    def slopes() -> Slopes:
+        import numpy as np
+
+        first = 3 * np.arange(bodies.count)[:, None]
+        columns = np.array(
+            [(bodies.position_at, bodies.velocity_at)[n // 3] + n % 3 for _, n in entries], dtype=np.int64
+        )
+        rows = bodies.velocity_at + np.array([c for c, _ in entries], dtype=np.int64)
+        return Slopes(kernel(), (first + rows).ravel(), (first + columns).ravel(), ints)
+
+    assembly.term(
+        "force", _kernel("force", printer, outputs), store(constants), slopes if entries else Slopes("", (), ())
+    )
+
+
+def _slopes(rows: Sequence[Expr]) -> tuple[list[tuple[int, int]], Callable[[], str], Constants]:
+    """Which (component, number of MOTION) have a derivative other than zero, the kernel for them, and its constants."""
+    constants = Constants()
+    printer = Printer(NAMES, {}, constants)
+    found = [(c, n, differentiate(row, Symbol(name))) for c, row in enumerate(rows) for n, name in enumerate(MOTION)]
+    entries = [(c, n, expr) for c, n, expr in found if expr != ZERO]
+    names = [printer.name(constants.lift(expr)) for _, _, expr in entries]
+    outputs = [f"out[{len(names)} * k + {i}] += {name}" for i, name in enumerate(names)]
+    return [(c, n) for c, n, _ in entries], lambda: _kernel("force_slopes", printer, outputs), constants
 
 
 def links_of(formula: Formula) -> list[Link]:
@@ -96,7 +128,7 @@ def potential_at(
     return np.broadcast_to(evaluate(components(formula.expr)[0], look_up, arrays=True), len(places))
 
 
-def _kernel(printer: Printer, outputs: Sequence[str]) -> str:
+def _kernel(function: str, printer: Printer, outputs: Sequence[str]) -> str:
     constants = printer.constants
     lines = [
         *IMPORTS,
@@ -105,7 +137,7 @@ def _kernel(printer: Printer, outputs: Sequence[str]) -> str:
         "",
         "",
         "@kernel(TERM)",
-        "def force(t, y, rate, floats, ints):",
+        f"def {function}(t, y, out, floats, ints):",
         "    position_at, velocity_at, mass_at, inverse_at = ints[1], ints[2], ints[4], ints[5]",
         *(f"    c{k} = floats[ints[0] + {k}]" for k in range(len(constants.values))),
         *(f"    u{k} = floats[ints[{HEAD + k}]]" for k in range(len(constants.inputs))),
@@ -118,4 +150,4 @@ def _kernel(printer: Printer, outputs: Sequence[str]) -> str:
         "        own_q = floats[ints[7] + k * ints[8]]",
         *(f"        {line}" for line in (*printer.lines, *outputs)),
     ]
-    return f"{generated.write('force', chr(10).join(lines) + chr(10))}:force"
+    return f"{generated.write(function, chr(10).join(lines) + chr(10))}:{function}"

@@ -9,8 +9,8 @@ if TYPE_CHECKING:
 
     from sceneql.system import Bodies
 
-MODEL = 4
-"""Integers of one model: position_at, velocity_at, count, the number of its first mass among all."""
+MODEL = 5
+"""Integers of one model: position_at, velocity_at, count, the number of its first mass among all, mass_at."""
 
 
 def layout(everyone: Sequence[Bodies]) -> tuple[int, ...]:
@@ -18,7 +18,7 @@ def layout(everyone: Sequence[Bodies]) -> tuple[int, ...]:
     numbers: list[int] = []
     total = 0
     for bodies in everyone:
-        numbers += [bodies.position_at, bodies.velocity_at, bodies.count, total]
+        numbers += [bodies.position_at, bodies.velocity_at, bodies.count, total, bodies.mass_at]
         total += bodies.count
     return (total, len(everyone), *numbers)
 
@@ -26,4 +26,4 @@ def layout(everyone: Sequence[Bodies]) -> tuple[int, ...]:
 def first_of(bodies: Bodies, ints: Sequence[int]) -> int:
     """Number of a model's first mass among all, from what `layout` gave."""
     rows = (ints[2 + MODEL * k : 2 + MODEL * (k + 1)] for k in range(ints[1]))
-    return next(first for position_at, _, _, first in rows if position_at == bodies.position_at)
+    return next(first for position_at, _, _, first, _ in rows if position_at == bodies.position_at)

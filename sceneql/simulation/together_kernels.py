@@ -1,9 +1,11 @@
 # mypy: ignore-errors
 """The masses of several models as one: their places gathered, forces handed back."""
 
+import math
+
 from sceneql.kernels import inlined
 
-MODEL = 4
+MODEL = 5
 
 
 @inlined
@@ -16,6 +18,16 @@ def gather(y, floats, ints, at, out):
         for k in range(ints[row + 2]):
             for c in range(3):
                 floats[out + c * n + first + k] = y[position_at + 3 * k + c]
+
+
+@inlined
+def leave_out_massless(floats, ints, at, out):
+    """Put what has no mass (not yet born, or dead) nowhere: its x becomes NaN."""
+    for model in range(ints[at + 1]):
+        row = at + 2 + MODEL * model
+        for k in range(ints[row + 2]):
+            if floats[ints[row + 4] + k] == 0.0:
+                floats[out + ints[row + 3] + k] = math.nan
 
 
 @inlined

@@ -40,11 +40,13 @@ class Electric(Force):
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add q E to every mass."""
+        from sceneql.system import Slopes
+
         charge = each(assembly, self.charge, bodies.count, "charge")
         if self.field_ is not None:
             at = assembly.value(self.field_)
             ints = (bodies.velocity_at, bodies.count, *charge, at)
-            assembly.term("force", "sceneql.simulation.forces.electric_kernels:electric", ints)
+            assembly.term("force", "sceneql.simulation.forces.electric_kernels:electric", ints, Slopes("", (), ()))
             assembly.remember(*charge, at)
             return
         from sceneql.quantities.derivative import components

@@ -38,6 +38,7 @@ class Electrostatic(Force):
             sign=-1,
             constant_at=assembly.value(self.constant),
             softening=self.softening,
+            opening=0.0,
             weights=[each(assembly, self.charge, bodies.count, "charge") for bodies in everyone],
         )
         pairs.add(assembly, everyone, assembly.line())

@@ -38,10 +38,15 @@ class Magnetic(Force):
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add q v x B to every mass."""
+        from sceneql.simulation import bodies as masses
+        from sceneql.system import Slopes
+
         charge = each(assembly, self.charge, bodies.count, "charge")
         if self.field_ is not None:
             ints = (bodies.velocity_at, bodies.count, *charge, assembly.value(self.field_))
-            assembly.term("force", "sceneql.simulation.forces.magnetic_kernels:magnetic", ints)
+            slopes = "sceneql.simulation.forces.magnetic_slopes_kernels:magnetic"
+            kernel = "sceneql.simulation.forces.magnetic_kernels:magnetic"
+            assembly.term("force", kernel, ints, lambda: Slopes(slopes, *masses.own_blocks(bodies, bodies.velocity_at)))
             return
         from sceneql.quantities.derivative import components
         from sceneql.simulation.point_program import CHARGE, add_force, scaled

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
-from sceneql.kinds import FixedLength, Force, Quantity, Value, field
+from sceneql.kinds import FixedLength, FixedScalar, Force, Quantity, Value, field
 from sceneql.quantities import dimension as dim
 
 if TYPE_CHECKING:
@@ -17,8 +17,10 @@ class MutualGravity(Force):
     """Gravity between all masses: F = G m1 m2 / r^2 (Newton, Principia (1687), book III, proposition 7).
 
     With ``softening`` s the force is G m1 m2 r / (r^2 + s^2)^(3/2) (Plummer 1911; Aarseth 1963), with the potential
-    -G m1 m2 / sqrt(r^2 + s^2). Half of the energy of a pair is each mass's. Every pair is summed, in one order whatever
-    the number of threads.
+    -G m1 m2 / sqrt(r^2 + s^2). Half of the energy of a pair is each mass's. Up to some
+    thousand masses every pair is summed; above, a tree (Barnes & Hut 1986) takes groups of masses from afar by their
+    moments up to the second: those whose radius is seen under less than the angle ``opening``. All sums have one order,
+    whatever the number of threads.
     """
 
     mutual: ClassVar[bool] = True
@@ -27,15 +29,22 @@ class MutualGravity(Force):
         "The constant of gravitation G.", "6.6743e-11 m^3/kg/s^2"
     )
     softening: FixedLength = field("Length below which the force no longer grows.", "0 m", at_least=0)
+    method: Literal["auto", "direct", "tree"] = field("How it is summed.", "auto")
+    opening: FixedScalar = field(
+        "Angle [rad] from which on the tree opens a group; 0.65 gives errors of some 1e-3.", "0.65", above=0, at_most=1
+    )
 
     def assemble_together(self, name: str, assembly: Assembly, everyone: Sequence[Bodies]) -> None:
         """Add the forces between all masses. Raises ScriptError where two stand at one place without softening."""
-        from sceneql.simulation.nbody.pairs import Pairs
+        from sceneql.simulation.nbody.pairs import MOST_DIRECT, Pairs
 
+        count = sum(bodies.count for bodies in everyone)
+        tree = self.method == "tree" or (self.method == "auto" and count > MOST_DIRECT)
         pairs = Pairs(
             sign=1,
             constant_at=assembly.value(self.constant),
             softening=self.softening,
+            opening=self.opening if tree else 0.0,
             weights=[(bodies.mass_at, 1) for bodies in everyone],
         )
         pairs.add(assembly, everyone, assembly.line())

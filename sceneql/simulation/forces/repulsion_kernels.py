@@ -6,7 +6,7 @@ import math
 from sceneql.kernels import kernel
 from sceneql.simulation.neighbors_kernels import cell_of, sort_by_cell
 from sceneql.simulation.threads_kernels import TILE, over_threads
-from sceneql.simulation.together_kernels import gather, velocity_of
+from sceneql.simulation.together_kernels import gather, leave_out_massless, velocity_of
 from sceneql.system_kernels import TERM
 
 STRENGTH, NUMBERS, ENERGIES, POINTS, SORTED, ORDER, START, SIZE, P, Q, ENTRY, THREADS, TILE_AT, BODIES = range(14)
@@ -17,12 +17,12 @@ PART = 1024
 @kernel(TILE)
 def repulsion_tile(tile, t, y, rate, floats, ints):
     """The masses PART tile, ... in order of cells: all forces on each, and its half of the energies."""
-    n = ints[BODIES]
+    n, alive = ints[BODIES], int(floats[ints[START] + ints[SIZE]])
     strength, reach = floats[ints[STRENGTH]], floats[ints[NUMBERS]]
     exponent = floats[ints[NUMBERS] + 1]
     mask, start = ints[SIZE] - 1, ints[START]
     xs, ys, zs = ints[SORTED], ints[SORTED] + n, ints[SORTED] + 2 * n
-    for one in range(tile * PART, min(n, tile * PART + PART)):
+    for one in range(tile * PART, min(alive, tile * PART + PART)):
         x, y_, z = floats[xs + one], floats[ys + one], floats[zs + one]
         i, j, l = cell_of(x, reach), cell_of(y_, reach), cell_of(z, reach)
         fx, fy, fz, energy = 0.0, 0.0, 0.0, 0.0
@@ -56,9 +56,9 @@ def repulsion(t, y, rate, floats, ints):
     """Adds the forces between all pairs in reach. ints: see above."""
     n = ints[BODIES]
     gather(y, floats, ints, BODIES, ints[POINTS])
-    for k in range(3 * n):
-        if not math.isfinite(floats[ints[POINTS] + k]):
-            return
+    leave_out_massless(floats, ints, BODIES, ints[POINTS])
+    for k in range(n):
+        floats[ints[ENERGIES] + k] = 0.0
     reach = floats[ints[NUMBERS]]
     sort_by_cell(floats, n, ints[POINTS], reach, ints[SIZE], ints[P], ints[Q], ints[SORTED], ints[ORDER], ints[START])
     over_threads(ints[ENTRY], ints[THREADS], ints[TILE_AT], (n + PART - 1) // PART, t, y, rate, floats, ints)

@@ -13,7 +13,7 @@ from sceneql.quantities.expression import Link
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from sceneql.system import Assembly, Bodies, ModelState
+    from sceneql.system import Assembly, Bodies, ModelState, Slopes
 
 
 class Spring(Force):
@@ -57,7 +57,7 @@ class Spring(Force):
         rest = assembly.floats([length if self.rest is None else self.rest])
         values = (assembly.value(self.stiffness), assembly.value(self.damping), rest)
         ints = (*ends[0], *ends[1], *values)
-        assembly.term("force", "sceneql.simulation.forces.spring_kernels:spring", ints)
+        assembly.term("force", "sceneql.simulation.forces.spring_kernels:spring", ints, lambda: _slopes(ends))
         assembly.remember(*ints)
 
     def _end(self, value: Value, assembly: Assembly, everyone: Sequence[Bodies]) -> tuple[int, int, int]:
@@ -79,3 +79,16 @@ class Spring(Force):
         stretch = float(np.linalg.norm(places[1] - places[0])) - state.floats[state.ints[8]]
         owned = sum(work == bodies.work_at for _, _, work in ends) / sum(work >= 0 for _, _, work in ends)
         return float(0.5 * state.floats[state.ints[6]] * stretch**2 * owned)
+
+
+def _slopes(ends: Sequence[tuple[int, int, int]]) -> Slopes:
+    """Where the blocks of the derivatives stand: see spring_slopes_kernels."""
+    import numpy as np
+
+    from sceneql.system import Slopes
+
+    i, j = np.divmod(np.arange(9), 3)
+    masses = [end for end in ends if end[0] >= 0]
+    pairs = [(one[1], other[which]) for one in masses for which in (0, 1) for other in masses]
+    rows, columns = (np.concatenate(places) for places in zip(*((r + i, c + j) for r, c in pairs), strict=True))
+    return Slopes("sceneql.simulation.forces.spring_slopes_kernels:spring", rows, columns)

@@ -27,7 +27,18 @@ class Vortex(Force):
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add the force to every mass, and its power to the work."""
+        import numpy as np
+
+        from sceneql.simulation import bodies as masses
+        from sceneql.system import Slopes
+
         ints = (bodies.position_at, bodies.velocity_at, bodies.count, bodies.work_at, bodies.inverse_at)
         values = (self.position, self.axis, self.circulation, self.updraft, self.linear)
         parameters = (*(assembly.value(value) for value in values), assembly.floats([self.core]))
-        assembly.term("force", "sceneql.simulation.forces.vortex_kernels:vortex", (*ints, *parameters))
+
+        def slopes() -> Slopes:
+            both = (masses.own_blocks(bodies, at) for at in (bodies.position_at, bodies.velocity_at))
+            rows, columns = (np.concatenate(places) for places in zip(*both, strict=True))
+            return Slopes("sceneql.simulation.forces.vortex_slopes_kernels:vortex", rows, columns)
+
+        assembly.term("force", "sceneql.simulation.forces.vortex_kernels:vortex", (*ints, *parameters), slopes)

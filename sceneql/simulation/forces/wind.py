@@ -39,7 +39,13 @@ class Wind(Force):
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add the force to every mass, and its power to the work."""
-        ints = (bodies.velocity_at, bodies.count, bodies.work_at, bodies.inverse_at)
+        from sceneql.simulation import bodies as masses
+        from sceneql.system import Slopes
+
+        masses_of = (bodies.velocity_at, bodies.count, bodies.work_at, bodies.inverse_at)
         values = (self.linear, self.quadratic, self.velocity, self.gusts)
         parameters = (*(assembly.value(value) for value in values), assembly.floats([self.period]), self.seed)
-        assembly.term("force", "sceneql.simulation.forces.wind_kernels:wind", (*ints, *parameters))
+        slopes = "sceneql.simulation.forces.wind_slopes_kernels:wind"
+        kernel = "sceneql.simulation.forces.wind_kernels:wind"
+        ints = (*masses_of, *parameters)
+        assembly.term("force", kernel, ints, lambda: Slopes(slopes, *masses.own_blocks(bodies, bodies.velocity_at)))

@@ -3,9 +3,22 @@
 
 import math
 
-from sceneql.kernels import kernel
+from sceneql.kernels import inlined, kernel
 from sceneql.simulation.chance_kernels import noise_in_time
 from sceneql.system_kernels import TERM
+
+
+@inlined
+def air(t, floats, ints):
+    """The velocity of the air at a time, gusts and all; ints as for `wind`."""
+    ux, uy, uz = floats[ints[6]], floats[ints[6] + 1], floats[ints[6] + 2]
+    strength = floats[ints[7]] * math.sqrt(ux * ux + uy * uy + uz * uz)
+    if strength > 0.0:
+        s = t / floats[ints[8]]
+        ux += strength * noise_in_time(s, 0, ints[9])
+        uy += strength * noise_in_time(s, 1, ints[9])
+        uz += strength * noise_in_time(s, 2, ints[9])
+    return ux, uy, uz
 
 
 @kernel(TERM)
@@ -16,13 +29,7 @@ def wind(t, y, rate, floats, ints):
     """
     velocity_at, count, work_at, inverse_at = ints[0], ints[1], ints[2], ints[3]
     linear, quadratic = floats[ints[4]], floats[ints[5]]
-    ux, uy, uz = floats[ints[6]], floats[ints[6] + 1], floats[ints[6] + 2]
-    strength = floats[ints[7]] * math.sqrt(ux * ux + uy * uy + uz * uz)
-    if strength > 0.0:
-        s = t / floats[ints[8]]
-        ux += strength * noise_in_time(s, 0, ints[9])
-        uy += strength * noise_in_time(s, 1, ints[9])
-        uz += strength * noise_in_time(s, 2, ints[9])
+    ux, uy, uz = air(t, floats, ints)
     power = 0.0
     for k in range(count):
         if floats[inverse_at + k] == 0.0:

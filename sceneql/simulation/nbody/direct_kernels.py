@@ -29,13 +29,14 @@ ALONE = 1024
 
 @inlined
 def weights(floats, ints, at, out):
-    """Write the weights of all bodies to floats[out:]."""
+    """Write the weights of all bodies to floats[out:]; 0 for what has no mass (not yet born, or dead)."""
     after = at + 2 + MODEL * ints[at + 1]
     for model in range(ints[at + 1]):
         row = at + 2 + MODEL * model
         weight_at, step = ints[after + 2 * model], ints[after + 2 * model + 1]
         for k in range(ints[row + 2]):
-            floats[out + ints[row + 3] + k] = floats[weight_at + step * k]
+            alive = floats[ints[row + 4] + k] > 0.0
+            floats[out + ints[row + 3] + k] = floats[weight_at + step * k] if alive else 0.0
 
 
 @inlined

@@ -11,9 +11,12 @@ from sceneql.simulation.together import first_of, layout
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from sceneql.frame import Floats
     from sceneql.quantities.span import Span
     from sceneql.system import Assembly, Bodies, ModelState
+
+
+MOST_DIRECT = 4000
+"""Up to so many bodies the sum over all pairs is quicker than a tree."""
 
 
 @dataclass(frozen=True)
@@ -23,6 +26,8 @@ class Pairs:
     sign: int
     constant_at: int
     softening: float
+    opening: float
+    """Angle of the tree; 0: every pair is summed."""
     weights: Sequence[tuple[int, int]]
     """For every model offset and step of its weights in the floats."""
 
@@ -31,31 +36,59 @@ class Pairs:
 
         Raises ScriptError where bodies stand at one place at the start and no softening keeps the force finite.
         """
-        import numpy as np
+        if self.softening == 0:
+            apart(assembly, everyone, span)
+        bodies = layout(everyone)
+        weights = tuple(number for weight in self.weights for number in weight)
+        kernel, numbers = self._tree(assembly, bodies[0]) if self.opening > 0 else self._direct(assembly, bodies[0])
+        ints = (*numbers, *bodies, *weights)
+        assembly.term("force", f"sceneql.simulation.nbody.{kernel}", ints)
+        assembly.remember(int(self.opening > 0), *ints)
 
+    def _direct(self, assembly: Assembly, n: int) -> tuple[str, tuple[int, ...]]:
+        """Kernel and integers up to the bodies (direct_kernels)."""
         from sceneql.simulation.nbody.direct_kernels import LANES, direct_tile
         from sceneql.simulation.threads_kernels import threads, tile_address
 
-        if self.softening == 0:
-            apart(assembly.start(), everyone, span)
-        bodies = layout(everyone)
-        room = -(-bodies[0] // LANES) * LANES
+        ints = (*self._numbers(assembly, -(-n // LANES) * LANES), *threads(), tile_address(direct_tile))
+        return "direct_kernels:direct", ints
+
+    def _tree(self, assembly: Assembly, n: int) -> tuple[str, tuple[int, ...]]:
+        """Kernel and integers up to the bodies (tree_kernels)."""
+        from sceneql.simulation.nbody.octree_kernels import NODE
+        from sceneql.simulation.nbody.tree_kernels import tree_tile
+        from sceneql.simulation.threads_kernels import threads, tile_address
+
+        most = n // 2 + 64
         ints = (
-            *(self.constant_at, self.sign, assembly.floats([self.softening])),
-            *(assembly.floats(np.zeros(3 * room)), assembly.floats(np.zeros(room)), room),
-            *(*threads(), tile_address(direct_tile), *bodies),
-            *(number for weight in self.weights for number in weight),
+            *(*self._numbers(assembly, n), assembly.floats([self.opening]), _scratch(assembly, NODE * most), most),
+            *(_scratch(assembly, count) for count in (3 * n, n, n, n + 2, n)),
+            *(*threads(), tile_address(tree_tile)),
         )
-        assembly.term("force", "sceneql.simulation.nbody.direct_kernels:direct", ints)
-        assembly.remember(*ints)
+        return "tree_kernels:tree", ints
+
+    def _numbers(self, assembly: Assembly, room: int) -> tuple[int, ...]:
+        """What both kernels have first."""
+        softening = assembly.floats([self.softening])
+        return self.constant_at, self.sign, softening, _scratch(assembly, 3 * room), _scratch(assembly, room), room
 
 
-def apart(start: Floats, everyone: Sequence[Bodies], span: Span | None) -> None:
+def _scratch(assembly: Assembly, count: int) -> int:
+    """Room for numbers of a kernel's own."""
+    import numpy as np
+
+    return assembly.floats(np.zeros(count))
+
+
+def apart(assembly: Assembly, everyone: Sequence[Bodies], span: Span | None) -> None:
     """Raise ScriptError when two bodies stand at one place."""
     import numpy as np
 
+    start, numbers = assembly.start(), assembly.numbers()
     places = np.concatenate([start[b.position_at : b.position_at + 3 * b.count].reshape(-1, 3) for b in everyone])
+    alive = np.concatenate([numbers[b.mass_at : b.mass_at + b.count] > 0 for b in everyone])
     order = np.lexsort(places.T)
+    order = order[alive[order]]
     same = np.flatnonzero(np.all(places[order[1:]] == places[order[:-1]], axis=1))
     if not len(same):
         return
@@ -71,12 +104,19 @@ def energy(bodies: Bodies, state: ModelState) -> float:
 
     from sceneql.simulation.nbody import direct_kernels as kernels
 
-    ints = np.array(state.ints, dtype=np.int64)
-    n = int(ints[kernels.BODIES])
-    found = np.zeros(n)
-    kernels.potentials(state.y, state.floats, ints, found)
-    first = first_of(bodies, state.ints[kernels.BODIES :])
+    tree, *rest = state.ints
+    ints = np.array(rest, dtype=np.int64)
+    if tree:
+        from sceneql.simulation.nbody.tree_kernels import BODIES, POTENTIALS
+
+        bodies_at, n = BODIES, rest[BODIES]
+        found = state.floats[rest[POTENTIALS] : rest[POTENTIALS] + n]
+    else:
+        bodies_at, n = kernels.BODIES, rest[kernels.BODIES]
+        found = np.zeros(n)
+        kernels.potentials(state.y, state.floats, ints, found)
+    first = first_of(bodies, rest[bodies_at:])
     own = slice(first, first + bodies.count)
-    weights_at = int(ints[kernels.WEIGHTS])
-    constant = float(ints[kernels.SIGN] * state.floats[ints[kernels.CONSTANT]])
-    return -0.5 * constant * float(state.floats[weights_at : weights_at + n][own] @ found[own])
+    weights = state.floats[rest[kernels.WEIGHTS] : rest[kernels.WEIGHTS] + n]
+    constant = float(rest[kernels.SIGN] * state.floats[rest[kernels.CONSTANT]])
+    return -0.5 * constant * float(weights[own] @ found[own])
