@@ -83,6 +83,8 @@ class Contact(Kind):
 
     family: ClassVar[str] = "contacts"
     also_under: ClassVar[str] = "forces"
+    mutual: ClassVar[bool] = False
+    """Whether it acts between all masses of its models: these are tied, and it is assembled for all at once."""
 
     def ties(self) -> tuple[Ref, ...]:
         """The models and objects it acts between; empty: all models and the floor."""
@@ -90,6 +92,12 @@ class Contact(Kind):
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies, others: tuple[Ref, ...]) -> None:
         """Add gaps and impacts (or local backing off) of one model against the others."""
+        raise NotImplementedError
+
+    def assemble_together(
+        self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
+    ) -> None:
+        """Add its terms for all models at once, where it is `mutual`."""
         raise NotImplementedError
 
     def read(self, output: str, state: ModelState) -> Any:

@@ -103,12 +103,10 @@ class IslandRun:
         assembly.places = self._places
         for force in dict.fromkeys(force for force, _ in island.forces):
             self._add_force(force)
-        for contact, model, others in island.contacts:
-            bodies = self.bodies[model]
-            if bodies is not None:
-                with assembly.word(contact, graph.tasks[contact].span):
-                    refs = tuple(Ref(other) for other in others)
-                    cast(Contact, graph.tasks[contact].kind).assemble(contact, assembly, bodies, refs)
+        contacts = dict.fromkeys(contact for contact, _, _ in island.contacts)
+        # Masses among themselves last: objects need the whole path of a step as the solver made it.
+        for contact in sorted(contacts, key=lambda name: cast(Contact, graph.tasks[name].kind).mutual):
+            self._add_contact(contact)
         stepper = self.solver.stepper()
         self.march: March = March(assembly.finish(stepper.jacobian), stepper, graph.settings.clock.end)
         self.members = {*island.models, *(contact for contact, _, _ in island.contacts)}
@@ -126,6 +124,18 @@ class IslandRun:
         for bodies in masses if not kind.mutual else ():
             with self.assembly.word(force, task.span, bodies.model):
                 kind.assemble(force, self.assembly, bodies)
+
+    def _add_contact(self, contact: str) -> None:
+        """Add a contact of the masses of all its models with its objects."""
+        task = self.graph.tasks[contact]
+        kind = cast(Contact, task.kind)
+        rows = [(self.bodies[model], others) for name, model, others in self.island.contacts if name == contact]
+        masses = [(bodies, tuple(Ref(other) for other in others)) for bodies, others in rows if bodies is not None]
+        with self.assembly.word(contact, task.span):
+            if kind.mutual and masses:
+                kind.assemble_together(contact, self.assembly, [bodies for bodies, _ in masses], masses[0][1])
+            for bodies, refs in masses if not kind.mutual else ():
+                kind.assemble(contact, self.assembly, bodies, refs)
 
     def _places(self, link: Link) -> Any:
         """Where in the state an output of one of the models stands, for values that read it at stage times."""

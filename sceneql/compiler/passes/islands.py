@@ -41,8 +41,9 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
         if isinstance(kind, Force) and kind.mutual:
             for target in targets[1:]:
                 tie(targets[0], target)
-    for targets, others in contacts.values():
-        if len(targets) > 1 and not others:
+    for contact, (targets, others) in contacts.items():
+        kind = tasks[contact].kind
+        if len(targets) > 1 and (not others or (isinstance(kind, Contact) and kind.mutual)):
             for target in targets[1:]:
                 tie(targets[0], target)
         for surface in others:

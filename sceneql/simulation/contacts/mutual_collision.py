@@ -1,0 +1,117 @@
+"""mutual_collision: masses collide with one another, as spheres."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+from sceneql.kinds import Contact, DrawnRef, Gives, Ref, Scalar, field
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.expression import Type
+
+if TYPE_CHECKING:
+    from sceneql.system import Assembly, Bodies, ModelState
+
+MOST_EXACT = 8
+
+
+class MutualCollision(Contact):
+    """Impacts and resting contact of masses with one another: spheres of their radii, which do not turn.
+
+    An impact turns the normal part of the relative velocity round, scaled by the restitution (Newton 1687), with an
+    impulse of Coulomb's friction across it; the momentum stays. Mode `exact` locates every impact to rounding and
+    restarts the solver there, for elastic masses; `local` finds the impacts of a step by cell lists (Hockney & Eastwood
+    1981), first ones first, and lets masses that approach no faster than they are pressed rest on each other and on the
+    objects, by impulses at the end of the step (Moreau 1988); `auto` is exact for up to 8 elastic masses.
+    """
+
+    mutual: ClassVar[bool] = True
+    gives: ClassVar[Mapping[str, Gives]] = {"hits.count": Gives(Type(), "Number of impacts so far.")}
+
+    between: tuple[DrawnRef, ...] | None = field(
+        "The models whose masses collide, and the objects that these rest on; by default all models with masses and "
+        "all planes, spheres and boxes.",
+        None,
+    )
+    restitution: Scalar = field("Normal speed after an impact as a part of that before.", "0.5", at_least=0, at_most=1)
+    friction: Scalar = field("Coulomb's coefficient of friction.", "0", at_least=0)
+    mode: Literal["auto", "exact", "local"] = field("How impacts are found.", "auto")
+
+    def ties(self) -> tuple[Ref, ...]:
+        """The models and objects of `between`."""
+        return self.between or ()
+
+    def assemble_together(
+        self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
+    ) -> None:
+        """Add the contacts of all pairs. Raises ScriptError for masses that start inside each other."""
+        import numpy as np
+
+        from sceneql.simulation.contacts.colliders import surfaces
+        from sceneql.simulation.contacts.sphere_pair_kernels import BODY, HEAD
+        from sceneql.simulation.neighbors import table
+
+        _must_be_apart(assembly, everyone)
+        rows = [
+            (
+                at.position_at + 3 * k,
+                at.velocity_at + 3 * k,
+                at.work_at,
+                at.mass_at + k,
+                at.inverse_at + k,
+                at.radius_at + k,
+            )
+            for at in everyone
+            for k in range(at.count)
+        ]
+        n = len(rows)
+        elastic = self.restitution.constant and float(assembly.initial(self.restitution)) == 1.0
+        if self.mode == "exact" and not elastic:
+            text = "exact collisions between masses are elastic: those that lose speed come to rest on each other"
+            raise ScriptError([Diagnostic("not-elastic", text, assembly.line(), "set restitution: 1 or mode: local")])
+        exact = self.mode == "exact" or (self.mode == "auto" and elastic and n <= MOST_EXACT)
+        size, first, second = table(n)
+        tally = assembly.floats([0.0, np.nan, np.nan, 0.0, np.nan])
+        objects = (
+            () if exact else surfaces([Ref(ref.name, assembly.line()) for ref in others], assembly, HEAD + BODY * n)
+        )
+        scratch = (3 * n, 3 * n, n, size + 1) if not exact else (7 * n, 0, 0, 0)
+        ints = (
+            *(n, assembly.value(self.restitution), assembly.value(self.friction), tally),
+            *(assembly.floats(np.zeros(count)) for count in scratch),
+            *(size, first, second, 0 if exact else len(others)),
+            *(number for row in rows for number in row),
+            *objects,
+        )
+        folder = "sceneql.simulation.contacts"
+        if exact:
+            kernels = (f"{folder}.sphere_events_kernels:gap", f"{folder}.sphere_events_kernels:impact")
+            assembly.contact("exact", kernels, ints, n * (n - 1) // 2)
+        else:
+            assembly.contact("local", (f"{folder}.sphere_settle_kernels:settle",), ints, 0)
+        assembly.remember(tally)
+
+    def read(self, output: str, state: ModelState) -> Any:
+        """The number of impacts."""
+        return float(sum(state.floats[at] for at in state.ints))
+
+
+def _must_be_apart(assembly: Assembly, everyone: Sequence[Bodies]) -> None:
+    """Raise ScriptError where two masses overlap at the start."""
+    import numpy as np
+    from scipy.spatial import cKDTree
+
+    y, floats = assembly.start(), assembly.numbers()
+    places = np.concatenate([y[at.position_at : at.position_at + 3 * at.count] for at in everyone]).reshape(-1, 3)
+    radii = np.concatenate([floats[at.radius_at : at.radius_at + at.count] for at in everyone])
+    pairs = cKDTree(places).query_pairs(2.0 * float(radii.max(initial=0.0)), output_type="ndarray")
+    apart = np.linalg.norm(places[pairs[:, 0]] - places[pairs[:, 1]], axis=1)
+    depth = radii[pairs].sum(axis=1) - apart
+    if len(pairs) and depth.max() > 1e-9 * radii.max():
+        worst = int(np.argmax(depth))
+        names = [f"mass {k} of '{bodies.model}'" for bodies in everyone for k in range(bodies.count)]
+        one, other = (names[k] for k in pairs[worst])
+        text = f"{one} and {other} overlap by {depth[worst]:.3g} m at the start"
+        raise ScriptError(
+            [Diagnostic("masses-overlap", text, assembly.line(), "move them apart, or make them smaller")]
+        )

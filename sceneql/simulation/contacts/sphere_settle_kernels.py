@@ -1,0 +1,184 @@
+# mypy: ignore-errors
+"""Masses that collide with one another in `local` mode: impacts within the step, first ones first, then rest.
+
+In the step a mass moves on with its mean velocity, and with the acceleration that it has at the start; an impact
+changes both ends of what is left of its way. Two masses that are each other's next impact are taken together, in
+passes, so the order of masses does not matter.
+"""
+
+import math
+
+import numpy as np
+from numba import types
+
+from sceneql.kernels import inlined, kernel
+from sceneql.simulation.contacts.impulse_kernels import count_hit
+from sceneql.simulation.contacts.sphere_pair_kernels import (
+    COUNT,
+    INVERSE,
+    MASS,
+    POINTS,
+    RADIUS,
+    TALLY,
+    WORK,
+    V,
+    X,
+    impulse,
+    neighbors,
+    of,
+    radii,
+    rests_below,
+    sort_cells,
+)
+from sceneql.simulation.contacts.sphere_rest_kernels import rest
+from sceneql.system_kernels import SETTLE, A, F, I, N
+
+MOST_PASSES = 100
+ASKED = 1
+"""floats[1]: above 0 the march only asks when the step should end."""
+ROWS = types.float64[:, ::1]
+
+
+@kernel(types.Tuple((I, I))(F, A, A, A, I))
+def candidates(h, y0, y1, floats, ints):
+    """The pairs that may meet in the step: first of each mass (n + 1), and the masses of larger number.
+
+    Also those that would meet if one took over the way of the fastest.
+    """
+    n = ints[COUNT]
+    first = np.zeros(n + 1, dtype=np.int64)
+    longest, widest = 0.0, 0.0
+    for k in range(n):
+        at = of(ints, k, X)
+        way = 0.0
+        for c in range(3):
+            floats[ints[POINTS] + c * n + k] = 0.5 * (y0[at + c] + y1[at + c])
+            way += (y1[at + c] - y0[at + c]) ** 2
+        longest = max(longest, way)
+        widest = max(widest, floats[of(ints, k, RADIUS)])
+    edge = 2.0 * (widest + math.sqrt(longest))
+    if not edge > 0.0 or widest == 0.0 or not math.isfinite(edge):
+        return first, np.zeros(0, dtype=np.int64)
+    sort_cells(edge, floats, ints)
+    found = np.empty(n, dtype=np.int64)
+    others = np.empty(8 * n + 64, dtype=np.int64)
+    points = ints[POINTS]
+    for k in range(n):
+        total = first[k]
+        for one in range(neighbors(k, edge, found, floats, ints)):
+            j = found[one]
+            square = 0.0
+            for c in range(3):
+                square += (floats[points + c * n + k] - floats[points + c * n + j]) ** 2
+            fixed = floats[of(ints, k, INVERSE)] + floats[of(ints, j, INVERSE)] == 0.0
+            if fixed or square > (radii(k, j, floats, ints) + 2.0 * math.sqrt(longest)) ** 2:
+                continue
+            if total == others.size:
+                more = np.empty(2 * others.size, dtype=np.int64)
+                more[:total] = others
+                others = more
+            others[total] = j
+            total += 1
+        first[k + 1] = total
+    return first, others
+
+
+@inlined
+def relative(i, j, left, y1, mean, pull, r, v, ints):
+    """Place r and velocity v of mass i seen from j, ``left`` before the step's end."""
+    for c in range(3):
+        r[c] = y1[of(ints, i, X) + c] - y1[of(ints, j, X) + c] - left * (mean[i, c] - mean[j, c])
+        v[c] = y1[of(ints, i, V) + c] - y1[of(ints, j, V) + c] - left * (pull[i, c] - pull[j, c])
+
+
+@kernel(F(N, N, F, A, ROWS, ROWS, A, A, A, A, I))
+def meet(i, j, h, since, mean, pull, y1, r, v, floats, ints):
+    """How long before the step's end two masses meet, fast enough for an impact; -1 if they do not."""
+    left = h - max(since[i], since[j])
+    relative(i, j, left, y1, mean, pull, r, v, ints)
+    reach = radii(i, j, floats, ints)
+    square, b, speed2 = -reach * reach, 0.0, 0.0
+    for c in range(3):
+        w = mean[i, c] - mean[j, c]
+        square += r[c] * r[c]
+        b += r[c] * w
+        speed2 += w * w
+    if b >= 0.0:
+        return -1.0
+    if square > 1e-12 * reach * reach:
+        inside = b * b - speed2 * square
+        if inside < 0.0:
+            return -1.0
+        left -= square / (math.sqrt(inside) - b)
+        if left < 0.0:
+            return -1.0
+        relative(i, j, left, y1, mean, pull, r, v, ints)
+    vn = (v[0] * r[0] + v[1] * r[1] + v[2] * r[2]) / reach
+    return left if -vn > rests_below(i, j, h, pull, floats, ints) else -1.0
+
+
+@inlined
+def collide(i, j, left, t1, h, since, mean, pull, y1, r, v, floats, ints):
+    """The impact of two masses ``left`` before the step's end; half of what it takes is counted for each."""
+    relative(i, j, left, y1, mean, pull, r, v, ints)
+    px, py, pz, speed = impulse(i, j, r, v, floats, ints)
+    count_hit(floats, ints[TALLY], t1 - left, speed)
+    lost = 0.0
+    for one in range(2):
+        k = i if one == 0 else j
+        inverse = floats[of(ints, k, INVERSE)] * (1.0 if one == 0 else -1.0)
+        if inverse == 0.0:
+            continue
+        mass = floats[of(ints, k, MASS)]
+        for c in range(3):
+            add = inverse * (px if c == 0 else (py if c == 1 else pz))
+            lost -= mass * add * (y1[of(ints, k, V) + c] + 0.5 * add - pull[k, c] * left)
+            y1[of(ints, k, V) + c] += add
+            y1[of(ints, k, X) + c] += left * add
+            mean[k, c] += add
+        since[k] = h - left
+    y1[of(ints, i, WORK)] += 0.5 * lost
+    y1[of(ints, j, WORK)] += 0.5 * lost
+
+
+@kernel(SETTLE)
+def settle(t0, t1, y0, rate0, y1, floats, ints):
+    """Change y1 so that no mass went through another in the step from t0 to t1."""
+    n, h = ints[COUNT], t1 - t0
+    if floats[ASKED] > 0.0:
+        return
+    first, others = candidates(h, y0, y1, floats, ints)
+    if first[n] == 0:
+        return
+    mean, pull = np.empty((n, 3)), np.empty((n, 3))
+    for k in range(n):
+        for c in range(3):
+            mean[k, c] = (y1[of(ints, k, X) + c] - y0[of(ints, k, X) + c]) / h
+            # Not the mean of the step, in which objects may have given impulses.
+            pull[k, c] = rate0[of(ints, k, V) + c]
+    since, next_left = np.zeros(n), np.empty(n)
+    partner = np.empty(n, dtype=np.int64)
+    r, v = np.empty(3), np.empty(3)
+    for _ in range(MOST_PASSES):
+        next_left[:] = -1.0
+        partner[:] = -1
+        for i in range(n):
+            for one in range(first[i], first[i + 1]):
+                j = others[one]
+                left = meet(i, j, h, since, mean, pull, y1, r, v, floats, ints)
+                if left < 0.0:
+                    continue
+                # Of pairs at one instant the first in the order of the list counts, for both.
+                if left > next_left[i]:
+                    next_left[i], partner[i] = left, j
+                if left > next_left[j]:
+                    next_left[j], partner[j] = left, i
+        met = False
+        for i in range(n):
+            j = partner[i]
+            if j > i and partner[j] == i:
+                collide(i, j, next_left[i], t1, h, since, mean, pull, y1, r, v, floats, ints)
+                met = True
+        if not met:
+            break
+    rest(h, first, others, pull, y1, floats, ints)
