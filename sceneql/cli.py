@@ -6,7 +6,7 @@ Exit codes: 0 ok, 1 run failed, 2 usage, 3 script invalid, 4 gallery differs, 5 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
@@ -15,6 +15,8 @@ from sceneql import __version__
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from sceneql.graph import SimulationGraph
 
 OK, RUN_FAILED, USAGE, SCRIPT_INVALID, GALLERY_DIFFERS, LIMIT_REFUSED, INTERRUPTED = 0, 1, 2, 3, 4, 5, 130
 
@@ -107,7 +109,10 @@ def _say_kept(error: BaseException | None) -> None:
 @SCENE
 @_options
 @click.option("-o", "--output", callback=_path, help="File to make, for a script with one output.")
-def render(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None, output: Path | None) -> None:
+@click.option("--report", "account", is_flag=True, help="Tell how far energy and momentum drifted.")
+def render(
+    scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None, output: Path | None, account: bool
+) -> None:
     """Make the outputs of a scene."""
     from sceneql import pipeline
     from sceneql.report.progress import bar
@@ -115,7 +120,7 @@ def render(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path 
     graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
     _warn(graph)
     with bar(graph.name) as progress:
-        report = pipeline.render(graph, output=output, progress=progress)
+        report = pipeline.render(graph, output=output, account=account, progress=progress)
     _warn(report)
     for path in report.files:
         click.echo(f"made {path}")
@@ -126,6 +131,8 @@ def render(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path 
         line += f", {report.steps} steps"
     line += f"; compile {report.compile_seconds:.2f} s"
     click.echo(line + (f" ({report.compilations} functions)" if report.compilations else ""))
+    for found in report.conserved if account else ():
+        click.echo(found)
     if report.undecided:
         click.echo(f"{report.undecided} pixels undecided: proved neither hit nor miss at the tolerance")
 
@@ -170,14 +177,51 @@ def explain(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path
 @cli.command()
 @SCENE
 @_options
-@click.option("-o", "--output", callback=_path, help="Folder or stem for the CSV and the SVG.")
-def bench(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None, output: Path | None) -> None:
+@click.option("-o", "--output", callback=_path, help="Folder for the files, or their path without extension.")
+@click.option("--error", type=float, help="Name the cheapest solver for this relative error.")
+def bench(
+    scene: Path,
+    variant: str | None,
+    sets: tuple[str, ...],
+    words: Path | None,
+    output: Path | None,
+    error: float | None,
+) -> None:
     """Measure error against run time: the scene's physics by every solver that applies."""
     from sceneql import pipeline
     from sceneql.report.bench import bench as measure
 
     graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
-    click.echo(measure(graph, output, words))
+    click.echo(measure(graph, output, words, error))
+
+
+@cli.command()
+@SCENE
+@_options
+@click.option(
+    "--sweep", metavar="PATH=LOW..HIGH", help="As 'define.k=1e0..1e12 N/m'; by default steps, as 'step=1e-5..1'."
+)
+@click.option("--points", type=int, help="Values of the sweep; by default 13.")
+@click.option("--error", type=float, default=0.1, show_default=True, help="Larger relative errors are inaccurate.")
+@click.option("-o", "--output", callback=_path, help="Folder for the files, or their path without extension.")
+def stability(
+    scene: Path,
+    variant: str | None,
+    sets: tuple[str, ...],
+    words: Path | None,
+    sweep: str | None,
+    points: int | None,
+    error: float,
+    output: Path | None,
+) -> None:
+    """Map where each solver is stable, inaccurate or fails while a step or a value of the script is swept."""
+    from sceneql import pipeline
+    from sceneql.report.stability import stability as survey
+
+    def load(more: Sequence[str]) -> SimulationGraph:
+        return pipeline.load(scene, variant=variant, sets=(*sets, *more), words=words)
+
+    click.echo(survey(load, sweep, points, output, words, error))
 
 
 @cli.command()

@@ -65,6 +65,8 @@ class Report:
     present: dict[str, bool] = field(default_factory=dict)
     """Implicit solids that were drawn, and whether any frame may show something of them."""
     warnings: tuple[Diagnostic, ...] = ()
+    conserved: list[str] = field(default_factory=list)
+    """For each island that tells an energy, how far it drifted; momentum where it is conserved."""
 
 
 def simulate(graph: SimulationGraph, times: Iterable[float]) -> Iterator[Instant]:
@@ -79,13 +81,14 @@ def render(
     *,
     output: Path | None = None,
     folder: Path | None = None,
+    account: bool = False,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Report:
     """Run a graph and make its outputs, in one pass over the union of their times.
 
-    ``output`` overrides the file of a single output. On a failure what was made is kept beside the final names, in
-    ``error.kept`` of the exception that goes on. Raises RunFailure, LimitRefused, OSError, and Unsuitable for one file
-    with several outputs.
+    ``output`` overrides the file of a single output; with ``account`` energies are looked at in every frame. On a
+    failure what was made is kept beside the final names, in ``error.kept`` of the exception that goes on. Raises
+    RunFailure, LimitRefused, OSError, and Unsuitable for one file with several outputs.
     """
     started, compiled = time.perf_counter(), _compiled()
     report = Report()
@@ -111,10 +114,13 @@ def render(
         wanted = {name: set(at) for name, at in times.items()}
         from sceneql.simulation.presence import missing
         from sceneql.simulation.run import Run
+        from sceneql.simulation.watch import Watch
 
         run = Run(graph)
+        watch = Watch(run, always=account)
         for done, moment in enumerate(run.moments(instants)):
             progress(done, len(instants))
+            watch.look(moment, last=done == len(instants) - 1)
             for name, sink in sinks.items():
                 if moment.time in wanted[name]:
                     sink.take(moment)
@@ -126,7 +132,8 @@ def render(
     except BaseException as error:
         error.kept = [*report.files, *_kept(sinks, error)]  # type: ignore[attr-defined]
         raise
-    report.warnings = missing(report.present, graph.tasks)
+    report.warnings = (*missing(report.present, graph.tasks), *watch.warnings())
+    report.conserved = watch.account()
     seconds, count = _compiled()
     report.compile_seconds, report.compilations = seconds - compiled[0], count - compiled[1]
     report.run_seconds = time.perf_counter() - started - report.compile_seconds

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 import math
 import xml.etree.ElementTree as ET
 
@@ -12,8 +13,10 @@ from hypothesis import strategies as st
 
 from sceneql import pipeline
 from sceneql.report import work_precision
-from sceneql.report.bench import bench
+from sceneql.report.bench import bench, cheapest
 from sceneql.report.order import observed_order
+from sceneql.report.page import Table, write_page
+from sceneql.report.work_precision import Measurement
 
 SPRING = """\
 sceneql: 1
@@ -108,6 +111,73 @@ def test_a_scene_without_physics_has_nothing_to_measure(tmp_path):
     (tmp_path / "still.yaml").write_text("sceneql: 1\nobjects: {ball: sphere}\noutputs: {picture: {image: {}}}\n")
     with pytest.raises(ValueError, match="nothing to measure"):
         bench(pipeline.load(tmp_path / "still.yaml"), tmp_path)
+
+
+def runs(solver, *pairs):
+    return [Measurement("spring", solver, False, 1e-3, "ok", error, seconds, 1, 1) for error, seconds in pairs]
+
+
+@given(st.floats(1e-9, 1e-1))
+def test_the_cheapest_solver_is_the_one_whose_curve_lies_lowest_at_the_error(asked):
+    """Two power laws that cross at 1e-4."""
+    first = runs("first", *((1e-10 * 10.0**k, 1e-2 * 10.0**-k) for k in range(11)))
+    fourth = runs("fourth", *((1e-10 * 10.0**k, 1e-6 * 10 ** (1.5 - 0.25 * k)) for k in range(11)))
+    word, seconds = cheapest([*first, *fourth], asked)
+    laws = {"first": 1e-12 / asked, "fourth": 1e-6 * 10**-1.0 * asked**-0.25}
+    assert seconds == pytest.approx(min(laws.values()), rel=1e-6)
+    assert laws[word] == pytest.approx(seconds, rel=1e-6)
+
+
+def test_no_solver_is_the_cheapest_for_an_error_that_none_reaches():
+    assert cheapest(runs("euler", (1e-1, 1.0), (1e-2, 10.0)), 1e-3) is None
+    assert cheapest(runs("euler", (1e-1, 1.0), (1e-2, 10.0)), 0.5) == ("euler", 1.0)
+
+
+PENDULUM = """\
+sceneql: 1
+clock: {end: 2 s}
+models:
+  swing:
+    mass_spring:
+      masses: {pivot: {fixed: yes}, bob: {position: 1 0 0 m}}
+      springs: [{between: [pivot, bob]}]
+objects: {ground: {plane: {position: 0 -1.2 0 m}}}
+forces: [gravity, FLOOR]
+solvers: {main: {rk4: {step: 4 ms}}}
+outputs: {table: {record: {of: [swing.energy]}}}
+"""
+
+
+@pytest.mark.parametrize("floor", ["", "{collision: {restitution: 0.7}}"])
+def test_masses_are_benched_with_their_drift_and_a_page_with_and_without_contacts(tmp_path, quick, floor):
+    script = PENDULUM.replace(", FLOOR", f", {floor}" if floor else "")
+    graph = pipeline.load(written(tmp_path, script))
+    text = bench(graph, tmp_path, asked=1e-3)
+    assert "cheapest for an error of 1e-03:" in text
+    found = json.loads((tmp_path / "scene.bench.json").read_text())
+    drifts = {one["solver"]: max(map(abs, one["changes"])) for one in found["drifts"]}
+    assert drifts["rk4"] < 1e-4 < drifts["euler"]
+    assert {row["solver"] for row in found["runs"]} == set(drifts) >= {"dopri5", "midpoint", "semi_implicit_euler"}
+    best = min(row["error"] for row in found["runs"] if row["solver"] == "dopri5")
+    assert best < 1e-6
+    page = (tmp_path / "scene.bench.html").read_text()
+    assert page.count("data:image/svg+xml;base64,") == 3
+    assert "Drift of energy" in page
+    assert ("contacts" in text) == bool(floor)
+
+
+def written(tmp_path, script):
+    path = tmp_path / "scene.yaml"
+    path.write_text(script)
+    return path
+
+
+def test_what_a_page_holds_is_escaped(tmp_path):
+    write_page(tmp_path / "page.html", "<b>", ["a & b <script>"], [], [Table("t", ["<th>"], [[("<i>", "stable")]])])
+    text = (tmp_path / "page.html").read_text()
+    assert "&lt;script&gt;" in text
+    assert '<td class="stable">&lt;i&gt;</td>' in text
+    assert "<script>" not in text
 
 
 @given(st.floats(0.5, 8), st.floats(1e-3, 1e3), st.floats(1e-3, 1e3))

@@ -1,6 +1,8 @@
 """Steps told to be stable or not: by `check` from the script alone, by `explain` from the spectrum, and by running."""
 
+import json
 import math
+import re
 
 import numpy as np
 import pytest
@@ -9,8 +11,11 @@ from hypothesis import strategies as st
 
 from sceneql import pipeline
 from sceneql.compiler.catalogue import Catalogue
-from sceneql.failure import RunFailure
+from sceneql.failure import RunFailure, Unsuitable
 from sceneql.kinds.stable_step import stable_step
+from sceneql.report.stability import stability as report
+from sceneql.report.stability_map import default_sweep
+from sceneql.report.stability_sweep import parse_sweep
 from sceneql.simulation.models.mass_spring import MassSpring
 from sceneql.simulation.run import Run
 from sceneql.simulation.stability import stability
@@ -134,3 +139,88 @@ def test_runs_hold_below_the_bound_and_fail_above(tmp_path, word):
             with pytest.raises(RunFailure, match="unstable"):
                 list(run.moments([10.0]))
             assert warnings(again)
+
+
+def survey(tmp_path, script, **options):
+    path = tmp_path / "scene.yaml"
+    path.write_text(script)
+    text = report(lambda more: pipeline.load(path, sets=more), output=tmp_path, **options)
+    return text, json.loads((tmp_path / "scene.stability.json").read_text())["cells"]
+
+
+def test_the_map_over_steps_turns_at_the_bound(tmp_path):
+    """A linear spring: below its bound a run holds, above it fails."""
+    script = PENDULUM.replace("forces: [gravity]\n", "").replace("stiffness: k", "stiffness: k, rest: 0 m")
+    _, cells = survey(tmp_path, script, sweep="step=1e-4..1e-2", points=9)
+    assert {cell["solver"] for cell in cells} >= {"euler", "midpoint", "rk4", "semi_implicit_euler"}
+    for cell in cells:
+        if cell["solver"] in ("rk4", "semi_implicit_euler"):
+            assert cell["bound"] == pytest.approx(
+                {"rk4": 2.828e-3, "semi_implicit_euler": 2e-3}[cell["solver"]], rel=1e-3
+            )
+            assert (cell["outcome"] == "failed") == (cell["setting"] > cell["bound"])
+        if cell["solver"] == "euler":
+            assert (cell["outcome"], cell["bound"]) == ("failed", 0)
+    fine = {cell["solver"]: cell for cell in cells if cell["value"] == 1e-4}
+    assert fine["rk4"]["outcome"] == "stable"
+    assert fine["rk4"]["error"] < 1e-2
+
+
+def test_the_map_over_stiffness_tells_stable_from_inaccurate_and_failed(tmp_path):
+    """A spring pendulum from soggy to stiff at 1/60 s."""
+    script = PENDULUM.replace("dt: 1 ms", "dt: 1/60 s")
+    _, cells = survey(tmp_path, script, sweep="define.k=1e0..1e6 N/m", points=4)
+    by = {(cell["solver"], cell["value"]): cell for cell in cells}
+    assert [by["rk4", k]["outcome"] for k in (1.0, 100.0)] == ["stable", "stable"]
+    assert {cell["value"] for cell in cells} == {1.0, 100.0, 1e4, 1e6}
+    assert by["euler", 1e6]["outcome"] == "failed"
+    assert by["dopri5", 1e6]["outcome"] == "stable"
+    assert by["euler", 1e4]["outcome"] in ("failed", "inaccurate")
+    assert all(cell["error"] is None for cell in cells if cell["outcome"] == "failed")
+    assert all("s, swing" in cell["why"] for cell in cells if cell["outcome"] == "failed")
+    for extension in ("csv", "svg", "html"):
+        assert (tmp_path / f"scene.stability.{extension}").stat().st_size > 0
+
+
+def test_the_steps_tried_by_default_lie_around_the_bound(tmp_path):
+    sweep = default_sweep(loaded(tmp_path, PENDULUM))
+    assert sweep.path == "step"
+    assert sweep.values[0] < 2e-4 < 2e-3 < 2e-2 < sweep.values[-1]
+
+
+@given(st.floats(1e-12, 1e12), st.floats(1e-12, 1e12), st.integers(2, 40))
+def test_a_sweep_is_even_in_the_logarithm_and_keeps_its_ends(low, high, points):
+    values = parse_sweep(f"define.k={low!r}..{high!r} N/m", points).values
+    assert (values[0], values[-1], len(values)) == (low, high, points)
+    steps = np.diff(np.log(values))
+    assert steps == pytest.approx(np.full(points - 1, math.log(high / low) / (points - 1)), abs=1e-5)
+
+
+def test_sweeps_are_read(tmp_path):
+    decades = parse_sweep("define.k = 1e0 .. 1e12 N/m", 13)
+    assert decades.values == tuple(10.0**k for k in range(13))
+    assert decades.sets(100.0) == ("define.k=100.0 N/m",)
+    assert parse_sweep("define.a=-1..1", 3).values == (-1.0, 0.0, 1.0)
+    assert parse_sweep("step=1e-4..1e-2 s", 3).sets(1e-3) == ()
+    for wrong in ("define.k", "define.k=1", "step=0..1", "step=1..2 m", "tolerance=1e-3..1e-1 s"):
+        with pytest.raises(Unsuitable):
+            parse_sweep(wrong)
+
+
+def test_energy_out_of_nothing_is_warned_of_and_a_sound_run_is_not(tmp_path):
+    """Beyond its bound a spring that flips over its pivot saturates: its state stays finite, its energy does not."""
+    wild = pipeline.render(loaded(tmp_path, PENDULUM, "define.dt=3 ms"), folder=tmp_path, account=True)
+    assert [found.code for found in wild.warnings] == ["energy-gained"]
+    assert "more than its forces can give" in wild.warnings[0].message
+    sound = pipeline.render(loaded(tmp_path, PENDULUM), folder=tmp_path, account=True)
+    assert sound.warnings == ()
+    (line,) = sound.conserved
+    assert float(re.search(r", (\S+) at most", line)[1]) < 0.05
+
+
+def test_momentum_is_told_where_nothing_outside_acts(tmp_path):
+    free = PENDULUM.replace("forces: [gravity]\n", "").replace("pivot: {fixed: yes}", "pivot: {velocity: 0 1 0 m/s}")
+    (line,) = pipeline.render(loaded(tmp_path, free, "define.k=100 N/m"), folder=tmp_path, account=True).conserved
+    assert float(re.search(r"momentum drift (\S+)", line)[1]) < 1e-12
+    (line,) = pipeline.render(loaded(tmp_path, PENDULUM), folder=tmp_path).conserved
+    assert "momentum" not in line

@@ -1,55 +1,111 @@
-"""`bench`: the error that each solver leaves against the time it takes, as a table and a plot."""
+"""`bench`: the error that each solver leaves against the time it takes, as tables, plots and a page."""
 
 from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Sequence
+import json
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields
+from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 from sceneql.compiler.catalogue import Catalogue
-from sceneql.failure import Unsuitable
+from sceneql.failure import LimitRefused, RunFailure, Unsuitable
 from sceneql.files import whole
 from sceneql.graph import SimulationGraph
+from sceneql.quantities.diagnostic import ScriptError
+from sceneql.report.drift import Drift, drift
 from sceneql.report.order import observed_order
-from sceneql.report.plots import error_against_time, legend
+from sceneql.report.page import Table, beside, file_names, write_page
+from sceneql.report.plots import drift_against_time, error_against_step, error_against_time, legend
 from sceneql.report.reference import reference
-from sceneql.report.work_precision import Measurement, measurements, solvers, warm
+from sceneql.report.work_precision import Measurement, Reference, measurements, solvers, warm
 
 CLEAR = 10.0
 """Errors count for the order where they are so many times the reference's own."""
+ASKED = (1e-3, 1e-6, 1e-9)
+"""Errors for which the cheapest solver is named, where none is asked for."""
+
+Orders = dict[tuple[str, str], float | None]
 
 
-def bench(graph: SimulationGraph, output: Path | None = None, words: Path | None = None) -> str:
-    """Run every island by every solver that applies; write ``<scene>.bench.csv`` and ``.svg``; the report as text.
+def bench(
+    graph: SimulationGraph, output: Path | None = None, words: Path | None = None, asked: float | None = None
+) -> str:
+    """Run every island by every solver that applies; write tables, plots and a page; the report as text.
 
-    ``output`` is a folder, or the files' path without extension; ``words`` a folder of the user's own words. Raises
-    Unsuitable for a scene without an island, RunFailure where a reference cannot reach the end.
+    ``output`` is a folder, or the files' path without extension: CSV and JSON with all runs, SVGs of the error against
+    run time and step and of the drift of energy, HTML with all of it. ``words`` is a folder of the user's own words;
+    ``asked`` the relative error for which the cheapest solver is named. Raises Unsuitable for a scene without an
+    island, RunFailure where no reference reaches the end.
     """
     if not graph.islands:
         raise Unsuitable(f"nothing in {graph.name} is solved in time, so there is nothing to measure")
     catalogue = Catalogue(words)
     rows: list[Measurement] = []
-    orders: dict[tuple[str, str], float | None] = {}
+    drifts: list[Drift] = []
+    orders: Orders = {}
     lines: list[str] = []
+    summary: list[str] = []
     compile_seconds = 0.0
     for island in graph.islands:
         title = ", ".join(island.models)
-        methods = solvers(graph, island, catalogue)
-        compile_seconds += sum(warm(graph, island, solver) for solver in methods.values())
         truth = reference(graph, island, catalogue)
-        lines += [f"{title}: errors against {truth.because} (itself good to {truth.uncertainty:.0e})"]
-        for word, solver in methods.items():
-            runs = list(measurements(graph, island, word, solver, truth))
+        lines.append(f"{title}: errors against {truth.because} (itself good to {truth.uncertainty:.0e})")
+        summary.append(lines[-1])
+        for word, solver in solvers(graph, island, catalogue).items():
+            try:
+                compile_seconds += warm(graph, island, solver)
+                runs = list(measurements(graph, island, word, solver, truth))
+                moved = drift(graph, island, word, solver)
+            except (ValueError, TypeError, LimitRefused, ScriptError, RunFailure) as refused:
+                lines.append(f"  {word} does not apply: {refused}")
+                continue
             rows += runs
+            drifts += [moved] if moved is not None else []
             orders[title, word] = _order(runs, CLEAR * truth.uncertainty, graph.settings.clock.end)
             lines += _account(runs, legend(word, orders[title, word], sum(not run.ok for run in runs)))
-    table, plot = (_path(graph, output, extension) for extension in ("csv", "svg"))
-    _write_csv(table, rows, orders)
-    error_against_time(plot, graph.name, rows, orders)
-    lines += [f"compiled in {compile_seconds:.1f} s, which is in none of the times", f"wrote {table} and {plot}"]
-    return "\n".join(lines)
+        named = cheapest_lines([row for row in rows if row.island == title], truth, asked)
+        lines += named
+        summary += named
+    lines.append(f"compiled in {compile_seconds:.1f} s, which is in none of the times")
+    stem = file_names(graph.name, "bench", output)
+    made = _write(stem, graph, rows, orders, drifts, [graph.settings.about, *summary, lines[-1]])
+    return "\n".join([*lines, *_drift_lines(drifts), f"wrote {', '.join(map(str, made))}"])
+
+
+def cheapest(rows: Sequence[Measurement], asked: float) -> tuple[str, float] | None:
+    """The solver that reaches a relative error in the least time, and that time [s], by interpolating between its runs.
+
+    None where no run is that good.
+    """
+    found: dict[str, float] = {}
+    for word in dict.fromkeys(row.solver for row in rows):
+        done = [row for row in rows if row.solver == word and row.ok]
+        times = [row.seconds for row in done if row.error <= asked]
+        for a, b in pairwise(done):
+            low, high = sorted((a, b), key=lambda row: row.error)
+            if 0.0 < low.error <= asked < high.error:
+                part = math.log(asked / high.error) / math.log(low.error / high.error)
+                times.append(math.exp((1 - part) * math.log(high.seconds) + part * math.log(low.seconds)))
+        if times:
+            found[word] = min(times)
+    return min(found.items(), key=lambda pair: pair[1], default=None)
+
+
+def cheapest_lines(rows: Sequence[Measurement], truth: Reference, asked: float | None) -> list[str]:
+    """The cheapest solver for the error asked for, or for some."""
+    lines = []
+    for error in ASKED if asked is None else (asked,):
+        best = cheapest(rows, error)
+        if best is not None and error > truth.uncertainty:
+            lines.append(f"cheapest for an error of {error:.0e}: {best[0]}, {best[1] * 1e3:.3g} ms")
+        elif asked is not None:
+            lines.append(f"an error of {error:.0e} is not reached, or below what the reference can tell")
+    return lines
 
 
 def _order(runs: Sequence[Measurement], floor: float, end: float) -> float | None:
@@ -69,14 +125,56 @@ def _account(runs: Sequence[Measurement], heading: str) -> list[str]:
     return lines
 
 
-def _path(graph: SimulationGraph, output: Path | None, extension: str) -> Path:
-    stem = f"{graph.name}.bench"
-    if output is None or output.is_dir():
-        return (output or Path()) / f"{stem}.{extension}"
-    return output.with_name(f"{output.name}.{extension}")
+def _drift_lines(drifts: Sequence[Drift]) -> list[str]:
+    return [
+        f"{one.island} by {one.solver} at {one.setting:.3g}: energy drifts by {max(map(abs, one.changes)):.1e} at most"
+        for one in drifts
+        if one.changes
+    ]
 
 
-def _write_csv(path: Path, rows: Sequence[Measurement], orders: dict[tuple[str, str], float | None]) -> None:
+def _write(
+    stem: Path,
+    graph: SimulationGraph,
+    rows: Sequence[Measurement],
+    orders: Orders,
+    drifts: Sequence[Drift],
+    summary: Sequence[str],
+) -> list[Path]:
+    """Write all files of the report."""
+    table, data, time, step, moved, page = (
+        beside(stem, extension) for extension in ("csv", "json", "svg", "step.svg", "drift.svg", "html")
+    )
+    _write_csv(table, rows, orders)
+    _write_json(data, graph, rows, orders, drifts)
+    error_against_time(time, graph.name, rows, orders)
+    error_against_step(step, graph.name, rows, orders, graph.settings.clock.end)
+    plots = [("Error against run time", time), ("Error against step", step)]
+    if drifts:
+        drift_against_time(moved, graph.name, drifts)
+        plots.append(("Drift of energy", moved))
+    lines = [line for line in (*summary, *_drift_lines(drifts)) if line]
+    write_page(page, f"{graph.name}: error against run time", lines, plots, [_table(rows)])
+    return [table, data, *(path for _, path in plots), page]
+
+
+def _table(rows: Sequence[Measurement]) -> Table:
+    head = ("solver", "step or tolerance", "error", "run time [ms]", "steps", "evaluations", "outcome")
+    cells = [
+        (row.solver, f"{row.setting:.3g}", f"{row.error:.2e}", f"{row.seconds * 1e3:.3f}", *_counts(row), row.outcome)
+        for row in rows
+    ]
+    styles = ["" if row.ok else "failed" for row in rows]
+    return Table(
+        "All runs", head, [[(text, style) for text in line] for line, style in zip(cells, styles, strict=True)]
+    )
+
+
+def _counts(row: Measurement) -> tuple[str, str]:
+    return str(row.steps), str(row.evaluations)
+
+
+def _write_csv(path: Path, rows: Sequence[Measurement], orders: Orders) -> None:
     text = io.StringIO()
     writer = csv.DictWriter(text, [*(item.name for item in fields(Measurement)), "order"], lineterminator="\n")
     writer.writeheader()
@@ -85,3 +183,31 @@ def _write_csv(path: Path, rows: Sequence[Measurement], orders: dict[tuple[str, 
         writer.writerow({**asdict(row), "order": "" if order is None else f"{order:.4f}"})
     with whole(path) as file:
         file.write(text.getvalue().encode())
+
+
+def _write_json(
+    path: Path, graph: SimulationGraph, rows: Sequence[Measurement], orders: Orders, drifts: Sequence[Drift]
+) -> None:
+    found = {
+        "scene": graph.name,
+        "script_hash": graph.script_hash,
+        "end": graph.settings.clock.end,
+        "runs": [asdict(row) for row in rows],
+        "orders": [{"island": i, "solver": s, "order": order} for (i, s), order in orders.items()],
+        "drifts": [asdict(one) for one in drifts],
+    }
+    write_json(path, found)
+
+
+def write_json(path: Path, found: Mapping[str, Any]) -> None:
+    """Write plain data; numbers that are not finite become null, which JSON can say."""
+    with whole(path) as file:
+        file.write(json.dumps(_sayable(found), indent=1, allow_nan=False).encode())
+
+
+def _sayable(data: Any) -> Any:
+    if isinstance(data, Mapping):
+        return {key: _sayable(item) for key, item in data.items()}
+    if isinstance(data, list | tuple):
+        return [_sayable(item) for item in data]
+    return None if isinstance(data, float) and not math.isfinite(data) else data

@@ -1,17 +1,40 @@
-"""Plots of a benchmark as SVG."""
+"""Plots of benchmarks and of stability as SVG."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from itertools import cycle
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sceneql.files import whole
 
 if TYPE_CHECKING:
+    from sceneql.report.drift import Drift
+    from sceneql.report.stability_map import Cell
     from sceneql.report.work_precision import Measurement
 
 MARKS = "osD^vP*X<>"
+COLORS = {"stable": "#8fd0a8", "inaccurate": "#f3d06b", "failed": "#c8553d", "skipped": "#e4e4e4"}
+"""Of the classes of runs; their lightness tells them apart, too."""
+SMALLEST = 1e-17
+"""Smallest change that is drawn."""
+
+
+@contextmanager
+def _figure(path: Path, size: tuple[float, float]) -> Iterator[Any]:
+    """A figure that is written as SVG when the block ends."""
+    from matplotlib import rc_context
+    from matplotlib.figure import Figure
+
+    # A fixed salt and no date: the same measurements make the same file.
+    with rc_context({"svg.hashsalt": "sceneql", "svg.fonttype": "none"}):
+        figure = Figure(figsize=size, layout="constrained")
+        yield figure
+        with whole(path) as file:
+            figure.savefig(file, format="svg", metadata={"Date": None})
 
 
 def error_against_time(
@@ -21,30 +44,92 @@ def error_against_time(
 
     ``orders`` by (island, solver); failed runs are counted in the legend.
     """
-    from matplotlib import rc_context
-    from matplotlib.figure import Figure
+    _errors(path, title, rows, orders, "run time [s]", lambda row: row.seconds)
 
+
+def error_against_step(
+    path: Path, title: str, rows: Sequence[Measurement], orders: Mapping[tuple[str, str], float | None], end: float
+) -> None:
+    """The same over the mean step [s]: the slope is the order."""
+    _errors(path, title, rows, orders, "mean step [s]", lambda row: end / row.steps)
+
+
+def _errors(
+    path: Path,
+    title: str,
+    rows: Sequence[Measurement],
+    orders: Mapping[tuple[str, str], float | None],
+    label: str,
+    place: Callable[[Measurement], float],
+) -> None:
     islands = list(dict.fromkeys(row.island for row in rows))
-    # A fixed salt and no date: the same measurements make the same file.
-    with rc_context({"svg.hashsalt": "sceneql", "svg.fonttype": "none"}):
-        figure = Figure(figsize=(7.0, 4.8 * len(islands)), layout="constrained")
+    with _figure(path, (7.0, 4.8 * len(islands))) as figure:
         for k, island in enumerate(islands):
             axes = figure.add_subplot(len(islands), 1, k + 1)
-            axes.set(xscale="log", yscale="log", xlabel="run time [s]", ylabel="relative error at the end")
+            axes.set(xscale="log", yscale="log", xlabel=label, ylabel="relative error at the end")
             axes.set_title(f"{title}: {island}")
             axes.grid(True, which="major", alpha=0.3)
             mine = [row for row in rows if row.island == island]
-            for solver, mark in zip(dict.fromkeys(row.solver for row in mine), MARKS * len(mine), strict=False):
+            for solver, mark in zip(dict.fromkeys(row.solver for row in mine), cycle(MARKS), strict=False):
                 runs = [row for row in mine if row.solver == solver]
                 done = [row for row in runs if row.ok and row.error > 0.0]
-                label = legend(solver, orders[island, solver], sum(not row.ok for row in runs))
-                axes.plot([row.seconds for row in done], [row.error for row in done], marker=mark, ms=4, label=label)
-            axes.legend()
-        with whole(path) as file:
-            figure.savefig(file, format="svg", metadata={"Date": None})
+                text = legend(solver, orders[island, solver], sum(not row.ok for row in runs))
+                axes.plot([place(row) for row in done], [row.error for row in done], marker=mark, ms=4, label=text)
+            axes.legend(fontsize="small")
 
 
 def legend(solver: str, order: float | None, failed: int) -> str:
     """``rk4, order 4.0, 2 failed``."""
     parts = [solver, "no order seen" if order is None else f"order {order:.1f}"]
     return ", ".join([*parts, f"{failed} failed"] if failed else parts)
+
+
+def drift_against_time(path: Path, title: str, drifts: Sequence[Drift]) -> None:
+    """Write an SVG with a panel an island: relative change of energy over simulation time [s], a line a solver."""
+    islands = list(dict.fromkeys(drift.island for drift in drifts))
+    with _figure(path, (7.0, 4.8 * len(islands))) as figure:
+        for k, island in enumerate(islands):
+            axes = figure.add_subplot(len(islands), 1, k + 1)
+            axes.set(yscale="log", xlabel="time [s]", ylabel="relative change of energy")
+            axes.set_title(f"{title}: {island}")
+            axes.grid(True, which="major", alpha=0.3)
+            for drift in drifts:
+                if drift.island == island:
+                    changes = [max(abs(change), SMALLEST) for change in drift.changes[1:]]
+                    axes.plot(drift.times[1:], changes, lw=1, label=f"{drift.solver}, {drift.setting:.3g}")
+            axes.legend(fontsize="small")
+
+
+def stability_map(path: Path, title: str, label: str, cells: Sequence[Cell]) -> None:
+    """Write an SVG with a panel an island: a row a solver, a column a value swept over, colored by what came of it.
+
+    A cell shows the power of ten of its error; a bar stands where the step passes the bound known before the run.
+    """
+    from matplotlib.patches import Patch, Rectangle
+
+    islands = list(dict.fromkeys(cell.island for cell in cells))
+    values = sorted({cell.value for cell in cells})
+    most = max(len({cell.solver for cell in cells if cell.island == island}) for island in islands)
+    with _figure(path, (2.2 + 0.55 * len(values), len(islands) * (1.6 + 0.36 * most))) as figure:
+        for k, island in enumerate(islands):
+            mine = [cell for cell in cells if cell.island == island]
+            words = list(dict.fromkeys(cell.solver for cell in mine))
+            axes = figure.add_subplot(len(islands), 1, k + 1)
+            for cell in mine:
+                x, y = values.index(cell.value), len(words) - 1 - words.index(cell.solver)
+                axes.add_patch(Rectangle((x, y), 1, 1, facecolor=COLORS[cell.outcome], edgecolor="white"))
+                if math.isfinite(cell.error) and cell.error > 0.0:
+                    text = f"{round(math.log10(cell.error)):d}"
+                    axes.text(x + 0.5, y + 0.5, text, ha="center", va="center", fontsize=7)
+            for word in words:
+                y = len(words) - 1 - words.index(word)
+                row = {cell.value: cell.beyond for cell in mine if cell.solver == word}
+                for x in range(1, len(values)):
+                    if row.get(values[x - 1]) != row.get(values[x]):
+                        axes.plot([x, x], [y, y + 1], color="black", lw=2.5, solid_capstyle="butt")
+            axes.set(xlim=(0, len(values)), ylim=(0, len(words)), xlabel=label, title=f"{title}: {island}")
+            axes.set_xticks([i + 0.5 for i in range(len(values))], [f"{v:.3g}" for v in values], rotation=60)
+            axes.set_yticks([i + 0.5 for i in range(len(words))], words[::-1])
+            axes.tick_params(length=0, labelsize=8)
+        patches = [Patch(facecolor=color, label=name) for name, color in COLORS.items()]
+        figure.legend(handles=patches, loc="outside lower center", ncols=4, frameon=False, fontsize="small")

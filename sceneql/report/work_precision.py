@@ -20,9 +20,15 @@ if TYPE_CHECKING:
 STEPS = tuple(2**k for k in range(4, 19))
 """Steps of a fixed-step run, until ENOUGH_SECONDS or the reference's own error is reached."""
 TOLERANCES = tuple(10.0**-k for k in range(2, 14))
+TOLERANCE = 1e-6
+"""Where the script's own solver has none."""
 REPEATS = 5
 ENOUGH_SECONDS = 0.5
 """No step smaller than one that takes so long is tried, and no run is repeated that has taken so long in all."""
+LONGEST = 20.0
+"""A run is given up after so many seconds of compiled steps."""
+FIRST_LOOK, NEXT_LOOK = 1e-9, 1.25
+"""A run that may be given up is looked at after this part of it, and whenever it has come so much further."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,69 +67,127 @@ class Reference:
     """Relative error of the reference itself."""
 
 
-def solvers(graph: SimulationGraph, island: Island, catalogue: Catalogue) -> dict[str, Solver]:
-    """The solvers that can march an island: those that need nothing but a step or a tolerance, and the script's own.
+class TooLong(RunFailure):
+    """A run that was given up."""
 
-    `auto` is no method of its own; neither is a word whose steps are those of another.
+
+def solvers(graph: SimulationGraph, island: Island, catalogue: Catalogue) -> dict[str, Solver]:
+    """The solvers that can march an island, at the script's step or tolerance.
+
+    They are those that need nothing else, and the script's own. A word whose steps are those of another is left out,
+    `auto` first.
     """
-    found: dict[str, Solver] = {}
+    step, tolerance = settings(graph, island)
+    given = {"step": step, "tolerance": tolerance}
+    own = graph.tasks[island.solver]
+    found: dict[str, Solver] = {own.word: cast(Solver, own.kind)}
     for word in catalogue.words("solvers"):
         cls = catalogue.load("solvers", word)
-        if word != "auto" and cls is not None and not any(info.is_required() for info in cls.model_fields.values()):
-            found[word] = cast(Solver, cls.model_validate({}))
-    own = graph.tasks[island.solver]
-    found.setdefault(own.word, cast(Solver, own.kind))
+        if cls is None or word in found:
+            continue
+        needed = {name for name, info in cls.model_fields.items() if info.is_required()}
+        if needed <= set(given):
+            solver = cast(Solver, cls.model_validate({name: given[name] for name in needed}))
+            found[word] = at(solver, given["tolerance" if adaptive(solver) else "step"])
     kept: dict[str, Solver] = {}
-    for word, solver in found.items():
-        if all(at(solver, 1e-3).stepper() != at(other, 1e-3).stepper() for other in kept.values()):
-            kept[word] = solver
+    for word in sorted(found, key=lambda word: (word == "auto", word)):
+        if all(at(found[word], 1e-3).stepper() != at(other, 1e-3).stepper() for other in kept.values()):
+            kept[word] = found[word]
     return kept
+
+
+def settings(graph: SimulationGraph, island: Island) -> tuple[float, float]:
+    """Step [s] and tolerance of the script's own solver; where it has none, a frame and TOLERANCE."""
+    stepper = cast(Solver, graph.tasks[island.solver].kind).stepper()
+    if stepper.adaptive:
+        return graph.settings.clock.speed / graph.settings.clock.fps, stepper.tolerance
+    return stepper.first_step, TOLERANCE
 
 
 def at(solver: Solver, setting: float) -> Solver:
     """The same solver with another step [s] or tolerance."""
-    return solver.model_copy(update={"tolerance" if _adaptive(solver) else "step": setting})
+    return solver.model_copy(update={"tolerance" if adaptive(solver) else "step": setting})
 
 
-def run(graph: SimulationGraph, island: Island, solver: Solver) -> tuple[Instant, IslandRun]:
-    """An island's run by a solver, at its end. Raises RunFailure."""
+def setting_of(solver: Solver) -> float:
+    """Its step [s] or tolerance."""
+    stepper = solver.stepper()
+    return stepper.tolerance if stepper.adaptive else stepper.first_step
+
+
+def adaptive(solver: Solver) -> bool:
+    """Whether its steps follow a tolerance."""
+    return solver.stepper().adaptive
+
+
+def prepared(graph: SimulationGraph, island: Island, solver: Solver) -> SimulationGraph:
+    """The scene with one island alone, by another solver."""
+    task = replace(graph.tasks[island.solver], kind=solver)
+    return replace(graph, tasks={**graph.tasks, island.solver: task}, islands=(island,))
+
+
+def run(graph: SimulationGraph, island: Island, solver: Solver, longest: float = math.inf) -> tuple[Instant, IslandRun]:
+    """An island's run by a solver, at its end. Raises RunFailure; TooLong after ``longest`` [s] of compiled steps."""
     from sceneql.simulation.run import Run
 
-    task = replace(graph.tasks[island.solver], kind=solver)
-    prepared = Run(replace(graph, tasks={**graph.tasks, island.solver: task}, islands=(island,)))
-    (end,) = prepared.moments([graph.settings.clock.end])
-    return end, prepared.islands[0]
+    whole = Run(prepared(graph, island, solver))
+    march, end = whole.islands[0], graph.settings.clock.end
+    moment = None
+    for moment in whole.moments(_looks(end) if math.isfinite(longest) else [end]):
+        if moment.time < end and march.march.statistics.seconds > longest:
+            part, span = graph.tasks[island.solver].name, graph.tasks[island.solver].span
+            raise TooLong(f"given up after {longest:g} s of run time", part=part, time=moment.time, span=span)
+    assert moment is not None
+    return moment, march
+
+
+def _looks(end: float) -> Iterator[float]:
+    time = FIRST_LOOK * end
+    while time < end:
+        yield time
+        time *= NEXT_LOOK
+    yield end
 
 
 def measurements(
     graph: SimulationGraph, island: Island, word: str, solver: Solver, reference: Reference
 ) -> Iterator[Measurement]:
     """Runs of one solver from coarse to fine, until its error is the reference's own or the runs take long."""
-    adaptive = _adaptive(solver)
     end = graph.settings.clock.end
-    for setting in TOLERANCES if adaptive else [end / steps for steps in STEPS]:
-        found = _measure(graph, island, word, at(solver, setting), setting, reference)
+    for setting in TOLERANCES if adaptive(solver) else [end / steps for steps in STEPS]:
+        found = measure(graph, island, word, at(solver, setting), reference, REPEATS)
         yield found
         if found.error <= reference.uncertainty or found.seconds > ENOUGH_SECONDS:
             return
 
 
-def _measure(
-    graph: SimulationGraph, island: Island, word: str, solver: Solver, setting: float, reference: Reference
+def measure(
+    graph: SimulationGraph, island: Island, word: str, solver: Solver, reference: Reference, repeats: int = 1
 ) -> Measurement:
-    title = ", ".join(island.models)
-    adaptive = _adaptive(solver)
+    """One setting of one solver: its error, and the median time of its runs."""
+    title, setting = ", ".join(island.models), setting_of(solver)
     times: list[float] = []
     try:
-        while len(times) < REPEATS and sum(times) < ENOUGH_SECONDS:
-            moment, march = run(graph, island, solver)
+        while len(times) < repeats and sum(times) < ENOUGH_SECONDS:
+            # The first run looks whether it takes too long; the time of the others is the steps' alone.
+            moment, march = run(graph, island, solver, math.inf if times else LONGEST)
             times.append(march.march.statistics.seconds)
     except RunFailure as failure:
-        return Measurement(title, word, adaptive, setting, failure.diagnostic.message, math.nan, math.nan, 0, 0)
+        why = failure.diagnostic.message
+        return Measurement(title, word, adaptive(solver), setting, why, math.nan, math.nan, 0, 0)
+    if len(times) > 1:
+        times = times[1:]
     done = march.march.statistics
-    error = reference.error(moment, march)
     return Measurement(
-        title, word, adaptive, setting, "ok", error, statistics.median(times), done.steps, done.evaluations
+        title,
+        word,
+        adaptive(solver),
+        setting,
+        "ok",
+        reference.error(moment, march),
+        statistics.median(times),
+        done.steps,
+        done.evaluations,
     )
 
 
@@ -133,9 +197,6 @@ def warm(graph: SimulationGraph, island: Island, solver: Solver) -> float:
 
     before = compiled.seconds
     with suppress(RunFailure):  # what fails has been compiled too
-        run(graph, island, at(solver, TOLERANCES[0] if _adaptive(solver) else graph.settings.clock.end / STEPS[0]))
+        coarse = TOLERANCES[0] if adaptive(solver) else graph.settings.clock.end / STEPS[0]
+        run(graph, island, at(solver, coarse), LONGEST)
     return compiled.seconds - before
-
-
-def _adaptive(solver: Solver) -> bool:
-    return solver.stepper().adaptive

@@ -1,0 +1,129 @@
+"""What becomes of an island under each solver while a value of the script, or the step, is swept over decades."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from sceneql.compiler.catalogue import Catalogue
+from sceneql.failure import LimitRefused, RunFailure
+from sceneql.graph import Island, SimulationGraph
+from sceneql.kinds import Solver
+from sceneql.report.reference import reference
+from sceneql.report.stability_sweep import Sweep, around
+from sceneql.report.work_precision import Reference, TooLong, adaptive, at, prepared, run, setting_of, solvers
+
+TOLERANCES = ((1e-10, 1e-9), (1e-7, 1e-6))
+"""Of the references: what is inaccurate is seen by these."""
+LONGEST = 5.0
+"""A run is given up after so many seconds of compiled steps."""
+MOST_CALLS = 10_000
+"""Of a rate by a reference that is not our own."""
+SLOWEST = 1e-3
+"""Of the end of the run: the middle of the steps tried where no rate depends on the state."""
+
+Load = Callable[[Sequence[str]], SimulationGraph]
+"""The scene with more patches."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """One run of an island by one solver at one value."""
+
+    island: str
+    solver: str
+    value: float
+    adaptive: bool
+    setting: float
+    """Step [s], or relative tolerance."""
+    outcome: Literal["stable", "inaccurate", "failed", "skipped"]
+    why: str
+    """Of a failed or skipped run."""
+    error: float
+    """Relative error at the end; NaN where there is none."""
+    bound: float
+    """Largest stable step [s] by the spectrum at the start; inf: any; NaN: not asked for (many states)."""
+    seconds: float
+    """Run time of the compiled steps."""
+    steps: int
+
+    @property
+    def beyond(self) -> bool:
+        """Whether the step exceeds the bound known before the run."""
+        return not self.adaptive and self.setting > self.bound
+
+
+def default_sweep(graph: SimulationGraph) -> Sweep:
+    """Steps around the one that belongs to the fastest mode of all islands at their starts."""
+    from sceneql.simulation.modes import modes_of
+    from sceneql.simulation.run import Run
+
+    found = [modes_of(island.march) for island in Run(graph).islands]
+    fastest = max((modes.fastest for modes in found if modes is not None), default=0.0)
+    end = graph.settings.clock.end
+    return around(2.0 / fastest if fastest > 0 else SLOWEST * end, end)
+
+
+def cells(load: Load, sweep: Sweep, catalogue: Catalogue, largest_error: float) -> Iterator[Cell]:
+    """Every solver that applies at every value, on every island. Raises ScriptError where a value is none."""
+    truths: dict[tuple[str, ...], Reference] = {}
+    for value in sweep.values:
+        graph = load(sweep.sets(value))
+        for island in graph.islands:
+            if not sweep.own or island.models not in truths:
+                truths[island.models] = _reference(graph, island, catalogue)
+            for word, solver in solvers(graph, island, catalogue).items():
+                if sweep.own and adaptive(solver) != (sweep.path == "tolerance"):
+                    continue
+                own = at(solver, value) if sweep.own else solver
+                yield _cell(graph, island, word, own, value, truths[island.models], largest_error)
+
+
+def _reference(graph: SimulationGraph, island: Island, catalogue: Catalogue) -> Reference:
+    try:
+        return reference(graph, island, catalogue, TOLERANCES, LONGEST, MOST_CALLS)
+    except RunFailure as failure:
+        return Reference(lambda moment, march: math.nan, f"nothing: {failure.message}", math.inf)
+
+
+def _cell(
+    graph: SimulationGraph,
+    island: Island,
+    word: str,
+    solver: Solver,
+    value: float,
+    truth: Reference,
+    largest_error: float,
+) -> Cell:
+    outcome: Literal["stable", "inaccurate", "failed", "skipped"] = "skipped"
+    why, error, seconds, steps = "", math.nan, 0.0, 0
+    try:
+        moment, march = run(graph, island, solver, LONGEST)
+        error, done = truth.error(moment, march), march.march.statistics
+        seconds, steps = done.seconds, done.steps
+        if math.isnan(error):
+            why = f"it ran, but is compared with {truth.because}"
+        else:
+            outcome = "stable" if error <= largest_error else "inaccurate"
+    except TooLong as long:
+        why = long.message
+    except RunFailure as failure:
+        outcome, why = "failed", failure.diagnostic.message
+    except (ValueError, TypeError, LimitRefused) as refused:
+        why = f"{word} does not apply: {refused}"
+    bound = _bound(graph, island, solver)
+    title = ", ".join(island.models)
+    return Cell(title, word, value, adaptive(solver), setting_of(solver), outcome, why, error, bound, seconds, steps)
+
+
+def _bound(graph: SimulationGraph, island: Island, solver: Solver) -> float:
+    from sceneql.simulation.modes import DENSE
+    from sceneql.simulation.run import Run
+    from sceneql.simulation.stability import stability
+
+    if adaptive(solver):
+        return math.inf
+    march = Run(prepared(graph, island, solver)).islands[0].march
+    return math.nan if len(march.system.y) > DENSE else stability(march, solver).step

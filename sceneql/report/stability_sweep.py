@@ -1,0 +1,77 @@
+"""What `stability` sweeps over: a value of the script by its path, or the solvers' own steps or tolerances."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+
+from sceneql.failure import Unsuitable
+
+NUMBER = r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?"
+SHAPE = re.compile(rf"\s*([^=\s]+)\s*=\s*({NUMBER})\s*\.\.\s*({NUMBER})\s*(.*?)\s*")
+POINTS = 13
+MOST_POINTS = 200
+FEWEST = 30
+"""Steps of a run by which an instability may be seen."""
+OWN = ("step", "tolerance")
+"""Names for the solvers' own settings [s], [1]; anything else is a path of the script as for ``--set``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sweep:
+    """A path and the values that it takes one after the other."""
+
+    path: str
+    values: tuple[float, ...]
+    unit: str = ""
+
+    @property
+    def own(self) -> bool:
+        """Whether it is a setting of the solvers."""
+        return self.path in OWN
+
+    @property
+    def label(self) -> str:
+        """``define.k [N/m]``."""
+        return f"{self.path} [{self.unit}]" if self.unit else self.path
+
+    def sets(self, value: float) -> tuple[str, ...]:
+        """The patches of the script for one value."""
+        return () if self.own else (f"{self.path}={value!r} {self.unit}".rstrip(),)
+
+
+def parse_sweep(text: str, points: int = POINTS) -> Sweep:
+    """``define.k=1e0..1e12 N/m`` in so many points, evenly spaced in the logarithm (where 0 lies between: evenly).
+
+    Raises Unsuitable.
+    """
+    match = SHAPE.fullmatch(text)
+    if match is None:
+        raise Unsuitable(f"'{text}' is no sweep: write --sweep 'define.k=1e0..1e12 N/m', or 'step=1e-5..1e-1'")
+    path, low, high, unit = match[1], float(match[2]), float(match[3]), match[4]
+    if path in OWN and unit not in ("", "s" if path == "step" else ""):
+        raise Unsuitable(f"a sweep of {path} is told {'in s' if path == 'step' else 'without unit'}, not in '{unit}'")
+    if path in OWN and min(low, high) <= 0:
+        raise Unsuitable(f"a {path} is above 0")
+    if not 2 <= points <= MOST_POINTS:
+        raise Unsuitable(f"a sweep has 2 to {MOST_POINTS} points, not {points}")
+    return Sweep(path, spaced(low, high, points), "s" if path == "step" else unit)
+
+
+def spaced(low: float, high: float, points: int) -> tuple[float, ...]:
+    """Values from one to another, the ends exactly: evenly in the logarithm where both have one sign."""
+    parts = [k / (points - 1) for k in range(points)]
+    if low * high > 0:
+        middle = [math.copysign(abs(low) ** (1 - part) * abs(high) ** part, low) for part in parts[1:-1]]
+        if high / low == 10.0 ** round(math.log10(high / low)):  # whole decades: no digits but those that are meant
+            middle = [float(f"{value:.6g}") for value in middle]
+    else:
+        middle = [low + (high - low) * part for part in parts[1:-1]]
+    return (low, *middle, high)
+
+
+def around(bound: float, end: float) -> Sweep:
+    """Steps over two decades to both sides of a bound [s], of which at least FEWEST fit into the run up to ``end``."""
+    values = [float(f"{bound * 10 ** (k / 4):.4g}") for k in range(-8, 9)]
+    return Sweep("step", tuple(value for value in values if value * FEWEST <= end) or (end / FEWEST,), "s")

@@ -1,0 +1,175 @@
+"""Energy, momentum and stretch of what runs, looked at between frames: what is conserved, and what runs away."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from sceneql.kinds import Force, Model
+from sceneql.quantities.diagnostic import Diagnostic
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.simulation.run import Instant, IslandRun, Run
+
+COST, AT_LEAST = 0.008, 0.005
+"""Part of the time of the run that looking may take, and seconds that it may take in any case."""
+MOST_STATES = 20_000
+"""Of an island that is looked at without being asked: the first and the last look are not free."""
+GAINED = 0.5
+"""Energy gained, as a part of the largest kinetic energy, that is warned of."""
+OVERSTRETCHED = 4.0
+"""(L - L0)/L0 of a spring that is warned of, unless half of it was there at the start."""
+
+
+@dataclass
+class Balance:
+    """What has been seen of an island's energy and momentum."""
+
+    island: IslandRun
+    models: tuple[str, ...]
+    """Those that tell an energy."""
+    times: list[float] = field(default_factory=list)
+    energies: list[float] = field(default_factory=list)
+    """[J]"""
+    kinetic: float = 0.0
+    """Largest so far [J]."""
+    momentum: float = 0.0
+    """Largest change so far [kg m/s]."""
+    impulse: float = 0.0
+    """Largest sum of the magnitudes of the masses' momenta [kg m/s]."""
+    stretch: dict[str, tuple[float, float]] = field(default_factory=dict)
+    """Of each model's springs, the largest (L - L0)/L0 at the start and of all times."""
+    at_start: Floats | None = None
+    """Momentum at the start."""
+
+    @property
+    def drifts(self) -> list[float]:
+        """Change of energy since the start at each time, relative to the largest of kinetic energy and the start's."""
+        if not self.energies:
+            return []
+        scale = max(self.kinetic, abs(self.energies[0])) or 1.0
+        return [(energy - self.energies[0]) / scale for energy in self.energies]
+
+    @property
+    def isolated(self) -> bool:
+        """Whether nothing outside acts, so that momentum is conserved."""
+        island = self.island.island
+        free = all(
+            bodies is None or (self.island.march.floats[bodies.inverse_at : bodies.inverse_at + bodies.count] > 0).all()
+            for bodies in self.island.bodies.values()
+        )
+        return free and not island.forces and not island.contacts
+
+    @property
+    def closed(self) -> bool:
+        """Whether energy is conserved: forces tell a potential or count their work, so only values in time drive."""
+        return not self.island.march.system.structure.varying
+
+
+class Watch:
+    """Looks at a run's moments, as often as it may; ``always``: at each, of islands of any size."""
+
+    def __init__(self, run: Run, *, always: bool = False) -> None:
+        self.always = always
+        islands = [island for island in run.islands if always or _cheap(island)]
+        self.balances = [Balance(island, models) for island in islands if (models := _telling(island))]
+        self._started, self._spent = time.perf_counter(), 0.0
+
+    def look(self, moment: Instant, *, last: bool = False) -> None:
+        """Note energies and momenta at a moment, unless looking has taken its part of the time; at the last always."""
+        started = time.perf_counter()
+        free = self.always or last or self._spent < AT_LEAST + COST * (started - self._started)
+        for balance in self.balances:
+            if free or not balance.times:
+                _note(balance, moment)
+        self._spent += time.perf_counter() - started
+
+    def warnings(self) -> tuple[Diagnostic, ...]:
+        """Energy that came from nowhere, and springs beyond what springs can do."""
+        found = []
+        for balance in self.balances:
+            tasks, title = balance.island.graph.tasks, ", ".join(balance.models)
+            span = tasks[balance.models[0]].span
+            gained = max(balance.drifts, default=0.0)
+            if balance.closed and gained > GAINED:
+                at = balance.times[int(np.argmax(balance.drifts))]
+                message = (
+                    f"the energy of {title} has grown from {balance.energies[0]:.3g} J to {max(balance.energies):.3g} J"
+                    f" at {at:.4g} s, more than its forces can give"
+                )
+                help = "the step is too large: see `explain` for its bound"
+                found.append(Diagnostic("energy-gained", message, span, help, severity="warning"))
+            found += [
+                Diagnostic(
+                    "over-stretched",
+                    f"a spring of '{name}' was stretched by {stretch:.3g} times its length at rest",
+                    tasks[name].span,
+                    severity="warning",
+                )
+                for name, (first, stretch) in balance.stretch.items()
+                if stretch > max(OVERSTRETCHED, 2.0 * first)
+            ]
+        return tuple(found)
+
+    def account(self) -> list[str]:
+        """A line for each island that tells an energy: its drift, and that of momentum where that is conserved."""
+        lines = []
+        for balance in self.balances:
+            drifts = balance.drifts
+            if not drifts:
+                continue
+            largest = max(drifts, key=abs)
+            line = f"{', '.join(balance.models)}: energy {balance.energies[-1]:.6g} J"
+            line += f", drift {drifts[-1]:.2e} at the end, {largest:.2e} at most"
+            if not balance.closed:
+                line += " (it is driven)"
+            if balance.isolated and balance.impulse > 0:
+                line += f"; momentum drift {balance.momentum / balance.impulse:.2e}"
+            lines.append(line)
+        return lines
+
+
+def _cheap(island: IslandRun) -> bool:
+    """Whether its energy is told in no time: forces between all masses take their own."""
+    forces = (cast(Force, island.graph.tasks[force].kind) for force, _ in island.island.forces)
+    return len(island.march.system.y) <= MOST_STATES and not any(force.mutual for force in forces)
+
+
+def _telling(island: IslandRun) -> tuple[str, ...]:
+    """Models of an island that tell their energy."""
+    kinds = {name: cast(Model, island.graph.tasks[name].kind) for name in island.island.models}
+    return tuple(name for name, kind in kinds.items() if {"energy", "kinetic"} <= set(type(kind).gives))
+
+
+def _note(balance: Balance, moment: Instant) -> None:
+    read = moment.read
+    balance.times.append(moment.time)
+    balance.energies.append(sum(float(read(name, "energy")) for name in balance.models))
+    balance.kinetic = max(balance.kinetic, sum(float(read(name, "kinetic")) for name in balance.models))
+    if balance.isolated:
+        total = sum(read(name, "momentum") for name in balance.models)
+        if balance.at_start is None:
+            balance.at_start = np.asarray(total)
+        balance.momentum = max(balance.momentum, float(np.linalg.norm(total - balance.at_start)))
+        balance.impulse = max(balance.impulse, _impulse(balance, moment))
+    for name in balance.models:
+        if "stretch" in type(balance.island.graph.tasks[name].kind).gives:
+            now = float(read(name, "stretch"))
+            first, most = balance.stretch.get(name, (now, now))
+            balance.stretch[name] = first, max(most, now)
+
+
+def _impulse(balance: Balance, moment: Instant) -> float:
+    """Sum of mass times speed."""
+    from sceneql.simulation.bodies import masses, velocities
+
+    total = 0.0
+    for name in balance.models:
+        state = moment.state(name)
+        if state.bodies is not None:
+            total += float(masses(state.bodies, state) @ np.linalg.norm(velocities(state.bodies, state), axis=1))
+    return total
