@@ -79,10 +79,12 @@ def test_the_observed_orders_are_the_methods_orders(tmp_path, quick):
 def test_without_a_solution_the_reference_is_another_methods(tmp_path, quick):
     text, rows = measured(tmp_path, SPRING)
     assert "against scipy's DOP853" in text
-    by_step = {(row["solver"], row["steps"]): float(row["error"]) for row in rows}
+    by_step = {(row["solver"], row["setting"]): float(row["error"]) for row in rows}
     _, exact = measured(tmp_path, SPRING + EXACT + '  v: {of: "final(spring.x\')", value: -2*sin(4), because: exact}\n')
-    for row in exact:
-        found = by_step[row["solver"], row["steps"]]
+    common = [row for row in exact if (row["solver"], row["setting"]) in by_step]
+    assert len(common) > 0.9 * len(exact)  # the finest runs depend on how good the reference is
+    for row in common:
+        found = by_step[row["solver"], row["setting"]]
         assert found == pytest.approx(float(row["error"]), rel=0.02, abs=1e-12)
 
 
