@@ -236,5 +236,11 @@ class Stepper:
     controls: bool = False
     """Whether an adaptive step leaves in work[0] the length [s] to try next, after acceptance or rejection; else
     the march controls by the error."""
+    name: str = ""
+    """Its word, where another one may take its place."""
+    stability: tuple[float, ...] = ()
+    """Of an explicit method: coefficients of its stability function, that of z^0 first."""
+    stiff: Stepper | None = None
+    """What takes its place where the steps are held by stability."""
     last_stage: int = -1
     """Array of ``work`` that after a step holds the rate at its end (first same as last); -1: none does."""

@@ -7,6 +7,7 @@ import sys
 import numpy as np
 import pytest
 
+from sceneql.failure import RunFailure
 from sceneql.pipeline import load
 from sceneql.simulation.driver import jacobian
 from sceneql.simulation.march import March
@@ -89,3 +90,97 @@ def test_an_explicit_solver_loads_nothing_of_the_jacobian(tmp_path):
     run.advance(0.5)
     assert run.march.system.pattern is None
     assert not [name for name in set(sys.modules) - loaded if "jacobian_" in name or "slopes" in name]
+
+
+# --- radau ---
+
+
+def equations(start, rate):
+    return f"models: {{system: {{equations: {{start: {start}, rate: {rate}}}}}}}"
+
+
+VAN_DER_POL = equations("{y: 2, z: 0}", "{y: z, z: ((1-y^2)*z-y)/1e-6}")
+
+
+def marched(folder, script, solver, end, at=None):
+    path = folder / "scene.yaml"
+    path.write_text(f"{script}\nclock: {{end: {end} s, fps: 10}}\nsolvers: {{main: {{{solver}}}}}\n", encoding="utf-8")
+    graph = load(path, pruned=False)
+    run = IslandRun(graph, graph.islands[0])
+    return run.march.advance(end if at is None else at)[0], run.march
+
+
+@pytest.mark.parametrize(("tolerance", "digits"), [(1e-4, 5.5), (1e-7, 9.0), (1e-10, 12.0)])
+def test_radau_meets_the_exact_values_of_van_der_pol(tmp_path, tolerance, digits):
+    solver = f"radau: {{tolerance: {tolerance}, absolute: [{tolerance}, {1e-3 * tolerance}]}}"
+    y, march = marched(tmp_path, VAN_DER_POL, solver, 2)
+    exact = np.array([1.706167732170483, -0.8928097010247975])
+    assert np.abs(y / exact - 1).max() < 10**-digits
+    assert march.statistics.steps < 12_000
+
+
+def test_radau_keeps_what_linear_invariants_conserve(tmp_path):
+    rate = '{a: "-0.04*a + 1e4*b*c", b: "0.04*a - 1e4*b*c - 3e7*b^2", c: "3e7*b^2"}'
+    y, _ = marched(tmp_path, equations("{a: 1, b: 0, c: 0}", rate), "radau: {absolute: 1e-18}", 40)
+    assert sum(y) == pytest.approx(1, abs=1e-12)
+    assert y[0] == pytest.approx(0.7158270688, abs=1e-6)
+
+
+def test_radau_counts_the_energy_that_stiff_damping_takes(tmp_path):
+    spring = "{mass_spring: {masses: {a: {position: 0 0 0 m, fixed: yes}, b: {position: 2 0 0 m}}, mass: 1 kg, "
+    spring += "springs: [{between: [a, b], rest: 1 m}], stiffness: 1e4 N/m, damping: 1e4 N*s/m}}"
+    path = tmp_path / "scene.yaml"
+    path.write_text(f"models: {{m: {spring}}}\nclock: {{end: 3 s}}\nsolvers: {{main: radau}}\n", encoding="utf-8")
+    graph = load(path, pruned=False)
+    run = IslandRun(graph, graph.islands[0])
+    run.advance(3.0)
+    model = graph.tasks["m"].kind
+    assert model.read("energy", run.state("m")) == pytest.approx(5000, rel=1e-5)
+    assert model.read("dissipated", run.state("m")) > 4900
+    assert run.march.statistics.steps < 200
+
+
+def test_an_absolute_tolerance_for_each_number_is_one_for_each(tmp_path):
+    with pytest.raises(RunFailure, match="3 numbers"):
+        marched(tmp_path, VAN_DER_POL, "radau: {absolute: [1, 1, 1]}", 1)
+
+
+# --- auto ---
+
+
+def pendulum(stiffness):
+    """A mass of 1 kg on a spring of 1 m, let go level with its hold."""
+    masses = "{hold: {position: 0 0 0 m, fixed: yes}, bob: {position: 1 0 0 m, mass: 1 kg}}"
+    spring = f"{{between: [hold, bob], stiffness: {stiffness:g} N/m}}"
+    return f"models: {{m: {{mass_spring: {{masses: {masses}, springs: [{spring}]}}}}}}\nforces: [gravity]"
+
+
+def test_auto_follows_a_stiff_pendulum(tmp_path):
+    y, march = marched(tmp_path, pendulum(1e8), "auto: {tolerance: 1e-8}", 2)
+    np.testing.assert_allclose(y[3:5], [0.7935656, -0.6084851], rtol=0, atol=1e-7)
+    assert march.choices()[0][1].startswith("radau")
+    assert march.statistics.steps < 4000
+
+
+@pytest.mark.parametrize("power", range(0, 13, 2))
+def test_auto_never_fails_whatever_the_stiffness(tmp_path, power):
+    y, march = marched(tmp_path, pendulum(10.0**power), "auto: {tolerance: 1e-6}", 2)
+    assert march.statistics.steps < 10_000
+    if power >= 4:  # O(1/k) to the rigid pendulum
+        np.testing.assert_allclose(y[3:5], [0.7935662, -0.6084839], rtol=0, atol=130 / 10.0**power + 3e-6)
+
+
+def test_auto_stays_explicit_where_nothing_is_stiff(tmp_path):
+    _, march = marched(tmp_path, equations("{a: 1, a': 0}", "{a'': -a}"), "auto: {}", 200)
+    assert [why.partition(":")[0] for _, why in march.choices()] == ["dopri5"]
+
+
+def test_auto_changes_to_radau_where_a_run_becomes_stiff(tmp_path):
+    script = equations("{a: 1, b: 1}", "{a: -b*(a - cos(t)), b: 'where(t > 5, 0, 3)*b'}")
+    y, march = marched(tmp_path, script, "auto: {}", 50)
+    assert [why.partition(":")[0] for _, why in march.choices()] == ["dopri5", "radau"]
+    assert march.choices()[1][0] < 10
+    assert march.statistics.steps < 5000
+    assert y[0] == pytest.approx(np.cos(50), abs=1e-5)
+    late, _ = marched(tmp_path, script, "auto: {}", 50, at=30.03)
+    assert late[0] == pytest.approx(np.cos(30.03), abs=1e-5)

@@ -83,7 +83,7 @@ def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
         "states": len(run.march.system.y),
         "solver": graph.tasks[island.solver].word,
         "solver_name": island.solver,
-        "why": "; ".join(filter(None, (island.reason, run.solver.choice()))),
+        "why": "; ".join(filter(None, (island.reason, run.solver.choice(), *_chosen(run)))),
         "order": stepper.order,
         "adaptive": stepper.adaptive,
         "step": None if stepper.adaptive else stepper.first_step,
@@ -91,6 +91,13 @@ def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
         "step_bound": bound.step if math.isfinite(bound.step) else None,
         "bound_text": bound.text,
     }
+
+
+def _chosen(run: IslandRun) -> list[str]:
+    """The method that a solver begins with where it chooses by itself, and why; nothing where the start fails."""
+    with suppress(RunFailure):
+        return [f"begins with {why}" for _, why in run.march.choices()[:1]]
+    return []
 
 
 def _contact_why(graph: SimulationGraph, run: IslandRun) -> str:

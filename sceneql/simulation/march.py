@@ -14,9 +14,12 @@ from sceneql.simulation import march_kernels as kernels
 from sceneql.simulation.driver import driver, function, jacobian
 from sceneql.simulation.island import System
 from sceneql.simulation.pointers_kernels import addresses
+from sceneql.simulation.switching import Switch
 from sceneql.system import Prepared
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from sceneql.frame import Floats
     from sceneql.system import Stepper
 
@@ -55,40 +58,65 @@ class Statistics:
 class March:
     """An island on its way from 0 to ``end`` [s] by one solver."""
 
-    def __init__(self, system: System, stepper: Stepper, end: float) -> None:
+    def __init__(
+        self, system: System, stepper: Stepper, end: float, with_jacobian: Callable[[], System] | None = None
+    ) -> None:
+        """``with_jacobian``: what lays the island out again for a stiff method that may take over."""
         self.system, self.stepper, self.end = system, stepper, end
+        self._with_jacobian = with_jacobian
         self.statistics = Statistics()
         self.floats = system.floats.copy()
         self.driver = driver(system.structure)
         n = len(system.y)
+        self._y0, self._rate0, self._rate1, self._sample = (np.zeros(n) for _ in range(4))
+        self._y1 = system.y.copy()
+        self._gaps = np.zeros(3 * system.pairs)
+        self._leaving = np.zeros(system.pairs, dtype=np.int64)
+        self._clock = np.zeros(kernels.CLOCKS)
+        self._counts = np.zeros(kernels.COUNTS, dtype=np.int64)
+        self._counts[kernels.LOCAL] = bool(system.structure.local)
+        self._counts[kernels.PENDING] = -1
+        self._clock[kernels.ERROR] = 1e-4
+        self._clock[kernels.LARGEST] = min(stepper.largest_step, system.largest_step)
+        self._started = False
+        self._floats_time = math.nan
+        self._switch = (
+            None if stepper.stiff is None else Switch(stepper, stepper.stiff, int((system.partner < 0).sum()))
+        )
+        self._last_look = 0
+        self._engage(stepper)
+
+    def _engage(self, stepper: Stepper) -> None:
+        """Go on with a method."""
+        if stepper.jacobian and self._with_jacobian is not None:
+            self.system = self._with_jacobian()
+            self.floats = np.concatenate([self.floats, self.system.floats[len(self.floats) :]])
+            self._with_jacobian = None
+        system = self.system
         self._step = function(stepper.step)
         self._jacobian = jacobian(system) if stepper.jacobian else None
         local = bool(system.structure.local)
         self._dense = kernels.hermite if stepper.dense is None or local else function(stepper.dense)
         self._functions = addresses(self._step, self._dense, *self.driver, self._jacobian)
         if stepper.prepare is None:
-            prepared = Prepared(stepper.settings, stepper.numbers, max(1, stepper.work) * n)
+            prepared = Prepared(stepper.settings, stepper.numbers, max(1, stepper.work) * len(system.y))
         else:
             prepared = function(stepper.prepare)(system, stepper)
         self._settings = np.array(prepared.settings, dtype=np.float64)
         self._numbers = np.array(prepared.numbers, dtype=np.int64)
-        self._y0, self._rate0, self._rate1, self._sample = (np.zeros(n) for _ in range(4))
-        self._y1 = system.y.copy()
         self._work = np.zeros(prepared.work)
-        self._gaps = np.zeros(3 * system.pairs)
-        self._leaving = np.zeros(system.pairs, dtype=np.int64)
-        self._clock = np.zeros(kernels.CLOCKS)
-        self._counts = np.zeros(kernels.COUNTS, dtype=np.int64)
         self._counts[kernels.ADAPTIVE] = stepper.adaptive
         self._counts[kernels.ORDER] = stepper.order
-        self._counts[kernels.LOCAL] = local
         self._counts[kernels.LAST_STAGE] = stepper.last_stage
-        self._counts[kernels.PENDING] = -1
         self._counts[kernels.CONTROLS] = stepper.controls
-        self._clock[kernels.ERROR] = 1e-4
-        self._clock[kernels.LARGEST] = min(stepper.largest_step, system.largest_step)
-        self._started = False
-        self._floats_time = math.nan
+
+    def choices(self) -> list[tuple[float, str]]:
+        """When [s] which method was taken, and why, where the solver chooses by itself; before the run, the first."""
+        if self._switch is None:
+            return []
+        if not self._started:
+            self._start()
+        return self._switch.history
 
     def rate(self, t: float, y: Floats) -> Floats:
         """dy/dt (n,) at a time [s] and state, not counted as cost; the floats then hold the values at that time."""
@@ -136,7 +164,11 @@ class March:
         self._clock[kernels.LIMIT] = GROWTH_LIMIT * max(1.0, np.abs(y).max(initial=0.0), moved)
         positions = np.abs(y[self.system.partner >= 0]).max(initial=1.0)
         self._clock[kernels.SLOP] = TOUCHING * positions
-        self._clock[kernels.STEP] = self.stepper.first_step or self._first_step()
+        step = self.stepper.first_step or self._first_step()
+        if self._switch is not None:
+            self._switch.start(self, y, step)
+            self._engage(self._switch.active)
+        self._clock[kernels.STEP] = step
 
     def _first_step(self) -> float:
         """The first step of an adaptive method (Hairer, Norsett & Wanner 1993, II.4, "starting step size")."""
@@ -159,7 +191,10 @@ class March:
         counts, clock = self._counts, self._clock
         self._floats_time = math.nan
         while True:
-            counts[kernels.LEFT] = max(100, ENTRIES_A_CALL // (len(self._y1) + 10))
+            left = max(100, ENTRIES_A_CALL // (len(self._y1) + 10))
+            if self._switch is not None:
+                left = min(left, self._last_look + self._switch.until_look - int(counts[kernels.STEPS]))
+            counts[kernels.LEFT] = left
             status = kernels.march(
                 self._functions,
                 target,
@@ -181,6 +216,7 @@ class March:
             )
             if status != kernels.PAUSED:
                 break
+            self._look()
         done = self.statistics
         done.steps, done.rejected, done.events = (
             int(counts[k]) for k in (kernels.STEPS, kernels.REJECTED, kernels.EVENTS)
@@ -191,6 +227,19 @@ class March:
             at = int(counts[kernels.INDEX])
             why = "the equations run away" if self.stepper.adaptive else "the step is unstable"
             self._fail(-1 if status == kernels.STUCK else at, MESSAGES[status].format(why))
+
+    def _look(self) -> None:
+        """Let the other method take over where it is time to see which is the better one."""
+        switch, clock = self._switch, self._clock
+        steps = int(self._counts[kernels.STEPS]) - self._last_look
+        if switch is None or steps < switch.until_look:
+            return
+        self._last_look += steps
+        t, step = float(clock[kernels.T1]), float(clock[kernels.STEP])
+        if switch.look(self, t, self._y1, step, steps):
+            self._engage(switch.active)
+            clock[kernels.STEP] = switch.stable(self, t, self._y1, step)
+            clock[kernels.ERROR] = 1e-4
 
     def _fail(self, entry: int, message: str) -> None:
         origin = self.system.origin(entry)

@@ -108,7 +108,9 @@ class IslandRun:
         for contact in sorted(contacts, key=lambda name: cast(Contact, graph.tasks[name].kind).mutual):
             self._add_contact(contact)
         stepper = self.solver.stepper()
-        self.march: March = March(assembly.finish(stepper.jacobian), stepper, graph.settings.clock.end)
+        self.march: March = March(
+            assembly.finish(stepper.jacobian), stepper, graph.settings.clock.end, lambda: assembly.finish(jacobian=True)
+        )
         self.members = {*island.models, *(contact for contact, _, _ in island.contacts)}
         self._now: tuple[float, Floats, Floats] | None = None
 

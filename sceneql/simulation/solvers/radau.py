@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from sceneql.system import Prepared, Stepper
 
 LARGEST = 400
-"""Entries of y."""
+"""Unknowns of the linear systems."""
 KERNELS = "sceneql.simulation.solvers.radau_kernels"
 
 
@@ -73,16 +73,14 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     """What the step works with: see radau_kernels.py."""
     import numpy as np
 
+    from sceneql.simulation.reduced import reduction
     from sceneql.simulation.solvers.radau_kernels import MEMORY
     from sceneql.system import Prepared
 
     n, pattern = len(system.y), system.pattern
-    if pattern is None or n > LARGEST:
-        raise LimitRefused(
-            f"radau factors full matrices: {n} numbers are more than the {LARGEST} it is good for",
-            None,
-            "use tr_bdf2, or fewer masses",
-        )
+    if pattern is None:
+        message = f"radau needs a Jacobian, and one of the terms of these {n} numbers does not know its own"
+        raise LimitRefused(message, None, "use an explicit solver, or fewer masses")
     if isinstance(stepper.absolute, tuple) and len(stepper.absolute) != n:
         message = f"`absolute` has {len(stepper.absolute)} numbers, one for each of the state's {n} is needed"
         raise RunFailure(message, part="radau", time=0.0, span=None)
@@ -90,13 +88,19 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     rounding = float(np.finfo(float).eps)
     newton = max(10 * rounding / rtol, min(3e-3, 0.1 * rtol**0.5))
     absolute = np.broadcast_to(np.asarray(stepper.absolute if stepper.adaptive else rtol), n)
-    rows = np.repeat(np.arange(n), np.diff(pattern.starts))
-    nonzero = len(pattern.columns)
+    plan = reduction(system)
+    left = int(plan[0])
+    if left > LARGEST:
+        raise LimitRefused(
+            f"radau factors full matrices: {left} unknowns are more than the {LARGEST} it is good for",
+            None,
+            "use tr_bdf2, or fewer masses",
+        )
     numbers = [
-        np.array([not stepper.adaptive, pattern.room, nonzero, len(pattern.tallies)]),
-        np.zeros(2 * n),
-        rows * n + pattern.columns,
+        np.array([not stepper.adaptive, pattern.room, left, len(pattern.tallies)]),
+        np.zeros(2 * left),
         pattern.tallies,
+        plan,
     ]
-    work = MEMORY + 15 * n + pattern.room + 3 * n * n
+    work = MEMORY + 17 * n + pattern.room + 3 * left * left
     return Prepared(np.concatenate([[rtol, newton], absolute]), np.concatenate(numbers), work)

@@ -6,27 +6,31 @@ needs one real and one complex system of the size of y: (g/h - J) and ((a + i b)
 Solving Ordinary Differential Equations II (1996), IV.8; predictive control by Gustafsson (1994).
 
 ``settings`` = (relative tolerance, tolerance of Newton's iteration relative to that of the step, absolute tolerance of
-each entry). ``numbers`` = (1 if steps are fixed, length of ``values``, nonzero values, tallies, then n + n pivots, the
-place of each nonzero in a full matrix, the tallies). ``work``: MEMORY scalars, 16 vectors, and matrices (`prepare`).
+each entry). ``numbers`` = (1 if steps are fixed, length of ``values``, entries m left in the linear systems, tallies,
+then m + m pivots, the tallies, the plan of reduced_kernels.py). ``work``: MEMORY scalars, 17 vectors, the values, and
+three matrices m x m.
 """
 
 import math
 
 from sceneql.kernels import lean, lean_inlined
-from sceneql.simulation.linear.dense_kernels import factor, factor_complex, solve, solve_complex
 from sceneql.simulation.pointers_kernels import AT_JACOBIAN, AT_RATE, jacobian_at, rate_at
+from sceneql.simulation.solvers.reduced_kernels import factor_pair, factor_real, solve_pair, solve_real
 from sceneql.system_kernels import DENSE, STEP
 
 MEMORY = 16
 NEXT, START, LENGTH, BEFORE, GOOD_LENGTH, GOOD_ERROR, ERROR, CONVERGENCE, CONTRACTION, FACTORED = range(10)
 """Length to try next; start and length of the latest try; length of the step before it (0: unknown); length and error
 of that step for the control; error of the try; Newton's convergence factor and rate; length that is factored."""
-BEGUN, FRESH, REJECTED = range(10, 13)
-"""Whether there was a try; whether the Jacobian is that of the start; whether a try from here was rejected."""
+BEGUN, FRESH, REJECTED, CEILING = range(10, 14)
+"""Whether there was a try; whether the Jacobian is that of the start; whether a try from here was rejected; length
+beyond which Newton's iteration failed not long ago (0: none)."""
 
-FIXED, ROOM, NONZERO, TALLIES, HEAD = range(5)
+FIXED, ROOM, LEFT, TALLIES, HEAD = range(5)
 
 ITERATIONS = 7
+ENOUGH = 0.03
+"""Error of the stages, in units of the step's tolerance, that is good enough where the iteration stops."""
 CONTRACTS = 1e-3
 """Newton's contraction rate below which the Jacobian serves one more step."""
 SAFETY = 0.9
@@ -106,26 +110,6 @@ def guess_stages(n, ratio, known, z, before, w):
 
 
 @lean_inlined
-def factor_both(n, h, values, numbers, real, re, im):
-    """Factor REAL/h - J and (ALPHA + i BETA)/h - J; False where one is singular."""
-    for k in range(n * n):
-        real[k] = 0.0
-        re[k] = 0.0
-        im[k] = 0.0
-    at = HEAD + 2 * n
-    for k in range(numbers[NONZERO]):
-        place = numbers[at + k]
-        real[place] = -values[k]
-        re[place] = -values[k]
-    for k in range(n):
-        real[k * n + k] += REAL / h
-        re[k * n + k] += ALPHA / h
-        im[k * n + k] = BETA / h
-    done = factor(real, n, numbers[HEAD : HEAD + n])
-    return done and factor_complex(re, im, n, numbers[HEAD + n : HEAD + 2 * n])
-
-
-@lean_inlined
 def evaluate_stages(rate, t, h, y0, y1, z, f, floats, ints):
     """f = the rate at the three stages; y1 is scratch."""
     n = y0.size
@@ -141,11 +125,16 @@ def evaluate_stages(rate, t, h, y0, y1, z, f, floats, ints):
 
 
 @lean_inlined
-def iterate(rate, t, h, y0, y1, work, settings, numbers, floats, ints, z, w, f, weights, real, re, im):
+def iterate(
+    rate, t, h, y0, y1, work, settings, floats, ints, z, w, f, weights,
+    values, plan, pivots, real, re, im, spare, other,
+):  # fmt: skip
     """Newton's iteration on the stages: (iterations, factor for h to try after a failure; 0: it has converged)."""
     n = y0.size
+    m = pivots.size // 2
     g, a, b = REAL / h, ALPHA / h, BETA / h
     tolerance = settings[1]
+    enough = max(tolerance, ENOUGH)
     convergence = max(work[CONVERGENCE], 2.2e-16) ** 0.8
     size = before = rate_before = 0.0
     work[CONTRACTION] = CONTRACTS
@@ -157,8 +146,20 @@ def iterate(rate, t, h, y0, y1, work, settings, numbers, floats, ints, z, w, f, 
             f[k] = I11 * f1 + I12 * f2 + I13 * f3 - g * w[k]
             f[n + k] = I21 * f1 + I22 * f2 + I23 * f3 - a * w2 + b * w3
             f[2 * n + k] = I31 * f1 + I32 * f2 + I33 * f3 - a * w3 - b * w2
-        solve(real, n, numbers[HEAD : HEAD + n], f[:n])
-        solve_complex(re, im, n, numbers[HEAD + n : HEAD + 2 * n], f[n : 2 * n], f[2 * n :])
+        solve_real(REAL / work[FACTORED], values, plan, real, pivots[:m], spare, f[:n])
+        solve_pair(
+            ALPHA / work[FACTORED],
+            BETA / work[FACTORED],
+            values,
+            plan,
+            re,
+            im,
+            pivots[m:],
+            spare,
+            other,
+            f[n : 2 * n],
+            f[2 * n :],
+        )
         total = 0.0
         for k in range(n):
             d1, d2, d3 = f[k], f[n + k], f[2 * n + k]
@@ -175,27 +176,31 @@ def iterate(rate, t, h, y0, y1, work, settings, numbers, floats, ints, z, w, f, 
             now = size / before
             contraction = now if count == 2 else math.sqrt(now * rate_before)
             rate_before = now
+            if count == 2 and contraction >= 0.99 and size > enough:
+                # Stiff springs that turn: every other change is large, so two together tell.
+                before = size
+                continue
             if contraction >= 0.99:
-                # At the level of rounding it cannot get better.
-                return (count, 0.0) if size < 1e-2 * tolerance else (count, 0.5)
+                # Rounding keeps very stiff systems from getting closer.
+                return (count, 0.0) if size <= enough else (count, 0.5)
             work[CONTRACTION] = contraction
             convergence = contraction / (1.0 - contraction)
             left = ITERATIONS - count
-            ahead = convergence * size * contraction**left / tolerance
+            ahead = convergence * size * contraction**left / enough
             if ahead >= 1.0:
                 return count, 0.8 * min(20.0, max(1e-4, ahead)) ** (-1.0 / (4.0 + left))
         if convergence * size <= tolerance:
             work[CONVERGENCE] = convergence
             return count, 0.0
         before = max(size, 2.2e-16)
-    return ITERATIONS, 0.5
+    return ITERATIONS, 0.0 if convergence * size <= enough else 0.5
 
 
 @lean_inlined
 def finish_tallies(rate, t, h, y0, y1, numbers, floats, ints, z, f):
     """Sums that nothing depends on, whose slopes are left out, from the rates at the final stages."""
     n = y0.size
-    first = HEAD + 2 * n + numbers[NONZERO]
+    first = HEAD + 2 * numbers[LEFT]
     some = False
     for k in range(first, first + numbers[TALLIES]):
         i = numbers[k]
@@ -222,14 +227,14 @@ def norm(x, weights):
 
 
 @lean_inlined
-def estimate(rate, t, h, y0, rate0, y1, work, numbers, floats, ints, z, f, weights, real):
+def estimate(rate, t, h, y0, rate0, y1, work, floats, ints, z, f, weights, values, plan, pivots, real, spare):
     """The error in units of the tolerance, by the embedded third-order formula, filtered by (REAL/h - J)^-1."""
     n = y0.size
     error, embedded = f[:n], f[n : 2 * n]
     for k in range(n):
         embedded[k] = (E1 * z[k] + E2 * z[n + k] + E3 * z[2 * n + k]) / h
         error[k] = rate0[k] + embedded[k]
-    solve(real, n, numbers[HEAD : HEAD + n], error)
+    solve_real(REAL / work[FACTORED], values, plan, real, pivots, spare, error)
     size = norm(error, weights)
     if size >= 1.0 and (work[BEFORE] == 0.0 or work[REJECTED] > 0.0):
         # Large at infinitely fast modes: filtered once more.
@@ -238,7 +243,7 @@ def estimate(rate, t, h, y0, rate0, y1, work, numbers, floats, ints, z, f, weigh
         rate(t, y1, error, floats, ints)
         for k in range(n):
             error[k] += embedded[k]
-        solve(real, n, numbers[HEAD : HEAD + n], error)
+        solve_real(REAL / work[FACTORED], values, plan, real, pivots, spare, error)
         size = norm(error, weights)
     return size
 
@@ -258,6 +263,9 @@ def control(h, error, iterations, work):
     wanted = h / divisor
     if work[REJECTED] > 0.0:
         wanted = min(wanted, h)
+    if work[CEILING] > 0.0:
+        wanted = min(wanted, max(h, work[CEILING]))
+        work[CEILING] *= 1.2
     work[NEXT] = h if work[CONTRACTION] <= CONTRACTS and h <= wanted <= 1.2 * h else wanted
 
 
@@ -265,20 +273,23 @@ def control(h, error, iterations, work):
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after a step of length h and its error; NaN and a shorter length where Newton's iteration fails."""
     rate, jacobian = rate_at(functions[AT_RATE]), jacobian_at(functions[AT_JACOBIAN])
-    n = y0.size
+    n, m = y0.size, numbers[LEFT]
     at = MEMORY
     z, before, w = work[at : at + 3 * n], work[at + 3 * n : at + 6 * n], work[at + 6 * n : at + 9 * n]
     f, start, weights = work[at + 9 * n : at + 12 * n], work[at + 12 * n : at + 13 * n], work[at + 13 * n : at + 14 * n]
     newton = work[at + 14 * n : at + 15 * n]
-    at += 15 * n
+    spare, other = work[at + 15 * n : at + 15 * n + m], work[at + 16 * n : at + 16 * n + m]
+    at += 17 * n
     values = work[at : at + numbers[ROOM]]
     at += numbers[ROOM]
-    real, re, im = work[at : at + n * n], work[at + n * n : at + 2 * n * n], work[at + 2 * n * n : at + 3 * n * n]
+    real, re, im = work[at : at + m * m], work[at + m * m : at + 2 * m * m], work[at + 2 * m * m : at + 3 * m * m]
     begin(t, y0, work, start, z, before)
+    plan = numbers[HEAD + 2 * m + numbers[TALLIES] :]
+    pivots = numbers[HEAD : HEAD + 2 * m]
     for k in range(n):
         weights[k] = 1.0 / (settings[2 + k] + settings[0] * abs(y0[k]))
         newton[k] = weights[k]
-    first = HEAD + 2 * n + numbers[NONZERO]
+    first = HEAD + 2 * m
     for k in range(first, first + numbers[TALLIES]):
         newton[numbers[k]] = 0.0
     work[LENGTH] = h
@@ -290,19 +301,23 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
             jacobian(functions, t, y0, values, floats, ints)
             work[FRESH] = 1.0
         if renewed or abs(h - work[FACTORED]) > 1e-9 * h:
-            work[FACTORED] = h if factor_both(n, h, values, numbers, real, re, im) else 0.0
+            regular = factor_real(REAL / h, values, plan, real, pivots[:m])
+            regular = regular and factor_pair(ALPHA / h, BETA / h, values, plan, re, im, pivots[m:])
+            work[FACTORED] = h if regular else 0.0
         shorter = 0.5
         if work[FACTORED] > 0.0:
             guess_stages(n, h / work[BEFORE] if known else 0.0, known, z, before, w)
             iterations, shorter = iterate(
-                rate, t, h, y0, y1, work, settings, numbers, floats, ints, z, w, f, newton, real, re, im
-            )
+                rate, t, h, y0, y1, work, settings, floats, ints, z, w, f, newton,
+                values, plan, pivots, real, re, im, spare, other,
+            )  # fmt: skip
         if shorter == 0.0:
             break
         if work[FRESH] > 0.0:
             work[CONTRACTION] = 1.0
             work[CONVERGENCE] = 1.0
             work[REJECTED] = 1.0
+            work[CEILING] = 0.95 * h
             work[NEXT] = shorter * h
             for k in range(n):
                 y1[k] = math.nan
@@ -311,7 +326,10 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         finish_tallies(rate, t, h, y0, y1, numbers, floats, ints, z, f)
     error = 0.0
     if numbers[FIXED] == 0:
-        error = max(1e-10, estimate(rate, t, h, y0, rate0, y1, work, numbers, floats, ints, z, f, weights, real))
+        error = estimate(
+            rate, t, h, y0, rate0, y1, work, floats, ints, z, f, weights, values, plan, pivots[:m], real, spare
+        )
+        error = max(1e-10, error)
         work[ERROR] = error
         control(h, error, iterations, work)
     for k in range(n):
