@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, cast
 
 from sceneql.compiler.catalogue import ROOT, Catalogue
+from sceneql.failure import RunFailure
 from sceneql.graph import SimulationGraph
 from sceneql.kinds import Camera, Output
 

@@ -102,5 +102,5 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
         pattern.tallies,
         plan,
     ]
-    work = MEMORY + 17 * n + pattern.room + 3 * left * left
+    work = MEMORY + 18 * n + pattern.room + 3 * left * left
     return Prepared(np.concatenate([[rtol, newton], absolute]), np.concatenate(numbers), work)

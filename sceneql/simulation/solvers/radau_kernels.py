@@ -7,7 +7,7 @@ Solving Ordinary Differential Equations II (1996), IV.8; predictive control by G
 
 ``settings`` = (relative tolerance, tolerance of Newton's iteration relative to that of the step, absolute tolerance of
 each entry). ``numbers`` = (1 if steps are fixed, length of ``values``, entries m left in the linear systems, tallies,
-then m + m pivots, the tallies, the plan of reduced_kernels.py). ``work``: MEMORY scalars, 17 vectors, the values, and
+then m + m pivots, the tallies, the plan of reduced_kernels.py). ``work``: MEMORY scalars, 18 vectors, the values, and
 three matrices m x m.
 """
 
@@ -42,6 +42,9 @@ REAL = 3.0 + 3.0 ** (2.0 / 3.0) - 3.0 ** (1.0 / 3.0)
 ALPHA = 3.0 + 0.5 * (3.0 ** (1.0 / 3.0) - 3.0 ** (2.0 / 3.0))
 BETA = 0.5 * (3.0 ** (5.0 / 6.0) + 3.0 ** (7.0 / 6.0))
 """Eigenvalues of the inverse of A: REAL, ALPHA +- i BETA."""
+
+INSIDE = 0.01826
+"""Largest |s (s - C1) (s - C2) (s - 1)| for s from 0 to 1."""
 
 T11, T12, T13 = 0.09123239487089294279, -0.14125529502095420843, -0.03002919410514742449
 T21, T22, T23 = 0.24171793270710701896, 0.20412935229379993199, 0.38294211275726193779
@@ -84,8 +87,8 @@ def begin(t, y0, work, start, z, before):
 
 
 @lean_inlined
-def guess_stages(n, ratio, known, z, before, w):
-    """Stages by the polynomial of the step before, or zero; w = T^-1 z."""
+def guess_stages(n, ratio, known, z, before, w, ahead):
+    """Stages by the polynomial of the step before, or zero; w = T^-1 z; ``ahead`` (n,): the last stage as guessed."""
     if not known:
         for k in range(3 * n):
             z[k] = 0.0
@@ -104,6 +107,7 @@ def guess_stages(n, ratio, known, z, before, w):
         z[k] = a
         z[n + k] = b
         z[2 * n + k] = c
+        ahead[k] = c
         w[k] = I11 * a + I12 * b + I13 * c
         w[n + k] = I21 * a + I22 * b + I23 * c
         w[2 * n + k] = I31 * a + I32 * b + I33 * c
@@ -249,6 +253,22 @@ def estimate(rate, t, h, y0, rate0, y1, work, floats, ints, z, f, weights, value
 
 
 @lean_inlined
+def unevenness(ratio, z, ahead, weights):
+    """The largest error of dense output in units of the tolerance, by how far the polynomial before missed this step.
+
+    Both are fourth differences, scaled by the products of the distances to the nodes. The embedded formula does not
+    see it in components that a stiff mode pulls along: they are right at the ends of steps of any length.
+    """
+    n = weights.size
+    total = 0.0
+    for k in range(n):
+        part = (z[2 * n + k] - ahead[k]) * weights[k]
+        total += part * part
+    reach = (1.0 + ratio) * (1.0 - C1 + ratio) * (1.0 - C2 + ratio) / ratio**3
+    return INSIDE / reach * math.sqrt(total / n)
+
+
+@lean_inlined
 def control(h, error, iterations, work):
     """Length of the next step (Gustafsson 1994); nearly the same one is kept, with its factors."""
     safety = min(SAFETY, SAFETY * (1.0 + 2.0 * ITERATIONS) / (iterations + 2.0 * ITERATIONS))
@@ -279,7 +299,8 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     f, start, weights = work[at + 9 * n : at + 12 * n], work[at + 12 * n : at + 13 * n], work[at + 13 * n : at + 14 * n]
     newton = work[at + 14 * n : at + 15 * n]
     spare, other = work[at + 15 * n : at + 15 * n + m], work[at + 16 * n : at + 16 * n + m]
-    at += 17 * n
+    ahead = work[at + 17 * n : at + 18 * n]
+    at += 18 * n
     values = work[at : at + numbers[ROOM]]
     at += numbers[ROOM]
     real, re, im = work[at : at + m * m], work[at + m * m : at + 2 * m * m], work[at + 2 * m * m : at + 3 * m * m]
@@ -306,7 +327,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
             work[FACTORED] = h if regular else 0.0
         shorter = 0.5
         if work[FACTORED] > 0.0:
-            guess_stages(n, h / work[BEFORE] if known else 0.0, known, z, before, w)
+            guess_stages(n, h / work[BEFORE] if known else 0.0, known, z, before, w, ahead)
             iterations, shorter = iterate(
                 rate, t, h, y0, y1, work, settings, floats, ints, z, w, f, newton,
                 values, plan, pivots, real, re, im, spare, other,
@@ -329,6 +350,8 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         error = estimate(
             rate, t, h, y0, rate0, y1, work, floats, ints, z, f, weights, values, plan, pivots[:m], real, spare
         )
+        if known:
+            error = max(error, unevenness(h / work[BEFORE], z, ahead, weights))
         error = max(1e-10, error)
         work[ERROR] = error
         control(h, error, iterations, work)
