@@ -80,9 +80,9 @@ class March:
         self._clock[kernels.LARGEST] = min(stepper.largest_step, system.largest_step)
         self._started = False
         self._floats_time = math.nan
-        self._switch = (
-            None if stepper.stiff is None else Switch(stepper, stepper.stiff, int((system.partner < 0).sum()))
-        )
+        self._switch = None
+        if stepper.stiff is not None and stepper.adaptive:
+            self._switch = Switch(stepper, stepper.stiff, int((system.partner < 0).sum()))
         self._last_look = 0
         self._engage(stepper)
 
