@@ -325,3 +325,11 @@ def test_spans_stand_at_the_characters() -> None:
     assert isinstance(expr, Call)
     assert [part.span.text for part in (expr, *expr.args) if part.span] == ["a + sin(b.x)", "a", "sin(b.x)"]
     assert span_of("a").text == "a"
+
+
+@pytest.mark.parametrize("arrays", [False, True])
+def test_an_item_that_a_list_has_not_is_refused(arrays):
+    call = Call("item", (POINTS, Number(2.0)))
+    points = ((0.0, 1.0, 2.0), (3.0, 4.0, 5.0))
+    with pytest.raises(ValueError, match=r"there is no item 2 in a list of 2: they count from 0"):
+        evaluate(call, {POINTS: np.array(points) if arrays else points}, arrays=arrays)

@@ -9,6 +9,7 @@ from typing import Any
 
 from sceneql.quantities import chance
 from sceneql.quantities.curves import interpolate, table_of
+from sceneql.quantities.evaluate import item_of
 from sceneql.quantities.expression import Call, Expr, Keys, Link, Number, Shape, Symbol, Vector, each_once
 from sceneql.quantities.operations import OPERATIONS
 
@@ -82,9 +83,8 @@ def _apply(call: Call, args: list[Any]) -> Any:
         assert isinstance(index, Number)
         return args[0][..., int(index.value)]
     if call.op == "item":
-        number = call.args[1]
-        assert isinstance(number, Number)
-        return np.take(args[0], int(number.value), axis=-len(call.args[0].type.shape))
+        axis = -len(call.args[0].type.shape)
+        return np.take(args[0], item_of(call, args[0].shape[axis]), axis=axis)
     if operation.reduces and len(args) == 1:
         return _reduce(call.op, args[0], call.args[0].type.shape)
     vectors = operation.vector_args or (False,) * len(args)

@@ -67,6 +67,15 @@ def _last_key(t: float, times: tuple[float, ...]) -> int:
     return bisect_right(times, t) - 1 if t == t else 0
 
 
+def item_of(call: Call, count: int) -> int:
+    """Which item of a list of ``count`` an ``item`` call picks. Raises ValueError where there is none."""
+    number = call.args[1]
+    assert isinstance(number, Number)
+    if number.value >= count:
+        raise ValueError(f"there is no item {number.value:g} in a list of {count}: they count from 0")
+    return int(number.value)
+
+
 def apply(o: Any, call: Call, args: list[Any]) -> Any:
     """An operation over an arithmetic ``o``, on values that are its numbers or nested tuples of them."""
     operation = OPERATIONS[call.op]
@@ -77,9 +86,7 @@ def apply(o: Any, call: Call, args: list[Any]) -> Any:
         assert isinstance(index, Number)
         return _each(lambda vector: vector[int(index.value)], args[:1], [len(call.args[0].type.shape) - 1])
     if call.op == "item":
-        number = call.args[1]
-        assert isinstance(number, Number)
-        return args[0][int(number.value)]
+        return args[0][item_of(call, len(args[0]))]
     if operation.reduces and len(args) == 1:
         return _reduce(o, operation, args[0], call.args[0].type.shape)
     vectors = operation.vector_args or (False,) * len(args)
