@@ -102,3 +102,9 @@ def floor_settle(t0, t1, y0, rate0, y1, floats, ints):
         if y1[k] < 0.0:
             y1[k] = -y1[k]
             y1[k + 1] = -y1[k + 1]
+
+
+@kernel(TERM)
+def blow_up(t, y, rate, floats, ints):
+    """y' = y^2."""
+    rate[0] += y[0] * y[0]

@@ -70,7 +70,7 @@ def newton(functions, t, a, base, y0, y, change, jacobian, store, scales, memory
         for k in range(y.size):
             y[k] += change[k]
         size = norm(change, y0, y, memory)
-        if not size < 1e12:
+        if not size < math.inf:
             break
         contraction = memory[CONTRACTION]
         if iteration > 0:

@@ -1,0 +1,189 @@
+"""Implicit solvers: stability, conservation, stiff limits, failures and the systems that they solve."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from islands import TETHER, assembly, balls, final, fixed, simple, springs
+from runs import watch
+from sceneql.failure import RunFailure
+from sceneql.simulation.linear import stage, stage_kernels
+from sceneql.simulation.march import March
+from sceneql.simulation.modes import jacobian
+from sceneql.simulation.solvers.bdf2 import Bdf2
+from sceneql.simulation.solvers.implicit_euler import ImplicitEuler
+from sceneql.simulation.solvers.implicit_midpoint import ImplicitMidpoint
+from sceneql.simulation.solvers.rodas5p import Rodas5p
+from sceneql.simulation.solvers.tr_bdf2 import TrBdf2
+
+ALL = (ImplicitEuler, ImplicitMidpoint, TrBdf2, Bdf2, Rodas5p)
+L_STABLE = (ImplicitEuler, TrBdf2, Bdf2, Rodas5p)
+CHAIN = """sceneql: 1
+clock: {{end: 1 s}}
+models:
+  chain:
+    mass_spring:
+      rope: {{from: 0 0 0 m, to: {length} 0 0 m, count: {count}}}
+      mass: {mass} kg
+      stiffness: {stiffness} N/m
+      pins: [start, end]
+solvers:
+  main: {solver}
+outputs:
+  film: {{video: {{size: 16 16}}}}
+"""
+
+
+def oscillator(damping: float, square: float) -> np.ndarray:
+    return np.array([[0.0, 1.0], [-square, -damping]])
+
+
+@pytest.mark.parametrize("word", ALL)
+def test_no_step_grows_what_does_not_grow(word):
+    kind = word()
+    for z in np.logspace(-3, 6, 60):
+        for damping in (0.0, 0.1, 3.0):
+            assert kind.growth(oscillator(damping, 1.0), np.array([1, -1]), z) <= 1.0 + 1e-9
+
+
+@pytest.mark.parametrize("word", L_STABLE)
+def test_stiff_modes_die_out_at_once(word):
+    assert word().growth(np.array([[-1.0]]), np.array([-1]), 1e10) < 1e-4
+
+
+def test_bdf2_grows_by_its_largest_root():
+    system = simple("linear", [1.0, 0.0], [-0.3, 1.0])
+    march = March(system, Bdf2(step=0.4).stepper(), 100.0)
+    sizes = [np.hypot(*march.advance(0.4 * k)[0]) for k in (100, 200)]
+    expected = Bdf2().growth(np.array([[-0.3, -1.0], [1.0, -0.3]]), np.array([-1, -1]), 0.4)
+    assert (sizes[1] / sizes[0]) ** 0.01 == pytest.approx(expected, rel=1e-3)
+
+
+@pytest.mark.parametrize("word", L_STABLE)
+def test_a_stiff_spring_leaves_the_slow_one_alone(word):
+    """The slow spring of two is as exact as alone, though the fast one is far from resolved."""
+    step = 1e-2
+    alone = final(springs([4.0], [0.2]), fixed(word().stepper(), step), 1.0)
+    both = final(springs([4.0, 1e10], [0.2, 1e3]), fixed(word().stepper(), step), 1.0)
+    assert both[[0, 2]] == pytest.approx(alone, abs=1e-9)
+    assert abs(both[1]) < 1e-6
+
+
+def test_the_midpoint_rule_keeps_quadratic_invariants():
+    system = springs([9.0], [0.0])
+    march = March(system, ImplicitMidpoint(step=0.1).stepper(), 1000.0)
+    for t in (10.0, 1000.0):
+        x, v = march.advance(t)[0]
+        assert 9.0 * x * x + v * v == pytest.approx(10.0, rel=1e-10)
+
+
+@pytest.mark.parametrize("word", [TrBdf2, Bdf2, Rodas5p])
+def test_the_error_follows_the_tolerance(word):
+    system = simple("pendulum", [1.5, 0.2])
+    exact = final(system, fixed(Rodas5p().stepper(), 1e-3), 3.0)
+    errors = [np.abs(final(system, word(tolerance=tol).stepper(), 3.0) - exact).max() for tol in (1e-4, 1e-6)]
+    assert errors[0] < 1e-2
+    assert errors[1] < errors[0] / 8
+
+
+@pytest.mark.parametrize("word", [TrBdf2, Bdf2, Rodas5p])
+def test_a_bounce_is_found_and_restarted_from(word):
+    found = balls([1.0], 0.8)
+    march = March(found.system, word(tolerance=1e-8).stepper(), 1.0)
+    y = march.advance(0.9)[0]
+    hit = math.sqrt(2.0 / 9.81)
+    speed, rest = 0.8 * 9.81 * hit, 0.9 - hit
+    assert y[0] == pytest.approx(speed * rest - 4.905 * rest**2, abs=1e-6)
+    assert march.statistics.events == 1
+
+
+def test_a_stage_without_a_solution_is_a_located_failure():
+    system = simple("blow_up", [1.0])
+    for word in (ImplicitEuler, ImplicitMidpoint):
+        with pytest.raises(RunFailure) as caught:
+            final(system, word(step=0.5).stepper(), 2.0)
+        assert caught.value.span == TETHER
+
+
+@pytest.mark.parametrize(("count", "kind"), [(6, stage.DENSE), (60, stage.FRONTS)])
+def test_a_stage_system_is_solved(tmp_path, count, kind):
+    """(1 - a J) d = r for the Jacobian by differences, though positions and fixed masses are eliminated."""
+    from sceneql.pipeline import load
+    from sceneql.simulation.run import Run
+
+    path = tmp_path / "scene.yaml"
+    text = CHAIN.format(length=count, count=count, mass=0.5, stiffness=200, solver="{tr_bdf2: {step: 1 ms}}")
+    path.write_text(text, encoding="utf-8")
+    march = Run(load(path)).islands[0].march
+    system = march.system
+    plan = stage.stage_plan(system)
+    assert plan.numbers[stage_kernels.KIND] == kind
+    values, store = np.zeros(system.pattern.room), np.zeros(plan.store)
+    march._jacobian(march._functions, 0.0, system.y, values, march.floats, system.ints)
+    a, n = 0.3, len(system.y)
+    right = np.random.default_rng(3).standard_normal(n)
+    right[np.abs(jacobian(march)).sum(axis=1) == 0.0] = 0.0
+    d = right.copy()
+    assert stage_kernels.factor_stage(plan.numbers, a, values, plan.scales, store)
+    assert stage_kernels.solve_stage(plan.numbers, a, values, plan.scales, store, d)
+    assert (np.eye(n) - a * jacobian(march)) @ d == pytest.approx(right, abs=1e-5)
+    if kind == stage.FRONTS:
+        assert plan.numbers[stage_kernels.SYMMETRIC] == 1
+
+
+def test_a_chain_of_springs_has_its_dispersion(tmp_path):
+    """omega = 2 sqrt(k/m) sin(q a/2) of standing longitudinal waves (the modes of the assembled Jacobian)."""
+    from sceneql.pipeline import load
+    from sceneql.simulation.run import Run
+
+    count, mass, stiffness = 22, 0.1, 50.0
+    path = tmp_path / "scene.yaml"
+    path.write_text(
+        CHAIN.format(length=count - 1, count=count, mass=mass, stiffness=stiffness, solver="rodas5p"), encoding="utf-8"
+    )
+    march = Run(load(path)).islands[0].march
+    values = np.zeros(march.system.pattern.room)
+    march._jacobian(march._functions, 0.0, march.system.y, values, march.floats, march.system.ints)
+    starts, columns = march.system.pattern.starts, march.system.pattern.columns
+    rows = np.repeat(np.arange(len(march.system.y)), np.diff(starts))
+    whole = np.zeros((len(march.system.y),) * 2)
+    whole[rows, columns] = values[: len(columns)]
+    along = np.arange(3, 3 * (count - 1), 3)
+    squares = -np.linalg.eigvalsh(whole[np.ix_(3 * count + along, along)])
+    q = np.pi * np.arange(1, count - 1) / (count - 1)
+    expected = 2.0 * math.sqrt(stiffness / mass) * np.sin(q / 2)
+    assert np.sqrt(np.sort(squares)) == pytest.approx(expected, rel=1e-6)
+
+
+def test_a_wave_on_the_chain_keeps_its_frequency(tmp_path):
+    """The lowest standing wave, run: after a period of its dispersion the chain is where it began."""
+    count, mass, stiffness, amplitude = 8, 0.1, 50.0, 1e-2
+    q = math.pi / (count - 1)
+    period = math.pi / (math.sqrt(stiffness / mass) * math.sin(q / 2))
+    masses = ", ".join(f"m{k}: {{position: {k + amplitude * math.sin(q * k)} 0 0 m}}" for k in range(count))
+    ties = ", ".join(f"{{between: [m{k}, m{k + 1}], rest: 1 m}}" for k in range(count - 1))
+    script = f"""sceneql: 1
+clock: {{end: {period} s}}
+models:
+  chain: {{mass_spring: {{masses: {{{masses}}}, springs: [{ties}], mass: {mass} kg, stiffness: {stiffness} N/m,
+    pins: [m0, m{count - 1}]}}}}
+solvers: {{main: {{rodas5p: {{tolerance: 1e-9}}}}}}
+outputs: {{film: {{video: {{size: 16 16}}}}}}
+"""
+    (start,), (half,), (end,) = watch(tmp_path, script, [0.0, period / 2, period], "chain.positions")
+    assert end == pytest.approx(start, abs=1e-6 * amplitude * 10)
+    assert half[:, 0] - np.arange(count) == pytest.approx(np.arange(count) - start[:, 0], abs=1e-7)
+
+
+def test_differences_stand_in_where_slopes_are_unknown():
+    island = assembly()
+    with island.word("model", TETHER):
+        island.state([1.0, 0.5])
+    island.term("internal", "solver_kernels:pendulum", (0,))
+    system = island.finish(jacobian=True)
+    assert not system.pattern.exact
+    plan = stage.stage_plan(system)
+    assert "dense" in plan.text
