@@ -28,7 +28,7 @@ HEUN_3 = {"a": ((), (1 / 3,), (0.0, 2 / 3)), "b": (1 / 4, 0.0, 3 / 4)}
 NEEDED = {"runge_kutta": HEUN_3}
 """Fields of the words that cannot do without."""
 
-DENSE = {"radau": 3, "implicit_midpoint": 1}
+DENSE = {"radau": 3, "implicit_midpoint": 1, "bdf2": 1}  # bdf2 starts with a step of implicit Euler
 """Order of dense output where it is neither the cubic Hermite interpolant's nor 4."""
 
 WORDS = sorted(p.stem for p in Path(solvers.__path__[0]).glob("*.py") if not p.stem.endswith(("_kernels", "__init__")))
