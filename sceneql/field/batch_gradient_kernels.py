@@ -1,0 +1,88 @@
+# mypy: ignore-errors
+"""Gradients of a tape at many points by forward differentiation, after ``batch_kernels.evaluate`` at the same points."""
+
+import numpy as np
+
+from sceneql.field.batch_kernels import BATCH
+from sceneql.field.density_kernels import density_gradient
+from sceneql.field.sine_kernels import sine_cosine
+from sceneql.field.tape_kernels import slopes
+from sceneql.field.tape_ops import ADD, CONSTANT, COPY, COS, DENSITY, MUL, NEG, SIN, SQUARE, SUB, X, Y, Z
+from sceneql.kernels import inlined, lean
+
+
+@inlined
+def density_slopes(code, k, parts, registers, slope, n):
+    """Gradient of the density of row k through that of its point."""
+    p = code[k, 3]
+    for i in range(n):
+        u, v, w = density_gradient(
+            parts, code[k, 1], code[k, 2], registers[p, i], registers[p + 1, i], registers[p + 2, i]
+        )
+        for axis in range(3):
+            slope[k, axis, i] = u * slope[p, axis, i] + v * slope[p + 1, axis, i] + w * slope[p + 2, axis, i]
+
+
+@inlined
+def any_slopes(op, value, a, b, slope_a, slope_b, slope, n):
+    """Gradient of an operation of one or two arguments by its two derivatives."""
+    for i in range(n):
+        if op == SIN:
+            u, v = sine_cosine(a[i])[1], 0.0
+        elif op == COS:
+            u, v = -sine_cosine(a[i])[0], 0.0
+        else:
+            u, v = slopes(op, value[i], a[i], b[i])
+        for axis in range(3):
+            # A zero slope is skipped: zero times an infinite slope of the branch not taken would be NaN.
+            g = 0.0
+            if u != 0.0:
+                g = u * slope_a[axis, i]
+            if v != 0.0:
+                g += v * slope_b[axis, i]
+            slope[axis, i] = g
+
+
+@lean(f"void({BATCH}, float64[:, :, ::1], int64)")
+def differentiate(code, constants, parts, registers, slope, n):
+    """Gradients into ``slope`` (rows, 3, LANES), those of f in its row of the last operation."""
+    for k in range(code.shape[0]):
+        op = code[k, 0]
+        left = code[k, 1]
+        right = code[k, 2]
+        out = slope[k]
+        if op == CONSTANT or op == X or op == Y or op == Z:
+            for axis in range(3):
+                number = 1.0 if op - X == axis else 0.0
+                for i in range(n):
+                    out[axis, i] = number
+            continue
+        if op == DENSITY:
+            density_slopes(code, k, parts, registers, slope, n)
+            continue
+        a = registers[left]
+        b = registers[right]
+        for axis in range(3):
+            da = slope[left, axis]
+            db = slope[right, axis]
+            g = out[axis]
+            if op == ADD:
+                for i in range(n):
+                    g[i] = da[i] + db[i]
+            elif op == SUB:
+                for i in range(n):
+                    g[i] = da[i] - db[i]
+            elif op == MUL:
+                for i in range(n):
+                    g[i] = b[i] * da[i] + a[i] * db[i]
+            elif op == SQUARE:
+                for i in range(n):
+                    g[i] = 2.0 * a[i] * da[i]
+            elif op == NEG:
+                for i in range(n):
+                    g[i] = -da[i]
+            elif op == COPY:
+                for i in range(n):
+                    g[i] = da[i]
+        if not (op == ADD or op == SUB or op == MUL or op == SQUARE or op == NEG or op == COPY):
+            any_slopes(op, registers[k], a, b, slope[left], slope[right], out, n)

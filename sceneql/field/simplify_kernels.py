@@ -1,0 +1,105 @@
+# mypy: ignore-errors
+"""What of a tape matters in a box: branches of min and max that cannot win and parts out of reach are left out.
+
+In the box the shorter tape has the same bits of value as the whole one, so that neighboring boxes agree on their face.
+"""
+
+import numpy as np
+
+from sceneql.field.density_kernels import offset
+from sceneql.field.tape_ops import CONSTANT, COPY, COS, DENSITY, MAX, MIN, SIN, X, Y, Z
+from sceneql.kernels import inlined, lean
+
+ALIAS, LIVE, PLACE = 4, 5, 6
+"""Columns of scratch: the row that a row's value is that of, whether it is needed, where it goes."""
+
+
+@inlined
+def within_reach(parts, i, scratch, p):
+    """Whether part i may have a density in the box whose sides are rows p..p+2 of scratch."""
+    hx = 0.5 * (scratch[p, 1] - scratch[p, 0])
+    hy = 0.5 * (scratch[p + 1, 1] - scratch[p + 1, 0])
+    hz = 0.5 * (scratch[p + 2, 1] - scratch[p + 2, 0])
+    x = scratch[p, 0] + hx
+    y = scratch[p + 1, 0] + hy
+    z = scratch[p + 2, 0] + hz
+    wx, wy, wz = offset(parts, i, x, y, z)
+    blur = 1.0e-12 * (abs(x) + abs(y) + abs(z) + abs(parts[i, 0]) + abs(parts[i, 1]) + abs(parts[i, 2]) + parts[i, 6])
+    blur += 1.0e-12 * (abs(parts[i, 3]) + abs(parts[i, 4]) + abs(parts[i, 5]))
+    distance = np.sqrt(wx * wx + wy * wy + wz * wz)
+    diagonal = np.sqrt(hx * hx + hy * hy + hz * hz)
+    return distance < parts[i, 6] + diagonal + blur
+
+
+@inlined
+def winner(code, k, scratch):
+    """The row whose value row k has all over the box: that of a branch which must win, else k itself."""
+    op = code[k, 0]
+    if op == MIN or op == MAX:
+        left = code[k, 1]
+        right = code[k, 2]
+        if scratch[left, 1] < scratch[right, 0]:
+            return int(scratch[left if op == MIN else right, ALIAS])
+        if scratch[right, 1] < scratch[left, 0]:
+            return int(scratch[right if op == MIN else left, ALIAS])
+    return k
+
+
+@inlined
+def mark(code, last, scratch):
+    """Mark the rows that the value of ``last`` needs."""
+    for k in range(last + 1):
+        scratch[k, LIVE] = 0.0
+    scratch[int(scratch[last, ALIAS]), LIVE] = 1.0
+    for k in range(last, -1, -1):
+        if scratch[k, LIVE] == 0.0:
+            continue
+        op = code[k, 0]
+        if op == DENSITY:
+            for j in range(3):
+                scratch[code[k, 3] + j, LIVE] = 1.0
+        elif not (op == CONSTANT or op == X or op == Y or op == Z):
+            scratch[int(scratch[code[k, 1], ALIAS]), LIVE] = 1.0
+            scratch[int(scratch[code[k, 2], ALIAS]), LIVE] = 1.0
+
+
+@lean(
+    "UniTuple(int64, 2)(int32[:, ::1], float64[:, ::1], float64[:, ::1], boolean, int32[:, ::1], float64[:, ::1])",
+)
+def simplify(code, parts, scratch, whole, short, near):
+    """Write the tape that matters into ``short`` and ``near``, as large as code and parts; (rows, parts) used of them.
+
+    ``scratch`` is as ``interval_kernels.box`` left it, ``whole`` whether the tape is defined all over that box: where
+    it is not, all matters: a NaN in any branch makes the value NaN, and ``box`` may have stopped before the end.
+    """
+    last = code.shape[0] - 1
+    for k in range(last + 1):
+        scratch[k, ALIAS] = winner(code, k, scratch) if whole else k
+    mark(code, last, scratch)
+    rows = 0
+    found = 0
+    for k in range(last + 1):
+        if scratch[k, LIVE] == 0.0:
+            continue
+        op = code[k, 0]
+        scratch[k, PLACE] = rows
+        short[rows, 0] = op
+        short[rows, 1] = code[k, 1]
+        short[rows, 2] = code[k, 2]
+        short[rows, 3] = 0
+        if op == DENSITY:
+            short[rows, 1] = found
+            for i in range(code[k, 1], code[k, 2]):
+                if not whole or within_reach(parts, i, scratch, code[k, 3]):
+                    for j in range(8):
+                        near[found, j] = parts[i, j]
+                    found += 1
+            short[rows, 2] = found
+            short[rows, 3] = int(scratch[code[k, 3], PLACE])
+        elif not (op == CONSTANT or op == X or op == Y or op == Z):
+            short[rows, 1] = int(scratch[int(scratch[code[k, 1], ALIAS]), PLACE])
+            short[rows, 2] = int(scratch[int(scratch[code[k, 2], ALIAS]), PLACE])
+            if (op == SIN or op == COS) and code[k, 3] and scratch[code[k, 3], LIVE] != 0.0:
+                short[rows, 3] = int(scratch[code[k, 3], PLACE])
+        rows += 1
+    return rows, found

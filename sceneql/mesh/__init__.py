@@ -1,0 +1,1 @@
+"""Implicit fields to triangles: marching cubes with the topology of the trilinear interpolant."""
