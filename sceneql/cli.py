@@ -225,6 +225,35 @@ def stability(
 
 
 @cli.command()
+@SCENE
+@_options
+@click.option("--object", "name", required=True, metavar="NAME", help="The object.")
+@click.option("-o", "--output", callback=_path, required=True, help="File to make: .ply, .stl, .obj or .glb.")
+@click.option("--cell", type=float, metavar="METERS", help="Side of a cell; by default 1/128 of the object's size.")
+@click.option("--tolerance", type=float, metavar="METERS", help="Distance from the surface, in place of --cell.")
+@click.option("--time", type=float, default=0.0, metavar="SECONDS", help="Instant of the simulation; by default 0.")
+def mesh(
+    scene: Path,
+    variant: str | None,
+    sets: tuple[str, ...],
+    words: Path | None,
+    name: str,
+    output: Path,
+    cell: float | None,
+    tolerance: float | None,
+    time: float,
+) -> None:
+    """Make triangles of an object's surface."""
+    from sceneql import pipeline
+    from sceneql.report.mesh import mesh as polygonise
+
+    if cell is not None and tolerance is not None:
+        raise click.UsageError("--cell and --tolerance exclude each other")
+    graph = pipeline.load(scene, variant=variant, sets=sets, words=words, pruned=False)
+    click.echo(polygonise(graph, name, output, cell=cell, tolerance=tolerance, time=time).text())
+
+
+@cli.command()
 @click.argument("word", required=False)
 @click.option(
     "--words", "folder", type=click.Path(file_okay=False, exists=True), callback=_path, help="Your own words."

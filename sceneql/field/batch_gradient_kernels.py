@@ -1,7 +1,5 @@
 # mypy: ignore-errors
-"""Gradients of a tape at many points by forward differentiation, after ``batch_kernels.evaluate`` at the same points."""
-
-import numpy as np
+"""Gradients of a tape at many points by forward differentiation, after ``batch_kernels.evaluate`` at the same."""
 
 from sceneql.field.batch_kernels import BATCH
 from sceneql.field.density_kernels import density_gradient

@@ -1,7 +1,7 @@
 # mypy: ignore-errors
 """Values of a tape at many points: operations in the outer loop, points in the inner one, the bits of ``value``.
 
-``registers`` (rows + SPARE, LANES) has a row for each operation; ``points`` (3, LANES) and the first ``n`` columns count.
+``registers`` (rows, LANES) has a row for each operation; of it and of ``points`` (3, LANES) the first n columns count.
 """
 
 import numpy as np

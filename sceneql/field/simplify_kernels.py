@@ -7,7 +7,7 @@ In the box the shorter tape has the same bits of value as the whole one, so that
 import numpy as np
 
 from sceneql.field.density_kernels import offset
-from sceneql.field.tape_ops import CONSTANT, COPY, COS, DENSITY, MAX, MIN, SIN, X, Y, Z
+from sceneql.field.tape_ops import CONSTANT, COS, DENSITY, MAX, MIN, SIN, X, Y, Z
 from sceneql.kernels import inlined, lean
 
 ALIAS, LIVE, PLACE = 4, 5, 6

@@ -98,8 +98,12 @@ def cases() -> Cases:
                 beside = sides(config, one, label), sides(config, other, label)
                 for sign in (False, True):
                     if beside[0][not sign] == beside[1][not sign]:
-                        pair = [(a, b) for a in range(8) for b in range(8) if {label[a], label[b]} == {
-                            beside[0][sign], beside[1][sign]} and label[a] != label[b]]
+                        pair = [
+                            (a, b)
+                            for a in range(8)
+                            for b in range(8)
+                            if {label[a], label[b]} == {beside[0][sign], beside[1][sign]} and label[a] != label[b]
+                        ]
                         tubes.append((first[config] + bits, len(variants), pair))
                         variants.append(variant(curves, (one, other)))
         if not ambiguous(config) and any(len(curves) > 1 for curves, _ in drawn):

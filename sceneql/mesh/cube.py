@@ -49,7 +49,8 @@ def segments(config: int, face: int, joined: bool) -> list[Segment]:
     On an ambiguous face they keep the two inside corners apart, or with ``joined`` the two outside ones.
     """
     corners = FACES[face]
-    enter, leave = [], []
+    enter: list[Segment] = []  # (place on the face's border, edge)
+    leave: list[Segment] = []
     for k in range(4):
         here, there = corners[k], corners[(k + 1) % 4]
         if inside(config, here) != inside(config, there):

@@ -59,7 +59,10 @@ def cull(code, constants, parts, scratch, short, near, grid, counts, layer, foun
                 hz = z + 2 * (half >> 2)
                 if hx >= counts[0] or hy >= counts[1] or hz >= counts[2]:
                     continue
-                if verdict(code2, constants, parts2, scratch, grid, hx * BLOCK, hy * BLOCK, hz * BLOCK, 2 * BLOCK) == CLEAR:
+                if (
+                    verdict(code2, constants, parts2, scratch, grid, hx * BLOCK, hy * BLOCK, hz * BLOCK, 2 * BLOCK)
+                    == CLEAR
+                ):
                     continue
                 for one in range(8):
                     bx = hx + (one & 1)
@@ -67,7 +70,10 @@ def cull(code, constants, parts, scratch, short, near, grid, counts, layer, foun
                     bz = hz + (one >> 2)
                     if bx >= counts[0] or by >= counts[1] or bz >= counts[2]:
                         continue
-                    if verdict(code2, constants, parts2, scratch, grid, bx * BLOCK, by * BLOCK, bz * BLOCK, BLOCK) != CLEAR:
+                    if (
+                        verdict(code2, constants, parts2, scratch, grid, bx * BLOCK, by * BLOCK, bz * BLOCK, BLOCK)
+                        != CLEAR
+                    ):
                         found[n, 0] = bx
                         found[n, 1] = by
                         found[n, 2] = bz

@@ -81,8 +81,6 @@ def tunneled(values, tunnel, variant):
 def decide(values, config, first, faces, tunnel):
     """The variant of a cube with 8 corner values; NaN and infinity among them count as large."""
     variant = first[config]
-    if faces[config, 0, 0] == -1:
-        return variant
     for at in range(8):
         v = values[at]
         values[at] = min(max(v, -BIG), BIG) if v == v else BIG

@@ -1,13 +1,13 @@
 # mypy: ignore-errors
 """What the surface does in a block: cubes it passes through with their variants, and its vertices on grid edges."""
 
-from sceneql.field.batch_kernels import BATCH, LANES, evaluate
+from sceneql.field.batch_kernels import LANES, evaluate
 from sceneql.field.simplify_kernels import simplify
 from sceneql.field.tape_kernels import TAPE
 from sceneql.kernels import inlined, lean
 from sceneql.mesh.cull_kernels import BLOCK, CLEAR, CUT, verdict
 from sceneql.mesh.decide_kernels import CASES, decide
-from sceneql.mesh.polish_kernels import A, AXIS, B, FA, FB, SIDE, T, normals, polish
+from sceneql.mesh.polish_kernels import DX, DY, DZ, FA, FB, SIDE, UNDEFINED, A, B, T, normals, polish
 
 NODES = BLOCK + 1
 """Nodes along a block; those on its high sides are its neighbors' too."""
@@ -25,12 +25,14 @@ def sample(code, constants, parts, registers, points, grid, i, j, k, values):
     n = 0
     done = 0
     for z in range(NODES):
+        pz = grid[2] + (k + z) * h
         for y in range(NODES):
+            py = grid[1] + (j + y) * h
             for x in range(NODES):
-                points[0, n] = grid[0] + (i + x) * h
-                points[1, n] = grid[1] + (j + y) * h
-                points[2, n] = grid[2] + (k + z) * h
-                n += 1
+                points[0, n + x] = grid[0] + (i + x) * h
+                points[1, n + x] = py
+                points[2, n + x] = pz
+            n += NODES
             if n + NODES > LANES or (z == BLOCK and y == BLOCK):
                 evaluate(code, constants, parts, registers, points, n)
                 for lane in range(n):
@@ -41,7 +43,7 @@ def sample(code, constants, parts, registers, points, grid, i, j, k, values):
 
 @inlined
 def cubes_of(values, signs, corners, first, faces, tunnel, start, own, cubes, at, tally):
-    """Note the cubes with a change of sign as (place in the block, variant) from ``at`` on, and count what they make."""
+    """Note the cubes with a change of sign as (place in the block, variant) from ``at`` on; count what they make."""
     n = at
     for z in range(BLOCK):
         for y in range(BLOCK):
@@ -55,9 +57,11 @@ def cubes_of(values, signs, corners, first, faces, tunnel, start, own, cubes, at
                 before = here
                 if x == 0 or config == 0 or config == 255:
                     continue
-                for c in range(8):
-                    corners[c] = values[p - 1 + (c & 1) + (c >> 1 & 1) * NODES + (c >> 2) * NODES * NODES]
-                variant = decide(corners, config, first, faces, tunnel)
+                variant = first[config]
+                if faces[config, 0, 0] != -1:
+                    for c in range(8):
+                        corners[c] = values[p - 1 + (c & 1) + (c >> 1 & 1) * NODES + (c >> 2) * NODES * NODES]
+                    variant = decide(corners, config, first, faces, tunnel)
                 cubes[n, 0] = (z * BLOCK + y) * BLOCK + x - 1
                 cubes[n, 1] = variant
                 n += 1
@@ -68,8 +72,36 @@ def cubes_of(values, signs, corners, first, faces, tunnel, start, own, cubes, at
 
 
 @inlined
+def settled(code, constants, parts, registers, slope, points, starts, search, place, normal, at, n):
+    """Bring n vertices to the surface and store them from ``at`` on; where they end."""
+    polish(code, constants, parts, registers, points, search, starts, n)
+    normals(code, constants, parts, registers, slope, points, normal, at, n)
+    for i in range(n):
+        for axis in range(3):
+            place[at + i, axis] = points[axis, i]
+    return at + n
+
+
+@inlined
 def vertices_of(
-    code, constants, parts, registers, slope, points, starts, search, grid, i, j, k, values, signs, keys, at, place, normal
+    code,
+    constants,
+    parts,
+    registers,
+    slope,
+    points,
+    starts,
+    search,
+    grid,
+    i,
+    j,
+    k,
+    values,
+    signs,
+    keys,
+    at,
+    place,
+    normal,
 ):
     """Find the vertices on the edges that the block owns, in the order of the edges, from ``at`` on."""
     h = grid[3]
@@ -79,34 +111,38 @@ def vertices_of(
         for y in range(BLOCK):
             for x in range(BLOCK):
                 p = (z * NODES + y) * NODES + x
+                here = signs[p]
+                if here == signs[p + 1] and here == signs[p + NODES] and here == signs[p + NODES * NODES]:
+                    continue
                 step = 1
                 for axis in range(3):
                     q = p + step
                     step *= NODES
-                    if signs[p] == signs[q]:
+                    if here == signs[q]:
                         continue
                     keys[done + n] = 3 * ((z * BLOCK + y) * BLOCK + x) + axis
-                    up = values[p] < 0.0
-                    search[AXIS, n] = axis
+                    up = here == 1
+                    outer = values[q] if up else values[p]
                     search[A, n] = 0.0 if up else 1.0
                     search[B, n] = 1.0 if up else 0.0
                     search[FA, n] = values[p] if up else values[q]
-                    outer = values[q] if up else values[p]
-                    search[FB, n] = outer if outer == outer else 1.0e300
+                    search[FB, n] = outer if outer == outer else UNDEFINED
                     search[T, n] = -1.0
                     search[SIDE, n] = 0.0
+                    search[DX, n] = h if axis == 0 else 0.0
+                    search[DY, n] = h if axis == 1 else 0.0
+                    search[DZ, n] = h if axis == 2 else 0.0
                     starts[0, n] = points[0, n] = grid[0] + (i + x) * h
                     starts[1, n] = points[1, n] = grid[1] + (j + y) * h
                     starts[2, n] = points[2, n] = grid[2] + (k + z) * h
                     n += 1
-                if n > LANES - 3 or (n > 0 and x + y + z == 3 * BLOCK - 3):
-                    polish(code, constants, parts, registers, points, search, starts, h, n)
-                    normals(code, constants, parts, registers, slope, points, normal, done, n)
-                    for lane in range(n):
-                        for axis in range(3):
-                            place[done + lane, axis] = points[axis, lane]
-                    done += n
+                if n > LANES - 3:
+                    done = settled(
+                        code, constants, parts, registers, slope, points, starts, search, place, normal, done, n
+                    )
                     n = 0
+    if n > 0:
+        done = settled(code, constants, parts, registers, slope, points, starts, search, place, normal, done, n)
     return done
 
 

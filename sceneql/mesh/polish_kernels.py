@@ -5,54 +5,55 @@ from sceneql.field.batch_gradient_kernels import differentiate
 from sceneql.field.batch_kernels import evaluate
 from sceneql.kernels import inlined
 
-CLOSE = 1.0e-9
-"""How near, in parts of an edge, two guesses end the search."""
+CLOSE = 1.0e-7
+"""How near, in parts of an edge, two guesses end the search: the error of the last is smaller by some powers."""
 MOST_TURNS = 60
-AXIS, A, FA, B, FB, T, SIDE = range(7)
-"""Rows of a search: the edge's axis; bracket [A, B] with f(A) < 0, not f(B) < 0 and their values; guess; last side."""
+UNDEFINED = 1.0e300
+"""Stands for the value where there is none."""
+A, FA, B, FB, T, SIDE, DX, DY, DZ = range(9)
+"""Rows of a search: bracket [A, B] with f(A) < 0, not f(B) < 0, and their values; guess; last side; the edge [m]."""
 
 
 @inlined
-def guess(search, i, turn):
-    """The next place of search i: where the chord is zero (Illinois, Dowell & Jarratt 1971), or the middle."""
-    a = search[A, i]
-    b = search[B, i]
-    fa = search[FA, i]
-    fb = search[FB, i]
-    if fb < 1.0e300 and (turn < 8 or turn % 2 == 0):
-        return min(max(a + (b - a) * (fa / (fa - fb)), min(a, b)), max(a, b))
-    return 0.5 * (a + b)
+def guess(search, points, starts, turn, n):
+    """Move to where the chord is zero (Illinois, Dowell & Jarratt 1971), or to the middle; how many still moved."""
+    busy = 0
+    halve = turn >= 8 and turn % 2 == 1
+    for i in range(n):
+        a = search[A, i]
+        b = search[B, i]
+        fa = search[FA, i]
+        fb = search[FB, i]
+        share = 0.5 if halve or fb >= UNDEFINED else fa / (fa - fb)
+        t = a + (b - a) * share
+        busy += 1 if abs(t - search[T, i]) > CLOSE and abs(b - a) > CLOSE else 0
+        search[T, i] = t
+        points[0, i] = starts[0, i] + t * search[DX, i]
+        points[1, i] = starts[1, i] + t * search[DY, i]
+        points[2, i] = starts[2, i] + t * search[DZ, i]
+    return busy
 
 
 @inlined
-def polish(code, constants, parts, registers, points, search, starts, h, n):
-    """Bring n edges' places T (0 at the node, 1 at the next one) and ``points`` (3, LANES) onto the surface."""
-    last = code.shape[0] - 1
+def polish(code, constants, parts, registers, points, search, starts, n):
+    """Bring the places T (0 at the node, 1 at the next one) of n edges, and ``points`` (3, LANES), onto the surface."""
+    found = registers[code.shape[0] - 1]
     for turn in range(MOST_TURNS):
-        worst = 0.0
-        for i in range(n):
-            t = guess(search, i, turn)
-            worst = max(worst, min(abs(t - search[T, i]), abs(search[B, i] - search[A, i])))
-            search[T, i] = t
-            axis = int(search[AXIS, i])
-            points[axis, i] = starts[axis, i] + t * h
-        if worst <= CLOSE:
+        if guess(search, points, starts, turn, n) == 0:
             break
         evaluate(code, constants, parts, registers, points, n)
         for i in range(n):
-            f = registers[last, i]
-            t = search[T, i]
+            f = found[i]
+            side = search[SIDE, i]
             if f < 0.0:
-                search[A, i] = t
+                search[A, i] = search[T, i]
                 search[FA, i] = f
-                if search[SIDE, i] == -1.0:
-                    search[FB, i] *= 0.5
+                search[FB, i] *= 0.5 if side == -1.0 else 1.0
                 search[SIDE, i] = -1.0
             else:
-                search[B, i] = t
-                search[FB, i] = f if f == f else 1.0e300
-                if search[SIDE, i] == 1.0:
-                    search[FA, i] *= 0.5
+                search[B, i] = search[T, i]
+                search[FB, i] = f if f == f else UNDEFINED
+                search[FA, i] *= 0.5 if side == 1.0 else 1.0
                 search[SIDE, i] = 1.0
 
 

@@ -1,0 +1,215 @@
+# mypy: ignore-errors
+"""Bounds of a tape's gradient over a box: forward differentiation with intervals, after ``interval_kernels.box``.
+
+They bound the generalized gradient (Clarke 1975) where branches of min, max and abs meet, so that f still changes by no
+more than the bounds times the way.
+"""
+
+import numpy as np
+
+from sceneql.field.density_kernels import offset
+from sceneql.field.interval_kernels import TURN, binary_box, outward, unary_box, wave
+from sceneql.field.tape_kernels import TAPE
+from sceneql.field.tape_ops import (
+    ABS,
+    ADD,
+    ATAN2,
+    CONSTANT,
+    COPY,
+    COS,
+    DENSITY,
+    DIV,
+    EXP,
+    FLOOR,
+    LOG,
+    MAX,
+    MIN,
+    MUL,
+    NEG,
+    SIGN,
+    SIN,
+    SQRT,
+    SQUARE,
+    SUB,
+    X,
+    Z,
+)
+from sceneql.kernels import inlined, lean
+
+
+@inlined
+def times(a, b, c, d):
+    """[a, b] [c, d], where zero times anything is zero."""
+    if (a == 0.0 and b == 0.0) or (c == 0.0 and d == 0.0):
+        return 0.0, 0.0
+    low, high, _ = binary_box(MUL, a, b, c, d)
+    return low, high
+
+
+@inlined
+def divided(a, b, c, d):
+    """[a, b] / [c, d]; all numbers where the divisor may be zero."""
+    low, high, _ = binary_box(DIV, a, b, c, d)
+    return low, high
+
+
+@inlined
+def branches(op, a, b, c, d):
+    """(slopes to the first, slopes to the second) of min or max, as bounds; both 0..1 where neither wins."""
+    first = (b < c) if op == MIN else (a > d)
+    second = (d < a) if op == MIN else (c > b)
+    if first:
+        return 1.0, 1.0, 0.0, 0.0
+    if second:
+        return 0.0, 0.0, 1.0, 1.0
+    return 0.0, 1.0, 0.0, 1.0
+
+
+@inlined
+def pair_slopes(op, low, high, a, b, c, d):
+    """Bounds of the derivatives of an operation on [a, b] and [c, d] with value in [low, high]."""
+    if op == ADD:
+        return 1.0, 1.0, 1.0, 1.0
+    if op == SUB:
+        return 1.0, 1.0, -1.0, -1.0
+    if op == MUL:
+        return c, d, a, b
+    if op == DIV:
+        p, q = divided(1.0, 1.0, c, d)
+        r, s = divided(-high, -low, c, d)
+        return p, q, r, s
+    if op == MIN or op == MAX:
+        return branches(op, a, b, c, d)
+    if op == ATAN2:
+        p, q, _ = unary_box(SQUARE, a, b)
+        r, s, _ = unary_box(SQUARE, c, d)
+        p, q = outward(p + r, q + s)
+        r, s = divided(c, d, p, q)
+        p, q = divided(-b, -a, p, q)
+        return r, s, p, q
+    if not a > 0.0:
+        return -np.inf, np.inf, -np.inf, np.inf
+    p, q = divided(low, high, a, b)
+    p, q = times(c, d, p, q)
+    r, s, _ = unary_box(LOG, a, b)
+    r, s = times(low, high, r, s)
+    return p, q, r, s
+
+
+@inlined
+def single_slopes(op, low, high, a, b):
+    """Bounds of the derivative of an operation on [a, b] with value in [low, high]; infinite where there is none."""
+    if op == COPY:
+        return 1.0, 1.0
+    if op == NEG:
+        return -1.0, -1.0
+    if op == ABS:
+        return -1.0 if a <= 0.0 else 1.0, 1.0 if b >= 0.0 else -1.0
+    if op == SQUARE:
+        return 2.0 * a, 2.0 * b
+    if op == SQRT:
+        return divided(0.5, 0.5, low, high)
+    if op == SIN:
+        return wave(a, b, 0.0)
+    if op == COS:
+        p, q = wave(a, b, 0.25 * TURN)
+        return -q, -p
+    if op == EXP:
+        return low, high
+    if op == LOG:
+        return divided(1.0, 1.0, a, b)
+    if (op == FLOOR or op == SIGN) and low == high:
+        return 0.0, 0.0
+    return -np.inf, np.inf
+
+
+@inlined
+def density_slopes(parts, start, stop, scratch, k, p):
+    """Bounds of the gradient of a density field, times those of its point's rows p..p+2, into row k of scratch."""
+    hx = 0.5 * (scratch[p, 1] - scratch[p, 0])
+    hy = 0.5 * (scratch[p + 1, 1] - scratch[p + 1, 0])
+    hz = 0.5 * (scratch[p + 2, 1] - scratch[p + 2, 0])
+    x = scratch[p, 0] + hx
+    y = scratch[p + 1, 0] + hy
+    z = scratch[p + 2, 0] + hz
+    diagonal = np.sqrt(hx * hx + hy * hy + hz * hz) * (1.0 + 1.0e-12) + 1.0e-14 * (abs(x) + abs(y) + abs(z))
+    gx = gy = gz = ex = ey = ez = 0.0
+    for i in range(start, stop):
+        wx, wy, wz = offset(parts, i, x, y, z)
+        radius = parts[i, 6]
+        distance = np.sqrt(wx * wx + wy * wy + wz * wz)
+        near = max(distance - diagonal, 0.0)
+        if near >= radius * (1.0 + 1.0e-12):
+            continue
+        # The vector from the nearest point of a convex set moves no farther than the point does.
+        most = 1.0 - near * near / (radius * radius)
+        far = distance + diagonal
+        least = max(1.0 - far * far / (radius * radius), 0.0)
+        factor = -6.0 * parts[i, 7] / (radius * radius) * (1.0 + 1.0e-12)
+        p0, p1 = times(least * least * (1.0 - 1.0e-12), most * most * (1.0 + 1.0e-12), factor, factor)
+        low, high = times(p0, p1, wx - diagonal, wx + diagonal)
+        gx += low
+        ex += high
+        low, high = times(p0, p1, wy - diagonal, wy + diagonal)
+        gy += low
+        ey += high
+        low, high = times(p0, p1, wz - diagonal, wz + diagonal)
+        gz += low
+        ez += high
+    gx, ex = outward(gx, ex)
+    gy, ey = outward(gy, ey)
+    gz, ez = outward(gz, ez)
+    for column in range(2, 8, 2):
+        p0, p1 = times(gx, ex, scratch[p, column], scratch[p, column + 1])
+        low, high = times(gy, ey, scratch[p + 1, column], scratch[p + 1, column + 1])
+        p0 += low
+        p1 += high
+        low, high = times(gz, ez, scratch[p + 2, column], scratch[p + 2, column + 1])
+        scratch[k, column], scratch[k, column + 1] = outward(p0 + low, p1 + high)
+
+
+@lean(f"UniTuple(float64, 3)({TAPE})")
+def steepness(code, constants, parts, scratch):
+    """Bounds of |df/dx|, |df/dy|, |df/dz| in the box for which ``box`` left WHOLE in scratch; infinite without any."""
+    last = code.shape[0] - 1
+    for k in range(last + 1):
+        op = code[k, 0]
+        left = code[k, 1]
+        right = code[k, 2]
+        if op == DENSITY:
+            density_slopes(parts, left, right, scratch, k, code[k, 3])
+            continue
+        if op == CONSTANT or (op >= X and op <= Z):
+            for axis in range(3):
+                own = 1.0 if op - X == axis else 0.0
+                scratch[k, 2 + 2 * axis] = own
+                scratch[k, 3 + 2 * axis] = own
+            continue
+        low = scratch[k, 0]
+        high = scratch[k, 1]
+        r = s = 0.0
+        if op <= ATAN2 and op != COPY:
+            p, q, r, s = pair_slopes(
+                op, low, high, scratch[left, 0], scratch[left, 1], scratch[right, 0], scratch[right, 1]
+            )
+        else:
+            p, q = single_slopes(op, low, high, scratch[left, 0], scratch[left, 1])
+        for column in range(2, 8, 2):
+            a, b = times(p, q, scratch[left, column], scratch[left, column + 1])
+            if op <= ATAN2 and op != COPY:
+                c, d = times(r, s, scratch[right, column], scratch[right, column + 1])
+                if op == MIN or op == MAX:
+                    if p != q:  # a mean of both
+                        a = min(scratch[left, column], scratch[right, column])
+                        b = max(scratch[left, column + 1], scratch[right, column + 1])
+                        c = d = 0.0
+                a, b = outward(a + c, b + d)
+            if not (a > -1.0e300 and b < 1.0e300):
+                return np.inf, np.inf, np.inf
+            scratch[k, column] = a
+            scratch[k, column + 1] = b
+    return (
+        max(-scratch[last, 2], scratch[last, 3]),
+        max(-scratch[last, 4], scratch[last, 5]),
+        max(-scratch[last, 6], scratch[last, 7]),
+    )

@@ -1,0 +1,38 @@
+"""Triangle meshes to files, whole under their final name."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from sceneql.failure import Unsuitable
+from sceneql.files import whole
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from sceneql.mesh.polygonise import Polygons
+
+FORMATS = ("ply", "stl", "obj", "glb")
+
+
+def format_of(path: Path) -> str:
+    """The format that a path's extension names. Raises Unsuitable for another."""
+    extension = path.suffix.lower().lstrip(".")
+    if extension not in FORMATS:
+        named = f".{extension}" if extension else "nothing"
+        raise Unsuitable(f"a mesh's file ends in .{', .'.join(FORMATS)}, but {path.name} in {named}")
+    return extension
+
+
+def write(path: Path, polygons: Polygons) -> None:
+    """Write a mesh in meters, y up, with its normals where the format has any. Raises Unsuitable and OSError."""
+    import trimesh
+
+    mesh = trimesh.Trimesh(
+        vertices=polygons.vertices, faces=polygons.triangles, vertex_normals=polygons.normals, process=False
+    )
+    options: dict[str, Any] = {"ply": {"vertex_normal": True}, "obj": {"include_normals": True}}
+    kind = format_of(path)
+    data: Any = mesh.export(file_type=kind, **options.get(kind, {}))
+    with whole(path) as stream:
+        stream.write(data.encode() if isinstance(data, str) else data)

@@ -1,0 +1,49 @@
+"""The cells that a solid is looked at in. Imports numpy and numba."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from sceneql.mesh.bounded import Corner
+from sceneql.mesh.cull_kernels import BLOCK
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Ints
+
+MOST_BLOCKS = 2**28
+"""Blocks of a grid, the empty ones included."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Grid:
+    """Cells of one size around a box, in blocks of BLOCK cells; at least half a cell of it lies outside the box."""
+
+    low: Floats
+    """(3,) [m]."""
+    cell: float
+    """[m]"""
+    blocks: Ints
+    """(3,) along each axis."""
+
+    @property
+    def numbers(self) -> Floats:
+        """First node and cell, as kernels take them."""
+        import numpy as np
+
+        return np.array([*self.low, self.cell])
+
+
+def grid_around(low: Corner, high: Corner, cell: float) -> Grid:
+    """The grid of cells of a size [m] around a box. Raises ValueError for one too fine, or a box that is not finite."""
+    import numpy as np
+
+    corners = np.array([low, high], dtype=np.float64)
+    if not (np.isfinite(corners).all() and (corners[1] > corners[0]).all() and 0.0 < cell < np.inf):
+        raise ValueError("a grid needs a finite box and a cell above 0")
+    cells = np.ceil((corners[1] - corners[0]) / cell * (1.0 - 1e-12)) + 1.0
+    blocks = np.ceil(cells / BLOCK)
+    if not np.prod(blocks) <= MOST_BLOCKS:
+        raise ValueError(f"cells of {cell:g} m are too many for a box of {np.ptp(corners, axis=0).max():g} m")
+    first = corners[0] - 0.5 * (cells * cell - (corners[1] - corners[0]))
+    return Grid(first, float(cell), blocks.astype(np.int32))

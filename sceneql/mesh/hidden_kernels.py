@@ -1,0 +1,115 @@
+# mypy: ignore-errors
+"""Cubes without a change of sign that may yet hide some surface: proved empty or full, or counted."""
+
+from sceneql.field.interval_kernels import box
+from sceneql.field.simplify_kernels import simplify
+from sceneql.field.slope_kernels import steepness
+from sceneql.field.tape_kernels import TAPE, value
+from sceneql.field.tape_ops import NOWHERE, WHOLE
+from sceneql.kernels import inlined, lean
+from sceneql.mesh.cull_kernels import BLOCK, CLEAR, CUT, verdict
+from sceneql.mesh.extract_kernels import NODES, sample
+
+DEPTH = 3
+"""How often a cube is halved before it is left unresolved."""
+
+
+@inlined
+def proved(code, constants, parts, scratch, x, y, z, half, negative):
+    """Whether f keeps its sign in the box of half side ``half`` about a point: by its range, or by its mean value."""
+    low, high, status = box(
+        code, constants, parts, scratch, x - half, x + half, y - half, y + half, z - half, z + half
+    )  # fmt: skip
+    if status == NOWHERE:
+        return not negative
+    if negative:
+        if status != WHOLE:
+            return False
+        if high < 0.0:
+            return True
+    elif low >= 0.0:
+        return True
+    if status != WHOLE:
+        return False
+    gx, gy, gz = steepness(code, constants, parts, scratch)
+    f = value(code, constants, parts, scratch, x, y, z)
+    return abs(f) > half * (gx + gy + gz) * (1.0 + 1.0e-9) and (f < 0.0) == negative
+
+
+@inlined
+def doubtful(code, constants, parts, scratch, x, y, z, half, negative, stack):
+    """Volume [m^3] of what in a cube is not proved to have its corners' sign."""
+    volume = 0.0
+    stack[0, 0] = x
+    stack[0, 1] = y
+    stack[0, 2] = z
+    stack[0, 3] = 0.0
+    top = 1
+    while top > 0:
+        top -= 1
+        x = stack[top, 0]
+        y = stack[top, 1]
+        z = stack[top, 2]
+        depth = stack[top, 3]
+        side = half * 0.5**depth
+        if proved(code, constants, parts, scratch, x, y, z, side, negative):
+            continue
+        if depth == DEPTH:
+            volume += 8.0 * side * side * side
+            continue
+        for k in range(8):
+            stack[top, 0] = x + (0.5 * side if k & 1 else -0.5 * side)
+            stack[top, 1] = y + (0.5 * side if k & 2 else -0.5 * side)
+            stack[top, 2] = z + (0.5 * side if k & 4 else -0.5 * side)
+            stack[top, 3] = depth + 1.0
+            top += 1
+    return volume
+
+
+@lean(
+    f"Tuple((int64, float64))({TAPE}, int32[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1],"
+    " float64[::1], float64[:, ::1], float64[::1], int32[:, ::1])"
+)
+def hidden(code, constants, parts, scratch, short, near, registers, points, values, stack, grid, blocks):
+    """(cubes, volume [m^3]) of some blocks that have one sign at their corners, but not provably all over."""
+    h = grid[3]
+    count = 0
+    volume = 0.0
+    for b in range(blocks.shape[0]):
+        i = blocks[b, 0] * BLOCK
+        j = blocks[b, 1] * BLOCK
+        k = blocks[b, 2] * BLOCK
+        at = verdict(code, constants, parts, scratch, grid, i, j, k, BLOCK)
+        if at == CLEAR:
+            continue
+        rows, used = simplify(code, parts, scratch, at == CUT, short, near)
+        code2 = short[:rows]
+        parts2 = near[:used]
+        far = 1.0e300
+        if verdict(code2, constants, parts2, scratch, grid, i, j, k, BLOCK) == CUT:
+            gx, gy, gz = steepness(code2, constants, parts2, scratch)
+            far = 0.5 * h * (gx + gy + gz) * (1.0 + 1.0e-9)
+        sample(code2, constants, parts2, registers, points, grid, i, j, k, values)
+        for z in range(BLOCK):
+            for y in range(BLOCK):
+                for x in range(BLOCK):
+                    p = (z * NODES + y) * NODES + x
+                    negative = values[p] < 0.0
+                    least = 1.0e300
+                    same = True
+                    for c in range(8):
+                        v = values[p + (c & 1) + (c >> 1 & 1) * NODES + (c >> 2) * NODES * NODES]
+                        same = same and (v < 0.0) == negative
+                        least = min(least, abs(v) if v == v else 0.0)
+                    # Every point of a cube is within half a side, along each axis, of a corner.
+                    if not same or least > far:
+                        continue
+                    rest = doubtful(
+                        code2, constants, parts2, scratch,
+                        grid[0] + (i + x + 0.5) * h, grid[1] + (j + y + 0.5) * h, grid[2] + (k + z + 0.5) * h,
+                        0.5 * h * (1.0 + 1.0e-12), negative, stack,
+                    )  # fmt: skip
+                    if rest > 0.0:
+                        count += 1
+                        volume += rest
+    return count, volume

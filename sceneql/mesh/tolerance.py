@@ -1,0 +1,53 @@
+"""Cells fine enough for a distance between the triangles and the surface. Imports numpy and numba."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from sceneql.field.solid import field_gradients, field_values
+from sceneql.mesh.bounded import Corner, bounded
+from sceneql.mesh.polygonise import Polygons, polygonise
+
+if TYPE_CHECKING:
+    from sceneql.frame import Tape
+
+PROBES = 20_000
+"""Triangles that a distance is measured at."""
+TRIES = 8
+SAFETY = 0.9
+
+
+def distance(tape: Tape, polygons: Polygons) -> float:
+    """The largest distance [m] of triangles' centers from the surface, to first order |f| / |grad f|.
+
+    Where there are more than PROBES triangles, every so many-th is looked at.
+    """
+    import numpy as np
+
+    triangles = polygons.triangles[:: max(1, len(polygons.triangles) // PROBES)]
+    if not len(triangles):
+        return 0.0
+    centers = polygons.vertices[triangles].mean(axis=1)
+    slopes = np.linalg.norm(field_gradients(tape, centers), axis=1)
+    steep = slopes > 0.0
+    return float(np.max(np.abs(field_values(tape, centers[steep])) / slopes[steep], initial=0.0))
+
+
+def polygonise_within(tape: Tape, low: Corner, high: Corner, tolerance: float, cell: float) -> tuple[Polygons, float]:
+    """The triangles whose centers are within ``tolerance`` [m] of the surface, and their cell [m], at most ``cell``.
+
+    The distance falls with the square of the cell, at edges and corners with the cell itself: the cell is shortened by
+    what is measured. Raises ValueError as ``polygonise``, and where TRIES cells do not reach the tolerance.
+    """
+    import numpy as np
+
+    if not tolerance > 0.0:
+        raise ValueError("the tolerance must be above 0")
+    whole = bounded(tape, low, high)
+    for _ in range(TRIES):
+        polygons = polygonise(tape, low, high, cell)
+        found = distance(whole, polygons)
+        if found <= tolerance:
+            return polygons, cell
+        cell *= max(0.25, min(0.7, SAFETY * float(np.sqrt(tolerance / found))))
+    raise ValueError(f"{TRIES} cells, the last of {cell:g} m, did not come within {tolerance:g} m of the surface")
