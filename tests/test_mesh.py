@@ -1,0 +1,351 @@
+"""Laws of polygonising: closed, oriented, on the surface, of the right topology and order, honest about the rest."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from expressions import bound
+from sceneql import pipeline
+from sceneql.failure import RunFailure, Unsuitable
+from sceneql.field.batch_gradient_kernels import differentiate
+from sceneql.field.batch_kernels import LANES, evaluate
+from sceneql.field.builder import TapeBuilder
+from sceneql.field.interval_kernels import box
+from sceneql.field.simplify_kernels import simplify
+from sceneql.field.slope_kernels import steepness
+from sceneql.field.solid import field_gradients, field_values, scratch
+from sceneql.field.tape_ops import WHOLE
+from sceneql.frame import Tape
+from sceneql.mesh.bounded import bounded
+from sceneql.mesh.cases import CENTERS, cases, decisions
+from sceneql.mesh.cube import FACES_OF, segments
+from sceneql.mesh.measures import area, edge_counts, euler_characteristic, volume
+from sceneql.mesh.polygonise import polygonise
+from sceneql.mesh.tolerance import distance, polygonise_within
+from sceneql.mesh.unresolved import unresolved
+from sceneql.quantities.expression import Symbol
+from sceneql.report.mesh import mesh
+from test_field import tapes
+
+BALL = "sqrt(x^2 + y^2 + z^2) - 1"
+TORUS = "(sqrt(x^2 + y^2) - 1)^2 + z^2 - 0.16"
+CAPSULE = "sqrt((x - min(max(x, -0.5), 0.5))^2 + y^2 + z^2) - 0.4"
+STEINER = "max(x^2*y^2 + y^2*z^2 + z^2*x^2 - x*y*z, sqrt(x^2 + y^2 + z^2) - 0.6)"
+TANGLECUBE = "x^4 - 5*x^2 + y^4 - 5*y^2 + z^4 - 5*z^2 + 11.8"
+CLOSED = {  # formula, half side of the box, Euler characteristic
+    "ball": (BALL, 1.1, 2),
+    "torus": (TORUS, 1.5, 0),
+    "capsule": (CAPSULE, 1.0, 2),
+    "tanglecube": (TANGLECUBE, 3.0, -8),
+}
+KERNELS = "0.3 - max(1 - (x - {d})^2 - y^2 - z^2, 0)^3 - max(1 - (x + {d})^2 - y^2 - z^2, 0)^3"
+
+
+def tape_of(text):
+    """The tape of a formula of x, y and z."""
+    build = TapeBuilder()
+    expr = bound(text, {name: Symbol(name) for name in "xyz"})
+    return build.finish(build.expression(expr, {"x": build.x, "y": build.y, "z": build.z}))
+
+
+def cut(text, half, cells):
+    """The mesh of a formula in the cube of a half side, with so many cells along it."""
+    return polygonise(tape_of(text), (-half,) * 3, (half,) * 3, 2 * half / cells)
+
+
+def all_variants():
+    table = cases()
+    for config in range(256):
+        for bits, joined in enumerate(decisions(config)):
+            variant = int(table.first[config]) + bits
+            yield config, joined, variant
+            for piped in np.unique(table.tunnel[variant]):
+                if piped >= 0:
+                    yield config, joined, int(piped)
+
+
+def test_every_variant_is_closed_but_for_the_curves_on_the_faces_and_has_no_chord_in_a_face():
+    table = cases()
+    for config, joined, variant in all_variants():
+        rows = table.triangles[table.start[variant] : table.start[variant + 1]].tolist()
+        sides = [(row[k], row[(k + 1) % 3]) for row in rows for k in range(3)]
+        assert len(set(sides)) == len(sides)
+        border = {side for side in sides if side[::-1] not in sides}
+        assert border == {pair for face in range(6) for pair in segments(config, face, face in joined)}
+        for a, b in set(sides) - border:
+            assert max(a, b) >= CENTERS or not FACES_OF[a] & FACES_OF[b]
+
+
+def trilinear(values):
+    """The formula whose values at the cube's corners are these, times 1/4 of the largest."""
+    values = 0.25 * np.asarray(values) / np.abs(values).max()
+    terms = []
+    for corner, value in enumerate(values):
+        factors = [name if corner >> k & 1 else f"(1 - {name})" for k, name in enumerate("xyz")]
+        terms.append(f"({value:.17g})*{'*'.join(factors)}")
+    return " + ".join(terms)
+
+
+def characteristic(values, n):
+    """Euler characteristic of {trilinear interpolant < 0} in the cube, by n^3 samples."""
+    t = np.linspace(0.0, 1.0, n)
+    cube = np.asarray(values, dtype=float).reshape(2, 2, 2)
+    for axis in range(3):
+        low, high = np.take(cube, [0], axis), np.take(cube, [1], axis)
+        shape = [1, 1, 1]
+        shape[axis] = n
+        cube = low + (high - low) * t.reshape(shape)
+    whole = cube < 0
+    total = 0
+    for axes in range(8):
+        part = whole
+        for axis in range(3):
+            if axes >> axis & 1:
+                part = np.take(part, range(n - 1), axis) & np.take(part, range(1, n), axis)
+        total += (-1) ** axes.bit_count() * int(part.sum())
+    return total
+
+
+def test_ambiguous_cubes_have_the_topology_of_the_trilinear_interpolant():
+    # Nodes at -1, 0, 1 and 2: the cells around the cube cap the solid, whose surface then has twice its characteristic.
+    rng = np.random.default_rng(3)
+    judged = tubes = 0
+    for trial in range(240):
+        values = rng.uniform(0.1, 1.0, 8) * rng.choice([-1.0, 1.0], 8)
+        if trial % 2:  # strong opposite corners among weak ones: where tubes are
+            strong = trial % 8
+            values = np.full(8, 0.1) * rng.uniform(0.1, 2.0, 8)
+            values[strong], values[7 - strong] = -rng.uniform(0.5, 1.0, 2)
+            values *= rng.choice([-1.0, 1.0])
+        expected = characteristic(values, 24)
+        if expected != characteristic(values, 41):
+            continue
+        judged += 1
+        found = polygonise(tape_of(trilinear(values)), (-0.4,) * 3, (1.4,) * 3, 1.0)
+        assert edge_counts(found.triangles)[1:] == (0, 0)
+        assert euler_characteristic(found.triangles) == 2 * expected, values
+        tubes += trial % 2 and (values < 0).sum() == 2 and expected == 1
+    assert judged > 200
+    assert tubes > 10
+
+
+@pytest.mark.parametrize("name", CLOSED)
+def test_closed_smooth_shapes_are_closed_manifolds_facing_outward(name):
+    text, half, euler = CLOSED[name]
+    found = cut(text, half, 64)
+    assert edge_counts(found.triangles)[1:] == (0, 0)
+    assert euler_characteristic(found.triangles) == euler
+    a, b, c = (found.vertices[found.triangles[:, k]] for k in range(3))
+    across = np.cross(b - a, c - a)
+    outward = field_gradients(tape_of(text), (a + b + c) / 3)
+    assert ((across * outward).sum(axis=1) > 0).all()
+
+
+@pytest.mark.parametrize("name", CLOSED)
+def test_vertices_lie_on_the_surface_with_the_gradient_for_normal(name):
+    text, half, _ = CLOSED[name]
+    found = cut(text, half, 40)
+    slopes = field_gradients(tape_of(text), found.vertices)
+    steep = np.linalg.norm(slopes, axis=1)
+    assert (np.abs(field_values(tape_of(text), found.vertices)) / steep).max() < 1e-8 * half
+    assert np.abs(found.normals - slopes / steep[:, None]).max() < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("text", "half", "exact"),
+    [
+        (BALL, 1.1, 4 * math.pi / 3),
+        (TORUS, 1.5, 3.1582734083),
+        (CAPSULE, 1.0, math.pi * 0.4**2 * (1.0 + 4 * 0.4 / 3)),
+        (STEINER, 0.6, 1 / 6),
+    ],
+    ids=["ball", "torus", "capsule", "steiner"],
+)
+def test_volumes_converge_with_order_two_and_extrapolate(text, half, exact):
+    errors = []
+    for cells in (32, 64, 128):
+        found = cut(text, half, cells)
+        errors.append(1.0 - volume(found.vertices, found.triangles) / exact)
+    orders = [math.log2(coarse / fine) for coarse, fine in pairwise(errors)]
+    assert orders[-1] == pytest.approx(2.0, abs=0.1)
+    assert abs(4 * errors[-1] - errors[-2]) / 3 < 1e-4
+
+
+def test_area_of_a_torus():
+    found = cut(TORUS, 1.5, 128)
+    assert area(found.vertices, found.triangles) == pytest.approx(15.7913670417, rel=1e-3)
+
+
+@pytest.mark.parametrize(("shift", "euler"), [(-0.01, 2), (0.01, 4)])
+def test_two_density_kernels_part_at_the_distance_told_by_theory(shift, euler):
+    half_distance = 0.5 * (1.3691905863 + shift)
+    assert euler_characteristic(cut(KERNELS.format(d=half_distance), 1.7, 80).triangles) == euler
+
+
+def test_samples_that_are_zero_make_no_holes():
+    # Planes of nodes lie on the faces of the box |x|, |y|, |z| < 1, and Steiner's double lines on the axes.
+    for text in ("max(abs(x), abs(y), abs(z)) - 1", STEINER, "x*y*z + 0*x", "abs(x) + abs(y) + abs(z) - 1"):
+        found = polygonise(tape_of(text), (-1.5,) * 3, (1.5,) * 3, 0.25)
+        assert len(found.triangles)
+        assert edge_counts(found.triangles)[1:] == (0, 0)
+
+
+def test_a_solid_that_leaves_its_box_is_capped_there():
+    found = polygonise(tape_of("x - y/2"), (-1.0, -1.0, -1.0), (1.0, 1.0, 1.0), 1 / 16)
+    assert edge_counts(found.triangles)[1:] == (0, 0)
+    assert euler_characteristic(found.triangles) == 2
+    assert np.abs(found.vertices).max() <= 1.0 + 1e-9
+    assert volume(found.vertices, found.triangles) == pytest.approx(4.0, rel=0.01)
+
+
+def test_undefined_places_are_outside():
+    found = polygonise(tape_of("x^2 + y^2 + z^2 - 1 + 0*sqrt(x)"), (-1.2,) * 3, (1.2,) * 3, 0.05)
+    assert edge_counts(found.triangles)[1:] == (0, 0)
+    assert found.vertices[:, 0].min() == pytest.approx(0.0, abs=1e-6)
+    assert volume(found.vertices, found.triangles) == pytest.approx(2 * math.pi / 3, rel=0.02)
+
+
+def test_nothing_where_nothing_is():
+    assert len(cut("x^2 + y^2 + z^2 + 1", 1.0, 16).triangles) == 0
+
+
+def test_same_bytes_for_one_and_two_threads(monkeypatch):
+    meshes = []
+    for threads in ("1", "2"):
+        monkeypatch.setenv("SCENEQL_THREADS", threads)
+        found = cut("abs(sin(9*x)*cos(9*y) + sin(9*y)*cos(9*z) + sin(9*z)*cos(9*x)) - 0.3", 1.0, 70)
+        meshes.append([array.tobytes() for array in (found.vertices, found.triangles, found.normals)])
+    assert meshes[0] == meshes[1]
+
+
+def program(tape):
+    return tape.code, tape.constants, tape.parts
+
+
+@st.composite
+def boxes(draw):
+    low = np.array([draw(st.floats(-2.0, 2.0)) for _ in range(3)])
+    return low, low + draw(st.sampled_from([1e-3, 0.1, 0.5, 2.0]))
+
+
+@settings(max_examples=150, deadline=None)
+@given(tape=tapes(), place=boxes(), seed=st.integers(0, 9))
+def test_evaluators_of_many_points_agree_to_the_bit_also_when_simplified(tape, place, seed):
+    low, high = place
+    points = np.zeros((3, LANES))
+    points[:, :40] = np.random.default_rng(seed).uniform(low, high, (40, 3)).T
+    room = scratch(tape)
+    sides = [float(c) for pair in zip(low, high, strict=True) for c in pair]
+    status = box(*program(tape), room, *sides)[2]
+    short, near = np.empty_like(tape.code), np.empty_like(tape.parts)
+    rows, used = simplify(tape.code, tape.parts, room, status == WHOLE, short, near)
+    expected = field_values(tape, points[:, :40].T)
+    slopes = field_gradients(tape, points[:, :40].T)
+    for shorter in (tape, Tape(short[:rows], tape.constants, near[:used])):
+        registers, slope = np.zeros((len(shorter.code), LANES)), np.zeros((len(shorter.code), 3, LANES))
+        evaluate(*program(shorter), registers, points, 40)
+        assert np.array_equal(registers[len(shorter.code) - 1, :40], expected, equal_nan=True)
+        with np.errstate(all="ignore"):
+            differentiate(*program(shorter), registers, slope, 40)
+        assert np.array_equal(slope[-1, :, :40].T, slopes, equal_nan=True)
+
+
+@settings(max_examples=300, deadline=None)
+@given(tape=tapes(), place=boxes(), seed=st.integers(0, 9))
+def test_steepness_bounds_how_fast_any_tape_changes(tape, place, seed):
+    low, high = place
+    room = scratch(tape)
+    sides = [float(c) for pair in zip(low, high, strict=True) for c in pair]
+    if box(*program(tape), room, *sides)[2] != WHOLE:
+        return
+    bounds = np.array(steepness(*program(tape), room))
+    if not np.isfinite(bounds).all():
+        return
+    ends = np.random.default_rng(seed).uniform(low, high, (2, 40, 3))
+    f = [field_values(tape, end) for end in ends]
+    most = (np.abs(ends[1] - ends[0]) * bounds).sum(axis=1)
+    assert (np.abs(f[1] - f[0]) <= most * (1 + 1e-9) + 1e-9 * (1 + np.abs(f[0]))).all()
+
+
+def test_resolved_shapes_hide_next_to_nothing():
+    found = unresolved(tape_of(TORUS), (-1.5,) * 3, (1.5,) * 3, 0.05)
+    assert found.volume < 1e-6
+
+
+def test_what_passes_between_the_samples_is_told():
+    drop = "min(sqrt(x^2 + y^2 + z^2) - 0.5, sqrt((x - 0.83)^2 + (y - 0.04)^2 + (z - 0.03)^2) - 0.01)"
+    with_drop = unresolved(tape_of(drop), (-1.0,) * 3, (1.0,) * 3, 0.125)
+    alone = unresolved(tape_of("sqrt(x^2 + y^2 + z^2) - 0.5"), (-1.0,) * 3, (1.0,) * 3, 0.125)
+    assert with_drop.cells > alone.cells
+    assert with_drop.volume - alone.volume > 4 / 3 * math.pi * 0.01**3
+    wall = "abs(sqrt(x^2 + y^2 + z^2) - 0.7) - 0.0005"
+    assert unresolved(tape_of(wall), (-1.0,) * 3, (1.0,) * 3, 0.125).volume > 0.0061575226482
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3])
+def test_a_tolerance_is_kept(tolerance):
+    tape, low, high = tape_of(TORUS), (-1.5,) * 3, (1.5,) * 3
+    found, cell = polygonise_within(tape, low, high, tolerance, 0.5)
+    assert distance(bounded(tape, low, high), found) <= tolerance
+    assert cell <= 0.5
+
+
+def test_grids_that_are_too_fine_are_refused():
+    with pytest.raises(ValueError, match="too many"):
+        polygonise(tape_of(BALL), (-1.0,) * 3, (1.0,) * 3, 1e-6)
+    with pytest.raises(ValueError, match="above 0"):
+        polygonise(tape_of(BALL), (-1.0,) * 3, (1.0,) * 3, 0.0)
+
+
+SCENE = """
+sceneql: 1
+clock: {end: 1 s}
+objects:
+  pair:
+    group:
+      position: [0 m, 2 m, time*(1 m/s)]
+      children:
+        ring: {torus: {radius: 1 m, tube: 0.4 m}}
+  floor: plane
+"""
+
+
+@pytest.fixture
+def graph(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text(SCENE, encoding="utf-8")
+    return pipeline.load(path, pruned=False)
+
+
+@pytest.mark.parametrize("extension", ["ply", "stl", "obj", "glb"])
+def test_an_object_of_a_scene_becomes_a_file_of_triangles(graph, tmp_path, extension):
+    import trimesh
+
+    path = tmp_path / f"ring.{extension}"
+    account = mesh(graph, "ring", path, cell=0.06, time=0.5)
+    assert [file.name for file in tmp_path.iterdir() if file.suffix != ".yaml"] == [path.name]
+    read = trimesh.load(path, force="mesh")
+    assert read.is_watertight
+    assert read.euler_number == account.euler == 0
+    assert read.volume == pytest.approx(account.volume, rel=1e-4)
+    assert account.volume == pytest.approx(3.1582734083, rel=0.01)
+    assert read.bounds.mean(axis=0) == pytest.approx([0.0, 2.0, 0.5], abs=1e-3)
+    assert str(path) in account.text()
+
+
+def test_what_cannot_be_polygonised_is_told(graph, tmp_path):
+    with pytest.raises(Unsuitable, match="did you mean 'ring'"):
+        mesh(graph, "rign", tmp_path / "a.ply")
+    with pytest.raises(Unsuitable, match=r"\.glb"):
+        mesh(graph, "ring", tmp_path / "a.xyz")
+    with pytest.raises(RunFailure, match="unbounded"):
+        mesh(graph, "floor", tmp_path / "a.ply")
+    with pytest.raises(Unsuitable, match="ends at 1 s"):
+        mesh(graph, "ring", tmp_path / "a.ply", time=2.0)
+    with pytest.raises(Unsuitable, match="above 0"):
+        mesh(graph, "ring", tmp_path / "a.ply", cell=-1.0)
+    assert not list(tmp_path.glob("a.*"))
