@@ -83,7 +83,7 @@ class Collision(Contact):
             assembly.floats([self.thickness]),
             tally_at,
             assembly.floats([0.0] * (pairs * PAIR)),
-            assembly.floats([nan] * (bodies.count * INSTANT) if exact else [0.0] * 3),
+            assembly.floats([nan] * (bodies.count * INSTANT) if exact else [0.0] * 4),
             len(others),
         )
         masses = (bodies.position_at, bodies.velocity_at, bodies.work_at, bodies.mass_at, bodies.inverse_at)

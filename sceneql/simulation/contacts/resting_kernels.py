@@ -20,6 +20,7 @@ from sceneql.simulation.contacts.impulse_kernels import (
     FRICTION,
     HEAD,
     INVERSE,
+    LAST,
     MASS,
     OBJECTS,
     PAIRS,
@@ -48,6 +49,9 @@ CREEP = 1e-3
 """Speed along the surface [m/s] below which friction goes against the pull."""
 
 SWEEPS = 50
+
+RESTING = 3
+"""In `local` mode, the place in the contact's memory (settle_kernels) of the number of resting pairs."""
 
 
 @inlined
@@ -233,6 +237,8 @@ def support(near, y, rate, floats, ints):
 
     With ``near`` it is also noted how free pairs would press.
     """
+    if not near and floats[ints[LAST] + RESTING] == 0.0:
+        return
     for k in range(ints[BODIES]):
         if floats[ints[INVERSE] + k] == 0.0:
             continue

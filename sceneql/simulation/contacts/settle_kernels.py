@@ -31,7 +31,7 @@ from sceneql.simulation.contacts.impulse_kernels import (
     count_hit,
 )
 from sceneql.simulation.contacts.path_kernels import NEVER, PATH, first_contact, moving, place
-from sceneql.simulation.contacts.resting_kernels import CREEPS, FREE, PAIR, SLIDES, come_to_rest, keep, support
+from sceneql.simulation.contacts.resting_kernels import CREEPS, FREE, PAIR, RESTING, SLIDES, come_to_rest, keep, support
 from sceneql.simulation.contacts.shape_kernels import MOVING, OBJECT, clear, surface, velocity
 from sceneql.simulation.contacts.slide_kernels import brake, fly_on, slide, start_with
 from sceneql.system_kernels import SETTLE, TERM, A, F, I, N
@@ -39,8 +39,8 @@ from sceneql.system_kernels import SETTLE, TERM, A, F, I, N
 MOST_IMPACTS = 8
 """Impacts of a body in one step; after that it is only kept outside."""
 
-END, WHOLE, CUTS, MEMORY = range(4)
-"""Memory of a contact in the floats: end and length of the step before it was cut, and how often it was."""
+END, WHOLE, CUTS = range(3)
+"""Memory of a contact in the floats: end and length of the step before it was cut, how often it was; resting pairs."""
 
 MOST_CUTS = 16
 """Times that one step is cut."""
@@ -241,6 +241,7 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
         look(t0, t1, y0, y1, path, mean, floats, ints)
         return
     h = t1 - t0
+    resting = 0
     for k in range(ints[BODIES]):
         if floats[ints[INVERSE] + k] == 0.0:
             continue
@@ -257,6 +258,9 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
         y1[ints[WORK]] += floats[ints[MASS] + k] * lost
         for c in range(3):
             y1[at + c], y1[to + c] = path[6 + c], path[9 + c]
+        for j in range(ints[OBJECTS]):
+            resting += floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)] != FREE
+    floats[ints[LAST] + RESTING] = resting
 
 
 @kernel(TERM)
