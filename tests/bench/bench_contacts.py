@@ -35,7 +35,7 @@ WALLS = ", ".join(
 )
 BALLS = """
 clock: {{end: 1 s}}
-models: {{b: {{particles: {{fill: {{object: room, spacing: {spacing} m}}, radius: {radius} m}}}}}}
+models: {{b: {{particles: {{fill: {{object: room, pattern: grid, spacing: {spacing} m}}, radius: {radius} m}}}}}}
 forces: [gravity]
 contacts:
   walls: {{collision: {{restitution: 1, mode: local, between: [b, {walls}]}}}}

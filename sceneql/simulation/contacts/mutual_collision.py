@@ -97,14 +97,16 @@ class MutualCollision(Contact):
 
 
 def _must_be_apart(assembly: Assembly, everyone: Sequence[Bodies]) -> None:
-    """Raise ScriptError where two masses overlap at the start."""
+    """Raise ScriptError where two moving masses overlap at the start."""
     import numpy as np
     from scipy.spatial import cKDTree
 
     y, floats = assembly.start(), assembly.numbers()
     places = np.concatenate([y[at.position_at : at.position_at + 3 * at.count] for at in everyone]).reshape(-1, 3)
     radii = np.concatenate([floats[at.radius_at : at.radius_at + at.count] for at in everyone])
+    moving = np.concatenate([floats[at.inverse_at : at.inverse_at + at.count] for at in everyone]) > 0.0
     pairs = cKDTree(places).query_pairs(2.0 * float(radii.max(initial=0.0)), output_type="ndarray")
+    pairs = pairs[moving[pairs].all(axis=1)]
     apart = np.linalg.norm(places[pairs[:, 0]] - places[pairs[:, 1]], axis=1)
     depth = radii[pairs].sum(axis=1) - apart
     if len(pairs) and depth.max() > 1e-9 * radii.max():

@@ -71,7 +71,9 @@ def candidates(h, y0, y1, floats, ints):
             for c in range(3):
                 square += (floats[points + c * n + k] - floats[points + c * n + j]) ** 2
             fixed = floats[of(ints, k, INVERSE)] + floats[of(ints, j, INVERSE)] == 0.0
-            if fixed or square > (radii(k, j, floats, ints) + 2.0 * math.sqrt(longest)) ** 2:
+            # Without mass: a place for a particle that is not there now.
+            absent = floats[of(ints, k, MASS)] == 0.0 or floats[of(ints, j, MASS)] == 0.0
+            if fixed or absent or square > (radii(k, j, floats, ints) + 2.0 * math.sqrt(longest)) ** 2:
                 continue
             if total == others.size:
                 more = np.empty(2 * others.size, dtype=np.int64)
