@@ -244,3 +244,7 @@ class Stepper:
     """What takes its place where the steps are held by stability."""
     last_stage: int = -1
     """Array of ``work`` that after a step holds the rate at its end (first same as last); -1: none does."""
+    extend: str | None = None
+    """Compiled function of the step's signature, for what `dense` needs beyond the step (more stages, into `work`):
+    called once before a frame is read off a step. Where contacts are exact, `dense` is read after every step without
+    it, so the step does that itself (see `prepare`)."""

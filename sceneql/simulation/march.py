@@ -97,6 +97,8 @@ class March:
         self._jacobian = jacobian(system) if stepper.jacobian else None
         local = bool(system.structure.local)
         self._dense = kernels.hermite if stepper.dense is None or local else function(stepper.dense)
+        self._extend = None if stepper.extend is None or local else function(stepper.extend)
+        self._extended = math.nan
         self._functions = addresses(self._step, self._dense, *self.driver, self._jacobian)
         if stepper.prepare is None:
             prepared = Prepared(stepper.settings, stepper.numbers, max(1, stepper.work) * len(system.y))
@@ -147,9 +149,21 @@ class March:
         y = self._y1.copy()
         if t < t1:
             h = t1 - t0
+            if self._extend is not None and self._extended != t1:
+                self._extend_step(t0, h)
+                self._extended = t1
             steps = (self._y0, self._rate0, self._y1, self._rate1, self._work, self._settings, self._numbers)
             self._dense((t - t0) / h, h, *steps, y)
         return y, self.rate(t, y)
+
+    def _extend_step(self, t0: float, h: float) -> None:
+        """Let the last step get what its dense output needs; not counted as cost, as frames must not change it."""
+        assert self._extend is not None
+        counted = self.floats[0]
+        step = (self._y0, self._rate0, self._y1, self._work, self._settings, self._numbers)
+        self._extend(self._functions, t0, h, *step, self.floats, self.system.ints)
+        self.floats[0] = counted
+        self._floats_time = math.nan
 
     def _start(self) -> None:
         self._started = True
