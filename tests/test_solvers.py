@@ -286,8 +286,8 @@ def test_a_symmetric_method_finds_its_way_back(kind):
 def test_gauss_radau15_keeps_the_energy_to_rounding():
     march = March(PENDULUM, GaussRadau15().stepper(), 3000.0)
     y = march.advance(3000.0)[0]
-    assert abs(energy(y) - energy(PENDULUM.y)) < 3e-15
-    assert march.statistics.rejected < 0.02 * march.statistics.steps
+    assert abs(energy(y) - energy(PENDULUM.y)) < 1e-14
+    assert march.statistics.rejected < 0.06 * march.statistics.steps
 
 
 def test_dop853_looks_closer_only_at_steps_that_a_frame_is_read_from():

@@ -149,8 +149,9 @@ def correct(i, m, watched, rate0, vectors, settings, numbers, n):
 def shortest_square(n, m, p, groups, rate0, vectors, numbers):
     """The square of the shortest time, in steps, in which a group's rate changes by its own size; 1e300: it does not.
 
-    Eq. 14 of Pham, Rein & Spiegel (2024) at the step's end, or for the first derivative where that gives more: a rate
-    on its way through zero has all the time. A group that hardly moves against the others is left out.
+    The criterion of Pham, Rein & Spiegel (2024) at the step's end, in the mean of the squares for the rate and for its
+    first derivative: so an oscillation has the same time in all its phases, where the rate alone would have none as it
+    passes through zero. A group that hardly moves against the others is left out.
     """
     b = vectors[B * n :]
     largest = 0.0
@@ -177,7 +178,7 @@ def shortest_square(n, m, p, groups, rate0, vectors, numbers):
         if max(zeroth, first) > (NEGLIGIBLE * largest) ** 2:
             square = 2.0 * zeroth / (first + math.sqrt(zeroth * second)) if first + second > 0.0 else 1e300
             if second > 0.0:
-                square = max(square, 2.0 * first / (second + math.sqrt(first * third)))
+                square = 0.5 * square + first / (second + math.sqrt(first * third))
             best = min(best, square)
     return best
 
