@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -184,3 +185,30 @@ def test_auto_changes_to_radau_where_a_run_becomes_stiff(tmp_path):
     assert y[0] == pytest.approx(np.cos(50), abs=1e-5)
     late, _ = marched(tmp_path, script, "auto: {}", 50, at=30.03)
     assert late[0] == pytest.approx(np.cos(30.03), abs=1e-5)
+
+
+def test_auto_goes_on_explicitly_where_radau_refuses(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text(f"{pendulum(1e8)}\nclock: {{end: 0.02 s}}\nsolvers: {{main: auto}}\n", encoding="utf-8")
+    graph = load(path, pruned=False)
+    run = IslandRun(graph, graph.islands[0])
+    march = run.march
+    march._with_jacobian = lambda: replace(run.assembly.finish(jacobian=True), pattern=None)
+    march.advance(0.02)
+    assert [why.partition(":")[0] for _, why in march.choices()] == ["radau", "dopri5"]
+    assert "Jacobian" in march.choices()[1][1]
+
+
+def test_radau_restarts_at_exact_contacts(tmp_path):
+    script = """
+models: {drop: {mass_spring: {masses: {a: {position: 0 1 0 m}}, radius: 0 m}}}
+objects: {floor: plane}
+forces: [gravity]
+contacts: {bounce: {collision: {between: [drop, floor], restitution: 0.8, friction: 0}}}
+"""
+    for solver in ("radau: {tolerance: 1e-9}", "auto: {tolerance: 1e-9}"):
+        y, march = marched(tmp_path, script, solver, 0.9, at=0.9)
+        hit = np.sqrt(2 / 9.81)
+        up = 0.8 * 9.81 * hit
+        assert y[1] == pytest.approx(up * (0.9 - hit) - 4.905 * (0.9 - hit) ** 2, abs=1e-9)
+        assert march.statistics.events == 1

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sceneql.failure import RunFailure
+from sceneql.failure import LimitRefused, RunFailure
 from sceneql.simulation import march_kernels as kernels
 from sceneql.simulation.driver import driver, function, jacobian
 from sceneql.simulation.island import System
@@ -112,6 +112,14 @@ class March:
         self._counts[kernels.LAST_STAGE] = stepper.last_stage
         self._counts[kernels.CONTROLS] = stepper.controls
 
+    def _change(self, switch: Switch, t: float) -> None:
+        """Go on with the method that a switch has chosen, if it takes this island."""
+        try:
+            self._engage(switch.active)
+        except LimitRefused as refusal:
+            switch.refuse(t, refusal.diagnostic.message)
+            self._engage(switch.active)
+
     def choices(self) -> list[tuple[float, str]]:
         """When [s] which method was taken, and why, where the solver chooses by itself; before the run, the first."""
         if self._switch is None:
@@ -181,7 +189,7 @@ class March:
         step = self.stepper.first_step or self._first_step()
         if self._switch is not None:
             self._switch.start(self, y, step)
-            self._engage(self._switch.active)
+            self._change(self._switch, 0.0)
         self._clock[kernels.STEP] = step
 
     def _first_step(self) -> float:
@@ -251,7 +259,7 @@ class March:
         self._last_look += steps
         t, step = float(clock[kernels.T1]), float(clock[kernels.STEP])
         if switch.look(self, t, self._y1, step, steps):
-            self._engage(switch.active)
+            self._change(switch, t)
             clock[kernels.STEP] = switch.stable(self, t, self._y1, step)
             clock[kernels.ERROR] = 1e-4
 

@@ -40,6 +40,7 @@ class Switch:
         self.until_look = self._between = FIRST
         self._since = 0.0
         self._warming = False
+        self._possible = size <= LARGEST
 
     @property
     def cost(self) -> float:
@@ -50,7 +51,7 @@ class Switch:
         """Choose the method to begin with; ``step`` [s]: what the tolerance seems to allow at the start."""
         speed = dominant(march, 0.0, y)
         explicit_steps = self._steps(step, speed)
-        if explicit_steps > self.cost and self.size <= LARGEST:
+        if explicit_steps > self.cost and self._possible:
             self._take(self.stiff, 0.0, f"a mode at {abs(speed):.3g}/s makes the scene stiff")
         elif explicit_steps > 1.0:
             self._take(self.explicit, 0.0, f"a mode at {abs(speed):.3g}/s makes it but mildly stiff")
@@ -67,7 +68,7 @@ class Switch:
         self.until_look = self._between = min(LAST, 2 * self._between)
         speed = dominant(march, t, y)
         if self.active is self.explicit:
-            if self.size > LARGEST or self._steps(min(step, mean), speed) < HELD:
+            if not self._possible or self._steps(min(step, mean), speed) < HELD:
                 return False
             self._take(self.stiff, t, f"a mode at {abs(speed):.3g}/s holds the steps, not the tolerance")
             return True
@@ -76,6 +77,11 @@ class Switch:
             return False
         self._take(self.explicit, t, f"a stiff step replaces but {gain:.2g} explicit ones and costs {self.cost:.2g}")
         return True
+
+    def refuse(self, t: float, why: str) -> None:
+        """The stiff method cannot take this island: the explicit one goes on to the end."""
+        self._possible = False
+        self._take(self.explicit, t, why)
 
     def stable(self, march: March, t: float, y: Floats, step: float) -> float:
         """The step [s], or what of it the active method can take."""

@@ -255,6 +255,61 @@ def cvodes(problem: Problem):
     return run
 
 
+STIFFNESS, GRAVITY = 1e8, 9.81
+
+
+def pendulum_rate(y):
+    """A mass of 1 kg at (x, y) on a spring of rest length 1 m from the origin."""
+    length = math.hypot(y[0], y[1])
+    pull = STIFFNESS * (1.0 / length - 1.0)
+    return [y[2], y[3], pull * y[0], pull * y[1] - GRAVITY]
+
+
+def pendulum_jacobian(y):
+    square = y[0] ** 2 + y[1] ** 2
+    pull, bend = STIFFNESS * (1.0 / math.sqrt(square) - 1.0), STIFFNESS / square**1.5
+    xx, xy, yy = pull - bend * y[0] ** 2, -bend * y[0] * y[1], pull - bend * y[1] ** 2
+    return [[0, 0, 1, 0], [0, 0, 0, 1], [xx, xy, 0, 0], [xy, yy, 0, 0]]
+
+
+def pendulum() -> None:
+    """The spring pendulum by `auto` at 1e-8, beside CVODE at the tolerance where its error comes nearest."""
+    options = {"method": "Radau", "jac": lambda t, y: np.array(pendulum_jacobian(y)), "rtol": 1e-12, "atol": 1e-13}
+    exact = solve_ivp(lambda t, y: pendulum_rate(y), (0, 2), [1, 0, 0, 0], **options).y[:2, -1]
+    masses = "{hold: {position: 0 0 0 m, fixed: yes}, bob: {position: 1 0 0 m, mass: 1 kg}}"
+    spring = f"{{between: [hold, bob], stiffness: {STIFFNESS:g} N/m}}"
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "scene.yaml"
+        path.write_text(
+            f"clock: {{end: 2 s}}\nmodels: {{swing: {{mass_spring: {{masses: {masses}, springs: [{spring}]}}}}}}\n"
+            "forces: [gravity]\nsolvers: {main: {auto: {tolerance: 1e-8}}}\n",
+            encoding="utf-8",
+        )
+        graph = load(path, pruned=False)
+        times = []
+        for _ in range(REPEATS + 1):
+            island = IslandRun(graph, graph.islands[0])
+            y, _ = island.march.advance(2.0)
+            times.append(1e3 * island.march.statistics.seconds)
+    ours, ms = float(np.abs(y[3:5] - exact).max()), statistics.median(times[1:])
+
+    def rate(t, y, out):
+        out[:] = pendulum_rate(y)
+
+    def jacobian(t, y, rate, out):
+        out[:, :] = pendulum_jacobian(y)
+
+    tried = []
+    for tolerance in TOLERANCES[:16]:
+        options = {"rtol": tolerance, "atol": tolerance, "jacfn": jacobian, "max_num_steps": 10**6}
+        result, taken = timed(lambda: CVODE(rate, **options).solve([0.0, 2.0], np.array([1.0, 0, 0, 0])))  # noqa: B023
+        tried.append((float(np.abs(result.y[-1][:2] - exact).max()), taken))
+    nearest = min(tried, key=lambda one: abs(math.log(one[0] / ours)))
+    print(f"pendulum: auto error {ours:.1e} (bar 1e-7) {ms:.2f} ms, {island.march.choices()}")
+    print("  CVODE " + ", ".join(f"{error:.1e}@{taken:.1f}" for error, taken in tried))
+    print(f"  {nearest[1] / ms:.1f}x CVODE with error {nearest[0]:.1e} (bar 10)")
+
+
 def at_digits(curve: list[tuple[float, float]], digits: float) -> float:
     """Milliseconds at so many digits, by straight lines through (digits, log ms)."""
     points = sorted(curve)
@@ -263,7 +318,10 @@ def at_digits(curve: list[tuple[float, float]], digits: float) -> float:
 
 
 def main(names: list[str]) -> None:
-    for name in names or PROBLEMS:
+    for name in names or (*PROBLEMS, "pendulum"):
+        if name == "pendulum":
+            pendulum()
+            continue
         problem = PROBLEMS[name]
         with tempfile.TemporaryDirectory() as folder:
             run = ours(problem, Path(folder))
