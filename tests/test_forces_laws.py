@@ -9,6 +9,7 @@ from runs import complaint, watch
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.pipeline import load
 from sceneql.quantities.diagnostic import ScriptError
+from sceneql.report.explain import explain
 from sceneql.simulation.driver import jacobian
 from sceneql.simulation.march import March
 from sceneql.simulation.run import IslandRun, Run
@@ -297,3 +298,46 @@ solvers: {{main: {{rk4: {{step: 10 ms}}}}}}
 
     for force in (FORCES["mutual_gravity"], FORCES["electrostatic"], FORCES["repulsion"]):
         np.testing.assert_array_equal(momenta(force)[0], 0)
+
+
+def test_explain_tells_the_error_of_a_tree(tmp_path):
+    path = tmp_path / "scene.yaml"
+    galaxy = "{stars: 300, constant: 1, softening: 1 cm, thickness: 5 cm}"
+    pull = "{constant: 1, softening: 1 cm, method: tree, opening: %s}"
+    told = []
+    for opening in ("0.1", "0.8"):
+        path.write_text(
+            f"clock: {{end: 1 s}}\nmodels: {{disk: {{galaxy: {galaxy}}}}}\n"
+            f"forces: {{pull: {{mutual_gravity: {pull % opening}}}}}\nsolvers: {{main: {{rk4: {{step: 10 ms}}}}}}\n"
+        )
+        (island,) = explain(load(path, pruned=False))["islands"]
+        told.append(float(island["force_remarks"]["pull"].partition("off by ")[2].partition(" ")[0]))
+    # Of the pull of a heavy center next to light stars little is left to err about.
+    assert 0 < told[0] < 1e-5
+    assert told[0] < 0.3 * told[1] < 1e-2
+
+
+def test_a_galaxy_turns_as_it_is_told(tmp_path):
+    script = """
+clock: {end: 1 s}
+models:
+  disk:
+    galaxy: {stars: 500, constant: 1, heart: 2 kg, disk: 0.2 kg, axis: 0 0 2, position: 1 2 3 m, velocity: 4 0 0 m/s}
+forces: {pull: {mutual_gravity: {constant: 1, softening: 5 cm}}}
+solvers: {main: {rk4: {step: 5 ms}}}
+"""
+    first, last = watch(
+        tmp_path, script, [0, 1], "disk.momentum", "disk.core", "disk.angular_momentum", "disk.positions", "disk.energy"
+    )
+    np.testing.assert_allclose(first[0], [8.8, 0, 0], atol=1e-12)
+    np.testing.assert_allclose(last[0], [8.8, 0, 0], atol=1e-12)
+    np.testing.assert_allclose(first[1], [1, 2, 3])
+    spin = first[2] - np.cross(first[3].mean(axis=0), first[0])
+    assert spin[2] > 10 * np.abs(spin[:2]).max()
+    r = np.linalg.norm((first[3] - [1, 2, 3])[1:, :2], axis=1)
+    assert r.max() <= 1
+    # Half of the stars of an exponential disk of scale 1/3 cut at 1 stand within 0.4592.
+    assert np.median(r) == pytest.approx(0.4592, abs=0.04)
+    late = np.linalg.norm((last[3] - last[1])[1:, :2], axis=1)
+    assert np.median(late / r) == pytest.approx(1, abs=0.1)
+    assert last[4] == pytest.approx(first[4], rel=1e-3)

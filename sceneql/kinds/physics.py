@@ -73,6 +73,10 @@ class Force(Kind):
         """Add its terms for all models at once, where it is `mutual`."""
         raise NotImplementedError
 
+    def remark(self, state: ModelState) -> str:
+        """What `explain` says of a `mutual` force at the start of the run, as how far it is from exact."""
+        return ""
+
     def potential(self, bodies: Bodies, state: ModelState) -> float:
         """Potential energy [J] of the model in this force at a state; 0 where there is none."""
         return 0.0

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 from sceneql.compiler.catalogue import ROOT, Catalogue
 from sceneql.failure import RunFailure
 from sceneql.graph import SimulationGraph
-from sceneql.kinds import Camera, Output
+from sceneql.kinds import Camera, Force, Output
 
 if TYPE_CHECKING:
     from sceneql.simulation.run import IslandRun
@@ -79,6 +79,7 @@ def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
     return {
         "models": list(island.models),
         "forces": sorted({force for force, _ in island.forces}),
+        "force_remarks": _remarks(graph, run),
         "contacts": sorted({contact for contact, _, _ in island.contacts}),
         "contact_mode": run.assembly.contact_mode,
         "contact_why": _contact_why(graph, run),
@@ -102,6 +103,21 @@ def _chosen(run: IslandRun) -> list[str]:
     return []
 
 
+def _remarks(graph: SimulationGraph, run: IslandRun) -> dict[str, str]:
+    """What mutual forces say of themselves at the start."""
+    from sceneql.system import ModelState
+
+    march = run.march
+    found = {}
+    for force in dict.fromkeys(force for force, _ in run.island.forces):
+        kind = cast(Force, graph.tasks[force].kind)
+        if kind.mutual:
+            rate = march.rate(0.0, march.system.y)
+            state = ModelState(0.0, march.system.y, rate, march.floats, None, run.assembly.remembered(force))
+            found[force] = kind.remark(state)
+    return {force: remark for force, remark in found.items() if remark}
+
+
 def _contact_why(graph: SimulationGraph, run: IslandRun) -> str:
     """Why its contacts work in this mode."""
     kinds = [graph.tasks[contact].kind for contact, _, _ in run.island.contacts]
@@ -123,6 +139,7 @@ def text(plan: dict[str, Any]) -> str:
         lines += ["", f"solved together: {', '.join(island['models'])} ({island['states']} numbers)"]
         if island["forces"]:
             lines.append(f"  forces: {', '.join(island['forces'])}")
+        lines += [f"    {force}: {remark}" for force, remark in island["force_remarks"].items()]
         if island["contacts"]:
             lines.append(
                 f"  contacts: {', '.join(island['contacts'])}, {island['contact_mode']}: {island['contact_why']}"

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
-from sceneql.simulation.together import first_of, layout
+from sceneql.simulation.together import MODEL, first_of, layout
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies, ModelState
 
 
+SAMPLES = 64
+"""Bodies that tell the error of a tree."""
 MOST_DIRECT = 4000
 """Up to so many bodies the sum over all pairs is quicker than a tree."""
 
@@ -96,6 +98,33 @@ def apart(assembly: Assembly, everyone: Sequence[Bodies], span: Span | None) -> 
     pair = sorted(int(k) for k in order[same[0] : same[0] + 2])
     text = f"{names[pair[0]]} and {names[pair[1]]} (counted from 0) start at one place, where 1/r^2 has no value"
     raise ScriptError([Diagnostic("coincident", text, span, "move one of them, or give the force a `softening`")])
+
+
+def sampled_error(state: ModelState) -> tuple[float, float]:
+    """Relative errors of a tree's forces at a state: root mean square and largest of SAMPLES bodies, evenly chosen."""
+    import numpy as np
+
+    from sceneql.simulation.nbody import direct_kernels as kernels
+    from sceneql.simulation.nbody.tree_kernels import BODIES, tree
+
+    ints = np.array(state.ints[1:], dtype=np.int64)
+    rate = np.zeros_like(state.y)
+    tree(state.t, state.y, rate, state.floats, ints)
+    n, models = int(ints[BODIES]), ints[BODIES + 1]
+    rows = ints[BODIES + 2 :][: MODEL * models].reshape(-1, MODEL)
+    found = np.concatenate([rate[at : at + 3 * count].reshape(-1, 3) for at, count in rows[:, 1:3]])
+    points, weights = int(ints[kernels.POINTS]), int(ints[kernels.WEIGHTS])
+    places, weight = state.floats[points : points + 3 * n].reshape(3, n), state.floats[weights : weights + n]
+    softening = float(state.floats[ints[kernels.SOFTENING]])
+    wrong = []
+    for k in np.linspace(0, n - 1, SAMPLES).astype(int):
+        apart = places - places[:, k : k + 1]
+        square = np.sum(apart**2, axis=0)
+        pull = np.where(square > 0, weight / np.maximum(square + softening**2, 1e-300) ** 1.5, 0.0)
+        exact = float(ints[kernels.SIGN] * state.floats[ints[kernels.CONSTANT]]) * weight[k] * (apart @ pull)
+        size = float(np.linalg.norm(exact))
+        wrong.append(float(np.linalg.norm(found[k] - exact)) / size if size > 0 else 0.0)
+    return float(np.sqrt(np.mean(np.square(wrong)))), max(wrong)
 
 
 def energy(bodies: Bodies, state: ModelState) -> float:
