@@ -113,12 +113,15 @@ def test_repulsion_finds_every_pair_of_masses_in_reach_once(n):
 
 
 def curl_noise(points, angle=0.4, octaves=1, seed=5):
-    rows = -(-len(points) // turbulence_kernels.LANES) * turbulence_kernels.LANES
-    y = np.zeros((rows, 3))
-    y[: len(points)] = points
-    out = np.zeros(3 * rows)
-    turbulence_kernels.velocities(angle, y.ravel(), out, np.zeros(1), np.array([octaves, seed]))
-    return out.reshape(-1, 3)[: len(points)]
+    """The air's velocities at points: the force on masses at rest, with speed, size and drag all 1."""
+    n = len(points)
+    y = np.concatenate([points.ravel(), np.zeros(3 * n + 1)])
+    floats = np.concatenate([[1.0, 1.0, 1.0], np.zeros(3), [1.0, angle], np.ones(n), np.zeros(n)])
+    tile = tile_address(turbulence_kernels.turbulence_tile)
+    ints = np.array([0, 3 * n, n, 6 * n, 8, 0, 1, 3, 6, 8 + n, octaves, seed, *threads(), tile])
+    rate = np.zeros_like(y)
+    turbulence_kernels.turbulence(1.0, y, rate, floats, ints)
+    return rate[3 * n : 6 * n].reshape(-1, 3)
 
 
 def test_curl_noise_has_no_divergence_and_the_speed_it_says():

@@ -17,7 +17,7 @@ import pytreegrav
 
 from sceneql.simulation.forces import turbulence_kernels
 from sceneql.simulation.nbody.pairs import Pairs
-from sceneql.simulation.threads_kernels import thread_count
+from sceneql.simulation.threads_kernels import thread_count, threads, tile_address
 from sceneql.system import Bodies
 
 ROUNDS = 3
@@ -131,16 +131,21 @@ def main() -> None:
             name = f"pytreegrav, theta {theta}{', quadrupoles' if quadrupole else ''}"
             print(f"{name}: {wall:.2f} s ({work:.2f} s), rms {error(peer(), places):.1e}")
 
-    points = np.random.Generator(np.random.Philox(3)).uniform(-30, 30, size=3 * 256 * 2000)
-    out = np.zeros_like(points)
+    count = 400_000
+    y = np.random.Generator(np.random.Philox(3)).uniform(-30, 30, size=6 * count + 1)
+    floats = np.concatenate([[1.0, 1.0], np.zeros(3), [1.0, 0.3], np.ones(2 * count)])
+    rate = np.zeros_like(y)
+    tile = tile_address(turbulence_kernels.turbulence_tile)
     for octaves in (1, 3):
-        ints = np.array([octaves, 1])
+        numbers = [0, 3 * count, count, 6 * count, 7, 0, 1, 2, 5, 7 + count, octaves, 1, *threads(), tile]
+        ints = np.array(numbers)
 
-        def noise(ints: Any = ints) -> None:
-            turbulence_kernels.velocities(0.3, points, out, np.zeros(1), ints)
+        def turbulence(ints: Any = ints) -> None:
+            turbulence_kernels.turbulence(1.0, y, rate, floats, ints)
 
-        _, work = seconds(noise)
-        print(f"curl noise, {octaves} octaves: {work / (len(points) / 3) * 1e9:.0f} ns of one core a particle")
+        wall, work = seconds(turbulence)
+        spent = f"{wall / count * 1e9:.0f} ns a particle ({work / count * 1e9:.0f} ns of one core)"
+        print(f"curl noise, {octaves} octaves: {spent}")
 
 
 if __name__ == "__main__":

@@ -175,23 +175,3 @@ def turbulence(t, y, rate, floats, ints):
     over_threads(ints[12], ints[13], ints[14], tiles, t, y, rate, floats, ints)
     for tile in range(tiles):
         rate[ints[3]] += floats[ints[9] + tile]
-
-
-@kernel(TERM)
-def velocities(t, y, rate, floats, ints):
-    """The noise alone: points (n, 3) in units of the size in y, their velocities added to ``rate``; t is the angle.
-
-    ints: octaves, seed. Points beyond the last whole LANES are left out.
-    """
-    work = np.empty(ROWS * LANES, dtype=np.float32)
-    cells = np.empty(3 * LANES, dtype=np.uint32)
-    total = np.empty((3, LANES))
-    places = np.empty((3, LANES))
-    for first in range(0, y.size // 3 - LANES + 1, LANES):
-        for k in range(LANES):
-            for c in range(3):
-                places[c, k] = y[3 * (first + k) + c]
-        factor = curl(places, ints[1], t, ints[0], work, cells, total)
-        for k in range(LANES):
-            for c in range(3):
-                rate[3 * (first + k) + c] += factor * total[c, k]

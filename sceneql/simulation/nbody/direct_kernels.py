@@ -11,32 +11,27 @@ import numpy as np
 
 from sceneql.kernels import inlined, kernel
 from sceneql.simulation.arithmetic_kernels import fma, inverse_cube, widest
+from sceneql.simulation.nbody.weights_kernels import (
+    CONSTANT,
+    FLOOR,
+    POINTS,
+    ROOM,
+    SIGN,
+    SOFTENING,
+    WEIGHTS,
+    weights,
+)
 from sceneql.simulation.threads_kernels import TILE, over_threads
-from sceneql.simulation.together_kernels import MODEL, gather, velocity_of
+from sceneql.simulation.together_kernels import gather, velocity_of
 from sceneql.system_kernels import TERM, A, I
 
-CONSTANT, SIGN, SOFTENING, POINTS, WEIGHTS, ROOM, ENTRY, THREADS, TILE_AT, BODIES = range(10)
-"""Places in ints: offsets of the constant c (taken with SIGN) and of the softening; room for 3 ROOM places and ROOM
-weights; threads; from BODIES on as together.layout, then for every model offset and step of its weights."""
+ENTRY, THREADS, TILE_AT, BODIES = range(6, 10)
+"""Places in ints after those of weights_kernels: threads; the bodies."""
 FEW = 32
 LANES = 128
 """Targets of a tile; ROOM is a multiple of it."""
-FLOOR = 1e-160
-"""[m^2] added to squared distances, so that a body does not meet itself at infinity."""
 ALONE = 1024
 """Up to so many bodies one thread is quicker."""
-
-
-@inlined
-def weights(floats, ints, at, out):
-    """Write the weights of all bodies to floats[out:]; 0 for what has no mass (not yet born, or dead)."""
-    after = at + 2 + MODEL * ints[at + 1]
-    for model in range(ints[at + 1]):
-        row = at + 2 + MODEL * model
-        weight_at, step = ints[after + 2 * model], ints[after + 2 * model + 1]
-        for k in range(ints[row + 2]):
-            alive = floats[ints[row + 4] + k] > 0.0
-            floats[out + ints[row + 3] + k] = floats[weight_at + step * k] if alive else 0.0
 
 
 @inlined

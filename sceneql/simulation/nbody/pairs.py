@@ -104,7 +104,7 @@ def sampled_error(state: ModelState) -> tuple[float, float]:
     """Relative errors of a tree's forces at a state: root mean square and largest of SAMPLES bodies, evenly chosen."""
     import numpy as np
 
-    from sceneql.simulation.nbody import direct_kernels as kernels
+    from sceneql.simulation.nbody import weights_kernels as kernels
     from sceneql.simulation.nbody.tree_kernels import BODIES, tree
 
     ints = np.array(state.ints[1:], dtype=np.int64)
@@ -131,7 +131,7 @@ def energy(bodies: Bodies, state: ModelState) -> float:
     """The model's share of the potential energy [J]: half of each pair's for each of its bodies."""
     import numpy as np
 
-    from sceneql.simulation.nbody import direct_kernels as kernels
+    from sceneql.simulation.nbody import weights_kernels as kernels
 
     tree, *rest = state.ints
     ints = np.array(rest, dtype=np.int64)
@@ -141,9 +141,11 @@ def energy(bodies: Bodies, state: ModelState) -> float:
         bodies_at, n = BODIES, rest[BODIES]
         found = state.floats[rest[POTENTIALS] : rest[POTENTIALS] + n]
     else:
-        bodies_at, n = kernels.BODIES, rest[kernels.BODIES]
+        from sceneql.simulation.nbody.direct_kernels import BODIES, potentials
+
+        bodies_at, n = BODIES, rest[BODIES]
         found = np.zeros(n)
-        kernels.potentials(state.y, state.floats, ints, found)
+        potentials(state.y, state.floats, ints, found)
     first = first_of(bodies, rest[bodies_at:])
     own = slice(first, first + bodies.count)
     weights = state.floats[rest[kernels.WEIGHTS] : rest[kernels.WEIGHTS] + n]

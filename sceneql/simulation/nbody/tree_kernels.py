@@ -12,7 +12,6 @@ import numpy as np
 
 from sceneql.kernels import inlined, kernel
 from sceneql.simulation.arithmetic_kernels import fma, inverse_root, widest
-from sceneql.simulation.nbody.direct_kernels import CONSTANT, FLOOR, POINTS, ROOM, SIGN, SOFTENING, WEIGHTS, weights
 from sceneql.simulation.nbody.octree_kernels import (
     BEGIN,
     CHILD,
@@ -26,12 +25,22 @@ from sceneql.simulation.nbody.octree_kernels import (
     moments,
     sort_by_key,
 )
+from sceneql.simulation.nbody.weights_kernels import (
+    CONSTANT,
+    FLOOR,
+    POINTS,
+    ROOM,
+    SIGN,
+    SOFTENING,
+    WEIGHTS,
+    weights,
+)
 from sceneql.simulation.threads_kernels import TILE, over_threads
 from sceneql.simulation.together_kernels import gather, velocity_of
 from sceneql.system_kernels import TERM
 
 OPENING, NODES, MOST, SORTED, MASSES, ORDER, STARTS, POTENTIALS, ENTRY, THREADS, TILE_AT, BODIES = range(6, 18)
-"""Places in ints after those of direct_kernels up to ROOM: offsets of the opening angle and the nodes; room for nodes;
+"""Places in ints after those of weights_kernels: offsets of the opening angle and the nodes; room for nodes;
 offsets of the sorted places, masses and numbers, of the groups' first bodies and of sum m/r; threads; the bodies."""
 PX, PY, PZ, FX, FY, FZ, U, ROWS = range(8)
 """Rows of GROUP lanes."""
