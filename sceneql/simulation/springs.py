@@ -162,8 +162,9 @@ class SpringModel(Model):
         torn_at = assembly.floats([0.0])
         if self.tear is not None:
             luck = draws(np.arange(m, dtype=np.uint64), 0, chance_key(name, self.tear.seed))
-            limits = self.tear.at * (1 + self.tear.variation * (2 * luck - 1)) * blocks[:, 0]
-            more = (assembly.floats(np.maximum(limits, blocks[:, 0])), torn_at)
+            strains = (self.tear.at - 1) * (1 + self.tear.variation * (2 * luck - 1))
+            strains *= 1.0 if net.toughness is None else net.toughness
+            more = (assembly.floats((1 + strains) * blocks[:, 0]), torn_at)
             places = (bodies.position_at, bodies.work_at, blocks_at, stiffness_at)
             assembly.contact("local", ("sceneql.simulation.models.tear_kernels:tear",), (*places, *more, m, *ends), 0)
         if isinstance(self.pins, dict):

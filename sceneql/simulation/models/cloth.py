@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly
 
 
+MOST_SHEAR = 4.0
+"""Diagonals tear at the tension that tears threads, or at so many times their strain."""
+
+
 class Cloth(SpringModel):
     """A rectangle of cloth, whose weight and stiffnesses belong to the cloth: a finer mesh is the same cloth.
 
@@ -82,6 +86,9 @@ class Cloth(SpringModel):
         stiffness = np.where(level | upright, modulus * strip / length, self.shear)
         critical = 2 * np.sqrt(stiffness * weights[a] * weights[b] / (weights[a] + weights[b]))
         zero = np.zeros(len(length))
+        diagonal = ~(level | upright)
+        softer = min(max(self.stretch / self.shear, 1.0), MOST_SHEAR) if self.shear > 0 else 1.0
+        net = replace(net, toughness=np.where(diagonal, softer, 1.0))
         if self.rotation is not None:
             net = replace(net, points=turned(net.points, self.center, assembly.initial(self.rotation)))
         return net, weights, np.column_stack([length, stiffness, zero, self.damping * critical, zero])

@@ -56,6 +56,8 @@ class Net:
     """Names for pins: indices or masks of points."""
     triangles: Ints | None = None
     """(k, 3) of a surface, counterclockwise seen from where it faces."""
+    toughness: Floats | None = None
+    """(m,) strain at which each spring tears, as a part of the model's; None: all alike."""
     line: bool = False
     """Whether it is a rope."""
 
