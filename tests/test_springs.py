@@ -162,7 +162,7 @@ def test_a_heavy_cloth_tears_off_its_pins(tmp_path):
         *watch(tmp_path, script, [0.6], "sheet.torn", "sheet.energy")[0],
         watch(tmp_path, script, [0], "sheet.energy")[0][0],
     )
-    assert torn >= 3
+    assert torn >= 2
     assert energy == pytest.approx(start, abs=1e-6)
 
 
