@@ -76,10 +76,10 @@ def main() -> None:
             numbers = {"spacing": spacing, "radius": radius, "walls": names, "objects": WALLS}
             run, energies = march(BALLS.format(**numbers), folder, [0.0, 1.0])
             done = run.islands[0].march.statistics
-            drift = abs(energies[1] - energies[0]) / abs(energies[0])
             count = (len(run.islands[0].march.system.y) - 1) // 6
+            drift = abs(energies[1] - energies[0]) / (9.81 * count)
             cost = 1e6 * done.seconds / done.steps / count
-            print(f"  {count:>6} balls  {cost:.3f} us a ball and step, energy {drift:.1e}")
+            print(f"  {count:>6} balls  {cost:.3f} us a ball and step, energy {drift:.1e} of 1 m's fall")
 
 
 if __name__ == "__main__":

@@ -39,6 +39,15 @@ ASKED = 1
 ROWS = types.float64[:, ::1]
 
 
+@inlined
+def twice(numbers):
+    """The numbers, with room for as many more."""
+    more = np.empty(2 * numbers.size, dtype=np.int64)
+    for k in range(numbers.size):
+        more[k] = numbers[k]
+    return more
+
+
 @kernel(types.Tuple((I, I))(F, A, A, A, I))
 def candidates(h, y0, y1, floats, ints):
     """The pairs that may meet in the step: first of each mass (n + 1), and the masses of larger number.
@@ -76,9 +85,7 @@ def candidates(h, y0, y1, floats, ints):
             if fixed or absent or square > (radii(k, j, floats, ints) + 2.0 * math.sqrt(longest)) ** 2:
                 continue
             if total == others.size:
-                more = np.empty(2 * others.size, dtype=np.int64)
-                more[:total] = others
-                others = more
+                others = twice(others)
             others[total] = j
             total += 1
         first[k + 1] = total
@@ -162,8 +169,8 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
     partner = np.empty(n, dtype=np.int64)
     r, v = np.empty(3), np.empty(3)
     for _ in range(MOST_PASSES):
-        next_left[:] = -1.0
-        partner[:] = -1
+        for k in range(n):
+            next_left[k], partner[k] = -1.0, -1
         for i in range(n):
             for one in range(first[i], first[i + 1]):
                 j = others[one]
