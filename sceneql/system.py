@@ -203,6 +203,8 @@ class Prepared:
     """Integers for the step, which it may change."""
     work: int
     """Floats of scratch, zero before the first step."""
+    text: str = ""
+    """How it works there, for `explain`."""
 
 
 @dataclass(frozen=True, slots=True)

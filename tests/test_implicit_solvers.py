@@ -9,7 +9,7 @@ import pytest
 
 from islands import TETHER, assembly, balls, final, fixed, simple, springs
 from runs import watch
-from sceneql.failure import RunFailure
+from sceneql.failure import LimitRefused, RunFailure
 from sceneql.simulation.linear import stage, stage_kernels
 from sceneql.simulation.march import March
 from sceneql.simulation.modes import jacobian
@@ -187,3 +187,19 @@ def test_differences_stand_in_where_slopes_are_unknown():
     assert not system.pattern.exact
     plan = stage.stage_plan(system)
     assert "dense" in plan.text
+
+
+def test_explain_says_how_stage_systems_are_solved(tmp_path):
+    from sceneql.pipeline import load
+    from sceneql.report.explain import explain
+
+    path = tmp_path / "scene.yaml"
+    path.write_text(CHAIN.format(length=5, count=6, mass=0.1, stiffness=50, solver="tr_bdf2"), encoding="utf-8")
+    assert "dense LU factorization of 12 unknowns" in str(explain(load(path)))
+
+
+def test_an_implicit_solver_refuses_what_it_has_no_jacobian_of():
+    system = simple("pendulum", [0.0] * 1000)
+    assert system.pattern is None
+    with pytest.raises(LimitRefused, match="Jacobian"):
+        March(system, TrBdf2().stepper(), 1.0)

@@ -86,7 +86,7 @@ def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
         "states": len(run.march.system.y),
         "solver": graph.tasks[island.solver].word,
         "solver_name": island.solver,
-        "why": "; ".join(filter(None, (island.reason, run.solver.choice(), *_chosen(run)))),
+        "why": "; ".join(filter(None, (island.reason, run.solver.choice(), *_chosen(run), run.march.prepared_text))),
         "order": stepper.order,
         "adaptive": stepper.adaptive,
         "step": None if stepper.adaptive else stepper.first_step,

@@ -121,6 +121,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
         settings=np.concatenate([stepper.settings, plan.scales]),
         numbers=np.concatenate([stepper.numbers, [len(stepper.settings), room], plan.numbers]),
         work=(2 + stages) * len(system.y) + room + plan.store,
+        text=plan.text,
     )
 
 

@@ -107,6 +107,7 @@ class March:
         self._settings = np.array(prepared.settings, dtype=np.float64)
         self._numbers = np.array(prepared.numbers, dtype=np.int64)
         self._work = np.zeros(prepared.work)
+        self.prepared_text = prepared.text
         self._counts[kernels.ADAPTIVE] = stepper.adaptive
         self._counts[kernels.ORDER] = stepper.order
         self._counts[kernels.LAST_STAGE] = stepper.last_stage

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
+from sceneql.failure import LimitRefused
+
 if TYPE_CHECKING:
     import numpy
     from numpy import int64
@@ -64,11 +66,16 @@ class _Reduced:
 
 
 def stage_plan(system: System) -> StagePlan:
-    """Analyze an island whose Jacobian was asked for. Raises ValueError where it has no pattern."""
+    """Analyze an island whose Jacobian was asked for. Raises LimitRefused where it could not be had."""
     import numpy as np
 
     if system.pattern is None:
-        raise ValueError("the island has no Jacobian")
+        raise LimitRefused(
+            f"an implicit solver needs the Jacobian of {len(system.y)} entries: a term gives no slopes, and those are "
+            "too many for differences",
+            None,
+            "take an explicit solver, or fewer masses",
+        )
     inverse = _inverse_masses(system)
     reduced = _reduce(system, inverse)
     scales = 1.0 / inverse[reduced.core]

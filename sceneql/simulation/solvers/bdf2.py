@@ -76,4 +76,5 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
         settings=np.concatenate([stepper.settings, plan.scales]),
         numbers=np.concatenate([stepper.numbers, [room], plan.numbers]),
         work=ARRAYS * len(system.y) + room + plan.store,
+        text=plan.text,
     )

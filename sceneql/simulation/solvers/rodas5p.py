@@ -147,4 +147,5 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
         settings=np.concatenate([stepper.settings, plan.scales]),
         numbers=np.concatenate([[stages, len(stepper.settings), room], plan.numbers]),
         work=(3 + stages) * len(system.y) + room + plan.store,
+        text=plan.text,
     )
