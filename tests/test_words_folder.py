@@ -14,7 +14,7 @@ models:
     mass_spring:
       masses: {wall: {position: 0 0 0 m, fixed: yes}, bob: {position: 1.5 0 0 m, mass: 1 kg}}
       springs: [{between: [wall, bob], rest: 1 m, stiffness: 100 N/m}]
-solvers: {main: {heun: {step: 4 ms}}}
+solvers: {main: {ralston: {step: 4 ms}}}
 clock: {end: 1 s}
 outputs: {data: {record: {of: [spring.bob.position]}}}
 """
@@ -24,7 +24,7 @@ def test_a_solver_in_one_file(tmp_path):
     code = re.search(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
     assert code is not None
     (tmp_path / "solvers").mkdir()
-    (tmp_path / "solvers" / "heun.py").write_text(code[1])
+    (tmp_path / "solvers" / "ralston.py").write_text(code[1])
     scene = tmp_path / "spring.yaml"
     scene.write_text(SCRIPT)
     errors = []
