@@ -11,13 +11,13 @@ from sceneql.mesh.cull_kernels import BLOCK
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
-MOST_BLOCKS = 2**28
+MOST_BLOCKS = 2**23
 """Blocks of a grid, the empty ones included."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Grid:
-    """Cells of one size around a box, in blocks of BLOCK cells; at least half a cell of it lies outside the box."""
+    """Cells of one size around a box, in blocks of BLOCK cells; at least a quarter of a cell lies outside the box."""
 
     low: Floats
     """(3,) [m]."""
@@ -45,5 +45,7 @@ def grid_around(low: Corner, high: Corner, cell: float) -> Grid:
     blocks = np.ceil(cells / BLOCK)
     if not np.prod(blocks) <= MOST_BLOCKS:
         raise ValueError(f"cells of {cell:g} m are too many for a box of {np.ptp(corners, axis=0).max():g} m")
-    first = corners[0] - 0.5 * (cells * cell - (corners[1] - corners[0]))
+    # A quarter of a cell off the middle: planes of symmetry then hold neither nodes nor middles of cells, where samples
+    # are exactly zero and errors do not average out.
+    first = 0.5 * (corners[0] + corners[1]) - 0.5 * cells * cell - 0.25 * cell
     return Grid(first, float(cell), blocks.astype(np.int32))

@@ -10,7 +10,7 @@ from sceneql.kernels import inlined, lean
 from sceneql.mesh.cull_kernels import BLOCK, CLEAR, CUT, verdict
 from sceneql.mesh.extract_kernels import NODES, sample
 
-DEPTH = 3
+DEPTH = 2
 """How often a cube is halved before it is left unresolved."""
 
 
