@@ -190,9 +190,12 @@ def bench(
     """Measure error against run time: the scene's physics by every solver that applies."""
     from sceneql import pipeline
     from sceneql.report.bench import bench as measure
+    from sceneql.report.progress import bar
 
     graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
-    click.echo(measure(graph, output, words, error))
+    with bar(graph.name) as progress:
+        report = measure(graph, output, words, error, progress)
+    click.echo(report)
 
 
 @cli.command()
@@ -216,12 +219,15 @@ def stability(
 ) -> None:
     """Map where each solver is stable, inaccurate or fails while a step or a value of the script is swept."""
     from sceneql import pipeline
+    from sceneql.report.progress import bar
     from sceneql.report.stability import stability as survey
 
     def load(more: Sequence[str]) -> SimulationGraph:
         return pipeline.load(scene, variant=variant, sets=(*sets, *more), words=words)
 
-    click.echo(survey(load, sweep, points, output, words, error))
+    with bar(scene.stem) as progress:
+        report = survey(load, sweep, points, output, words, error, progress)
+    click.echo(report)
 
 
 @cli.command()

@@ -6,7 +6,7 @@ import csv
 import io
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, fields
 from itertools import pairwise
 from pathlib import Path
@@ -33,7 +33,11 @@ Orders = dict[tuple[str, str], float | None]
 
 
 def bench(
-    graph: SimulationGraph, output: Path | None = None, words: Path | None = None, asked: float | None = None
+    graph: SimulationGraph,
+    output: Path | None = None,
+    words: Path | None = None,
+    asked: float | None = None,
+    progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> str:
     """Run every island by every solver that applies; write tables, plots and a page; the report as text.
 
@@ -56,7 +60,9 @@ def bench(
         truth = reference(graph, island, catalogue)
         lines.append(f"{title}: errors against {truth.because} (itself good to {truth.uncertainty:.0e})")
         summary.append(lines[-1])
-        for word, solver in solvers(graph, island, catalogue).items():
+        applying = solvers(graph, island, catalogue)
+        for done, (word, solver) in enumerate(applying.items()):
+            progress(done, len(applying))
             try:
                 compile_seconds += warm(graph, island, solver)
                 runs = list(measurements(graph, island, word, solver, truth))

@@ -26,7 +26,7 @@ TOLERANCES = ((1e-13, 1e-12), (1e-10, 1e-9), (1e-7, 1e-6))
 """Of the reference, and of a second run: how far they are apart bounds the error of the first. The next pair is taken
 where the runs of one before fail or take too long."""
 METHODS = ("dop853", "dopri5", "radau")
-"""Our own that a reference may be made by."""
+"""Our own that a reference may be made by, the first that reaches the end."""
 MOST_CALLS = 200_000
 """Evaluations that scipy's method may ask for: each goes through Python."""
 ROUNDING = 1e-14
@@ -43,6 +43,7 @@ def reference(
     tolerances: Sequence[tuple[float, float]] = TOLERANCES,
     longest: float = LONGEST,
     most_calls: int = MOST_CALLS,
+    methods: Sequence[str] = METHODS,
 ) -> Reference:
     """The exact numbers that the script expects at the end, where there are enough of them to be the solution.
 
@@ -50,11 +51,11 @@ def reference(
     error (a turning point hides one in time). Else a run at a far tighter tolerance by another method, which is
     compared with what exact numbers there are. Raises RunFailure where none reaches the end.
     """
-    words = [word for word in METHODS if word in catalogue.words("solvers")]
+    words = [word for word in methods if word in catalogue.words("solvers")]
     own = {word: cast(type[Solver], catalogue.load("solvers", word)).model_validate({}) for word in words}
     exact = {name: e for name, e in graph.settings.expect.items() if _tells_the_end(e, island)}
     if exact:
-        moment, rough = run(graph, island, at(own["dopri5"], 1e-6))
+        moment, rough = run(graph, island, at(own[words[0]], 1e-6))
         known = sum(_value(expect.of.expr, moment).size for expect in exact.values())
         if known >= _unknowns(rough):
             return Reference(lambda moment, march: _exact_error(exact, moment), f"exact: {', '.join(exact)}", ROUNDING)

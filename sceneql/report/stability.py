@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
 
@@ -29,6 +29,7 @@ def stability(
     output: Path | None = None,
     words: Path | None = None,
     largest_error: float = LARGEST_ERROR,
+    progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> str:
     """Run every solver at every value of a sweep; write the map as CSV, JSON, SVG and HTML; the report as text.
 
@@ -39,7 +40,7 @@ def stability(
     if not graph.islands:
         raise Unsuitable(f"nothing in {graph.name} is solved in time, so nothing can be unstable")
     chosen = default_sweep(graph) if sweep is None else parse_sweep(sweep, points or POINTS)
-    found = list(cells(load, chosen, Catalogue(words), largest_error))
+    found = list(cells(load, chosen, Catalogue(words), largest_error, progress))
     if not found:
         raise Unsuitable(f"no solver that applies has a {chosen.path}")
     lines = _lines(chosen, found, largest_error)

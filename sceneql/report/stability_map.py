@@ -17,6 +17,8 @@ from sceneql.report.work_precision import Reference, TooLong, adaptive, at, prep
 
 TOLERANCES = ((1e-10, 1e-9), (1e-7, 1e-6))
 """Of the references: what is inaccurate is seen by these."""
+METHODS = ("radau", "dopri5")
+"""That make the references: a sweep over stiffness is why one is here."""
 LONGEST = 5.0
 """A run is given up after so many seconds of compiled steps."""
 MOST_CALLS = 10_000
@@ -66,10 +68,17 @@ def default_sweep(graph: SimulationGraph) -> Sweep:
     return around(2.0 / fastest if fastest > 0 else SLOWEST * end, end)
 
 
-def cells(load: Load, sweep: Sweep, catalogue: Catalogue, largest_error: float) -> Iterator[Cell]:
+def cells(
+    load: Load,
+    sweep: Sweep,
+    catalogue: Catalogue,
+    largest_error: float,
+    progress: Callable[[int, int], None] = lambda done, total: None,
+) -> Iterator[Cell]:
     """Every solver that applies at every value, on every island. Raises ScriptError where a value is none."""
     truths: dict[tuple[str, ...], Reference] = {}
-    for value in sweep.values:
+    for done, value in enumerate(sweep.values):
+        progress(done, len(sweep.values))
         graph = load(sweep.sets(value))
         for island in graph.islands:
             if not sweep.own or island.models not in truths:
@@ -83,7 +92,7 @@ def cells(load: Load, sweep: Sweep, catalogue: Catalogue, largest_error: float) 
 
 def _reference(graph: SimulationGraph, island: Island, catalogue: Catalogue) -> Reference:
     try:
-        return reference(graph, island, catalogue, TOLERANCES, LONGEST, MOST_CALLS)
+        return reference(graph, island, catalogue, TOLERANCES, LONGEST, MOST_CALLS, METHODS)
     except RunFailure as failure:
         return Reference(lambda moment, march: math.nan, f"nothing: {failure.message}", math.inf)
 
