@@ -85,6 +85,12 @@ def test_a_method_without_a_stable_step_says_how_far_it_swings(tmp_path):
     assert warnings(loaded(tmp_path, drag, damped[0])) == []
 
 
+def test_a_damped_oscillation_that_a_method_tells_nothing_of_is_not_warned_of(tmp_path):
+    wild = ("solvers.main={verlet: {step: 1 s}}", "define.c=1e4 N*s/m")
+    assert warnings(loaded(tmp_path, PENDULUM, *wild)) == []
+    assert len(warnings(loaded(tmp_path, PENDULUM, wild[0]))) == 1
+
+
 def test_adaptive_steps_are_not_warned_of(tmp_path):
     assert warnings(loaded(tmp_path, PENDULUM, "define.dt=1 s", "solvers.main=dopri5")) == []
 
@@ -115,8 +121,18 @@ def test_growth_without_numpy_is_the_growth(word, frequency, decay, scaled):
     assert solver.oscillation(frequency, decay, step) == pytest.approx(growth, rel=1e-6)
 
 
+@pytest.mark.parametrize("word", ["verlet", "blanes_moan"])
+@given(st.floats(0.1, 10.0), st.floats(1e-3, 5.0))
+def test_growth_of_splittings_without_numpy_is_the_growth(word, frequency, scaled):
+    solver = Catalogue().load("solvers", word).model_validate({})
+    matrix = np.array([[0.0, 1.0], [-(frequency**2), 0.0]])
+    growth = solver.growth(matrix, np.array([1, -1]), scaled / frequency)
+    assert solver.oscillation(frequency, 0.0, scaled / frequency) == pytest.approx(growth, rel=1e-6)
+
+
 def test_known_stable_steps():
-    known = {"rk4": 2 * math.sqrt(2), "semi_implicit_euler": 2.0, "euler": 0.0, "midpoint": 0.0}
+    known = {"rk4": 2 * math.sqrt(2), "semi_implicit_euler": 2.0, "verlet": 2.0}
+    known |= {"euler": 0.0, "midpoint": 0.0, "heun": 0.0}
     for word, bound in known.items():
         solver = Catalogue().load("solvers", word).model_validate({})
         assert stable_step(lambda z, solver=solver: solver.oscillation(1.0, 0.0, z)) == pytest.approx(bound, abs=1e-4)
@@ -141,6 +157,14 @@ def test_runs_hold_below_the_bound_and_fail_above(tmp_path, word):
             assert warnings(again)
 
 
+@pytest.fixture
+def few(monkeypatch):
+    """Fewer solvers: each is compiled for each structure of an island. No other family is asked for."""
+    words = Catalogue.words
+    kept = {"dopri5", "euler", "midpoint", "radau", "rk4", "semi_implicit_euler"}
+    monkeypatch.setattr(Catalogue, "words", lambda self, family: [w for w in words(self, family) if w in kept])
+
+
 def survey(tmp_path, script, **options):
     path = tmp_path / "scene.yaml"
     path.write_text(script)
@@ -148,7 +172,7 @@ def survey(tmp_path, script, **options):
     return text, json.loads((tmp_path / "scene.stability.json").read_text())["cells"]
 
 
-def test_the_map_over_steps_turns_at_the_bound(tmp_path):
+def test_the_map_over_steps_turns_at_the_bound(tmp_path, few):
     """A linear spring: below its bound a run holds, above it fails."""
     script = PENDULUM.replace("forces: [gravity]\n", "").replace("stiffness: k", "stiffness: k, rest: 0 m")
     _, cells = survey(tmp_path, script, sweep="step=1e-4..1e-2", points=9)
@@ -166,7 +190,7 @@ def test_the_map_over_steps_turns_at_the_bound(tmp_path):
     assert fine["rk4"]["error"] < 1e-2
 
 
-def test_the_map_over_stiffness_tells_stable_from_inaccurate_and_failed(tmp_path):
+def test_the_map_over_stiffness_tells_stable_from_inaccurate_and_failed(tmp_path, few):
     """A spring pendulum from soggy to stiff at 1/60 s."""
     script = PENDULUM.replace("dt: 1 ms", "dt: 1/60 s")
     _, cells = survey(tmp_path, script, sweep="define.k=1e0..1e6 N/m", points=4)

@@ -39,7 +39,7 @@ def warn_of_steps(
     for island in groups:
         solver = tasks[island.solver]
         step = getattr(solver.kind, "step", None)
-        if not isinstance(step, float) or cast(Solver, solver.kind).oscillation(1.0, 0.0, 1e-3) is None:
+        if not isinstance(step, float):
             continue
         damped = any(type(cast(Force, tasks[force].kind)).potential is Force.potential for force, _ in island.forces)
         for name in island.models:
@@ -64,6 +64,8 @@ def _wrong(
     ``damped``: something else may damp the oscillation.
     """
     scale = max(fastest.frequency, fastest.decay)
+    if solver.oscillation(fastest.frequency, fastest.decay, step) is None:
+        return None
 
     def growth(scaled: float) -> float:
         return cast(float, solver.oscillation(fastest.frequency, fastest.decay, scaled / scale))

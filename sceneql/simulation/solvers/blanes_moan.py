@@ -30,3 +30,7 @@ class BlanesMoan(Solver):
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """Spectral radius of the step's matrix."""
         return BLANES_MOAN.growth(jacobian, partner, step)
+
+    def oscillation(self, frequency: float, decay: float, step: float) -> float | None:
+        """That of the splitting."""
+        return BLANES_MOAN.oscillation(frequency, decay, step)

@@ -30,3 +30,7 @@ class Heun(Solver):
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """max |R(h lambda)|, R(z) = 1 + z + z^2/2."""
         return HEUN.growth(jacobian, step)
+
+    def oscillation(self, frequency: float, decay: float, step: float) -> float:
+        """That of the tableau."""
+        return HEUN.oscillation(frequency, decay, step)

@@ -32,3 +32,7 @@ class Verlet(Solver):
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """Spectral radius of the step's matrix."""
         return VERLET.growth(jacobian, partner, step)
+
+    def oscillation(self, frequency: float, decay: float, step: float) -> float | None:
+        """That of the splitting."""
+        return VERLET.oscillation(frequency, decay, step)
