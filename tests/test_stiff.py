@@ -212,3 +212,14 @@ contacts: {bounce: {collision: {between: [drop, floor], restitution: 0.8, fricti
         up = 0.8 * 9.81 * hit
         assert y[1] == pytest.approx(up * (0.9 - hit) - 4.905 * (0.9 - hit) ** 2, abs=1e-9)
         assert march.statistics.events == 1
+
+
+def test_auto_leaves_local_contacts_to_the_explicit_method(tmp_path):
+    script = f"""
+{pendulum(1e8)}
+objects: {{floor: plane}}
+contacts: {{bounce: {{collision: {{between: [m, floor], mode: local}}}}}}
+"""
+    _, march = marched(tmp_path, script, "auto: {}", 0.01)
+    assert march.choices() == []
+    assert march.statistics.steps > 50

@@ -81,7 +81,7 @@ class March:
         self._started = False
         self._floats_time = math.nan
         self._switch = None
-        if stepper.stiff is not None and stepper.adaptive:
+        if stepper.stiff is not None and stepper.adaptive and not system.structure.local:
             self._switch = Switch(stepper, stepper.stiff, int((system.partner < 0).sum()))
         self._last_look = 0
         self._engage(stepper)

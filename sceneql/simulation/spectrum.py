@@ -29,13 +29,14 @@ def dominant(march: March, t: float, y: Floats) -> complex:
         matrix = np.column_stack(columns)
     else:
         scale = MOVE * max(1e-3, float(np.linalg.norm(y)))
+        units = _units(march, t, y, rate, scale)
         basis = np.zeros((SMALL + 1, n))
         matrix = np.zeros((SMALL + 1, SMALL))
         start = np.random.Generator(np.random.Philox(1)).standard_normal(n)
         basis[0] = start / np.linalg.norm(start)
         size = 0
         for k in range(SMALL):
-            product = (march.rate(t, y + scale * basis[k]) - rate) / scale
+            product = (march.rate(t, y + scale * units * basis[k]) - rate) / (scale * units)
             matrix[: k + 1, k] = basis[: k + 1] @ product
             product -= matrix[: k + 1, k] @ basis[: k + 1]
             size = k + 1
@@ -49,6 +50,23 @@ def dominant(march: March, t: float, y: Floats) -> complex:
     values = np.linalg.eigvals(matrix)
     found = complex(values[int(np.argmax(np.abs(values)))])
     return complex(found.real, abs(found.imag))
+
+
+def _units(march: March, t: float, y: Floats, rate: Floats, scale: float) -> Floats:
+    """Units (n,) in which positions and velocities of stiff springs are alike in size.
+
+    Without them the Krylov space sees how far the matrix is from a normal one, not its eigenvalues.
+    """
+    units = np.ones(len(y))
+    positions = np.flatnonzero(march.system.partner >= 0)
+    if len(positions):
+        velocities = march.system.partner[positions]
+        moved = y.copy()
+        moved[positions] += scale * np.random.Generator(np.random.Philox(2)).choice([-1.0, 1.0], len(positions))
+        pull = (march.rate(t, moved) - rate)[velocities] / scale
+        square = float(np.sqrt(np.mean(pull * pull)))
+        units[velocities] = np.sqrt(square) if 0.0 < square < np.inf else 1.0
+    return units
 
 
 def boundary(coefficients: tuple[float, ...], direction: complex) -> float:

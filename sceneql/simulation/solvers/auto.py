@@ -17,7 +17,8 @@ class Auto(Solver):
     """The solver that suits: dopri5, and radau where stability rather than the tolerance would hold its steps.
 
     The choice is made at the start, by the fastest mode of the island and the step that the tolerance allows, and
-    looked at again during the run; `explain` says the first and why. Sources: see the words dopri5 and radau; the sign
+    looked at again during the run; `explain` says the first and why. Local contacts keep it with dopri5, since they act
+    at the ends of steps, which stiffness must not make long. Sources: see the words dopri5 and radau; the sign
     of stiffness is that of Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.2.
     """
 

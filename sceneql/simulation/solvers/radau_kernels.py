@@ -239,17 +239,7 @@ def estimate(rate, t, h, y0, rate0, y1, work, floats, ints, z, f, weights, value
         embedded[k] = (E1 * z[k] + E2 * z[n + k] + E3 * z[2 * n + k]) / h
         error[k] = rate0[k] + embedded[k]
     solve_real(REAL / work[FACTORED], values, plan, real, pivots, spare, error)
-    size = norm(error, weights)
-    if size >= 1.0 and (work[BEFORE] == 0.0 or work[REJECTED] > 0.0):
-        # Large at infinitely fast modes: filtered once more.
-        for k in range(n):
-            y1[k] = y0[k] + error[k]
-        rate(t, y1, error, floats, ints)
-        for k in range(n):
-            error[k] += embedded[k]
-        solve_real(REAL / work[FACTORED], values, plan, real, pivots, spare, error)
-        size = norm(error, weights)
-    return size
+    return norm(error, weights)
 
 
 @lean_inlined
