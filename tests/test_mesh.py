@@ -209,6 +209,18 @@ def test_undefined_places_are_outside():
     assert volume(found.vertices, found.triangles) == pytest.approx(2 * math.pi / 3, rel=0.02)
 
 
+@settings(max_examples=150, deadline=None)
+@given(tape=tapes(), cell=st.sampled_from([0.13, 0.25, 0.4]))
+def test_any_field_whatever_gives_a_closed_manifold_of_finite_vertices(tape, cell):
+    found = polygonise(tape, (-1.5,) * 3, (1.5,) * 3, cell)
+    assert edge_counts(found.triangles)[1:] == (0, 0)
+    assert np.isfinite(found.vertices).all()
+    assert np.isfinite(found.normals).all()
+    assert len(np.unique(found.triangles)) == len(found.vertices)
+    assert np.abs(found.vertices).max(initial=0.0) <= 1.5 + 1e-6
+    assert volume(found.vertices, found.triangles) >= -1e-9
+
+
 def test_nothing_where_nothing_is():
     assert len(cut("x^2 + y^2 + z^2 + 1", 1.0, 16).triangles) == 0
 
@@ -274,6 +286,7 @@ def test_steepness_bounds_how_fast_any_tape_changes(tape, place, seed):
 def test_resolved_shapes_hide_next_to_nothing():
     found = unresolved(tape_of(TORUS), (-1.5,) * 3, (1.5,) * 3, 0.05)
     assert found.volume < 1e-6
+    assert unresolved(tape_of(BALL), (-1.1,) * 3, (1.1,) * 3, 0.05).cells == 0
 
 
 def test_what_passes_between_the_samples_is_told():

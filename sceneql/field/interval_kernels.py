@@ -122,6 +122,8 @@ def binary_box(op, a, b, c, d):
     """(low, high, status) of an operation on [a, b] and [c, d]."""
     if op == ADD:
         low, high = outward(a + c, b + d)
+        if a >= 0.0 and c >= 0.0:
+            low = max(low, 0.0)  # so that a sum of squares has a square root
     elif op == SUB:
         low, high = outward(a - d, b - c)
     elif op == MUL:

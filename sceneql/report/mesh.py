@@ -52,8 +52,8 @@ class Account:
             lines.append(f"{self.boundary_edges} edges of one triangle: the mesh is open")
         if self.unresolved:
             lines.append(
-                f"{self.unresolved} cells unresolved, {self.unresolved_volume:.3g} m^3 in all: without a change of sign"
-                " at their corners, but not proved empty or full; a smaller --cell resolves more"
+                f"{self.unresolved} cell{'s' if self.unresolved > 1 else ''} unresolved, {self.unresolved_volume:.3g} m^3 in all: without a change of sign"
+                " at the corners, but not proved empty or full; a smaller --cell resolves more"
             )
         return "\n".join(lines)
 
