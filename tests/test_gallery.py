@@ -6,7 +6,7 @@ from PIL import Image
 
 from sceneql import pipeline
 from sceneql.report.expect import outcomes
-from sceneql.report.gallery import compare
+from sceneql.report.gallery import check, compare, update
 
 SCENE = """
 models:
@@ -83,3 +83,20 @@ def test_local_damage_another_size_and_no_poster_do_not(tmp_path, picture):
     assert not compare(brighter, kept)[1]
     assert not compare(picture[:80], kept)[1]
     assert not compare(picture, tmp_path / "none.png")[1]
+
+
+def test_an_update_of_one_scene_leaves_the_others_on_the_page(tmp_path):
+    folder = tmp_path / "gallery"
+    folder.mkdir()
+    scenes = [tmp_path / f"{name}.yaml" for name in ("b", "a")]
+    for scene in scenes:
+        scene.write_text(
+            f"about: The {scene.stem} of it.\nobjects: {{ball: {{sphere: {{radius: 1 m}}}}}}\n"
+            "gallery: {size: 32 18}\nrenderers: {plain: normals}\noutputs: {i: {image: {renderer: plain}}}\n"
+        )
+        update((scene,), folder)
+    page = (folder / "README.md").read_text()
+    assert page.index("The a of it.") < page.index("The b of it.")
+    assert update((scenes[0],), folder)[0].endswith("b.png")
+    assert (folder / "README.md").read_text() == page
+    assert check(tuple(scenes), folder)[1]

@@ -79,12 +79,16 @@ def compare(picture: Any, kept: Path) -> tuple[str, bool]:
 
 
 def update(scenes: tuple[Path, ...], folder: Path) -> list[str]:
-    """Keep posters as they are now and write the page. Numbers are never updated: scripts say what they must be."""
+    """Keep posters as they are now and their part of the page; what the page says of other scenes stays.
+
+    Numbers are never updated: scripts say what they must be.
+    """
     from io import BytesIO
 
     from PIL import Image
 
-    lines, page = [], ["# Gallery", "", "Made by `sceneql gallery update`; compared by `sceneql gallery check`.", ""]
+    page = folder / "README.md"
+    lines, sections = [], _sections(page) if scenes else {}
     for scene in scenes_of(scenes):
         graph = pipeline.load(scene)
         data = BytesIO()
@@ -92,9 +96,20 @@ def update(scenes: tuple[Path, ...], folder: Path) -> list[str]:
         with whole(folder / f"{scene.stem}.png") as stream:
             stream.write(data.getvalue())
         lines.append(f"kept {folder / scene.stem}.png")
-        page += [f"## {scene.stem}", "", graph.settings.about, "", f"![{scene.stem}]({scene.stem}.png)", ""]
-        page += [f"- {found}" for found in numbers(scene)]
-        page.append("")
-    with whole(folder / "README.md") as stream:
-        stream.write("\n".join(page).encode())
-    return [*lines, f"wrote {folder / 'README.md'}"]
+        told = [graph.settings.about, "", f"![{scene.stem}]({scene.stem}.png)", ""]
+        sections[scene.stem] = "\n".join([*told, *(f"- {found}" for found in numbers(scene))]).strip("\n")
+    with whole(page) as stream:
+        stream.write((TITLE + "".join(f"{HEADING}{name}\n\n{sections[name]}\n" for name in sorted(sections))).encode())
+    return [*lines, f"wrote {page}"]
+
+
+TITLE = "# Gallery\n\nMade by `sceneql gallery update`; compared by `sceneql gallery check`.\n"
+HEADING = "\n## "
+
+
+def _sections(page: Path) -> dict[str, str]:
+    """What a page says of each scene."""
+    if not page.is_file():
+        return {}
+    _, *parts = page.read_text(encoding="utf-8").split(HEADING)
+    return {name: text.strip("\n") for name, _, text in (part.partition("\n") for part in parts)}
