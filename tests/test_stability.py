@@ -248,3 +248,14 @@ def test_momentum_is_told_where_nothing_outside_acts(tmp_path):
     assert float(re.search(r"momentum drift (\S+)", line)[1]) < 1e-12
     (line,) = pipeline.render(loaded(tmp_path, PENDULUM), folder=tmp_path).conserved
     assert "momentum" not in line
+
+
+def test_an_island_that_a_method_refuses_is_mapped_by_the_others(tmp_path, few):
+    """More states than full matrices are factored for."""
+    script = "clock: {end: 0.1 s}\nforces: [gravity]\nsolvers: {main: {rk4: {step: 1 ms}}}\n" + ONE_NET.format(
+        net="rope", how="{from: 0 0 0 m, to: 1 0 0 m, count: 80}"
+    )
+    _, cells = survey(
+        tmp_path, script + "outputs: {data: {record: {of: [net.energy]}}}\n", sweep="step=1e-3..2e-3", points=2
+    )
+    assert {cell["outcome"] for cell in cells if cell["solver"] == "rk4"} == {"stable"}

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 from sceneql.compiler.catalogue import Catalogue
-from sceneql.failure import RunFailure
+from sceneql.failure import LimitRefused, RunFailure
 from sceneql.graph import Island, SimulationGraph
 from sceneql.kinds import Expect, Solver
 from sceneql.quantities.expression import Call, Expr, Link, Symbol, walk
@@ -49,23 +50,26 @@ def reference(
 
     That is as many as the island has positions and other states that are not velocities; a single number may hide an
     error (a turning point hides one in time). Else a run at a far tighter tolerance by another method, which is
-    compared with what exact numbers there are. Raises RunFailure where none reaches the end.
+    compared with what exact numbers there are. Raises RunFailure or LimitRefused where none reaches the end.
     """
     words = [word for word in methods if word in catalogue.words("solvers")]
     own = {word: cast(type[Solver], catalogue.load("solvers", word)).model_validate({}) for word in words}
     exact = {name: e for name, e in graph.settings.expect.items() if _tells_the_end(e, island)}
     if exact:
-        moment, rough = run(graph, island, at(own[words[0]], 1e-6))
+        from sceneql.simulation.run import Run
+
+        start = Run(replace(graph, islands=(island,)))
+        (moment,) = start.moments([0.0])
         known = sum(_value(expect.of.expr, moment).size for expect in exact.values())
-        if known >= _unknowns(rough):
+        if known >= _unknowns(start.islands[0]):
             return Reference(lambda moment, march: _exact_error(exact, moment), f"exact: {', '.join(exact)}", ROUNDING)
-    failure: RunFailure | None = None
+    failure: RunFailure | LimitRefused | None = None
     for tight, loose in tolerances:
         for word, solver in own.items():
             try:
                 moment, fine = run(graph, island, at(solver, tight), longest)
                 _, coarse = run(graph, island, at(solver, loose), longest)
-            except RunFailure as found:
+            except (RunFailure, LimitRefused) as found:  # a method may refuse so many states
                 failure = failure or found
                 continue
             return _by_runs(word, (moment, fine), coarse, exact, (tight, loose), most_calls)

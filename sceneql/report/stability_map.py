@@ -93,8 +93,8 @@ def cells(
 def _reference(graph: SimulationGraph, island: Island, catalogue: Catalogue) -> Reference:
     try:
         return reference(graph, island, catalogue, TOLERANCES, LONGEST, MOST_CALLS, METHODS)
-    except RunFailure as failure:
-        return Reference(lambda moment, march: math.nan, f"nothing: {failure.message}", math.inf)
+    except (RunFailure, LimitRefused) as failure:
+        return Reference(lambda moment, march: math.nan, f"nothing: {failure.diagnostic.message}", math.inf)
 
 
 def _cell(
