@@ -51,9 +51,10 @@ class Account:
         if self.boundary_edges:
             lines.append(f"{self.boundary_edges} edges of one triangle: the mesh is open")
         if self.unresolved:
+            cells = "1 cell" if self.unresolved == 1 else f"{self.unresolved} cells"
             lines.append(
-                f"{self.unresolved} cell{'s' if self.unresolved > 1 else ''} unresolved, {self.unresolved_volume:.3g} m^3 in all: without a change of sign"
-                " at the corners, but not proved empty or full; a smaller --cell resolves more"
+                f"{cells} unresolved, {self.unresolved_volume:.3g} m^3 in all: without a change of sign at the corners,"
+                " but not proved empty or full; a smaller --cell resolves more"
             )
         return "\n".join(lines)
 
