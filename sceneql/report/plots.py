@@ -63,9 +63,9 @@ def _errors(
     place: Callable[[Measurement], float],
 ) -> None:
     islands = list(dict.fromkeys(row.island for row in rows))
-    with _figure(path, (7.0, 4.8 * len(islands))) as figure:
+    with _figure(path, (9.0, 4.8 * len(islands))) as figure:
         for k, island in enumerate(islands):
-            axes = figure.add_subplot(len(islands), 1, k + 1)
+            axes = _panel(figure, len(islands), k)
             axes.set(xscale="log", yscale="log", xlabel=label, ylabel="relative error at the end")
             axes.set_title(f"{title}: {island}")
             axes.grid(True, which="major", alpha=0.3)
@@ -75,7 +75,21 @@ def _errors(
                 done = [row for row in runs if row.ok and row.error > 0.0]
                 text = legend(solver, orders[island, solver], sum(not row.ok for row in runs))
                 axes.plot([place(row) for row in done], [row.error for row in done], marker=mark, ms=4, label=text)
-            axes.legend(fontsize="small")
+            _explain(axes)
+
+
+def _panel(figure: Any, count: int, k: int) -> Any:
+    """Axes with as many colors as there are solvers."""
+    from matplotlib import colormaps
+
+    axes = figure.add_subplot(count, 1, k + 1)
+    axes.set_prop_cycle(color=colormaps["tab20"].colors)
+    return axes
+
+
+def _explain(axes: Any) -> None:
+    """The legend, beside the panel: there may be many solvers."""
+    axes.legend(fontsize="small", loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False)
 
 
 def legend(solver: str, order: float | None, failed: int) -> str:
@@ -87,9 +101,9 @@ def legend(solver: str, order: float | None, failed: int) -> str:
 def drift_against_time(path: Path, title: str, drifts: Sequence[Drift]) -> None:
     """Write an SVG with a panel an island: relative change of energy over simulation time [s], a line a solver."""
     islands = list(dict.fromkeys(drift.island for drift in drifts))
-    with _figure(path, (7.0, 4.8 * len(islands))) as figure:
+    with _figure(path, (9.0, 4.8 * len(islands))) as figure:
         for k, island in enumerate(islands):
-            axes = figure.add_subplot(len(islands), 1, k + 1)
+            axes = _panel(figure, len(islands), k)
             axes.set(yscale="log", xlabel="time [s]", ylabel="relative change of energy")
             axes.set_title(f"{title}: {island}")
             axes.grid(True, which="major", alpha=0.3)
@@ -97,7 +111,7 @@ def drift_against_time(path: Path, title: str, drifts: Sequence[Drift]) -> None:
                 if drift.island == island:
                     changes = [max(abs(change), SMALLEST) for change in drift.changes[1:]]
                     axes.plot(drift.times[1:], changes, lw=1, label=f"{drift.solver}, {drift.setting:.3g}")
-            axes.legend(fontsize="small")
+            _explain(axes)
 
 
 def stability_map(path: Path, title: str, label: str, cells: Sequence[Cell]) -> None:
