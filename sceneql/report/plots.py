@@ -83,7 +83,7 @@ def _panel(figure: Any, count: int, k: int) -> Any:
     from matplotlib import colormaps
 
     axes = figure.add_subplot(count, 1, k + 1)
-    axes.set_prop_cycle(color=colormaps["tab20"].colors)
+    axes.set_prop_cycle(color=[colormaps["tab20"](k) for k in range(20)])
     return axes
 
 
