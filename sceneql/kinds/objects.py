@@ -42,7 +42,7 @@ class Object(Kind):
 
     family: ClassVar[str] = "objects"
     collides: ClassVar[bool] = False
-    """Whether contacts that name no surface take it as one (it has a collider)."""
+    """Whether contacts that name no surface take it as one even where more of it varies in time than its place."""
 
     decorates: ClassVar[bool] = False
     """Whether a model that it reads draws itself all the same."""

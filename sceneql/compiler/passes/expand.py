@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.passes.touchable import touchable
 from sceneql.graph import Task
-from sceneql.kinds import Camera, Contact, Illumination, Kind, Model, Object, Output, Picture, Solver, Value
+from sceneql.kinds import Camera, Contact, Illumination, Kind, Model, Output, Picture, Solver, Value
 from sceneql.quantities.expression import Link
 
 
@@ -32,19 +33,13 @@ def expand(tasks: Mapping[str, Task], catalogue: Catalogue) -> dict[str, Task]:
         add("camera", "cameras", "auto")
     if has(Picture) and not has(Illumination):
         add("light", "lights", "studio")
-    if any(isinstance(t.kind, Contact) and not t.kind.ties() for t in result.values()) and not _surfaces(result):
+    if any(isinstance(t.kind, Contact) and not t.kind.ties() for t in result.values()) and not touchable(result):
         add("floor", "objects", "plane")
     if any(isinstance(t.kind, Model) and not t.kind.kinematic for t in result.values()) and (
         not any(isinstance(t.kind, Solver) and t.kind.on is None for t in result.values())
     ):
         add("solver", "solvers", "auto")
     return _drive(result)
-
-
-def _surfaces(tasks: Mapping[str, Task]) -> bool:
-    driven = {name for task in tasks.values() if isinstance(task.kind, Model) for name in task.kind.drives()}
-    inner = {ref.name for task in tasks.values() if isinstance(task.kind, Object) for ref in task.kind.members()}
-    return any(isinstance(t.kind, Object) and t.kind.collides and t.name not in driven | inner for t in tasks.values())
 
 
 def _drive(tasks: dict[str, Task]) -> dict[str, Task]:

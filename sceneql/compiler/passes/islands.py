@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from sceneql.compiler.passes.reads import reads
+from sceneql.compiler.passes.touchable import touchable
 from sceneql.graph import Island, Task
 from sceneql.kinds import Contact, Force, Model, Object, Solver
 from sceneql.quantities.diagnostic import Diagnostics, Note
@@ -29,7 +31,7 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
             root[max(find(a), find(b), key=names.index)] = min(find(a), find(b), key=names.index)
 
     forces = {t.name: acts_on(t, models) for t in tasks.values() if isinstance(t.kind, Force)}
-    contacts = {t.name: _touching(t, tasks, names) for t in tasks.values() if isinstance(t.kind, Contact)}
+    contacts = {t.name: _touching(t, tasks, names, found) for t in tasks.values() if isinstance(t.kind, Contact)}
     for task in models:
         for other in reads(task.name, tasks):
             tie(task.name, other)
@@ -78,29 +80,9 @@ def acts_on(force: Task, models: list[Task]) -> tuple[str, ...]:
     return tuple(t.name for t in models if isinstance(t.kind, Model) and t.kind.has_bodies)
 
 
-def reads(name: str, tasks: Mapping[str, Task]) -> tuple[str, ...]:
-    """The dynamic models that a part's values depend on, through objects and kinematic models."""
-    found: dict[str, None] = {}
-    stack, seen = list(tasks[name].needs), {name}
-    while stack:
-        other = stack.pop()
-        if other in seen or other not in tasks:
-            continue
-        seen.add(other)
-        kind = tasks[other].kind
-        if isinstance(kind, Model) and not kind.kinematic:
-            found[other] = None
-        elif isinstance(kind, Model | Object) and not _driven_by(name, other, tasks):
-            stack.extend(tasks[other].needs)
-    return tuple(found)
-
-
-def _driven_by(model: str, name: str, tasks: Mapping[str, Task]) -> bool:
-    kind = tasks[model].kind
-    return isinstance(kind, Model) and name in kind.drives()
-
-
-def _touching(task: Task, tasks: Mapping[str, Task], models: list[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def _touching(
+    task: Task, tasks: Mapping[str, Task], models: list[str], found: Diagnostics
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """The models that a contact acts on, and the objects that they may touch."""
     assert isinstance(task.kind, Contact)
     ties = [ref.name for ref in task.kind.ties()]
@@ -111,12 +93,7 @@ def _touching(task: Task, tasks: Mapping[str, Task], models: list[str]) -> tuple
     if not targets:
         targets = [n for n in models if getattr(tasks[n].kind, "has_bodies", False)]
     if (not surfaces and len(targets) < 2) or not ties:
-        inner = {ref.name for t in tasks.values() if isinstance(t.kind, Object) for ref in t.kind.members()}
-        surfaces = [
-            t.name
-            for t in tasks.values()
-            if isinstance(t.kind, Object) and t.kind.collides and t.name not in driver and t.name not in inner
-        ]
+        return tuple(targets), touchable(tasks, found)
     return tuple(targets), tuple(surfaces)
 
 

@@ -59,7 +59,9 @@ def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, 
             before, after = _shifted(kind, -APART, assembly), _shifted(kind, APART, assembly)
             poses = (assembly.floats([APART]), *before, *after)
     except (TypeError, ValueError) as error:
-        raise ScriptError([Diagnostic("no-collider", f"'{ref.name}': {error}", ref.span or assembly.line())]) from None
+        help = f"name under `between` what may touch, without '{ref.name}'"
+        place = ref.span or assembly.line()
+        raise ScriptError([Diagnostic("no-collider", f"'{ref.name}': {error}", place, help)]) from None
     shape = import_module(f"sceneql.simulation.contacts.shapes.{here.shape}_kernels")
     signatures = {"surface": SURFACE_TYPE, "bend": BEND_TYPE, "clear": CLEAR_TYPE}
     numbers = [number_of(getattr(shape, name), signature) for name, signature in signatures.items()]

@@ -49,8 +49,8 @@ class Collision(Contact):
     }
 
     between: tuple[DrawnRef, ...] | None = field(
-        "What collides: models and objects, as `[ball, floor]`; by default all models with masses and all planes, "
-        "spheres and boxes.",
+        "What collides: models and objects, as `[ball, floor]`; by default all models with masses and all objects with "
+        "an inside that follow no model that is solved.",
         None,
     )
     restitution: Scalar = field("Normal speed after an impact as a part of that before.", "0.5", at_least=0, at_most=1)

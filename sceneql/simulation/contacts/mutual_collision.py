@@ -30,7 +30,7 @@ class MutualCollision(Contact):
 
     between: tuple[DrawnRef, ...] | None = field(
         "The models whose masses collide, and the objects that these rest on; by default all models with masses and "
-        "all planes, spheres and boxes.",
+        "all objects with an inside that follow no model that is solved.",
         None,
     )
     restitution: Scalar = field("Normal speed after an impact as a part of that before.", "0.5", at_least=0, at_most=1)

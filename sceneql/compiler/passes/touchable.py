@@ -1,0 +1,89 @@
+"""Which objects a contact touches that names none."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from sceneql.compiler.passes.reads import reads
+from sceneql.graph import Task
+from sceneql.kinds import Model, Object, Value
+from sceneql.quantities.diagnostic import Diagnostics
+
+PLACE = ("position", "rotation")
+"""What may vary in time of an object that moves and keeps its shape."""
+
+
+def touchable(tasks: Mapping[str, Task], found: Diagnostics | None = None) -> tuple[str, ...]:
+    """The objects with an inside that no model drives, by name; of the others ``found`` is told which and why.
+
+    Left out without a word: members of others, hidden objects that models or objects are made of, and what has no
+    inside or is drawn where a model is (a trail, the surface of a liquid).
+    """
+    objects = [t for t in tasks.values() if isinstance(t.kind, Object)]
+    models = [t for t in tasks.values() if isinstance(t.kind, Model)]
+    aside = {name for t in models if isinstance(t.kind, Model) for name in t.kind.drives()}
+    aside |= {ref.name for t in objects if isinstance(t.kind, Object) for ref in t.kind.members()}
+    material = {name for t in (*models, *objects) for name in t.needs}
+    result = []
+    for task in objects:
+        kind = task.kind
+        if task.name in aside or not isinstance(kind, Object) or (kind.hidden and task.name in material):
+            continue
+        if not _has_surface(kind):
+            continue
+        followed = reads(task.name, tasks)
+        if _changes_shape(task, tasks):
+            reason = "" if followed else "it changes its shape in time"
+        elif followed:
+            reason = f"it follows '{followed[0]}', which is solved"
+        elif not _has_inside(task, tasks):
+            reason = "a part of it has no inside"
+        else:
+            result.append(task.name)
+            continue
+        if found is not None and reason:
+            found.warning(
+                "not-touched",
+                f"contacts leave out '{task.name}': {reason}",
+                task.span,
+                help="masses pass through it; to say so, name under `between` what collides",
+            )
+    return tuple(result)
+
+
+def _has_surface(kind: Object) -> bool:
+    return type(kind).collider is not Object.collider or type(kind).implicit is not Object.implicit
+
+
+def _members(task: Task, tasks: Mapping[str, Task]) -> list[Task]:
+    assert isinstance(task.kind, Object)
+    return [tasks[ref.name] for ref in task.kind.members()]
+
+
+def _has_inside(task: Task, tasks: Mapping[str, Task]) -> bool:
+    """Whether it has a collider of its own, or it and all of its members a field."""
+
+    kind = task.kind
+    assert isinstance(kind, Object)
+    return type(kind).collider is not Object.collider or _has_field(task, tasks)
+
+
+def _has_field(task: Task, tasks: Mapping[str, Task]) -> bool:
+    kind = task.kind
+    own = isinstance(kind, Object) and type(kind).implicit is not Object.implicit
+    return own and all(_has_field(member, tasks) for member in _members(task, tasks))
+
+
+def _changes_shape(task: Task, tasks: Mapping[str, Task]) -> bool:
+    """Whether values vary by which contacts cannot follow it: those of its place alone may, and all of some objects."""
+
+    def varying(one: Task) -> set[str]:
+        return {name for name, value in one.kind if isinstance(value, Value) and not value.constant}
+
+    def moves(one: Task) -> bool:
+        return bool(varying(one)) or any(moves(m) for m in _members(one, tasks))
+
+    assert isinstance(task.kind, Object)
+    if task.kind.collides:
+        return False
+    return not varying(task) <= set(PLACE) or any(moves(m) for m in _members(task, tasks))
