@@ -17,6 +17,7 @@ from sceneql.simulation import dormand_prince_8, solvers, tableau
 from sceneql.simulation.island import IslandAssembly
 from sceneql.simulation.march import March
 from sceneql.simulation.solvers.blanes_moan import BlanesMoan
+from sceneql.simulation.solvers.boris import Boris
 from sceneql.simulation.solvers.dop853 import Dop853
 from sceneql.simulation.solvers.dopri5 import Dopri5
 from sceneql.simulation.solvers.euler import Euler
@@ -48,6 +49,7 @@ ELSEWHERE = {"blanes_moan": 2}
 """Order where accelerations depend on velocities, or states have none."""
 
 CLAIMED = {
+    "boris": 2,
     "heun": 2,
     "verlet": 2,
     "blanes_moan": 4,
@@ -163,7 +165,8 @@ def test_the_bound_parts_stable_from_unstable_steps(word, square, damping):
         return
     assert kind.growth(jacobian, system.partner, 0.999 * found.step) <= 1.0 + 1e-9
     assert kind.growth(jacobian, system.partner, 1.01 * found.step) > 1.0 + 1e-9
-    assert np.abs(final(system, fixed(kind.stepper(), 0.99 * found.step), 900 * found.step)).max() < 200
+    # Near its bound leapfrog that drifts first moves an oscillation about 1/sqrt(1 - 0.99^2) times as fast: 700.
+    assert np.abs(final(system, fixed(kind.stepper(), 0.99 * found.step), 900 * found.step)).max() < 800
 
 
 def test_the_bounds_on_an_undamped_spring_are_the_textbooks_own():
@@ -267,7 +270,9 @@ def energy(y):
     return 0.5 * y[1] ** 2 - math.cos(y[0])
 
 
-@pytest.mark.parametrize(("kind", "bound"), [(Verlet(step=0.1), 2e-3), (BlanesMoan(step=0.3), 2e-7)])
+@pytest.mark.parametrize(
+    ("kind", "bound"), [(Verlet(step=0.1), 2e-3), (Boris(step=0.1), 2e-3), (BlanesMoan(step=0.3), 2e-7)]
+)
 def test_a_symplectic_method_keeps_the_energy_for_ever(kind, bound):
     march = March(PENDULUM, kind.stepper(), 10_000.0)
     errors = np.array([energy(march.advance(t)[0]) - energy(PENDULUM.y) for t in np.arange(0.0, 10_000.0, 0.3)])
@@ -276,7 +281,7 @@ def test_a_symplectic_method_keeps_the_energy_for_ever(kind, bound):
     assert halves[1] == pytest.approx(halves[0], rel=0.02)
 
 
-@pytest.mark.parametrize("kind", [Verlet(step=0.1), BlanesMoan(step=0.3)])
+@pytest.mark.parametrize("kind", [Verlet(step=0.1), Boris(step=0.1), BlanesMoan(step=0.3)])
 def test_a_symmetric_method_finds_its_way_back(kind):
     y = final(PENDULUM, kind.stepper(), 30.0)
     back = final(simple("pendulum", [y[0], -y[1]], paired=True), kind.stepper(), 30.0)
