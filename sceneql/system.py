@@ -65,6 +65,8 @@ class Bodies:
     """floats[inverse_at + k]: 1/mass; 0 for a fixed body."""
     radius_at: int
     """floats[radius_at + k]: collision radius [m]."""
+    period: float = float("inf")
+    """No oscillation of the springs between them is faster at the start [s]; infinite without springs."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from runs import watch
+from sceneql.pipeline import load
 from sceneql.quantities.diagnostic import ScriptError
+from sceneql.simulation.run import Run
 
 G = 9.81
 
@@ -238,3 +240,29 @@ def test_what_cannot_be_collided_with_is_told_with_its_place(tmp_path, objects, 
     script = ball("{between: [ball, ring]}", objects, "position: 0 1 0 m", 0.1, DOPRI5)
     with pytest.raises(ScriptError, match=text + r"(.|\n)*scene.yaml:5"):
         watch(tmp_path, script, [1], "ball.a.position")
+
+
+@pytest.mark.parametrize("solver", ["dopri5", "radau"])
+def test_a_soft_jelly_is_not_crushed_in_the_long_steps_of_a_loose_tolerance(tmp_path, solver):
+    script = """
+clock: {end: 1.2 s}
+models:
+  jelly: {mass_spring: {lattice: {count: 3 3 3, spacing: 0.1 m, center: 0 1 0 m}, stiffness: 200 N/m,
+    damping: 2 N*s/m, radius: 0.05 m}}
+forces: [gravity]
+contacts: {hit: {collision: {restitution: 0.1, friction: 0.4, mode: local}}}
+objects: {floor: plane}
+solvers: {main: SOLVER}
+"""
+    shapes = []
+    for how in (f"{{{solver}: {{tolerance: 1e-3}}}}", "{rk4: {step: 1 ms}}"):
+        ((places,),) = watch(tmp_path, script.replace("SOLVER", how), [1.2], "jelly.positions")
+        shapes.append(np.ptp(places, axis=0))
+    np.testing.assert_allclose(*shapes, rtol=1e-2)
+
+
+def test_local_contacts_of_masses_without_springs_leave_steps_long(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text(ball("{mode: local}", FLOOR, DROP, 1, DOPRI5), encoding="utf-8")
+    (island,) = Run(load(path)).islands
+    assert island.march.system.largest_step == math.inf

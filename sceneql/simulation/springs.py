@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import PrivateAttr
@@ -170,7 +171,8 @@ class SpringModel(Model):
         if isinstance(self.pins, dict):
             guide(self.pins, net, assembly, bodies)
         assembly.remember(blocks_at, stiffness_at, torn_at)
-        return bodies
+        stiffnesses = blocks[:, 1] + blocks[:, 2] * assembly.numbers()[stiffness_at]
+        return replace(bodies, period=_shortest_period(net.pairs, stiffnesses, weights))
 
     def holding(self, state: ModelState) -> Any:
         """(m,) bool: the springs that have not torn."""
@@ -243,6 +245,18 @@ class SpringModel(Model):
             yield spring_look.coils(name, surface, ends, rest, self.mass_radius())
         elif self.look != "masses":
             yield spring_look.lines(name, surface, ends, self.mass_radius() if line else 0.15 * self.mass_radius())
+
+
+def _shortest_period(pairs: Any, stiffnesses: Floats, weights: Floats) -> float:
+    """A bound [s] from below: no squared frequency is above the largest of 2 (sum of stiffnesses) / mass (Gershgorin).
+
+    It is that of K v = w^2 M v, whose row of a mass has the sum on and once more beside its diagonal block.
+    """
+    import numpy as np
+
+    sums = sum(np.bincount(pairs[:, end], np.abs(stiffnesses), len(weights)) for end in range(2))
+    fastest = float(np.max(2.0 * sums / weights, initial=0.0))
+    return 2.0 * np.pi / fastest**0.5 if fastest > 0.0 else np.inf
 
 
 def _slopes(net: Net, bodies: Bodies, damped: bool) -> Slopes:

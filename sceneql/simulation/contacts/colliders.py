@@ -13,7 +13,17 @@ from sceneql.simulation.contacts.shapes import implicit
 from sceneql.simulation.shift import APART, later
 
 if TYPE_CHECKING:
-    from sceneql.system import Assembly
+    from sceneql.system import Assembly, Bodies
+
+IN_A_PERIOD = 8
+"""Steps in the shortest period of springs whose masses have local contacts: within a step each settles by itself."""
+OFTEN = 1 / 240
+"""But contacts ask for no shorter steps [s], so that stiff springs do not take an implicit method its long ones."""
+
+
+def step_by_springs(bodies: Bodies, assembly: Assembly) -> None:
+    """Let springs act between local contacts: bound the steps that a tolerance chooses."""
+    assembly.step_at_most(max(bodies.period / IN_A_PERIOD, OFTEN))
 
 
 def surfaces(refs: Sequence[Ref], assembly: Assembly, at: int) -> tuple[int, ...]:

@@ -64,7 +64,7 @@ class Collision(Contact):
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies, others: tuple[Ref, ...]) -> None:
         """Add the contacts of one model with the objects. Raises ScriptError for one that cannot be collided with."""
-        from sceneql.simulation.contacts.colliders import must_be_outside, surfaces
+        from sceneql.simulation.contacts.colliders import must_be_outside, step_by_springs, surfaces
         from sceneql.simulation.contacts.impulse_kernels import HEAD, INSTANT
         from sceneql.simulation.contacts.resting_kernels import PAIR
 
@@ -95,6 +95,7 @@ class Collision(Contact):
             assembly.contact("exact", kernels, ints, pairs)
             assembly.term("constrain", f"{folder}.collision_kernels:constrain", ints)
         else:
+            step_by_springs(bodies, assembly)
             assembly.contact("local", (f"{folder}.settle_kernels:settle",), ints, pairs)
             assembly.term("constrain", f"{folder}.settle_kernels:constrain", ints)
         assembly.remember(tally_at)

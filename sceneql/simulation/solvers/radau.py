@@ -24,7 +24,8 @@ class Radau(Solver):
 
     Three implicit stages a step, solved by Newton's iteration on the island's Jacobian, which serves as long as the
     iteration contracts well. The error of a step is held below ``absolute + tolerance |y|`` in the root mean square of
-    all entries. Local contacts act at the ends of its steps, which may be long: give a ``largest_step`` with them.
+    all entries. Local contacts act at the ends of its steps, which may be long: give a ``largest_step`` with
+    them where springs are stiff.
     Source: Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.8.
     """
 
