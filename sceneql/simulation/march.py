@@ -237,9 +237,10 @@ class March:
                 clock,
                 counts,
             )
-            if status != kernels.PAUSED:
+            if status == kernels.PAUSED:
+                self._look()
+            elif status != kernels.STEP_TOO_SMALL or not self._give_up():
                 break
-            self._look()
         done = self.statistics
         done.steps, done.rejected, done.events = (
             int(counts[k]) for k in (kernels.STEPS, kernels.REJECTED, kernels.EVENTS)
@@ -263,6 +264,18 @@ class March:
             self._change(switch, t)
             clock[kernels.STEP] = switch.stable(self, t, self._y1, step)
             clock[kernels.ERROR] = 1e-4
+
+    def _give_up(self) -> bool:
+        """Whether the explicit method goes on where the stiff one finds no step short enough."""
+        switch, clock = self._switch, self._clock
+        t = float(clock[kernels.T1])
+        if switch is None or not switch.give_up(t):
+            return False
+        self._last_look = int(self._counts[kernels.STEPS])
+        self._change(switch, t)
+        clock[kernels.STEP] = switch.stable(self, t, self._y1, float(clock[kernels.STEP]))
+        clock[kernels.ERROR] = 1e-4
+        return True
 
     def _fail(self, entry: int, message: str) -> None:
         origin = self.system.origin(entry)

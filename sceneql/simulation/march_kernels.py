@@ -211,6 +211,16 @@ def march(
                 functions, t0, t1 - t0, y0, rate0, y1, rate1,
                 sample, work, settings, numbers, floats, ints, gaps, leaving, clock[SLOP],
             )  # fmt: skip
+            if first_bad(y1) >= 0:
+                # The solver's step fails on a part of the length that it took whole: an implicit one's iteration may.
+                counts[REJECTED] += 1
+                counts[INDEX] = largest(rate0)
+                clock[STEP] = 0.3 * (t1 - t0)
+                copy(y0, y1)
+                copy(rate0, rate1)
+                if counts[ADAPTIVE] == 0 or t0 + 0.1 * clock[STEP] <= t0:
+                    return STEP_TOO_SMALL if counts[ADAPTIVE] > 0 else NOT_FINITE
+                continue
             counts[PENDING] = pair
             if reached == 0.0:
                 copy(y0, y1)

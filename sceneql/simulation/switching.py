@@ -78,6 +78,17 @@ class Switch:
         self._take(self.explicit, t, f"a stiff step replaces but {gain:.2g} explicit ones and costs {self.cost:.2g}")
         return True
 
+    def give_up(self, t: float) -> bool:
+        """Whether the explicit method takes over from a stiff one that finds no step short enough at t [s].
+
+        Where friction turns, a rate jumps: its Jacobian then says nothing, however short the step.
+        """
+        if self.active is self.explicit:
+            return False
+        self._since = t
+        self._take(self.explicit, t, f"{self.stiff.name} finds no step short enough where the rate jumps")
+        return True
+
     def refuse(self, t: float, why: str) -> None:
         """The stiff method cannot take this island: the explicit one goes on to the end."""
         self._possible = False
