@@ -266,3 +266,15 @@ def test_local_contacts_of_masses_without_springs_leave_steps_long(tmp_path):
     path.write_text(ball("{mode: local}", FLOOR, DROP, 1, DOPRI5), encoding="utf-8")
     (island,) = Run(load(path)).islands
     assert island.march.system.largest_step == math.inf
+
+
+def test_a_flight_past_local_contacts_costs_no_more_evaluations_of_the_rate(tmp_path):
+    counts = []
+    for contact in ("{hit: {collision: {mode: local}}}", "{}"):
+        path = tmp_path / "scene.yaml"
+        script = ball("{}", FLOOR, DROP, 0.4, "{rk4: {step: 10 ms}}").replace("{hit: {collision: {}}}", contact)
+        path.write_text(script, encoding="utf-8")
+        (island,) = Run(load(path)).islands
+        island.advance(0.4)
+        counts.append(island.march.statistics.evaluations)
+    assert counts[0] == counts[1] > 0

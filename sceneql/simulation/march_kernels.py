@@ -33,8 +33,8 @@ STEPS, REJECTED, EVENTS, REPEATS, LEFT, INDEX, GRID, PENDING = range(8)
 """Tallies; impacts since time moved; steps left in this call; the entry that a failure names; grid points passed; the
 pair whose impact is due (-1: none)."""
 
-ADAPTIVE, ORDER, LOCAL, LAST_STAGE, CONTROLS, COUNTS = range(8, 14)
-"""What solver and island are (system.Stepper)."""
+ADAPTIVE, ORDER, LOCAL, LAST_STAGE, CONTROLS, HELD, COUNTS = range(8, 15)
+"""What solver and island are (system.Stepper); whether a local contact holds something (CHANGED_AT)."""
 
 REACHED, PAUSED, NOT_FINITE, GROWTH, STEP_TOO_SMALL, STUCK = range(6)
 
@@ -43,7 +43,10 @@ MOST_REPEATS = 100
 
 CHANGED_AT = 1
 """floats[1]: a contact sets it to 1 when its hold changed the state. Before a settle that is to change nothing it is
-the end of the step, which contacts lower to where it should end instead; 0 before the one that counts."""
+the end of the step, which contacts lower to where it should end instead; 0 before the one that counts, in which one
+that holds something sets it to HOLDS: its next settle reads what the terms leave in floats at the step's end."""
+
+HOLDS = -1.0
 
 MARCH = types.int64(I, F, F, A, A, A, A, A, A, A, I, A, I, A, I, A, I)
 
@@ -204,7 +207,7 @@ def march(
             return status
         if counts[LAST_STAGE] >= 0:
             copy(work[counts[LAST_STAGE] * n :], rate1)
-        else:
+        elif counts[LOCAL] == 0 or leaving.size > 0 or counts[HELD] > 0:
             rate(t1, y1, rate1, floats, ints)
         if leaving.size > 0:
             pair, reached = find_event(
@@ -242,6 +245,7 @@ def march(
                 step(functions, t0, t1 - t0, y0, rate0, y1, work, settings, numbers, floats, ints)
             floats[CHANGED_AT] = 0.0
             settle(t0, t1, y0, rate0, y1, floats, ints)
+            counts[HELD] = floats[CHANGED_AT] == HOLDS
             rate(t1, y1, rate1, floats, ints)
         if leaving.size > 0:
             floats[CHANGED_AT] = 0.0

@@ -52,7 +52,9 @@ AFTER_IMPACT = 1e-4
 """Where a cut step ends, in parts of the step after the impact."""
 
 ASKED = 1
-"""floats[1]: above 0 the march only asks when the step, planned up to that time, should end; 0: settle."""
+"""floats[1]: above 0 the march only asks when the step, planned up to that time, should end; else it settles, and
+sets it to HOLDS where bodies rest: then the rate at the next step's end must be known (march_kernels)."""
+HOLDS = -1.0
 
 
 @inlined
@@ -261,6 +263,8 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
         for j in range(ints[OBJECTS]):
             resting += floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)] != FREE
     floats[ints[LAST] + RESTING] = resting
+    if resting > 0:
+        floats[ASKED] = HOLDS
 
 
 @kernel(TERM)
