@@ -99,7 +99,9 @@ def render(
     times = {name: kind.times(clock) for name, kind in outputs.items()}
     instants = sorted(set().union(*times.values()))
     tools = {
-        name: Tools(graph, name, report, _target(graph, name, len(outputs), output, folder or Path()))
+        name: Tools(
+            graph, name, report, _target(graph, name, len(outputs), output, folder or Path()), output is not None
+        )
         for name in outputs
     }
     for tool in tools.values():
@@ -178,8 +180,9 @@ def _target(graph: SimulationGraph, name: str, count: int, output: Path | None, 
 class Tools:
     """What the pipeline lends to an output (kinds.Tools)."""
 
-    def __init__(self, graph: SimulationGraph, name: str, report: Report, target: Path) -> None:
-        self.graph, self.name, self.report, self.target = graph, name, report, target
+    def __init__(self, graph: SimulationGraph, name: str, report: Report, target: Path, named: bool = False) -> None:
+        """``named``: the user gave the target, else it is a path without extension."""
+        self.graph, self.name, self.report, self.target, self.named = graph, name, report, target, named
         self._frames = 0
 
     @property
@@ -188,9 +191,13 @@ class Tools:
         return self.graph.settings.clock
 
     def path(self, extension: str) -> Path:
-        """Path of the output's file."""
+        """Path of the output's file. Raises Unsuitable where the user's name ends in something else."""
         target = self.target
-        return target if target.suffix == f".{extension}" else target.with_name(f"{target.name}.{extension}")
+        if target.suffix == f".{extension}":
+            return target
+        if self.named and target.suffix:
+            raise Unsuitable(f"'{self.name}' is written as .{extension}, which {target.name} does not end in")
+        return target.with_name(f"{target.name}.{extension}")
 
     def pixels(self, output: Picture, moment: Any) -> Any:
         """The developed picture (h, w, 3) uint8."""

@@ -151,3 +151,11 @@ def test_the_schema_knows_all_that_scenes_use():
                 if isinstance(entry, dict):
                     (word, fields), *_ = [(w, f) for w, f in entry.items() if w != "repeat"]
                     assert set(fields or {}) <= set(words[word]["properties"]), (path, word)
+
+
+def test_a_name_that_ends_in_another_format_is_refused(tmp_path):
+    film = "film: {video: {size: 64 36, renderer: normals}}"
+    (tmp_path / "f.yaml").write_text(SPRING.format(step="1 ms", end="0.1 s", solver="rk4", output=film))
+    said = sceneql(tmp_path, "render", "f.yaml", "-o", "film.txt", code=2)
+    assert said.strip() == "error: 'film' is written as .mp4, which film.txt does not end in"
+    assert [path.name for path in tmp_path.iterdir()] == ["f.yaml"]

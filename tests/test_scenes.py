@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from sceneql import pipeline
-from sceneql.report.gallery import numbers
+from sceneql.report.gallery import compare, numbers, poster
 
 SCENES = sorted((Path(__file__).parent.parent / "scenes").glob("*.yaml"))
 SOLVED = [path for path in SCENES if "models:" in path.read_text()]
@@ -26,6 +26,13 @@ def test_a_scene_gives_its_numbers_and_says_where_they_are_known_from(path):
     assert found
     assert [str(outcome) for outcome in found if not outcome.holds] == []
     assert all(outcome.expect.because.strip() for outcome in found)
+
+
+@pytest.mark.parametrize("scene", ["first", "orbit", "still_life"])  # quick ones; `gallery check` compares all
+def test_a_poster_is_as_it_is_kept(scene):
+    kept = named(scene).parent.parent / "gallery" / f"{scene}.png"
+    verdict, same = compare(poster(pipeline.load(named(scene))), kept)
+    assert same, verdict
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)

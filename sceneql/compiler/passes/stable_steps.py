@@ -19,8 +19,6 @@ from sceneql.quantities.span import Span
 SLACK = 1.0 + 1e-6
 NOTABLE = 10.0
 """Growth over the whole run from which on a method that is stable at no step is warned of."""
-STIFF = ("implicit_euler", "tr_bdf2", "radau", "auto")
-"""Solvers without a bound to name as a remedy, where there are such words."""
 
 
 def warn_of_steps(
@@ -28,14 +26,12 @@ def warn_of_steps(
     tasks: Mapping[str, Task],
     groups: Iterable[Island],
     end: float,
-    words: Iterable[str],
     found: Diagnostics,
 ) -> None:
     """Warn where an island's step exceeds the bound that its models tell by their own fields.
 
-    ``end`` [s] of the run; ``words`` are those of the solvers' family.
+    ``end`` [s] of the run.
     """
-    remedy = [word for word in STIFF if word in set(words)]
     for island in groups:
         solver = tasks[island.solver]
         step = getattr(solver.kind, "step", None)
@@ -50,7 +46,7 @@ def warn_of_steps(
                     message, smaller = wrong
                     place = (None if entry is None else _place(entry, fastest.at)) or tasks[name].span
                     origin = "" if place is None else f" ({place.source.name}:{place.line})"
-                    help = f"{'take a smaller step, or ' if smaller else ''}let {' or '.join(remedy)} march it"
+                    help = f"{'take a smaller step, or ' if smaller else ''}let auto march it"
                     text = message.format(what=f"{fastest.what}{origin}")
                     found.warning("unstable-step", text, solver.span or place, help=help)
                     break
