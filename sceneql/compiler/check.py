@@ -15,10 +15,10 @@ from pydantic import BaseModel
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.names import Names
 from sceneql.compiler.over_time import check_instants
-from sceneql.compiler.read import Reader, Unreadable
+from sceneql.compiler.read import Reader, Unreadable, report_unknown
 from sceneql.compiler.values import read_expr
 from sceneql.graph import Task
-from sceneql.kinds import Gives, Kind, Object, Quantity, Ref, Refers, Settings, Value
+from sceneql.kinds import Gives, Kind, Object, Quantity, Ref, Refers, Settings, Value, written_name
 from sceneql.language.scope import Entry
 from sceneql.language.script import Script
 from sceneql.language.tree import Mapping as MappingNode
@@ -45,6 +45,7 @@ def check(script: Script, catalogue: Catalogue, found: Diagnostics) -> Checked:
     for family, entries in script.sections.items():
         for name in entries:
             checker.task(family, name)
+    checker.defaults()
     settings = checker.settings()
     found.raise_errors()
     return Checked(script, settings, checker.tasks)
@@ -75,6 +76,24 @@ class _Checker:
             given=script.gives,
             broken=script.broken,
         )
+
+    def defaults(self) -> None:
+        """The words under ``defaults`` and their fields' names, whether or not a part uses them."""
+        root = self.script.root.entries
+        section, templates = root.get("defaults"), root.get("templates")
+        if not isinstance(section, MappingNode):
+            return
+        for word, fields in section.entries.items():
+            kinds = [cls for family in self.catalogue.families if (cls := self.catalogue.load(family, word))]
+            if kinds and isinstance(fields, MappingNode):
+                known = dict.fromkeys(written_name(name) for cls in kinds for name in cls.model_fields)
+                report_unknown(fields, known, word, self.found)
+            elif not kinds:
+                words = [each for family in self.catalogue.families for each in self.catalogue.words(family)]
+                help = suggestion(word, words) or "defaults are written by word, `{sphere: {radius: 1 m}}`"
+                if isinstance(templates, MappingNode) and word in templates.entries:
+                    help = "the defaults of a template stand in its own `fields:`"
+                self.found.error("unknown-word", f"'{word}' is no word", section.keys[word].span, help=help)
 
     def settings(self) -> Settings:
         """The top-level keys; every define is read, used or not."""

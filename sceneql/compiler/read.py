@@ -7,7 +7,7 @@ lists of these. What is wrong is reported where it stands, and reading goes on, 
 from __future__ import annotations
 
 import types
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
@@ -74,19 +74,7 @@ class Reader:
         ok = True
         got: dict[str, Any] = {}
         if isinstance(node, MappingNode):
-            known = [written_name(name) for name in cls.model_fields]
-            for name in [name for name in written if name not in known]:
-                ok = False
-                if name[:1].isdecimal() and empty(written[name]):
-                    message = "a comma ends a value here; a decimal number is written with a point"
-                    self.found.error("decimal-comma", message, node.keys[name].span)
-                    continue
-                self.found.error(
-                    "unknown-field",
-                    f"{title} has no field '{name}'",
-                    node.keys[name].span,
-                    help=suggestion(name, known) or "it has " + ", ".join(known),
-                )
+            ok = report_unknown(node, [written_name(name) for name in cls.model_fields], title, self.found)
         for python_name, info in cls.model_fields.items():
             name = written_name(python_name)
             if name not in written:
@@ -291,6 +279,20 @@ class Reader:
     def _fail(self, code: str, message: str, span: Span, help: str | None = None) -> Unreadable:
         self.found.error(code, message, span, help=help)
         return Unreadable()
+
+
+def report_unknown(node: MappingNode, known: Collection[str], title: str, found: Diagnostics) -> bool:
+    """Report the fields of a mapping that are not among the known ones; True if there are none."""
+    unknown = [name for name in node.entries if name not in known]
+    for name in unknown:
+        place = node.keys[name].span
+        if name[:1].isdecimal() and empty(node.entries[name]):
+            message = "a comma ends a value here; a decimal number is written with a point"
+            found.error("decimal-comma", message, place)
+        else:
+            help = suggestion(name, known) or "it has " + ", ".join(known)
+            found.error("unknown-field", f"{title} has no field '{name}'", place, help=help)
+    return not unknown
 
 
 def _unwrap(annotation: Any) -> tuple[Any, tuple[Any, ...]]:
