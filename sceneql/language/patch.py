@@ -160,7 +160,8 @@ class _Path:
         if numbered != step and numbered in node.entries:
             self.steps[at : at + 2] = [step := numbered]
         if step in node.entries:
-            return self.with_item(node, step, self.put(node.entries[step], at + 1))
+            whole = at + 1 == len(self.steps)
+            return self.with_item(node, step, self.put(node.entries[step], at + 1), replaced=whole)
         if at == 0 and len(self.steps) > 1:
             return self.with_item(node, step, self.put(_nothing(self.span), 1))
         if at + 1 == len(self.steps) and self.steps[0] != "define":
@@ -169,11 +170,14 @@ class _Path:
         hint = suggestion(step, node.entries) or (f"it has {has}" if has else None)
         raise self.fail(at, f"'{before}' has no '{step}'", hint)
 
-    def with_item(self, node: Mapping, key: str, value: Node) -> Mapping:
-        """A copy of a mapping with one value replaced or added."""
+    def with_item(self, node: Mapping, key: str, value: Node, replaced: bool = False) -> Mapping:
+        """A copy of a mapping with one value replaced or added.
+
+        What is replaced as a whole stands where the patch does, no longer at the old key.
+        """
         entries, keys = dict(node.entries), dict(node.keys)
         entries[key] = value
-        if key not in keys:
+        if replaced or key not in keys:
             keys[key] = Scalar(key, "text", False, self.span.source, self.span.start, self.span.end)
         return Mapping(entries, keys, node.flow, node.source, node.start, node.end)
 

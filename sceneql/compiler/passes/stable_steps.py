@@ -37,6 +37,8 @@ def warn_of_steps(
         step = getattr(solver.kind, "step", None)
         if not isinstance(step, float):
             continue
+        written = script.sections.get("solvers", {}).get(island.solver)
+        at = solver.span if written is None else _place(written, ("step",))
         damped = any(type(cast(Force, tasks[force].kind)).potential is Force.potential for force, _ in island.forces)
         for name in island.models:
             entry = script.sections.get("models", {}).get(name)
@@ -48,7 +50,7 @@ def warn_of_steps(
                     origin = "" if place is None else f" ({place.source.name}:{place.line})"
                     help = f"{'take a smaller step, or ' if smaller else ''}let auto march it"
                     text = message.format(what=f"{fastest.what}{origin}")
-                    found.warning("unstable-step", text, solver.span or place, help=help)
+                    found.warning("unstable-step", text, at or place, help=help)
                     break
 
 
