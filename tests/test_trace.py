@@ -14,6 +14,7 @@ import pytest
 import stage
 from renderers.normals import Normals
 from renderers.trace import Trace
+from renderers.tracing.draw import _kept
 from renderers.tracing.intersect_kernels import walk
 from renderers.tracing.pack import pack, scratch
 from sceneql.frame import Mesh, PointLight, Points, Segments, Sky, Surface
@@ -159,6 +160,23 @@ def test_the_bytes_are_the_same_again_and_for_any_number_of_threads(monkeypatch)
         monkeypatch.setenv("SCENEQL_THREADS", threads)
         pictures.append(Trace().draw(scene_of_all_kinds()).linear.tobytes())
     assert len(set(pictures)) == 1
+
+
+@pytest.mark.parametrize("junk", [1.0, -5.0])
+def test_a_picture_shows_nothing_of_the_one_before(junk):
+    thin = stage.segment(MIRROR, (-0.9, -0.31, 0), (0.8, 0.23, 0), 0.004)
+    black = Sky((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    draws = [
+        lambda: Trace().draw(scene_of_all_kinds()).linear,
+        lambda: draw(thin, lights=(sun((0, 1, 1), (3.0, 3.0, 3.0)), black)),
+    ]
+    for again in draws:
+        first = again()
+        for kept in _kept:
+            for array in vars(kept).values():
+                if isinstance(array, np.ndarray):
+                    array[...] = junk
+        assert np.array_equal(again(), first)
 
 
 def test_all_kinds_in_one_picture_give_light_of_finite_brightness():

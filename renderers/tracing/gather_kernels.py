@@ -7,7 +7,7 @@ from numba import types
 from renderers.tracing.camera_kernels import camera_ray
 from renderers.tracing.light_kernels import backdrop, dielectric, sharpness, sky_radiance, smoothstep
 from renderers.tracing.path_kernels import behind, bend, describe, faded, mirrored, refracted
-from renderers.tracing.record_kernels import OWNER, TINT, TRACED, WEIGHT, copy_record, start_of
+from renderers.tracing.record_kernels import OWNER, TINT, TRACED, WEIGHT, copy_record, erase, start_of
 from renderers.tracing.sampling_kernels import morton
 from renderers.tracing.scene_kernels import (
     GATHER,
@@ -50,8 +50,8 @@ def gather(scene, scratch, px, py, first, second, spare, visibility):
     """
     ox, oy, oz, dx, dy, dz, radius, spread = camera_ray(scene.reals, px, py)
     perspective = spread > 0.0
-    first[OWNER] = 0.0
-    second[OWNER] = 0.0
+    erase(first)
+    erase(second)
     wr, wg, wb = 1.0, 1.0, 1.0
     cr, cg, cb = 0.0, 0.0, 0.0
     straight = True  # the ray has only come through things, so that it sees the backdrop

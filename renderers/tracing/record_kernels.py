@@ -51,6 +51,13 @@ def start_of(record):
 
 
 @part
+def erase(record):
+    """No record: what was there is of another picture."""
+    for column in range(COLUMNS):
+        record[column] = 0.0
+
+
+@part
 def copy_record(source, target):
     """Copy a record."""
     for column in range(COLUMNS):
