@@ -309,3 +309,11 @@ def test_the_form_of_components_does_not_depend_on_numbers(name: str) -> None:
         parts = components(Call(name, tuple(known.get(id(arg), arg) for arg in call.args), call.type))
         sizes.add(tuple(len(each_once(part)) for part in parts))
     assert len(sizes) == 1
+
+
+def test_the_power_one_half_of_minus_infinity_is_not_its_root() -> None:
+    call = Call("pow", (Symbol("a", Type()), Number(0.5)))
+    for value in (-math.inf, 4.0, -1.0, math.inf, 0.0):
+        env = {call.args[0]: value}
+        same(evaluate(call, env, arrays=True), evaluate(call, env))
+        same(evaluate(call, {call.args[0]: np.array([value, 1.0])}, arrays=True), [evaluate(call, env), 1.0])

@@ -56,10 +56,19 @@ def numpy_arithmetic() -> SimpleNamespace:
             function = getattr(np, str(operation.numpy))
             if operation.name in ("min", "max"):
                 function = folded(function)
+            elif operation.name == "pow":
+                function = _power
             elif operation.name in ("lt", "le", "gt", "ge", "eq"):
                 function = counted(function)
             functions[operation.name] = function
     return SimpleNamespace(**functions, where=lambda condition, a, b: np.where(condition != 0.0, a, b), random=_random)
+
+
+def _power(a: Any, b: Any) -> Any:
+    """numpy's own takes the square root where b is 0.5, which of minus infinity is NaN and not the power."""
+    import numpy as np
+
+    return np.where((a == -np.inf) & (b == 0.5), np.inf, np.power(a, b))
 
 
 def _random(*counters: Any) -> Any:
