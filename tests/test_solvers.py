@@ -165,8 +165,9 @@ def test_the_bound_parts_stable_from_unstable_steps(word, square, damping):
         return
     assert kind.growth(jacobian, system.partner, 0.999 * found.step) <= 1.0 + 1e-9
     assert kind.growth(jacobian, system.partner, 1.01 * found.step) > 1.0 + 1e-9
-    # Near its bound leapfrog that drifts first moves an oscillation about 1/sqrt(1 - 0.99^2) times as fast: 700.
-    assert np.abs(final(system, fixed(kind.stepper(), 0.99 * found.step), 900 * found.step)).max() < 800
+    # Near its bound leapfrog that drifts first moves an oscillation 1/sqrt(1 - 0.99^2) times as fast: 700 for boris.
+    most = 800 if word == "boris" else 200
+    assert np.abs(final(system, fixed(kind.stepper(), 0.99 * found.step), 900 * found.step)).max() < most
 
 
 def test_the_bounds_on_an_undamped_spring_are_the_textbooks_own():

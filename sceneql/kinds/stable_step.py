@@ -45,8 +45,9 @@ def first_unstable(stable: Callable[[float], bool]) -> float:
 
 def stable_step(growth: Callable[[float], float]) -> float:
     """Largest stable step by the growth factor of a step; 0 where it is rounding alone that would allow one."""
-    sharp, sharper = (
-        first_unstable(lambda step: growth(step) <= 1.0 + 1e-14 + neutral * step)  # noqa: B023
-        for neutral in (NEUTRAL, NEUTRAL / 100)
-    )
+
+    def bound(neutral: float) -> float:
+        return first_unstable(lambda step: growth(step) <= 1.0 + 1e-14 + neutral * step)
+
+    sharp, sharper = bound(NEUTRAL), bound(NEUTRAL / 100)
     return 0.0 if sharp < 100 * LEAST or sharper < 0.8 * sharp else sharp
