@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import model_validator
 
-from sceneql.kinds import FixedLength, Object, ObjectRef, Record, Ref, Value, field
+from sceneql.kinds import FixedLength, Object, ObjectRef, Record, Ref, field
 from sceneql.quantities.chance import philox, unit
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.simulation.start import Start
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -39,23 +40,6 @@ class Fill(Record):
         if self.pattern == "grid" and self.spacing is None:
             raise ValueError("a grid needs a `spacing`")
         return self
-
-
-class Start:
-    """The scene at the start of the run, as objects see it while an island is assembled (part of kinds.Moment)."""
-
-    time = 0.0
-
-    def __init__(self, assembly: Assembly) -> None:
-        self._assembly = assembly
-
-    def at(self, value: Value) -> Any:
-        """A value at the start."""
-        return self._assembly.initial(value)
-
-    def object(self, ref: Ref) -> Object:
-        """The kind of an object."""
-        return self._assembly.object(ref)
 
 
 class Inside:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
-from sceneql.kinds import Collider, Moment, Object, Ref, Value
+from sceneql.kinds import Collider, Moment, Object, Value
 from sceneql.quantities.dimension import LENGTH
 from sceneql.quantities.expression import Number, Type, Vector
 from sceneql.simulation.placement import Placed
+from sceneql.simulation.start import Start
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -20,23 +21,6 @@ SMALLEST = 1e-4
 """Thickness, as a part of a solid's size, below which a fast body might not see it."""
 ORIGIN = Value(Vector((Number(0.0), Number(0.0), Number(0.0)), Type((3,), LENGTH)))
 UPRIGHT = Value(Vector((Number(1.0), Number(0.0), Number(0.0), Number(0.0)), Type((4,))))
-
-
-class Start:
-    """What an object's field may ask at the start of the run (kinds.Moment)."""
-
-    time = 0.0
-
-    def __init__(self, assembly: Assembly) -> None:
-        self._assembly = assembly
-
-    def at(self, value: Value) -> Any:
-        """The value at the start."""
-        return self._assembly.initial(value)
-
-    def object(self, ref: Ref) -> Object:
-        """The kind of a member."""
-        return self._assembly.object(ref)
 
 
 def collider(kind: Object, assembly: Assembly) -> Collider:

@@ -1,0 +1,26 @@
+"""The scene at the start of the run, as objects see it while an island is assembled."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from sceneql.kinds import Object, Ref, Value
+    from sceneql.system import Assembly
+
+
+class Start:
+    """What an object's field and extent may ask of a moment (part of kinds.Moment)."""
+
+    time = 0.0
+
+    def __init__(self, assembly: Assembly) -> None:
+        self._assembly = assembly
+
+    def at(self, value: Value) -> Any:
+        """A value at the start."""
+        return self._assembly.initial(value)
+
+    def object(self, ref: Ref) -> Object:
+        """The kind of an object."""
+        return self._assembly.object(ref)
