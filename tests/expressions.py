@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from hypothesis import strategies as st
 
 from sceneql.quantities import dimension as dim
-from sceneql.quantities.bind import bind
+from sceneql.quantities.bind import bind, component
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
 from sceneql.quantities.expression import Call, Expr, Link, Name, Number, Symbol, Type, Vector
 from sceneql.quantities.operations import FUNCTIONS, OPERATIONS
@@ -33,7 +33,9 @@ def bound(text: str, symbols: Mapping[str, Expr] | None = None) -> Expr:
     known = symbols or {}
 
     def lookup(parts: tuple[str, ...], span: Span) -> Expr | Diagnostic:
-        name = ".".join(parts)
+        name, first = ".".join(parts), ".".join(parts[:-1])
+        if name not in known and first in known:
+            return component(known[first], first, parts[-1], span)
         return known.get(name) or Diagnostic("unknown-name", f"nothing is called '{name}'", span)
 
     expr = bind(valued(text), lookup, found)

@@ -9,13 +9,12 @@ from typing import Any
 from sceneql.kinds import Gives
 from sceneql.language.scope import Given, Scope
 from sceneql.language.tree import Node
-from sceneql.quantities.diagnostic import Diagnostics, suggestion
+from sceneql.quantities.bind import component
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, suggestion
 from sceneql.quantities.dimension import PLAIN, TIME
 from sceneql.quantities.expression import Call, Expr, Key, Keys, Link, Number, Symbol, Type, Vector
 from sceneql.quantities.operations import CONSTANTS
 from sceneql.quantities.span import Span
-
-COMPONENTS = {"x": 0, "y": 1, "z": 2}
 
 
 @dataclass
@@ -65,32 +64,35 @@ class Names:
         if field is not None:
             node, outer = field
             expr = self.read(node, outer)
-            return None if expr is None else self._component(expr, parts[1:], span)
+            return None if expr is None else self._component(expr, parts, 1, span)
         if head in self.defines:
             expr = self.define(head, span)
-            return None if expr is None else self._component(expr, parts[1:], span)
+            return None if expr is None else self._component(expr, parts, 1, span)
         for size in range(len(parts) - 1, 0, -1):
             task = ".".join(parts[:size])
             task = task if self.scope is None else self.scope.resolve(task)
             given = self.given.get(f"{task}.{parts[size]}")
             if given is not None:
                 expr = self.read(given.node, replace(self, scope=given.scope))
-                return None if expr is None else self._component(expr, parts[size + 1 :], span)
+                return None if expr is None else self._component(expr, parts, size + 1, span)
             outputs = self.outputs_of(task)
             if outputs is not None:
-                return self._output(task, outputs, parts[size:], span)
+                return self._output(task, outputs, parts, size, span)
             if task in self.parts or task in self.broken:
                 return None  # it is reported there
         if head not in CONSTANTS or len(parts) > 1:
             self._unknown(parts, span)
         return None
 
-    def _output(self, task: str, outputs: Mapping[str, Gives], rest: tuple[str, ...], span: Span) -> Expr | None:
-        for size in range(len(rest), 0, -1):
-            name = ".".join(rest[:size])
+    def _output(
+        self, task: str, outputs: Mapping[str, Gives], parts: tuple[str, ...], first: int, span: Span
+    ) -> Expr | None:
+        """The output of a part that the names from number ``first`` on say, or a component of it."""
+        for size in range(len(parts), first, -1):
+            name = ".".join(parts[first:size])
             if name in outputs:
-                return self._component(Link(task, name, outputs[name].type, span), rest[size:], span)
-        wanted = ".".join(rest)
+                return self._component(Link(task, name, outputs[name].type, span), parts, size, span)
+        wanted = ".".join(parts[first:])
         names = ", ".join(sorted(outputs)) or "nothing"
         self.found.error(
             "unknown-output",
@@ -100,14 +102,15 @@ class Names:
         )
         return None
 
-    def _component(self, expr: Expr, rest: tuple[str, ...], span: Span) -> Expr | None:
-        if not rest:
-            return expr
-        if len(rest) == 1 and rest[0] in COMPONENTS and expr.type.shape and expr.type.shape[-1] == 3:
-            index = Number(float(COMPONENTS[rest[0]]))
-            return Call("component", (expr, index), Type(expr.type.shape[:-1], expr.type.dimension), span)
-        self.found.error("unknown-output", f"there is no '.{'.'.join(rest)}' here", span)
-        return None
+    def _component(self, whole: Expr, parts: tuple[str, ...], size: int, span: Span) -> Expr | None:
+        """The component that the names after the first ``size`` say, if any."""
+        for at in range(size, len(parts)):
+            part = component(whole, ".".join(parts[:at]), parts[at], span)
+            if isinstance(part, Diagnostic):
+                self.found.add(part)
+                return None
+            whole = part
+        return whole
 
     def _unknown(self, parts: tuple[str, ...], span: Span) -> None:
         wanted = ".".join(parts)

@@ -17,9 +17,8 @@ from sceneql.quantities.span import Span
 Lookup = Callable[[tuple[str, ...], Span], Expr | Diagnostic | None]
 """What a dotted name means: its typed tree, or else the Diagnostic that says why it means nothing.
 
-The Diagnostic is reported only if bind finds no meaning either: ``a.b.x`` is a component of the vector ``a.b``, and
-`pi`, `tau`, `e` are constants where nothing else is called so. None: no more is to be said of the name, unless it is
-one of these constants.
+The Diagnostic is reported only if bind finds no meaning either: `pi`, `tau`, `e` are constants where nothing else is
+called so. None: no more is to be said of the name, unless it is one of these constants.
 """
 
 COMPONENTS = {3: "xyz", 2: "xy", 4: "wxyz"}
@@ -59,29 +58,22 @@ def _bound(node: Expr, bound: dict[int, Expr | None], lookup: Lookup, found: Dia
     return node
 
 
-def _meaning(parts: tuple[str, ...], span: Span, lookup: Lookup, shorter: int = 2) -> Expr | Diagnostic | None:
-    """``shorter``: how many names may be taken off as components."""
+def _meaning(parts: tuple[str, ...], span: Span, lookup: Lookup) -> Expr | Diagnostic | None:
     expr = lookup(parts, span)
-    if expr is not None and not isinstance(expr, Diagnostic):
-        return expr
-    if len(parts) == 1 and parts[0] in CONSTANTS:
+    if (expr is None or isinstance(expr, Diagnostic)) and len(parts) == 1 and parts[0] in CONSTANTS:
         return Number(CONSTANTS[parts[0]], span=span)
-    if isinstance(expr, Diagnostic) and shorter and len(parts) > 1 and parts[-1] in ("w", "x", "y", "z"):
-        whole = _meaning(parts[:-1], span, lookup, shorter - 1)
-        if whole is not None and not isinstance(whole, Diagnostic):
-            return _component(whole, parts, span)
     return expr
 
 
-def _component(whole: Expr, parts: tuple[str, ...], span: Span) -> Expr | Diagnostic:
+def component(whole: Expr, of: str, name: str, span: Span) -> Expr | Diagnostic:
+    """A component of the vector called ``of``, or why it has none of this name (`no-component`)."""
     shape = whole.type.shape
     names = COMPONENTS.get(shape[-1] or 0, "") if shape else ""
-    if parts[-1] not in names:
+    if len(name) != 1 or name not in names:
         kinds = ", ".join(f".{name}" for name in names)
-        message = f"'{'.'.join(parts[:-1])}' has no component '.{parts[-1]}'"
         help = f"its components are {kinds}" if names else f"it is {shape_text(shape)}"
-        return Diagnostic("no-component", message, span, help)
-    index = Number(float(names.index(parts[-1])))
+        return Diagnostic("no-component", f"'{of}' has no component '.{name}'", span, help)
+    index = Number(float(names.index(name)))
     return fold(Call("component", (whole, index), Type(shape[:-1], whole.type.dimension), span))
 
 

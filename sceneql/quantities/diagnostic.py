@@ -99,6 +99,11 @@ class Diagnostics:
             self._seen.add(key)
             self.found.append(diagnostic)
 
+    def extend(self, diagnostics: Iterable[Diagnostic]) -> None:
+        """Keep those of an error that was caught, so that what follows is told too."""
+        for diagnostic in diagnostics:
+            self.add(diagnostic)
+
     def error(
         self, code: str, message: str, span: Span | None, *, help: str | None = None, notes: Iterable[Note] = ()
     ) -> None:

@@ -16,6 +16,7 @@ import numpy as np
 
 from sceneql.failure import LimitRefused
 from sceneql.kinds import Object, Ref, Value
+from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.expression import Expr, Link
 from sceneql.simulation.inputs import Inputs
 from sceneql.simulation.jacobian import full, section
@@ -246,12 +247,11 @@ class IslandAssembly:
         return " and ".join(modes) or "none"
 
     def finish(self, jacobian: bool = False) -> System:
-        """The island as arrays, with its Jacobian if asked for. Raises ScriptError for a value without a program."""
+        """The island as arrays, with its Jacobian if asked for. Raises ScriptError for values without a program."""
         y = self.start()
         slopes = self._slopes() if jacobian else None
         inputs = self._inputs()
-        program = [number for first, value in self._varying for number in inputs.program(value, first)]
-        blocks = [_Block((), tuple(program))]
+        blocks = [_Block((), tuple(self._program(inputs)))]
         groups: list[tuple[tuple[str, ...], int]] = []
         for stage in STAGES:
             groups += _grouped(self._terms[stage], blocks)
@@ -294,6 +294,18 @@ class IslandAssembly:
     def numbers(self) -> Floats:
         """The floats stored so far."""
         return np.concatenate(self._numbers)
+
+    def _program(self, inputs: Inputs) -> list[int]:
+        """What evaluates the values that vary."""
+        program: list[int] = []
+        found = Diagnostics()
+        for first, value in self._varying:
+            try:
+                program += inputs.program(value, first)
+            except ScriptError as error:
+                found.extend(error.diagnostics)
+        found.raise_errors()
+        return program
 
     def _slopes(self) -> list[tuple[Slopes, Sequence[int]]] | None:
         """The slopes of all terms with their integers; None where those of one are not known."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, cast
@@ -12,6 +13,7 @@ import numpy as np
 from sceneql.failure import RunFailure, failing_as
 from sceneql.graph import Island, SimulationGraph, Task
 from sceneql.kinds import Contact, Force, Material, Model, Object, Ref, Solver, Value
+from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Expr, Link, Symbol
 from sceneql.simulation.bounds import box_of
@@ -30,11 +32,16 @@ BOUNDS_MOMENTS = 49
 
 
 class Run:
-    """One run of a graph. ``moments`` may be called once; its moments are valid until the next one is asked for."""
+    """One run of a graph. ``moments`` may be called once; its moments are valid until the next one is asked for.
+
+    Raises ScriptError with all that keeps its islands from being built.
+    """
 
     def __init__(self, graph: SimulationGraph) -> None:
         self.graph = graph
-        self.islands = [IslandRun(graph, island) for island in graph.islands]
+        found = Diagnostics()
+        self.islands = [run for island in graph.islands if (run := _built(graph, island, found)) is not None]
+        found.raise_errors()
         self.island_of = {name: run for run in self.islands for name in run.members}
         self.orders = _orders(graph)
         self.palette = _palette(graph)
@@ -94,12 +101,12 @@ class IslandRun:
 
         self.graph, self.island = graph, island
         self.solver = cast(Solver, graph.tasks[island.solver].kind)
-        assembly = IslandAssembly(Setting(graph.tasks))
+        self.assembly = assembly = IslandAssembly(Setting(graph.tasks))
+        self.found = Diagnostics()
         self.bodies: dict[str, Bodies | None] = {}
         for name in island.models:
-            with assembly.word(name, graph.tasks[name].span):
+            with self._word(name):
                 self.bodies[name] = cast(Model, graph.tasks[name].kind).assemble(name, assembly)
-        self.assembly = assembly
         assembly.places = self._places
         for force in dict.fromkeys(force for force, _ in island.forces):
             self._add_force(force)
@@ -107,6 +114,7 @@ class IslandRun:
         # Masses among themselves last: objects need the whole path of a step as the solver made it.
         for contact in sorted(contacts, key=lambda name: cast(Contact, graph.tasks[name].kind).mutual):
             self._add_contact(contact)
+        self.found.raise_errors()
         stepper = self.solver.stepper()
         self.march: March = March(
             assembly.finish(stepper.jacobian), stepper, graph.settings.clock.end, lambda: assembly.finish(jacobian=True)
@@ -114,26 +122,35 @@ class IslandRun:
         self.members = {*island.models, *(contact for contact, _, _ in island.contacts)}
         self._now: tuple[float, Floats, Floats] | None = None
 
+    @contextmanager
+    def _word(self, name: str, model: str | None = None) -> Iterator[None]:
+        """What is added inside comes from the part ``name``; what is wrong with it does not hide what else is."""
+        with self.assembly.word(name, self.graph.tasks[name].span, model):
+            try:
+                yield
+            except ScriptError as error:
+                self.found.extend(error.diagnostics)
+
     def _add_force(self, force: str) -> None:
         """Add a force on the masses of all its models."""
         task = self.graph.tasks[force]
         kind = cast(Force, task.kind)
-        everyone = [self.bodies[model] for name, model in self.island.forces if name == force]
+        everyone = [self.bodies.get(model) for name, model in self.island.forces if name == force]
         masses = [bodies for bodies in everyone if bodies is not None]
         if kind.mutual and masses:
-            with self.assembly.word(force, task.span):
+            with self._word(force):
                 kind.assemble_together(force, self.assembly, masses)
         for bodies in masses if not kind.mutual else ():
-            with self.assembly.word(force, task.span, bodies.model):
+            with self._word(force, bodies.model):
                 kind.assemble(force, self.assembly, bodies)
 
     def _add_contact(self, contact: str) -> None:
         """Add a contact of the masses of all its models with its objects."""
         task = self.graph.tasks[contact]
         kind = cast(Contact, task.kind)
-        rows = [(self.bodies[model], others) for name, model, others in self.island.contacts if name == contact]
+        rows = [(self.bodies.get(model), others) for name, model, others in self.island.contacts if name == contact]
         masses = [(bodies, tuple(Ref(other) for other in others)) for bodies, others in rows if bodies is not None]
-        with self.assembly.word(contact, task.span):
+        with self._word(contact):
             if kind.mutual and masses:
                 kind.assemble_together(contact, self.assembly, [bodies for bodies, _ in masses], masses[0][1])
             for bodies, refs in masses if not kind.mutual else ():
@@ -179,6 +196,14 @@ class IslandRun:
                 view = replace(state, ints=self.assembly.remembered(force, None if kind.mutual else model))
                 potential += kind.potential(bodies, view)
         return replace(state, potential=potential)
+
+
+def _built(graph: SimulationGraph, island: Island, found: Diagnostics) -> IslandRun | None:
+    try:
+        return IslandRun(graph, island)
+    except ScriptError as error:
+        found.extend(error.diagnostics)
+        return None
 
 
 @dataclass
