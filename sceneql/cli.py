@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 OK, RUN_FAILED, USAGE, SCRIPT_INVALID, GALLERY_DIFFERS, LIMIT_REFUSED, INTERRUPTED = 0, 1, 2, 3, 4, 5, 130
 
+ABOVE_ZERO = click.FloatRange(min=0, min_open=True)
+
 F = TypeVar("F", bound=Callable[..., Any])
 
 
@@ -143,10 +145,16 @@ def render(
 def check(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None) -> None:
     """Find all errors of a script, and of each of its variants, without running it."""
     from sceneql import pipeline
+    from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 
     graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
+    found = Diagnostics()
     for name in graph.variants if variant is None else ():
-        pipeline.load(scene, variant=name, sets=sets, words=words)
+        try:
+            pipeline.load(scene, variant=name, sets=sets, words=words)
+        except ScriptError as error:
+            found.extend(error.diagnostics)
+    found.raise_errors()
     _warn(graph)
     click.echo(
         f"{scene}: ok, {len(graph.tasks)} parts" + (f", {len(graph.left_out)} not needed" if graph.left_out else "")
@@ -178,7 +186,7 @@ def explain(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path
 @SCENE
 @_options
 @click.option("-o", "--output", callback=_path, help="Folder for the files, or their path without extension.")
-@click.option("--error", type=float, help="Name the cheapest solver for this relative error.")
+@click.option("--error", type=ABOVE_ZERO, help="Name the cheapest solver for this relative error.")
 def bench(
     scene: Path,
     variant: str | None,
@@ -204,8 +212,8 @@ def bench(
 @click.option(
     "--sweep", metavar="PATH=LOW..HIGH", help="As 'define.k=1e0..1e12 N/m'; by default steps, as 'step=1e-5..1'."
 )
-@click.option("--points", type=int, help="Values of the sweep; by default 13.")
-@click.option("--error", type=float, default=0.1, show_default=True, help="Larger relative errors are inaccurate.")
+@click.option("--points", type=click.IntRange(min=1), help="Values of the sweep; by default 13.")
+@click.option("--error", type=ABOVE_ZERO, default=0.1, show_default=True, help="Larger relative errors are inaccurate.")
 @click.option("-o", "--output", callback=_path, help="Folder for the files, or their path without extension.")
 def stability(
     scene: Path,
@@ -235,9 +243,11 @@ def stability(
 @_options
 @click.option("--object", "name", required=True, metavar="NAME", help="The object.")
 @click.option("-o", "--output", callback=_path, required=True, help="File to make: .ply, .stl, .obj or .glb.")
-@click.option("--cell", type=float, metavar="METERS", help="Side of a cell; by default 1/128 of the object's size.")
-@click.option("--tolerance", type=float, metavar="METERS", help="Distance from the surface, in place of --cell.")
-@click.option("--time", type=float, default=0.0, metavar="SECONDS", help="Instant of the simulation; by default 0.")
+@click.option("--cell", type=ABOVE_ZERO, metavar="METERS", help="Side of a cell; by default 1/128 of the object's size.")
+@click.option("--tolerance", type=ABOVE_ZERO, metavar="METERS", help="Distance from the surface, in place of --cell.")
+@click.option(
+    "--time", type=click.FloatRange(min=0), default=0.0, metavar="SECONDS", help="Instant of the simulation."
+)
 def mesh(
     scene: Path,
     variant: str | None,

@@ -95,6 +95,8 @@ def render(
     outputs = {name: task.kind for name, task in graph.tasks.items() if isinstance(task.kind, Output)}
     if output is not None and len(outputs) > 1:
         raise Unsuitable(f"one file is named, but the script has {len(outputs)} outputs: {', '.join(outputs)}")
+    if output is not None and not output.parent.is_dir():
+        raise FileNotFoundError(f"there is no folder {output.parent}")
     clock = graph.settings.clock
     times = {name: kind.times(clock) for name, kind in outputs.items()}
     instants = sorted(set().union(*times.values()))

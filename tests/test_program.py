@@ -46,6 +46,26 @@ def sceneql(folder, *args, code=0):
     return done.stdout + done.stderr
 
 
+def test_check_tells_the_mistakes_of_all_variants(tmp_path):
+    script = STILL + "variants: {a: {objects.ball.radus: 1 m}, b: {}, c: {objects.ball.radius: 1 s}}\n"
+    (tmp_path / "still.yaml").write_text(script)
+    said = sceneql(tmp_path, "check", "still.yaml", code=3)
+    assert "2 errors" in said
+    assert said.index("radus") < said.index("1 s")
+
+
+def test_no_folder_is_made_for_a_path_that_was_named(tmp_path):
+    (tmp_path / "still.yaml").write_text(STILL)
+    assert "there is no folder nowhere" in sceneql(tmp_path, "render", "still.yaml", "-o", "nowhere/x.png", code=1)
+    assert not (tmp_path / "nowhere").exists()
+
+
+def test_numbers_of_options_are_in_range(tmp_path):
+    (tmp_path / "still.yaml").write_text(STILL)
+    for options in (["bench", "--error", "-1"], ["stability", "--points", "0"], ["mesh", "--cell", "0"]):
+        assert "is not in the range" in sceneql(tmp_path, *options, "still.yaml", code=2)
+
+
 def test_render_sets_variants_and_names(tmp_path):
     (tmp_path / "still.yaml").write_text(STILL + "variants: {wide: {outputs.still.size: 64 18}}\n")
     assert "made still.png" in sceneql(tmp_path, "render", "still.yaml")
