@@ -243,11 +243,9 @@ def stability(
 @_options
 @click.option("--object", "name", required=True, metavar="NAME", help="The object.")
 @click.option("-o", "--output", callback=_path, required=True, help="File to make: .ply, .stl, .obj or .glb.")
-@click.option("--cell", type=ABOVE_ZERO, metavar="METERS", help="Side of a cell; by default 1/128 of the object's size.")
+@click.option("--cell", type=ABOVE_ZERO, metavar="METERS", help="Side of a cell; by default 1/128 of its size.")
 @click.option("--tolerance", type=ABOVE_ZERO, metavar="METERS", help="Distance from the surface, in place of --cell.")
-@click.option(
-    "--time", type=click.FloatRange(min=0), default=0.0, metavar="SECONDS", help="Instant of the simulation."
-)
+@click.option("--time", type=click.FloatRange(min=0), default=0.0, metavar="SECONDS", help="Instant of the simulation.")
 def mesh(
     scene: Path,
     variant: str | None,
