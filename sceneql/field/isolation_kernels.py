@@ -6,46 +6,20 @@ twice as long; else the segment is cut where the enclosure allows no zero, and h
 that lies before a root returned is proved to be outside, up to the tolerance.
 """
 
+from sceneql.field.bracket_kernels import FINE, along, polished
+from sceneql.field.certified_kernels import certify, surely
 from sceneql.field.enclosure_kernels import segment
-from sceneql.field.tape_kernels import TAPE, value
+from sceneql.field.slope_kernels import on_ray
+from sceneql.field.tape_kernels import TAPE
 from sceneql.field.tape_ops import HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
-from sceneql.kernels import kernel, woven
+from sceneql.kernels import kernel, lean, woven
 
 EVALUATIONS = 2000
 """Enclosures spent on one ray before it is left undecided."""
-FINE = 5.0e-13
-"""Half the width of a bracket, relative to its place on the ray, at which a root is polished."""
-
-
-@woven
-def along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t):
-    """f at the place t of a ray."""
-    return value(code, constants, parts, scratch, ox + t * dx, oy + t * dy, oz + t * dz)
-
-
-@woven
-def polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign):
-    """Where sign f goes from >= 0 at a to < 0 at b: bisection and the secant by turns."""
-    fa = sign * along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a)
-    fb = sign * along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, b)
-    for turn in range(100):
-        if not b - a > FINE * (abs(a) + abs(b)):
-            break
-        t = 0.5 * (a + b)
-        if turn % 2 == 0 and fa > fb:
-            t = a + (b - a) * (fa / (fa - fb))
-        if t <= a or t >= b:
-            t = 0.5 * (a + b)
-            if t <= a or t >= b:
-                break
-        f = sign * along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t)
-        if f < 0.0:
-            b = t
-            fb = f
-        else:
-            a = t
-            fa = f
-    return b
+BACK = 2.0e-3
+"""How far before the place where enclosures could not go on the certified intervals begin, relative to the ray."""
+POLES = 16
+"""Changes of sign without a root that are passed on one ray."""
 
 
 @kernel(
@@ -53,8 +27,11 @@ def polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign
     " float64, float64, float64, float64, boolean)",
     _nrt=False,
 )
-def isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, sign, anywhere):
-    """(status, t) of the first entry into {sign f < 0}, or with ``anywhere`` of any place in it; never INSIDE."""
+def search(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, sign, anywhere):
+    """(status, t) of the first entry into {sign f < 0}, or with ``anywhere`` of any place in it; never INSIDE.
+
+    UNDECIDED: all before t is proved to be outside; ``certify`` may tell what is there.
+    """
     a = t0
     b = t1
     end = t1
@@ -119,6 +96,17 @@ def isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tol
 
 
 @woven
+def isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, sign, anywhere):
+    """As ``search``, and by the certified intervals from where that could not go on."""
+    status, t = search(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, sign, anywhere)
+    if status == UNDECIDED:
+        t = max(t - BACK * (t1 - t0), t0)
+        share = tolerance * (t1 - t0) / max(t1 - t, tolerance * (t1 - t0))
+        return certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, share, sign, anywhere, False)
+    return status, t
+
+
+@woven
 def first_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance):
     """(status, t) of the first entry of the ray o + t d, t in [t0, t1], into the solid {f < 0}.
 
@@ -147,3 +135,41 @@ def exit_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, t
 def any_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance):
     """HIT where the ray meets the solid anywhere in [t0, t1], MISS where it proves not to, UNDECIDED: shadow rays."""
     return isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, 1.0, True)[0]
+
+
+@lean(
+    f"Tuple((int64, float64))({TAPE}, float64, float64, float64, float64, float64, float64, float64, float64, float64)"
+)
+def surface_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance):
+    """(status, t) of the first root of f on the ray o + t d, t in [t0, t1], with or without a change of sign.
+
+    HIT: all before t is proved to have none, and at t is one, up to rounding: see ``certify``. MISS: none is there.
+    UNDECIDED: all before is proved, and t lies behind what could not be told. Where f jumps or has a pole is no root.
+    """
+    near = tolerance * (t1 - t0)
+    start = t0
+    for _ in range(POLES):
+        side, _, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, 1.0)
+        status = UNDECIDED
+        t = start
+        if side != 0:
+            status, t = search(
+                code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, tolerance, float(side), False
+            )
+        if status == MISS:
+            return MISS, t1
+        if status == UNDECIDED:
+            t = max(t - BACK * (t1 - t0), start)
+            share = near / max(t1 - t, near)
+            status, t = certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, share, 1.0, False, True)
+            if status != HIT:
+                return status, t
+        _, _, _, _, known = on_ray(
+            code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t - 0.01 * near, t + 0.01 * near, 1.0
+        )
+        if known == WHOLE:
+            return HIT, t
+        start = t + near
+        if not start < t1:
+            return MISS, t1
+    return UNDECIDED, start

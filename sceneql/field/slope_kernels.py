@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Bounds of a tape's gradient over a box: forward differentiation with intervals, after ``interval_kernels.box``.
+"""Bounds of a tape's derivatives over a box: forward differentiation with intervals, after ``interval_kernels.box``.
 
 They bound the generalized gradient (Clarke 1975) where branches of min, max and abs meet, so that f still changes by no
 more than the bounds times the way.
@@ -8,7 +8,7 @@ more than the bounds times the way.
 import numpy as np
 
 from sceneql.field.density_kernels import offset
-from sceneql.field.interval_kernels import TURN, binary_box, outward, unary_box, wave
+from sceneql.field.interval_kernels import TINY, TURN, binary_box, box, outward, unary_box, wave
 from sceneql.field.tape_kernels import TAPE
 from sceneql.field.tape_ops import (
     ABS,
@@ -31,10 +31,15 @@ from sceneql.field.tape_ops import (
     SQRT,
     SQUARE,
     SUB,
+    WHOLE,
     X,
+    Y,
     Z,
 )
 from sceneql.kernels import inlined, lean
+
+BLUR = 5.0e-16
+"""Rounding of a point of a ray, relative to the sizes of what is added."""
 
 
 @inlined
@@ -124,8 +129,8 @@ def single_slopes(op, low, high, a, b):
 
 
 @inlined
-def density_slopes(parts, start, stop, scratch, k, p):
-    """Bounds of the gradient of a density field, times those of its point's rows p..p+2, into row k of scratch."""
+def density_slopes(parts, start, stop, scratch, k, p, columns):
+    """Bounds of a density field's gradient, times the slopes of its point's rows p..p+2, into row k of scratch."""
     hx = 0.5 * (scratch[p, 1] - scratch[p, 0])
     hy = 0.5 * (scratch[p + 1, 1] - scratch[p + 1, 0])
     hz = 0.5 * (scratch[p + 2, 1] - scratch[p + 2, 0])
@@ -159,7 +164,7 @@ def density_slopes(parts, start, stop, scratch, k, p):
     gx, ex = outward(gx, ex)
     gy, ey = outward(gy, ey)
     gz, ez = outward(gz, ez)
-    for column in range(2, 8, 2):
+    for column in range(2, columns, 2):
         p0, p1 = times(gx, ex, scratch[p, column], scratch[p, column + 1])
         low, high = times(gy, ey, scratch[p + 1, column], scratch[p + 1, column + 1])
         p0 += low
@@ -168,22 +173,25 @@ def density_slopes(parts, start, stop, scratch, k, p):
         scratch[k, column], scratch[k, column + 1] = outward(p0 + low, p1 + high)
 
 
-@lean(f"UniTuple(float64, 3)({TAPE})")
-def steepness(code, constants, parts, scratch):
-    """Bounds of |df/dx|, |df/dy|, |df/dz| in the box for which ``box`` left WHOLE in scratch; infinite without any."""
-    last = code.shape[0] - 1
-    for k in range(last + 1):
+@inlined
+def differentiate(code, parts, scratch, columns, dx, dy, dz):
+    """Slopes of all rows into columns 2..columns of scratch; whether they are finite.
+
+    With 8 columns those along x, y and z; with 4 those along (dx, dy, dz).
+    """
+    for k in range(code.shape[0]):
         op = code[k, 0]
         left = code[k, 1]
         right = code[k, 2]
         if op == DENSITY:
-            density_slopes(parts, left, right, scratch, k, code[k, 3])
+            density_slopes(parts, left, right, scratch, k, code[k, 3], columns)
             continue
         if op == CONSTANT or (op >= X and op <= Z):
-            for axis in range(3):
-                own = 1.0 if op - X == axis else 0.0
-                scratch[k, 2 + 2 * axis] = own
-                scratch[k, 3 + 2 * axis] = own
+            along = 0.0 if op == CONSTANT else (dx if op == X else (dy if op == Y else dz))
+            for column in range(2, columns, 2):
+                own = (1.0 if 2 * (op - X) + 2 == column else 0.0) if columns > 4 else along
+                scratch[k, column] = own
+                scratch[k, column + 1] = own
             continue
         low = scratch[k, 0]
         high = scratch[k, 1]
@@ -194,7 +202,7 @@ def steepness(code, constants, parts, scratch):
             )
         else:
             p, q = single_slopes(op, low, high, scratch[left, 0], scratch[left, 1])
-        for column in range(2, 8, 2):
+        for column in range(2, columns, 2):
             a, b = times(p, q, scratch[left, column], scratch[left, column + 1])
             if op <= ATAN2 and op != COPY:
                 c, d = times(r, s, scratch[right, column], scratch[right, column + 1])
@@ -205,11 +213,54 @@ def steepness(code, constants, parts, scratch):
                         c = d = 0.0
                 a, b = outward(a + c, b + d)
             if not (a > -1.0e300 and b < 1.0e300):
-                return np.inf, np.inf, np.inf
+                return False
             scratch[k, column] = a
             scratch[k, column + 1] = b
+    return True
+
+
+@lean(f"UniTuple(float64, 3)({TAPE})")
+def steepness(code, constants, parts, scratch):
+    """Bounds of |df/dx|, |df/dy|, |df/dz| in the box for which ``box`` left WHOLE in scratch; infinite without any."""
+    if not differentiate(code, parts, scratch, 8, 0.0, 0.0, 0.0):
+        return np.inf, np.inf, np.inf
+    last = code.shape[0] - 1
     return (
         max(-scratch[last, 2], scratch[last, 3]),
         max(-scratch[last, 4], scratch[last, 5]),
         max(-scratch[last, 6], scratch[last, 7]),
     )
+
+
+@lean(
+    f"Tuple((float64, float64, float64, float64, int64))({TAPE}, float64, float64, float64, float64, float64, float64,"
+    " float64, float64, float64)"
+)
+def on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, sign):
+    """(low, high, least, most, status) on the piece o + t d, t in [t0, t1], of a ray: g = sign f lies in low..high
+    wherever it is defined there, and with ``status`` WHOLE dg/dt in least..most, else these are infinite.
+    """
+    far = max(abs(t0), abs(t1))
+    x = BLUR * (abs(ox) + far * abs(dx)) + TINY
+    y = BLUR * (abs(oy) + far * abs(dy)) + TINY
+    z = BLUR * (abs(oz) + far * abs(dz)) + TINY
+    low, high, status = box(
+        code,
+        constants,
+        parts,
+        scratch,
+        ox + min(t0 * dx, t1 * dx) - x,
+        ox + max(t0 * dx, t1 * dx) + x,
+        oy + min(t0 * dy, t1 * dy) - y,
+        oy + max(t0 * dy, t1 * dy) + y,
+        oz + min(t0 * dz, t1 * dz) - z,
+        oz + max(t0 * dz, t1 * dz) + z,
+    )
+    least = -np.inf
+    most = np.inf
+    if status == WHOLE and differentiate(code, parts, scratch, 4, dx, dy, dz):
+        least = scratch[code.shape[0] - 1, 2]
+        most = scratch[code.shape[0] - 1, 3]
+    if sign < 0.0:
+        return -high, -low, -most, -least, status
+    return low, high, least, most, status

@@ -39,10 +39,21 @@ def field_gradients(tape: Tape, points: Floats) -> Floats:
 
 
 def cast(
-    tape: Tape, origins: Floats, directions: Floats, t0: Floats | float, t1: Floats | float, tolerance: float = 1e-9
+    tape: Tape,
+    origins: Floats,
+    directions: Floats,
+    t0: Floats | float,
+    t1: Floats | float,
+    tolerance: float = 1e-9,
+    *,
+    surface: bool = False,
 ) -> tuple[NDArray[np.int64], Floats]:
-    """(status, t), each (n,): the first entry of rays o + t d, t in [t0, t1], as of isolation_kernels.first_root."""
+    """(status, t), each (n,): the first entry of rays o + t d, t in [t0, t1], as of isolation_kernels.first_root.
+
+    ``surface``: the first root of f instead, as of isolation_kernels.surface_root.
+    """
     room = scratch(tape)
+    first = isolation_kernels.surface_root if surface else isolation_kernels.first_root
     origins, directions = np.broadcast_arrays(np.atleast_2d(origins), np.atleast_2d(directions))
     starts = np.broadcast_to(np.asarray(t0, dtype=np.float64), len(origins))
     ends = np.broadcast_to(np.asarray(t1, dtype=np.float64), len(origins))
@@ -51,5 +62,5 @@ def cast(
     for i in range(len(origins)):
         o, d = origins[i], directions[i]
         ray = (*map(float, o), *map(float, d), float(starts[i]), float(ends[i]), tolerance)
-        status[i], t[i] = isolation_kernels.first_root(tape.code, tape.constants, tape.parts, room, *ray)
+        status[i], t[i] = first(tape.code, tape.constants, tape.parts, room, *ray)
     return status, t

@@ -1,0 +1,162 @@
+# mypy: ignore-errors
+"""First roots along a ray from outward-rounded intervals of f and df/dt: what decides where enclosures cannot.
+
+A piece of the ray is cleared by the bounds of f on it, by the mean value form f(m) + (t - m) df/dt, or, where df/dt
+keeps one sign, by f at one end; else it is cut where the mean value form allows no root, or halved, the first part
+first (Moore 1966; Hansen and Walster 2004, chapter 9). Rounding is outward all along, so what is cleared is proved.
+"""
+
+import numpy as np
+
+from sceneql.field.bracket_kernels import lowest, polished
+from sceneql.field.slope_kernels import on_ray
+from sceneql.field.tape_kernels import TAPE
+from sceneql.field.tape_ops import HIT, MISS, NOWHERE, UNDECIDED, WHOLE
+from sceneql.kernels import lean, woven
+
+EVALUATIONS = 1000
+"""Pieces looked at on one ray before it is left undecided."""
+SPLIT = 0.4609375
+"""Where pieces are halved: off the middle, so that a root at the end of a piece is not at an end again."""
+WIDEST = 1.0e-3
+"""Half of the widest piece, relative to the ray, that a root of even multiplicity may be spread over by rounding."""
+CROSSES, TOUCHES, UNKNOWN = range(3)
+"""What rounding hides: a change of sign, a root without one, or neither can be told."""
+SURE = 1.0 - 1.0e-14
+
+
+@woven
+def surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, sign):
+    """(1, 0 or -1, bounds of sign df/dt (2)): whether sign f(t) is proved > 0 (or undefined), unknown, proved < 0."""
+    low, high, least, most, status = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t, sign)
+    if status == NOWHERE or low > 0.0:
+        return 1, least, most
+    return (-1 if status == WHOLE and high < 0.0 else 0), least, most
+
+
+@lean(
+    f"Tuple((int64, float64, float64, float64))({TAPE}, float64, float64, float64, float64, float64, float64,"
+    " float64, float64, float64, float64, float64, float64)"
+)
+def hidden(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, t0, t1, least, sign):
+    """(kind, place, from, to) of what rounding hides about the piece a..b, within t0..t1.
+
+    from..to is the piece with a..b in it, grown by doubling until sign f is proved < 0 at an end, or > 0 and on its way
+    down at the first or up at the last. It CROSSES zero from > 0 to < 0, or it TOUCHES it, > 0 at both ends.
+    """
+    reach = WIDEST * (t1 - t0) + 2.0 * least
+    step = least
+    before = a
+    first, _, falling = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, before, sign)
+    while not (first < 0 or (first > 0 and falling < 0.0)) and before > t0 and step < reach:
+        before = max(a - step, t0)
+        first, _, falling = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, before, sign)
+        step *= 2.0
+    step = least
+    after = b
+    last, rising, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, after, sign)
+    while not (last < 0 or (last > 0 and rising > 0.0)) and after < t1 and step < reach:
+        after = min(b + step, t1)
+        last, rising, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, after, sign)
+        step *= 2.0
+    if first == 1 and last == -1:
+        place = polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, before, after, sign)
+        return CROSSES, place, before, after
+    if first == 1 and last == 1 and falling < 0.0 and rising > 0.0:
+        place = lowest(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, before, after, sign)
+        return TOUCHES, place, before, after
+    return UNKNOWN, a, before, after
+
+
+@lean(
+    f"Tuple((int64, float64))({TAPE}, float64, float64, float64, float64, float64, float64,"
+    " float64, float64, float64, float64, boolean, boolean)"
+)
+def certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, sign, anywhere, touching):
+    """(status, t) of the first place in [t0, t1] where sign f < 0 begins, or with ``anywhere`` of any place of it.
+
+    With ``touching`` the first root of f instead, also one without a change of sign: where f is zero up to its
+    rounding, and df/dt changes sign. UNDECIDED: all before is proved, and t lies behind what could not be resolved.
+    What begins nearer to an end of [t0, t1] than f can be told from zero is not met: a ray may begin on a surface.
+    """
+    a = t0
+    end = t1
+    found = MISS  # at `end`
+    where = t1
+    least = max(tolerance * (t1 - t0), 4.0e-15 * (abs(t0) + abs(t1)))
+    if touching:
+        step = 0.125 * least
+        side, _, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, sign)
+        while side == 0 and a < t1:
+            a = min(t0 + step, t1)
+            step *= 2.0
+            side, _, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, sign)
+        if side < 0:
+            sign = -sign
+    b = end
+    for _ in range(EVALUATIONS):
+        if not a < end:
+            return found, where
+        width = b - a
+        middle = a + SPLIT * width
+        low, high, slope0, slope1, status = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign)
+        if status == WHOLE and high < 0.0:
+            return HIT, a
+        clear = status == NOWHERE or low > 0.0 or (low == 0.0 and not touching)
+        below = above = 0.0
+        if not clear:
+            below, above, _, _, known = on_ray(
+                code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, middle, middle, sign
+            )
+            if known == WHOLE and above < 0.0:
+                if anywhere:
+                    return HIT, middle
+                if width <= least and (status == WHOLE or not touching):
+                    return HIT, polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, middle, sign)
+                if width > least:
+                    b = end = where = middle
+                    found = HIT
+                    continue
+        if status == WHOLE and not clear:
+            if slope0 > 0.0:
+                side, _, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, sign)
+                clear = side >= 0
+            elif slope1 < 0.0:
+                side, _, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, b, sign)
+                if side < 0:
+                    return HIT, polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign)
+                clear = side > 0 or b == end
+                if not clear:
+                    b = min(b + width, end)
+                    continue
+        if not clear and (width <= least or (status == WHOLE and below <= 0.0 <= above)):
+            first = a if width <= least else middle
+            last = b if width <= least else middle
+            kind, place, before, after = hidden(
+                code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, first, last, t0, end, 0.125 * least, sign
+            )
+            if width <= least or kind != UNKNOWN:
+                if kind == CROSSES and touching and status != WHOLE:
+                    kind = UNKNOWN
+                found = HIT if kind == CROSSES or (kind == TOUCHES and touching) else UNDECIDED
+                where = place if found == HIT else after
+                b = end = max(before, a)
+                continue
+        if not clear and status == WHOLE and below > 0.0:
+            # f >= below - slope1 (middle - t) before the middle, and >= below + slope0 (t - middle) behind it.
+            blur = 1.0e-15 * (abs(a) + abs(b))
+            free = middle - below / slope1 * SURE + blur if slope1 > 0.0 else -np.inf
+            if free > a:
+                b = free
+                continue
+            free = middle + below / -slope0 * SURE - blur if slope0 < 0.0 else np.inf
+            clear = free >= b
+            if not clear:
+                a = max(a, free)
+                continue
+        if clear:
+            a = b
+            b = min(a + 2.0 * width, end)
+        else:
+            b = middle
+    return UNDECIDED, a

@@ -1,0 +1,310 @@
+"""Certified roots against exact rational arithmetic: nothing is missed, nothing is invented, in either mode."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from flint import fmpq_poly
+from hypothesis import given, settings
+
+from exact_rays import along, blob_entry, exact, first_entry, real_roots, roots_of
+from sceneql.field.builder import TapeBuilder
+from sceneql.field.certified_kernels import certify
+from sceneql.field.isolation_kernels import any_root
+from sceneql.field.slope_kernels import on_ray
+from sceneql.field.solid import cast, field_values, scratch
+from sceneql.field.tape_kernels import gradient
+from sceneql.field.tape_ops import HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
+from sceneql.quantities.bind import bind
+from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.expression import Symbol
+from sceneql.quantities.parser import parse_expression
+from sceneql.quantities.span import Source, Span
+from test_field import SMOOTH, tapes
+from test_field import rays as some_rays
+
+FILE = Path(__file__).parent / "bench" / "scenes" / "implicit.json"
+COMMON = json.loads(FILE.read_text(encoding="utf-8"))
+SCENES = COMMON["scenes"]
+RAYS = 1000
+TOLERANCE = 1e-9
+NAMES = {MISS: "miss", HIT: "hit", INSIDE: "inside", UNDECIDED: "undecided"}
+POLYNOMIALS = ("barth_sextic", "kummer", "steiner", "double_root")
+
+
+def tape_of(text, where=()):
+    """The tape of a formula of x, y, z; ``where`` gives its constants."""
+    build = TapeBuilder()
+    known = {"x": build.x, "y": build.y, "z": build.z}
+    for name, formula in (dict(where) | {"": text}).items():
+        found = Diagnostics()
+        tree = parse_expression(formula, Span(Source("scene", formula), 0, len(formula)))
+        expr = bind(tree, lambda parts, span: Symbol(".".join(parts)) if parts[0] in known else None, found)
+        found.raise_errors()
+        known[name] = build.expression(expr, known)
+    return build.finish(known[""])
+
+
+@cache
+def scene(name):
+    """(tape of a common scene, without its ball; radius of the ball)."""
+    found = SCENES[name]
+    if "parts" not in found:
+        return tape_of(found["f"], found.get("where", {})), found["clip"]
+    build = TapeBuilder()
+    parts = np.array([[*row[:3], *row[:3], row[3], 1.0] for row in found["parts"]])
+    density = build.density(parts, build.x, build.y, build.z)
+    return build.finish(build.op("sub", build.constant(found["threshold"]), density)), found["clip"]
+
+
+def rays(clip, count=RAYS, seed=3):
+    """(origins, directions, t0, t1) of random rays, from and to where they meet a ball."""
+    generator = np.random.default_rng(seed)
+    origins, targets = generator.normal(size=(2, count, 3))
+    origins *= 2.0 * clip / np.linalg.norm(origins, axis=1)[:, None]
+    targets *= clip * generator.random((count, 1)) ** (1 / 3) / np.linalg.norm(targets, axis=1)[:, None]
+    return (origins, *chords(origins, targets - origins, clip))
+
+
+def chords(origins, directions, clip):
+    directions = directions / np.linalg.norm(directions, axis=1)[:, None]
+    nearest = -np.einsum("ij,ij->i", origins, directions)
+    half = np.sqrt(np.maximum(clip**2 - np.einsum("ij,ij->i", origins, origins) + nearest**2, 1e-30))
+    return directions, nearest - half, nearest + half
+
+
+def certified(tape, origins, directions, t0, t1, sign=1.0, anywhere=False, touching=False):
+    """(status, t) by the intervals alone."""
+    room = scratch(tape)
+    program = tape.code, tape.constants, tape.parts, room
+    found = [
+        certify(*program, *o, *d, a, b, TOLERANCE, sign, anywhere, touching)
+        for o, d, a, b in zip(origins, directions, t0, t1, strict=True)
+    ]
+    return np.array([status for status, _ in found]), np.array([t for _, t in found])
+
+
+def check(status, t, expected, t0, t1, inside_is_hit=False):
+    """What was found is what is there; how many rays were left undecided."""
+    undecided = 0
+    for k, (outcome, place) in enumerate(expected):
+        if status[k] == UNDECIDED:
+            undecided += 1
+            continue
+        if outcome == "inside" and inside_is_hit:
+            outcome = "hit"
+        assert NAMES[status[k]] == outcome, k
+        if outcome != "miss":
+            assert abs(t[k] - place) <= TOLERANCE * (t1[k] - t0[k]), k
+    return undecided
+
+
+def solid_entries(tape, origins, directions, t0, t1):
+    expected = []
+    for o, d, a, b in zip(origins, directions, t0, t1, strict=True):
+        f = along(tape, o, d)
+        expected.append(first_entry(lambda t, f=f: f(t) < 0, roots_of(f), a, b))
+    return expected
+
+
+@pytest.mark.parametrize("name", POLYNOMIALS)
+def test_first_roots_are_those_of_exact_arithmetic(name):
+    tape, clip = scene(name)
+    segments = rays(clip)
+    expected = solid_entries(tape, *segments)
+    assert len({outcome for outcome, _ in expected}) > 1 or name == "double_root"
+    assert check(*cast(tape, *segments, TOLERANCE), expected, *segments[2:]) == 0
+    assert check(*certified(tape, *segments), expected, *segments[2:], inside_is_hit=True) == 0
+
+
+def test_first_roots_of_forty_blobs_are_those_of_exact_arithmetic():
+    tape, clip = scene("blob40")
+    found = SCENES["blob40"]
+    segments = rays(clip)
+    expected = [
+        blob_entry(found["parts"], found["threshold"], (o, d), a, b) for o, d, a, b in zip(*segments, strict=True)
+    ]
+    assert check(*cast(tape, *segments, TOLERANCE), expected, *segments[2:]) == 0
+    assert check(*certified(tape, *segments), expected, *segments[2:], inside_is_hit=True) == 0
+
+
+def test_first_roots_of_the_thin_shell_are_those_of_exact_arithmetic():
+    tape, clip = scene("shell")
+    segments = rays(clip)
+    expected = []
+    for o, d, a, b in zip(*segments, strict=True):
+        x, _, z = lines = [fmpq_poly([exact(p), exact(q)]) for p, q in zip(o, d, strict=True)]
+        squared = sum((line * line for line in lines), fmpq_poly([0]))
+        inner, outer = (squared - (exact(0.7) + sign * exact(0.0005)) ** 2 for sign in (-1, 1))
+        plane = exact(0.6) * x + exact(0.8) * z - exact(0.2)
+        faces = (inner, outer, plane)
+        expected.append(
+            first_entry(lambda t, f=faces: f[0](t) > 0 and f[1](t) < 0 and f[2](t) < 0, roots_of(*faces), a, b)
+        )
+    assert check(*cast(tape, *segments, TOLERANCE), expected, *segments[2:]) == 0
+    assert check(*certified(tape, *segments), expected, *segments[2:], inside_is_hit=True) == 0
+
+
+@pytest.mark.parametrize("name", POLYNOMIALS)
+def test_surface_roots_are_those_of_exact_arithmetic(name):
+    tape, clip = scene(name)
+    segments = rays(clip, 400)
+    expected = []
+    for o, d, a, b in zip(*segments, strict=True):
+        places = [float(place.mid()) for place, _ in real_roots(along(tape, o, d))]
+        places = [place for place in places if a <= place <= b]
+        expected.append(("hit", places[0]) if places else ("miss", None))
+    assert check(*cast(tape, *segments, TOLERANCE, surface=True), expected, *segments[2:]) == 0
+    assert check(*certified(tape, *segments, touching=True), expected, *segments[2:]) == 0
+
+
+PHI = (1 + 5**0.5) / 2
+NODES = {
+    "barth_sextic": [(1, 0, 0), np.array([1, PHI, PHI**2]) / np.sqrt(1 + PHI**2 + PHI**4)],
+    "kummer": [(0, 0.3**0.5, 1), (0, 0.15 * 2**0.5, 0.15)],
+    "steiner": [(0, 0, 0), (0.25, 0, 0)],
+}
+
+
+@pytest.mark.parametrize("name", sorted(NODES))
+def test_the_double_points_are_some(name):
+    tape, _ = scene(name)
+    program = tape.code, tape.constants, tape.parts, scratch(tape)
+    assert np.array([gradient(*program, *map(float, node)) for node in NODES[name]]) == pytest.approx(0.0, abs=1e-13)
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-12, 1e-8, 1e-5])
+@pytest.mark.parametrize("name", sorted(NODES))
+def test_no_crossing_is_invented_or_lost_near_double_points(name, off):
+    tape, clip = scene(name)
+    origins = rays(clip, 60, seed=5)[0]
+    nodes = np.array(NODES[name], dtype=float)
+    aims = nodes[np.arange(60) % len(nodes)] + off * np.random.default_rng(7).normal(size=(60, 3))
+    segments = (origins, *chords(origins, aims - origins, clip))
+    check(*cast(tape, *segments, TOLERANCE), solid_entries(tape, *segments), *segments[2:])
+
+
+@pytest.mark.parametrize("formula", ["x^2 + y^2 + z^2 - 0.49", "(x^2 + y^2 + z^2 - 0.49)^3", "x^3 - 0.3*x + y^2 + z"])
+def test_grazing_rays_are_told_apart_or_left_undecided(formula):
+    tape = tape_of(formula)
+    off = np.concatenate([[0.0], 10.0 ** -np.arange(2.0, 17.0)])
+    heights = 0.7 + np.concatenate([off, -off])
+    origins = np.column_stack([heights, np.zeros(len(heights)), np.full(len(heights), 2.0)])
+    directions = np.tile([0.0, 0.0, -1.0], (len(heights), 1))
+    segments = origins, directions, np.zeros(len(heights)), np.full(len(heights), 4.0)
+    status, t = cast(tape, *segments, TOLERANCE)
+    assert check(status, t, solid_entries(tape, *segments), *segments[2:]) <= 8
+
+
+@pytest.mark.parametrize(
+    "formula",
+    [
+        "(x^2 + y^2 + z^2 - 0.49)^2",
+        "(x^2 + y^2 + z^2)^2 - 0.98*(x^2 + y^2 + z^2) + 0.2401",
+        "(x^2 + y^2 + z^2 - 0.49)^4",
+        "abs(x^2 + y^2 + z^2 - 0.49)",
+        "(x^2 + y^2 + z^2 - 0.49)^3",
+        "-(x^2 + y^2 + z^2 - 0.49)^2",
+    ],
+)
+def test_every_pixel_of_a_multiple_root_is_found(formula):
+    tape = tape_of(formula)
+    ticks = np.linspace(-0.99, 0.99, 41)
+    x, y = (c.ravel() for c in np.meshgrid(ticks, ticks))
+    origins = np.column_stack([x, y, np.full(len(x), 2.0)])
+    status, t = cast(tape, origins, [[0.0, 0.0, -1.0]], 0.0, 4.0, TOLERANCE, surface=True)
+    depth = 0.49 - x * x - y * y
+    assert (status == np.where(depth > 0.0, HIT, MISS)).all()
+    # At a root of multiplicity m rounding leaves a place uncertain by the m-th root of it, but for that of df/dt.
+    assert t[depth > 0.0] == pytest.approx(2.0 - np.sqrt(depth[depth > 0.0]), abs=1e-5)
+
+
+def test_poles_and_jumps_are_no_part_of_a_surface():
+    for formula, places in [("1/z", []), ("1/z - 2", [0.5]), ("tan(z)", [0.0])]:
+        status, t = cast(tape_of(formula), [[0.1, 0.2, 1.0]], [[0.0, 0.0, -1.0]], 0.0, 2.5, surface=True)
+        assert status[0] == (HIT if places else MISS)
+        if places:
+            assert t[0] == pytest.approx(1.0 - places[0], abs=1e-9)
+
+
+def test_a_ray_that_begins_on_a_surface_does_not_meet_it_there():
+    for formula in ("x^2 + y^2 + z^2 - 0.49", "(x^2 + y^2 + z^2 - 0.49)^2"):
+        tape = tape_of(formula)
+        status, t = cast(tape, [[0.0, 0.0, 0.7]], [[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]], 0.0, 2.0, surface=True)
+        assert status.tolist() == [HIT, MISS]
+        assert t[0] == pytest.approx(1.4, abs=1e-9)
+
+
+@settings(max_examples=300, deadline=None)
+@given(tape=tapes(), ray=some_rays())
+def test_bounds_on_a_ray_contain_values_and_slopes(tape, ray):
+    origin, direction, t0, t1 = ray
+    program = tape.code, tape.constants, tape.parts, scratch(tape)
+    low, high, least, most, status = on_ray(*program, *origin, *direction, t0, t1, -1.0)
+    t = np.linspace(t0, t1, 41)
+    f = -field_values(tape, origin + t[:, None] * direction)
+    if status == NOWHERE:
+        assert np.isnan(f).all()
+        return
+    known = ~np.isnan(f)
+    assert known.all() or status != WHOLE
+    assert ((f >= low) & (f <= high))[known].all()
+    if np.isfinite([least, most]).all() and t1 > t0:
+        # What the slopes bound is the change between any two places.
+        blur = 1e-14 * (1.0 + np.abs(f).max())
+        change = np.diff(f)
+        assert (change >= least * np.diff(t) - blur).all()
+        assert (change <= most * np.diff(t) + blur).all()
+
+
+@settings(max_examples=200, deadline=None)
+@given(tape=tapes(names=SMOOTH), ray=some_rays())
+def test_no_root_of_a_surface_is_missed(tape, ray):
+    origin, direction, t0, t1 = ray
+    status, t = cast(tape, origin, direction, t0, t1, TOLERANCE, surface=True)
+    places = np.linspace(t0, t1, 401)
+    f = field_values(tape, origin + places[:, None] * direction)
+    sure = np.abs(f) > 1e-12 * (1.0 + np.abs(f).max())
+    places, signs = places[sure], np.sign(f[sure])
+    changes = np.flatnonzero(signs[1:] != signs[:-1])
+    if len(changes):
+        assert status[0] != MISS
+        assert t[0] <= places[changes[0] + 1] + TOLERANCE * (t1 - t0)
+    if status[0] == HIT:
+        around = t[0] + TOLERANCE * (t1 - t0) * np.array([-1.0, 1.0])
+        low, high, *_ = on_ray(tape.code, tape.constants, tape.parts, scratch(tape), *origin, *direction, *around, 1.0)
+        assert low <= 0.0 <= high
+
+
+@pytest.mark.parametrize("name", sorted(SCENES))
+def test_no_pixel_of_a_common_scene_is_wrong(name):
+    tape, clip = scene(name)
+    view, (width, height) = COMMON["view"], (96, 54)
+    pitch, yaw = np.radians([view["pitch_deg"], view["yaw_deg"]])
+    about_x = np.array([[1, 0, 0], [0, np.cos(pitch), -np.sin(pitch)], [0, np.sin(pitch), np.cos(pitch)]])
+    about_y = np.array([[np.cos(yaw), 0, np.sin(yaw)], [0, 1, 0], [-np.sin(yaw), 0, np.cos(yaw)]])
+    axes = about_x @ about_y
+    tall = 0.5 * view["window_height_over_clip"] * clip
+    u = (2.0 * (np.arange(width) + 0.5) - width) / height * tall
+    v = (1.0 - 2.0 * (np.arange(height) + 0.5) / height) * tall
+    places = np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
+    places = places[np.hypot(*places.T) < 0.9999 * clip]
+    origins = np.column_stack([places, np.full(len(places), 2.0 * clip)]) @ axes
+    segments = (origins, *chords(origins, np.tile(-axes[2], (len(places), 1)), clip))
+    surface = SCENES[name].get("mode") == "surface"
+    status, t = cast(tape, *segments, TOLERANCE, surface=surface)
+    assert (status != UNDECIDED).all()
+    truth, place = certified(tape, *segments, touching=surface)
+    assert (np.where(status == INSIDE, HIT, status) == truth).all()
+    assert (np.abs(t - place) <= TOLERANCE * (segments[3] - segments[2])).all()
+    if not surface:
+        program = tape.code, tape.constants, tape.parts, scratch(tape)
+        some = range(0, len(origins), 7)
+        blocked = [
+            any_root(*program, *origins[k], *segments[1][k], segments[2][k], segments[3][k], TOLERANCE) for k in some
+        ]
+        assert all((found == MISS) == (truth[k] == MISS) for found, k in zip(blocked, some, strict=True))
