@@ -80,8 +80,8 @@ class Tape:
     """An implicit field f(x, y, z) as straight-line code in static single assignment; the solid is {f < 0}.
 
     Row k of ``code`` is (operation, left, right, third) and writes register k; operands are registers, or for the
-    constant operation an index into ``constants`` and for the density operation a range of ``parts``. The last
-    register is the value. Numbers are data: a film with moving parts changes constants and parts, never code.
+    constant operation an index into ``constants`` and for a density a range of ``parts``. The last register is the
+    value. Numbers are data: a film with moving parts changes constants and parts, never code.
     """
 
     code: Ints
@@ -89,7 +89,8 @@ class Tape:
     constants: Floats
     """(c,)."""
     parts: Floats
-    """(p, 8): a density field's skeleton parts: end a (3), end b (3), radius [m], weight."""
+    """(p, 8): skeleton parts of density fields: end a (3), end b (3), radius [m], weight; two rows each where they are
+    of other shapes or kernels (field.skeleton_kernels)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,6 +102,8 @@ class Implicit:
     tape: Tape
     low: tuple[float, float, float]
     high: tuple[float, float, float]
+    paint: Tape | None = None
+    """The color at a point of the surface, in place of the surface's: the last three registers are linear RGB."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from moment import IDENTITY, FakeMoment, capsule, const, drawn, fields_of, formula, link
 from sceneql.failure import RunFailure
+from sceneql.field.skeleton import Skeleton
 from sceneql.kinds import Ref
 from sceneql.simulation.density import reaches
 from sceneql.simulation.objects.blobby import Blobby
@@ -274,7 +275,8 @@ def test_density_above_the_threshold_lies_within_reach_of_a_part(balls, threshol
     points = np.concatenate([around * 0.8, *(p[:3] + 0.5 * p[6] * around for p in parts)])
     distances = np.array([capsule(points, p[:3], p[3:6]) for p in parts])
     density = (parts[:, 7, None] * np.maximum(0, 1 - (distances / parts[:, 6, None]) ** 2) ** 3).sum(axis=0)
-    reach = reaches(parts, threshold)
+    corners = parts[:, [0, 1, 2, 3, 4, 5, 0, 1, 2]].reshape(-1, 3, 3)
+    reach = reaches(Skeleton(corners, parts[:, [6, 6]], parts[:, 7], np.arange(len(parts), dtype=float)), threshold)
     solid = density > threshold
     assert (distances[:, solid] <= reach[:, None] + 1e-12).any(axis=0).all()
     assert (reach <= parts[:, 6]).all()

@@ -79,7 +79,7 @@ def test_it_takes_the_first_script_of_a_user():
         "object: {a: sphere}",
         "clock: {ende: 1 s}",
         "forces: [gravitas]",
-        "objects: {a: {blobby: {radius: 1 m}}}",
+        "objects: {a: {tube: {radius: 1 m}}}",
         "outputs: {a: {record: {of: [a.b], format: txt}}}",
         "objects: {a: {repeat: {as: k}, sphere: }}",
         "sceneql: 2",

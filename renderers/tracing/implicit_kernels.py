@@ -4,7 +4,7 @@
 import numpy as np
 from numba import types
 
-from renderers.tracing.scene_kernels import CELLS, CROSSING, EMPTY, FULL, MIXED, SCENE, SCRATCH, part
+from renderers.tracing.scene_kernels import CELLS, CELLS_AT, CROSSING, EMPTY, FULL, MIXED, SCENE, SCRATCH, part
 from renderers.tracing.solids_kernels import NONE, box_span, inverse
 from sceneql.field.interval_kernels import box
 from sceneql.field.isolation_kernels import exit_root, isolate
@@ -22,10 +22,13 @@ PAD = 1e-7
 
 
 @part
-def tape_of(scene, k):
-    """Where the tape of the implicit object whose reals begin at k lies: begin and end of code, constants and parts."""
+def tape_of(scene, k, first=0):
+    """Where the tape of the implicit object whose reals begin at k lies: begin and end of code, constants and parts.
+
+    Its own are the ranges from the ``first`` on, its paint's those from PAINT on.
+    """
     n = scene.ints
-    r = int(scene.reals[k + 6])
+    r = int(scene.reals[k + 6]) + first
     code, constants, parts = int(n[r]), int(n[r + 2]), int(n[r + 4])
     return code, code + 4 * n[r + 1], constants, constants + n[r + 3], parts, parts + 8 * n[r + 5]
 
@@ -33,7 +36,7 @@ def tape_of(scene, k):
 @part
 def cells_at(scene, k):
     """Place of the occupancy cells of the implicit object whose reals begin at k."""
-    return scene.ints[int(scene.reals[k + 6]) + 6]
+    return scene.ints[int(scene.reals[k + 6]) + CELLS_AT]
 
 
 @part

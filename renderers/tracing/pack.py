@@ -13,14 +13,17 @@ from renderers.tracing.implicit_kernels import BLOCK, occupy
 from renderers.tracing.scene_kernels import (
     CAMERA,
     CELLS,
+    CELLS_AT,
     HALF_SPACE,
     IMPLICIT,
     ITEMS,
     KIND,
     LIGHTS,
     MIXED,
+    PAINT,
     POINT,
     QUADRIC,
+    RANGES,
     REALS_AT,
     ROUND,
     SHAPE,
@@ -38,7 +41,7 @@ from sceneql.kernels import over_tiles
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from sceneql.frame import Floats, Ints, Light
+    from sceneql.frame import Floats, Ints, Light, Tape
 
 
 UNBOUNDED = np.repeat([-np.inf, np.inf], 3)
@@ -76,10 +79,10 @@ def pack(frame: Frame) -> tuple[Scene, int]:
     header = [len(nodes), len(items), len(endless), len(lights), nodes_at, links_at, 0, 0]
     ints = np.concatenate([header, items.ravel(), links.ravel(), *tables.ranges, *tables.codes], dtype=np.int32)
     for k in range(len(tables.implicits)):
-        ranges = ints[ranges_at + 7 * k : ranges_at + 7 * k + 7]
-        ranges[[0, 6]] += ranges_at + sum(map(len, tables.ranges))
-        ranges[[2, 4]] += reals_at
-        reals[reals_at + tables.implicits[k] + 6] = ranges_at + 7 * k
+        ranges = ints[ranges_at + RANGES * k : ranges_at + RANGES * (k + 1)]
+        ranges[[0, CELLS_AT, PAINT]] += ranges_at + sum(map(len, tables.ranges))
+        ranges[[2, 4, PAINT + 2, PAINT + 4]] += reals_at
+        reals[reals_at + tables.implicits[k] + 6] = ranges_at + RANGES * k
     scene = Scene(reals, ints, *addresses())
     slabs = CELLS // BLOCK
     over_tiles(
@@ -165,16 +168,26 @@ class Rows:
         self._items(index, ROUND, np.concatenate([low, high], axis=1), rows)
 
     def _implicit(self, index: int, shape: Implicit) -> None:
-        tape = shape.tape
         box = np.array([[*shape.low, *shape.high, 0.0]], dtype=np.float64)
         self.implicits.append(self._size)
         self._items(index, IMPLICIT, box[:, :6], box)
-        ranges = [self._code_size, len(tape.code), self._place(tape.constants), len(tape.constants)]
-        ranges += [self._place(tape.parts), len(tape.parts), self._code_size + tape.code.size]
+        ranges = self._tape(shape.tape)
+        ranges.append(self._code(np.full(CELLS**3, MIXED, dtype=np.int32)))
+        ranges += [0] * (RANGES - PAINT) if shape.paint is None else self._tape(shape.paint)
         self.ranges.append(np.array(ranges))
-        self.codes += [tape.code.ravel(), np.full(CELLS**3, MIXED, dtype=np.int32)]
-        self._code_size += tape.code.size + CELLS**3
+
+    def _tape(self, tape: Tape) -> list[int]:
+        """Append a tape; its ranges."""
         self.rows = max(self.rows, scratch_rows(len(tape.code), len(tape.parts)))
+        ranges = [self._code(tape.code), len(tape.code), self._place(tape.constants), len(tape.constants)]
+        return [*ranges, self._place(tape.parts), len(tape.parts)]
+
+    def _code(self, code: Ints) -> int:
+        """Append integers; where they begin."""
+        begin = self._code_size
+        self.codes.append(code.ravel())
+        self._code_size += code.size
+        return begin
 
 
 def hierarchy(boxes: Floats, eye: Floats) -> tuple[NDArray[np.int64], Floats, Ints]:

@@ -28,11 +28,11 @@ FADE = 0.04
 def describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, radius, record):
     """Write the record of a met item, but for its weight; returns whether the ray comes from its outer side."""
     x, y, z = ox + t * dx, oy + t * dy, oz + t * dz
-    nx, ny, nz, fx, fy, fz, lift = normal_at(scene.normal)(scene, scratch, item, x, y, z)
+    nx, ny, nz, fx, fy, fz, lift, red, green, blue = normal_at(scene.normal)(scene, scratch, item, x, y, z)
     outside = dx * fx + dy * fy + dz * fz <= 0.0
     if not outside:
         nx, ny, nz, lift = -nx, -ny, -nz, 0.0
-    r, g, b = color_at(scene, item, x, y, z, nx, ny, nz, dx, dy, dz, radius)
+    r, g, b = color_at(scene, item, (red, green, blue), x, y, z, nx, ny, nz, dx, dy, dz, radius)
     put(record, x, y, z, nx, ny, nz, -dx, -dy, -dz, r, g, b)
     record[SURFACE] = scene.ints[ITEMS + 4 * item + SURFACE_AT]
     record[OWNER] = scene.ints[ITEMS + 4 * item + SHAPE] + 1
@@ -83,7 +83,7 @@ def bend(scene, scratch, record):
         hx, hy, hz, length = ny, nz, nx, 1.0
     step = record[RADIUS] / length
     x, y, z = record[PLACE] + step * hx, record[PLACE + 1] + step * hy, record[PLACE + 2] + step * hz
-    mx, my, mz, _, _, _, _ = normal_at(scene.normal)(scene, scratch, int(record[ITEM]), x, y, z)
+    mx, my, mz, _, _, _, _, _, _, _ = normal_at(scene.normal)(scene, scratch, int(record[ITEM]), x, y, z)
     turn = abs(mx * nx + my * ny + mz * nz)
     return np.sqrt(max(2.0 - 2.0 * turn, 0.0)) / max(nv, 0.1)
 

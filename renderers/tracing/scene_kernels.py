@@ -49,7 +49,7 @@ SCENE = types.NamedTuple((types.float64[::1], types.int32[::1], _i, _i, _i, _i, 
 _ray = (_f,) * 8
 CROSSING = types.FunctionType(_f(SCENE, SCRATCH, _i, *_ray, types.boolean))
 WALK = types.FunctionType(types.Tuple((_f, _i, _f))(SCENE, SCRATCH, *_ray, types.boolean))
-NORMAL = types.FunctionType(types.UniTuple(_f, 7)(SCENE, SCRATCH, _i, _f, _f, _f))
+NORMAL = types.FunctionType(types.UniTuple(_f, 10)(SCENE, SCRATCH, _i, _f, _f, _f))
 LOOK = types.FunctionType(types.void(SCENE, SCRATCH, ROW, _i, _i, _i, ROW))
 SHADE = types.FunctionType(types.UniTuple(_f, 3)(SCENE, ROW, ROW))
 GATHER = types.FunctionType(types.UniTuple(_f, 3)(SCENE, SCRATCH, _f, _f, ROW, ROW, ROW, ROW))
@@ -70,7 +70,9 @@ ROUND (sphere or capsule): end, axis to the other end, radius, color (NaN: the s
 QUADRIC: map to local (3, 4), squares, linear, constant, low, high: 25.
 HALF_SPACE (a quadric that is nothing else): unit normal, height of its face along that: 4.
 IMPLICIT: low, high, place of its ranges: 7. The ranges, in ints: place of the code, its rows, place of the constants,
-their number, place of the parts, their rows, place of the cells."""
+their number, place of the parts, their rows; place of the cells; the same six of its paint (no rows: it has none)."""
+CELLS_AT, PAINT, RANGES = 6, 7, 13
+"""Columns of the ranges, and how many there are."""
 
 LINK = 3
 """Ints of a node: the node to go on with when this one is missed, first item, number of items (0: an inner node)."""

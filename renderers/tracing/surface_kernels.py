@@ -12,6 +12,7 @@ from renderers.tracing.scene_kernels import (
     ITEMS,
     KIND,
     NORMAL,
+    PAINT,
     QUADRIC,
     REALS_AT,
     ROUND,
@@ -83,6 +84,18 @@ def implicit_normal(scene, scratch, k, x, y, z):
 
 
 @part
+def painted(scene, scratch, k, x, y, z):
+    """Color (3) of implicit object k at a point by its paint; NaN where it has none, or that says nothing."""
+    c0, c1, k0, k1, p0, p1 = tape_of(scene, k, PAINT)
+    if c0 == c1:
+        return np.nan, np.nan, np.nan
+    code = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
+    gradient(code, scene.reals[k0:k1], scene.reals[p0:p1].reshape((p1 - p0) // 8, 8), scratch, x, y, z)
+    last = (c1 - c0) // 4 - 1
+    return scratch[last - 2, 0], scratch[last - 1, 0], scratch[last, 0]
+
+
+@part
 def round_normal(r, k, x, y, z):
     """Outward unit normal of a capsule: from the nearest point of its axis."""
     ux, uy, uz = r[k + 3], r[k + 4], r[k + 5]
@@ -144,11 +157,16 @@ def triangle_normal(scene, k, x, y, z):
 
 @kernel(NORMAL.signature, _nrt=False)
 def normal_at(scene, scratch, item, x, y, z):
-    """(normal, facet normal, lift) of an item at a point of its surface; only meshes tell the first two apart."""
+    """(normal, facet normal, lift, paint) of an item at a point of its surface.
+
+    Only meshes tell the first two apart; the paint (3) is NaN where a place has no color of its own.
+    """
     kind = scene.ints[ITEMS + 4 * item + KIND]
     k = scene.ints[ITEMS + 4 * item + REALS_AT]
     if kind == TRIANGLE:
-        return triangle_normal(scene, k, x, y, z)
+        nx, ny, nz, fx, fy, fz, lift = triangle_normal(scene, k, x, y, z)
+        return nx, ny, nz, fx, fy, fz, lift, np.nan, np.nan, np.nan
+    r, g, b = np.nan, np.nan, np.nan
     if kind == ROUND:
         nx, ny, nz = round_normal(scene.reals, k, x, y, z)
     elif kind == QUADRIC:
@@ -157,7 +175,8 @@ def normal_at(scene, scratch, item, x, y, z):
         nx, ny, nz = scene.reals[k], scene.reals[k + 1], scene.reals[k + 2]
     else:
         nx, ny, nz = implicit_normal(scene, scratch, k, x, y, z)
-    return nx, ny, nz, nx, ny, nz, 0.0
+        r, g, b = painted(scene, scratch, k, x, y, z)
+    return nx, ny, nz, nx, ny, nz, 0.0, r, g, b
 
 
 @part
@@ -182,15 +201,17 @@ def checkered(x, y, z, wx, wy, wz, flat, size):
 
 
 @part
-def color_at(scene, item, x, y, z, nx, ny, nz, dx, dy, dz, radius):
-    """Color of an item at a point: its own or its surface's, or the checker's mean over the ray's cone."""
+def color_at(scene, item, paint, x, y, z, nx, ny, nz, dx, dy, dz, radius):
+    """Color of an item at a point: its paint, its own or its surface's, or the checker's mean over the ray's cone."""
     kind = scene.ints[ITEMS + 4 * item + KIND]
     k = scene.ints[ITEMS + 4 * item + REALS_AT]
     s = scene.ints[ITEMS + 4 * item + SURFACE_AT]
     u = scene.reals
     r, g, b = u[s + COLOR], u[s + COLOR + 1], u[s + COLOR + 2]
     c = k + (TRIANGLE_COLORS if kind == TRIANGLE else ROUND_COLOR)
-    if kind == TRIANGLE and u[c] == u[c]:
+    if paint[0] == paint[0] and paint[1] == paint[1] and paint[2] == paint[2]:
+        r, g, b = paint
+    elif kind == TRIANGLE and u[c] == u[c]:
         v, w = barycentric(u, k, x, y, z)
         r = (1.0 - v - w) * u[c] + v * u[c + 3] + w * u[c + 6]
         g = (1.0 - v - w) * u[c + 1] + v * u[c + 4] + w * u[c + 7]

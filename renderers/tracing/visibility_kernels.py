@@ -74,10 +74,10 @@ def shadow_width(scene, l, x, y, z, blocker):
 @part
 def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius):
     """Radiance (3) that a place sends back: its own light, and the lights and part of the sky reflected once, matte."""
-    nx, ny, nz, fx, fy, fz, lift = normal_at(scene.normal)(scene, scratch, item, x, y, z)
+    nx, ny, nz, fx, fy, fz, lift, red, green, blue = normal_at(scene.normal)(scene, scratch, item, x, y, z)
     if dx * fx + dy * fy + dz * fz > 0.0:
         nx, ny, nz, fx, fy, fz = -nx, -ny, -nz, -fx, -fy, -fz
-    r, g, b = color_at(scene, item, x, y, z, nx, ny, nz, dx, dy, dz, radius)
+    r, g, b = color_at(scene, item, (red, green, blue), x, y, z, nx, ny, nz, dx, dy, dz, radius)
     er, eg, eb = sky_ambient(scene.reals, ny)
     er, eg, eb = AGAIN * er, AGAIN * eg, AGAIN * eb
     off = 0.05 * radius + 1e-6 * (abs(x) + abs(y) + abs(z)) + lift

@@ -4,8 +4,9 @@
 from sceneql.field.batch_kernels import BATCH
 from sceneql.field.density_kernels import density_gradient
 from sceneql.field.sine_kernels import sine_cosine
+from sceneql.field.skeleton_kernels import skeleton_gradient
 from sceneql.field.tape_kernels import slopes
-from sceneql.field.tape_ops import ADD, CONSTANT, COPY, COS, DENSITY, MUL, NEG, SIN, SQUARE, SUB, X, Y, Z
+from sceneql.field.tape_ops import ADD, CONSTANT, COPY, COS, DENSITY, MUL, NEG, SIN, SKELETON, SQUARE, SUB, X, Y, Z
 from sceneql.kernels import inlined, lean
 
 
@@ -14,9 +15,11 @@ def density_slopes(code, k, parts, registers, slope, n):
     """Gradient of the density of row k through that of its point."""
     p = code[k, 3]
     for i in range(n):
-        u, v, w = density_gradient(
-            parts, code[k, 1], code[k, 2], registers[p, i], registers[p + 1, i], registers[p + 2, i]
-        )
+        x, y, z = registers[p, i], registers[p + 1, i], registers[p + 2, i]
+        if code[k, 0] == DENSITY:
+            u, v, w = density_gradient(parts, code[k, 1], code[k, 2], x, y, z)
+        else:
+            u, v, w = skeleton_gradient(parts, code[k, 1], code[k, 2], x, y, z)
         for axis in range(3):
             slope[k, axis, i] = u * slope[p, axis, i] + v * slope[p + 1, axis, i] + w * slope[p + 2, axis, i]
 
@@ -55,7 +58,7 @@ def differentiate(code, constants, parts, registers, slope, n):
                 for i in range(n):
                     out[axis, i] = number
             continue
-        if op == DENSITY:
+        if op == DENSITY or op == SKELETON:
             density_slopes(code, k, parts, registers, slope, n)
             continue
         a = registers[left]

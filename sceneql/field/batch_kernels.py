@@ -8,6 +8,7 @@ import numpy as np
 
 from sceneql.field.density_kernels import offset
 from sceneql.field.sine_kernels import sine_cosine
+from sceneql.field.skeleton_kernels import skeleton_value
 from sceneql.field.tape_kernels import larger, sign_of, smaller
 from sceneql.field.tape_ops import (
     ABS,
@@ -27,6 +28,7 @@ from sceneql.field.tape_ops import (
     NEG,
     POW,
     SIN,
+    SKELETON,
     SQRT,
     SQUARE,
     SUB,
@@ -135,6 +137,11 @@ def evaluate(code, constants, parts, registers, points, n):
         if op == DENSITY:
             p = code[k, 3]
             density_lanes(parts, left, right, registers[p], registers[p + 1], registers[p + 2], out, n)
+            continue
+        if op == SKELETON:
+            p = code[k, 3]
+            for i in range(n):
+                out[i] = skeleton_value(parts, left, right, registers[p, i], registers[p + 1, i], registers[p + 2, i])
             continue
         a = registers[left]
         b = registers[right]

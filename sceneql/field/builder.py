@@ -11,12 +11,15 @@ from sceneql.field.lowering import FOLD, LOWERED
 from sceneql.quantities.expression import Call, Expr, Number, Symbol
 
 if TYPE_CHECKING:
+    from sceneql.field.skeleton import Skeleton
     from sceneql.frame import Floats, Tape
 
 Row = tuple[int, int, int, int]
 COMMUTATIVE = {ops.ADD, ops.MUL, ops.MIN, ops.MAX}
 LARGEST_POWER = 64
 """Integer powers up to this one become multiplications."""
+FEW = 128
+"""Plain parts up to this number are looked at one by one; more go into a hierarchy."""
 
 
 class TapeBuilder:
@@ -26,7 +29,8 @@ class TapeBuilder:
         self._rows: list[Row] = [(ops.X, 0, 0, 0), (ops.Y, 0, 0, 0), (ops.Z, 0, 0, 0)]
         self._numbers: dict[Row, int] = {}
         self._constants: list[float] = []
-        self._parts: list[list[float]] = []
+        self._parts: list[Floats] = []
+        self._part_rows = 0
         self._triples: dict[tuple[int, int, int], int] = {(0, 1, 2): 0}
         self.x, self.y, self.z = 0, 1, 2
 
@@ -162,23 +166,47 @@ class TapeBuilder:
         ``parts`` (p, 8) [m]: ends a and b (a point has a = b), radius R, weight; d is the distance to the segment
         (Wyvill, McPheeters & Wyvill 1986).
         """
-        start = len(self._parts)
-        self._parts.extend([[float(number) for number in part] for part in parts])
+        return self._of_parts(ops.DENSITY, parts, x, y, z)
+
+    def skeleton(self, skeleton: Skeleton, x: int, y: int, z: int) -> int:
+        """Register of the density of a skeleton at a point; plain parts, where they are few, by the shorter way."""
+        plain = skeleton.plain()
+        if plain.sum() > FEW:
+            plain[:] = False
+        values = []
+        if plain.any():
+            values.append(self.density(skeleton.chosen(plain).density_rows(), x, y, z))
+        if not plain.all():
+            values.append(self._of_parts(ops.SKELETON, skeleton.chosen(~plain).rows(), x, y, z))
+        if not values:
+            return self.constant(0.0)
+        return values[0] if len(values) == 1 else self.op("add", *values)
+
+    def _of_parts(self, op: int, rows: Floats, x: int, y: int, z: int) -> int:
+        """Register of an operation on rows (r, 8) of parts at a point, whose registers are brought together."""
+        import numpy as np
+
+        start = self._part_rows
+        self._parts.append(np.asarray(rows, dtype=np.float64).reshape(-1, 8))
+        self._part_rows += len(self._parts[-1])
         base = self._triples.get((x, y, z))
         if base is None:
             base = self._triples[x, y, z] = len(self._rows)
             self._rows.extend((ops.COPY, register, register, 0) for register in (x, y, z))
-        self._rows.append((ops.DENSITY, start, len(self._parts), base))
+        self._rows.append((op, start, self._part_rows, base))
         return len(self._rows) - 1
 
-    def finish(self, register: int) -> Tape:
-        """The tape whose value is ``register``; what it does not need is left out."""
+    def finish(self, *registers: int) -> Tape:
+        """The tape whose value is a register, or whose last values are several; what they do not need is left out."""
         import numpy as np
 
         from sceneql.frame import Tape
 
-        needed = {register}
-        for k in range(register, -1, -1):
+        if len(registers) > 1:
+            self._rows.extend((ops.COPY, register, register, 0) for register in registers)
+            registers = tuple(range(len(self._rows) - len(registers), len(self._rows)))
+        needed = set(registers)
+        for k in range(max(registers), -1, -1):
             if k in needed:
                 needed.update(self._operands(k))
         kept = sorted(needed)
@@ -186,14 +214,17 @@ class TapeBuilder:
         numbers = sorted({self._rows[k][1] for k in kept if self._rows[k][0] == ops.CONSTANT})
         index = {old: new for new, old in enumerate(numbers)}
         code: list[Row] = []
-        parts: list[list[float]] = []
+        every = np.concatenate([np.empty((0, 8)), *self._parts])
+        parts: list[Floats] = [np.empty((0, 8))]
+        count = 0
         for k in kept:
             op, left, right, third = self._rows[k]
             if op == ops.CONSTANT:
                 code.append((op, index[left], 0, 0))
-            elif op == ops.DENSITY:
-                code.append((op, len(parts), len(parts) + right - left, place[third]))
-                parts.extend(self._parts[left:right])
+            elif op in ops.OF_PARTS:
+                code.append((op, count, count + right - left, place[third]))
+                parts.append(every[left:right])
+                count += right - left
             elif op in (ops.X, ops.Y, ops.Z):
                 code.append((op, 0, 0, 0))
             else:
@@ -201,7 +232,7 @@ class TapeBuilder:
         return Tape(
             code=np.array(code, dtype=np.int32),
             constants=np.array([self._constants[old] for old in numbers], dtype=np.float64),
-            parts=np.array(parts, dtype=np.float64).reshape(-1, 8),
+            parts=np.concatenate(parts),
         )
 
     def _twin(self, register: int, place: Mapping[int, int]) -> int:
@@ -217,4 +248,4 @@ class TapeBuilder:
         op, left, right, third = self._rows[register]
         if op in (ops.CONSTANT, ops.X, ops.Y, ops.Z):
             return ()
-        return (third, third + 1, third + 2) if op == ops.DENSITY else (left, right)
+        return (third, third + 1, third + 2) if op in ops.OF_PARTS else (left, right)

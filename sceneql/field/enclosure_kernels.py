@@ -10,7 +10,9 @@ by some units in the last place of all that was added.
 import numpy as np
 
 from sceneql.field.density_enclosure_kernels import density_segment
+from sceneql.field.forms_kernels import LARGE, PAD, TINY, hull, larger_of, product
 from sceneql.field.sine_kernels import sine_cosine
+from sceneql.field.skeleton_enclosure_kernels import skeleton_segment
 from sceneql.field.tape_kernels import TAPE
 from sceneql.field.tape_ops import (
     ABS,
@@ -32,6 +34,7 @@ from sceneql.field.tape_ops import (
     PARTIAL,
     POW,
     SIN,
+    SKELETON,
     SQRT,
     SQUARE,
     SUB,
@@ -41,50 +44,6 @@ from sceneql.field.tape_ops import (
     Z,
 )
 from sceneql.kernels import inlined, kernel
-
-PAD = 1.0e-15
-LARGE = 1.0e300
-TINY = 1.0e-300
-"""More than underflow takes away."""
-
-
-@inlined
-def product(a0, a1, ea, b0, b1, eb):
-    """Enclosure of a product: a1 b1 tau^2 lies in a1 b1 [0, 1]."""
-    second = 0.5 * a1 * b1
-    size_a = abs(a0) + abs(a1)
-    size_b = abs(b0) + abs(b1)
-    e = abs(second) + ea * (size_b + eb) + eb * size_a
-    return a0 * b0 + second, a0 * b1 + a1 * b0, e + (PAD * size_a * size_b + TINY)
-
-
-@inlined
-def hull(low, high):
-    """Enclosure of an interval."""
-    return 0.5 * (low + high), 0.0, 0.5 * (high - low) + PAD * (abs(low) + abs(high))
-
-
-@inlined
-def larger_of(a0, a1, ea, b0, b1, eb):
-    """Enclosure of max(a, b): where neither wins, b + the chord of max(a - b, 0), or the constant hull if better."""
-    reach_a = abs(a1) + ea
-    reach_b = abs(b1) + eb
-    d0 = a0 - b0
-    reach = abs(a1 - b1) + ea + eb
-    if d0 >= reach:
-        return a0, a1, ea
-    if -d0 >= reach:
-        return b0, b1, eb
-    share = 0.5 * (d0 + reach) / reach
-    half_gap = 0.5 * share * (reach - d0)
-    c0 = share * a0 + (1.0 - share) * b0 + half_gap
-    c1 = share * a1 + (1.0 - share) * b1
-    e = share * ea + (1.0 - share) * eb + half_gap
-    low = max(a0 - reach_a, b0 - reach_b)
-    high = max(a0 + reach_a, b0 + reach_b)
-    if 0.5 * (high - low) < e or (low > 0.0 and c0 - abs(c1) <= e):
-        return hull(low, high)
-    return c0, c1, e + PAD * (abs(a0) + abs(a1) + abs(b0) + abs(b1))
 
 
 @inlined
@@ -324,6 +283,8 @@ def segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, sur
             e = ea
         elif op == DENSITY:
             c0, c1, e = density_segment(parts, left, right, scratch, k, last + 1 + left, code[k, 3], survey)
+        elif op == SKELETON:
+            c0, c1, e = skeleton_segment(parts, left, right, scratch, k, last + 1 + left, code[k, 3], survey)
         elif op == SIN or op == COS:
             twin = code[k, 3]
             if twin:

@@ -5,6 +5,7 @@ import numpy as np
 
 from sceneql.field.density_kernels import offset
 from sceneql.field.sine_kernels import sine_cosine
+from sceneql.field.skeleton_bounds_kernels import skeleton_box
 from sceneql.field.tape_kernels import TAPE, sign_of
 from sceneql.field.tape_ops import (
     ABS,
@@ -26,6 +27,7 @@ from sceneql.field.tape_ops import (
     PARTIAL,
     POW,
     SIN,
+    SKELETON,
     SQRT,
     SQUARE,
     SUB,
@@ -220,6 +222,8 @@ def box(code, constants, parts, scratch, x0, x1, y0, y1, z0, z1):
             high = z1
         elif op == DENSITY:
             low, high = density_box(parts, left, right, scratch, code[k, 3])
+        elif op == SKELETON:
+            low, high = skeleton_box(parts, left, right, scratch, code[k, 3])
         elif op <= ATAN2 and op != COPY:
             low, high, found = binary_box(op, scratch[left, 0], scratch[left, 1], scratch[right, 0], scratch[right, 1])
         else:

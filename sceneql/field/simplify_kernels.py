@@ -7,7 +7,8 @@ In the box the shorter tape has the same bits of value as the whole one, so that
 import numpy as np
 
 from sceneql.field.density_kernels import offset
-from sceneql.field.tape_ops import CONSTANT, COS, DENSITY, MAX, MIN, SIN, X, Y, Z
+from sceneql.field.skeleton_bounds_kernels import skeleton_near
+from sceneql.field.tape_ops import CONSTANT, COS, DENSITY, MAX, MIN, SIN, SKELETON, X, Y, Z
 from sceneql.kernels import inlined, lean
 
 ALIAS, LIVE, PLACE = 4, 5, 6
@@ -55,7 +56,7 @@ def mark(code, last, scratch):
         if scratch[k, LIVE] == 0.0:
             continue
         op = code[k, 0]
-        if op == DENSITY:
+        if op == DENSITY or op == SKELETON:
             for j in range(3):
                 scratch[code[k, 3] + j, LIVE] = 1.0
         elif not (op == CONSTANT or op == X or op == Y or op == Z):
@@ -87,7 +88,12 @@ def simplify(code, parts, scratch, whole, short, near):
         short[rows, 1] = code[k, 1]
         short[rows, 2] = code[k, 2]
         short[rows, 3] = 0
-        if op == DENSITY:
+        if op == SKELETON and whole:
+            short[rows, 1] = found
+            found = skeleton_near(parts, code[k, 1], code[k, 2], scratch, code[k, 3], near, found)
+            short[rows, 2] = found
+            short[rows, 3] = int(scratch[code[k, 3], PLACE])
+        elif op == DENSITY or op == SKELETON:
             short[rows, 1] = found
             for i in range(code[k, 1], code[k, 2]):
                 if not whole or within_reach(parts, i, scratch, code[k, 3]):

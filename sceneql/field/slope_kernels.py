@@ -9,6 +9,7 @@ import numpy as np
 
 from sceneql.field.density_kernels import offset
 from sceneql.field.interval_kernels import TINY, TURN, binary_box, box, outward, unary_box, wave
+from sceneql.field.skeleton_bounds_kernels import skeleton_steepness
 from sceneql.field.tape_kernels import TAPE
 from sceneql.field.tape_ops import (
     ABS,
@@ -28,6 +29,7 @@ from sceneql.field.tape_ops import (
     NEG,
     SIGN,
     SIN,
+    SKELETON,
     SQRT,
     SQUARE,
     SUB,
@@ -129,6 +131,21 @@ def single_slopes(op, low, high, a, b):
 
 
 @inlined
+def chained(gx, ex, gy, ey, gz, ez, scratch, k, p, columns):
+    """Bounds of a gradient in the point, times the slopes of the point's rows p..p+2, into row k of scratch."""
+    gx, ex = outward(gx, ex)
+    gy, ey = outward(gy, ey)
+    gz, ez = outward(gz, ez)
+    for column in range(2, columns, 2):
+        p0, p1 = times(gx, ex, scratch[p, column], scratch[p, column + 1])
+        low, high = times(gy, ey, scratch[p + 1, column], scratch[p + 1, column + 1])
+        p0 += low
+        p1 += high
+        low, high = times(gz, ez, scratch[p + 2, column], scratch[p + 2, column + 1])
+        scratch[k, column], scratch[k, column + 1] = outward(p0 + low, p1 + high)
+
+
+@inlined
 def density_slopes(parts, start, stop, scratch, k, p, columns):
     """Bounds of a density field's gradient, times the slopes of its point's rows p..p+2, into row k of scratch."""
     hx = 0.5 * (scratch[p, 1] - scratch[p, 0])
@@ -161,16 +178,7 @@ def density_slopes(parts, start, stop, scratch, k, p, columns):
         low, high = times(p0, p1, wz - diagonal, wz + diagonal)
         gz += low
         ez += high
-    gx, ex = outward(gx, ex)
-    gy, ey = outward(gy, ey)
-    gz, ez = outward(gz, ez)
-    for column in range(2, columns, 2):
-        p0, p1 = times(gx, ex, scratch[p, column], scratch[p, column + 1])
-        low, high = times(gy, ey, scratch[p + 1, column], scratch[p + 1, column + 1])
-        p0 += low
-        p1 += high
-        low, high = times(gz, ez, scratch[p + 2, column], scratch[p + 2, column + 1])
-        scratch[k, column], scratch[k, column + 1] = outward(p0 + low, p1 + high)
+    chained(gx, ex, gy, ey, gz, ez, scratch, k, p, columns)
 
 
 @inlined
@@ -185,6 +193,10 @@ def differentiate(code, parts, scratch, columns, dx, dy, dz):
         right = code[k, 2]
         if op == DENSITY:
             density_slopes(parts, left, right, scratch, k, code[k, 3], columns)
+            continue
+        if op == SKELETON:
+            gx, ex, gy, ey, gz, ez = skeleton_steepness(parts, left, right, scratch, code[k, 3])
+            chained(gx, ex, gy, ey, gz, ez, scratch, k, code[k, 3], columns)
             continue
         if op == CONSTANT or (op >= X and op <= Z):
             along = 0.0 if op == CONSTANT else (dx if op == X else (dy if op == Y else dz))

@@ -5,6 +5,7 @@ import numpy as np
 
 from sceneql.field.density_kernels import density_gradient, density_value
 from sceneql.field.sine_kernels import sine_cosine
+from sceneql.field.skeleton_kernels import skeleton_gradient, skeleton_value
 from sceneql.field.tape_ops import (
     ABS,
     ADD,
@@ -24,6 +25,7 @@ from sceneql.field.tape_ops import (
     POW,
     SIGN,
     SIN,
+    SKELETON,
     SQRT,
     SQUARE,
     SUB,
@@ -106,6 +108,9 @@ def value(code, constants, parts, scratch, x, y, z):
         elif op == DENSITY:
             p = code[k, 3]
             v = density_value(parts, left, right, scratch[p, 0], scratch[p + 1, 0], scratch[p + 2, 0])
+        elif op == SKELETON:
+            p = code[k, 3]
+            v = skeleton_value(parts, left, right, scratch[p, 0], scratch[p + 1, 0], scratch[p + 2, 0])
         elif op == EXP:
             v = np.exp(a)
         elif op == LOG:
@@ -186,9 +191,12 @@ def gradient(code, constants, parts, scratch, x, y, z):
             gy = 1.0
         elif op == Z:
             gz = 1.0
-        elif op == DENSITY:
+        elif op == DENSITY or op == SKELETON:
             p = code[k, 3]
-            u, v, w = density_gradient(parts, left, right, scratch[p, 0], scratch[p + 1, 0], scratch[p + 2, 0])
+            if op == DENSITY:
+                u, v, w = density_gradient(parts, left, right, scratch[p, 0], scratch[p + 1, 0], scratch[p + 2, 0])
+            else:
+                u, v, w = skeleton_gradient(parts, left, right, scratch[p, 0], scratch[p + 1, 0], scratch[p + 2, 0])
             gx = u * scratch[p, 1] + v * scratch[p + 1, 1] + w * scratch[p + 2, 1]
             gy = u * scratch[p, 2] + v * scratch[p + 1, 2] + w * scratch[p + 2, 2]
             gz = u * scratch[p, 3] + v * scratch[p + 1, 3] + w * scratch[p + 2, 3]

@@ -6,7 +6,9 @@ Names are those of the scalar operations of ``quantities.operations``; what is n
 CONSTANT, X, Y, Z, COPY = range(5)
 ADD, SUB, MUL, DIV, MIN, MAX, POW, ATAN2 = range(5, 13)
 NEG, ABS, SQUARE, SQRT, SIN, COS, EXP, LOG, FLOOR, SIGN = range(13, 23)
-DENSITY = 23
+DENSITY, SKELETON = 23, 24
+OF_PARTS = (DENSITY, SKELETON)
+"""Operations on a range of the tape's parts and on a point, whose three registers follow each other."""
 
 BINARY = {"add": ADD, "sub": SUB, "mul": MUL, "div": DIV, "min": MIN, "max": MAX, "pow": POW, "atan2": ATAN2}
 UNARY = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from sceneql.kinds.types import Color, MaterialRef
 from sceneql.kinds.values import Ref, Value
@@ -33,8 +33,8 @@ class FieldBuilder(Protocol):
     def affine(self, matrix: Floats, x: int, y: int, z: int) -> tuple[int, int, int]:
         """Registers of a point mapped by a (3, 4) matrix."""
 
-    def density(self, parts: Floats, x: int, y: int, z: int) -> int:
-        """Register of a density field: parts (p, 8) as in frame.Tape."""
+    def skeleton(self, skeleton: Any, x: int, y: int, z: int) -> int:
+        """Register of the density of a skeleton (sceneql.field.skeleton.Skeleton) at a point."""
 
 
 class Object(Kind):

@@ -1,98 +1,133 @@
-"""blobby: a soft skin around points and segments."""
+"""blobby: a soft skin around a skeleton."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Literal, get_args
 
 from pydantic import model_validator
 
-from sceneql.failure import RunFailure
-from sceneql.kinds import FieldBuilder, FixedScalar, Moment, Object, Points, Quantity, Value, field
-from sceneql.quantities import dimension as dim
-from sceneql.simulation.placement import balls_box
+from sceneql.kinds import FieldBuilder, FixedScalar, Moment, Object, Points, field
+from sceneql.simulation.placement import balls_box, inverse
+from sceneql.simulation.skeleton_parts import (
+    MOST,
+    LengthOrLengths,
+    NumberOrNumbers,
+    Part,
+    Shape,
+    each,
+    failure,
+)
 from sceneql.simulation.solid import traced
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats, Shape
+    from sceneql import frame
+    from sceneql.field.skeleton import Skeleton
+    from sceneql.frame import Floats
 
-LengthOrLengths = Annotated[Value, Quantity(dim.LENGTH, None)]
-NumberOrNumbers = Annotated[Value, Quantity(dim.PLAIN, None)]
+Kernel = Literal["wyvill", "soft_object", "metaball", "gaussian", "inverse_square"]
 
 
 class Blobby(Object):
-    """The solid in which the summed density of skeleton parts is above a threshold c.
+    """The solid in which the summed density of skeleton parts is above a threshold c (Blinn 1982; Bloomenthal 1997).
 
-    A part of radius R and weight w has the density w (1 - d^2/R^2)^3 at the distance d < R from it, and 0 beyond
-    (Wyvill, McPheeters & Wyvill 1986; Blinn 1982 for the idea). Its parts are the segments, and the points that no
-    segment ends at; a segment has the mean radius and weight of its two ends. A lone point of weight 1 is a ball of
-    radius R sqrt(1 - c^(1/3)); two equal ones are one body up to the distance 2 R sqrt(1 - (c/2)^(1/3)).
+    A part of weight w has the density w on its skeleton, and w K(d/R) at the distance d from it, which is 0 from its
+    radius R on (Wyvill, McPheeters & Wyvill 1986). With r = d/R the kernels K are `wyvill` (1 - r^2)^3, `soft_object`
+    1 - 22/9 r^2 + 17/9 r^4 - 4/9 r^6, `metaball` 1 - 3 r^2 up to r = 1/3, then 3/2 (1 - r)^2 (Nishimura et al. 1985),
+    `gaussian` exp(-4 r^2) and `inverse_square` 1/(1 + 4 r^2), these two less their tangent in r^2 at r = 1, over their
+    value at 0. With `wyvill` a lone point of weight 1 is a ball of radius R sqrt(1 - c^(1/3)); two equal ones are one
+    body up to the distance 2 R sqrt(1 - (c/2)^(1/3)).
 
-    Its field is (c - density) L, where L turns it into a distance at the surface of a lone part of mean radius.
+    Parts are entries of `skeleton`; or `points`, and `segments` between them: then a segment has the mean radius and
+    weight of its two ends, and a point that a segment ends at is no part of its own. Entries that have colors are mixed
+    by their densities. Parts may come and go with time. Its field is (c - density) L, where L turns it into a distance
+    at the surface of a lone part of mean radius.
     """
 
-    points: Points = field("The points of the skeleton.")
-    segments: tuple[tuple[int, int], ...] = field("Pairs of points, counted from 0, that are joined.", ())
+    skeleton: tuple[Part, ...] = field("Parts of any kind, each with its radius, weight and color.", ())
+    points: Points | None = field("The points of the skeleton, or more of them.", None)
+    segments: tuple[tuple[int, int], ...] = field("Pairs of `points`, counted from 0, that are joined.", ())
     radius: LengthOrLengths = field(
-        "How far a point's density reaches: one for all, or one for each.", "0.3 m", above=0
+        "How far the density of `points` reaches: one for all, or one for each.", "0.3 m", above=0
     )
     weight: NumberOrNumbers = field("Factor of a point's density, one or one each; below 0 it hollows out.", "1")
     threshold: FixedScalar = field("The density at the surface.", "0.3", above=0, below=1)
+    kernel: Kernel = field("How the density falls off with the distance.", "wyvill")
 
     @model_validator(mode="after")
     def _one_or_one_each(self) -> Blobby:
+        if self.points is None and not self.skeleton:
+            raise ValueError("a blobby needs `points` or a `skeleton`")
         for name in ("radius", "weight"):
             if len(getattr(self, name).expr.type.shape) > 1:
                 raise ValueError(f"{name} is one value, or a list with one for each point")
-        if self.points.expr.type.shape[0] == 0:
+        if self.points is not None and self.points.expr.type.shape[0] == 0:
             raise ValueError("a skeleton has at least one point")
         if any(k < 0 for pair in self.segments for k in pair):
             raise ValueError("points are counted from 0")
+        if self.segments and self.points is None:
+            raise ValueError("`segments` are told by numbers of `points`")
         return self
 
-    def parts(self, moment: Moment) -> Floats:
-        """(p, 8) skeleton parts as in frame.Tape, in its parent's coordinates.
+    def parts(self, moment: Moment) -> Skeleton:
+        """Its skeleton in its parent's coordinates: that of `points`, then those of its entries.
 
-        Raises RunFailure for a segment to a point that is not there, and for lists of other lengths than the points'.
+        Raises RunFailure for a segment to a point that is not there, lists of other lengths than the points', radii
+        that are not above 0, and too many parts.
         """
         import numpy as np
 
-        points = np.asarray(moment.at(self.points), dtype=float).reshape(-1, 3)
+        from sceneql.field.skeleton import Skeleton
+
+        shapes = self._shapes(moment)
+        most = [float(np.max(shape.groups, initial=-1)) + 1 for shape in shapes]
+        starts = np.cumsum([0.0, *most])
+        groups = [np.broadcast_to(s.groups, len(s.weights)) + start for s, start in zip(shapes, starts, strict=False)]
+        corners, radii, weights = (
+            np.concatenate([getattr(shape, name) for shape in shapes]) for name in ("corners", "radii", "weights")
+        )
+        return Skeleton(corners, radii, weights, np.concatenate(groups), get_args(Kernel).index(self.kernel))
+
+    def _shapes(self, moment: Moment) -> list[Shape]:
+        import numpy as np
+
+        own = [] if self.points is None else [self._listed(self.points, moment)]
+        shapes = own + [part.now(moment) for part in self.skeleton]
+        values = [self.radius] * len(own) + [part.radius for part in self.skeleton]
+        for shape, value in zip(shapes, values, strict=True):
+            if not (np.isfinite(shape.radii).all() and (shape.radii > 0).all()):
+                raise failure(f"a radius must be above 0, but one is {np.min(shape.radii):g} m now", value, moment)
+        count = sum(len(shape.weights) for shape in shapes)
+        if count > MOST:
+            raise failure(f"a skeleton has at most {MOST:,} parts, not {count:,}", values[0], moment)
+        return shapes
+
+    def _listed(self, value: Points, moment: Moment) -> Shape:
+        """The parts of `points` and `segments`."""
+        import numpy as np
+
+        points = np.asarray(moment.at(value), dtype=float).reshape(-1, 3)
         n = len(points)
         pairs = np.array(self.segments, dtype=int).reshape(-1, 2)
         if pairs.size and pairs.max() >= n:
-            raise self._failure(
-                f"there is no point {pairs.max()}: the {n} points are 0 to {n - 1}", self.points, moment
-            )
+            raise failure(f"there is no point {pairs.max()}: the {n} points are 0 to {n - 1}", value, moment)
         lone = np.setdiff1d(np.arange(n), pairs)
         ends = np.concatenate([pairs, np.column_stack([lone, lone])])
-        radii, weights = self._each(self.radius, n, moment), self._each(self.weight, n, moment)
-        if not (np.isfinite(radii).all() and (radii > 0).all()):
-            raise self._failure(f"a radius must be above 0, but one is {np.min(radii):g} m now", self.radius, moment)
-        return np.column_stack(
-            [points[ends[:, 0]], points[ends[:, 1]], radii[ends].mean(axis=1), weights[ends].mean(axis=1)]
-        )
-
-    def _each(self, value: Value, n: int, moment: Moment) -> Floats:
-        import numpy as np
-
-        numbers = np.asarray(moment.at(value), dtype=float)
-        if numbers.ndim == 0:
-            return np.full(n, float(numbers))
-        if numbers.shape != (n,):
-            raise self._failure(f"there are {n} points, but {len(numbers)} values here", value, moment)
-        return numbers
-
-    def _failure(self, message: str, value: Value, moment: Moment) -> RunFailure:
-        return RunFailure(message, part="blobby", time=moment.time, span=value.span)
+        radii, weights = each(self.radius, n, "points", moment), each(self.weight, n, "points", moment)
+        means = radii[ends].mean(axis=1)
+        return Shape(
+            points[ends[:, [0, 1, 0]]], np.stack([means, means], axis=1), weights[ends].mean(axis=1),
+            np.arange(len(ends), dtype=float),
+        )  # fmt: skip
 
     def implicit(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
         """(threshold - density) times a length. Raises RunFailure as ``parts`` does."""
-        parts = self.parts(moment)
-        u = self.threshold ** (1 / 3)
-        lone = float(parts[:, 6].mean()) / (6 * u * u * (1 - u) ** 0.5) if len(parts) else 1.0
-        depth = build.op("sub", build.constant(self.threshold), build.density(parts, x, y, z))
-        return build.op("mul", depth, build.constant(lone))
+        from sceneql.field.skeleton import steepness
+
+        skeleton = self.parts(moment)
+        mean = float(skeleton.radii.mean()) if len(skeleton.weights) else 1.0
+        depth = build.op("sub", build.constant(self.threshold), build.skeleton(skeleton, x, y, z))
+        return build.op("mul", depth, build.constant(mean / steepness(skeleton.kernel, self.threshold)))
 
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
         """The box around its parts, as far as the density can be above the threshold; inverted if nowhere."""
@@ -100,13 +135,37 @@ class Blobby(Object):
 
         from sceneql.simulation.density import reaches
 
-        parts = self.parts(moment)
-        reach = reaches(parts, self.threshold)
+        skeleton = self.parts(moment)
+        reach = reaches(skeleton, self.threshold)
         solid = reach > 0
         if not solid.any():
             return np.full(3, np.inf), np.full(3, -np.inf)
-        return balls_box(place, parts[solid, :6].reshape(-1, 2, 3), reach[solid, None])
+        return balls_box(place, skeleton.corners[solid], reach[solid, None])
 
-    def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
-        """Its density as a tape."""
-        return traced(self, name, place, moment)
+    def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[frame.Shape]:
+        """Its density as a tape, with one of its colors where parts have theirs."""
+        from dataclasses import replace
+
+        for shape in traced(self, name, place, moment):
+            yield replace(shape, paint=self._paint(shape.surface, place, moment))
+
+    def _paint(self, surface: frame.Surface, place: Floats, moment: Moment) -> frame.Tape | None:
+        """The mean of its parts' colors, by what each adds to the density, as a tape; None where it has but one."""
+        import numpy as np
+
+        from sceneql.field.builder import TapeBuilder
+        from sceneql.simulation.color import linear
+
+        if all(part.color is None for part in self.skeleton):
+            return None
+        shapes = self._shapes(moment)
+        own = [surface.color] * (len(shapes) - len(self.skeleton))
+        given = [surface.color if p.color is None else linear(moment.at(p.color)) for p in self.skeleton]
+        colors = np.repeat(np.array(own + given), [len(shape.weights) for shape in shapes], axis=0)
+        skeleton = self.parts(moment)
+        gives = np.maximum(skeleton.weights, 0.0)
+        build = TapeBuilder()
+        at = build.affine(inverse(place), build.x, build.y, build.z)
+        total = build.skeleton(skeleton.weighted(gives), *at)
+        sums = [build.skeleton(skeleton.weighted(gives * colors[:, k]), *at) for k in range(3)]
+        return build.finish(*(build.op("div", one, total) for one in sums))

@@ -1,0 +1,177 @@
+# mypy: ignore-errors
+"""Density fields of skeletons: values and gradients of parts of any shape and kernel, in a hierarchy of boxes.
+
+A part takes two rows of the tape's parts: end a (3), end b (3), radius at a, weight; corner c (3), radius at b, kernel,
+group, shape. Its density is K(d^2/R^2), d the distance to the segment a b or the triangle a b c, R the radius, which
+changes along a segment from a's to b's. Of the parts of one group, which follow each other, the largest density counts;
+what groups give is added up. A NODE is a box (low, high) and the number of rows behind it that reach no farther.
+"""
+
+import numpy as np
+
+from sceneql.field.falloff_kernels import falloff, falloff_slope
+from sceneql.kernels import inlined
+
+RADIUS, WEIGHT = 6, 7
+RADIUS_B, KERNEL, GROUP, SHAPE = 3, 4, 5, 6
+"""Columns of a part's second row."""
+SEGMENT, TRIANGLE, NODE = range(3)
+STRIDE = 2
+"""Rows of a part."""
+
+
+@inlined
+def to_segment(ax, ay, az, bx, by, bz, x, y, z):
+    """(vector from the nearest point of a segment to (x, y, z), its place on the segment from 0 to 1)."""
+    wx = x - ax
+    wy = y - ay
+    wz = z - az
+    sx = bx - ax
+    sy = by - ay
+    sz = bz - az
+    length2 = sx * sx + sy * sy + sz * sz
+    q = 0.0
+    if length2 > 0.0:
+        q = min(max((wx * sx + wy * sy + wz * sz) / length2, 0.0), 1.0)
+    return wx - q * sx, wy - q * sy, wz - q * sz, q
+
+
+@inlined
+def to_triangle(ax, ay, az, bx, by, bz, cx, cy, cz, x, y, z):
+    """Vector from the nearest point of a triangle to (x, y, z): the plane's inside the prism, else an edge's."""
+    ux = bx - ax
+    uy = by - ay
+    uz = bz - az
+    vx = cx - ax
+    vy = cy - ay
+    vz = cz - az
+    wx = x - ax
+    wy = y - ay
+    wz = z - az
+    nx = uy * vz - uz * vy
+    ny = uz * vx - ux * vz
+    nz = ux * vy - uy * vx
+    n2 = nx * nx + ny * ny + nz * nz
+    # Barycentric coordinates times n2 (Ericson 2005, 3.4).
+    q = nx * (wy * vz - wz * vy) + ny * (wz * vx - wx * vz) + nz * (wx * vy - wy * vx)
+    r = nx * (uy * wz - uz * wy) + ny * (uz * wx - ux * wz) + nz * (ux * wy - uy * wx)
+    if n2 > 0.0 and q >= 0.0 and r >= 0.0 and q + r <= n2:
+        h = (wx * nx + wy * ny + wz * nz) / n2
+        return h * nx, h * ny, h * nz
+    px, py, pz, _ = to_segment(ax, ay, az, bx, by, bz, x, y, z)
+    best = px * px + py * py + pz * pz
+    wx, wy, wz, _ = to_segment(bx, by, bz, cx, cy, cz, x, y, z)
+    d2 = wx * wx + wy * wy + wz * wz
+    if d2 < best:
+        best, px, py, pz = d2, wx, wy, wz
+    wx, wy, wz, _ = to_segment(cx, cy, cz, ax, ay, az, x, y, z)
+    if wx * wx + wy * wy + wz * wz < best:
+        px, py, pz = wx, wy, wz
+    return px, py, pz
+
+
+@inlined
+def to_part(parts, i, x, y, z):
+    """(vector from the nearest point of the part at row i to (x, y, z), place along it)."""
+    ax = parts[i, 0]
+    ay = parts[i, 1]
+    az = parts[i, 2]
+    bx = parts[i, 3]
+    by = parts[i, 4]
+    bz = parts[i, 5]
+    if parts[i + 1, SHAPE] == TRIANGLE:
+        wx, wy, wz = to_triangle(
+            ax, ay, az, bx, by, bz, parts[i + 1, 0], parts[i + 1, 1], parts[i + 1, 2], x, y, z
+        )  # fmt: skip
+        return wx, wy, wz, 0.0
+    return to_segment(ax, ay, az, bx, by, bz, x, y, z)
+
+
+@inlined
+def radius_at(parts, i, q):
+    """Radius of the part at row i at a place along it."""
+    return parts[i, RADIUS] + q * (parts[i + 1, RADIUS_B] - parts[i, RADIUS])
+
+
+@inlined
+def outside_node(parts, i, x0, x1, y0, y1, z0, z1):
+    """Whether the box x0..x1, y0..y1, z0..z1 has nothing in common with the node at row i."""
+    return (
+        x0 > parts[i, 3] or x1 < parts[i, 0] or y0 > parts[i, 4] or y1 < parts[i, 1] or z0 > parts[i, 5]
+        or z1 < parts[i, 2]
+    )  # fmt: skip
+
+
+@inlined
+def skeleton_value(parts, start, stop, x, y, z):
+    """Sum of the densities of the groups in rows start..stop-1 at a point; NaN at a point that is not finite."""
+    if not np.isfinite(x + y + z):
+        return np.nan
+    total = best = 0.0
+    group = -1.0
+    i = start
+    while i < stop:
+        if parts[i + 1, SHAPE] == NODE:
+            i += STRIDE + (int(parts[i, RADIUS]) if outside_node(parts, i, x, x, y, y, z, z) else 0)
+            continue
+        wx, wy, wz, q = to_part(parts, i, x, y, z)
+        radius = radius_at(parts, i, q)
+        density = falloff(parts[i + 1, KERNEL], (wx * wx + wy * wy + wz * wz) / (radius * radius))
+        if parts[i + 1, GROUP] != group:
+            group = parts[i + 1, GROUP]
+            total += best
+            best = 0.0
+        if density > 0.0 and density * abs(parts[i, WEIGHT]) > abs(best):
+            best = density * parts[i, WEIGHT]
+        i += STRIDE
+    return total + best
+
+
+@inlined
+def part_gradient(parts, i, x, y, z):
+    """(weighted density of the part at row i, its three derivatives)."""
+    wx, wy, wz, q = to_part(parts, i, x, y, z)
+    radius = radius_at(parts, i, q)
+    inverse = 1.0 / (radius * radius)
+    d2 = wx * wx + wy * wy + wz * wz
+    s = d2 / (radius * radius)
+    weight = parts[i, WEIGHT]
+    density = weight * falloff(parts[i + 1, KERNEL], s)
+    slope = weight * falloff_slope(parts[i + 1, KERNEL], s)
+    gx = 2.0 * slope * inverse * wx
+    gy = 2.0 * slope * inverse * wy
+    gz = 2.0 * slope * inverse * wz
+    if q > 0.0 and q < 1.0:
+        sx = parts[i, 3] - parts[i, 0]
+        sy = parts[i, 4] - parts[i, 1]
+        sz = parts[i, 5] - parts[i, 2]
+        turn = -2.0 * slope * s / radius * (parts[i + 1, RADIUS_B] - parts[i, RADIUS])
+        turn /= sx * sx + sy * sy + sz * sz
+        gx += turn * sx
+        gy += turn * sy
+        gz += turn * sz
+    return density, gx, gy, gz
+
+
+@inlined
+def skeleton_gradient(parts, start, stop, x, y, z):
+    """Gradient of ``skeleton_value`` with respect to the point."""
+    gx = gy = gz = 0.0
+    best = bx = by = bz = 0.0
+    group = -1.0
+    i = start
+    while i < stop:
+        if parts[i + 1, SHAPE] == NODE:
+            i += STRIDE + (int(parts[i, RADIUS]) if outside_node(parts, i, x, x, y, y, z, z) else 0)
+            continue
+        density, ux, uy, uz = part_gradient(parts, i, x, y, z)
+        if parts[i + 1, GROUP] != group:
+            group = parts[i + 1, GROUP]
+            gx += bx
+            gy += by
+            gz += bz
+            best = bx = by = bz = 0.0
+        if abs(density) > abs(best):
+            best, bx, by, bz = density, ux, uy, uz
+        i += STRIDE
+    return gx + bx, gy + by, gz + bz
