@@ -156,10 +156,10 @@ def test_an_include_stays_in_the_folder(path: str) -> None:
 
 
 def test_include_faults_are_located() -> None:
-    files = {"a.yaml": "include: b.yaml", "b.yaml": "include: a.yaml", "bad.yaml": "a: [0, 1] m"}
+    files = {"a.yaml": "include: b.yaml", "b.yaml": "include: a.yaml", "bad.yaml": "define: {a: [0, 1] m}"}
     assert found("include: [a.yaml, none.yaml, bad.yaml, [1]]", files) == [
         ("include-cycle", "b.yaml:1:10"),
-        ("unit-after-bracket", "bad.yaml:1:11"),
+        ("unit-after-bracket", "bad.yaml:1:20"),
         ("include-missing", "s.yaml:1:19"),
         ("section-shape", "s.yaml:1:40"),
     ]

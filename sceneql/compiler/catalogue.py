@@ -18,6 +18,8 @@ from typing import Any
 from sceneql.kinds import FAMILIES, Kind
 
 ROOT = Path(__file__).parent.parent
+LONGEST = 60
+"""Characters of a word: files have no names of any length."""
 USER_PACKAGE = "sceneql_words"
 
 
@@ -69,7 +71,7 @@ class Catalogue:
     def load(self, family: str, word: str) -> type[Kind] | None:
         """The class of a word that may stand in a family's section, or None if there is none."""
         key = (family, word)
-        if key not in self._loaded and word.isidentifier():
+        if key not in self._loaded and _may_be_word(word):
             for package, folder in self._places(family):
                 if _is_word(folder / f"{word}.py"):
                     module = importlib.import_module(f"{package}.{word}")
@@ -83,6 +85,8 @@ class Catalogue:
 
     def families_of(self, word: str) -> list[str]:
         """The families that have a word of this name (for a hint when it stands in the wrong section)."""
+        if not _may_be_word(word):
+            return []
         return [
             family
             for family in self.families
@@ -94,6 +98,11 @@ class Catalogue:
         from importlib.metadata import entry_points
 
         return {entry.name: entry for entry in entry_points(group="sceneql.words")}
+
+
+def _may_be_word(text: str) -> bool:
+    """Whether a text may be the name of a word's file."""
+    return text.isidentifier() and len(text) <= LONGEST
 
 
 def _is_word(path: Path) -> bool:

@@ -6,6 +6,7 @@ Unused parts are checked too, since an error in an unused part is still an error
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -22,7 +23,7 @@ from sceneql.kinds import Gives, Kind, Object, Quantity, Ref, Refers, Settings, 
 from sceneql.language.scope import Entry
 from sceneql.language.script import Script
 from sceneql.language.tree import Mapping as MappingNode
-from sceneql.language.tree import Node, Scalar, written
+from sceneql.language.tree import Node, Scalar, Sequence, unsure, whole, written
 from sceneql.quantities.diagnostic import Diagnostics, suggestion
 from sceneql.quantities.expression import Link, Type, walk
 
@@ -31,24 +32,26 @@ SETTINGS = tuple(Settings.model_fields)
 
 @dataclass(frozen=True, slots=True)
 class Checked:
-    """A script whose every part is right."""
+    """What is right of a script: all of it where no error is recorded."""
 
     script: Script
     settings: Settings
     tasks: Mapping[str, Task]
     """In the order of the script; parts written in place stand before the part that holds them."""
+    timed: bool
+    """Whether its clock can be read."""
 
 
 def check(script: Script, catalogue: Catalogue, found: Diagnostics) -> Checked:
-    """Read every entry of a script. Raises ScriptError with all that is wrong."""
+    """Read every entry of a script; what is wrong is recorded and left out."""
     checker = _Checker(script, catalogue, found)
     for family, entries in script.sections.items():
         for name in entries:
             checker.task(family, name)
+    checker.gives()
     checker.defaults()
     settings = checker.settings()
-    found.raise_errors()
-    return Checked(script, settings, checker.tasks)
+    return Checked(script, settings, checker.whole_tasks() if found.errors else checker.tasks, checker.timed)
 
 
 class _Checker:
@@ -58,24 +61,45 @@ class _Checker:
         self.family_of: dict[str, str] = {}
         self.entries: dict[str, Entry] = {}
         self._done: set[str] = set()
+        self.timed = True
         self.folder = Path(script.sources[0].name).parent
         for family, entries in script.sections.items():
             for name, entry in entries.items():
                 self.family_of.setdefault(name, family)  # a name used twice is reported by the language
                 self.entries.setdefault(name, entry)
         define = script.settings.get("define")
-        if define is not None and not isinstance(define, MappingNode):
-            found.error("wrong-shape", "define takes names with values, `{name: value}`", define.span)
-            define = None
         self.names = Names(
-            defines={} if define is None else define.entries,
+            defines=define.entries if isinstance(define, MappingNode) else {},
             parts=self.entries,
             outputs_of=self.outputs_of,
             read=lambda node, names: read_expr(node, None, None, "define", names, found),
             found=found,
             given=script.gives,
             broken=script.broken,
+            unsure=self.unsure,
         )
+
+    def unsure(self, name: str) -> bool:
+        """Whether something is wrong with the fields of a part, so that it may give more than is known."""
+        entry = self.entries[name]
+        cls, fields = self.catalogue.load(self.family_of[name], entry.word), entry.fields
+        if cls is None or fields is None:
+            return cls is None
+        known = {written_name(each) for each in cls.model_fields}
+        return not (isinstance(fields, MappingNode) and whole(fields) and known >= fields.entries.keys())
+
+    def whole_tasks(self) -> dict[str, Task]:
+        """The parts that are right, with all that they need."""
+        kept = dict(self.tasks)
+        while lacking := [name for name, task in kept.items() if not all(need in kept for need in task.needs)]:
+            for name in lacking:
+                del kept[name]
+        return kept
+
+    def gives(self) -> None:
+        """Every value that an instance gives, whether or not something reads it."""
+        for given in self.script.gives.values():
+            self.names.read(given.node, replace(self.names, scope=given.scope))
 
     def defaults(self) -> None:
         """The words under ``defaults`` and their fields' names, whether or not a part uses them."""
@@ -83,17 +107,42 @@ class _Checker:
         section, templates = root.get("defaults"), root.get("templates")
         if not isinstance(section, MappingNode):
             return
+        used = {entry.word for entry in self.entries.values()}
         for word, fields in section.entries.items():
             kinds = [cls for family in self.catalogue.families if (cls := self.catalogue.load(family, word))]
             if kinds and isinstance(fields, MappingNode):
                 known = dict.fromkeys(written_name(name) for cls in kinds for name in cls.model_fields)
                 report_unknown(fields, known, word, self.found)
+                if word not in used and not _mentions(templates, word):
+                    self.unused_defaults(word, fields, kinds)
             elif not kinds:
                 words = [each for family in self.catalogue.families for each in self.catalogue.words(family)]
                 help = suggestion(word, words) or "defaults are written by word, `{sphere: {radius: 1 m}}`"
                 if isinstance(templates, MappingNode) and word in templates.entries:
                     help = "the defaults of a template stand in its own `fields:`"
                 self.found.error("unknown-word", f"'{word}' is no word", section.keys[word].span, help=help)
+
+    def unused_defaults(self, word: str, fields: MappingNode, kinds: list[type[Kind]]) -> None:
+        """Read the defaults of a word that no part has; what is written in place there makes no parts."""
+        before = dict(self.tasks), dict(self.family_of), dict(self.entries)
+        part = Entry(f"defaults.{word}", word, None, fields.span, fields.span, None)
+        for cls in kinds:
+            symbols = cls.formula_symbols(written(fields))
+            reader = Reader(
+                self.names,
+                self.found,
+                lambda node, mark, name: self.refer(node, mark, name, part),
+                part.name,
+                self.folder,
+                symbols,
+            )
+            for name, info in cls.model_fields.items():
+                if (node := fields.entries.get(written_name(name))) is not None:
+                    with suppress(Unreadable):
+                        replace(reader, owner=f"{part.name}.{name}").field(node, info, written_name(name))
+        self.tasks, self.family_of, kept = before
+        self.entries.clear()  # the names hold this very table
+        self.entries.update(kept)
 
     def settings(self) -> Settings:
         """The top-level keys; every define is read, used or not."""
@@ -108,8 +157,9 @@ class _Checker:
                 result[key] = reader.field(node, info, key)
             except Unreadable:
                 continue
-        settings = Settings.model_validate(result)
-        for expect in settings.expect.values() if "clock" in result or "clock" not in given else ():
+        settings = Settings.model_validate(result, context=[])  # what is wrong inside is told already
+        self.timed = "clock" in result or "clock" not in given
+        for expect in settings.expect.values() if self.timed else ():
             check_instants(expect, settings.clock.end, self.found)
         return settings
 
@@ -184,6 +234,8 @@ class _Checker:
         """The part that a field names; one that is written in place becomes a part of its own first."""
         if isinstance(node, Scalar):
             name = entry.scope.resolve(node.text) if entry.scope is not None else node.text
+            if name in self.entries and self.catalogue.load(self.family_of[name], self.entries[name].word) is None:
+                return None  # its word is reported there
             if name in self.entries and self.family(name) in (mark.family, mark.also):
                 return Ref(name, node.span)
             if name not in self.entries and self.catalogue.load(mark.family, node.text) is not None:
@@ -194,6 +246,8 @@ class _Checker:
         if isinstance(node, MappingNode) and len(node.entries) == 1:
             (word, fields), (key,) = next(iter(node.entries.items())), node.keys.values()
             return self._in_place(Entry(anonymous, word, fields, node.span, key.span, entry.scope), mark.family)
+        if unsure(node):
+            return None
         message = f"a name, or one entry `{{word: {{fields}}}}`, stands here for a part of {mark}"
         self.found.error("entry-shape", message, node.span)
         return None
@@ -205,14 +259,23 @@ class _Checker:
         return Ref(entry.name, entry.span) if entry.name in self.tasks else None
 
     def _unknown(self, node: Scalar, name: str, mark: Refers) -> None:
+        if name in self.entries:
+            self.found.error("wrong-family", f"'{node.text}' is one of {self.family(name)}, not of {mark}", node.span)
+            return
         if name in self.script.broken:
             return  # it is reported where it stands
-        if name in self.entries:
-            self.found.error("wrong-family", f"'{name}' is one of {self.family(name)}, not of {mark}", node.span)
-            return
         choices = [n for n in self.entries if self.family(n) in (mark.family, mark.also)]
         hint = suggestion(name, [*choices, *self.catalogue.words(mark.family)])
-        self.found.error("unknown-name", f"no part of {mark} is called '{name}'", node.span, help=hint)
+        self.found.error("unknown-name", f"no part of {mark} is called '{node.text}'", node.span, help=hint)
+
+
+def _mentions(node: Node | None, word: str) -> bool:
+    """Whether a word may be used somewhere below, as in a template that no instance is made of."""
+    if isinstance(node, Scalar):
+        return node.text == word
+    if isinstance(node, MappingNode):
+        return word in node.entries or any(_mentions(item, word) for item in node.entries.values())
+    return isinstance(node, Sequence) and any(_mentions(item, word) for item in node.items)
 
 
 def values_of(part: Any) -> list[Value]:

@@ -31,7 +31,8 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
     drawn = _drawn(tasks)
     cameras = _cameras(tasks)
     clock = script.settings.get("clock")
-    _check_outputs(tasks, drawn, checked.settings.clock, None if clock is None else clock.span, found)
+    if checked.timed:
+        _check_outputs(tasks, drawn, checked.settings.clock, None if clock is None else clock.span, found)
     found.raise_errors()
     warn_of_steps(script, tasks, groups, checked.settings.clock.end, found)
     order, needed_by, left_out = prune(tasks, groups, drawn, cameras)

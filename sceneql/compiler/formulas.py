@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from sceneql.compiler.names import Names, plain
 from sceneql.compiler.over_time import momentary
 from sceneql.compiler.values import parsed_text
-from sceneql.language.tree import Node, Scalar, Sequence
+from sceneql.language.tree import Node, Scalar, Sequence, unsure
 from sceneql.quantities.bind import bind
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError, suggestion
 from sceneql.quantities.dimension import PLAIN
@@ -24,6 +24,8 @@ def read_formula(node: Node, symbols: Iterable[str], what: str, names: Names, fo
         if any(item is None for item in items):
             return None
         return Vector(tuple(item for item in items if item is not None), Type((len(items),), PLAIN), node.span)
+    if unsure(node):
+        return None
     if not isinstance(node, Scalar):
         found.error("wrong-shape", f"{what} is a formula", node.span)
         return None
@@ -32,7 +34,8 @@ def read_formula(node: Node, symbols: Iterable[str], what: str, names: Names, fo
     def lookup(parts: tuple[str, ...], span: Span) -> Expr | None:
         if len(parts) == 1 and parts[0] in free:
             return Symbol("time" if parts[0] == "t" else parts[0], Type((), PLAIN), span)
-        if parts[0] not in names.defines and parts[0] not in CONSTANTS and len(parts) == 1:
+        lost = parts[0] in names.broken
+        if parts[0] not in names.defines and parts[0] not in CONSTANTS and len(parts) == 1 and not lost:
             found.error(
                 "unknown-name",
                 f"nothing is called '{parts[0]}'",

@@ -8,7 +8,7 @@ from typing import Any
 
 from sceneql.kinds import Value
 from sceneql.language.tree import Mapping as MappingNode
-from sceneql.language.tree import Node, Scalar
+from sceneql.language.tree import Node, Scalar, broken, unsure
 from sceneql.quantities.diagnostic import Diagnostics, suggestion
 from sceneql.quantities.dimension import TIME
 from sceneql.quantities.expression import Call, Expr, Key, Keys, Symbol, Type
@@ -33,6 +33,8 @@ def read_keys(
             found.error("unknown-field", f"keyframes have no field '{key}'", node.keys[key].span, help=hint)
             ok = False
     table = node.entries["keys"]
+    if unsure(table):
+        return None
     if not isinstance(table, MappingNode) or not table.entries:
         found.error("wrong-shape", "keys are written `{time: value, ...}`", table.span)
         return None
@@ -79,6 +81,8 @@ def _curve(node: MappingNode, found: Diagnostics) -> Any:
     if "curve" not in node.entries:
         return "smooth"
     item = node.entries["curve"]
+    if broken(item):
+        return None
     text = item.text if isinstance(item, Scalar) else ""
     if text in CURVES:
         return text

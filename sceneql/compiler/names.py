@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 from sceneql.kinds import Gives
-from sceneql.language.scope import Given, Scope
+from sceneql.language.scope import Broken, Given, Scope
 from sceneql.language.tree import Node
 from sceneql.quantities.bind import component
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, suggestion
@@ -15,6 +15,7 @@ from sceneql.quantities.dimension import PLAIN, TIME
 from sceneql.quantities.expression import Call, Expr, Key, Keys, Link, Number, Symbol, Type, Vector
 from sceneql.quantities.operations import CONSTANTS
 from sceneql.quantities.span import Span
+from sceneql.quantities.units import continues_unit, unit_hint
 
 
 @dataclass
@@ -28,8 +29,10 @@ class Names:
     found: Diagnostics
     given: Mapping[str, Given]
     """What instances of templates give."""
-    broken: Collection[str] = ()
-    """Parts that are reported where they stand, and about which no more is said."""
+    broken: Broken = field(default_factory=Broken)
+    """What is reported where it stands, and about which no more is said."""
+    unsure: Callable[[str], bool] = lambda name: False
+    """Whether a part may give more than is known, since something is wrong with its fields."""
     scope: Scope | None = None
     _bound: dict[str, Expr | None] = field(default_factory=dict)
     _open: list[str] = field(default_factory=list)
@@ -78,11 +81,19 @@ class Names:
             outputs = self.outputs_of(task)
             if outputs is not None:
                 return self._output(task, outputs, parts, size, span)
-            if task in self.parts or task in self.broken:
+            if task in self.parts:
                 return None  # it is reported there
+        if self._is_reported(parts):
+            return None
         if head not in CONSTANTS or len(parts) > 1:
             self._unknown(parts, span)
         return None
+
+    def _is_reported(self, parts: tuple[str, ...]) -> bool:
+        """Whether a name, or what would have it, was to be defined by what is reported where it stands."""
+        wanted = ".".join(parts)
+        inside = wanted if self.scope is None else self.scope.resolve(wanted)
+        return wanted in self.broken or inside in self.broken
 
     def _output(
         self, task: str, outputs: Mapping[str, Gives], parts: tuple[str, ...], first: int, span: Span
@@ -92,11 +103,13 @@ class Names:
             name = ".".join(parts[first:size])
             if name in outputs:
                 return self._component(Link(task, name, outputs[name].type, span), parts, size, span)
+        if self.unsure(task):
+            return None
         wanted = ".".join(parts[first:])
         names = ", ".join(sorted(outputs)) or "nothing"
         self.found.error(
             "unknown-output",
-            f"'{task}' gives no '{wanted}'",
+            f"'{'.'.join(parts[:first])}' gives no '{wanted}'",
             span,
             help=suggestion(wanted, outputs) or f"it gives {names}",
         )
@@ -114,7 +127,10 @@ class Names:
 
     def _unknown(self, parts: tuple[str, ...], span: Span) -> None:
         wanted = ".".join(parts)
-        if wanted in self.broken:
+        if continues_unit(span.source.text, span.start):
+            message = f"there is no unit '{wanted}', and nothing is called so"
+            help = unit_hint(wanted) or suggestion(wanted, self.defines) or "units are such as m, s, kg, N or deg"
+            self.found.error("unknown-unit", message, span, help=help)
             return
         parts_known = list(self.parts)
         if parts == ("t",):

@@ -8,7 +8,7 @@ from sceneql.compiler.names import Names
 from sceneql.compiler.values import parsed_text, read_value, time_reader
 from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
-from sceneql.language.tree import Node, Scalar
+from sceneql.language.tree import Node, Scalar, unsure
 from sceneql.quantities.diagnostic import Diagnostics, suggestion
 from sceneql.quantities.dimension import PLAIN
 from sceneql.quantities.expression import Call, Expr, Number, Type, Vector
@@ -21,6 +21,8 @@ ORDERS = ("xyz", "xzy", "yxz", "yzx", "zxy", "zyx")
 
 def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
     """An sRGB color (3,) from 0 to 1: a CSS name, ``#rrggbb``, or a vector value."""
+    if unsure(node):
+        return None
     if isinstance(node, MappingNode) and "keys" in node.entries:
 
         def key(item: Node) -> Expr | None:
@@ -42,6 +44,8 @@ def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
 
 def read_rotation(node: Node, names: Names, found: Diagnostics) -> Value | None:
     """A rotation as a unit quaternion [w, x, y, z] (4,)."""
+    if unsure(node):
+        return None
     if not isinstance(node, MappingNode):
         return read_value(node, Quantity(PLAIN, (4,)), "rotation", names, found)
     if "keys" in node.entries:

@@ -23,6 +23,7 @@ from sceneql.kinds import (
     Formula,
     Kind,
     Paint,
+    Problem,
     Quantity,
     Ref,
     Refers,
@@ -34,9 +35,9 @@ from sceneql.kinds import (
 )
 from sceneql.language.sections import empty
 from sceneql.language.tree import Mapping as MappingNode
-from sceneql.language.tree import Node, Scalar, Sequence
+from sceneql.language.tree import Node, Scalar, Sequence, broken, unsure, whole
 from sceneql.language.tree import written as plainly
-from sceneql.quantities.diagnostic import Diagnostics, suggestion
+from sceneql.quantities.diagnostic import Diagnostics, nearest, suggestion
 from sceneql.quantities.span import Span
 
 TRUE, FALSE = ("true", "yes", "on"), ("false", "no", "off")
@@ -73,13 +74,17 @@ class Reader:
             symbols = cls.formula_symbols(plainly(node))
         ok = True
         got: dict[str, Any] = {}
+        mistaken: set[str | None] = set()
         if isinstance(node, MappingNode):
-            ok = report_unknown(node, [written_name(name) for name in cls.model_fields], title, self.found)
+            known = [written_name(name) for name in cls.model_fields]
+            ok = report_unknown(node, known, title, self.found) and not node.partial
+            mistaken = {nearest(name, known) for name in node.entries if name not in known}
         for python_name, info in cls.model_fields.items():
             name = written_name(python_name)
             if name not in written:
                 if info.is_required():
                     ok = False
+                if info.is_required() and name not in mistaken and not (node is not None and unsure(node)):
                     self.found.error(
                         "missing-field", f"{title} needs '{name}'", span, help=f"{name}: {info.description}"
                     )
@@ -92,19 +97,26 @@ class Reader:
         if not ok:
             raise Unreadable
         try:
-            return cls.model_validate(got)
+            context: list[tuple[BaseModel, Problem]] = []
+            result = cls.model_validate(got, context=context)
         except ValidationError as error:
             for problem in error.errors():
                 exceeds = isinstance(problem.get("ctx", {}).get("error"), Exceeds)
                 code = "limit-refused" if exceeds else "invalid"
                 self.found.error(code, _text(problem), _place(problem["loc"], node, span))
             raise Unreadable from None
+        problems = [problem for one, problem in context if one is result]  # of those inside it is told already
+        for told in problems:
+            self.found.error(told.code, told.text, _place(told.path, node, span, at_key=told.at_key))
+        if problems and issubclass(cls, Kind):
+            raise Unreadable
+        return result  # what holds it may have problems of its own
 
     def field(self, node: Node, info: Any, name: str) -> Any:
         """The value of a field, within its range. Raises Unreadable after reporting."""
         annotation = Annotated[(info.annotation, *info.metadata)] if info.metadata else info.annotation
-        errors = len(self.found.errors)
         value = self.read(node, annotation, name)
+        errors = len(self.found.errors)
         bounds = (info.json_schema_extra or {}).get("limits", {})
         limits.check_limits(value, bounds, name, annotation, node.span, self.found)
         if len(self.found.errors) > errors:
@@ -113,6 +125,8 @@ class Reader:
 
     def read(self, node: Node, annotation: Any, what: str) -> Any:
         """A value of the annotation's type. Raises Unreadable after reporting."""
+        if broken(node):
+            raise Unreadable
         if isinstance(node, Scalar) and not node.quoted:
             field = self.names.field(node.text)
             if field is not None:
@@ -183,6 +197,8 @@ class Reader:
             return None
         fitting = [arm for arm in arms if arm is not type(None) and _could_be(arm, node)]
         fitting = fitting or [arm for arm in arms if arm is not type(None)]
+        if len(fitting) > 1 and not whole(node):
+            raise Unreadable  # which of them it was meant to be cannot be told
         for arm in fitting[:-1]:
             attempt = replace(self, found=Diagnostics())
             attempt = replace(attempt, names=replace(self.names, found=attempt.found))
@@ -328,10 +344,12 @@ def _text(problem: Any) -> str:
     return message.removeprefix("Value error, ").removeprefix("Assertion failed, ")
 
 
-def _place(path: tuple[int | str, ...], node: Node | None, span: Span) -> Span:
-    """The deepest node that a validation error's path leads to."""
-    for step in path:
+def _place(path: tuple[int | str, ...], node: Node | None, span: Span, *, at_key: bool = False) -> Span:
+    """The deepest node that a validation error's path leads to, or the key of the last step."""
+    for number, step in enumerate(path, 1):
         if isinstance(node, MappingNode) and isinstance(step, str) and written_name(step) in node.entries:
+            if at_key and number == len(path):
+                return node.keys[written_name(step)].span
             node = node.entries[written_name(step)]
         elif isinstance(node, Sequence) and isinstance(step, int) and step < len(node.items):
             node = node.items[step]

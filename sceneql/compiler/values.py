@@ -8,7 +8,7 @@ from sceneql.compiler.names import Names
 from sceneql.compiler.over_time import momentary
 from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
-from sceneql.language.tree import Node, Scalar, Sequence
+from sceneql.language.tree import Node, Scalar, Sequence, unsure
 from sceneql.quantities.bind import bind
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError, suggestion
 from sceneql.quantities.dimension import PLAIN, TIME, Dimension
@@ -45,6 +45,8 @@ def read_expr(
     node: Node, shape: Shape | None, dimension: Dimension | None, what: str, names: Names, found: Diagnostics
 ) -> Expr | None:
     """The bound tree of a scalar, list or keyframe node; the type is not yet compared with what is wanted."""
+    if unsure(node):
+        return None
     match node:
         case Scalar():
             return scalar_expr(node, names, found)

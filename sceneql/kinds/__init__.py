@@ -53,7 +53,18 @@ from sceneql.kinds.types import (
     Velocity,
 )
 from sceneql.kinds.values import Formula, Paint, Quantity, Ref, Refers, SceneFile, Symbols, Turn, Value
-from sceneql.kinds.word import GRAMMAR, REQUIRED, Gives, Kind, Record, field, literal, quantity_type, written_name
+from sceneql.kinds.word import (
+    GRAMMAR,
+    REQUIRED,
+    Gives,
+    Kind,
+    Problem,
+    Record,
+    field,
+    literal,
+    quantity_type,
+    written_name,
+)
 
 FAMILIES: tuple[type[Kind], ...] = (
     Object,

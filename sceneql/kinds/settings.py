@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-
-from pydantic import model_validator
+from collections.abc import Iterator
 
 from sceneql.kinds.types import Color, Expected, FixedScalar, FixedTime
-from sceneql.kinds.word import Record, field
+from sceneql.kinds.word import Problem, Record, field
 
 MOST_MOMENTS = 1_000_000
 
@@ -54,11 +53,10 @@ class Expect(Record):
     because: str = field("Why: exact, independent source, conservation, ...")
     variant: str | None = field("The variant that it holds for; by default the script as it stands.", None)
 
-    @model_validator(mode="after")
-    def _one_target(self) -> Expect:
+    def problems(self) -> Iterator[Problem]:
+        """A number that is compared with nothing, or twice."""
         if (self.value is None) == (self.below is None):
-            raise ValueError("an expectation has either 'value' or 'below'")
-        return self
+            yield Problem("an expectation has either 'value' or 'below'")
 
 
 class Settings(Record):

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, ValidationInfo, model_validator
+from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from sceneql.kinds.values import Paint, Quantity, Turn, Value
 from sceneql.quantities import dimension as dim
@@ -61,6 +62,22 @@ def written_name(name: str) -> str:
     return name.removesuffix("_")
 
 
+Step = str | int
+"""A field's or key's name, or the number of a list's item."""
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """What is wrong with fields that are right by themselves: a text, and where it is told."""
+
+    text: str
+    path: tuple[Step, ...] = ()
+    """Steps from the record to the value that is wrong; none: the record as a whole."""
+    at_key: bool = False
+    """The caret stands under the last step's name, not under its value."""
+    code: str = "invalid"
+
+
 class Record(BaseModel):
     """A group of fields inside a word (a mass, a spring, a clock): the same types, no methods of a family."""
 
@@ -81,6 +98,27 @@ class Record(BaseModel):
                     value = literal(info.default, GRAMMAR.get(type(mark), mark))
                     filled[name] = value if info.annotation is Value else value.number()
         return filled
+
+    def problems(self) -> Iterable[Problem]:
+        """All that is wrong with its fields taken together; each becomes an error of the script."""
+        return ()
+
+    @model_validator(mode="after")
+    def _is_sound(self, info: ValidationInfo) -> Self:
+        if isinstance(info.context, list):  # the reader tells them, and goes on with the parts around
+            info.context.extend((self, problem) for problem in self.problems())
+            return self
+        wrong = [
+            InitErrorDetails(
+                type=PydanticCustomError("problem", "{text}", {"text": problem.text, "problem": problem}),
+                loc=problem.path,
+                input=None,
+            )
+            for problem in self.problems()
+        ]
+        if wrong:
+            raise ValidationError.from_exception_data(type(self).__name__, wrong)
+        return self
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,10 +10,11 @@ from typing import Any, Final, Literal, NoReturn, cast
 
 import yaml
 
-from sceneql.language.syntax import explain, unprintable
-from sceneql.language.torn import report_comment, report_torn
-from sceneql.language.tree import Mapping, Node, Scalar, Sequence
-from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, Note, ScriptError
+from sceneql.language.mend import blanked, cut_short, joined, mended
+from sceneql.language.syntax import explain, place, unprintable
+from sceneql.language.torn import Fault, report, swallowed, torn_halves, torn_near
+from sceneql.language.tree import Mapping, Node, Scalar, Sequence, hole
+from sceneql.quantities.diagnostic import LIMITS, Diagnostic, Diagnostics, Note, ScriptError
 from sceneql.quantities.span import Source, Span
 
 MOST_BYTES: Final = 32_000_000
@@ -21,6 +22,8 @@ MOST_DEPTH: Final = 64
 MOST_NODES: Final = 3_000_000
 MOST_EXPANDED: Final = 1_000_000
 MOST_ERRORS: Final = 100
+MOST_REREAD: Final = 2_000_000
+"""Characters that are read again, beyond once, to go on behind what is torn."""
 
 Kind = Literal["null", "boolean", "integer", "number", "text"]
 
@@ -68,49 +71,52 @@ def _too_large(source: Source) -> ScriptError:
     return ScriptError([Diagnostic("too-large", message, Span(source, 0, 1), _LARGE)])
 
 
-def compose(source: Source) -> Mapping:
-    """The tree of a script. Raises ScriptError with all that is wrong, up to where reading has to stop."""
-    root = compose_node(source)
+def compose(source: Source, found: Diagnostics | None = None) -> Mapping:
+    """The tree of a script. Raises ScriptError with all that is wrong, up to where reading has to stop.
+
+    With ``found``, what is wrong is recorded there, and the tree is of what can be read (see `compose_node`); only
+    where that is nothing, or too much, ScriptError is raised.
+    """
+    root = compose_node(source, found=found)
     if isinstance(root, Mapping):
         return root
-    found = Diagnostics()
     message = "a script is a mapping of sections, not a list or a single value"
-    found.error("script-shape", message, root.span, help="write `objects:` and the objects below it, indented")
-    raise ScriptError(found.errors)
+    help = "write `objects:` and the objects below it, indented"
+    raise ScriptError([Diagnostic("script-shape", message, root.span, help)])
 
 
-def compose_node(source: Source, start: int = 0) -> Node:
-    """The tree of the text from character ``start`` on, of whatever kind. Raises ScriptError like `compose`."""
+def compose_node(source: Source, start: int = 0, found: Diagnostics | None = None) -> Node:
+    """The tree of the text from character ``start`` on, of whatever kind. Raises ScriptError like `compose`.
+
+    With ``found``, torn values are read as they were meant, holes stand for what cannot be read, mappings that lack
+    an entry are partial, and of a text that stops being YAML what was whole before is kept.
+    """
     if source.text.startswith("\ufeff"):
         source = Source(source.name, source.text[1:])
-    found = Diagnostics()
     if len(source.text) > MOST_BYTES:
         raise _too_large(source)
     if (at := unprintable(source.text)) is not None:
         message = f"the control character U+{ord(source.text[at]):04X} cannot stand in a script"
-        found.error("control-character", message, Span(source, at, at + 1), help="delete it")
-    found.raise_errors()
-    composer = _Composer(source, found)
-    root: Node | None = None
+        span = Span(source, at, at + 1)
+        raise ScriptError([Diagnostic("control-character", message, span, "delete it")])
+    faults: list[Fault] = []
     # The tree has no cycles, and the collector would walk all of it again and again while it grows.
     with _collector_off():
-        try:
-            root = composer.document(start)
-        except yaml.YAMLError as error:
-            for diagnostic in explain(source, error, composer.flow_start()):
-                found.add(diagnostic)
-        except _StopError:
-            pass
-    torn = report_torn(composer.halves[:MOST_ERRORS], found)
-    # Two halves that look the same are no duplicate keys.
-    found.found = [d for d in found.found if d.code != "duplicate-key" or not _inside(d.span, torn)]
-    found.raise_errors()
-    assert root is not None
-    return root
-
-
-def _inside(span: Span | None, others: list[Span]) -> bool:
-    return span is not None and any(other.start <= span.start and span.end <= other.end for other in others)
+        for attempt in range(MOST_ERRORS):
+            composer = _Composer(source, faults)
+            again, root = composer.attempt(start)
+            faults = joined(faults, again)[:MOST_ERRORS]
+            if not again or len(faults) == MOST_ERRORS or attempt * len(source.text) > MOST_REREAD:
+                break
+    wrong = composer.found
+    if again:  # two halves that look the same are no duplicate keys
+        wrong.found.clear()
+    report(source, faults, wrong)
+    if wrong.found and (found is None or root is None or again or any(d.code in LIMITS for d in wrong.found)):
+        wrong.raise_errors()
+    for diagnostic in wrong.found:
+        cast(Diagnostics, found).add(diagnostic)
+    return cast(Node, root)
 
 
 @contextmanager
@@ -129,24 +135,60 @@ class _StopError(Exception):
 
 
 class _Composer:
-    def __init__(self, source: Source, found: Diagnostics) -> None:
+    """Reads the source once, with what ``faults`` says in place of what is torn."""
+
+    def __init__(self, source: Source, faults: list[Fault]) -> None:
         self.source = source
-        self.found = found
+        self.text = blanked(source.text, faults) if faults else source.text
+        self.faults = {fault.start: fault for fault in faults}
+        self.found = Diagnostics()
         self.halves: list[Scalar] = []
+        self.colors: list[Fault] = []
+        self.nameless: dict[int, Node] = {}
+        self.odd: list[Mapping] = []
+        self.root: Node | None = None
+        self.keyed = False
         self.anchors: dict[str, Node] = {}
         self.expanded = 0
         self.measured: dict[int, tuple[int, int]] = {}
         self.stack: list[Mapping | Sequence] = []
 
-    def document(self, start: int) -> Node:
-        """The only document of the source. Raises _StopError or yaml.YAMLError where reading cannot go on."""
-        text = self.source.text
+    def attempt(self, start: int) -> tuple[list[Fault], Node | None]:
+        """What is torn beyond what is known, and the tree of what can be read, if any."""
+        near: list[Fault] = []
+        try:
+            self.document(start)
+        except yaml.YAMLError as error:
+            near = torn_near(self.source, self.text, place(self.source, error), self.flow_start())
+            if not near:
+                self.found.add(explain(self.source, error, self.flow_start()))
+            self.cut_short(place(self.source, error))
+        except _StopError:
+            self.cut_short(len(self.text))
+        torn = joined([*torn_halves(self.halves[:MOST_ERRORS], self.text), *self.colors], near)
+        for mapping in self.odd:
+            mapping.partial = True
+            for name in [name for name in ("", "<<") if name in mapping.keys and not mapping.keys[name].quoted]:
+                del mapping.entries[name], mapping.keys[name]
+        return torn, self.root
+
+    def cut_short(self, at: int) -> None:
+        """Keep what was whole where reading stopped."""
+        if self.stack:
+            self.root = self.stack[0]
+            cut_short(self.stack, self.keyed, at)
+        elif isinstance(self.root, Mapping):
+            self.root.partial = True
+
+    def document(self, start: int) -> None:
+        """Read the only document of the source. Raises _StopError or yaml.YAMLError where reading cannot go on."""
+        text = self.text
         loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)(" " * start + text[start:])
         try:
             loader.get_event()
             if type(loader.get_event()) is yaml.StreamEndEvent:
                 self.stop("empty-script", "the script is empty", 0, 1, "write `objects:` and the objects below it")
-            root = self.tree(loader)
+            root = self.root = self.tree(loader)
             loader.get_event()
             if type(event := loader.get_event()) is not yaml.StreamEndEvent:
                 at = event.start_mark.index
@@ -154,8 +196,8 @@ class _Composer:
         finally:
             loader.dispose()
         if isinstance(root, Scalar) and root.kind == "null":
+            self.root = None
             self.stop("empty-script", "the script is empty", 0, 1, "write `objects:` and the objects below it")
-        return root
 
     def tree(self, loader: yaml.SafeLoader) -> Node:
         """The node whose events come next."""
@@ -164,94 +206,116 @@ class _Composer:
         get: Callable[[], Any] = loader.get_event
         scalar_event, alias_event = yaml.ScalarEvent, yaml.AliasEvent
         open_mapping, open_sequence = yaml.MappingStartEvent, yaml.SequenceStartEvent
-        stack = self.stack
+        stack, faults, nameless = self.stack, self.faults, self.nameless
         here: Any = None
         key: Any = None
         end = count = 0
-        while True:
-            event = get()
-            kind = type(event)
-            node: Any
-            if kind is scalar_event:
-                text = event.value
-                end = event.end_mark.index
-                if event.style:
-                    node = Scalar(text, "text", True, source, event.start_mark.index, end)
-                    if event.style in "|>":
-                        end = node.end = node.start + len(source.text[node.start : end].rstrip())
-                else:
-                    node = Scalar(text, kind_of(text), False, source, event.start_mark.index, end)
-                    if not text:
-                        self.empty(node)
-                    elif "(" in text and text.count("(") > text.count(")") and here is not None and here.flow:
-                        self.halves.append(node)
-            elif kind is open_mapping:
-                end = event.end_mark.index
-                node = Mapping({}, {}, event.flow_style, source, event.start_mark.index, end)
-            elif kind is open_sequence:
-                end = event.end_mark.index
-                node = Sequence([], event.flow_style, source, event.start_mark.index, end)
-            elif kind is alias_event:
-                start, end = event.start_mark.index, event.end_mark.index
-                node = self.alias(event.anchor, Span(source, start, end))
-            else:
-                if here.flow:
-                    end = event.end_mark.index
-                here.end = end
-                key = None
-                stack.pop()
-                if not stack:
-                    return cast(Node, here)
-                here = stack[-1]
-                continue
-
-            count += 1
-            if count > MOST_NODES:
-                self.stop("too-many-nodes", f"the script has more than {MOST_NODES:,} values", end - 1, end, _LARGE)
-            if kind is not alias_event and (event.anchor is not None or event.tag is not None):
-                self.properties(event, node)
-            if here is None:
+        try:
+            while True:
+                event = get()
+                kind = type(event)
+                node: Any
                 if kind is scalar_event:
-                    return cast(Node, node)
-            elif type(here) is Sequence:
-                here.items.append(node)
-            elif key is None:
-                if kind is not scalar_event:
-                    self.stop("key-not-text", "a key is a single word or text", node.start, end, "write `name: value`")
-                key = node
-                if (text == "<<" or not text) and not key.quoted:
-                    self.odd_key(key)
-                continue
-            else:
-                text = key.text
-                if text in here.entries:
-                    self.duplicate(key, here)
+                    text = event.value
+                    end = event.end_mark.index
+                    if event.style:
+                        node = Scalar(text, "text", True, source, event.start_mark.index, end)
+                        if event.style in "|>":
+                            end = node.end = node.start + len(source.text[node.start : end].rstrip())
+                    else:
+                        node = Scalar(text, kind_of(text), False, source, event.start_mark.index, end)
+                        if not text:
+                            self.empty(node)
+                        elif faults and text[0] == "x":
+                            node = self.meant(event, node)
+                        elif "(" in text and text.count("(") > text.count(")") and here is not None and here.flow:
+                            self.halves.append(node)
+                elif kind is open_mapping:
+                    end = event.end_mark.index
+                    node = Mapping({}, {}, event.flow_style, source, event.start_mark.index, end)
+                elif kind is open_sequence:
+                    end = event.end_mark.index
+                    node = Sequence([], event.flow_style, source, event.start_mark.index, end)
+                elif kind is alias_event:
+                    start, end = event.start_mark.index, event.end_mark.index
+                    node = self.alias(event.anchor, Span(source, start, end))
                 else:
-                    here.entries[text] = node
-                    here.keys[text] = key
-                key = None
-            if kind is open_mapping or kind is open_sequence:
-                if len(stack) >= MOST_DEPTH:
-                    self.stop("too-deep", f"more than {MOST_DEPTH} levels of lists and mappings", end - 1, end, _DEEP)
-                here = node
-                stack.append(here)
+                    if here.flow:
+                        end = event.end_mark.index
+                    here.end = end
+                    key = None
+                    stack.pop()
+                    if not stack:
+                        return cast(Node, here)
+                    if nameless and nameless.pop(id(here), None) is not None:
+                        key = Scalar("", "text", False, source, here.start, end)
+                    here = stack[-1]
+                    continue
+
+                count += 1
+                if count > MOST_NODES:
+                    self.stop("too-many-nodes", f"the script has more than {MOST_NODES:,} values", end - 1, end, _LARGE)
+                if kind is not alias_event and (event.anchor is not None or event.tag is not None):
+                    self.properties(event, node)
+                if here is None:
+                    if kind is scalar_event:
+                        return cast(Node, node)
+                elif type(here) is Sequence:
+                    here.items.append(node)
+                elif key is None:
+                    if kind is scalar_event:
+                        key = node
+                        if (text == "<<" or not text) and not key.quoted:
+                            self.odd_key(key, here)
+                        continue
+                    self.nameless_key(node, here)
+                    if kind is alias_event:
+                        key = Scalar("", "text", False, source, node.start, end)
+                        continue
+                else:
+                    text = key.text
+                    if text in here.entries:
+                        self.duplicate(key, here)
+                    else:
+                        here.entries[text] = node
+                        here.keys[text] = key
+                    key = None
+                if kind is open_mapping or kind is open_sequence:
+                    if len(stack) >= MOST_DEPTH:
+                        self.stop(
+                            "too-deep", f"more than {MOST_DEPTH} levels of lists and mappings", end - 1, end, _DEEP
+                        )
+                    here = node
+                    stack.append(here)
+        except (yaml.YAMLError, _StopError):
+            self.keyed = key is not None
+            raise
 
     def flow_start(self) -> int | None:
         """Where the outermost open flow collection begins."""
         return next((one.start for one in self.stack if one.flow), None)
 
     def empty(self, node: Scalar) -> None:
-        """Report a value that is missing because a color was taken for a comment."""
-        report_comment(node, self.found)
-        if len(self.found.found) >= MOST_ERRORS:
-            raise _StopError
+        """Take note of a value that is missing because a color was taken for a comment."""
+        fault = swallowed(node, self.text)
+        if fault is not None and len(self.colors) < MOST_ERRORS:
+            self.colors.append(fault)
+
+    def meant(self, event: Any, node: Scalar) -> Node:
+        """What is meant by a scalar that stands in place of something torn; any other one itself."""
+        fault = self.faults.get(self.behind_properties(event))
+        return node if fault is None else mended(fault, self.source)
+
+    def behind_properties(self, event: Any) -> int:
+        """Where a node starts behind its anchor and tag."""
+        at: int = event.start_mark.index
+        properties = _PROPERTIES.match(self.text, at, event.end_mark.index)
+        return at if properties is None else properties.end()
 
     def properties(self, event: Any, node: Node) -> None:
         """Take note of an anchor, refuse a tag, and let the node start behind both."""
-        text, at = self.source.text, node.start
-        properties = _PROPERTIES.match(text, at, node.end)
-        if properties is not None:
-            node.start = properties.end()
+        text, at = self.text, event.start_mark.index
+        node.start = self.behind_properties(event)
         if event.tag is not None and (tag := _TAG.search(text, at)) is not None:
             message = f"the tag {tag[0]} means nothing in a script"
             self.error("yaml-tag", message, Span(self.source, *tag.span()), help="delete it; a text goes in quotes")
@@ -267,10 +331,11 @@ class _Composer:
             self.error("unknown-alias", message, span, help=help)
             if not self.stack:
                 raise _StopError
-            return Scalar("", "null", False, self.source, span.start, span.end)
+            return hole(span)
         if any(node is collection for collection in self.stack):
             message = f"*{name} stands inside the value that it names"
-            self.stop("alias-cycle", message, span.start, span.end, "a value cannot hold itself; remove the alias")
+            self.error("alias-cycle", message, span, help="a value cannot hold itself; remove the alias")
+            return hole(span)
         depth, size = self.measure(node)
         self.expanded += size
         if self.expanded > MOST_EXPANDED:
@@ -293,8 +358,18 @@ class _Composer:
             self.measured[id(node)] = known
         return known
 
-    def odd_key(self, key: Scalar) -> None:
-        """Report a missing key or a merge key."""
+    def nameless_key(self, node: Node, mapping: Mapping) -> None:
+        """Report a key that is no text, unless it stands in one; what it names is left out."""
+        self.odd.append(mapping)
+        if not self.nameless:
+            span = Span(self.source, node.start, node.end)
+            self.error("key-not-text", "a key is a single word or text", span, help="write `name: value`")
+        if not isinstance(node, Scalar):
+            self.nameless[id(node)] = node
+
+    def odd_key(self, key: Scalar, mapping: Mapping) -> None:
+        """Report a missing key or a merge key; what it names is left out."""
+        self.odd.append(mapping)
         if key.text:
             help = "use `defaults` for fields that many parts share, or `templates` for a part made several times"
             self.error("merge-key", "merge keys (<<) are not part of the language", key.span, help=help)
@@ -302,7 +377,9 @@ class _Composer:
             self.error("key-not-text", "a key is missing before this colon", key.span, help="write `name: value`")
 
     def duplicate(self, key: Scalar, mapping: Mapping) -> None:
-        """Report a key that its mapping holds already."""
+        """Report a key that its mapping holds already; the first stays."""
+        if key.text in ("", "<<") and not key.quoted:
+            return
         note = Note("it stands here first", mapping.keys[key.text].span)
         help = "remove one of the two, or give it another name"
         self.error("duplicate-key", f"the key '{key.text}' is given twice", key.span, help=help, notes=[note])

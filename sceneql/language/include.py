@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path, PureWindowsPath
 
 from sceneql.language.compose import MOST_BYTES, compose, source_of
-from sceneql.language.tree import Mapping, Scalar, Sequence
+from sceneql.language.tree import Mapping, Scalar, Sequence, broken
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, Note, ScriptError
 from sceneql.quantities.span import Source, Span
 
@@ -49,14 +49,18 @@ def _read(path: Path, name: str) -> Source:
 
 
 def read_included(root: Mapping, name: str, read: Read, found: Diagnostics) -> list[Mapping]:
-    """The script itself and behind it all that it includes, in the order met. ``name`` is its own file's."""
-    reading = _Reading(read, found)
+    """The script itself and behind it all that it includes, in the order met. ``name`` is its own file's.
+
+    Where one of these cannot be read, the script itself becomes partial.
+    """
+    reading = _Reading(root, read, found)
     reading.follow(root, [(name, root.span)])
     return [root, *reading.trees.values()]
 
 
 class _Reading:
-    def __init__(self, read: Read, found: Diagnostics) -> None:
+    def __init__(self, root: Mapping, read: Read, found: Diagnostics) -> None:
+        self.root = root
         self.read = read
         self.found = found
         self.trees: dict[str, Mapping] = {}
@@ -69,9 +73,12 @@ class _Reading:
         if node is None:
             return
         for item in node.items if isinstance(node, Sequence) else [node]:
-            if not isinstance(item, Scalar) or item.kind == "null":
+            if broken(item):
+                self.root.partial = True
+            elif not isinstance(item, Scalar) or item.kind == "null":
                 help = "write `include: [parts.yaml]`"
                 self.found.error("section-shape", "an include is the path of a script", item.span, help=help)
+                self.root.partial = True
             elif (path := self.inside(item, posixpath.dirname(chain[-1][0]))) is not None:
                 self.one(path, item.span, chain)
 
@@ -86,6 +93,7 @@ class _Reading:
 
     def outside(self, span: Span) -> None:
         """Report a path that leads out of the scene's folder."""
+        self.root.partial = True
         help = "copy the script beside the scene, and name it by a path below it"
         self.found.error("include-outside", "an include stays inside the scene's folder", span, help=help)
 
@@ -105,17 +113,19 @@ class _Reading:
             self.size += len(source.text)
             if self.size > MOST_BYTES:
                 self.found.error("too-large", f"with {path}, more than {MOST_BYTES // 1_000_000} MB are included", span)
+                self.root.partial = True
                 return
-            root = compose(source)
+            root = compose(source, self.found)
         except OutsideError:
             self.outside(span)
         except (OSError, ValueError, RuntimeError) as error:
             reason = getattr(error, "strerror", None) or error
             help = "an include is looked up from the folder of the script that holds it"
             self.found.error("include-missing", f"{path} cannot be read: {reason}", span, help=help)
+            self.root.partial = True
         except ScriptError as error:
-            for diagnostic in error.diagnostics:
-                self.found.add(diagnostic)
+            self.found.extend(error.diagnostics)
+            self.root.partial = True
         else:
             self.trees[path] = root
             self.follow(root, [*chain, (path, span)])

@@ -40,7 +40,7 @@ def _unnested(body: Mapping, families: Collection[str], found: Diagnostics) -> M
 
 
 def _flat(section: Mapping, found: Diagnostics) -> Mapping:
-    result = Mapping({}, {}, section.flow, section.source, section.start, section.end)
+    result = section.holding({}, {})
     todo = [(name, section.keys[name], node) for name, node in reversed(section.entries.items())]
     while todo:
         name, key, node = todo.pop()
@@ -75,4 +75,4 @@ def _parted(node: Node) -> tuple[Node, list[tuple[str, Scalar, Node]]]:
 
 def _like(mapping: Mapping, entries: dict[str, Node]) -> Mapping:
     """A mapping with other values under the same keys."""
-    return Mapping(entries, mapping.keys, mapping.flow, mapping.source, mapping.start, mapping.end)
+    return mapping.holding(entries)

@@ -8,7 +8,7 @@ from typing import Final, cast
 from sceneql.language.compose import compose_node, kind_of
 from sceneql.language.sections import empty
 from sceneql.language.syntax import unprintable
-from sceneql.language.tree import Mapping, Node, Scalar, Sequence
+from sceneql.language.tree import Mapping, Node, Scalar, Sequence, broken, unsure
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError, suggestion
 from sceneql.quantities.span import Source, Span
 
@@ -20,24 +20,34 @@ VARIANT_OPTIONS: Final = ("may_fail",)
 
 
 def apply_patch(
-    root: Mapping, patches: Iterable[Patch], families: Collection[str], settings: Collection[str] = ()
+    root: Mapping,
+    patches: Iterable[Patch],
+    families: Collection[str],
+    settings: Collection[str] = (),
+    found: Diagnostics | None = None,
 ) -> Mapping:
     """The tree with its values replaced; what is not on a path is shared with the old tree, which stays as it was.
 
     A path names a section, a part and a field: ``models.cage.stiffness``. The part's word may stand between
     (``models.cage.mass_spring.stiffness``), the section may be left out where one part or define alone has the name,
     and a number selects an item of a list. A path may end in a new field or part, not go through one. Raises
-    ScriptError (`unknown-path`).
+    ScriptError (`unknown-path`), or records it in ``found``. A path through what cannot be read changes nothing.
     """
-    found = Diagnostics()
+    wrong = Diagnostics() if found is None else found
     for patch in patches:
         try:
             root = _Path(patch, families, settings).put_into(root)
         except ScriptError as error:
-            for diagnostic in error.diagnostics:
-                found.add(diagnostic)
-    found.raise_errors()
+            wrong.extend(error.diagnostics)
+        except _LostError:
+            pass
+    if found is None:
+        wrong.raise_errors()
     return root
+
+
+class _LostError(Exception):
+    """A path leads through what cannot be read."""
 
 
 def variant_names(root: Mapping) -> tuple[str, ...]:
@@ -50,12 +60,14 @@ def variant(root: Mapping, name: str) -> list[Patch]:
     """The patches of a variant. Raises ScriptError (`unknown-variant`, `section-shape`)."""
     node = root.entries.get("variants")
     if not isinstance(node, Mapping) or name not in node.entries:
+        if unsure(root if node is None else node):
+            return []
         names = variant_names(root)
         help = suggestion(name, names) or (f"the variants are {', '.join(names)}" if names else "the script has none")
         span = root.keys["variants"].span if "variants" in root.keys else None
         raise ScriptError([Diagnostic("unknown-variant", f"there is no variant '{name}'", span, help)])
     patches = node.entries[name]
-    if empty(patches):
+    if empty(patches) or broken(patches):
         return []
     if not isinstance(patches, Mapping):
         help = "write `name: {define.k: 200 N/m}`"
@@ -87,6 +99,8 @@ class _Path:
         self.path, self.value, self.span = patch
         self.families, self.settings = families, settings
         self.steps = self.path.split(".")
+        self.unsure = False
+        """Whether some of what the script defines is not known."""
         self.shift = 0
         """1 where the section is left out of the path."""
 
@@ -101,10 +115,13 @@ class _Path:
         """The tree with the value at the path."""
         if "" in self.steps:
             raise self.fail(self.steps.index(""), "a step of this path is empty", "write `section.part.field`")
+        self.unsure = root.partial
         first = self.steps[0]
         if first not in root.entries and first not in self.families and first not in self.settings:
             sections = (*self.families, "define", "parts")
             owners = [key for key in sections if first in _keys(root.entries.get(key))]
+            if not owners and any(unsure(node) for node in (root, *(root.entries.get(key, root) for key in sections))):
+                raise _LostError
             if len(owners) != 1:
                 help = f"write {' or '.join(f'{key}.{self.path}' for key in owners)}"
                 names = [*root.entries, *self.families, *(n for key in sections for n in _keys(root.entries.get(key)))]
@@ -146,6 +163,8 @@ class _Path:
     def put_below(self, node: Node, at: int) -> Node:
         """A mapping or list with the value below one of its items."""
         step, before = self.steps[at], ".".join(self.steps[:at])
+        if broken(node):
+            raise _LostError
         if isinstance(node, Scalar):
             raise self.fail(at, f"there is nothing called '{step}' here", f"'{before}' is a single value")
         if isinstance(node, Sequence):
@@ -166,6 +185,8 @@ class _Path:
             return self.with_item(node, step, self.put(_nothing(self.span), 1))
         if at + 1 == len(self.steps) and self.steps[0] != "define":
             return self.with_item(node, step, self.value)
+        if node.partial or (at == 1 and self.unsure):
+            raise _LostError
         has = ", ".join(list(node.entries)[:8])
         hint = suggestion(step, node.entries) or (f"it has {has}" if has else None)
         raise self.fail(at, f"'{before}' has no '{step}'", hint)
@@ -179,7 +200,7 @@ class _Path:
         entries[key] = value
         if replaced or key not in keys:
             keys[key] = Scalar(key, "text", False, self.span.source, self.span.start, self.span.end)
-        return Mapping(entries, keys, node.flow, node.source, node.start, node.end)
+        return node.holding(entries, keys)
 
 
 def _keys(node: Node | None) -> Collection[str]:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from math import inf
 from typing import Final
 
-from sceneql.language.scope import Scope
-from sceneql.language.tree import Mapping, Node, Scalar
+from sceneql.language.scope import Broken, Scope
+from sceneql.language.tree import Mapping, Node, Scalar, unsure
 from sceneql.quantities.diagnostic import Diagnostics
 
 MOST_COPIES: Final = 10_000
@@ -28,8 +28,12 @@ class Repeat:
         return Scalar(str(copy), "integer", False, self.node.source, self.node.start, self.node.end)
 
 
-def read_repeat(node: Node, scope: Scope | None, define: Table[str, Node], found: Diagnostics) -> Repeat | None:
+def read_repeat(
+    node: Node, scope: Scope | None, define: Table[str, Node], lost: Broken, found: Diagnostics
+) -> Repeat | None:
     """What stands under `repeat`, or None after reporting what is wrong with it."""
+    if unsure(node):
+        return None
     if not isinstance(node, Mapping) or "count" not in node.entries or node.entries.keys() - {"count", "as"}:
         help = "write `repeat: {count: 5, as: i}`"
         found.error("repeat-shape", "`repeat` takes a count, and a name for the number", node.span, help=help)
@@ -38,13 +42,13 @@ def read_repeat(node: Node, scope: Scope | None, define: Table[str, Node], found
     if index is not None and not (isinstance(index, Scalar) and index.text.isidentifier()):
         found.error("repeat-shape", "`as` takes a name", index.span, help="write `as: i`")
         return None
-    count = _whole(node.entries["count"], scope, define, found)
+    count = _whole(node.entries["count"], scope, define, lost, found)
     if count is None:
         return None
     return Repeat(count, "i", node) if index is None else Repeat(count, index.text, index)
 
 
-def _whole(node: Node, scope: Scope | None, define: Table[str, Node], found: Diagnostics) -> int | None:
+def _whole(node: Node, scope: Scope | None, define: Table[str, Node], lost: Broken, found: Diagnostics) -> int | None:
     """A count: a whole number, or the name of a field or define that is one."""
     value: Node | None = node
     for _ in range(_MOST_HOPS):
@@ -55,8 +59,12 @@ def _whole(node: Node, scope: Scope | None, define: Table[str, Node], found: Dia
             scope = scope.outer
         if scope is None:
             value = define.get(name)
+            if value is None and name in lost:
+                return None
         else:
             value, scope = scope.fields[name], scope.outer
+    if value is not None and unsure(value):
+        return None
     number = _count(value) if isinstance(value, Scalar) else None
     if number is None:
         help = "write a number, or the name of a define that is one"

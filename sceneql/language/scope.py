@@ -52,6 +52,25 @@ class Given:
     scope: Scope
 
 
+class Broken:
+    """Names that were to be defined by what is reported where it stands: no more is said about them."""
+
+    def __init__(self) -> None:
+        self.any = False
+        """Whether any name may have been defined so."""
+        self._names: set[str] = set()
+
+    def add(self, name: str) -> None:
+        """Count a name among them."""
+        self._names.add(name)
+
+    def __contains__(self, name: str) -> bool:
+        """Whether the name, or that of what would hold it, is one of them: ``leg.knee`` where ``leg`` is."""
+        if self.any or name in self._names:
+            return True
+        return any(name[:at] in self._names for at, character in enumerate(name) if character == ".")
+
+
 @dataclass(slots=True, eq=False)
 class Expanded:
     """Sections without templates or copies.
@@ -64,4 +83,4 @@ class Expanded:
     sections: dict[str, dict[str, Entry]] = field(default_factory=dict)
     gives: dict[str, Given] = field(default_factory=dict)
     groups: dict[str, list[str]] = field(default_factory=dict)
-    broken: set[str] = field(default_factory=set)
+    broken: Broken = field(default_factory=lambda: Broken())

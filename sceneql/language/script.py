@@ -12,10 +12,10 @@ from sceneql.language.compose import compose
 from sceneql.language.include import OutsideError, Read, folder_reader, read_included, read_source
 from sceneql.language.nesting import unnested
 from sceneql.language.patch import VARIANT_OPTIONS, Patch, apply_patch, parse_set, variant, variant_names
-from sceneql.language.scope import Entry, Expanded, Given, Scope
-from sceneql.language.sections import NAMED, join
+from sceneql.language.scope import Broken, Entry, Expanded, Given, Scope
+from sceneql.language.sections import NAMED, join, names_in
 from sceneql.language.templates import expand
-from sceneql.language.tree import Mapping, Node, Scalar
+from sceneql.language.tree import Mapping, Node, Scalar, broken
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError, suggestion
 from sceneql.quantities.span import Source
 
@@ -45,7 +45,7 @@ class Script:
     defaults: dict[str, Node]
     gives: dict[str, Given]
     groups: dict[str, list[str]]
-    broken: set[str]
+    broken: Broken
     variants: tuple[str, ...]
     variant: str | None
     may_fail: bool
@@ -71,16 +71,17 @@ def read_script(
     source = script if isinstance(script, Source) else read_source(script)
     if read is None:
         read = _no_folder if isinstance(script, Source) else folder_reader(script.parent)
-    first = compose(source)
+    first = compose(source, found)
     trees = read_included(first, Path(source.name).name, read, found)
-    found.raise_errors()
     root = join(trees, families, found)
     for tree in trees:
         _check_version(tree, found)
-    _check_sections(root, families, settings, found)
+    lost = Broken()
+    lost.any = root.partial
+    _check_sections(root, families, settings, lost, found)
     patches = _patches(root, variant, sets, families, settings, found)
-    patched = _patched(root, patches, families, settings, found)
-    expanded = expand(unnested(patched, families, found), families, found)
+    patched = apply_patch(root, patches, families, settings, found)
+    expanded = expand(unnested(patched, families, found), families, lost, found)
     if raising:
         found.raise_errors()
     defaults = patched.entries.get("defaults")
@@ -107,7 +108,7 @@ def _no_folder(name: str) -> Source:
 
 def _check_version(tree: Mapping, found: Diagnostics) -> None:
     node = tree.entries.get("sceneql")
-    if node is not None and not (isinstance(node, Scalar) and node.text == VERSION):
+    if node is not None and not (isinstance(node, Scalar) and (node.text == VERSION or broken(node))):
         written = node.text if isinstance(node, Scalar) else "this"
         help = f"write `sceneql: {VERSION}`"
         found.error(
@@ -115,12 +116,17 @@ def _check_version(tree: Mapping, found: Diagnostics) -> None:
         )
 
 
-def _check_sections(root: Mapping, families: Sequence[str], settings: Sequence[str], found: Diagnostics) -> None:
+def _check_sections(
+    root: Mapping, families: Sequence[str], settings: Sequence[str], lost: Broken, found: Diagnostics
+) -> None:
+    """Report unknown sections; what they name is lost."""
     known = (*families, *settings, *NAMED, *_REWRITTEN)
     for key in root.entries:
         if key not in known:
             help = suggestion(key, known) or f"the sections are {', '.join(dict.fromkeys(known))}"
             found.error("unknown-section", f"there is no section '{key}'", root.keys[key].span, help=help)
+            for name in names_in(root.entries[key]):
+                lost.add(name)
 
 
 def _patches(
@@ -136,29 +142,19 @@ def _patches(
     for each in dict.fromkeys([*variant_names(root), *([] if name is None else [name])]):
         try:
             inner = variant(root, each)
-            apply_patch(root, inner, families, settings)
-            patches += inner if each == name else []
         except ScriptError as error:
-            for diagnostic in error.diagnostics:
-                found.add(diagnostic)
+            found.extend(error.diagnostics)
+            continue
+        if each == name:
+            patches += inner
+        else:
+            apply_patch(root, inner, families, settings, found)
     for text in sets:
         try:
             patches.append(parse_set(text))
         except ScriptError as error:
-            for diagnostic in error.diagnostics:
-                found.add(diagnostic)
+            found.extend(error.diagnostics)
     return patches
-
-
-def _patched(
-    root: Mapping, patches: list[Patch], families: Sequence[str], settings: Sequence[str], found: Diagnostics
-) -> Mapping:
-    try:
-        return apply_patch(root, patches, families, settings)
-    except ScriptError as error:
-        for diagnostic in error.diagnostics:
-            found.add(diagnostic)
-        return root
 
 
 def _may_fail(root: Mapping, name: str | None) -> bool:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
-from sceneql.language.tree import Mapping, Node, Scalar, Sequence
+from sceneql.language.tree import Mapping, Node, Scalar, Sequence, broken
 from sceneql.quantities.diagnostic import Diagnostics, Note
 
 NAMED: Final = ("define", "templates", "parts", "defaults", "variants", "expect")
@@ -32,6 +32,8 @@ def empty(node: Node) -> bool:
 def read_entry(what: str, node: Node, found: Diagnostics) -> Written | None:
     """The word and the fields of an entry, or None after reporting a shape that no entry has."""
     if isinstance(node, Scalar):
+        if broken(node):
+            return None
         if node.kind == "text":
             return Written(node, None, None)
         message = f"{what} has no word" if empty(node) else f"{what} is the {node.kind} {node.text}, not a part"
@@ -41,6 +43,8 @@ def read_entry(what: str, node: Node, found: Diagnostics) -> Written | None:
         found.error("entry-shape", f"{what} is a list, not a part", node.span, help=_ENTRY)
         return None
     words = [key for key in node.entries if key != "repeat"]
+    if not words and node.partial:
+        return None
     if not words:
         found.error("entry-shape", f"{what} has no word", node.span, help=_ENTRY)
         return None
@@ -56,18 +60,26 @@ def read_entry(what: str, node: Node, found: Diagnostics) -> Written | None:
     return Written(node.keys[words[0]], None if empty(fields) else fields, node.entries.get("repeat"))
 
 
+def names_in(node: Node) -> list[str]:
+    """The names that something which may be a section gives."""
+    if isinstance(node, Mapping):
+        return list(node.entries)
+    words = node.items if isinstance(node, Sequence) else []
+    return [name for word in words for name in ([word.text] if isinstance(word, Scalar) else names_in(word))]
+
+
 def section(name: str, node: Node, taken: Collection[str], found: Diagnostics) -> Mapping:
     """A section as a mapping; the items of a list are named by their words: ``gravity``, ``gravity.2``, ..."""
     if isinstance(node, Mapping):
         return node
-    result = Mapping({}, {}, True, node.source, node.start, node.end)
+    result = Mapping({}, {}, True, node.source, node.start, node.end, broken(node))
     if isinstance(node, Sequence):
         for item in node.items:
             written = read_entry(f"this item of '{name}'", item, found)
             if written is not None:
                 own = _free(written.word.text, result.entries.keys() | set(taken))
                 result.entries[own], result.keys[own] = item, written.word
-    elif not empty(node):
+    elif not (empty(node) or broken(node)):
         help = f"write `{name}: [{node.text}]`" if node.kind == "text" else _ENTRY
         found.error("section-shape", f"'{name}' holds parts by name, or a list of words", node.span, help=help)
     return result
@@ -89,7 +101,8 @@ def join(trees: Iterable[Mapping], families: Collection[str], found: Diagnostics
     """
     trees = list(trees)
     first = trees[0]
-    root = Mapping({}, {}, False, first.source, first.start, first.end)
+    partial = any(tree.partial for tree in trees)
+    root = Mapping({}, {}, False, first.source, first.start, first.end, partial)
     named = {*families, *NAMED}
     lists: list[tuple[str, Node]] = []
     for tree in trees:
@@ -116,11 +129,15 @@ def _names(node: Node | None) -> Iterable[str]:
 def _merged(key: str, one: Node, other: Node, found: Diagnostics) -> Node:
     if empty(one) or empty(other):
         return other if empty(one) else one
+    if broken(one) or broken(other):
+        known = other if broken(one) else one
+        return replace(known, partial=True) if isinstance(known, Mapping) else known
     if not isinstance(one, Mapping) or not isinstance(other, Mapping):
         odd = other if isinstance(one, Mapping) else one
         found.error("section-shape", f"'{key}' holds values by name", odd.span, help="write `name: value`")
         return one
-    result = Mapping(dict(one.entries), dict(one.keys), one.flow, one.source, one.start, one.end)
+    result = one.holding(dict(one.entries), dict(one.keys))
+    result.partial = one.partial or other.partial
     for name, node in other.entries.items():
         if name in result.entries:
             duplicate(name, result.keys[name], other.keys[name], found)

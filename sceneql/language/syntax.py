@@ -7,7 +7,6 @@ from typing import Final
 
 import yaml
 
-from sceneql.language.torn import torn_near
 from sceneql.quantities.diagnostic import Diagnostic, Note
 from sceneql.quantities.span import Source, Span
 
@@ -63,39 +62,42 @@ def unprintable(text: str) -> int | None:
     return None if found is None else found.start()
 
 
-def explain(source: Source, error: yaml.YAMLError, flow: int | None) -> tuple[Diagnostic, ...]:
-    """The diagnostics for an error of the parser: `yaml-syntax`, or what tore the text there.
+def place(source: Source, error: yaml.YAMLError) -> int:
+    """The character at which the parser fails."""
+    size = len(source.text)
+    return min(_index(error, "problem_mark", size), size)
+
+
+def explain(source: Source, error: yaml.YAMLError, flow: int | None) -> Diagnostic:
+    """The diagnostic for an error of the parser, `yaml-syntax` as a rule.
 
     ``flow`` is where the outermost flow collection that is still open begins, if there is one.
     """
     problem = str(getattr(error, "problem", None) or "")
     context = str(getattr(error, "context", None) or "")
-    size = len(source.text)
-    at = min(_index(error, "problem_mark", size), size)
+    at = place(source, error)
     since = min(_index(error, "context_mark", at), at)
-    if torn := torn_near(source, at, flow):
-        return torn
     if "quoted scalar" in context and "escape" not in problem:
-        return (_syntax("this quote is never closed", source, since, "end the text with the same quote"),)
+        return _syntax("this quote is never closed", source, since, "end the text with the same quote")
     if "escape" in problem and source.text[at - 1 : at] == "\\":
         at -= 1
     if source.text[at : at + 1] == ":" and _NO_KEY.search(source.text[max(0, at - 80) : at]) is not None:
-        return (Diagnostic("key-not-text", "a key is missing before this colon", Span(source, at, at + 1), _KEY),)
+        return Diagnostic("key-not-text", "a key is missing before this colon", Span(source, at, at + 1), _KEY)
     if flow is not None:
-        return (_in_flow(source, at, since if source.text[since : since + 1] in ("[", "{") else flow),)
+        return _in_flow(source, at, since if source.text[since : since + 1] in ("[", "{") else flow)
     character = source.text[at : at + 1]
     if (tab := _tab(source, at)) is not None:
-        return (_syntax("a tab cannot indent a line", source, tab, "use spaces: two for each level"),)
+        return _syntax("a tab cannot indent a line", source, tab, "use spaces: two for each level")
     if "cannot start any token" in problem:
         message = f"a text cannot begin with `{character}`"
-        return (_syntax(message, source, at, "put it in quotes"),)
+        return _syntax(message, source, at, "put it in quotes")
     problem = problem.replace("'", "")
     if "mapping values are not allowed" in problem:
-        return (_misplaced_colon(source, at),)
+        return _misplaced_colon(source, at)
     for words, message, help in _PROBLEMS:
         if words in problem:
-            return (_syntax(message, source, at, help),)
-    return (_syntax("this is not YAML", source, at, f"the parser says: {problem or error}"),)
+            return _syntax(message, source, at, help)
+    return _syntax("this is not YAML", source, at, f"the parser says: {problem or error}")
 
 
 def _in_flow(source: Source, at: int, opening: int) -> Diagnostic:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from collections.abc import Mapping as Table
 from collections.abc import Sequence as List
@@ -9,10 +10,10 @@ from dataclasses import dataclass
 from typing import Final
 
 from sceneql.language.repeat import read_repeat
-from sceneql.language.scope import Entry, Expanded, Given, Scope
-from sceneql.language.sections import Written, duplicate, empty, read_entry, section
-from sceneql.language.tree import Mapping, Node, Scalar
-from sceneql.quantities.diagnostic import Diagnostics, Note, suggestion
+from sceneql.language.scope import Broken, Entry, Expanded, Given, Scope
+from sceneql.language.sections import Written, duplicate, empty, names_in, read_entry, section
+from sceneql.language.tree import Mapping, Node, Scalar, broken, hole, unsure
+from sceneql.quantities.diagnostic import Diagnostics, Note, nearest, suggestion
 from sceneql.quantities.span import Span
 
 __all__ = ["Entry", "Expanded", "Given", "Scope", "expand", "filled"]
@@ -21,9 +22,12 @@ MOST_NESTED: Final = 64
 MOST_PARTS: Final = 100_000
 
 
-def expand(root: Mapping, families: List[str], found: Diagnostics) -> Expanded:
-    """The entries of a script, templates and copies written out and defaults filled in."""
-    expander = _Expander(root, families, found)
+def expand(root: Mapping, families: List[str], lost: Broken, found: Diagnostics) -> Expanded:
+    """The entries of a script, templates and copies written out and defaults filled in.
+
+    ``lost`` are names of what cannot be read already; those of entries found to be wrong here are added to them.
+    """
+    expander = _Expander(root, families, lost, found)
     expander.unique(root)
     for name in expander.templates:
         expander.template(name)
@@ -43,9 +47,10 @@ def filled(word: str, fields: Node | None, defaults: Table[str, Node], span: Spa
     if not isinstance(more, Mapping) or not (fields is None or isinstance(fields, Mapping)):
         return fields
     if fields is None:
-        return Mapping(dict(more.entries), dict(more.keys), True, span.source, span.start, span.end)
-    entries, keys = more.entries | fields.entries, more.keys | fields.keys
-    return Mapping(entries, keys, fields.flow, fields.source, fields.start, fields.end)
+        return Mapping(dict(more.entries), dict(more.keys), True, span.source, span.start, span.end, more.partial)
+    result = fields.holding(more.entries | fields.entries, more.keys | fields.keys)
+    result.partial = fields.partial or more.partial
+    return result
 
 
 class _FullError(Exception):
@@ -67,20 +72,22 @@ class _Template:
     fields: dict[str, Node]
     gives: dict[str, Node]
     body: Mapping
+    partial: bool
+    """Whether it may have more fields."""
 
 
 class _Expander:
-    def __init__(self, root: Mapping, families: List[str], found: Diagnostics) -> None:
+    def __init__(self, root: Mapping, families: List[str], lost: Broken, found: Diagnostics) -> None:
         self.families, self.found = families, found
+        self.done = Expanded(broken=lost)
         self.define = self.named(root, "define")
         self.templates = self.named(root, "templates")
         self.defaults = self.named(root, "defaults")
         for word, node in self.defaults.items():
-            if not isinstance(node, Mapping):
+            if not (isinstance(node, Mapping) or broken(node)):
                 help = f"write `{word}: {{field: value}}`"
                 found.error("section-shape", f"the defaults of '{word}' are fields with values", node.span, help=help)
         self.read: dict[str, _Template | None] = {}
-        self.done = Expanded()
         self.count = 0
 
     def named(self, mapping: Mapping, key: str) -> dict[str, Node]:
@@ -89,7 +96,11 @@ class _Expander:
         if node is None or empty(node):
             return {}
         if isinstance(node, Mapping):
+            self.done.broken.any |= node.partial
             return node.entries
+        self.done.broken.any = True
+        if broken(node):
+            return {}
         help = f"write `{key}: {{name: ...}}`"
         self.found.error("section-shape", f"'{key}' holds values by name", node.span, help=help)
         return {}
@@ -113,19 +124,28 @@ class _Expander:
         if name not in self.read:
             self.read[name] = None
             node = self.templates[name]
+            if broken(node):
+                return None
             if not isinstance(node, Mapping):
                 help = "it holds `fields:` and sections such as `objects:`"
                 self.found.error("section-shape", f"the template '{name}' is not a mapping", node.span, help=help)
                 return None
             known = ("fields", "gives", "parts", *self.families)
+            self.done.broken.any |= node.partial
             for key in [key for key in node.entries if key not in known]:
+                for inner in names_in(node.entries[key]):
+                    self.done.broken.add(inner)
                 self.found.error(
                     "unknown-section",
                     f"a template has no section '{key}'",
                     node.keys[key].span,
                     help=suggestion(key, known) or f"it may have {', '.join(known)}",
                 )
-            self.read[name] = _Template(self.named(node, "fields"), self.named(node, "gives"), self.local(name, node))
+            written = node.entries.get("fields")
+            partial = node.partial or (written is not None and unsure(written))
+            self.read[name] = _Template(
+                self.named(node, "fields"), self.named(node, "gives"), self.local(name, node), partial
+            )
         return self.read[name]
 
     def local(self, template: str, node: Mapping) -> Mapping:
@@ -164,6 +184,8 @@ class _Expander:
             message = f"'{name}' cannot be the name of a part"
             help = "a name is made of letters, digits and underscores, and begins with a letter"
             self.found.error("part-name", message, key.span, help=help)
+            for part in (name, *re.split(r"\W+", name)):  # as it may be written in an expression
+                self.done.broken.add(part)
             return None
         written = read_entry(f"'{name}'", node, self.found)
         if written is None:
@@ -176,7 +198,9 @@ class _Expander:
         if repeat is None:
             self.one_more()
             yield full, place.scope
-        elif (times := read_repeat(repeat, place.scope, self.define, self.found)) is not None:
+        elif (times := read_repeat(repeat, place.scope, self.define, self.done.broken, self.found)) is None:
+            self.done.broken.add(full)
+        else:
             self.group(full, place)
             for number in range(times.count):
                 self.one_more()
@@ -215,10 +239,14 @@ class _Expander:
         """Add what a template holds, once for each copy."""
         word = written.word
         if word.text not in self.templates:
+            self.done.broken.add(place.front + name)
+            if word.text in self.done.broken:
+                return
             help = suggestion(word.text, self.templates) or "declare it under `templates:`"
             self.found.error("unknown-template", f"there is no template '{word.text}'", word.span, help=help)
             return
         if word.text in place.templates:
+            self.done.broken.add(place.front + name)
             help = "a part cannot be made of itself; remove this instance"
             circle = " in ".join(reversed([*place.templates[place.templates.index(word.text) :], word.text]))
             self.found.error(
@@ -231,6 +259,7 @@ class _Expander:
         template = self.template(word.text)
         given = self.given(word, written.fields, template)
         if template is None or given is None:
+            self.done.broken.add(place.front + name)
             return
         for full, outer in self.copies(name, written.repeat, place):
             self.group(full, place)
@@ -252,18 +281,30 @@ class _Expander:
         """The fields of an instance, None after reporting what is wrong with them."""
         if template is None:
             return None
+        if fields is not None and broken(fields):
+            return None
         if fields is not None and not isinstance(fields, Mapping):
             message = f"'{word.text}' takes fields with values"
             self.found.error("entry-shape", message, fields.span, help="write `{field: value}`")
             return None
-        given = {} if fields is None else fields.entries
-        for key in [key for key in given if key not in template.fields]:
+        given = {} if fields is None else dict(fields.entries)
+        for key in [key for key in given if key not in template.fields and not template.partial]:
             assert isinstance(fields, Mapping)
             message = f"the template '{word.text}' has no field '{key}'"
-            help = suggestion(key, template.fields) or f"it has {', '.join(template.fields) or 'none'}"
-            self.found.error("unknown-field", message, fields.keys[key].span, help=help)
+            near = suggestion(key, template.fields)
+            self.found.error(
+                "unknown-field",
+                message,
+                fields.keys[key].span,
+                help=near or f"it has {', '.join(template.fields) or 'none'}",
+            )
+            if near is not None:  # then it is not missing as well
+                given.setdefault(nearest(key, template.fields) or "", hole(fields.keys[key].span))
         for key, node in template.fields.items():
             if empty(node) and key not in given:
+                given[key] = hole(word.span)
+                if isinstance(fields, Mapping) and fields.partial:
+                    continue
                 note = Note("it has no default", node.span)
                 message = f"'{word.text}' needs '{key}'"
                 self.found.error("missing-field", message, word.span, help=f"write `{key}: ...`", notes=[note])

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from sceneql.language.tree import Scalar
-from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
+from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.span import Source, Span
 
 _MOST_SCANNED: Final = 20_000
@@ -23,12 +23,12 @@ _SPACE = re.compile(r"(?:\s+#[^\n]*|\s)*")
 _PROPERTY = re.compile(r"[&!][^\s,\[\]{}]*\s*")
 _QUOTED = re.compile(r"\"(?:[^\"\\]|\\.)*\"|'(?:[^']|'')*'", re.DOTALL)
 _UNIT = re.compile(r"[^\W\d_]|[%°]")
-_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _BLOCK_VALUE = re.compile(r"\s*(?:- +)*(?:[^\s\[{\"'#][^\[{\"'#]*?:\s+)?(?=[\[{])")
 
 
 @dataclass(frozen=True, slots=True)
-class _Fault:
+class Fault:
     """Characters ``start`` to ``end`` should read ``fixed``; the caret stands from ``caret`` on."""
 
     code: str
@@ -38,69 +38,73 @@ class _Fault:
     fixed: str
 
 
-def report_comment(value: Scalar, found: Diagnostics) -> None:
-    """Report an empty value behind which a color was taken for a comment."""
-    if (color := _SWALLOWED.match(value.source.text, value.end)) is not None:
-        start, end = color.span(1)
-        _report(value.source, [_Fault("comment-color", start, end, start, f'"{color[1]}"')], found)
+def swallowed(value: Scalar, text: str) -> Fault | None:
+    """The color behind an empty value, where it was taken for a comment. ``text`` as in `torn_near`."""
+    if (color := _SWALLOWED.match(text, value.end)) is None:
+        return None
+    start, end = color.span(1)
+    return Fault("comment-color", start, end, start, f'"{color[1]}"')
 
 
-def report_torn(halves: Iterable[Scalar], found: Diagnostics) -> list[Span]:
-    """Report the expressions that a flow collection's commas cut, from their first halves; returns their places."""
-    faults: list[_Fault] = []
-    source = None
+def torn_halves(halves: Iterable[Scalar], text: str) -> list[Fault]:
+    """The expressions that a flow collection's commas cut, from their first halves. ``text`` as in `torn_near`."""
+    faults: list[Fault] = []
     for half in halves:
-        source = half.source
         if faults and half.start < faults[-1].end:
             continue
         with suppress(_LostError):
-            scan = _Scan(source.text, min(len(source.text), half.start + _MOST_SCANNED))
+            scan = _Scan(text, half.source.text, min(len(text), half.start + _MOST_SCANNED))
             end, torn = scan.plain(half.start, nested=True)
             if torn:
-                written = _quote(source.text[half.start : end])
-                faults.append(_Fault("torn-expression", half.start, end, half.start, written))
-    return [] if source is None else _report(source, faults, found)
+                faults.append(scan.torn(half.start, end))
+    return faults
 
 
-def torn_near(source: Source, at: int, opening: int | None) -> tuple[Diagnostic, ...]:
-    """What tore the text where YAML fails at ``at``, within the flow collection that opens at ``opening`` if any."""
-    text = source.text
+def torn_near(source: Source, text: str, at: int, opening: int | None) -> list[Fault]:
+    """What tore the text where YAML fails at ``at``, within the flow collection that opens at ``opening`` if any.
+
+    ``text`` is the source's with what is mended already blanked out.
+    """
     if opening is None:
         start = max(text.rfind("\n", 0, at), text.rfind("\r", 0, at)) + 1
         value = _BLOCK_VALUE.match(text, start, at)
         if value is None:
-            return ()
+            return []
         opening = value.end()
-    found = Diagnostics()
-    _report(source, _faults(text, opening, min(len(text), opening + _MOST_SCANNED)), found)
-    return found.errors
+    scan = _Scan(text, source.text, min(len(text), opening + _MOST_SCANNED))
+    with suppress(_LostError):
+        scan.value(opening, 0)
+    return scan.faults
 
 
-def _report(source: Source, faults: list[_Fault], found: Diagnostics) -> list[Span]:
+def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
+    """Report what is torn, ``faults`` in the order of the text, each with its line as it should be."""
+    lines: dict[int, list[Fault]] = {}
     for fault in faults:
-        written = source.text[fault.caret : fault.end]
-        line = _corrected(source, fault, faults)
-        match fault.code:
-            case "comment-color":
-                message, help = f"{written} is read as a comment here, so the value is missing", f"quote it: {line}"
-            case "unit-after-bracket":
-                message, help = f"the unit '{written}' cannot stand behind a bracket", f"write: {line}"
-            case _:
-                message, help = "YAML cuts this expression in two at a comma or bracket", f"quote it: {line}"
-        found.error(fault.code, message, Span(source, fault.caret, fault.end), help=help)
-    return [Span(source, fault.start, fault.end) for fault in faults]
+        lines.setdefault(source.position(fault.start)[0], []).append(fault)
+    for together in lines.values():
+        for fault in together:
+            written = source.text[fault.caret : fault.end]
+            line = _corrected(source, fault, together)
+            match fault.code:
+                case "comment-color":
+                    message, help = f"{written} is read as a comment here, so the value is missing", f"quote it: {line}"
+                case "unit-after-bracket":
+                    message, help = f"the unit '{written}' cannot stand behind a bracket", f"write: {line}"
+                case _:
+                    message, help = "YAML cuts this expression in two at a comma or bracket", f"quote it: {line}"
+            found.error(fault.code, message, Span(source, fault.caret, fault.end), help=help)
 
 
-def _corrected(source: Source, fault: _Fault, faults: list[_Fault]) -> str:
+def _corrected(source: Source, fault: Fault, together: list[Fault]) -> str:
     """The line of a fault with all that is torn in it mended; of a very long line only the mended value."""
     text = source.text
-    line = source.position(fault.start)[0]
-    first = source.line_starts[line - 1]
+    first = source.line_starts[source.position(fault.start)[0] - 1]
     if fault.end - first > _MOST_SHOWN:
         return fault.fixed
     out, at = "", first
-    for one in faults:
-        if one.start >= at and source.position(one.start)[0] == line:
+    for one in together:
+        if one.start >= at:
             out += text[at : one.start] + one.fixed
             at = one.end
     last = source.position(at)[0]
@@ -108,24 +112,20 @@ def _corrected(source: Source, fault: _Fault, faults: list[_Fault]) -> str:
     return out.strip() if len(out) <= _MOST_SHOWN else fault.fixed
 
 
-def _faults(text: str, start: int, end: int) -> list[_Fault]:
-    scan = _Scan(text, end)
-    with suppress(_LostError):
-        scan.value(start, 0)
-    return scan.faults
-
-
 class _LostError(Exception):
     """The text is not what the scan takes it for; what was found before still holds."""
 
 
 class _Scan:
-    """Reads flow syntax as it was meant: with parentheses, and with brackets inside expressions."""
+    """Reads flow syntax as it was meant: with parentheses, and with brackets inside expressions.
 
-    def __init__(self, text: str, end: int) -> None:
-        self.text = text
+    ``text`` has blanks where ``written`` has what is mended already.
+    """
+
+    def __init__(self, text: str, written: str, end: int) -> None:
+        self.text, self.written = text, written
         self.end = end
-        self.faults: list[_Fault] = []
+        self.faults: list[Fault] = []
 
     def peek(self, at: int) -> str:
         """The character at a place, empty behind the end."""
@@ -145,12 +145,16 @@ class _Scan:
             end = self.collection(at, depth)
             return self.behind(at, end, depth)
         if (color := _COLOR.match(self.text, at, self.end)) is not None:
-            self.faults.append(_Fault("comment-color", at, color.end(), at, f'"{color[0]}"'))
+            self.faults.append(Fault("comment-color", at, color.end(), at, f'"{color[0]}"'))
             return color.end()
         end, torn = self.plain(at, nested=depth > 0)
         if torn:
-            self.faults.append(_Fault("torn-expression", at, end, at, _quote(self.text[at:end])))
+            self.faults.append(self.torn(at, end))
         return end
+
+    def torn(self, start: int, end: int) -> Fault:
+        """An expression that YAML cuts."""
+        return Fault("torn-expression", start, end, start, _quote(self.written[start:end]))
 
     def collection(self, at: int, depth: int) -> int:
         """Read a list or mapping in brackets."""
@@ -191,10 +195,10 @@ class _Scan:
         # What is wrong inside is wrong with the whole, which is quoted as one or written anew.
         self.faults = [fault for fault in self.faults if fault.start < start]
         if self.text[start] == "[" and _UNIT.match(rest) is not None:
-            fixed = _with_unit(self.text[start + 1 : close - 1], rest)
-            self.faults.append(_Fault("unit-after-bracket", start, end, at, fixed))
+            fixed = _with_unit(self.written[start + 1 : close - 1], rest)
+            self.faults.append(Fault("unit-after-bracket", start, end, at, fixed))
         else:
-            self.faults.append(_Fault("torn-expression", start, end, start, _quote(self.text[start:end])))
+            self.faults.append(self.torn(start, end))
         return end
 
     def plain(self, at: int, *, nested: bool) -> tuple[int, bool]:
@@ -236,14 +240,14 @@ def _quote(text: str) -> str:
 def _with_unit(inside: str, unit: str) -> str:
     """A list with its unit where one may stand: ``0, 1, 0`` in m becomes ``0 1 0 m``."""
     items = _split(inside)
-    if all(_NUMBER.fullmatch(item) for item in items):
+    if all(NUMBER.fullmatch(item) for item in items):
         return " ".join([*items, unit])
     written = []
     for item in items:
         if item.startswith("[") and item.endswith("]"):
             written.append(_with_unit(item[1:-1], unit))
         else:
-            written.append(f"{item} {unit}" if _NUMBER.fullmatch(item) else item)
+            written.append(f"{item} {unit}" if NUMBER.fullmatch(item) else item)
     text = f"[{', '.join(written)}]"
     return _quote(text) if any("(" in item and "," in item for item in written) else text
 

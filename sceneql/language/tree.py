@@ -10,10 +10,13 @@ from sceneql.quantities.span import Source, Span
 
 @dataclass(slots=True, eq=False)
 class Scalar:
-    """A scalar as written. ``kind`` is the YAML 1.2 core type of a plain one; a quoted one is always `text`."""
+    """A scalar as written. ``kind`` is the YAML 1.2 core type of a plain one; a quoted one is always `text`.
+
+    A `broken` one stands for what was reported and cannot be read: nothing more is said of it.
+    """
 
     text: str
-    kind: Literal["null", "boolean", "integer", "number", "text"]
+    kind: Literal["null", "boolean", "integer", "number", "text", "broken"]
     quoted: bool
     source: Source
     start: int
@@ -49,7 +52,10 @@ class Sequence:
 
 @dataclass(slots=True, eq=False)
 class Mapping:
-    """Key-value pairs in the order written; ``keys`` holds each key's own node for its span."""
+    """Key-value pairs in the order written; ``keys`` holds each key's own node for its span.
+
+    ``partial``: some of its entries were reported and left out, so that nothing is said of what seems to be missing.
+    """
 
     entries: dict[str, Node]
     keys: dict[str, Scalar]
@@ -57,14 +63,49 @@ class Mapping:
     source: Source
     start: int
     end: int
+    partial: bool = False
 
     @property
     def span(self) -> Span:
         """From the first to the last character."""
         return Span(self.source, self.start, self.end)
 
+    def holding(self, entries: dict[str, Node], keys: dict[str, Scalar] | None = None) -> Mapping:
+        """The same mapping with other entries (and other keys)."""
+        keys = self.keys if keys is None else keys
+        return Mapping(entries, keys, self.flow, self.source, self.start, self.end, self.partial)
+
 
 Node = Scalar | Sequence | Mapping
+
+
+def broken(node: Node) -> bool:
+    """Whether the node was reported as unreadable."""
+    return isinstance(node, Scalar) and node.kind == "broken"
+
+
+def unsure(node: Node) -> bool:
+    """Whether it is not known all that should stand here."""
+    return node.partial if isinstance(node, Mapping) else broken(node)
+
+
+def whole(node: Node) -> bool:
+    """Whether nothing at or below the node was left out. A node that aliases share is looked at once."""
+    seen: set[int] = set()
+    stack = [node]
+    while stack:
+        one = stack.pop()
+        if unsure(one):
+            return False
+        if id(one) not in seen and not isinstance(one, Scalar):
+            seen.add(id(one))
+            stack += one.items if isinstance(one, Sequence) else one.entries.values()
+    return True
+
+
+def hole(span: Span) -> Scalar:
+    """What stands where something cannot be read."""
+    return Scalar("", "broken", False, span.source, span.start, span.end)
 
 
 def written(node: Node) -> Any:

@@ -137,9 +137,15 @@ def _place(diagnostic: Diagnostic) -> tuple[str, int]:
     return ("", -1) if span is None else (span.source.name, span.start)
 
 
-def suggestion(name: str, choices: Iterable[str]) -> str | None:
-    """``did you mean 'radius'?`` for the nearest of the choices, or None."""
+def nearest(name: str, choices: Iterable[str]) -> str | None:
+    """The choice that is most like the name, or None where none is."""
     from difflib import get_close_matches
 
     close = get_close_matches(name, list(choices), n=1, cutoff=0.6)
-    return f"did you mean '{close[0]}'?" if close else None
+    return close[0] if close else None
+
+
+def suggestion(name: str, choices: Iterable[str]) -> str | None:
+    """``did you mean 'radius'?`` for the nearest of the choices, or None."""
+    close = nearest(name, choices)
+    return None if close is None else f"did you mean '{close}'?"

@@ -53,6 +53,8 @@ _POWER = re.compile(r"\s*(?:\^|\*\*)")
 _JOIN = re.compile(r"[/·]|\*(?!\*)")
 _SPACED_JOIN = re.compile(r"\s*(?:[/·]|\*(?!\*))\s*")
 _INVERSE = re.compile(r"1/(?=%|[^\W\d])")
+_UNIT_BEFORE = re.compile(r"\d\.?\s*((?:1/)?[^\W\d][^\s()\[\],]*)[*/]\Z")
+LONGEST_BEFORE = 80
 _SUPERSCRIPTS = str.maketrans({"²": "^2", "³": "^3"})
 
 
@@ -110,6 +112,24 @@ def scan_unit(text: str, start: int, span: Span | None, *, spaced: bool = False)
 def starts_unit(text: str, at: int) -> bool:
     """Whether a name, ``%`` or ``1/name`` stands at ``text[at]``: after a number, all of these must be units."""
     return _NAME.match(text, at) is not None or _INVERSE.match(text, at) is not None
+
+
+def continues_unit(text: str, at: int) -> bool:
+    """Whether a number's unit and a sign that touches both stand before ``text[at]``, as before q in ``2 kN/q``."""
+    written = _UNIT_BEFORE.search(text, max(0, at - LONGEST_BEFORE), at)
+    if written is None:
+        return False
+    try:
+        parse_unit(written[1])
+    except ScriptError:
+        return False
+    return True
+
+
+def unit_hint(name: str) -> str | None:
+    """What unit was meant by a name that is none."""
+    (found,) = _unknown(name, None, 0).diagnostics
+    return found.help
 
 
 def _name(text: str, at: int) -> str | None:

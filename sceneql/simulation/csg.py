@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from pydantic import model_validator
-
-from sceneql.kinds import FieldBuilder, Moment, ObjectRef, Ref, field
+from sceneql.kinds import FieldBuilder, Moment, ObjectRef, Problem, Ref, field
 from sceneql.simulation.solid import Solid
 
 if TYPE_CHECKING:
@@ -18,11 +17,10 @@ class Combination(Solid):
 
     of: tuple[ObjectRef, ...] | dict[str, ObjectRef] = field("The solids, by name or in place: at least two.")
 
-    @model_validator(mode="after")
-    def _joins_several(self) -> Combination:
+    def problems(self) -> Iterator[Problem]:
+        """Too few members."""
         if len(self.of) < 2:
-            raise ValueError(f"{type(self).__name__.lower()} joins at least two objects")
-        return self
+            yield Problem(f"{type(self).__name__.lower()} joins at least two objects", ("of",))
 
     def members(self) -> tuple[Ref, ...]:
         """Its members."""

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Literal
 
-from pydantic import model_validator
-
-from sceneql.kinds import FixedLength, Object, ObjectRef, Record, Ref, field
+from sceneql.kinds import FixedLength, Object, ObjectRef, Problem, Record, Ref, field
 from sceneql.quantities.chance import philox, unit
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.simulation.start import Start
@@ -33,13 +32,12 @@ class Fill(Record):
     )
     seed: int = field("Another number, other places.", 0, at_least=0)
 
-    @model_validator(mode="after")
-    def _one_measure(self) -> Fill:
+    def problems(self) -> Iterator[Problem]:
+        """Two measures or none, or not that of a grid."""
         if (self.count is None) == (self.spacing is None):
-            raise ValueError("a filling has either `count` or `spacing`")
-        if self.pattern == "grid" and self.spacing is None:
-            raise ValueError("a grid needs a `spacing`")
-        return self
+            yield Problem("a filling has either `count` or `spacing`")
+        elif self.pattern == "grid" and self.spacing is None:
+            yield Problem("a grid needs a `spacing`", ("pattern",))
 
 
 class Inside:

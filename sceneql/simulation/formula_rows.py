@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
 from typing import Any
 
+from sceneql.kinds import Problem
 from sceneql.quantities.derivative import components
 from sceneql.quantities.diagnostic import suggestion
 from sceneql.quantities.evaluate import evaluate
@@ -14,9 +15,6 @@ from sceneql.quantities.expression import Expr, Link, Symbol, walk
 from sceneql.simulation.printer import printable
 
 TIMES = ("t", "time")
-
-Problem = tuple[tuple[str, ...], str]
-"""Where (field, key) and what."""
 
 
 def states(rows: Iterable[str]) -> list[str]:
@@ -91,24 +89,26 @@ class Rows:
 
     def _row_problems(self) -> Iterator[Problem]:
         if not self.rate:
-            yield ("rate",), "a system needs a rate: `y: ...` is dy/dt, `a'': ...` is d²a/dt²"
+            yield Problem("a system needs a rate: `y: ...` is dy/dt, `a'': ...` is d²a/dt²", ("rate",))
         for row in self.rate:
             name = row.rstrip("'")
             order = len(row) - len(name)
             if order == 1:
-                yield ("rate", row), f"the rate of {name} is written '{name}'; of second order, '{name}'''"
+                yield Problem(f"the rate of {name} is written '{name}'; of second order, '{name}'''", ("rate", row))
             if order > 2:
-                yield ("rate", row), f"'{row}' is of order {order}: write it as rows of first and second order"
+                yield Problem(f"'{row}' is of order {order}: write it as rows of first and second order", ("rate", row))
             if order == 2 and (name in self.rate or f"{name}'" in self.rate):
-                yield ("rate", row), f"{name} has rows of first and of second order"
+                yield Problem(f"{name} has rows of first and of second order", ("rate", row))
         known = self.states
         for state in known:
             if state not in self.start:
-                yield ("rate", self.row_of(state)), f"{state} has a rate but no value at the start"
+                yield Problem(f"{state} has a rate but no value at the start", ("rate", self.row_of(state)))
         for name in self.start:
             if name not in known:
                 hint = suggestion(name, known)
-                yield ("start", name), f"{name} has a value at the start but no rate{f': {hint}' if hint else ''}"
+                yield Problem(
+                    f"{name} has a value at the start but no rate{f': {hint}' if hint else ''}", ("start", name)
+                )
 
     def _name_problems(self) -> Iterator[Problem]:
         taken = dict.fromkeys(TIMES, "the time")
@@ -122,26 +122,26 @@ class Rows:
         ):
             for name in names:
                 if name in taken:
-                    yield (field, name), f"'{name}' is the name of {taken[name]} already"
+                    yield Problem(f"'{name}' is the name of {taken[name]} already", (field, name))
                 taken.setdefault(name, what)
 
     def _scalar_problems(self) -> Iterator[Problem]:
         for field, formulas in (("start", self.start), ("rate", self.rate), ("where", self.where)):
             for name, expr in formulas.items():
                 if expr.type.shape != () or not printable(components(expr)[0]):
-                    yield (field, name), f"{name} must be one number, computed from numbers"
+                    yield Problem(f"{name} must be one number, computed from numbers", (field, name))
         for name, expr in self.invariants.items():
             if expr.type.shape != ():
-                yield ("invariants", name), f"the invariant {name} is one number"
+                yield Problem(f"the invariant {name} is one number", ("invariants", name))
         for name, expr in self.gives.items():
             if expr.type.shape not in ((), (3,)):
-                yield ("gives", name), f"{name} must be one number or a vector of 3"
+                yield Problem(f"{name} must be one number or a vector of 3", ("gives", name))
 
     def _use_problems(self) -> Iterator[Problem]:
         for name, expr in self.start.items():
             for node in walk(expr):
                 if isinstance(node, Symbol) and node.name != self.index:
-                    yield ("start", name), f"'{node.name}' has no value before the start"
+                    yield Problem(f"'{node.name}' has no value before the start", ("start", name))
 
     def _circle_problems(self) -> Iterator[Problem]:
         uses = {name: [n.name for n in walk(expr) if isinstance(n, Symbol)] for name, expr in self.where.items()}
@@ -149,4 +149,4 @@ class Rows:
             TopologicalSorter(uses).prepare()
         except CycleError as error:
             circle = list(reversed(error.args[1]))
-            yield ("where", circle[0]), f"{circle[0]} is defined by itself: {' -> '.join(circle)}"
+            yield Problem(f"{circle[0]} is defined by itself: {' -> '.join(circle)}", ("where", circle[0]))

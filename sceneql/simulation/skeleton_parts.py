@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
-from pydantic import model_validator
-
 from sceneql.failure import RunFailure
-from sceneql.kinds import Color, Moment, Points, Position, Quantity, Record, Value, field
+from sceneql.kinds import Color, Moment, Points, Position, Problem, Quantity, Record, Value, field
 from sceneql.quantities import dimension as dim
 
 if TYPE_CHECKING:
@@ -58,17 +57,18 @@ class Part(Record):
     weight: NumberOrNumbers = field("Factor of the density, or one for each point or segment.", "1")
     color: Color | None = field("Its color, mixed with the others' by their densities; by default the object's.", None)
 
-    @model_validator(mode="after")
-    def _is_one_thing(self) -> Part:
+    def problems(self) -> Iterator[Problem]:
+        """Several things or none, faces without points, and what cannot be closed."""
         given = [name for name in self.KINDS if getattr(self, name) is not None]
         if len(given) != 1:
             said = f", not {' and '.join(given)}" if given else ""
-            raise ValueError(f"a part of a skeleton is one of {', '.join(self.KINDS)}{said}")
+            text = f"a part of a skeleton is one of {', '.join(self.KINDS)}{said}"
+            yield Problem(text, tuple(given[1:2]), at_key=True)
+            return
         if self.triangles is not None and self.points is None:
-            raise ValueError("`triangles` are told by numbers of `points`")
+            yield Problem("`triangles` are told by numbers of `points`", ("triangles",))
         if self.closed and self.polyline is None and self.spline is None:
-            raise ValueError("only a polyline or a spline can be closed")
-        return self
+            yield Problem("only a polyline or a spline can be closed", ("closed",), at_key=True)
 
     def now(self, moment: Moment) -> Shape:
         """Its parts now. Raises RunFailure for lists of other lengths than the points', and too few points."""

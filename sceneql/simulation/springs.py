@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
@@ -17,6 +17,7 @@ from sceneql.kinds import (
     MaterialRef,
     Model,
     Moment,
+    Problem,
     Quantity,
     Record,
     field,
@@ -46,11 +47,14 @@ class Tear(Record):
     seed: int = field("Another number, other weak springs.", 0, at_least=0)
 
 
-def check_pins(pins: Iterable[str], known: Sequence[str]) -> None:
-    """Raise ValueError for a pin that is neither one of the names nor a number."""
+def pin_problems(pins: Iterable[str], known: Sequence[str], count: int | None) -> Iterator[Problem]:
+    """The pins that are neither one of the names nor the number of one of ``count`` masses (None: not known yet)."""
     for pin in pins:
         if pin not in known and not pin.isdecimal():
-            raise ValueError(f"no mass is called '{pin}'; a pin is one of {', '.join(sorted(known))}, or a number")
+            text = f"no mass is called '{pin}'; a pin is one of {', '.join(sorted(known))}, or a number"
+            yield Problem(text, ("pins", pin), at_key=True)
+        elif pin not in known and count is not None and int(pin) >= count:
+            yield Problem(f"pin {pin}: the {count} masses are counted from 0", ("pins", pin), at_key=True)
 
 
 class SpringModel(Model):

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Literal
 
-from pydantic import model_validator
-
-from sceneql.kinds import Camera, Direction, DrawnRef, FixedScalar, Length, Moment, Position, field
+from sceneql.kinds import Camera, Direction, DrawnRef, FixedScalar, Length, Moment, Position, Problem, field
 from sceneql.simulation import framing
 from sceneql.simulation.present import positive
 
@@ -30,11 +29,10 @@ class Orthographic(Camera):
     margin: FixedScalar = field("With `fit`: part of half the picture that is left free.", "0.08", at_least=0, below=1)
     up: Direction = field("What is upwards in the picture; seen from above or below, -z is.", "0 1 0")
 
-    @model_validator(mode="after")
-    def _one_middle(self) -> Orthographic:
+    def problems(self) -> Iterator[Problem]:
+        """Two middles of the picture."""
         if self.follow is not None and self.look_at is not None:
-            raise ValueError("the middle of the picture is either `look_at` or what it follows")
-        return self
+            yield Problem("the middle of the picture is either `look_at` or what it follows", ("look_at",), at_key=True)
 
     def _back(self, moment: Moment) -> Any:
         import numpy as np

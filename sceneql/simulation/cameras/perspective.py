@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from pydantic import model_validator
-
-from sceneql.kinds import Angle, Camera, Direction, DrawnRef, FixedScalar, Moment, Position, field
+from sceneql.kinds import Angle, Camera, Direction, DrawnRef, FixedScalar, Moment, Position, Problem, field
 from sceneql.simulation import framing
 
 if TYPE_CHECKING:
@@ -31,11 +30,19 @@ class Perspective(Camera):
     field_of_view: Angle = field("Vertical field of view.", "40 deg", above=0, below=math.pi)
     up: Direction = field("What is upwards in the picture.", "0 1 0")
 
-    @model_validator(mode="after")
-    def _one_place(self) -> Perspective:
+    def problems(self) -> Iterator[Problem]:
+        """Two places, or no direction to look in."""
+        here = "a camera cannot look at its own position"
         if self.follow is not None and (self.position is not None or self.fit is not None):
-            raise ValueError("a camera that follows takes its place from `from`, not from `position` or `fit`")
-        return self
+            text = "a camera that follows takes its place from `from`, not from `position` or `fit`"
+            yield Problem(text, ("follow",), at_key=True)
+        elif self.follow is not None:
+            if self.look_at is None and self.from_.constant and not any(self.from_.number()):
+                yield Problem(here, ("from_",))
+        elif self.position is not None and self.look_at is not None:
+            places = [place.number() for place in (self.position, self.look_at) if place.constant]
+            if len(places) == 2 and places[0] == places[1]:
+                yield Problem(here, ("look_at",))
 
     def looks_ahead(self) -> bool:
         """Whether its place or its aim is left to what is drawn."""

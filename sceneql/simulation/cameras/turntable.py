@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from pydantic import model_validator
-
-from sceneql.kinds import Angle, Camera, DrawnRef, FixedScalar, FixedTime, Length, Moment, Position, field
+from sceneql.kinds import Angle, Camera, DrawnRef, FixedScalar, FixedTime, Length, Moment, Position, Problem, field
 from sceneql.simulation import framing
 from sceneql.simulation.present import positive
 
@@ -37,11 +36,11 @@ class Turntable(Camera):
     margin: FixedScalar = field("Part of half the picture that is left free.", "0.08", at_least=0, below=1)
     field_of_view: Angle = field("Vertical field of view.", "35 deg", above=0, below=math.pi)
 
-    @model_validator(mode="after")
-    def _one_middle(self) -> Turntable:
+    def problems(self) -> Iterator[Problem]:
+        """Two middles of the picture."""
         if self.follow is not None and (self.around is not None or self.look_at is not None):
-            raise ValueError("the middle of the picture is either what it follows, or `around` or `look_at`")
-        return self
+            text = "the middle of the picture is either what it follows, or `around` or `look_at`"
+            yield Problem(text, ("follow",), at_key=True)
 
     def looks_ahead(self) -> bool:
         """Whether its distance or its middle is left to what is drawn."""

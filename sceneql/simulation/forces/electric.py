@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated
 
-from pydantic import model_validator
-
-from sceneql.kinds import Force, Formula, Symbols, field
+from sceneql.kinds import Force, Formula, Problem, Symbols, field
 from sceneql.simulation.forces.charges import Charges, ElectricField, each, of_moving
 
 if TYPE_CHECKING:
@@ -26,17 +25,15 @@ class Electric(Force):
     formula: Annotated[Formula, Symbols(("x", "y", "z", "t"))] | None = field("Its components [V/m].", None)
     potential_: Annotated[Formula, Symbols(("x", "y", "z", "t"))] | None = field("Its potential [V].", None)
 
-    @model_validator(mode="after")
-    def _is_said_once(self) -> Electric:
-        if sum(given is not None for given in (self.field_, self.formula, self.potential_)) != 1:
-            raise ValueError("an electric field is said in one way: `field`, `formula` or `potential`")
-        formula, count = (self.formula, 3) if self.formula is not None else (self.potential_, 1)
-        if formula is not None:
-            from sceneql.simulation.point_program import problem
+    def problems(self) -> Iterator[Problem]:
+        """Several fields or none, and formulas that are no field."""
+        from sceneql.simulation.point_program import problem
 
-            if (text := problem(formula, count)) is not None:
-                raise ValueError(text)
-        return self
+        if sum(given is not None for given in (self.field_, self.formula, self.potential_)) != 1:
+            yield Problem("an electric field is said in one way: `field`, `formula` or `potential`")
+        for name, formula, count in (("formula", self.formula, 3), ("potential_", self.potential_, 1)):
+            if formula is not None and (text := problem(formula, count)) is not None:
+                yield Problem(text, (name,))
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add q E to every mass."""

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated
 
-from pydantic import model_validator
-
 from sceneql.kinds import Force as Family
-from sceneql.kinds import Formula, Symbols, field
+from sceneql.kinds import Formula, Problem, Symbols, field
 
 if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies, ModelState
@@ -27,16 +26,15 @@ class Force(Family):
         "The potential energy of one mass [J].", None
     )
 
-    @model_validator(mode="after")
-    def _is_said_once(self) -> Force:
+    def problems(self) -> Iterator[Problem]:
+        """Two formulas or none, and those that are no force."""
         from sceneql.simulation.point_program import problem
 
         if (self.components is None) == (self.potential_ is None):
-            raise ValueError("a force is said in one way: `components` or `potential`")
-        for formula, count in ((self.components, 3), (self.potential_, 1)):
+            yield Problem("a force is said in one way: `components` or `potential`")
+        for name, formula, count in (("components", self.components, 3), ("potential_", self.potential_, 1)):
             if formula is not None and (text := problem(formula, count)) is not None:
-                raise ValueError(text)
-        return self
+                yield Problem(text, (name,))
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add the force to every mass."""

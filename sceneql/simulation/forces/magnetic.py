@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated
 
-from pydantic import model_validator
-
-from sceneql.kinds import Force, Formula, Symbols, field
+from sceneql.kinds import Force, Formula, Problem, Symbols, field
 from sceneql.quantities.expression import Call, Expr, Symbol
 from sceneql.simulation.forces.charges import Charges, MagneticField, each
 
@@ -25,16 +24,14 @@ class Magnetic(Force):
     field_: MagneticField | None = field("The same field everywhere; it may vary in time.", None)
     formula: Annotated[Formula, Symbols(("x", "y", "z", "t"))] | None = field("Its components [T].", None)
 
-    @model_validator(mode="after")
-    def _is_said_once(self) -> Magnetic:
-        if (self.field_ is None) == (self.formula is None):
-            raise ValueError("a magnetic field is said in one way: `field` or `formula`")
-        if self.formula is not None:
-            from sceneql.simulation.point_program import problem
+    def problems(self) -> Iterator[Problem]:
+        """Two fields or none, and a formula that is no field."""
+        from sceneql.simulation.point_program import problem
 
-            if (text := problem(self.formula, 3)) is not None:
-                raise ValueError(text)
-        return self
+        if (self.field_ is None) == (self.formula is None):
+            yield Problem("a magnetic field is said in one way: `field` or `formula`")
+        if self.formula is not None and (text := problem(self.formula, 3)) is not None:
+            yield Problem(text, ("formula",))
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add q v x B to every mass."""

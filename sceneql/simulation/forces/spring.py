@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, ClassVar
 
-from pydantic import model_validator
-
-from sceneql.kinds import Damping, FixedLength, Force, Position, Stiffness, Value, field
+from sceneql.kinds import Damping, FixedLength, Force, Position, Problem, Stiffness, Value, field
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Link
 
@@ -32,11 +31,10 @@ class Spring(Force):
     damping: Damping = field("Force for a speed of stretching.", "0 N*s/m", at_least=0)
     rest: FixedLength | None = field("Length without force; by default that at the start.", None, at_least=0)
 
-    @model_validator(mode="after")
-    def _has_a_mass(self) -> Spring:
+    def problems(self) -> Iterator[Problem]:
+        """Two ends without a mass."""
         if not self.targets():
-            raise ValueError("a spring needs a mass at one of its ends, as `from: cage.corner.position`")
-        return self
+            yield Problem("a spring needs a mass at one of its ends, as `from: cage.corner.position`")
 
     def targets(self) -> tuple[str, ...]:
         """The models of the masses at its ends."""

@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated
 
-from pydantic import model_validator
-
-from sceneql.kinds import Axis, FixedLength, FixedPosition, FixedScalar, FixedStiffness, Quantity, Rotation, field
+from sceneql.kinds import (
+    Axis,
+    FixedLength,
+    FixedPosition,
+    FixedScalar,
+    FixedStiffness,
+    Problem,
+    Quantity,
+    Rotation,
+    field,
+)
 from sceneql.quantities import dimension as dim
 from sceneql.simulation.models.nets import CORNERS, EDGES, Net, turned
 from sceneql.simulation.models.nets import Cloth as Sheet
-from sceneql.simulation.springs import SpringModel, check_pins
+from sceneql.simulation.springs import SpringModel, pin_problems
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -45,15 +54,11 @@ class Cloth(SpringModel):
     damping: FixedScalar = field("Damping as a part of the critical one.", "0.02", at_least=0)
     thickness: FixedLength = field("Its thickness, in contacts and in the picture.", "5 mm", above=0)
 
-    @model_validator(mode="after")
-    def _has_its_corners(self) -> Cloth:
-        self._sheet()
-        check_pins(self.pins, (*EDGES, *CORNERS))
-        count = (self.cells[0] + 1) * (self.cells[1] + 1)
-        for pin in self.pins:
-            if pin.isdecimal() and int(pin) >= count:
-                raise ValueError(f"pin {pin}: the {count} masses are counted from 0")
-        return self
+    def problems(self) -> Iterator[Problem]:
+        """What is wrong with the sheet, and pins that are no mass of it."""
+        sheet = Sheet.model_construct(cells=self.cells, facing=self.facing)
+        yield from sheet.problems()
+        yield from pin_problems(self.pins, (*EDGES, *CORNERS), sheet.mass_count())
 
     def _sheet(self) -> Sheet:
         return Sheet(

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
-
-from pydantic import model_validator
 
 from sceneql.kinds import (
     Color,
@@ -19,6 +17,7 @@ from sceneql.kinds import (
     Length,
     ObjectRef,
     Position,
+    Problem,
     Record,
     Value,
     Velocity,
@@ -66,13 +65,12 @@ class Aging(Record):
     color: Color | None = field("Its color, in place of the model's.", None)
     radius: Length | None = field("Its radius in the picture, in place of the model's.", None)
 
-    @model_validator(mode="after")
-    def _is_of_age_alone(self) -> Aging:
+    def problems(self) -> Iterator[Problem]:
+        """Values that are none of an age alone."""
         for name in ("color", "radius"):
             value = getattr(self, name)
             if value is not None and any(isinstance(node, Link) for node in walk(value.expr)):
-                raise ValueError(f"the {name} of an age reads no other part")
-        return self
+                yield Problem(f"the {name} of an age reads no other part", (name,))
 
     def classes(self, ages: Floats, radii: Floats) -> Iterable[tuple[Value | None, Any, Floats]]:
         """The particles by classes of like color: the color, the indices of its particles, and their radii.
@@ -125,12 +123,14 @@ class Emit(Record):
     )
     seed: int = field("Another number, another shower.", 0, at_least=0)
 
-    @model_validator(mode="after")
-    def _can_be_held(self) -> Emit:
+    def problems(self) -> Iterator[Problem]:
+        """An end before the start, and more particles than memory is allowed for."""
         if self.until is not None and self.until <= self.start:
-            raise ValueError("`until` must be after `start`")
-        bounded(self.capacity())
-        return self
+            yield Problem("`until` must be after `start`", ("until",))
+        try:
+            bounded(self.capacity())
+        except Exceeds as error:
+            yield Problem(str(error), code="limit-refused")
 
     def total(self) -> float:
         """How many are born in all; may be infinite."""

@@ -7,16 +7,13 @@ from functools import cached_property
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-from pydantic import ValidationError, model_validator
-from pydantic_core import InitErrorDetails, PydanticCustomError
-
-from sceneql.kinds import FixedLength, Formula, Gives, Model, Record, Value, field, quantity_type
+from sceneql.kinds import FixedLength, Formula, Gives, Model, Problem, Record, Value, field, quantity_type
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.derivative import components
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Expr, Link, Symbol
-from sceneql.simulation.formula_rows import TIMES, Problem, Rows, states
+from sceneql.simulation.formula_rows import TIMES, Rows, states
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -95,20 +92,9 @@ class Equations(Model):
         """Number of copies."""
         return 1 if self.copies is None else self.copies.count
 
-    @model_validator(mode="after")
-    def _consistent(self) -> Equations:
-        problems = self.rows.problems() or self._first_rates()
-        if problems:
-            raise ValidationError.from_exception_data(
-                type(self).__name__,
-                [
-                    InitErrorDetails(
-                        type=PydanticCustomError("equations", "{text}", {"text": text}), loc=at, input=None
-                    )
-                    for at, text in problems
-                ],
-            )
-        return self
+    def problems(self) -> list[Problem]:
+        """Rows that make no system, or one without a finite rate at the start."""
+        return self.rows.problems() or self._first_rates()
 
     def _first_rates(self) -> list[Problem]:
         """Rows that have no finite value at the start of the first copy, where nothing is read from other parts."""
@@ -120,7 +106,7 @@ class Equations(Model):
         known |= {state: evaluate(rows.start[state], look_up) for state in rows.states}
         rates = zip(rows.states, rows.rates(), strict=True)
         return [
-            (("rate", rows.row_of(state)), f"the rate of {state} has no finite value at the start")
+            Problem(f"the rate of {state} has no finite value at the start", ("rate", rows.row_of(state)))
             for state, expr in rates
             if not isfinite(evaluate(expr, look_up))
         ]

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from pydantic import ValidationError, ValidationInfo, field_validator, model_validator
-from pydantic_core import InitErrorDetails, PydanticCustomError
-
-from sceneql.kinds import Damping, FixedMass, Gives, Stiffness, field, quantity_type
+from sceneql.kinds import Damping, FixedMass, Gives, Problem, Stiffness, field, quantity_type
 from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
@@ -29,7 +26,7 @@ from sceneql.simulation.models.nets import (
     alike,
     turned,
 )
-from sceneql.simulation.springs import SpringModel, check_pins
+from sceneql.simulation.springs import SpringModel, pin_problems
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -65,42 +62,25 @@ class MassSpring(SpringModel):
     stiffness: Stiffness = field("Force for a stretch, of each spring that says nothing else.", "100 N/m", above=0)
     damping: Damping = field("Force for a speed of stretching, likewise.", "0 N*s/m", at_least=0)
 
-    @field_validator("springs")
-    @classmethod
-    def _tie_known_masses(cls, springs: tuple[Spring, ...], info: ValidationInfo) -> tuple[Spring, ...]:
-        known = info.data.get("masses") or {}
-        help = f"there are {', '.join(known)}" if known else "give `masses` by name"
-        wrong = [
-            InitErrorDetails(
-                type=PydanticCustomError(
-                    "unknown_mass", "no mass is called '{name}'; {help}", {"name": name, "help": help}
-                ),
-                loc=(k, "between", end),
-                input=name,
-            )
-            for k, spring in enumerate(springs)
-            for end, name in enumerate(spring.between)
-            if name not in known
-        ]
-        if wrong:
-            raise ValidationError.from_exception_data(cls.__name__, wrong)
-        return springs
-
-    @model_validator(mode="after")
-    def _is_one_net(self) -> MassSpring:
+    def problems(self) -> Iterator[Problem]:
+        """Several nets or none, springs to masses that are not there, and pins of none."""
+        known = self.masses or {}
+        named = f"there are {', '.join(known)}" if known else "give `masses` by name"
+        for k, spring in enumerate(self.springs):
+            for end, name in enumerate(spring.between):
+                if name not in known:
+                    yield Problem(f"no mass is called '{name}'; {named}", ("springs", k, "between", end))
         given = [name for name in ("masses", *PLACES) if getattr(self, name) is not None]
         if len(given) != 1:
             said = f", not {' and '.join(given)}" if given else ""
-            raise ValueError(f"a mass_spring has one of `masses`, `lattice`, `cloth`, `rope` and `solid`{said}")
+            text = f"a mass_spring has one of `masses`, `lattice`, `cloth`, `rope` and `solid`{said}"
+            yield Problem(text, tuple(given[1:2]), at_key=True)
+            return
         if self.masses is not None and not self.masses:
-            raise ValueError("no masses are given")
-        check_pins(self.pins, (*(self.masses or ()), *(PLACES.get(given[0], ()))))
+            yield Problem("no masses are given", ("masses",))
         shape = self.lattice or self.cloth or self.rope
         count = len(self.masses) if self.masses is not None else shape.mass_count() if shape else None
-        for pin in self.pins:
-            if count is not None and pin.isdecimal() and int(pin) >= count and pin not in (self.masses or ()):
-                raise ValueError(f"pin {pin}: the {count} masses are counted from 0")
-        return self
+        yield from pin_problems(self.pins, (*known, *PLACES.get(given[0], ())), count)
 
     @classmethod
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:

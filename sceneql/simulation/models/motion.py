@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import ClassVar
 
-from pydantic import model_validator
-
-from sceneql.kinds import FixedPosition, Gives, Model, Position, Rotation, Scalar, field, quantity_type
+from sceneql.kinds import FixedPosition, Gives, Model, Position, Problem, Rotation, Scalar, field, quantity_type
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Expr, Key, Keys, Number, Type, Vector
@@ -39,13 +37,16 @@ class Motion(Model):
     progress: Scalar = field("With `along`: the share of the path gone, 0 at its first point, 1 at its last.", "0")
     rotation: Rotation = field("How it is turned.", "1 0 0 0")
 
-    @model_validator(mode="after")
-    def _one_way(self) -> Motion:
+    def problems(self) -> Iterator[Problem]:
+        """Two ways to move, or a path that leads nowhere."""
         if self.along is not None and self.position is not None:
-            raise ValueError("a motion has either `position` or `along`")
-        if self.along is not None and (len(self.along) < 2 or any(p == q for p, q in itertools.pairwise(self.along))):
-            raise ValueError("`along` takes two points or more, each another than the one before")
-        return self
+            yield Problem("a motion has either `position` or `along`", ("along",), at_key=True)
+        text = "`along` takes two points or more, each another than the one before"
+        if self.along is not None and len(self.along) < 2:
+            yield Problem(text, ("along",))
+        for k, (point, following) in enumerate(itertools.pairwise(self.along or ()), 1):
+            if point == following:
+                yield Problem(text, ("along", k))
 
     def _place(self) -> Expr:
         """Its position over time."""

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from dataclasses import field as member
 from itertools import product
 from math import prod
 from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import model_validator
-
 from sceneql.kinds import (
     Axis,
-    Exceeds,
     FixedDamping,
     FixedLength,
     FixedMass,
@@ -22,6 +19,7 @@ from sceneql.kinds import (
     FixedStiffness,
     FixedVelocity,
     ObjectRef,
+    Problem,
     Quantity,
     Record,
     Rotation,
@@ -89,11 +87,10 @@ class MassPoint(Record):
     velocity: FixedVelocity | None = field("How fast it starts; by default the model's.", None)
     fixed: bool = field("It never moves.", False)
 
-    @model_validator(mode="after")
-    def _rests_if_fixed(self) -> MassPoint:
+    def problems(self) -> Iterator[Problem]:
+        """A mass that is held and moves."""
         if self.fixed and self.velocity is not None and any(self.velocity):
-            raise ValueError("a fixed mass has no velocity")
-        return self
+            yield Problem("a fixed mass has no velocity", ("velocity",))
 
 
 class Spring(Record):
@@ -107,16 +104,15 @@ class Spring(Record):
     damping: FixedDamping | None = field("Force for a speed of stretching; by default the model's.", None, at_least=0)
     name: str | None = field("Its name, for `name.length` and `name.tension`.", None)
 
-    @model_validator(mode="after")
-    def _has_two_ends(self) -> Spring:
+    def problems(self) -> Iterator[Problem]:
+        """A spring with one end."""
         if self.between[0] == self.between[1]:
-            raise ValueError(f"a spring from '{self.between[0]}' to itself")
-        return self
+            yield Problem(f"a spring from '{self.between[0]}' to itself", ("between",))
 
 
-def _bounded(count: float) -> None:
+def _too_many(count: float, field: str) -> Iterator[Problem]:
     if count > MOST_MASSES:
-        raise Exceeds(f"{count:.3g} masses: at most {MOST_MASSES:,} are possible")
+        yield Problem(f"{count:.3g} masses: at most {MOST_MASSES:,} are possible", (field,), code="limit-refused")
 
 
 def neighbors(cells: Any, shear: float) -> tuple[NDArray[int64], Floats]:
@@ -169,10 +165,8 @@ class Filling(Record):
         from sceneql.simulation.fill import Inside, grid
 
         def bound(count: float) -> None:
-            try:
-                _bounded(count)
-            except Exceeds as error:
-                raise LimitRefused(str(error), self.object.span, "use a larger spacing") from None
+            for problem in _too_many(count, "spacing"):
+                raise LimitRefused(problem.text, self.object.span, "use a larger spacing")
 
         inside = Inside(self.object, assembly)
         points, cells = grid(inside, self.spacing, bound)
@@ -195,10 +189,9 @@ class Lattice(Record):
         "Stiffness of the diagonals as a part of the edges'; 0 leaves them out.", "1", at_least=0
     )
 
-    @model_validator(mode="after")
-    def _is_of_a_size(self) -> Lattice:
-        _bounded(self.mass_count())
-        return self
+    def problems(self) -> Iterator[Problem]:
+        """More masses than are possible."""
+        yield from _too_many(self.mass_count(), "count")
 
     def mass_count(self) -> int:
         """Number of masses."""
@@ -238,12 +231,11 @@ class Cloth(Record):
     shear: FixedScalar = field("Stiffness of the diagonals as a part of the sides'.", "0.5", at_least=0)
     bend: FixedScalar = field("Stiffness over two cells as a part of the sides'.", "0.1", at_least=0)
 
-    @model_validator(mode="after")
-    def _is_of_a_size(self) -> Cloth:
-        _bounded(self.mass_count())
+    def problems(self) -> Iterator[Problem]:
+        """More masses than are possible, or no side that faces anywhere."""
+        yield from _too_many(self.mass_count(), "cells")
         if not any(self.facing):
-            raise ValueError("a cloth that faces 0 0 0 faces nowhere")
-        return self
+            yield Problem("a cloth that faces 0 0 0 faces nowhere", ("facing",))
 
     def mass_count(self) -> int:
         """Number of masses."""
@@ -306,12 +298,11 @@ class Rope(Record):
     to: FixedPosition = field("Where its last mass starts.", "2 2 0 m")
     count: int = field("Number of masses.", 20, at_least=2)
 
-    @model_validator(mode="after")
-    def _is_of_a_size(self) -> Rope:
-        _bounded(self.mass_count())
+    def problems(self) -> Iterator[Problem]:
+        """More masses than are possible, or no length."""
+        yield from _too_many(self.mass_count(), "count")
         if self.from_ == self.to:
-            raise ValueError("a rope that ends where it starts")
-        return self
+            yield Problem("a rope that ends where it starts", ("to",))
 
     def mass_count(self) -> int:
         """Number of masses."""

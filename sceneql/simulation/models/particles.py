@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from pydantic import field_validator, model_validator
+from pydantic import field_validator
 
 from sceneql.failure import LimitRefused
 from sceneql.kinds import (
@@ -21,6 +21,7 @@ from sceneql.kinds import (
     Moment,
     ObjectRef,
     Points,
+    Problem,
     Record,
     Value,
     field,
@@ -51,11 +52,10 @@ class Particle(Record):
     )
     fixed: bool = field("It never moves.", False)
 
-    @model_validator(mode="after")
-    def _rests_if_fixed(self) -> Particle:
+    def problems(self) -> Iterator[Problem]:
+        """A particle that is held and moves."""
         if self.fixed and any(self.velocity):
-            raise ValueError("a fixed particle has no velocity")
-        return self
+            yield Problem("a fixed particle has no velocity", ("velocity",))
 
 
 class Particles(Model):
@@ -94,19 +94,17 @@ class Particles(Model):
         bounded(fill.count or 0 if fill is not None else 0)
         return fill
 
-    @model_validator(mode="after")
-    def _come_from_one_place(self) -> Particles:
+    def problems(self) -> Iterator[Problem]:
+        """Several sources or none, an empty one, and ages of what is never born."""
         given = [name for name in SOURCES if getattr(self, name) is not None]
         if len(given) != 1:
-            raise ValueError(
-                "particles come from one of `list`, `of`, `positions`, `fill` and `emit`"
-                + (f", not from {' and '.join(given)}" if given else "")
-            )
+            text = "particles come from one of `list`, `of`, `positions`, `fill` and `emit`"
+            said = f", not from {' and '.join(given)}" if given else ""
+            yield Problem(text + said, tuple(given[1:2]), at_key=True)
         if self.list is not None and not self.list:
-            raise ValueError("the list of particles is empty")
+            yield Problem("the list of particles is empty", ("list",))
         if self.aging is not None and self.emit is None:
-            raise ValueError("only particles that are emitted have an age")
-        return self
+            yield Problem("only particles that are emitted have an age", ("aging",), at_key=True)
 
     @classmethod
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Literal, get_args
 
-from pydantic import model_validator
-
-from sceneql.kinds import FieldBuilder, FixedScalar, Moment, Object, Points, field
+from sceneql.kinds import FieldBuilder, FixedScalar, Moment, Object, Points, Problem, field
 from sceneql.simulation.placement import balls_box, inverse
 from sceneql.simulation.skeleton_parts import (
     MOST,
@@ -54,20 +52,21 @@ class Blobby(Object):
     threshold: FixedScalar = field("The density at the surface.", "0.3", above=0, below=1)
     kernel: Kernel = field("How the density falls off with the distance.", "wyvill")
 
-    @model_validator(mode="after")
-    def _one_or_one_each(self) -> Blobby:
+    def problems(self) -> Iterator[Problem]:
+        """Lists of values that do not go with the points, no points, and ends that are none."""
         if self.points is None and not self.skeleton:
-            raise ValueError("a blobby needs `points` or a `skeleton`")
+            yield Problem("a blobby needs `points` or a `skeleton`")
         for name in ("radius", "weight"):
             if len(getattr(self, name).expr.type.shape) > 1:
-                raise ValueError(f"{name} is one value, or a list with one for each point")
+                yield Problem(f"{name} is one value, or a list with one for each point", (name,))
         if self.points is not None and self.points.expr.type.shape[0] == 0:
-            raise ValueError("a skeleton has at least one point")
-        if any(k < 0 for pair in self.segments for k in pair):
-            raise ValueError("points are counted from 0")
+            yield Problem("a skeleton has at least one point", ("points",))
+        for k, pair in enumerate(self.segments):
+            for end, point in enumerate(pair):
+                if point < 0:
+                    yield Problem("points are counted from 0", ("segments", k, end))
         if self.segments and self.points is None:
-            raise ValueError("`segments` are told by numbers of `points`")
-        return self
+            yield Problem("`segments` are told by numbers of `points`", ("segments",))
 
     def parts(self, moment: Moment) -> Skeleton:
         """Its skeleton in its parent's coordinates: that of `points`, then those of its entries.

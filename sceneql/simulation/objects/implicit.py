@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import field_validator, model_validator
+from pydantic import field_validator
 
-from sceneql.kinds import Axis, FieldBuilder, FixedLength, FixedScalar, Formula, Moment, Record, Symbols
+from sceneql.kinds import Axis, FieldBuilder, FixedLength, FixedScalar, Formula, Moment, Problem, Record, Symbols
 from sceneql.kinds import field as described
 from sceneql.quantities.expression import Link, Symbol, walk
 from sceneql.simulation.formula import COORDINATES, in_coordinates, written_out
@@ -23,13 +23,13 @@ class Within(Record):
     ball: FixedScalar | None = described("Radius of a ball about the origin.", None, above=0)
     box: tuple[Axis, Axis] | None = described("Low and high corner of a box.", None)
 
-    @model_validator(mode="after")
-    def _one_shape(self) -> Within:
+    def problems(self) -> Iterator[Problem]:
+        """Two shapes or none, or a box inside out."""
         if (self.ball is None) == (self.box is None):
-            raise ValueError("bounds are one of `ball: radius` and `box: [low, high]`")
+            yield Problem("bounds are one of `ball: radius` and `box: [low, high]`")
         if self.box is not None and not all(low < high for low, high in zip(*self.box, strict=True)):
-            raise ValueError("each component of the box's low corner must be below that of its high corner")
-        return self
+            text = "each component of the box's low corner must be below that of its high corner"
+            yield Problem(text, ("box",))
 
     @property
     def corners(self) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import Any, ClassVar
 
-from pydantic import model_validator
-
-from sceneql.kinds import Clock, FixedScalar, Moment, Picture, Sink, Tools, field
+from sceneql.kinds import Clock, FixedScalar, Moment, Picture, Problem, Sink, Tools, field
 
 
 class Video(Picture):
@@ -21,11 +19,11 @@ class Video(Picture):
     fps: FixedScalar | None = field("Frames a second; by default the clock's.", None, above=0, at_most=1000)
     quality: FixedScalar = field("Constant rate factor of x264: 0 is lossless, 51 worst.", "17", at_least=0, at_most=51)
 
-    @model_validator(mode="after")
-    def _even(self) -> Video:
+    def problems(self) -> Iterator[Problem]:
+        """A size that no player shows."""
         if any(side % 2 for side in self.pixels):
-            raise ValueError(f"a film's width and height must be even (yuv420p), not {self.pixels[0]} {self.pixels[1]}")
-        return self
+            text = f"a film's width and height must be even (yuv420p), not {self.pixels[0]} {self.pixels[1]}"
+            yield Problem(text, ("size",))
 
     def times(self, clock: Clock) -> list[float]:
         """The instants [s] that it wants."""

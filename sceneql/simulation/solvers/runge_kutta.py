@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from pydantic import model_validator
-
-from sceneql.kinds import FixedScalar, FixedTime, Solver, field
+from sceneql.kinds import FixedScalar, FixedTime, Problem, Solver, field
 from sceneql.simulation.tableau import Tableau
 
 if TYPE_CHECKING:
@@ -31,27 +30,36 @@ class RungeKutta(Solver):
     step: FixedTime = field("Length of a step, or with a tolerance of the first.", "1 ms", above=0)
     tolerance: FixedScalar | None = field("Relative error of a step; needs b_hat.", None, at_least=1e-14, below=1)
 
-    @model_validator(mode="after")
-    def _is_explicit(self) -> RungeKutta:
+    def problems(self) -> Iterator[Problem]:
+        """A tableau that is of no explicit method, or of none that converges."""
         stages = len(self.b)
         if stages == 0 or len(self.a) != stages:
-            raise ValueError(f"`a` has {len(self.a)} rows and `b` {stages} weights: one of each for every stage")
+            text = f"`a` has {len(self.a)} rows and `b` {stages} weights: one of each for every stage"
+            yield Problem(text, ("b",) if stages == 0 else ("a",), at_key=True)
+            return
         for i, row in enumerate(self.a):
-            if any(row[i:]):
-                raise ValueError(f"row {i + 1} of `a` reaches the diagonal: only explicit methods can be written here")
+            for j, entry in enumerate(row):
+                if j >= i and entry:
+                    text = f"row {i + 1} of `a` reaches the diagonal: only explicit methods can be written here"
+                    yield Problem(text, ("a", i, j))
+                    break
             if len(row) < i:
-                raise ValueError(f"row {i + 1} of `a` has {len(row)} entries: it needs {i}")
+                yield Problem(f"row {i + 1} of `a` has {len(row)} entries: it needs {i}", ("a", i))
         if abs(sum(self.b) - 1.0) > ROUNDING:
-            raise ValueError(f"the weights `b` sum to {sum(self.b):.12g}, not to 1: the method would not converge")
-        if self.c is not None and (
-            len(self.c) != stages or any(abs(c - sum(row)) > ROUNDING for c, row in zip(self.c, self.a, strict=True))
-        ):
-            raise ValueError("`c` must be the row sums of `a`")
+            text = f"the weights `b` sum to {sum(self.b):.12g}, not to 1: the method would not converge"
+            yield Problem(text, ("b",))
+        if self.c is not None and len(self.c) != stages:
+            yield Problem(f"`c` has {len(self.c)} places: it needs {stages}, the row sums of `a`", ("c",))
+        else:
+            for i, (place, row) in enumerate(zip(self.c or (), self.a, strict=False)):
+                if abs(place - sum(row)) > ROUNDING:
+                    text = f"`c` must be the row sums of `a`: that of row {i + 1} is {sum(row):.12g}"
+                    yield Problem(text, ("c", i))
         if self.b_hat is not None and len(self.b_hat) != stages:
-            raise ValueError(f"`b_hat` needs {stages} weights")
+            yield Problem(f"`b_hat` needs {stages} weights", ("b_hat",))
         if self.tolerance is not None and (self.b_hat is None or self.b_hat == self.b):
-            raise ValueError("a tolerance needs the weights `b_hat` of an embedded method that differs from `b`")
-        return self
+            text = "a tolerance needs the weights `b_hat` of an embedded method that differs from `b`"
+            yield Problem(text, ("tolerance" if self.b_hat is None else "b_hat",))
 
     @cached_property
     def tableau(self) -> Tableau:
