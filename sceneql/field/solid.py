@@ -64,3 +64,17 @@ def cast(
         ray = (*map(float, o), *map(float, d), float(starts[i]), float(ends[i]), tolerance)
         status[i], t[i] = first(tape.code, tape.constants, tape.parts, room, *ray)
     return status, t
+
+
+def paint_values(tape: Tape, points: Floats) -> Floats:
+    """The last three registers of a tape at points (n, 3) [m]: (n, 3)."""
+    from sceneql.field.batch_kernels import LANES, evaluate
+
+    registers, block = np.empty((len(tape.code), LANES)), np.zeros((3, LANES))
+    out = np.empty((len(points), 3))
+    for start in range(0, len(points), LANES):
+        n = min(LANES, len(points) - start)
+        block[:, :n] = points[start : start + n].T
+        evaluate(tape.code, tape.constants, tape.parts, registers, block, n)
+        out[start : start + n] = registers[-3:, :n].T
+    return out

@@ -66,6 +66,10 @@ class Object(Kind):
         """Low and high corner (3,) of a world box around it; infinite where it is unbounded."""
         raise TypeError(f"{type(self).__name__} has no extent")
 
+    def read(self, output: str, moment: Moment) -> Any:
+        """An output of ``gives`` now, SI."""
+        raise KeyError(output)
+
     def members(self) -> tuple[Ref, ...]:
         """Objects that are drawn by this one, and so not by themselves."""
         return ()

@@ -43,3 +43,23 @@ def euler_characteristic(triangles: Ints) -> int:
     import numpy as np
 
     return len(np.unique(triangles)) - edge_counts(triangles)[0] + len(triangles)
+
+
+def pieces(triangles: Ints) -> int:
+    """How many pieces hang together by vertices: the least number of each is handed on until it is everywhere."""
+    import numpy as np
+
+    if not len(triangles):
+        return 0
+    _, corners = np.unique(triangles, return_inverse=True)
+    corners = corners.reshape(-1, 3)
+    label = np.arange(int(corners.max()) + 1)
+    while True:
+        least = label[corners].min(axis=1)
+        new = label.copy()
+        for k in range(3):
+            np.minimum.at(new, corners[:, k], least)
+        new = new[new]
+        if (new == label).all():
+            return len(np.unique(label))
+        label = new

@@ -9,7 +9,7 @@ from typing import Any
 
 from sceneql.quantities import chance
 from sceneql.quantities.curves import interpolate, table_of
-from sceneql.quantities.evaluate import item_of
+from sceneql.quantities.evaluate import item_of, last_key
 from sceneql.quantities.expression import Call, Expr, Keys, Link, Number, Shape, Symbol, Vector, each_once
 from sceneql.quantities.operations import OPERATIONS
 
@@ -159,5 +159,8 @@ def _keys(keys: Keys, values: dict[int, Any]) -> Any:
         return tuple(value[..., k] for k in range(value.shape[-1])) if keys.type.shape else (value,)
 
     table = table_of(o, keys, lambda expr: float(values[id(expr)]), components)
-    result = np.broadcast_arrays(*interpolate(o, table, values[id(keys.argument)]), values[id(keys.argument)])[:-1]
+    t = values[id(keys.argument)]
+    # Of one number the piece is known: a path of a hundred points costs no more than one of two.
+    found = interpolate(o, table, t, last_key if np.ndim(t) == 0 else None)
+    result = np.broadcast_arrays(*found, t)[:-1]
     return np.stack(result, axis=-1) if keys.type.shape else result[0]

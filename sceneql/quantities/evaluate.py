@@ -59,11 +59,12 @@ def _keys(keys: Keys, values: Mapping[int, Any]) -> Any:
         return value if isinstance(value, tuple) else (value,)
 
     table = table_of(FLOATS, keys, lambda expr: float(values[id(expr)]), components)
-    result = interpolate(FLOATS, table, values[id(keys.argument)], _last_key)
+    result = interpolate(FLOATS, table, values[id(keys.argument)], last_key)
     return result if keys.type.shape else result[0]
 
 
-def _last_key(t: float, times: tuple[float, ...]) -> int:
+def last_key(t: float, times: tuple[float, ...]) -> int:
+    """The last key not after t; -1 before the first."""
     return bisect_right(times, t) - 1 if t == t else 0
 
 

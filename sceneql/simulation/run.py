@@ -246,6 +246,8 @@ class Instant:
             return self._evaluate(kind.formula(output))
         if isinstance(kind, Model | Contact):
             return kind.read(output, self.state(task))
+        if isinstance(kind, Object) and output in kind.gives:
+            return kind.read(output, self)
         return self._evaluate(getattr(kind, output).expr)
 
     def state(self, name: str) -> ModelState:

@@ -7,21 +7,38 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import ClassVar
 
-from sceneql.kinds import FixedPosition, Gives, Model, Position, Problem, Rotation, Scalar, field, quantity_type
+from sceneql.kinds import (
+    FixedLength,
+    FixedPosition,
+    Gives,
+    Model,
+    Position,
+    Problem,
+    Rotation,
+    Scalar,
+    field,
+    quantity_type,
+)
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
-from sceneql.quantities.expression import Expr, Key, Keys, Number, Type, Vector
+from sceneql.quantities.expression import Call, Expr, Key, Keys, Number, Type, Vector
 from sceneql.simulation.shift import rate_of_change
 
-POINT = Type((3,), dim.LENGTH)
+Place = tuple[float, float, float]
+POINT, NUMBER, TURN = Type((3,), dim.LENGTH), Type(()), Type((4,))
+UP, SIDE = (Vector(tuple(Number(c) for c in axis), Type((3,))) for axis in ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
+PIECES = 24
+"""Of a curve between two of its points, where its length counts."""
 
 
 class Motion(Model):
     """A kinematic motion: the script says where it is, by an expression of `time`, by keyframes, or along a path.
 
     A path is the cubic through its points with the slopes of chords (Catmull & Rom 1974), over the share of the
-    polygon's length; one that ends where it begins is closed, and `progress` counts laps. Other parts link to the
-    motion: an object's `position: lift.position`. The velocity is the central difference over 0.2 ms.
+    polygon's length, or with `even` over that of the curve itself; one that ends where it begins is closed, and
+    `progress` counts laps. With `heading` its rotation turns the x axis along the path and keeps z level, before its
+    own. Other parts link to the motion: an object's `position: lift.position`. The velocity is the central difference
+    over 0.2 ms.
     """
 
     kinematic: ClassVar[bool] = True
@@ -35,6 +52,10 @@ class Motion(Model):
     position: Position | None = field("Where it is; by default at the origin.", None)
     along: tuple[FixedPosition, ...] | None = field("In place of `position`: the points of a path.", None)
     progress: Scalar = field("With `along`: the share of the path gone, 0 at its first point, 1 at its last.", "0")
+    even: bool = field("With `along`: equal shares of the path are equally long.", False)
+    heading: FixedLength | None = field(
+        "With `along`: it points along the path, as what rests on it this far before and behind does.", None, above=0
+    )
     rotation: Rotation = field("How it is turned.", "1 0 0 0")
 
     def problems(self) -> Iterator[Problem]:
@@ -47,15 +68,40 @@ class Motion(Model):
         for k, (point, following) in enumerate(itertools.pairwise(self.along or ()), 1):
             if point == following:
                 yield Problem(text, ("along", k))
+        for name, given in (("even", self.even), ("heading", self.heading is not None)):
+            if given and self.along is None:
+                yield Problem(f"`{name}` is of a path: give `along`", (name,), at_key=True)
 
     def _place(self) -> Expr:
         """Its position over time."""
         if self.along is None:
             return _point((0.0, 0.0, 0.0)) if self.position is None else self.position.expr
-        reached = list(itertools.accumulate((math.dist(p, q) for p, q in itertools.pairwise(self.along)), initial=0.0))
-        keys = tuple(Key(Number(r / reached[-1]), _point(p)) for r, p in zip(reached, self.along, strict=True))
-        lap = Number(1.0) if self.along[0] == self.along[-1] else None
-        return Keys(self.progress.expr, keys, "cubic", lap, POINT)
+        return self._path(self.progress.expr)
+
+    def _path(self, progress: Expr) -> Expr:
+        """The place on the path at a share of it."""
+        points, reached = self._knots()
+        keys = tuple(Key(Number(r / reached[-1]), _point(p)) for r, p in zip(reached, points, strict=True))
+        return Keys(progress, keys, "cubic", Number(1.0) if points[0] == points[-1] else None, POINT)
+
+    def _knots(self) -> tuple[list[Place], list[float]]:
+        """Points of the path, and the lengths up to them."""
+        points = list(self.along or ())
+        if self.even:
+            points = finer(points)
+        return points, list(itertools.accumulate((math.dist(p, q) for p, q in itertools.pairwise(points)), initial=0.0))
+
+    def _turn(self) -> Expr:
+        """Its rotation over time."""
+        if self.heading is None:
+            return self.rotation.expr
+        half = Number(self.heading / self._knots()[1][-1])
+        ahead, behind = (self._path(Call(op, (self.progress.expr, half), NUMBER)) for op in ("add", "sub"))
+        way = Call("normalize", (Call("sub", (ahead, behind), POINT),), Type((3,)))
+        x, y, z = (Call("component", (way, Number(float(k))), NUMBER) for k in range(3))
+        yaw = Call("about", (UP, Call("atan2", (Call("neg", (z,), NUMBER), x), NUMBER)), TURN)
+        pitch = Call("about", (SIDE, Call("asin", (y,), NUMBER)), TURN)
+        return Call("turn", (Call("turn", (yaw, pitch), TURN), self.rotation.expr), TURN)
 
     def formula(self, output: str) -> Expr:
         """An output as an expression of time. Raises ScriptError for the velocity of one that follows another part."""
@@ -63,7 +109,7 @@ class Motion(Model):
             case "position":
                 return self._place()
             case "rotation":
-                return self.rotation.expr
+                return self._turn()
             case "velocity":
                 try:
                     return rate_of_change(self._place())
@@ -74,5 +120,34 @@ class Motion(Model):
         raise KeyError(output)
 
 
-def _point(place: tuple[float, float, float]) -> Expr:
+def _point(place: Place) -> Expr:
     return Vector(tuple(Number(c, Type((), dim.LENGTH)) for c in place), POINT)
+
+
+def finer(points: list[Place]) -> list[Place]:
+    """More points of the cubic through points with the slopes of chords, over the polygon's length."""
+    closed = points[0] == points[-1]
+    steps = [math.dist(p, q) for p, q in itertools.pairwise(points)]
+
+    def slope(k: int) -> list[float]:
+        before, behind = max(k - 1, 0), min(k + 1, len(steps))
+        if closed and k in (0, len(steps)):
+            before, behind = -2, 1
+            width = steps[0] + steps[-1]
+        else:
+            width = sum(steps[before:behind])
+        return [(q - p) / width for p, q in zip(points[before], points[behind], strict=True)]
+
+    found = [points[0]]
+    for k, h in enumerate(steps):
+        ends = list(zip(points[k], points[k + 1], slope(k), slope(k + 1), strict=True))
+        for s in (j / PIECES for j in range(1, PIECES)):
+            x, y, z = (
+                (2 * s**3 - 3 * s**2 + 1) * a
+                + (3 * s**2 - 2 * s**3) * b
+                + h * ((s - 1) ** 2 * s * p + (s - 1) * s**2 * q)
+                for a, b, p, q in ends
+            )
+            found.append((x, y, z))
+        found.append(points[k + 1])
+    return found
