@@ -245,6 +245,7 @@ def stability(
 @click.option("-o", "--output", callback=_path, required=True, help="File to make: .ply, .stl, .obj or .glb.")
 @click.option("--cell", type=ABOVE_ZERO, metavar="METERS", help="Side of a cell; by default 1/128 of its size.")
 @click.option("--tolerance", type=ABOVE_ZERO, metavar="METERS", help="Distance from the surface, in place of --cell.")
+@click.option("--sharp", is_flag=True, help="Keep edges and corners.")
 @click.option("--time", type=click.FloatRange(min=0), default=0.0, metavar="SECONDS", help="Instant of the simulation.")
 def mesh(
     scene: Path,
@@ -255,6 +256,7 @@ def mesh(
     output: Path,
     cell: float | None,
     tolerance: float | None,
+    sharp: bool,
     time: float,
 ) -> None:
     """Make triangles of an object's surface."""
@@ -264,7 +266,7 @@ def mesh(
     if cell is not None and tolerance is not None:
         raise click.UsageError("--cell and --tolerance exclude each other")
     graph = pipeline.load(scene, variant=variant, sets=sets, words=words, pruned=False)
-    click.echo(polygonise(graph, name, output, cell=cell, tolerance=tolerance, time=time).text())
+    click.echo(polygonise(graph, name, output, cell=cell, tolerance=tolerance, time=time, sharp=sharp).text())
 
 
 @cli.command()

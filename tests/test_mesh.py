@@ -25,6 +25,7 @@ from sceneql.mesh.cases import CENTERS, cases, decisions
 from sceneql.mesh.cube import FACES_OF, segments
 from sceneql.mesh.measures import area, edge_counts, euler_characteristic, volume
 from sceneql.mesh.polygonise import polygonise
+from sceneql.mesh.sharp import polygonise_sharp
 from sceneql.mesh.tolerance import distance, polygonise_within
 from sceneql.mesh.unresolved import unresolved
 from sceneql.quantities.expression import Symbol
@@ -221,16 +222,97 @@ def test_any_field_whatever_gives_a_closed_manifold_of_finite_vertices(tape, cel
     assert volume(found.vertices, found.triangles) >= -1e-9
 
 
+PART = "max(max(abs(x), abs(y), abs(z)) - 0.7, 0.4 - sqrt(x^2 + y^2), 0.25 - sqrt((y - 0.1)^2 + z^2))"
+TURN = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]])
+TURNED = "max(abs(0.36*x + 0.48*y - 0.8*z), abs(0.6*y - 0.8*x), abs(0.48*x + 0.64*y + 0.6*z)) - 0.7"
+
+
+def cut_sharp(text, half, cells):
+    """The mesh with sharp edges of a formula in the cube of a half side, with so many cells along it."""
+    return polygonise_sharp(tape_of(text), (-half,) * 3, (half,) * 3, 2 * half / cells)
+
+
+def assert_closed_manifold(found):
+    assert edge_counts(found.triangles)[1:] == (0, 0)
+    sides = found.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    assert len(np.unique(sides, axis=0)) == len(sides)  # neighbors agree on what is outside
+
+
+@pytest.mark.parametrize("cells", [20, 33, 50])
+def test_sharp_cubes_have_their_corners_edges_and_faces(cells):
+    found = cut_sharp(TURNED, 1.3, cells)
+    assert_closed_manifold(found)
+    assert euler_characteristic(found.triangles) == 2
+    own = found.vertices @ TURN.T
+    corners = np.array([[x, y, z] for x in (-0.7, 0.7) for y in (-0.7, 0.7) for z in (-0.7, 0.7)])
+    assert np.linalg.norm(own[:, None] - corners, axis=2).min(axis=0).max() < 1e-6
+    on = (np.abs(np.abs(own) - 0.7) < 1e-6).sum(axis=1)
+    assert (on >= 1).all()
+    assert ((on >= 2) == (found.normals == 0.0).all(axis=1)).all()
+    sides = own[found.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)]
+    for axis in range(3):
+        for signs in ([-1, -1], [-1, 1], [1, -1], [1, 1]):
+            across = sides[:, :, [(axis + 1) % 3, (axis + 2) % 3]]
+            along = np.sort(sides[(np.abs(across - 0.7 * np.array(signs)) < 1e-6).all(axis=(1, 2)), :, axis], axis=1)
+            reach = -0.7 + 1e-6
+            for low, high in along[np.argsort(along[:, 0])]:
+                reach = max(reach, high) if low <= reach else reach
+            assert reach > 0.7 - 2e-6
+    assert volume(found.vertices, found.triangles) == pytest.approx(1.4**3, abs=1e-9)
+
+
+def test_the_rim_of_a_sharp_cylinder_is_on_the_rim():
+    for cells in (16, 32):
+        found = cut_sharp("max(sqrt(x^2 + y^2) - 0.6, abs(z) - 0.5)", 1.0, cells)
+        rim = found.vertices[(found.normals == 0.0).all(axis=1)]
+        assert len(rim) > 2 * cells
+        assert np.abs(np.linalg.norm(rim[:, :2], axis=1) - 0.6).max() < 1e-6
+        assert np.abs(np.abs(rim[:, 2]) - 0.5).max() < 1e-6
+        assert volume(found.vertices, found.triangles) == pytest.approx(math.pi * 0.36, rel=1.5 / cells**2)
+
+
+@pytest.mark.parametrize(
+    ("text", "half", "euler"), [*CLOSED.values(), (PART, 1.0, -4)], ids=[*CLOSED, "part of three bores"]
+)
+def test_sharp_meshes_are_closed_manifolds_whose_vertices_lie_on_the_surface(text, half, euler):
+    found = cut_sharp(text, half, 48)
+    assert_closed_manifold(found)
+    assert euler_characteristic(found.triangles) == euler
+    steep = np.linalg.norm(field_gradients(tape_of(text), found.vertices), axis=1)
+    assert (np.abs(field_values(tape_of(text), found.vertices)) / steep).max() < 1e-6
+
+
+def test_sheets_that_meet_in_one_face_are_parted():
+    # Waves as long as a cell: many cubes join both curves of a face, so that four polygons would share one side.
+    rng = np.random.default_rng(1)
+    for _ in range(4):
+        waves = [f"{a:.3f}*sin({b:.3f}*x + {c:.3f}*y + {d:.3f}*z)" for a, b, c, d in rng.uniform(-22.0, 22.0, (6, 4))]
+        assert_closed_manifold(cut_sharp(" + ".join(waves), 1.0, 10))
+
+
+@settings(max_examples=60, deadline=None)
+@given(tape=tapes(), cell=st.sampled_from([0.13, 0.25, 0.4]))
+def test_any_field_whatever_gives_a_closed_sharp_manifold_of_finite_vertices(tape, cell):
+    found = polygonise_sharp(tape, (-1.5,) * 3, (1.5,) * 3, cell)
+    assert_closed_manifold(found)
+    assert np.isfinite(found.vertices).all()
+    assert len(np.unique(found.triangles)) == len(found.vertices)
+    lengths = np.linalg.norm(found.normals, axis=1)
+    assert ((np.abs(lengths - 1.0) < 1e-9) | (lengths == 0.0)).all()
+
+
 def test_nothing_where_nothing_is():
     assert len(cut("x^2 + y^2 + z^2 + 1", 1.0, 16).triangles) == 0
+    assert len(cut_sharp("x^2 + y^2 + z^2 + 1", 1.0, 16).triangles) == 0
 
 
 def test_same_bytes_for_one_and_two_threads(monkeypatch):
     meshes = []
     for threads in ("1", "2"):
         monkeypatch.setenv("SCENEQL_THREADS", threads)
-        found = cut("abs(sin(9*x)*cos(9*y) + sin(9*y)*cos(9*z) + sin(9*z)*cos(9*x)) - 0.3", 1.0, 70)
-        meshes.append([array.tobytes() for array in (found.vertices, found.triangles, found.normals)])
+        gyroid = "abs(sin(9*x)*cos(9*y) + sin(9*y)*cos(9*z) + sin(9*z)*cos(9*x)) - 0.3"
+        made = cut(gyroid, 1.0, 50), cut_sharp(gyroid, 1.0, 24)
+        meshes.append([a.tobytes() for found in made for a in (found.vertices, found.triangles, found.normals)])
     assert meshes[0] == meshes[1]
 
 
@@ -334,12 +416,13 @@ def graph(tmp_path):
     return pipeline.load(path, pruned=False)
 
 
+@pytest.mark.parametrize("sharp", [False, True])
 @pytest.mark.parametrize("extension", ["ply", "stl", "obj", "glb"])
-def test_an_object_of_a_scene_becomes_a_file_of_triangles(graph, tmp_path, extension):
+def test_an_object_of_a_scene_becomes_a_file_of_triangles(graph, tmp_path, extension, sharp):
     import trimesh
 
     path = tmp_path / f"ring.{extension}"
-    account = mesh(graph, "ring", path, cell=0.06, time=0.5)
+    account = mesh(graph, "ring", path, cell=0.06, time=0.5, sharp=sharp)
     assert [file.name for file in tmp_path.iterdir() if file.suffix != ".yaml"] == [path.name]
     read = trimesh.load(path, force="mesh")
     assert read.is_watertight

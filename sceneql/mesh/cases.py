@@ -40,16 +40,22 @@ class Cases(NamedTuple):
     """(v,) number of vertices of its own."""
     around: Ints
     """(v, 2, 12) edges around each of these; -1 after the last."""
+    config: Ints
+    """(v,) the configuration that a variant is of."""
+    curves: Ints
+    """(v, 4, 12) edges along each curve on the cube's faces, counterclockwise seen from outside; -1 after the last."""
 
 
 class Variant(NamedTuple):
-    """Triangles of a variant, and the polygons around its own vertices."""
+    """Triangles of a variant, the polygons around its own vertices, its configuration and its curves on the faces."""
 
     triangles: list[Triangle]
     polygons: list[Loop]
+    config: int
+    curves: list[Loop]
 
 
-def variant(curves: list[Loop], tube: tuple[Loop, Loop] | None) -> Variant:
+def variant(config: int, curves: list[Loop], tube: tuple[Loop, Loop] | None) -> Variant:
     """Disks in all curves, but a tube between two of them."""
     triangles: list[Triangle] = []
     polygons: list[Loop] = list(band(*tube)) if tube else []
@@ -62,7 +68,7 @@ def variant(curves: list[Loop], tube: tuple[Loop, Loop] | None) -> Variant:
                 triangles += found
     for k, polygon in enumerate(polygons):
         triangles += fan(polygon, CENTERS + k)
-    return Variant(triangles, polygons)
+    return Variant(triangles, polygons, config, curves)
 
 
 def sides(config: int, curve: Loop, label: list[int]) -> dict[bool, int]:
@@ -92,7 +98,7 @@ def cases() -> Cases:
             turn = 0 if inside(config, corners[0]) else 1
             faces[config, k] = corners[turn:] + corners[:turn]
         drawn = [(loops(config, joined), regions(config, joined)) for joined in decisions(config)]
-        variants += [variant(curves, None) for curves, _ in drawn]
+        variants += [variant(config, curves, None) for curves, _ in drawn]
         for bits, (curves, label) in enumerate(drawn):
             for one, other in combinations(curves, 2):
                 beside = sides(config, one, label), sides(config, other, label)
@@ -105,7 +111,7 @@ def cases() -> Cases:
                             if {label[a], label[b]} == {beside[0][sign], beside[1][sign]} and label[a] != label[b]
                         ]
                         tubes.append((first[config] + bits, len(variants), pair))
-                        variants.append(variant(curves, (one, other)))
+                        variants.append(variant(config, curves, (one, other)))
         if not ambiguous(config) and any(len(curves) > 1 for curves, _ in drawn):
             faces[config, 0, 0] = -2
     return packed(first, faces, tubes, variants)
@@ -122,9 +128,12 @@ def packed(
         for a, b in pair:
             tunnel[plain, a, b] = piped
     around = np.full((len(variants), 2, 12), -1, dtype=np.int32)
-    for v, (_, polygons) in enumerate(variants):
-        for k, polygon in enumerate(polygons):
+    curves = np.full((len(variants), 4, 12), -1, dtype=np.int32)
+    for v, found in enumerate(variants):
+        for k, polygon in enumerate(found.polygons):
             around[v, k, : len(polygon)] = polygon
+        for k, curve in enumerate(found.curves):
+            curves[v, k, : len(curve)] = curve
     counts = [len(found.triangles) for found in variants]
     return Cases(
         first=first,
@@ -134,4 +143,6 @@ def packed(
         triangles=np.array([triangle for found in variants for triangle in found.triangles], dtype=np.int32),
         centers=np.array([len(found.polygons) for found in variants], dtype=np.int32),
         around=around,
+        config=np.array([found.config for found in variants], dtype=np.int32),
+        curves=curves,
     )

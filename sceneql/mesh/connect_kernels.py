@@ -6,6 +6,8 @@ from sceneql.kernels import inlined, lean
 from sceneql.mesh.cull_kernels import BLOCK
 
 CENTERS = 12
+BEND = 0.5
+"""Cosine of the turn of the normals in a cube, 60 degrees, above which it is too coarse for its surface."""
 
 
 @inlined
@@ -21,8 +23,8 @@ def owned(keys, low, high, key):
 
 
 @inlined
-def vertex(edge, x, y, z, block, blocks, table, begin, keys, local):
-    """The vertex on an edge of the cube (x, y, z) of a block."""
+def vertex(edge, x, y, z, block, beyond, begin, keys, local):
+    """The vertex on an edge of the cube (x, y, z) of a block; -1 where the block that owns it was not looked at."""
     axis = edge >> 2
     u = edge & 1
     v = edge >> 1 & 1
@@ -31,9 +33,20 @@ def vertex(edge, x, y, z, block, blocks, table, begin, keys, local):
     k = z + (v if axis == 0 else u if axis == 1 else 0)
     if i < BLOCK and j < BLOCK and k < BLOCK:
         return local[3 * ((k * BLOCK + j) * BLOCK + i) + axis]
-    owner = table[blocks[block, 2] + k // BLOCK, blocks[block, 1] + j // BLOCK, blocks[block, 0] + i // BLOCK]
+    owner = beyond[block, i // BLOCK + 2 * (j // BLOCK) + 4 * (k // BLOCK)]
+    if owner < 0:
+        return -1
     key = 3 * ((k % BLOCK * BLOCK + j % BLOCK) * BLOCK + i % BLOCK) + axis
     return owned(keys, begin[owner], begin[owner + 1], key)
+
+
+@inlined
+def turns(normal, a, b, c):
+    """Whether the normals of a triangle's corners, where they have any, turn by more than BEND."""
+    ab = normal[a, 0] * normal[b, 0] + normal[a, 1] * normal[b, 1] + normal[a, 2] * normal[b, 2]
+    bc = normal[b, 0] * normal[c, 0] + normal[b, 1] * normal[c, 1] + normal[b, 2] * normal[c, 2]
+    ca = normal[c, 0] * normal[a, 0] + normal[c, 1] * normal[a, 1] + normal[c, 2] * normal[a, 2]
+    return ab < BEND or bc < BEND or ca < BEND
 
 
 @inlined
@@ -55,18 +68,19 @@ def settle(code, constants, parts, scratch, place, normal, v, low, h):
 
 
 @lean(
-    f"void({TAPE}, float64[::1], int32[:, ::1], int64, int64, int32[:, :, ::1], int64[::1], int64[::1], int64[::1],"
+    f"void({TAPE}, float64[::1], int32[:, ::1], int64, int64, int32[:, ::1], int64[::1], int64[::1], int64[::1],"
     " int64[::1], int16[::1], int32[:, ::1], int32[::1], int32[:, ::1], int32[:, :, ::1], int32[::1], float64[::1],"
-    " float64[:, ::1], float64[:, ::1], int32[:, ::1])"
+    " float64[:, ::1], float64[:, ::1], int32[:, ::1], int8[::1])"
 )
 def connect(
-    code, constants, parts, scratch, grid, blocks, first, last, table, begin, cube_at, triangle_at, own_at,
-    keys, cubes, start, triangles, around, local, low, place, normal, out,
+    code, constants, parts, scratch, grid, blocks, first, last, beyond, begin, cube_at, triangle_at, own_at,
+    keys, cubes, start, triangles, around, local, low, place, normal, out, bent,
 ):  # fmt: skip
     """Triangles of blocks first..last-1 into ``out``, and their cubes' own vertices into ``place`` and ``normal``.
 
     Vertices of block b begin at begin[b], its cubes at cube_at[b], its triangles at triangle_at[b] and its cubes' own
-    vertices at own_at[b]. ``table`` has the number of the block at (z, y, x).
+    vertices at own_at[b]. ``beyond`` has the numbers of the blocks next to each, as in workshop.Found.
+    ``bent`` (cubes,) tells of each cube whether its surface turns by more than BEND.
     """
     h = grid[3]
     for b in range(first, last):
@@ -80,13 +94,14 @@ def connect(
             x = cube % BLOCK
             y = cube // BLOCK % BLOCK
             z = cube // (BLOCK * BLOCK)
+            at = t
             for row in range(start[variant], start[variant + 1]):
                 for corner in range(3):
                     edge = triangles[row, corner]
                     if edge >= CENTERS:
                         out[t, corner] = fresh + edge - CENTERS
                     else:
-                        out[t, corner] = vertex(edge, x, y, z, b, blocks, table, begin, keys, local)
+                        out[t, corner] = vertex(edge, x, y, z, b, beyond, begin, keys, local)
                 t += 1
             for center in range(2):
                 if around[variant, center, 0] < 0:
@@ -99,7 +114,7 @@ def connect(
                     edge = around[variant, center, k]
                     if edge < 0:
                         break
-                    v = vertex(edge, x, y, z, b, blocks, table, begin, keys, local)
+                    v = vertex(edge, x, y, z, b, beyond, begin, keys, local)
                     count += 1
                     for axis in range(3):
                         place[fresh, axis] += place[v, axis]
@@ -108,3 +123,7 @@ def connect(
                     place[fresh, axis] /= count
                 settle(code, constants, parts, scratch, place, normal, fresh, low, h)
                 fresh += 1
+            bent[n] = 0
+            for triangle in range(at, t):
+                if turns(normal, out[triangle, 0], out[triangle, 1], out[triangle, 2]):
+                    bent[n] = 1

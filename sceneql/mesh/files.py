@@ -10,7 +10,7 @@ from sceneql.files import whole
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from sceneql.mesh.polygonise import Polygons
+    from sceneql.mesh.polygons import Polygons
 
 FORMATS = ("ply", "stl", "obj", "glb")
 
@@ -25,14 +25,22 @@ def format_of(path: Path) -> str:
 
 
 def write(path: Path, polygons: Polygons) -> None:
-    """Write a mesh in meters, y up, with its normals where the format has any. Raises Unsuitable and OSError."""
+    """Write a mesh in meters, y up, with its normals where the format has any and the mesh has all.
+
+    Raises Unsuitable and OSError.
+    """
     import trimesh
 
+    smooth = bool(polygons.normals.any(axis=1).all())
     mesh = trimesh.Trimesh(
-        vertices=polygons.vertices, faces=polygons.triangles, vertex_normals=polygons.normals, process=False
+        vertices=polygons.vertices,
+        faces=polygons.triangles,
+        vertex_normals=polygons.normals if smooth else None,
+        process=False,
     )
-    options: dict[str, Any] = {"ply": {"vertex_normal": True}, "obj": {"include_normals": True}}
+    normals = {"ply": "vertex_normal", "obj": "include_normals", "glb": "include_normals"}
     kind = format_of(path)
-    data: Any = mesh.export(file_type=kind, **options.get(kind, {}))
+    options: dict[str, Any] = {normals[kind]: smooth} if kind in normals else {}
+    data: Any = mesh.export(file_type=kind, **options)
     with whole(path) as stream:
         stream.write(data.encode() if isinstance(data, str) else data)

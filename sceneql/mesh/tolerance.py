@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from sceneql.field.solid import field_gradients, field_values
 from sceneql.mesh.bounded import Corner, bounded
-from sceneql.mesh.polygonise import Polygons, polygonise
+from sceneql.mesh.polygonise import polygonise
+from sceneql.mesh.polygons import Polygons
 
 if TYPE_CHECKING:
     from sceneql.frame import Tape
 
+Method = Callable[["Tape", Corner, Corner, float], Polygons]
 PROBES = 20_000
 """Triangles that a distance is measured at."""
 TRIES = 8
@@ -33,11 +36,13 @@ def distance(tape: Tape, polygons: Polygons) -> float:
     return float(np.max(np.abs(field_values(tape, centers[steep])) / slopes[steep], initial=0.0))
 
 
-def polygonise_within(tape: Tape, low: Corner, high: Corner, tolerance: float, cell: float) -> tuple[Polygons, float]:
+def polygonise_within(
+    tape: Tape, low: Corner, high: Corner, tolerance: float, cell: float, method: Method = polygonise
+) -> tuple[Polygons, float]:
     """The triangles whose centers are within ``tolerance`` [m] of the surface, and their cell [m], at most ``cell``.
 
-    The distance falls with the square of the cell, at edges and corners with the cell itself: the cell is shortened by
-    what is measured. Raises ValueError as ``polygonise``, and where TRIES cells do not reach the tolerance.
+    The distance falls with the square of the cell, at edges and corners that are not kept with the cell itself: the
+    cell is shortened by what is measured. Raises ValueError as ``method``, and where TRIES cells do not reach it.
     """
     import numpy as np
 
@@ -45,7 +50,7 @@ def polygonise_within(tape: Tape, low: Corner, high: Corner, tolerance: float, c
         raise ValueError("the tolerance must be above 0")
     whole = bounded(tape, low, high)
     for _ in range(TRIES):
-        polygons = polygonise(tape, low, high, cell)
+        polygons = method(tape, low, high, cell)
         found = distance(whole, polygons)
         if found <= tolerance:
             return polygons, cell

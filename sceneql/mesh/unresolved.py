@@ -8,7 +8,7 @@ from sceneql.kernels import over_tiles
 from sceneql.mesh.bounded import Corner, bounded
 from sceneql.mesh.grid import grid_around
 from sceneql.mesh.hidden_kernels import DEPTH, hidden
-from sceneql.mesh.polygonise import BATCH, Workshop
+from sceneql.mesh.workshop import BATCH, Workshop
 
 if TYPE_CHECKING:
     from sceneql.frame import Tape

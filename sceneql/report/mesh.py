@@ -61,15 +61,17 @@ class Account:
 
 def mesh(
     graph: SimulationGraph, name: str, output: Path, *, cell: float | None = None, tolerance: float | None = None,
-    time: float = 0.0,
+    time: float = 0.0, sharp: bool = False,
 ) -> Account:  # fmt: skip
     """Polygonise an object at an instant [s] by cells [m], or by cells that keep within a distance [m] of the surface.
 
-    Raises RunFailure, OSError, and Unsuitable for what has no inside, is empty or unbounded, or needs too many cells.
+    With ``sharp``, its edges and corners are kept. Raises RunFailure, OSError, and Unsuitable for what has no inside,
+    is empty or unbounded, or needs too many cells.
     """
     from sceneql.mesh.files import format_of, write
     from sceneql.mesh.measures import area, edge_counts, euler_characteristic, volume
     from sceneql.mesh.polygonise import polygonise
+    from sceneql.mesh.sharp import polygonise_sharp
     from sceneql.mesh.tolerance import polygonise_within
     from sceneql.mesh.unresolved import unresolved
 
@@ -80,11 +82,12 @@ def mesh(
     size = max(high - low for low, high in zip(solid.low, solid.high, strict=True))
     if cell is None:
         cell = size / CELLS
+    method = polygonise_sharp if sharp else polygonise
     try:
         if tolerance is None:
-            polygons = polygonise(solid.tape, solid.low, solid.high, cell)
+            polygons = method(solid.tape, solid.low, solid.high, cell)
         else:
-            polygons, cell = polygonise_within(solid.tape, solid.low, solid.high, tolerance, cell)
+            polygons, cell = polygonise_within(solid.tape, solid.low, solid.high, tolerance, cell, method)
     except ValueError as error:
         raise Unsuitable(f"{name} cannot be polygonised: {error}") from error
     if not len(polygons.triangles):

@@ -1,0 +1,75 @@
+"""Where two sheets meet in one side of dual polygons: they are parted, so that the mesh is a manifold. Imports numpy.
+
+Two cubes that share a face with two curves on it, both cubes joining these in one curve of their own, have one vertex
+each and between them one side for both curves, which four polygons would share. A vertex on each of the face's curves
+makes two sides of it.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats, Ints
+
+Side = tuple[int, int]
+
+
+def pinched(quads: Ints, rings: Ints, crossings: Floats, fresh: int) -> tuple[NDArray[np.int64], Floats, Ints]:
+    """(quads that are sound, places (n, 3) [m] of vertices to be added, triangles instead of the other quads).
+
+    ``quads`` (e, 4) are the dual vertices around each crossed edge, ``rings`` (v, 12) the crossed edges around each
+    dual vertex, -1 after the last, ``crossings`` (e, 3) [m] where the surface crosses; new vertices count from
+    ``fresh`` on.
+    """
+    import numpy as np
+
+    ends = np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=2), axis=2).astype(np.int64)
+    keys = ends[:, :, 0] * fresh + ends[:, :, 1]
+    _, place, uses = np.unique(keys, return_inverse=True, return_counts=True)
+    shared = uses[place].reshape(keys.shape) > 2
+    broken = np.flatnonzero(shared.any(axis=1))
+    sound = np.setdiff1d(np.arange(len(quads)), broken)
+    added: list[Floats] = []
+    on_face: dict[tuple[int, Side], int] = {}
+    triangles: list[tuple[int, int, int]] = []
+
+    def face_vertex(edge: int, side: Side) -> int:
+        """The vertex on the curve from an edge across the face between a side's two cubes."""
+        if (edge, side) not in on_face:
+            other = _beside(rings[side[0]], edge, set(sharing[side]))
+            on_face[edge, side] = on_face[other, side] = fresh + len(added)
+            added.append(0.5 * (crossings[edge] + crossings[other]))
+        return on_face[edge, side]
+
+    sharing: dict[Side, list[int]] = {}
+    for crossing in map(int, broken):
+        for first, second in ends[crossing][shared[crossing]].tolist():
+            sharing.setdefault((first, second), []).append(crossing)
+    for crossing in map(int, broken):
+        around: list[int] = []
+        for k, corner in enumerate(quads[crossing]):
+            around.append(int(corner))
+            if shared[crossing, k]:
+                first, second = map(int, ends[crossing, k])
+                around.append(face_vertex(crossing, (first, second)))
+        center = fresh + len(added)
+        added.append(crossings[crossing])
+        triangles += [(a, b, center) for a, b in pairwise([*around, around[0]])]
+    return (
+        sound,
+        np.array(added, dtype=np.float64).reshape(-1, 3),
+        np.array(triangles, dtype=np.int32).reshape(-1, 3),
+    )
+
+
+def _beside(ring: Ints, edge: int, among: set[int]) -> int:
+    """The one of some edges that stands next to one in a ring."""
+    members = [int(other) for other in ring if other >= 0]
+    at = members.index(edge)
+    before, after = members[at - 1], members[(at + 1) % len(members)]
+    return before if before in among else after
