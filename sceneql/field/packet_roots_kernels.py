@@ -1,0 +1,281 @@
+# mypy: ignore-errors
+"""First roots of a tape along a bundle of neighboring rays: emptied slabs, packets, certified stragglers, polish.
+
+Rays stand in GROUP rows; those of a column make a beam, which is cut in SLABS along its way. Slabs that a packet proves
+to be outside are left out. What remains is hunted in lanes, and what float32 cannot tell goes to the certified float64
+routine.
+"""
+
+import numpy as np
+
+from sceneql.field.affine_kernels import GROW, HALF, PAD, F
+from sceneql.field.batch_kernels import evaluate
+from sceneql.field.hunt_kernels import (
+    FAR,
+    FOUND_HIGH,
+    FOUND_LOW,
+    FOUND_ROOT,
+    FOUND_SLOPE,
+    FOUND_STATUS,
+    NEAR,
+    RUN,
+    hunt,
+)
+from sceneql.field.isolation_kernels import isolate
+from sceneql.field.packet_kernels import C1, LANES, PACKET, E, enclose, load_constants, place
+from sceneql.field.tape_ops import HIT, MISS, NOWHERE, UNDECIDED
+from sceneql.kernels import inlined, lean
+
+GROUP, SLABS = 16, 16
+BEAMS = LANES // SLABS
+PLACE, WAY, PLACE_OFF, WAY_OFF, BEGIN, STOP = 0, 3, 6, 9, 12, 13
+BEAM = 14
+"""Rows of beams: middle of the places of its rays at its begin, and of their directions; how far they are off both;
+begin and end."""
+TOLERANCE = 1e-9
+"""Of the certified routine, relative to the searched piece of the ray."""
+SETTLED = 1e-6
+"""Change of a root, relative to the length of its search, at the last step of its polish, beyond which it is sought
+anew by the certified routine."""
+
+
+@inlined
+def bundle(rays, count, groups, beams):
+    """Enclose the rays of each group in a beam; the begin of the earliest ray, where all beams are taken to begin.
+
+    A group of rays without any length ends before it begins. Groups are lanes here: ray j belongs to j % groups.
+    """
+    for g in range(groups):
+        beams[BEGIN, g] = np.inf
+        beams[STOP, g] = -np.inf
+    for first in range(0, count, groups):
+        for g in range(min(groups, count - first)):
+            t0, t1 = rays[6, first + g], rays[7, first + g]
+            low, high = beams[BEGIN, g], beams[STOP, g]
+            beams[BEGIN, g] = t0 if (t0 < t1) & (t0 < low) else low
+            beams[STOP, g] = t1 if (t0 < t1) & (t1 > high) else high
+    begin = np.inf
+    for g in range(groups):
+        begin = min(begin, beams[BEGIN, g])
+    if begin == np.inf:
+        return begin
+    for axis in range(3):
+        for g in range(groups):
+            beams[PLACE + axis, g] = beams[WAY + axis, g] = np.inf
+            beams[PLACE_OFF + axis, g] = beams[WAY_OFF + axis, g] = -np.inf
+        for first in range(0, count, groups):
+            for g in range(min(groups, count - first)):
+                d = rays[3 + axis, first + g]
+                p = rays[axis, first + g] + begin * d
+                alive = rays[6, first + g] < rays[7, first + g]
+                low, high = beams[PLACE + axis, g], beams[PLACE_OFF + axis, g]
+                d_low, d_high = beams[WAY + axis, g], beams[WAY_OFF + axis, g]
+                beams[PLACE + axis, g] = p if alive & (p < low) else low
+                beams[PLACE_OFF + axis, g] = p if alive & (p > high) else high
+                beams[WAY + axis, g] = d if alive & (d < d_low) else d_low
+                beams[WAY_OFF + axis, g] = d if alive & (d > d_high) else d_high
+    return begin
+
+
+@inlined
+def join(beams, groups, whole):
+    """The beam around all beams into column ``whole``, then each as middle and how far off."""
+    beams[BEGIN, whole] = beams[STOP, whole] = -np.inf
+    for g in range(groups):
+        beams[STOP, whole] = max(beams[STOP, whole], beams[STOP, g])
+    for axis in range(6):
+        row = axis if axis < 3 else axis + WAY - 3
+        low = np.inf
+        high = -np.inf
+        for g in range(groups):
+            low = min(low, beams[row, g])
+            high = max(high, beams[row + PLACE_OFF, g])
+        beams[row, whole] = low
+        beams[row + PLACE_OFF, whole] = high
+        for g in range(whole + 1):
+            low, high = beams[row, g], beams[row + PLACE_OFF, g]
+            beams[row, g] = 0.5 * (low + high)
+            beams[row + PLACE_OFF, g] = 0.5 * (high - low)
+
+
+@inlined
+def place_slabs(beams, g, base, begin, end, point, lane, slabs):
+    """Enclose so many slabs, from begin to end, of a beam whose places are those at ``base``, from a lane on."""
+    depth = F((end - begin) / slabs)
+    late = begin - base
+    for axis in range(3):
+        row = point[axis]
+        d = F(beams[WAY + axis, g])
+        o = F(beams[PLACE + axis, g] + late * beams[WAY + axis, g])
+        off = F(beams[PLACE_OFF + axis, g] + (end - base) * beams[WAY_OFF + axis, g]) * GROW
+        for k in range(slabs):
+            place(row, lane + k, o, d, (F(k) + HALF) * depth, HALF * depth * GROW)
+        for k in range(slabs):
+            row[E + lane + k] += off
+
+
+@inlined
+def left_of_slabs(last, status, lane, slabs):
+    """(first, last, end of the first run) of the slabs that are not proved outside; first = slabs: none."""
+    first = slabs
+    final = -1
+    run = slabs
+    for k in range(slabs):
+        i = lane + k
+        m = abs(last[C1 + i])
+        e = last[E + i] * GROW + PAD * (abs(last[i]) + m)
+        if status[i] == F(NOWHERE) or last[i] - m > e:
+            if first < slabs and run == slabs:
+                run = k
+            continue
+        first = min(first, k)
+        final = k
+    return first, final, run
+
+
+@inlined
+def ask(rays, j, begin, depth, first, final, run, asked):
+    """Set where the search on ray j begins and ends; False where nothing is left of it."""
+    t0 = rays[6, j]
+    t1 = rays[7, j]
+    if not t0 < t1:
+        return False
+    hair = 1e-6 * depth
+    low = max(begin + first * depth - hair - t0, 0.0)
+    high = min(begin + (final + 1) * depth + hair, t1) - t0
+    if not low < high:
+        return False
+    low *= 1.0 - 2e-7
+    high *= 1.0 + 2e-7
+    asked[NEAR, j] = low
+    asked[FAR, j] = high
+    asked[RUN, j] = min(max(begin + run * depth - t0, low + 0.01 * (high - low)), high)
+    return True
+
+
+@inlined
+def polish(code, constants, parts, registers, points, rays, queue, count, found):
+    """Newton's steps on all hits among the queued rays, in float64, with the slope of the last enclosure."""
+    width = points.shape[1]
+    for start in range(0, count, width):
+        n = min(width, count - start)
+        for turn in range(2):
+            for i in range(n):
+                j = queue[start + i]
+                t = rays[6, j] + found[FOUND_ROOT, j]
+                points[0, i] = rays[0, j] + t * rays[3, j]
+                points[1, i] = rays[1, j] + t * rays[4, j]
+                points[2, i] = rays[2, j] + t * rays[5, j]
+            evaluate(code, constants, parts, registers, points, n)
+            last = registers[code.shape[0] - 1]
+            for i in range(n):
+                j = queue[start + i]
+                step = last[i] / found[FOUND_SLOPE, j]
+                root = min(max(found[FOUND_ROOT, j] - step, found[FOUND_LOW, j]), found[FOUND_HIGH, j])
+                if turn == 1 and not (
+                    abs(step) <= SETTLED * (rays[7, j] - rays[6, j]) and rays[6, j] + root < rays[7, j]
+                ):
+                    found[FOUND_STATUS, j] = UNDECIDED
+                found[FOUND_ROOT, j] = root
+
+
+@lean(
+    f"UniTuple(int64, 2)({PACKET}, float32[::1], float32[::1], int64[::1], float64[:, ::1], float32[:, ::1],"
+    " int64[::1], int64, boolean, float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1],"
+    " float64[:, ::1])",
+)
+def first_roots(
+    code,
+    constants,
+    singles,
+    registers,
+    point,
+    status,
+    lanes,
+    ids,
+    rays,
+    asked,
+    queue,
+    count,
+    anywhere,
+    found,
+    parts,
+    scratch,
+    beams,
+    doubles,
+    points,
+):
+    """Settle the first ``count`` rays: outcomes and places [t] into rows FOUND_STATUS and FOUND_ROOT of ``found``.
+
+    Returns (enclosures spent, rays left to the certified routine). ``rays`` (RAY, n) holds origins, directions, begin
+    and end; a ray with begin >= end is a MISS. They stand in GROUP rows, the last perhaps shorter, neighbors in
+    columns. Outcomes are those of ``isolation_kernels.isolate``.
+    """
+    load_constants(code, constants, registers)
+    last = registers[code.shape[0] - 1]
+    spent = 0
+    queued = 0
+    for j in range(count):
+        found[FOUND_STATUS, j] = MISS
+    groups = (count + GROUP - 1) // GROUP
+    base = bundle(rays, count, groups, beams)
+    if base == np.inf:
+        return 0, 0
+    join(beams, groups, groups)
+    begin, end = base, beams[STOP, groups]
+    if groups > BEAMS:
+        place_slabs(beams, groups, base, begin, end, point, 0, LANES)
+        enclose(code, constants, singles, registers, point, status, LANES)
+        spent += LANES
+        first, final, _ = left_of_slabs(last, status, 0, LANES)
+        if first == LANES:
+            return spent, 0
+        depth = (end - begin) / LANES
+        begin, end = base + (first - 1e-6) * depth, base + (final + 1 + 1e-6) * depth
+    waiting = 0
+    for g in range(groups):
+        low, high = max(beams[BEGIN, g], begin), min(beams[STOP, g], end)
+        if low < high:
+            place_slabs(beams, g, base, low, high, point, SLABS * waiting, SLABS)
+            ids[waiting] = g
+            waiting += 1
+        if waiting == 0 or (waiting < BEAMS and g + 1 < groups):
+            continue
+        enclose(code, constants, singles, registers, point, status, SLABS * waiting)
+        spent += SLABS * waiting
+        for b in range(waiting):
+            first, final, run = left_of_slabs(last, status, SLABS * b, SLABS)
+            if first == SLABS:
+                continue
+            low, high = max(beams[BEGIN, ids[b]], begin), min(beams[STOP, ids[b]], end)
+            depth = (high - low) / SLABS
+            for j in range(ids[b], count, groups):
+                if ask(rays, j, low, depth, first, final, run, asked):
+                    queue[queued] = j
+                    queued += 1
+        waiting = 0
+    spent += hunt(
+        code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, queued, anywhere, found
+    )
+    if not anywhere:
+        hits = 0
+        for k in range(queued):  # hits to the front of the queue
+            if found[FOUND_STATUS, queue[k]] == HIT:
+                queue[hits], queue[k] = queue[k], queue[hits]
+                hits += 1
+        polish(code, constants, parts, doubles, points, rays, queue, hits, found)
+    certified = 0
+    for k in range(queued):
+        j = queue[k]
+        t0, t1 = rays[6, j], rays[7, j]
+        t = t0 + found[FOUND_ROOT, j]
+        if found[FOUND_STATUS, j] == UNDECIDED:
+            certified += 1
+            ox, oy, oz, dx, dy, dz = rays[0, j], rays[1, j], rays[2, j], rays[3, j], rays[4, j], rays[5, j]
+            t0 = max(t0 + found[FOUND_LOW, j] * (1.0 - 1e-7), t0)
+            outcome, t = isolate(
+                code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, TOLERANCE, 1.0, anywhere
+            )
+            found[FOUND_STATUS, j] = outcome
+        found[FOUND_ROOT, j] = t
+    return spent, certified

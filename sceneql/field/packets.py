@@ -1,0 +1,101 @@
+"""Packets of rays against the solid {f < 0} of a tape, for Python callers: numpy arrays in, numpy arrays out.
+
+Imports numpy and numba: to be imported by the function that needs it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.field import hunt_kernels, packet_density_kernels, packet_kernels, packet_roots_kernels
+from sceneql.field.packet_kernels import LANES, WIDTH
+from sceneql.field.packet_roots_kernels import BEAM, GROUP
+from sceneql.field.solid import scratch
+
+if TYPE_CHECKING:
+    from numpy import float32
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats, Tape
+
+
+def single_parts(tape: Tape) -> NDArray[float32]:
+    """The parts of a tape as packets read them."""
+    out = np.empty((len(tape.parts), packet_density_kernels.PART), dtype=np.float32)
+    packet_density_kernels.pack_parts(tape.parts, out)
+    return out
+
+
+def enclosures(tape: Tape, origins: Floats, directions: Floats, t0: Floats, t1: Floats) -> Floats:
+    """(4, n): c0, c1, e and the status of f on segments o + t d, t in [t0, t1] (n,), of rays (n, 3).
+
+    f lies in c0 + c1 tau +- e, t = (t0 + t1)/2 + tau (t1 - t0)/2, wherever it is defined there; status is WHOLE,
+    PARTIAL or NOWHERE. Nothing is claimed where c0, c1 or e is not finite.
+    """
+    out = np.empty((4, len(t0)))
+    registers = np.zeros((len(tape.code), WIDTH), dtype=np.float32)
+    point, status = np.zeros((3, WIDTH), dtype=np.float32), np.zeros(LANES, dtype=np.float32)
+    memory = registers, point, status
+    packet_kernels.enclose_rays(
+        tape.code, tape.constants, single_parts(tape), *memory, origins, directions, t0, t1, out
+    )
+    return out
+
+
+class Memory:
+    """What one thread works in for bundles of up to ``count`` rays against a tape."""
+
+    def __init__(self, tape: Tape, count: int) -> None:
+        rows = len(tape.code)
+        self.tape = tape
+        self.rays = np.zeros((hunt_kernels.RAY, count))
+        self.found = np.zeros((5, count))
+        single = np.float32
+        self.packet = (
+            np.zeros((rows, WIDTH), dtype=single),
+            np.zeros((3, WIDTH), dtype=single),
+            np.zeros(LANES, dtype=single),
+            np.zeros(hunt_kernels.ROWS * LANES, dtype=single),
+            np.zeros(LANES, dtype=np.int64),
+        )
+        self.asked, self.queue = np.zeros((3, count), dtype=single), np.zeros(count, dtype=np.int64)
+        self.singles = single_parts(tape)
+        self.rest = (
+            tape.parts,
+            scratch(tape),
+            np.zeros((BEAM, -(-count // GROUP) + 1)),
+            np.zeros((rows, LANES)),
+            np.zeros((3, LANES)),
+        )
+
+    def settle(self, count: int, anywhere: bool) -> tuple[int, int]:
+        """First roots of the first ``count`` of ``rays`` into ``found``: see packet_roots_kernels.first_roots."""
+        code, constants = self.tape.code, self.tape.constants
+        packet, rays = (code, constants, self.singles, *self.packet), (self.rays, self.asked, self.queue)
+        found: tuple[int, int] = packet_roots_kernels.first_roots(
+            *packet, *rays, count, anywhere, self.found, *self.rest
+        )
+        return found
+
+
+def cast_together(
+    tape: Tape, origins: Floats, directions: Floats, t0: Floats, t1: Floats, anywhere: bool = False
+) -> tuple[NDArray[np.int64], Floats]:
+    """(status, t), each (n,): as ``solid.cast``, of rays that pass near each other, in bundles of 256."""
+    size = min(256, len(t0))
+    memory = Memory(tape, size)
+    status, t = np.empty(len(t0), dtype=np.int64), np.empty(len(t0))
+    for start in range(0, len(t0), size):
+        stop = min(start + size, len(t0))
+        n = stop - start
+        # Neighbors go into columns of GROUP rows.
+        columns = -(-n // GROUP)
+        ray = start + np.argsort(np.arange(n) // GROUP + columns * (np.arange(n) % GROUP), kind="stable")
+        memory.rays[:3, :n], memory.rays[3:6, :n] = origins[ray].T, directions[ray].T
+        memory.rays[6, :n], memory.rays[7, :n] = t0[ray], t1[ray]
+        memory.settle(n, anywhere)
+        status[ray] = memory.found[hunt_kernels.FOUND_STATUS, :n]
+        t[ray] = memory.found[hunt_kernels.FOUND_ROOT, :n]
+    return status, t

@@ -1,0 +1,124 @@
+"""Laws of packets: float32 enclosures contain what they claim, and roots found in packets are the certified ones."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sceneql.field.packets import cast_together, enclosures
+from sceneql.field.solid import cast, field_values
+from sceneql.field.tape_ops import HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
+from test_field import NAMES, implicit, kernels, of_one, rays, tapes
+
+
+def check_enclosures(tape, origin, direction, t0, t1):
+    """Many segments of a ray at once: all of [t0, t1] and its halves, quarters, eighths."""
+    pieces = [(k / n, (k + 1) / n) for n in (1, 2, 4, 8, 64) for k in range(n)]
+    ends = t0 + (t1 - t0) * np.array(pieces)
+    origins, directions = np.tile(origin, (len(ends), 1)), np.tile(direction, (len(ends), 1))
+    found = enclosures(tape, origins, directions, np.ascontiguousarray(ends[:, 0]), np.ascontiguousarray(ends[:, 1]))
+    tau = np.linspace(-1.0, 1.0, 17)
+    t = ends.mean(axis=1)[:, None] + 0.5 * (ends[:, 1] - ends[:, 0])[:, None] * tau
+    f = field_values(tape, (origin + t[:, :, None] * direction).reshape(-1, 3)).reshape(t.shape)
+    c0, c1, e, status = found
+    claimed = np.isfinite(found[:3]).all(axis=0)
+    assert (e[claimed] >= 0.0).all()
+    defined = ~np.isnan(f)
+    assert defined[claimed & (status == WHOLE)].all()
+    assert not defined[status == NOWHERE].any()
+    with np.errstate(invalid="ignore", over="ignore"):
+        off = np.abs(f - (c0[:, None] + c1[:, None] * tau))
+    # The point's own value is rounded in float64.
+    wrong = defined & (claimed & (status != NOWHERE))[:, None] & ~(off <= e[:, None] * (1 + 1e-12) + 1e-300)
+    assert not wrong.any(), (found[:, wrong.any(axis=1)].T[:3], f[wrong][:3])
+
+
+@pytest.mark.parametrize("name", NAMES)
+@settings(max_examples=40, deadline=None)
+@given(ray=rays())
+def test_enclosures_of_every_operation_contain_its_values(name, ray):
+    check_enclosures(of_one(name), *ray)
+
+
+@settings(max_examples=500, deadline=None)
+@given(tape=tapes(), ray=rays())
+def test_enclosures_of_any_tape_contain_its_values(tape, ray):
+    check_enclosures(tape, *ray)
+
+
+@settings(max_examples=150, deadline=None)
+@given(tape=tapes(), ray=rays(), size=st.sampled_from([1e-20, 1e-6, 1e3, 1e8, 1e20, 1e30, 1e300]))
+def test_enclosures_far_from_one_claim_nothing_wrong(tape, ray, size):
+    origin, direction, t0, t1 = ray
+    check_enclosures(tape, size * origin, size * direction, t0, t1)
+
+
+def bundle(origin, direction, generator, count, spread):
+    """Rays near one another."""
+    return origin + spread * generator.uniform(-1, 1, (count, 3)), direction + spread * generator.uniform(
+        -1, 1, (count, 3)
+    )
+
+
+@settings(max_examples=150, deadline=None)
+@given(tape=tapes(), ray=rays(), spread=st.sampled_from([0.0, 1e-3, 0.5]), seed=st.integers(0, 99))
+def test_no_crossing_of_any_tape_is_missed_in_packets(tape, ray, spread, seed):
+    origin, direction, t0, t1 = ray
+    origins, directions = bundle(origin, direction, np.random.default_rng(seed), 83, spread)
+    t0, t1 = np.full(83, t0), np.full(83, t1)
+    status, t = cast_together(tape, origins, directions, t0, t1)
+    blocked, _ = cast_together(tape, origins, directions, t0, t1, anywhere=True)
+    places = t0[:, None] + (t1 - t0)[:, None] * np.linspace(0.0, 1.0, 101)
+    points = origins[:, None] + places[:, :, None] * directions[:, None]
+    inside = field_values(tape, points.reshape(-1, 3)).reshape(places.shape) < 0.0
+    met = inside.any(axis=1) & (t1 > t0)
+    assert not (met & (status == MISS)).any()
+    assert not (met & (blocked == MISS)).any()
+    assert not ((status == MISS) & (blocked == HIT)).any()
+    first = np.take_along_axis(places, inside.argmax(axis=1)[:, None], axis=1)[:, 0]
+    assert (t[met] <= first[met] + 1e-6 * (t1 - t0)[met] + 1e-12).all()
+    certified, _ = cast(tape, origins, directions, t0, t1)
+    settled = (status != UNDECIDED) & (certified != UNDECIDED) & (t1 > t0)
+    assert ((status == HIT) == ((certified == HIT) | (certified == INSIDE)))[settled].all()
+
+
+@pytest.mark.parametrize(("centers", "radius"), [(1, 1.0), (30, 0.6)])
+def test_blobs_in_packets_have_the_certified_roots(centers, radius):
+    generator = np.random.default_rng(3)
+    tape = kernels(generator.uniform(-1, 1, (centers, 3)), 0.3, radius)
+    x, y = np.meshgrid(np.linspace(-1.5, 1.5, 32), np.linspace(-1.5, 1.5, 32))
+    origins = np.column_stack([x.ravel(), y.ravel(), np.full(x.size, 4.0)])
+    directions = np.tile([0.02, 0.0, -1.0], (x.size, 1))
+    near, far = np.full(x.size, 1.0), np.full(x.size, 7.0)
+    status, t = cast_together(tape, origins, directions, near, far)
+    exact, places = cast(tape, origins, directions, near, far)
+    assert (status == exact).all()
+    hit = status == HIT
+    assert hit.sum() > 100
+    assert t[hit] == pytest.approx(places[hit], abs=1e-7)
+    assert ((cast_together(tape, origins, directions, near, far, anywhere=True)[0] == HIT) == hit).all()
+
+
+def test_a_thin_shell_has_no_holes_in_packets():
+    tape = implicit(
+        lambda b, op, c: op(
+            "sub",
+            op(
+                "abs",
+                op(
+                    "sub",
+                    op("sqrt", op("add", op("add", op("square", b.x), op("square", b.y)), op("square", b.z))),
+                    c(0.7),
+                ),
+            ),
+            c(1e-3 / 2),
+        )
+    )
+    generator = np.random.default_rng(1)
+    points = generator.uniform(-0.75, 0.75, (1000, 2))
+    origins = np.column_stack([points, np.full(1000, 2.0)])
+    status, t = cast_together(tape, origins, np.tile([0.0, 0, -1], (1000, 1)), np.zeros(1000), np.full(1000, 4.0))
+    off = (points**2).sum(axis=1)
+    assert ((status == HIT) == (off < 0.7005**2)).all()
+    hit = status == HIT
+    assert t[hit] == pytest.approx(2.0 - np.sqrt(0.7005**2 - off[hit]), abs=1e-6)
