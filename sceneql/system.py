@@ -110,6 +110,28 @@ class Pattern:
     depend on is left out."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Grid:
+    """An island that is one field on a regular grid, V dc/dt = sum over faces of g (neighbor - c) - sink c + fed.
+
+    Cell (i, j, k) is y[at + i + nx (j + ny k)]; all offsets are into the island's floats, one number a cell. A face's
+    conductance g stands with the cell on its high side, at the first cell of a row that between its last and its first
+    (0 where the field is not periodic). Cells outside the domain have V = 1 and nothing else.
+    """
+
+    shape: tuple[int, int, int]
+    at: int
+    volumes_at: int
+    sink_at: int
+    faces_at: tuple[int, int, int]
+    """Along x, y, z; that along z is not read where nz is 1."""
+    periodic: tuple[bool, bool, bool]
+    varying: bool
+    """Whether g and sink depend on time or on the field: the rate leaves them in the floats."""
+    outside: Any
+    """(cells,) bool: not part of the domain."""
+
+
 class Assembly(Protocol):
     """The island under construction, as words see it."""
 
@@ -149,6 +171,12 @@ class Assembly(Protocol):
 
     def contact(self, mode: Literal["exact", "local"], kernels: Sequence[str], ints: Sequence[int], pairs: int) -> None:
         """Add contacts: kernels (gap, impact) with the number of pairs for `exact`, (settle,) for `local`."""
+
+    def grid(self, grid: Grid) -> None:
+        """Say that the entries of the state from grid.at on are a field, for solvers that know grids.
+
+        What else a model has in the state (tallies) must depend on the field alone, and nothing on it.
+        """
 
     def object(self, ref: Ref) -> Object:
         """The kind of an object of the script."""
@@ -252,3 +280,9 @@ class Stepper:
     """Compiled function of the step's signature, for what `dense` needs beyond the step (more stages, into `work`):
     called once before a frame is read off a step. Where contacts are exact, `dense` is read after every step without
     it, so the step does that itself (see `prepare`)."""
+    on_grid: Stepper | None = None
+    """What takes its place on an island that is one field on a grid (System.grid)."""
+    by_scale: bool = False
+    """Whether on a grid the absolute tolerance counts in units of the largest value at the start."""
+    linear: str = "auto"
+    """How its linear systems are solved on a grid (simulation/grids/implicit.py)."""

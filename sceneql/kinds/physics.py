@@ -124,6 +124,10 @@ class Solver(Kind):
         """Its compiled step and control."""
         raise NotImplementedError
 
+    def on_grid(self) -> Solver:
+        """What marches in its place where an island is one field on a grid: itself, unless it chooses by itself."""
+        return self
+
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """Largest growth factor of a step of the linear system y' = jacobian y (its spectral radius).
 

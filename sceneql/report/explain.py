@@ -74,7 +74,7 @@ def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
     from sceneql.simulation.stability import stability
 
     island = run.island
-    stepper = run.solver.stepper()
+    stepper = run.march.stepper
     bound = stability(run.march, run.solver)
     return {
         "models": list(island.models),
@@ -98,6 +98,9 @@ def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
 
 def _chosen(run: IslandRun) -> list[str]:
     """The method that a solver begins with where it chooses by itself, and why; nothing where the start fails."""
+    if run.solver is not run.graph.tasks[run.island.solver].kind:
+        word = type(run.solver).__module__.rpartition(".")[2]
+        return [f"{word} takes its place on a field on a grid"]
     with suppress(RunFailure):
         return [f"begins with {why}" for _, why in run.march.choices()[:1]]
     return []

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf
 from typing import TYPE_CHECKING
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from sceneql.simulation.island import System
 
 KERNELS = "sceneql.simulation.solvers.implicit_runge_kutta_kernels"
+ON_GRIDS = "sceneql.simulation.grids.stage_kernels"
 NEWTON = 1e-10
 """Relative and absolute tolerance of Newton's method where steps are fixed."""
 SHARE = 0.02
@@ -57,17 +58,26 @@ class ImplicitTableau:
         """Places of the stages inside the step: the row sums."""
         return tuple(sum(row) for row in self.a)
 
-    def fixed(self, step: float) -> Stepper:
-        """Steps of one length [s]."""
-        return self._stepper(first_step=step)
+    def fixed(self, step: float, linear: str = "auto") -> Stepper:
+        """Steps of one length [s]; ``linear``: how the systems are solved on a grid."""
+        return self._stepper(first_step=step, linear=linear)
 
     def adaptive(
-        self, tolerance: float, absolute: float, *, first_step: float = 0.0, largest_step: float = inf
+        self,
+        tolerance: float,
+        absolute: float,
+        *,
+        first_step: float = 0.0,
+        largest_step: float = inf,
+        linear: str = "auto",
+        by_scale: bool = False,
     ) -> Stepper:
         """Steps by the error of the embedded method. Raises ValueError where there is none."""
         if self.b_hat is None:
             raise ValueError("a method without an embedded one has no error estimate")
-        return self._stepper(tolerance, absolute, first_step=first_step, largest_step=largest_step)
+        return self._stepper(
+            tolerance, absolute, first_step=first_step, largest_step=largest_step, linear=linear, by_scale=by_scale
+        )
 
     def growth(self, jacobian: Floats, step: float) -> float:
         """max |R(step * lambda)| over the eigenvalues of a (n, n) Jacobian, R(z) = 1 + z b (1 - z A)^-1 1."""
@@ -83,13 +93,20 @@ class ImplicitTableau:
         return float(np.abs(1.0 + z * (stages[..., 0] @ np.array(self.b))).max(initial=0.0))
 
     def _stepper(
-        self, tolerance: float = 0.0, absolute: float = 0.0, *, first_step: float, largest_step: float = inf
+        self,
+        tolerance: float = 0.0,
+        absolute: float = 0.0,
+        *,
+        first_step: float,
+        largest_step: float = inf,
+        linear: str,
+        by_scale: bool = False,
     ) -> Stepper:
         adaptive = tolerance > 0.0
         differences = [b - other for b, other in zip(self.b, self.b_hat or self.b, strict=True)]
         newton = (tolerance, absolute, SHARE) if adaptive else (NEWTON, NEWTON, 1.0)
         lower = [entry for i, row in enumerate(self.a) for entry in row[:i]]
-        return Stepper(
+        whole = Stepper(
             step=f"{KERNELS}:step",
             dense=self.dense,
             order=self.order,
@@ -104,7 +121,17 @@ class ImplicitTableau:
             prepare="sceneql.simulation.implicit:prepare",
             controls=adaptive,
             last_stage=self.stages if self.stiffly_accurate else -1,
+            linear=linear,
+            by_scale=by_scale,
         )
+        on_grid = replace(
+            whole,
+            step=f"{ON_GRIDS}:step",
+            dense=None if adaptive else f"{ON_GRIDS}:linear",
+            jacobian=False,
+            prepare="sceneql.simulation.grids.implicit:prepare",
+        )
+        return replace(whole, on_grid=on_grid)
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
@@ -130,6 +157,7 @@ _W = 2.0**0.5 / 4.0
 
 IMPLICIT_EULER = ImplicitTableau(((1.0,),), (1.0,), order=1)
 IMPLICIT_MIDPOINT = ImplicitTableau(((0.5,),), (1.0,), order=2, dense=f"{KERNELS}:linear")
+CRANK_NICOLSON = ImplicitTableau(((), (0.5, 0.5)), (0.5, 0.5), order=2)
 TR_BDF2 = ImplicitTableau(
     ((), (_T / 2, _T / 2), (_W, _W, _T / 2)),
     (_W, _W, _T / 2),

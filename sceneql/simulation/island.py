@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from sceneql.frame import Floats
     from sceneql.quantities.span import Span
-    from sceneql.system import Pattern, Slopes, Stage
+    from sceneql.system import Grid, Pattern, Slopes, Stage
 
 STAGES: tuple[Stage, ...] = ("internal", "force", "close", "constrain")
 LARGEST_MEMORY = 8 * 2**30
@@ -91,6 +91,8 @@ class System:
     """[s], of steps that a tolerance chooses."""
     pattern: Pattern | None = None
     """Of its Jacobian; None: not asked for, or too large to be found by differences."""
+    grid: Grid | None = None
+    """Of an island that is one field on a grid."""
 
     def origin(self, index: int) -> Origin:
         """Part and line of an entry of y."""
@@ -130,6 +132,7 @@ class IslandAssembly:
     _local: list[_Block] = field(default_factory=list)
     _varying: list[tuple[int, Value]] = field(default_factory=list)
     _largest_step: float = float("inf")
+    _grids: list[Grid] = field(default_factory=list)
     _word: tuple[str, Span | None, str | None] = ("island", None, None)
     _remembered: dict[tuple[str, str | None], tuple[int, ...]] = field(default_factory=dict)
 
@@ -211,6 +214,16 @@ class IslandAssembly:
         """Add contacts."""
         (self._exact if mode == "exact" else self._local).append(_Block(tuple(kernels), tuple(ints), pairs))
 
+    def grid(self, grid: Grid) -> None:
+        """Say that part of the state is a field (system.Assembly)."""
+        self._grids.append(grid)
+
+    @property
+    def only_field(self) -> Grid | None:
+        """The grid of an island that is one field and nothing that acts on it."""
+        alone = len(self._grids) == 1 and len(self._ranges) == 1
+        return self._grids[0] if alone and not self._pairs and not self._exact and not self._local else None
+
     def object(self, ref: Ref) -> Object:
         """The kind of an object of the script."""
         return self.setting.object(ref)
@@ -285,6 +298,7 @@ class IslandAssembly:
             ranges=tuple(self._ranges),
             largest_step=self._largest_step,
             pattern=found,
+            grid=self.only_field,
         )
 
     def start(self) -> Floats:

@@ -129,6 +129,11 @@ class March:
             self._start()
         return self._switch.history
 
+    @property
+    def scratch(self) -> Floats:
+        """What the steps work in; a solver may keep a record of its doings there."""
+        return self._work
+
     def rate(self, t: float, y: Floats) -> Floats:
         """dy/dt (n,) at a time [s] and state, not counted as cost; the floats then hold the values at that time."""
         rate = np.empty_like(y)

@@ -115,7 +115,11 @@ class IslandRun:
         for contact in sorted(contacts, key=lambda name: cast(Contact, graph.tasks[name].kind).mutual):
             self._add_contact(contact)
         self.found.raise_errors()
+        if assembly.only_field is not None:
+            self.solver = self.solver.on_grid()
         stepper = self.solver.stepper()
+        if assembly.only_field is not None and stepper.on_grid is not None:
+            stepper = stepper.on_grid
         self.march: March = March(
             assembly.finish(stepper.jacobian), stepper, graph.settings.clock.end, lambda: assembly.finish(jacobian=True)
         )

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import FixedScalar, Solver, field
 from sceneql.simulation.solvers.radau import Radau
+from sceneql.simulation.solvers.tr_bdf2 import TrBdf2
 from sceneql.simulation.tableau import DORMAND_PRINCE
 
 if TYPE_CHECKING:
@@ -18,11 +19,17 @@ class Auto(Solver):
 
     The choice is made at the start, by the fastest mode of the island and the step that the tolerance allows, and
     looked at again during the run; `explain` says the first and why. Local contacts keep it with dopri5, since they act
-    at the ends of steps, which stiffness must not make long. Sources: see the words dopri5 and radau; the sign
-    of stiffness is that of Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.2.
+    at the ends of steps, which stiffness must not make long. A field on a grid is marched by tr_bdf2. Sources: see the
+    words dopri5, radau and tr_bdf2; the sign of stiffness is that of Hairer & Wanner, Solving Ordinary Differential
+    Equations II (1996), IV.2.
     """
 
-    tolerance: FixedScalar = field("Relative error of a step.", "1e-6", at_least=1e-14, below=1)
+    tolerance: FixedScalar = field(
+        "Relative error of a step; of a field on a grid, whose cells err more, 100 times that.",
+        "1e-6",
+        at_least=1e-14,
+        below=1,
+    )
 
     def choice(self) -> str:
         """What it chooses from."""
@@ -38,6 +45,10 @@ class Auto(Solver):
             stability=DORMAND_PRINCE.stability_function,
             stiff=replace(Radau(tolerance=self.tolerance).stepper(), name="radau"),
         )
+
+    def on_grid(self) -> Solver:
+        """tr_bdf2."""
+        return TrBdf2(tolerance=min(100.0 * self.tolerance, 0.1))
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """That of dopri5."""

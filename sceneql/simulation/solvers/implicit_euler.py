@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import FixedTime, Solver, field
+from sceneql.simulation.grids.names import Linear
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -21,11 +22,13 @@ class ImplicitEuler(Solver):
 
     step: FixedTime = field("Length of a step.", "10 ms", above=0)
 
+    linear: Linear = field("How the linear systems are solved where the island is a field on a grid.", "auto")
+
     def stepper(self) -> Stepper:
         """Fixed steps of the tableau."""
         from sceneql.simulation.implicit import IMPLICIT_EULER
 
-        return IMPLICIT_EULER.fixed(self.step)
+        return IMPLICIT_EULER.fixed(self.step, self.linear)
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """max |1 / (1 - h lambda)|."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import FixedScalar, FixedTime, Solver, field
+from sceneql.simulation.grids.names import Linear
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -22,23 +23,30 @@ class TrBdf2(Solver):
 
     tolerance: FixedScalar = field("Relative error of a step.", "1e-5", at_least=1e-14, below=1)
     absolute: FixedScalar | None = field(
-        "Absolute error of a step, in SI units; by default the number of the relative.", None, above=0
+        "Absolute error of a step, in SI units; by default the number of the relative (on a grid, that part of the "
+        "largest value at the start).",
+        None,
+        above=0,
     )
     step: FixedTime | None = field("Length of a step, in place of a tolerance.", None, above=0)
     first_step: FixedTime | None = field("Length of the first step; by default it is chosen.", None, above=0)
     largest_step: FixedTime | None = field("No step is longer; by default any may be.", None, above=0)
+
+    linear: Linear = field("How the linear systems are solved where the island is a field on a grid.", "auto")
 
     def stepper(self) -> Stepper:
         """Fixed steps, or by the error of the embedded method."""
         from sceneql.simulation.implicit import TR_BDF2
 
         if self.step is not None:
-            return TR_BDF2.fixed(self.step)
+            return TR_BDF2.fixed(self.step, self.linear)
         return TR_BDF2.adaptive(
             self.tolerance,
             self.tolerance if self.absolute is None else self.absolute,
             first_step=self.first_step or 0.0,
             largest_step=self.largest_step or float("inf"),
+            linear=self.linear,
+            by_scale=self.absolute is None,
         )
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:

@@ -1,0 +1,250 @@
+"""A diffusion model on its cells, as state, numbers and terms of an island."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.quantities.derivative import components, differentiate
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import TIME_SYMBOL, Expr, Link, Number, Symbol, walk
+from sceneql.simulation.grids.boundary import Condition, conditions
+from sceneql.simulation.grids.cell_program import FIELD, over_cells, over_faces
+from sceneql.system import Grid, Slopes
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.kinds import Formula
+    from sceneql.simulation.grids.cells import Cells
+    from sceneql.simulation.models.diffusion import Diffusion
+    from sceneql.system import Assembly
+
+KERNELS = "sceneql.simulation.models.diffusion_kernels"
+SLOPES = "sceneql.simulation.models.diffusion_slopes_kernels:spread"
+ZERO = Number(0.0)
+
+
+def assemble(model: Diffusion, cells: Cells, assembly: Assembly) -> None:
+    """Add everything. Raises ScriptError for a coefficient below 0 and for boundary parts that overlap."""
+    _Builder(model, cells, assembly).build()
+
+
+def varies(formula: Formula | None) -> bool:
+    """Whether a formula depends on time, on the field or on other parts."""
+    return formula is not None and any(
+        isinstance(node, Link) or (isinstance(node, Symbol) and node.name in (TIME_SYMBOL, FIELD))
+        for node in walk(formula.expr)
+    )
+
+
+def at_points(formula: Formula, points: Floats, **more: Any) -> Floats:
+    """A formula of the place (and of the symbols in ``more``) at points (k, 3): (k,)."""
+    known = {"x": points[:, 0], "y": points[:, 1], "z": points[:, 2], **more}
+
+    def look_up(node: Any) -> Any:
+        return known[node.name]
+
+    value = evaluate(components(formula.expr)[0], look_up, arrays=True)
+    return np.array(np.broadcast_to(np.asarray(value, dtype=np.float64), len(points)))
+
+
+@dataclass
+class _Builder:
+    model: Diffusion
+    cells: Cells
+    assembly: Assembly
+
+    def build(self) -> None:
+        model, cells, assembly = self.model, self.cells, self.assembly
+        nx, ny, nz = cells.shape
+        n = nx * ny * nz
+        self.count = n
+        self.inside = cells.volumes > 0.0
+        self.centers = cells.centers()
+        if cells.flat:
+            self.centers[:, 2] = 0.0
+        self.at = assembly.state(np.append(self._start(), 0.0))
+        self.conditions, periodic = conditions(model, cells, assembly.line())
+        self.box = assembly.floats([*cells.low[:2], -0.5 * cells.spacing[2] if cells.flat else cells.low[2],
+                                    *cells.spacing])  # fmt: skip
+        self.volumes = assembly.floats(np.where(self.inside, cells.volumes, 1.0))
+        ties = [self._ties(axis, periodic[axis]) for axis in range(3 if nz > 1 else 2)]
+        varying = varies(model.coefficient)
+        self.dummy = Slopes("", [self.at], [self.at])
+        if varying:
+            faces, sink, weights, bend = self._varying_coefficient(ties)
+        else:
+            faces, sink, weights = self._constant_coefficient(ties)
+            bend = 0
+        fed, reaction = self._fed(weights)
+        faces = (*faces, faces[0])[:3] if len(faces) == 2 else faces
+        ties_at = tuple(self.ties_at) if bend else (0, 0, 0)
+        ints = (self.at, nx, ny, nz, self.volumes, sink, fed, *faces, self.at + n)
+        slopes = self._slopes(periodic)
+        more = (*ints, bend, *(*ties_at, 0)[:3], reaction)
+        assembly.term("close", f"{KERNELS}:spread", ints, Slopes(SLOPES, *slopes, more))
+        grid = Grid(
+            shape=cells.shape,
+            at=self.at,
+            volumes_at=self.volumes,
+            sink_at=sink,
+            faces_at=(faces[0], faces[1], faces[2]),
+            periodic=periodic,
+            varying=varying or reaction > 0,
+            outside=~self.inside,
+        )
+        assembly.grid(grid)
+        assembly.remember(self.at, n, assembly.floats(cells.volumes))
+
+    def _start(self) -> Floats:
+        start = np.zeros(self.count) if self.model.initial is None else at_points(self.model.initial, self.centers)
+        start[~self.inside] = 0.0
+        if not np.isfinite(start).all():
+            message = "the field at the start is not finite everywhere"
+            assert self.model.initial is not None
+            raise ScriptError([Diagnostic("not-finite", message, self.model.initial.span)])
+        return start
+
+    def _ties(self, axis: int, periodic: bool) -> Floats:
+        """Area over distance of all faces of an axis."""
+        cells = self.cells
+        areas = cells.areas[axis].copy()
+        if periodic:
+            nx, ny, nz = cells.shape
+            first = np.arange(self.count).reshape(nz, ny, nx).take(0, axis=2 - axis).ravel()
+            areas[first] = cells.volumes[first] / cells.spacing[axis]
+        ties: Floats = areas / cells.spacing[axis]
+        return ties
+
+    def _before(self, axis: int) -> Any:
+        """The cell before each along an axis, round the grid."""
+        nx, ny, nz = self.cells.shape
+        index = np.arange(self.count).reshape(nz, ny, nx)
+        return np.roll(index, 1, axis=2 - axis).ravel()
+
+    def _constant_coefficient(self, ties: list[Floats]) -> tuple[tuple[int, ...], int, list[Floats]]:
+        """Offsets of conductances and sink, and the weights of the boundary's conditions."""
+        assembly = self.assembly
+        d = at_points(self.model.coefficient, self.centers)
+        self._must_be_positive(d)
+        faces = []
+        for axis, tie in enumerate(ties):
+            other = d[self._before(axis)]
+            total = d + other
+            mean = np.where(total > 0.0, 2.0 * d * other / np.where(total > 0.0, total, 1.0), 0.0)
+            faces.append(assembly.floats(tie * mean))
+        sink = np.zeros(self.count)
+        weights = []
+        for one in self.conditions:
+            weights.append(one.weights(d[one.cells]))
+            if one.resistance >= 0.0:
+                np.add.at(sink, one.cells, weights[-1])
+        return tuple(faces), assembly.floats(sink), weights
+
+    def _varying_coefficient(self, ties: list[Floats]) -> tuple[tuple[int, ...], int, list[Floats], int]:
+        assembly, n = self.assembly, self.count
+        formula = self.model.coefficient
+        start = at_points(formula, self.centers, time=0.0, c=assembly.start()[self.at : self.at + n]) if not any(
+            isinstance(node, Link) for node in walk(formula.expr)) else np.zeros(n)  # fmt: skip
+        self._must_be_positive(start)
+        self.zeros, self.ones = assembly.floats(np.zeros(n)), assembly.floats(self.inside.astype(float))
+        d = assembly.floats(np.zeros(n))
+        self._cells_kernel(formula.expr, (d, self.zeros, self.ones))
+        bend = 0
+        slope = differentiate(components(formula.expr)[0], Symbol(FIELD))
+        if slope != ZERO:
+            bend = assembly.floats(np.zeros(n))
+            self._cells_kernel(slope, (bend, self.zeros, self.ones))
+        self.ties_at = [assembly.floats(tie) for tie in ties]
+        faces = tuple(assembly.floats(np.zeros(n)) for _ in ties)
+        sink = assembly.floats(np.zeros(n))
+        everything = self.conditions
+        m = sum(len(one.cells) for one in everything)
+        owners = np.concatenate([one.cells for one in everything]) if m else np.zeros(0, dtype=np.int64)
+        areas, distances, resistances = (
+            assembly.floats(np.concatenate([part(one) for one in everything]) if m else [])
+            for part in (
+                lambda one: one.areas,
+                lambda one: one.distances,
+                lambda one: np.full(len(one.cells), one.resistance),
+            )
+        )
+        fixed = [one.areas if one.resistance < 0.0 else np.zeros(len(one.cells)) for one in everything]
+        self.weights_at = assembly.floats(np.concatenate(fixed) if m else [])
+        third = (*faces, faces[0])[:3]
+        ties_third = (*self.ties_at, self.ties_at[0])[:3]
+        ints = (d, *self.cells.shape, *third, *ties_third, sink, m, areas, distances, resistances, self.weights_at)
+        assembly.term("internal", f"{KERNELS}:conduct", (*ints, *owners.tolist()), self._dummy(f"{KERNELS}:conduct"))
+        return faces, sink, [np.full(len(one.cells), np.nan) for one in everything], bend
+
+    def _fed(self, weights: list[Floats]) -> tuple[int, int]:
+        """Offsets of what is fed, and of d(source)/dc times the volume (0: none)."""
+        model, assembly, n = self.model, self.assembly, self.count
+        moving = varies(model.coefficient)
+        fixed = np.zeros(n)
+        later: list[tuple[Condition, int]] = []
+        first = 0
+        for one, weight in zip(self.conditions, weights, strict=True):
+            if one.formula is not None and (varies(one.formula) or (moving and one.resistance >= 0.0)):
+                later.append((one, self.weights_at + first if moving else assembly.floats(weight)))
+            elif one.formula is not None:
+                given = one.areas if moving else weight
+                np.add.at(fixed, one.cells, given * at_points(one.formula, one.points))
+            first += len(one.cells)
+        source = model.source
+        volumes = np.where(self.inside, self.cells.volumes, 0.0)
+        if source is not None and not varies(source):
+            fixed += volumes * at_points(source, self.centers)
+        fed = assembly.floats(fixed)
+        if not later and not varies(source):
+            return fed, 0
+        base, fed = fed, assembly.floats(fixed)
+        reaction = 0
+        if source is not None and varies(source):
+            measure = assembly.floats(volumes)
+            self._cells_kernel(source.expr, (fed, base, measure))
+            slope = differentiate(components(source.expr)[0], Symbol(FIELD))
+            if slope != ZERO:
+                reaction = assembly.floats(np.zeros(n))
+                zeros = getattr(self, "zeros", None) or assembly.floats(np.zeros(n))
+                self._cells_kernel(slope, (reaction, zeros, measure))
+        else:
+            assembly.term("internal", f"{KERNELS}:begin", (n, base, fed), self._dummy(f"{KERNELS}:begin"))
+        for one, weight_at in later:
+            assert one.formula is not None
+            points = assembly.floats(one.points)
+            kernel, ints = over_faces(assembly, one.formula.expr, self.at, fed, weight_at, points, one.cells.tolist())
+            assembly.term("internal", kernel, ints, self._dummy(kernel))
+        return fed, reaction
+
+    def _cells_kernel(self, expr: Expr, arrays: tuple[int, int, int]) -> None:
+        kernel, ints = over_cells(self.assembly, expr, self.at, arrays, self.cells.shape, self.box)
+        self.assembly.term("internal", kernel, ints, self._dummy(kernel))
+
+    def _dummy(self, kernel: str) -> Slopes:
+        """What fills the floats before the slopes are read: its own entry stays 0."""
+        return Slopes(kernel, [self.at], [self.at])
+
+    def _slopes(self, periodic: tuple[bool, bool, bool]) -> tuple[Any, Any]:
+        """Rows and columns of the entries of diffusion_slopes_kernels.spread; those of no tie go to the diagonal."""
+        own = np.arange(self.count, dtype=np.int64)
+        rows, columns = [own], [own]
+        nx, ny, nz = self.cells.shape
+        for axis in range(3 if nz > 1 else 2):
+            before = self._before(axis)
+            if not periodic[axis]:
+                first = own.reshape(nz, ny, nx).take(0, axis=2 - axis).ravel()
+                before[first] = first
+            rows += [own, before]
+            columns += [before, own]
+        return self.at + np.concatenate(rows), self.at + np.concatenate(columns)
+
+    def _must_be_positive(self, d: Floats) -> None:
+        bad = np.flatnonzero(self.inside & ~(d >= 0.0))
+        if len(bad):
+            x, y, z = self.centers[bad[0]]
+            message = f"the coefficient must be at least 0, and is {d[bad[0]]:g} at ({x:g}, {y:g}, {z:g}) m"
+            raise ScriptError([Diagnostic("out-of-range", message, self.model.coefficient.span)])

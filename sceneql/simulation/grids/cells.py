@@ -1,0 +1,109 @@
+"""The cells of a domain: volumes, areas of faces, and the faces that lie on the boundary."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats
+
+SIDES = ("left", "right", "bottom", "top", "back", "front")
+"""Of a box: low and high along x, y and z."""
+MOST_CELLS = 50_000_000
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BoundaryFaces:
+    """The faces of a domain's boundary."""
+
+    cells: NDArray[int64]
+    """(m,) the cell that each belongs to."""
+    areas: Floats
+    """(m,) [m^2]."""
+    distances: Floats
+    """(m,) from the cell's center [m]."""
+    points: Floats
+    """(m, 3) [m]."""
+    pieces: NDArray[int64]
+    """(m,) index into the names of the boundary's pieces."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cells:
+    """A regular grid of cells over a domain, x fastest; a flat one has one layer, as thick as its depth."""
+
+    shape: tuple[int, int, int]
+    low: Floats
+    """(3,) [m]."""
+    spacing: Floats
+    """(3,) [m]."""
+    volumes: Floats
+    """(cells,) [m^3]; 0 outside the domain."""
+    areas: tuple[Floats, Floats, Floats]
+    """Along x, y, z, each (cells,) [m^2]: of a cell's face on its low side; 0 on the boundary."""
+    boundary: BoundaryFaces
+    names: tuple[str, ...]
+    """Of the boundary's pieces."""
+
+    @property
+    def flat(self) -> bool:
+        """Whether it has two dimensions."""
+        return self.shape[2] == 1
+
+    def centers(self, chosen: Any = slice(None)) -> Floats:
+        """(k, 3) centers of some cells [m]; z is 0 on a flat grid."""
+        import numpy as np
+
+        nx, ny, nz = self.shape
+        cell = np.arange(nx * ny * nz)[chosen]
+        index = np.stack([cell % nx, cell // nx % ny, cell // (nx * ny)], axis=1)
+        centers: Floats = self.low + (index + 0.5) * self.spacing
+        return centers
+
+
+def counts(sides: tuple[float, ...], cell: float) -> tuple[int, ...]:
+    """Cells along each side, none longer than ``cell`` [m]; 1 along z where there are two sides."""
+    found = [max(1, math.ceil(side / cell * (1.0 - 1e-9))) for side in sides]
+    return (*found, 1) if len(found) == 2 else tuple(found)
+
+
+def box(sides: tuple[float, ...], corner: tuple[float, ...], cell: float, depth: float) -> Cells:
+    """The cells of a box of two or three sides [m] from its low corner on; a flat one has the depth [m]."""
+    import numpy as np
+
+    shape = counts(sides, cell)
+    nx, ny, nz = shape
+    flat = len(sides) == 2
+    low = np.array([*corner[:2], -0.5 * depth if flat else corner[2]])
+    spacing = np.array([*sides[:2], depth if flat else sides[2]]) / shape
+    n = nx * ny * nz
+    index = np.arange(n, dtype=np.int64).reshape(nz, ny, nx)
+    volume = float(np.prod(spacing))
+    areas = []
+    faces: list[tuple[Any, int]] = []
+    for axis in range(3):
+        area = np.full((nz, ny, nx), volume / spacing[axis] if axis < 2 or not flat else 0.0)
+        first, last = (index.take(end, axis=2 - axis).ravel() for end in (0, -1))
+        area.ravel()[first] = 0.0
+        areas.append(area.ravel())
+        if axis < len(sides):
+            faces += [(first, 2 * axis), (last, 2 * axis + 1)]
+    owner = np.concatenate([cells for cells, _ in faces])
+    piece = np.repeat([side for _, side in faces], [len(cells) for cells, _ in faces])
+    centers = low + (np.stack([owner % nx, owner // nx % ny, owner // (nx * ny)], axis=1) + 0.5) * spacing
+    outward = np.zeros((len(owner), 3))
+    outward[np.arange(len(owner)), piece // 2] = np.where(piece % 2, 0.5, -0.5)
+    boundary = BoundaryFaces(
+        owner,
+        (volume / spacing)[piece // 2],
+        0.5 * spacing[piece // 2],
+        centers + outward * spacing,
+        piece,
+    )
+    names = SIDES[: 2 * len(sides)]
+    return Cells((nx, ny, nz), low, spacing, np.full(n, volume), (areas[0], areas[1], areas[2]), boundary, names)

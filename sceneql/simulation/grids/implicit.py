@@ -1,0 +1,162 @@
+"""How implicit steps are prepared on a grid: which linear solver, what it keeps, why."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import accumulate
+from typing import TYPE_CHECKING, Any
+
+from sceneql.failure import LimitRefused
+from sceneql.system import Grid, Prepared, Stepper
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.simulation.island import System
+    from sceneql.simulation.march import March
+
+DIRECT_CELLS = {2: 40_000, 3: 4_000}
+"""Up to so many cells of a flat or deep grid factors are small: `auto` takes them."""
+LARGEST_FACTORED = {2: 500_000, 3: 30_000}
+MOST = {"multigrid": 100, "conjugate_gradient": 20_000, "gauss_seidel": 20_000, "sor": 20_000, "direct": 1}
+"""Iterations for one system."""
+COARSEST = 2
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Plan:
+    levels: int
+    numbers: Any
+    room: int
+    """Floats that the linear solver keeps."""
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class LinearReport:
+    """What the linear solver of a march has done so far."""
+
+    systems: int
+    iterations: int
+    residuals: tuple[float, ...]
+    """2-norms of the residual of the last system, as it was solved: by sweep groups of relaxation_kernels.CHECKED for
+    gauss_seidel and sor, by iteration for the others."""
+
+
+def prepare(system: System, stepper: Stepper) -> Prepared:
+    """What stage_kernels.step works with. Raises LimitRefused where a named linear solver cannot take the grid."""
+    import numpy as np
+
+    from sceneql.simulation.grids import stage_kernels as kernels
+
+    grid = system.grid
+    assert grid is not None
+    stages, explicit_first, _, embedded, error_order = stepper.numbers
+    _, _, relative, absolute, _, *tableau = stepper.settings
+    share = kernels.SHARE if stepper.adaptive else 1.0
+    largest = float(np.abs(system.y).max(initial=0.0)) or 1.0
+    absolute *= largest if stepper.by_scale else 1.0
+    name, why = _choice(grid, stepper.linear)
+    cells = grid.shape[0] * grid.shape[1] * grid.shape[2]
+    plan = _PLANS[name](grid)
+    kind = getattr(kernels, name.upper())
+    offsets = (grid.volumes_at, grid.sink_at, *grid.faces_at)
+    head = [kind, *grid.shape, grid.at, *offsets, int(grid.varying), MOST[name], plan.levels, kernels.PLAN]
+    assert len(head) == kernels.PLAN
+    store = 2 * cells + plan.room + kernels.RECORD
+    return Prepared(
+        settings=np.array([share * relative, share * absolute if stepper.adaptive else 0.0, *tableau]),
+        numbers=np.concatenate([[stages, explicit_first, embedded, error_order], head, plan.numbers]).astype(np.int64),
+        work=(3 + stages) * len(system.y) + store,
+        text=f"linear systems by {name}, {plan.text}, {why}",
+    )
+
+
+def report(march: March) -> LinearReport:
+    """What the linear solver of an implicit method on a grid has done so far."""
+    from sceneql.simulation.grids.stage_kernels import HISTORY, ITERATIONS, RECORD, SOLVES
+
+    record = march.scratch[-RECORD:]
+    residuals = tuple(float(size) for size in record[HISTORY:] if size >= 0.0)
+    return LinearReport(int(record[SOLVES]), int(record[ITERATIONS]), residuals)
+
+
+def _choice(grid: Grid, asked: str) -> tuple[str, str]:
+    """The linear solver by name, and why."""
+    nx, ny, nz = grid.shape
+    dims, cells = (3 if nz > 1 else 2), nx * ny * nz
+    if asked == "direct" and cells > LARGEST_FACTORED[dims]:
+        raise LimitRefused(
+            f"factors of {cells} cells would not fit: at most {LARGEST_FACTORED[dims]} in {dims} dimensions",
+            None,
+            "take `linear: multigrid`",
+        )
+    if asked != "auto":
+        return asked, "as the script says"
+    if cells > DIRECT_CELLS[dims]:
+        return "multigrid", f"chosen since {cells} cells are more than {DIRECT_CELLS[dims]} (factors fill up)"
+    if grid.varying:
+        return "multigrid", "chosen since the coefficients vary, so that factors would serve once"
+    return "direct", f"chosen since {cells} cells are few, and the factors serve for every step of one length"
+
+
+def _multigrid(grid: Grid) -> _Plan:
+    shapes = [grid.shape]
+    while any(n > COARSEST for n in shapes[-1]):
+        shapes.append(tuple((n + 1) // 2 if n > COARSEST else n for n in shapes[-1]))  # type: ignore[arg-type]
+    sizes = [nx * ny * nz * (8 if nz > 1 else 7) for nx, ny, nz in shapes]
+    starts = list(accumulate(sizes, initial=0))
+    table = [number for shape, start in zip(shapes, starts, strict=False) for number in (*shape, start)]
+    text = f"conjugate gradients with a V-cycle over {len(shapes)} grids"
+    return _Plan(len(shapes), table, starts[-1] // 2 + 1, text)
+
+
+def _iterations(grid: Grid) -> _Plan:
+    nx, ny, nz = grid.shape
+    return _Plan(0, [], nx * ny * nz, "an iteration over all cells")
+
+
+def _direct(grid: Grid) -> _Plan:
+    import numpy as np
+
+    from sceneql.simulation.linear import fronts
+
+    pattern, entries = _pattern(grid)
+    plan = fronts.plan(pattern)
+    numbers = np.concatenate([[len(entries), plan.factors, plan.work], entries.ravel(), plan.numbers])
+    text = f"a sparse factorization with {plan.factors:.3g} numbers, made once for each length of step"
+    return _Plan(0, numbers, len(entries) + plan.factors + plan.work, text)
+
+
+def _pattern(grid: Grid) -> tuple[Any, NDArray[int64]]:
+    """The (cells, cells) scipy CSR pattern, and for every value its cell and face (see direct_kernels)."""
+    import numpy as np
+    from scipy.sparse import csr_array
+
+    n = int(np.prod(grid.shape))
+    cells = np.arange(n, dtype=np.int64).reshape(grid.shape[::-1])
+    rows, columns, faces = [cells.ravel()], [cells.ravel()], [np.zeros(n, dtype=np.int64)]
+    for axis in range(3 if grid.shape[2] > 1 else 2):
+        before = np.roll(cells, 1, axis=2 - axis)
+        tied = np.ones(cells.shape, dtype=bool)
+        if not grid.periodic[axis]:
+            tied[tuple(slice(1) if k == 2 - axis else slice(None) for k in range(3))] = False
+        high, low = cells[tied], before[tied]
+        rows += [high, low]
+        columns += [low, high]
+        faces += [np.full(len(high), axis + 1), np.full(len(high), axis + 4)]
+    i, j, face = (np.concatenate(part) for part in (rows, columns, faces))
+    pattern = csr_array((np.ones(len(i)), (i, j)), shape=(n, n))
+    pattern.sort_indices()
+    order = np.lexsort((j, i))
+    return pattern, np.column_stack([i[order], face[order]])
+
+
+_PLANS = {
+    "multigrid": _multigrid,
+    "conjugate_gradient": _iterations,
+    "gauss_seidel": _iterations,
+    "sor": _iterations,
+    "direct": _direct,
+}

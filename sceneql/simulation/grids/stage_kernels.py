@@ -1,0 +1,247 @@
+# mypy: ignore-errors
+"""One step of a diagonally implicit Runge-Kutta method on an island that is one field on a grid (system.Grid).
+
+Every stage y = base + a f(t, y) is solved to a small residual by the linear solver of the plan, and then its slope is
+evaluated: f of what was found. So what the fluxes conserve is conserved to rounding, however the systems are solved.
+
+``settings``: relative and absolute size of a residual that is small, the diagonal g of the tableau, then c (s), b (s),
+b - b_hat (s), the rows of a below the diagonal, packed. ``numbers``: [stages, 1 if the first is explicit, 1 if there is
+an embedded method, order of its error], then the plan (see the names below; all indices count from its start).
+``work``: s + 2 arrays of y's size (the first holds the step to try next in its first entry; slopes; scratch), then the
+store of the plan: p, q (cells), what the linear solver keeps, RECORD entries of what it did.
+"""
+
+import math
+
+import numpy as np
+from numba import types
+
+from sceneql.kernels import lean, lean_inlined
+from sceneql.simulation.grids import multigrid_kernels as multigrid
+from sceneql.simulation.grids import relaxation_kernels as relaxation
+from sceneql.simulation.grids.direct_kernels import factor_direct, solve_direct
+from sceneql.simulation.grids.stencil_kernels import dot
+from sceneql.simulation.pointers_kernels import AT_RATE, rate_at
+from sceneql.system_kernels import DENSE, STEP, A, F, I
+
+STAGES, EXPLICIT_FIRST, EMBEDDED, ERROR_ORDER, HEAD = range(5)
+RELATIVE, ABSOLUTE, DIAGONAL, TABLEAU = range(4)
+
+KIND, NX, NY, NZ, AT, VOLUME, SINK, GX, GY, GZ, VARYING, MOST, LEVELS, TABLE, PLAN = range(15)
+MULTIGRID, CONJUGATE_GRADIENT, GAUSS_SEIDEL, SOR, DIRECT = range(5)
+
+FACTORED, TAKEN_IN, SOLVES, ITERATIONS, HISTORY, RECORD = 0, 1, 2, 3, 4, 132
+"""Of the store's last entries: the a that is prepared (0: none), whether coarse levels are filled, systems solved,
+iterations of all of them, then the residuals of the last one."""
+
+MOST_NEWTON = 40
+KEPT = 1.2
+"""A longer step by less than that is not worth new factors."""
+SHARE = 0.02
+"""Part of the tolerance of adaptive steps that a residual may be: settings hold it times the tolerance."""
+UNSOLVED = 1e-13
+"""Part of what cancels in a residual that counts as rounding."""
+
+SOLVE = types.boolean(I, F, F, A, A, A, A)
+
+
+@lean_inlined
+def prepare(plan, a, volume, sink, gx, gy, gz, own, record):
+    """Make the linear solver ready for M = V/a + K; False where that fails."""
+    varying = plan[VARYING] == 1
+    if record[FACTORED] == a and not varying:
+        return True
+    if plan[KIND] == MULTIGRID:
+        arrays = own.view(np.float32)
+        table = plan[plan[TABLE] :]
+        if record[TAKEN_IN] == 0.0 or varying:
+            unit = 0.0
+            for c in range(plan[NX] * plan[NY] * plan[NZ]):
+                unit = max(unit, gx[c], gy[c])
+            multigrid.take_in(table, plan[LEVELS], arrays, unit if unit > 0.0 else 1.0, volume, sink, gx, gy, gz)
+            record[TAKEN_IN] = unit if unit > 0.0 else 1.0
+        # The float32 arrays are in units of the largest conductance.
+        multigrid.shift(table, plan[LEVELS], arrays, 1.0 / a)
+    elif plan[KIND] == DIRECT:
+        if not factor_direct(plan[plan[TABLE] :], plan[NX], plan[NY], plan[NZ], 1.0 / a, volume, sink, gx, gy, gz, own):
+            return False
+    record[FACTORED] = a
+    return True
+
+
+@lean(SOLVE)
+def solve_linear(plan, a, target, floats, r, d, store):
+    """Solve M d = r until the residual's 2-norm is at most ``target``; False where that is not reached. r is spent."""
+    nx, ny, nz = plan[NX], plan[NY], plan[NZ]
+    n = nx * ny * nz
+    volume, sink = floats[plan[VOLUME] : plan[VOLUME] + n], floats[plan[SINK] : plan[SINK] + n]
+    gx, gy = floats[plan[GX] : plan[GX] + n], floats[plan[GY] : plan[GY] + n]
+    gz = floats[plan[GZ] : plan[GZ] + (n if nz > 1 else 0)]
+    p, q = store[:n], store[n : 2 * n]
+    record = store[store.size - RECORD :]
+    own = store[2 * n : store.size - RECORD]
+    history = record[HISTORY:]
+    scale = 1.0 / a
+    if not prepare(plan, a, volume, sink, gx, gy, gz, own, record):
+        return False
+    for k in range(history.size):
+        history[k] = -1.0
+    kind, most = plan[KIND], plan[MOST]
+    if kind == MULTIGRID:
+        table = plan[plan[TABLE] :]
+        count = multigrid.solve(
+            nx, ny, nz, scale, volume, sink, gx, gy, gz, table, plan[LEVELS], own.view(np.float32),
+            r, d, p, q, target, most, history,
+        )  # fmt: skip
+    elif kind == CONJUGATE_GRADIENT:
+        count = relaxation.conjugate_gradient(
+            nx, ny, nz, scale, volume, sink, gx, gy, gz, r, d, own, p, q, target, most, history
+        )
+    elif kind == DIRECT:
+        solve_direct(plan[plan[TABLE] :], r, d, own)
+        count = 1
+    else:
+        count = relaxation.relaxation(
+            nx, ny, nz, scale, volume, sink, gx, gy, gz, r, d, p, q, kind == SOR, target, most, history
+        )
+    record[SOLVES] += 1.0
+    record[ITERATIONS] += abs(count)
+    return count >= 0
+
+
+@lean_inlined
+def residual(n, a, volume, base, y, slope, r, d):
+    """r = V ((base - y)/a + slope), and the 2-norms of it, of V base/a and of V y/a; d is scratch."""
+    inverse = 1.0 / a
+    for c in range(n):
+        d[c] = volume[c] * base[c]
+    whole = inverse * math.sqrt(dot(d, d))
+    for c in range(n):
+        d[c] = volume[c] * y[c]
+    largest = inverse * math.sqrt(dot(d, d))
+    for c in range(n):
+        r[c] = volume[c] * (inverse * (base[c] - y[c]) + slope[c])
+    return math.sqrt(dot(r, r)), whole, largest
+
+
+@lean_inlined
+def stiffest(plan, floats):
+    """Largest (faces + sink)/V of a cell, but for a factor of 2."""
+    n = plan[NX] * plan[NY] * plan[NZ]
+    most = 0.0
+    for c in range(n):
+        total = floats[plan[GX] + c] + floats[plan[GY] + c] + floats[plan[SINK] + c]
+        if plan[NZ] > 1:
+            total += floats[plan[GZ] + c]
+        most = max(most, total / floats[plan[VOLUME] + c])
+    return most
+
+
+@lean_inlined
+def solve_stage(rate, t, a, base, y, slope, r, d, store, plan, settings, floats, ints):
+    """y = base + a f(t, y) from a guess, and slope = f(t, y) of what was found; False where it was not."""
+    at = plan[AT]
+    n = plan[NX] * plan[NY] * plan[NZ]
+    volume = floats[plan[VOLUME] : plan[VOLUME] + n]
+    x, r, d = y[at : at + n], r[:n], d[:n]
+    cells = math.sqrt(dot(volume, volume))
+    before = math.inf
+    for iteration in range(MOST_NEWTON):
+        rate(t, y, slope, floats, ints)
+        size, whole, largest = residual(n, a, volume, base[at:], x, slope[at:], r, d)
+        if not size < math.inf:
+            return False
+        if iteration == 0 and size > 2.0 * whole and plan[VARYING] == 0:
+            # Far from the solution: nothing is a better guess than what changes fast.
+            for c in range(n):
+                x[c] = 0.0
+            rate(t, y, slope, floats, ints)
+            size, whole, largest = residual(n, a, volume, base[at:], x, slope[at:], r, d)
+        target = settings[RELATIVE] * max(whole, largest) + settings[ABSOLUTE] * cells / a
+        rounding = UNSOLVED * (1.0 + a * stiffest(plan, floats)) * max(whole, largest)
+        if size <= max(target, rounding) or (size > 0.5 * before and size <= 100.0 * rounding):
+            return True
+        before = size
+        # Where all was 0 the size of what is to come is not known yet, but that of the residual is.
+        target = max(target, rounding, settings[RELATIVE] * size)
+        if not solve_linear(plan, a, 0.5 * target, floats, r, d, store):
+            return False
+        for c in range(n):
+            x[c] += d[c]
+    return False
+
+
+@lean_inlined
+def add_slopes(settings, at, count, h, y0, work, out):
+    """out = y0 + h times the sum of the first slopes, weighted by settings[at:]."""
+    n = y0.size
+    for k in range(n):
+        out[k] = y0[k]
+    for j in range(count):
+        weight = h * settings[at + j]
+        if weight != 0.0:
+            slope = work[(1 + j) * n : (2 + j) * n]
+            for k in range(n):
+                out[k] += weight * slope[k]
+
+
+@lean(STEP)
+def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
+    """y1 after a step of length h; the embedded error, filtered by the stage system (Hosea & Shampine 1996)."""
+    n, stages = y0.size, numbers[STAGES]
+    rate = rate_at(functions[AT_RATE])
+    base, scratch = work[:n], work[(1 + stages) * n : (2 + stages) * n]
+    change = work[(2 + stages) * n : (3 + stages) * n]
+    store = work[(3 + stages) * n :]
+    plan = numbers[HEAD:]
+    b = TABLEAU + stages
+    e, row = b + stages, b + 2 * stages
+    a = h * settings[DIAGONAL]
+    first = numbers[EXPLICIT_FIRST]
+    for k in range(n * first):
+        work[n + k] = rate0[k]
+    for k in range(n):
+        y1[k] = y0[k]
+    for i in range(first, stages):
+        slope = work[(1 + i) * n : (2 + i) * n]
+        add_slopes(settings, row, i, h, y0, work, base)
+        row += i
+        t_stage = t + settings[TABLEAU + i] * h
+        if not solve_stage(rate, t_stage, a, base, y1, slope, scratch, change, store, plan, settings, floats, ints):
+            y1[plan[AT]] = math.nan
+            work[0] = 0.25 * h
+            return math.inf
+        for k in range(n):
+            y1[k] = base[k] + a * slope[k]
+    add_slopes(settings, b, stages, h, y0, work, y1)
+    if numbers[EMBEDDED] == 0:
+        return 0.0
+    at = plan[AT]
+    size = 0.0
+    for k in range(n):
+        total = 0.0
+        for j in range(stages):
+            total += settings[e + j] * work[(1 + j) * n + k]
+        base[k] = h * total
+    cells = plan[NX] * plan[NY] * plan[NZ]
+    for c in range(cells):
+        scratch[c] = floats[plan[VOLUME] + c] / a * base[at + c]
+        size += scratch[c] * scratch[c]
+    if size > 0.0 and not solve_linear(plan, a, 1e-2 * math.sqrt(size), floats, scratch, change, store):
+        work[0] = 0.25 * h
+        return math.inf
+    error = 0.0
+    for c in range(cells if size > 0.0 else 0):
+        allowed = settings[ABSOLUTE] + settings[RELATIVE] * max(abs(y0[at + c]), abs(y1[at + c]))
+        error += (SHARE * change[c] / allowed) ** 2
+    error = math.sqrt(error / cells)
+    factor = min(5.0, max(0.2, 0.9 * max(error, 1e-8) ** (-1.0 / numbers[ERROR_ORDER])))
+    work[0] = h if 1.0 <= factor <= KEPT else h * factor
+    return error
+
+
+@lean(DENSE)
+def linear(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
+    """The line between the ends, which stays between them: of order 2, as the methods of fixed steps here are."""
+    for k in range(y0.size):
+        out[k] = (1.0 - theta) * y0[k] + theta * y1[k]

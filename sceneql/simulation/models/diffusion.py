@@ -1,0 +1,167 @@
+"""diffusion: a concentration or temperature that spreads through a domain."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import model_validator
+
+from sceneql.kinds import (
+    Exceeds,
+    FixedLength,
+    Formula,
+    Gives,
+    Model,
+    Quantity,
+    Record,
+    Symbols,
+    field,
+    quantity_type,
+)
+from sceneql.kinds.stable_step import Oscillation
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Link, Symbol, walk
+
+if TYPE_CHECKING:
+    from sceneql.simulation.grids.cells import Cells
+    from sceneql.system import Assembly, ModelState
+
+PLACE = Annotated[Formula, Symbols(("x", "y", "z"))]
+PLACE_AND_TIME = Annotated[Formula, Symbols(("x", "y", "z", "t"))]
+ANYTHING = Annotated[Formula, Symbols(("x", "y", "z", "t", "c"))]
+UNITS = {"concentration": dim.DENSITY, "temperature": dim.TEMPERATURE, "number": dim.PLAIN}
+
+
+class Exchange(Record):
+    """What crosses a boundary in proportion to a difference: coefficient (outside - c) a second and square meter."""
+
+    coefficient: Annotated[float, Quantity(dim.VELOCITY)] = field("How well it crosses.", at_least=0)
+    outside: ANYTHING | None = field("The value outside; by default 0.", None)
+
+
+class Part(Record):
+    """What holds on a part of the boundary: one of value, flux, robin, periodic."""
+
+    value: ANYTHING | None = field("The value there (Dirichlet).", None)
+    flux: ANYTHING | None = field("What comes in a second and square meter, D dc/dn outwards (Neumann).", None)
+    robin: Exchange | None = field("Exchange with the outside (Robin).", None)
+    periodic: bool = field("The sides of this direction are one: what leaves here comes in at the other.", False)
+    where: PLACE | None = field("Only where this formula is above 0.", None)
+
+    @model_validator(mode="after")
+    def _one(self) -> Part:
+        if (self.value is not None) + (self.flux is not None) + (self.robin is not None) + self.periodic != 1:
+            raise ValueError("a part of the boundary has one of `value`, `flux`, `robin` and `periodic`")
+        return self
+
+
+class Diffusion(Model):
+    """Diffusion dc/dt = div(D grad c) + source by finite volumes on a grid of cells, which conserve what there is.
+
+    A face between two cells carries D area (difference)/(distance); D there is the harmonic mean of the cells' where it
+    depends on the place alone (layers in a row), else the arithmetic one. On a boundary the value, the flux, or both in
+    proportion are given; where nothing is said nothing crosses. In formulas x, y, z, t and the field c are plain
+    numbers in SI. A flat domain has x and y and a `depth`. Source: Patankar, Numerical Heat Transfer and Fluid Flow
+    (1980), 4.2; Crank, The Mathematics of Diffusion (1975).
+    """
+
+    has_bodies = False
+
+    size: Annotated[tuple[float, ...], Quantity(dim.LENGTH, (None,))] = field(
+        "Sides of a box: two for a flat domain, three for a deep one.", above=0
+    )
+    corner: Annotated[tuple[float, ...], Quantity(dim.LENGTH, (None,))] | None = field(
+        "Low corner of that box; by default the origin.", None
+    )
+    depth: FixedLength = field("How thick a flat domain is.", "1 m", above=0)
+    cell: FixedLength = field("Largest side of a cell.", above=0)
+    of: Literal["concentration", "temperature", "number"] = field(
+        "What spreads, which gives its unit.", "concentration"
+    )
+    coefficient: ANYTHING = field("The coefficient D [m^2/s].")
+    initial: PLACE | None = field("The field at the start; by default 0.", None)
+    source: ANYTHING | None = field("What comes in a second and cubic meter; below 0 it leaves.", None)
+    boundary: dict[str, Part] = field(
+        "What holds on the sides `left`, `right` (x), `bottom`, `top` (y), `back`, `front` (z), or on `rest`.", {}
+    )
+
+    @classmethod
+    def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
+        """In the unit of what spreads."""
+        unit = UNITS.get(str(written.get("of", "concentration")), dim.PLAIN)
+        one, amount = quantity_type(unit), quantity_type(unit * dim.VOLUME)
+        return {
+            "concentration": Gives(quantity_type(unit, (None,)), "The field in every cell of the domain."),
+            "centers": Gives(quantity_type(dim.LENGTH, (None, 3)), "The centers of these cells."),
+            "mass": Gives(amount, "How much there is: the field over the volume."),
+            "inflow": Gives(amount, "How much has come in through the boundary and from sources since the start."),
+            "max": Gives(one, "Largest value."),
+            "min": Gives(one, "Least value."),
+            "mean": Gives(one, "Mean over the volume."),
+        }
+
+    @model_validator(mode="after")
+    def _fits(self) -> Diffusion:
+        from sceneql.simulation.grids.cells import MOST_CELLS, SIDES, counts
+
+        if len(self.size) not in (2, 3) or (self.corner is not None and len(self.corner) != len(self.size)):
+            raise ValueError("a domain has two or three sides, and its corner as many numbers")
+        shape = counts(self.size, self.cell)
+        cells = shape[0] * shape[1] * shape[2]
+        if cells > MOST_CELLS:
+            raise Exceeds(f"{cells:.3g} cells: at most {MOST_CELLS:,} are possible; take a larger `cell`")
+        known = (*SIDES[: 2 * len(self.size)], "rest")
+        for name, part in self.boundary.items():
+            if name not in known and part.where is None:
+                raise ValueError(f"the boundary has no side '{name}': it has {', '.join(known)}; or say `where`")
+        return self
+
+    def fastest(self, name: str) -> Iterable[Oscillation]:
+        """The decay of the checkerboard, at most 4 D sum of 1/spacing^2 (von Neumann's bound)."""
+        from sceneql.simulation.grids.cells import counts
+
+        if any(isinstance(node, Symbol | Link) for node in walk(self.coefficient.expr)):
+            return
+        d = float(evaluate(self.coefficient.expr, {}))
+        shape = counts(self.size, self.cell)
+        rate = 4.0 * d * sum((n / side) ** 2 for n, side in zip(shape, self.size, strict=False))
+        yield Oscillation(0.0, rate, f"the spread over cells of {self.cell:g} m", ("cell",))
+
+    def cells(self) -> Cells:
+        """Its grid."""
+        from sceneql.simulation.grids import cells
+
+        corner = self.corner or (0.0,) * len(self.size)
+        return cells.box(self.size, corner, self.cell, self.depth)
+
+    def assemble(self, name: str, assembly: Assembly) -> None:
+        """Reserve a number a cell and one for the inflow, and add the terms of the rate. Raises ScriptError."""
+        from sceneql.simulation.grids.assembly import assemble
+
+        assemble(self, self.cells(), assembly)
+
+    def read(self, output: str, state: ModelState) -> Any:
+        """An output: (cells,), (cells, 3) or float."""
+        import numpy as np
+
+        at, count, volumes_at = state.ints[:3]
+        field = state.y[at : at + count]
+        volumes = state.floats[volumes_at : volumes_at + count]
+        match output:
+            case "concentration":
+                return field.copy()
+            case "centers":
+                return self.cells().centers()
+            case "mass":
+                return float(volumes @ field)
+            case "inflow":
+                return float(state.y[at + count])
+            case "max":
+                return float(field.max())
+            case "min":
+                return float(field.min())
+            case "mean":
+                return float(np.average(field, weights=volumes))
+        raise KeyError(output)
