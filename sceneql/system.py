@@ -159,18 +159,30 @@ class Assembly(Protocol):
         kernel: str,
         ints: Sequence[int],
         jacobian: Slopes | Callable[[], Slopes | None] | None = None,
+        apart: bool = False,
     ) -> None:
         """Add a term to the rate; ``kernel`` is ``"package.module:function"``.
 
         ``jacobian``: its derivatives, or what gives them if a solver asks; None: unknown, then the island uses
-        differences of the whole rate.
+        differences of the whole rate. ``apart``: what it does to a body depends on that body and the time alone, so
+        that a large island may be solved in blocks of its bodies.
         """
 
     def inertia(self, velocity_at: int, inverse_at: int, count: int) -> None:
         """Say that a close term multiplies rate[velocity_at + 3k : +3] by floats[inverse_at + k]: slopes likewise."""
 
-    def contact(self, mode: Literal["exact", "local"], kernels: Sequence[str], ints: Sequence[int], pairs: int) -> None:
-        """Add contacts: kernels (gap, impact) with the number of pairs for `exact`, (settle,) for `local`."""
+    def contact(
+        self,
+        mode: Literal["exact", "local"],
+        kernels: Sequence[str],
+        ints: Sequence[int],
+        pairs: int,
+        apart: bool = False,
+    ) -> None:
+        """Add contacts: kernels (gap, impact) with the number of pairs for `exact`, (settle,) for `local`.
+
+        ``apart``: as of a term, for local ones.
+        """
 
     def grid(self, grid: Grid) -> None:
         """Say that the entries of the state from grid.at on are a field, for solvers that know grids.

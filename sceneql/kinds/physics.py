@@ -30,6 +30,15 @@ class Model(Kind):
         """Reserve state, give initial values, add the terms of its own rate; the point masses forces may act on."""
         raise TypeError(f"{type(self).__name__} has no state")
 
+    def assemble_part(
+        self, name: str, assembly: Assembly, bodies: Bodies, start: ModelState, first: int, last: int
+    ) -> Bodies | None:
+        """Reserve its bodies first..last-1 alone, as they start: a block of those that feel no other one.
+
+        None: it cannot be divided.
+        """
+        return None
+
     def read(self, output: str, state: ModelState) -> Any:
         """An output at a state: float or float64 array."""
         raise TypeError(f"{type(self).__name__} gives no {output}")

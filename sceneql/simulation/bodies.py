@@ -82,8 +82,23 @@ def reserve(
     assembly.inertia(velocity_at, bodies.inverse_at, n)
     places = np.arange(3 * n)
     slopes = Slopes("sceneql.simulation.bodies_slopes_kernels:close", position_at + places, velocity_at + places)
-    assembly.term("close", "sceneql.simulation.bodies_kernels:close", ints, slopes)
+    assembly.term("close", "sceneql.simulation.bodies_kernels:close", ints, slopes, apart=True)
     return bodies
+
+
+def reserve_part(assembly: Assembly, whole: Bodies, state: ModelState, first: int, last: int) -> Bodies:
+    """Put the masses first..last-1 of others into the state of a block (kinds.Model.assemble_part)."""
+    here = slice(first, last)
+    inverse = state.floats[whole.inverse_at : whole.inverse_at + whole.count]
+    return reserve(
+        whole.model,
+        assembly,
+        positions(whole, state)[here],
+        velocities(whole, state)[here],
+        masses(whole, state)[here],
+        radii(whole, state)[here],
+        inverse[here] == 0.0,
+    )
 
 
 def own_blocks(bodies: Bodies, column_at: int) -> tuple[Any, Any]:

@@ -118,6 +118,8 @@ class IslandAssembly:
     """
 
     setting: Setting
+    whole: int = 0
+    """Of a block: the bodies of the whole island."""
     places: Callable[[Link], NDArray[int64] | None] = lambda link: None
     _starts: list[Floats] = field(default_factory=list)
     _size: int = 0
@@ -133,6 +135,7 @@ class IslandAssembly:
     _varying: list[tuple[int, Value]] = field(default_factory=list)
     _largest_step: float = float("inf")
     _grids: list[Grid] = field(default_factory=list)
+    _apart: bool = True
     _word: tuple[str, Span | None, str | None] = ("island", None, None)
     _remembered: dict[tuple[str, str | None], tuple[int, ...]] = field(default_factory=dict)
 
@@ -202,16 +205,26 @@ class IslandAssembly:
         kernel: str,
         ints: Sequence[int],
         jacobian: Slopes | Callable[[], Slopes | None] | None = None,
+        apart: bool = False,
     ) -> None:
         """Add a term to the rate."""
+        self._apart = self._apart and apart
         self._terms[stage].append(_Block((kernel,), tuple(ints), slopes=jacobian))
 
     def inertia(self, velocity_at: int, inverse_at: int, count: int) -> None:
         """Say which rows of the Jacobian inverse masses multiply (system.Assembly)."""
         self._masses.append((velocity_at, inverse_at, count))
 
-    def contact(self, mode: Literal["exact", "local"], kernels: Sequence[str], ints: Sequence[int], pairs: int) -> None:
+    def contact(
+        self,
+        mode: Literal["exact", "local"],
+        kernels: Sequence[str],
+        ints: Sequence[int],
+        pairs: int,
+        apart: bool = False,
+    ) -> None:
         """Add contacts."""
+        self._apart = self._apart and apart and mode == "local"
         (self._exact if mode == "exact" else self._local).append(_Block(tuple(kernels), tuple(ints), pairs))
 
     def grid(self, grid: Grid) -> None:
@@ -241,8 +254,8 @@ class IslandAssembly:
         return self._word[1]
 
     def body_count(self) -> int:
-        """Number of bodies of the island so far."""
-        return self._bodies
+        """Number of bodies of the island so far; in a block that of the whole."""
+        return max(self._bodies, self.whole)
 
     def remember(self, *ints: int) -> None:
         """Keep integers for the word's own reading (ModelState.ints)."""
@@ -252,6 +265,11 @@ class IslandAssembly:
     def remembered(self, name: str, model: str | None = None) -> tuple[int, ...]:
         """What a word asked to be remembered (a force: for this model)."""
         return self._remembered.get((name, model), ())
+
+    @property
+    def apart(self) -> bool:
+        """Whether no body feels another one, by what its terms and contacts say."""
+        return self._apart and not any(self._inputs().reads_state(value.expr) for _, value in self._varying)
 
     @property
     def contact_mode(self) -> str:

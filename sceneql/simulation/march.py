@@ -12,7 +12,7 @@ import numpy as np
 from sceneql.failure import LimitRefused, RunFailure
 from sceneql.simulation import march_kernels as kernels
 from sceneql.simulation.driver import driver, function, jacobian
-from sceneql.simulation.island import System
+from sceneql.simulation.island import IslandAssembly, System
 from sceneql.simulation.pointers_kernels import addresses
 from sceneql.simulation.switching import Switch
 from sceneql.system import Prepared
@@ -155,20 +155,37 @@ class March:
         Raises RunFailure, with the part and line of the entry of the state that failed.
         """
         t = min(t, self.end)
+        y, at_the_end = self._reach(t)
+        y = y.copy() if at_the_end else y
+        return y, self.rate(t, y)
+
+    def view(self, t: float) -> tuple[Floats, Floats]:
+        """As `advance`, valid until the next call; at the end of a step the rate is that which the step found."""
+        t = min(t, self.end)
+        y, at_the_end = self._reach(t)
+        return y, self._rate1 if at_the_end else self.rate(t, y)
+
+    def memory(self, name: str, assembly: IslandAssembly, t: float, y: Floats) -> tuple[Floats, tuple[int, ...]]:
+        """What a contact remembers at the instant reached: floats and the integers that say where in them."""
+        return self.floats_at(t, y), assembly.remembered(name)
+
+    def _reach(self, t: float) -> tuple[Floats, bool]:
+        """March on to an instant: the state there, and whether it is the end of a step, in the march's own array."""
         if not self._started:
             self._start()
         if t > self._clock[kernels.T1]:
             self._march(t)
         t0, t1 = float(self._clock[kernels.T0]), float(self._clock[kernels.T1])
-        y = self._y1.copy()
-        if t < t1:
-            h = t1 - t0
-            if self._extend is not None and self._extended != t1:
-                self._extend_step(t0, h)
-                self._extended = t1
-            steps = (self._y0, self._rate0, self._y1, self._rate1, self._work, self._settings, self._numbers)
-            self._dense((t - t0) / h, h, *steps, y)
-        return y, self.rate(t, y)
+        if not t < t1:
+            return self._y1, True
+        h = t1 - t0
+        if self._extend is not None and self._extended != t1:
+            self._extend_step(t0, h)
+            self._extended = t1
+        y = np.empty_like(self._y1)
+        steps = (self._y0, self._rate0, self._y1, self._rate1, self._work, self._settings, self._numbers)
+        self._dense((t - t0) / h, h, *steps, y)
+        return y, False
 
     def _extend_step(self, t0: float, h: float) -> None:
         """Let the last step get what its dense output needs; not counted as cost, as frames must not change it."""
@@ -217,6 +234,9 @@ class March:
     def _march(self, target: float) -> None:
         started = time.perf_counter()
         counts, clock = self._counts, self._clock
+        if counts[kernels.HELD] and not math.isnan(self._floats_time):
+            # What terms leave for contacts to read is that of the step's end again, wherever frames have looked.
+            self.rate(float(clock[kernels.T1]), self._y1)
         self._floats_time = math.nan
         while True:
             left = max(100, ENTRIES_A_CALL // (len(self._y1) + 10))

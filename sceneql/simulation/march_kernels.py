@@ -207,7 +207,8 @@ def march(
             return status
         if counts[LAST_STAGE] >= 0:
             copy(work[counts[LAST_STAGE] * n :], rate1)
-        elif counts[LOCAL] == 0 or leaving.size > 0 or counts[HELD] > 0:
+        elif counts[LOCAL] == 0 or leaving.size > 0 or (counts[HELD] > 0 and counts[ORDER] > 1):
+            # (What a first-order method holds may follow what pressed at the step's start.)
             rate(t1, y1, rate1, floats, ints)
         if leaving.size > 0:
             pair, reached = find_event(

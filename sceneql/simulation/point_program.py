@@ -84,9 +84,8 @@ def add_force(
         rows = bodies.velocity_at + np.array([c for c, _ in entries], dtype=np.int64)
         return Slopes(kernel(), (first + rows).ravel(), (first + columns).ravel(), ints)
 
-    assembly.term(
-        "force", _kernel("force", printer, outputs), store(constants), slopes if entries else Slopes("", (), ())
-    )
+    name = _kernel("force", printer, outputs)
+    assembly.term("force", name, store(constants), slopes if entries else Slopes("", (), ()), apart=charge[1] == 0)
 
 
 def _slopes(rows: Sequence[Expr]) -> tuple[list[tuple[int, int]], Callable[[], str], Constants]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, cast
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from sceneql.failure import RunFailure, failing_as
-from sceneql.graph import Island, SimulationGraph, Task
+from sceneql.graph import Island, SimulationGraph
 from sceneql.kinds import Contact, Force, Material, Model, Object, Ref, Solver, Value
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.evaluate import evaluate
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Surface
     from sceneql.frame import Shape as Drawn
     from sceneql.simulation.march import March
-    from sceneql.system import Bodies, ModelState
+    from sceneql.system import ModelState
 
 IDENTITY = np.eye(3, 4)
 BOUNDS_MOMENTS = 49
@@ -72,93 +71,36 @@ class Run:
         return lows.min(axis=0), highs.max(axis=0)
 
 
-@dataclass(frozen=True, slots=True)
-class Setting:
-    """What an island's assembly may ask of the scene."""
-
-    tasks: Mapping[str, Task]
-
-    def object(self, ref: Ref) -> Object:
-        """The kind of an object of the script, as written."""
-        task = self.tasks[ref.name]
-        return cast(Object, task.original or task.kind)
-
-    def formula(self, link: Link) -> Expr | None:
-        """The output of a kinematic model, or an object's field, as an expression; None for a dynamic model's."""
-        kind = self.tasks[link.task].kind
-        if isinstance(kind, Model):
-            return kind.formula(link.output) if kind.kinematic else None
-        value = getattr(kind, link.output, None)
-        return value.expr if isinstance(value, Value) else None
-
-
 class IslandRun:
     """An island on its way: its assembly, its march and its latest state."""
 
     def __init__(self, graph: SimulationGraph, island: Island) -> None:
-        from sceneql.simulation.island import IslandAssembly
+        from sceneql.simulation.assembled import blocks_of, models_of
         from sceneql.simulation.march import March
+        from sceneql.simulation.march_blocks import BlockMarch
 
         self.graph, self.island = graph, island
         self.solver = cast(Solver, graph.tasks[island.solver].kind)
-        self.assembly = assembly = IslandAssembly(Setting(graph.tasks))
-        self.found = Diagnostics()
-        self.bodies: dict[str, Bodies | None] = {}
-        for name in island.models:
-            with self._word(name):
-                self.bodies[name] = cast(Model, graph.tasks[name].kind).assemble(name, assembly)
+        made = models_of(graph, island)
+        self.bodies = made.bodies
+        self.assembly = assembly = made.assembly
         assembly.places = self._places
-        for force in dict.fromkeys(force for force, _ in island.forces):
-            self._add_force(force)
-        contacts = dict.fromkeys(contact for contact, _, _ in island.contacts)
-        # Masses among themselves last: objects need the whole path of a step as the solver made it.
-        for contact in sorted(contacts, key=lambda name: cast(Contact, graph.tasks[name].kind).mutual):
-            self._add_contact(contact)
-        self.found.raise_errors()
+        made.act()
+        made.found.raise_errors()
         if assembly.only_field is not None:
             self.solver = self.solver.on_grid()
-        stepper = self.solver.stepper()
+        stepper, end = self.solver.stepper(), graph.settings.clock.end
         if assembly.only_field is not None and stepper.on_grid is not None:
             stepper = stepper.on_grid
-        self.march: March = March(
-            assembly.finish(stepper.jacobian), stepper, graph.settings.clock.end, lambda: assembly.finish(jacobian=True)
+        system = assembly.finish(stepper.jacobian)
+        blocks = blocks_of(made, system, stepper)
+        self.march: March = (
+            BlockMarch(system, stepper, end, blocks)
+            if blocks
+            else March(system, stepper, end, lambda: assembly.finish(jacobian=True))
         )
         self.members = {*island.models, *(contact for contact, _, _ in island.contacts)}
         self._now: tuple[float, Floats, Floats] | None = None
-
-    @contextmanager
-    def _word(self, name: str, model: str | None = None) -> Iterator[None]:
-        """What is added inside comes from the part ``name``; what is wrong with it does not hide what else is."""
-        with self.assembly.word(name, self.graph.tasks[name].span, model):
-            try:
-                yield
-            except ScriptError as error:
-                self.found.extend(error.diagnostics)
-
-    def _add_force(self, force: str) -> None:
-        """Add a force on the masses of all its models."""
-        task = self.graph.tasks[force]
-        kind = cast(Force, task.kind)
-        everyone = [self.bodies.get(model) for name, model in self.island.forces if name == force]
-        masses = [bodies for bodies in everyone if bodies is not None]
-        if kind.mutual and masses:
-            with self._word(force):
-                kind.assemble_together(force, self.assembly, masses)
-        for bodies in masses if not kind.mutual else ():
-            with self._word(force, bodies.model):
-                kind.assemble(force, self.assembly, bodies)
-
-    def _add_contact(self, contact: str) -> None:
-        """Add a contact of the masses of all its models with its objects."""
-        task = self.graph.tasks[contact]
-        kind = cast(Contact, task.kind)
-        rows = [(self.bodies.get(model), others) for name, model, others in self.island.contacts if name == contact]
-        masses = [(bodies, tuple(Ref(other) for other in others)) for bodies, others in rows if bodies is not None]
-        with self._word(contact):
-            if kind.mutual and masses:
-                kind.assemble_together(contact, self.assembly, [bodies for bodies, _ in masses], masses[0][1])
-            for bodies, refs in masses if not kind.mutual else ():
-                kind.assemble(contact, self.assembly, bodies, refs)
 
     def _places(self, link: Link) -> Any:
         """Where in the state an output of one of the models stands, for values that read it at stage times."""
@@ -190,6 +132,9 @@ class IslandRun:
         time, y, rate = self._now
         floats = self.march.floats_at(time, y)
         bodies = self.bodies.get(name)
+        if name not in self.bodies:
+            memory, ints = self.march.memory(name, self.assembly, time, y)
+            return ModelState(time, y, rate, memory, None, ints)
         state = ModelState(time, y, rate, floats, bodies, self.assembly.remembered(name))
         if bodies is None:
             return state

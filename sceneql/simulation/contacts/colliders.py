@@ -58,7 +58,8 @@ def must_be_outside(model: str, refs: Sequence[Ref], ints: Sequence[int], assemb
 
 def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """All but the last of an object's integers, and the further ones of its shape."""
-    from sceneql.simulation.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, SURFACE_TYPE, number_of
+    from sceneql.simulation.contacts import shape_kernels as one_by_one
+    from sceneql.simulation.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, NEAR_TYPE, SURFACE_TYPE, number_of
 
     kind = assembly.object(ref)
     try:
@@ -75,6 +76,7 @@ def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, 
     shape = import_module(f"sceneql.simulation.contacts.shapes.{here.shape}_kernels")
     signatures = {"surface": SURFACE_TYPE, "bend": BEND_TYPE, "clear": CLEAR_TYPE}
     numbers = [number_of(getattr(shape, name), signature) for name, signature in signatures.items()]
+    numbers.append(number_of(getattr(shape, "near", one_by_one.near), NEAR_TYPE))
     places = (here.position_at, here.rotation_at, here.size_at, here.depth_at)
     return (*numbers, *places, *poses), here.data
 

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 TALLY = ("hits.count", "hits.first.time", "hits.last.time", "hits.last.speed", "rest.time")
 MOST_EXACT = 8
+MOST_CUT = 4096
+"""Bodies above which no step is cut at an impact: looking costs more than it gives."""
 
 
 class Collision(Contact):
@@ -65,7 +67,7 @@ class Collision(Contact):
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies, others: tuple[Ref, ...]) -> None:
         """Add the contacts of one model with the objects. Raises ScriptError for one that cannot be collided with."""
         from sceneql.simulation.contacts.colliders import must_be_outside, step_by_springs, surfaces
-        from sceneql.simulation.contacts.impulse_kernels import HEAD, INSTANT
+        from sceneql.simulation.contacts.impulse_kernels import HEAD, INSTANT, MOST_CUTS
         from sceneql.simulation.contacts.resting_kernels import PAIR
 
         if not others:
@@ -75,6 +77,7 @@ class Collision(Contact):
         objects = surfaces(touched, assembly, HEAD)
         exact = self.mode == "exact" or (self.mode == "auto" and assembly.body_count() <= MOST_EXACT)
         nan = float("nan")
+        cuts = (0.0, 0.0, 0.0) if assembly.body_count() <= MOST_CUT else (float("inf"), 0.0, MOST_CUTS)
         tally_at = assembly.floats([0.0, nan, nan, 0.0, nan])
         pairs = bodies.count * len(others)
         numbers = (
@@ -83,7 +86,7 @@ class Collision(Contact):
             assembly.floats([self.thickness]),
             tally_at,
             assembly.floats([0.0] * (pairs * PAIR)),
-            assembly.floats([nan] * (bodies.count * INSTANT) if exact else [0.0] * 4),
+            assembly.floats([nan] * (bodies.count * INSTANT) if exact else [*cuts, 0.0, *[0.0] * bodies.count]),
             len(others),
         )
         masses = (bodies.position_at, bodies.velocity_at, bodies.work_at, bodies.mass_at, bodies.inverse_at)
@@ -96,8 +99,8 @@ class Collision(Contact):
             assembly.term("constrain", f"{folder}.collision_kernels:constrain", ints)
         else:
             step_by_springs(bodies, assembly)
-            assembly.contact("local", (f"{folder}.settle_kernels:settle",), ints, pairs)
-            assembly.term("constrain", f"{folder}.settle_kernels:constrain", ints)
+            assembly.contact("local", (f"{folder}.settle_kernels:settle",), ints, pairs, apart=True)
+            assembly.term("constrain", f"{folder}.settle_kernels:constrain", ints, apart=True)
         assembly.remember(tally_at)
 
     def read(self, output: str, state: ModelState) -> Any:

@@ -7,7 +7,7 @@ body's memory in the floats: the last accepted instant, its place and velocity t
 
 import numpy as np
 
-from sceneql.kernels import inlined, kernel
+from sceneql.kernels import kernel, lean, lean_inlined
 from sceneql.simulation.contacts.impulse_kernels import (
     BODIES,
     FRICTION,
@@ -53,7 +53,7 @@ LOWEST_FLIGHT = 4e-13
 """Height of a bounce, as a part of the coordinates, that rounding can still resolve: below it the body rests."""
 
 
-@inlined
+@lean_inlined
 def swept(t, k, at, x, y, z, vx, vy, vz, distance, reach, path, floats, ints):
     """The gap; negative also where the path since the last accepted instant went through the object."""
     last = ints[LAST] + INSTANT * k
@@ -99,7 +99,7 @@ def gap(t, y, gaps, floats, ints):
             gaps[pair] = swept(t, k, at, px, py, pz, vx, vy, vz, d, reach, path, floats, ints)
 
 
-@inlined
+@lean_inlined
 def note_instant(t, k, y, floats, ints):
     """Remember where body k is and how fast, at an accepted instant."""
     last = ints[LAST] + INSTANT * k
@@ -109,7 +109,7 @@ def note_instant(t, k, y, floats, ints):
         floats[last + 4 + c] = y[ints[VELOCITY] + 3 * k + c]
 
 
-@inlined
+@lean_inlined
 def hold(t, y, floats, ints):
     """Keep what rests on its surface, let go what has left it, and note the accepted instant."""
     for k in range(ints[BODIES]):
@@ -119,7 +119,7 @@ def hold(t, y, floats, ints):
         note_instant(t, k, y, floats, ints)
 
 
-@kernel(IMPACT)
+@lean(IMPACT)
 def impact(t, y, pair, floats, ints):
     """The impulse of a pair at its impact, or the end of its sliding; pair -1: `hold`."""
     if pair < 0:
@@ -160,7 +160,7 @@ def impact(t, y, pair, floats, ints):
     note_instant(t, k, y, floats, ints)
 
 
-@kernel(TERM)
+@lean(TERM)
 def constrain(t, y, rate, floats, ints):
     """What the surfaces do to the accelerations; impacts want to know how free pairs press."""
     support(True, y, rate, floats, ints)

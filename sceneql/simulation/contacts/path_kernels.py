@@ -8,7 +8,7 @@ import math
 
 from numba import types
 
-from sceneql.kernels import inlined, kernel
+from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.contacts.impulse_kernels import STILL
 from sceneql.simulation.contacts.shape_kernels import DEPTH, clear, surface
 from sceneql.system_kernels import A, F, I, N
@@ -19,7 +19,7 @@ TOUCH = 1e-12
 """Distance, as a part of the coordinates (or of a meter), below which a body touches."""
 
 
-@inlined
+@lean_inlined
 def place(path, s):
     """The point at 0 <= s <= 1."""
     h = path[12]
@@ -31,13 +31,13 @@ def place(path, s):
     return x, y, z
 
 
-@inlined
+@lean_inlined
 def middle(path, k):
     """Middle Bezier coefficient of the velocity's component k."""
     return 3.0 * (path[6 + k] - path[k]) / path[12] - path[3 + k] - path[9 + k]
 
 
-@inlined
+@lean_inlined
 def moving(path, s):
     """The velocity at 0 <= s <= 1."""
     r = 1.0 - s
@@ -48,7 +48,7 @@ def moving(path, s):
     return x, y, z
 
 
-@inlined
+@lean_inlined
 def length_bound(path):
     """An upper bound of the path's length: its duration times the largest Bezier coefficient of the velocity."""
     start = path[3] ** 2 + path[4] ** 2 + path[5] ** 2
@@ -57,14 +57,14 @@ def length_bound(path):
     return path[12] * math.sqrt(max(start, max(end, between)))
 
 
-@inlined
+@lean_inlined
 def gap_at(path, s, floats, ints, at, reach):
     """Distance of the body from the surface at s."""
     x, y, z = place(path, s)
     return surface(floats, ints, at, x, y, z)[0] - reach
 
 
-@inlined
+@lean_inlined
 def root(path, floats, ints, at, reach, contact, deflate, low, f_low, high, f_high):
     """The zero of gap - contact in [low, high] by false position (Illinois rule: Dowell & Jarratt 1971)."""
     side = 0
@@ -92,14 +92,14 @@ def root(path, floats, ints, at, reach, contact, deflate, low, f_low, high, f_hi
     return last
 
 
-@inlined
+@lean_inlined
 def clear_piece(path, length, s, ds, floats, ints, at, reach):
     """Whether it is proved that a body of that reach is clear of the object from s to s + ds."""
     x, y, z = place(path, s + 0.5 * ds)
     return clear(floats, ints, at, x, y, z, 0.5 * ds * length + reach)
 
 
-@kernel(types.float64(A, A, I, N, F))
+@lean(types.float64(A, A, I, N, F))
 def first_contact(path, floats, ints, at, reach):
     """Where on the path (0 <= s <= 1) a body of that reach first enters the object at ints[at:]; NEVER if nowhere.
 

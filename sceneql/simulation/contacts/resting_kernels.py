@@ -14,7 +14,7 @@ import math
 
 from numba import types
 
-from sceneql.kernels import inlined, kernel
+from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.contacts.impulse_kernels import (
     BODIES,
     FRICTION,
@@ -50,11 +50,12 @@ CREEP = 1e-3
 
 SWEEPS = 50
 
-RESTING = 3
-"""In `local` mode, the place in the contact's memory (settle_kernels) of the number of resting pairs."""
+RESTING, LIST = 3, 4
+"""In `local` mode, the places in the contact's memory (settle_kernels) of the number of resting bodies, and of their
+numbers: most bodies fly, and the others are found without looking at all."""
 
 
-@inlined
+@lean_inlined
 def body_of(ints, k, y):
     """Place of body k, its velocity, and its reach's offset parts."""
     at = ints[POSITION] + 3 * k
@@ -62,7 +63,7 @@ def body_of(ints, k, y):
     return y[at], y[at + 1], y[at + 2], y[to], y[to + 1], y[to + 2]
 
 
-@inlined
+@lean_inlined
 def set_velocity(k, x, y, z, state, floats, ints):
     """Give body k a velocity; the kinetic energy that this takes is counted as dissipated."""
     at = ints[VELOCITY] + 3 * k
@@ -72,7 +73,7 @@ def set_velocity(k, x, y, z, state, floats, ints):
     state[at], state[at + 1], state[at + 2] = x, y, z
 
 
-@kernel(types.void(F, N, F, F, F, F, F, F, A, I))
+@lean(types.void(F, N, F, F, F, F, F, F, A, I))
 def come_to_rest(t, memory, vx, vy, vz, nx, ny, nz, floats, ints):
     """Note that a pair rests from t on: sliding along v (relative to the surface), or sticking."""
     if math.isnan(floats[ints[TALLY] + REST_TIME]):
@@ -89,7 +90,7 @@ def come_to_rest(t, memory, vx, vy, vz, nx, ny, nz, floats, ints):
         floats[memory + ALONG + 2] = tz / slip
 
 
-@kernel(types.boolean(F, N, N, A, A, I))
+@lean(types.boolean(F, N, N, A, A, I))
 def keep(t, k, j, y, floats, ints):
     """Hold a resting pair on its surface, or let it go when it has left: whether anything changed."""
     memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
@@ -126,7 +127,7 @@ def keep(t, k, j, y, floats, ints):
     return changed
 
 
-@kernel(FOUR(N, N, A, A, A, I))
+@lean(FOUR(N, N, A, A, A, I))
 def pressing(k, j, y, rate, floats, ints):
     """Second derivative of the gap [m/s^2] and the normal (3) there."""
     at = HEAD + OBJECT * j
@@ -139,7 +140,7 @@ def pressing(k, j, y, rate, floats, ints):
     return press + bend(floats, ints, at, px, py, pz, vx - ux, vy - uy, vz - uz), nx, ny, nz
 
 
-@inlined
+@lean_inlined
 def away(k, j, y, floats, ints):
     """Whether a pair is too far apart for its normal acceleration to matter."""
     px, py, pz, _, _, _ = body_of(ints, k, y)
@@ -147,23 +148,41 @@ def away(k, j, y, floats, ints):
     return gap > NEAR * scale_of(px, py, pz)
 
 
-@inlined
+@lean_inlined
 def press_of_pairs(k, near, y, rate, floats, ints):
-    """Store how each resting pair would press if nothing held it, and each free one if asked; the resting ones."""
-    resting = 0
+    """Store how each resting pair would press if nothing held it, and each free one if asked.
+
+    The number of resting ones; of the last of these the memory and the normal (3).
+    """
+    resting, last = 0, 0
+    nx, ny, nz = 0.0, 0.0, 0.0
     for j in range(ints[OBJECTS]):
         memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
-        if floats[memory] != FREE:
-            resting += 1
-        elif not near or away(k, j, y, floats, ints):
+        rests = floats[memory] != FREE
+        if not rests and (not near or away(k, j, y, floats, ints)):
             continue
+        press, ax, ay, az = pressing(k, j, y, rate, floats, ints)
         floats[memory + LOAD] = 0.0
-        floats[memory + PRESS] = pressing(k, j, y, rate, floats, ints)[0]
-    return resting
+        floats[memory + PRESS] = press
+        if rests:
+            resting += 1
+            last, nx, ny, nz = memory, ax, ay, az
+    return resting, last, nx, ny, nz
 
 
-@inlined
-def carry(k, resting, y, rate, floats, ints):
+@lean_inlined
+def bear(k, memory, nx, ny, nz, rate, floats, ints):
+    """The normal force that leaves a single resting pair not pressing."""
+    to = ints[VELOCITY] + 3 * k
+    load = max(0.0, -floats[memory + PRESS])
+    floats[memory + LOAD] = load
+    rate[to] += load * nx
+    rate[to + 1] += load * ny
+    rate[to + 2] += load * nz
+
+
+@lean_inlined
+def carry(k, y, rate, floats, ints):
     """Normal forces, none negative, that leave no resting pair pressing: projected Gauss-Seidel over the pairs."""
     to = ints[VELOCITY] + 3 * k
     for _ in range(SWEEPS):
@@ -172,12 +191,7 @@ def carry(k, resting, y, rate, floats, ints):
             memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
             if floats[memory] == FREE:
                 continue
-            if resting == 1:
-                px, py, pz, _, _, _ = body_of(ints, k, y)
-                _, nx, ny, nz = surface(floats, ints, HEAD + OBJECT * j, px, py, pz)
-                press = floats[memory + PRESS]
-            else:
-                press, nx, ny, nz = pressing(k, j, y, rate, floats, ints)
+            press, nx, ny, nz = pressing(k, j, y, rate, floats, ints)
             load = max(0.0, floats[memory + LOAD] - press)
             add = load - floats[memory + LOAD]
             floats[memory + LOAD] = load
@@ -185,11 +199,11 @@ def carry(k, resting, y, rate, floats, ints):
             rate[to + 1] += add * ny
             rate[to + 2] += add * nz
             change = max(change, abs(add))
-        if resting == 1 or change < 1e-12:
+        if change < 1e-12:
             break
 
 
-@inlined
+@lean_inlined
 def rub(k, y, rate, floats, ints):
     """Coulomb's friction of resting pairs: against the sliding, or up to its bound against the pull."""
     mu = floats[ints[FRICTION]]
@@ -197,7 +211,7 @@ def rub(k, y, rate, floats, ints):
     for j in range(ints[OBJECTS]):
         memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
         most = mu * floats[memory + LOAD]
-        if floats[memory] == FREE or floats[memory] == CREEPS or mu == 0.0:
+        if floats[memory] == FREE or floats[memory] == CREEPS:
             continue
         at = HEAD + OBJECT * j
         px, py, pz, vx, vy, vz = body_of(ints, k, y)
@@ -231,18 +245,22 @@ def rub(k, y, rate, floats, ints):
         rate[ints[WORK]] += floats[ints[MASS] + k] * most * (dx * vx + dy * vy + dz * vz)
 
 
-@kernel(types.void(types.boolean, A, A, A, I))
+@lean(types.void(types.boolean, A, A, A, I))
 def support(near, y, rate, floats, ints):
     """Take from the acceleration of bodies that rest what pushes into the surface, and add Coulomb's friction.
 
     With ``near`` it is also noted how free pairs would press.
     """
-    if not near and floats[ints[LAST] + RESTING] == 0.0:
-        return
-    for k in range(ints[BODIES]):
+    resting_at = ints[LAST] + LIST
+    count = ints[BODIES] if near else int(floats[ints[LAST] + RESTING])
+    for i in range(count):
+        k = i if near else int(floats[resting_at + i])
         if floats[ints[INVERSE] + k] == 0.0:
             continue
-        resting = press_of_pairs(k, near, y, rate, floats, ints)
-        if resting > 0:
-            carry(k, resting, y, rate, floats, ints)
+        resting, memory, nx, ny, nz = press_of_pairs(k, near, y, rate, floats, ints)
+        if resting > 1:
+            carry(k, y, rate, floats, ints)
+        elif resting == 1:
+            bear(k, memory, nx, ny, nz, rate, floats, ints)
+        if resting > 0 and floats[ints[FRICTION]] > 0.0:
             rub(k, y, rate, floats, ints)

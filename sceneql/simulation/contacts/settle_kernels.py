@@ -10,7 +10,7 @@ two steps is no impact: the body rests (resting_kernels), and slides for the res
 import numpy as np
 from numba import types
 
-from sceneql.kernels import inlined, kernel
+from sceneql.kernels import inlined, kernel, lean, lean_inlined
 from sceneql.simulation.contacts.impulse_kernels import (
     BODIES,
     FRICTION,
@@ -18,6 +18,7 @@ from sceneql.simulation.contacts.impulse_kernels import (
     INVERSE,
     LAST,
     MASS,
+    MOST_CUTS,
     OBJECTS,
     PAIRS,
     POSITION,
@@ -31,8 +32,19 @@ from sceneql.simulation.contacts.impulse_kernels import (
     count_hit,
 )
 from sceneql.simulation.contacts.path_kernels import NEVER, PATH, first_contact, moving, place
-from sceneql.simulation.contacts.resting_kernels import CREEPS, FREE, PAIR, RESTING, SLIDES, come_to_rest, keep, support
-from sceneql.simulation.contacts.shape_kernels import MOVING, OBJECT, clear, surface, velocity
+from sceneql.simulation.contacts.resting_kernels import (
+    CREEPS,
+    FREE,
+    LIST,
+    PAIR,
+    PRESS,
+    RESTING,
+    SLIDES,
+    come_to_rest,
+    keep,
+    support,
+)
+from sceneql.simulation.contacts.shape_kernels import MOVING, NEAR, OBJECT, clear, near_at, surface, velocity
 from sceneql.simulation.contacts.slide_kernels import brake, fly_on, slide, start_with
 from sceneql.system_kernels import SETTLE, TERM, A, F, I, N
 
@@ -40,14 +52,10 @@ MOST_IMPACTS = 8
 """Impacts of a body in one step; after that it is only kept outside."""
 
 END, WHOLE, CUTS = range(3)
-"""Memory of a contact in the floats: end and length of the step before it was cut, how often it was; resting pairs."""
+"""Memory of a contact in the floats: end and length of the step before it was cut, how often it was; then RESTING."""
 
-MOST_CUTS = 16
-"""Times that one step is cut."""
 FEW = 8
 """Bodies with an impact in a step, above which it is not cut."""
-MANY = 4096
-"""Bodies above which no step is cut: looking costs more than it gives."""
 AFTER_IMPACT = 1e-4
 """Where a cut step ends, in parts of the step after the impact."""
 
@@ -57,7 +65,7 @@ sets it to HOLDS where bodies rest: then the rate at the next step's end must be
 HOLDS = -1.0
 
 
-@inlined
+@lean_inlined
 def shift(path, ux, uy, uz, h):
     """Add a constant velocity to the path, about its end."""
     if ux != 0.0 or uy != 0.0 or uz != 0.0:
@@ -72,7 +80,7 @@ def shift(path, ux, uy, uz, h):
         path[11] += uz
 
 
-@kernel(types.Tuple((F, N))(N, F, A, A, I))
+@lean(types.Tuple((F, N))(N, F, A, A, I))
 def earliest(k, reach, path, floats, ints):
     """The first contact on the path with an object that the body does not rest on: (s, the object).
 
@@ -94,7 +102,7 @@ def earliest(k, reach, path, floats, ints):
     return best, first
 
 
-@kernel(types.boolean(F, F, N, A, A, A, I))
+@lean(types.boolean(F, F, N, A, A, A, I))
 def hits(s, whole, j, path, mean, floats, ints):
     """Whether the contact at s with object j is an impact, not the beginning of rest."""
     at = HEAD + OBJECT * j
@@ -106,7 +114,7 @@ def hits(s, whole, j, path, mean, floats, ints):
     return (vx - ux) * nx + (vy - uy) * ny + (vz - uz) * nz < 2.0 * press * whole
 
 
-@inlined
+@lean_inlined
 def fly(k, t1, whole, reach, path, mean, floats, ints):
     """Take the path through its impacts; the energy by mass that they take [J/kg]. ``whole``: length of a step."""
     length = path[12]
@@ -149,7 +157,7 @@ def fly(k, t1, whole, reach, path, mean, floats, ints):
     return lost
 
 
-@inlined
+@lean_inlined
 def push_out(reach, path, mean, floats, ints):
     """Put the path's end outside of all objects; the energy by mass of approach and of place that this takes."""
     work = 0.0
@@ -176,26 +184,32 @@ def push_out(reach, path, mean, floats, ints):
     return work + 0.5 * (before - path[9] ** 2 - path[10] ** 2 - path[11] ** 2)
 
 
-@inlined
-def far(k, h, reach, y0, y1, floats, ints):
-    """Whether a body is surely too far from all objects to touch one in the step: then it costs next to nothing."""
-    at, to = ints[POSITION] + 3 * k, ints[VELOCITY] + 3 * k
-    way = 0.0
-    for c in range(3):
-        # The largest component of the Bezier coefficients of the path's velocity.
-        middle = 3.0 * (y1[at + c] - y0[at + c]) / h - y0[to + c] - y1[to + c]
-        way += max(abs(middle), max(abs(y0[to + c]), abs(y1[to + c])))
-    way *= h
+@lean(types.void(F, A, A, A, A, I))
+def find_near(h, y0, y1, found, floats, ints):
+    """Set found[k] to 1 for the bodies that may touch something in the step, or rest: the others cost next to nothing.
+
+    found (bodies,): zeros.
+    """
+    n = ints[BODIES]
+    at, to = ints[POSITION], ints[VELOCITY]
+    x0, v0, x1, v1 = y0[at : at + 3 * n], y0[to : to + 3 * n], y1[at : at + 3 * n], y1[to : to + 3 * n]
+    radii = floats[ints[RADIUS] : ints[RADIUS] + n]
     for j in range(ints[OBJECTS]):
-        pair = k * ints[OBJECTS] + j
-        if floats[ints[PAIRS] + PAIR * pair] != FREE or ints[HEAD + OBJECT * j + MOVING] != 0:
-            return False
-        if not clear(floats, ints, HEAD + OBJECT * j, y1[at], y1[at + 1], y1[at + 2], way + reach):
-            return False
-    return True
+        place = HEAD + OBJECT * j
+        if ints[place + MOVING] != 0:
+            for k in range(n):
+                found[k] = 1.0
+        else:
+            near_at(ints[place + NEAR])(floats, ints, place, h, x0, v0, x1, v1, radii, floats[ints[THICKNESS]], found)
+    memory = ints[LAST]
+    for i in range(int(floats[memory + RESTING])):
+        found[int(floats[memory + LIST + i])] = 1.0
+    for k in range(n):
+        if floats[ints[INVERSE] + k] == 0.0:
+            found[k] = 0.0
 
 
-@inlined
+@lean_inlined
 def set_out(k, h, y0, y1, path, mean, ints):
     """The path of body k in the step of length h, and its mean acceleration."""
     at, to = ints[POSITION] + 3 * k, ints[VELOCITY] + 3 * k
@@ -213,14 +227,16 @@ def look(t0, t1, y0, y1, path, mean, floats, ints):
     memory = ints[LAST]
     if t1 > floats[memory + END]:
         floats[memory + END], floats[memory + WHOLE], floats[memory + CUTS] = t1, h, 0.0
-    if ints[BODIES] > MANY or floats[memory + CUTS] >= MOST_CUTS:
+    if floats[memory + CUTS] >= MOST_CUTS:
         return
     first = 1.0
     count = 0
+    found = np.zeros(ints[BODIES])
+    find_near(h, y0, y1, found, floats, ints)
     for k in range(ints[BODIES]):
-        reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
-        if floats[ints[INVERSE] + k] == 0.0 or far(k, h, reach, y0, y1, floats, ints):
+        if found[k] == 0.0:
             continue
+        reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
         set_out(k, h, y0, y1, path, mean, ints)
         s, j = earliest(k, reach, path, floats, ints)
         if s != NEVER and hits(s, floats[memory + WHOLE], j, path, mean, floats, ints):
@@ -234,6 +250,42 @@ def look(t0, t1, y0, y1, path, mean, floats, ints):
         floats[memory + CUTS] += 1.0
 
 
+@lean(types.void(F, F, A, A, A, A, A, A, I))
+def settle_found(t0, t1, y0, y1, found, path, mean, floats, ints):
+    """Settle the bodies with found[k] = 1, and note which ones rest."""
+    h = t1 - t0
+    resting = 0
+    for k in range(ints[BODIES]):
+        if found[k] == 0.0:
+            continue
+        reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
+        for j in range(ints[OBJECTS]):
+            brake(t1, k, j, h, y0, y1, floats, ints)
+            keep(t1, k, j, y1, floats, ints)
+        pair = ints[PAIRS] + PAIR * k
+        if ints[OBJECTS] == 1 and floats[pair] != FREE and floats[pair + PRESS] < 0.0:
+            # Held on the only thing that it can meet.
+            floats[ints[LAST] + LIST + resting] = k
+            resting += 1
+            continue
+        set_out(k, h, y0, y1, path, mean, ints)
+        at, to = ints[POSITION] + 3 * k, ints[VELOCITY] + 3 * k
+        lost = fly(k, t1, max(h, floats[ints[LAST] + WHOLE]), reach, path, mean, floats, ints)
+        lost += push_out(reach, path, mean, floats, ints)
+        y1[ints[WORK]] += floats[ints[MASS] + k] * lost
+        for c in range(3):
+            y1[at + c], y1[to + c] = path[6 + c], path[9 + c]
+        rests = False
+        for j in range(ints[OBJECTS]):
+            rests = rests or floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)] != FREE
+        if rests:
+            floats[ints[LAST] + LIST + resting] = k
+            resting += 1
+    floats[ints[LAST] + RESTING] = resting
+    if resting > 0:
+        floats[ASKED] = HOLDS
+
+
 @kernel(SETTLE)
 def settle(t0, t1, y0, rate0, y1, floats, ints):
     """Change y1 so that no body went through a surface in the step from t0 to t1; or only say when it should end."""
@@ -242,32 +294,12 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
     if floats[ASKED] > 0.0:
         look(t0, t1, y0, y1, path, mean, floats, ints)
         return
-    h = t1 - t0
-    resting = 0
-    for k in range(ints[BODIES]):
-        if floats[ints[INVERSE] + k] == 0.0:
-            continue
-        reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
-        if far(k, h, reach, y0, y1, floats, ints):
-            continue
-        for j in range(ints[OBJECTS]):
-            brake(t1, k, j, h, y0, y1, floats, ints)
-            keep(t1, k, j, y1, floats, ints)
-        set_out(k, h, y0, y1, path, mean, ints)
-        at, to = ints[POSITION] + 3 * k, ints[VELOCITY] + 3 * k
-        lost = fly(k, t1, max(h, floats[ints[LAST] + WHOLE]), reach, path, mean, floats, ints)
-        lost += push_out(reach, path, mean, floats, ints)
-        y1[ints[WORK]] += floats[ints[MASS] + k] * lost
-        for c in range(3):
-            y1[at + c], y1[to + c] = path[6 + c], path[9 + c]
-        for j in range(ints[OBJECTS]):
-            resting += floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)] != FREE
-    floats[ints[LAST] + RESTING] = resting
-    if resting > 0:
-        floats[ASKED] = HOLDS
+    found = np.zeros(ints[BODIES])
+    find_near(t1 - t0, y0, y1, found, floats, ints)
+    settle_found(t0, t1, y0, y1, found, path, mean, floats, ints)
 
 
-@kernel(TERM)
+@lean(TERM)
 def constrain(t, y, rate, floats, ints):
     """What the surfaces do to the accelerations; free pairs cost nothing."""
     support(False, y, rate, floats, ints)

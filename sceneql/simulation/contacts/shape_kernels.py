@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""What contacts know of a surface: three kernels of its shape, reached by address, and how it moves.
+"""What contacts know of a surface: four kernels of its shape, reached by address, and how it moves.
 
 A shape's file has
 
@@ -10,8 +10,11 @@ A shape's file has
                                     fast a straight path leaves the surface
     clear(floats, ints, at, x, y, z, radius)   whether it is proved that no point of the object is within radius [m];
                                     asked of bodies that come from outside
+    near(floats, ints, at, h, x0, v0, x1, v1, radii, more, found)   sets found[k] to 1 for every body of radius
+                                    radii[k] + more that is not proved clear on its cubic path in a time h from x0 with
+                                    velocity v0 to x1, v1 (3 n,); a shape that does not have it asks `clear` for each
 
-An object is OBJECT integers at ints[at:]: the three addresses; offsets into the floats of position (3), rotation (4,
+An object is OBJECT integers at ints[at:]: the four addresses; offsets into the floats of position (3), rotation (4,
 unit quaternion [w, x, y, z]), size (the shape's own) and depth (how deep a point can be inside, or less); of the
 seconds between its poses, 0 if it never moves; of position and rotation so much earlier and so much later; and the
 place in ints of further integers of the shape. Velocities and accelerations are central differences of the poses.
@@ -22,10 +25,10 @@ from typing import Any
 import numba
 from numba import types
 
-from sceneql.kernels import address, function_at, inlined, kernel
+from sceneql.kernels import address, function_at, lean, lean_inlined
 from sceneql.system_kernels import A, F, I, N
 
-SURFACE, BEND, CLEAR, PLACE, ROTATION, SIZE, DEPTH, MOVING, BEFORE = range(9)
+SURFACE, BEND, CLEAR, NEAR, PLACE, ROTATION, SIZE, DEPTH, MOVING, BEFORE = range(10)
 AFTER = BEFORE + 2
 DATA = AFTER + 2
 OBJECT = DATA + 1
@@ -35,6 +38,7 @@ THREE = types.UniTuple(F, 3)
 SURFACE_TYPE = FOUR(A, I, N, F, F, F)
 BEND_TYPE = F(A, I, N, F, F, F, F, F, F)
 CLEAR_TYPE = types.boolean(A, I, N, F, F, F, F)
+NEAR_TYPE = types.void(A, I, N, F, A, A, A, A, A, F, A)
 
 _uncompiled: list[Any] = []
 """Functions that stand for their addresses where numba is switched off."""
@@ -53,28 +57,43 @@ def kernel_at(signature: Any) -> Any:
     return _uncompiled.__getitem__ if numba.config.DISABLE_JIT else function_at(types.FunctionType(signature))
 
 
-surface_at, bend_at, clear_at = kernel_at(SURFACE_TYPE), kernel_at(BEND_TYPE), kernel_at(CLEAR_TYPE)
+surface_at, bend_at, clear_at, near_at = (kernel_at(kind) for kind in (SURFACE_TYPE, BEND_TYPE, CLEAR_TYPE, NEAR_TYPE))
 
 
-@inlined
+@lean_inlined
 def surface(floats, ints, at, x, y, z):
     """Signed distance and normal of the object at ints[at:]."""
     return surface_at(ints[at + SURFACE])(floats, ints, at, x, y, z)
 
 
-@inlined
+@lean_inlined
 def bend(floats, ints, at, x, y, z, vx, vy, vz):
     """How fast a straight path leaves the surface of the object at ints[at:]."""
     return bend_at(ints[at + BEND])(floats, ints, at, x, y, z, vx, vy, vz)
 
 
-@inlined
+@lean_inlined
 def clear(floats, ints, at, x, y, z, radius):
     """Whether it is proved that the object at ints[at:] has no point within a radius."""
     return clear_at(ints[at + CLEAR])(floats, ints, at, x, y, z, radius)
 
 
-@inlined
+@lean(NEAR_TYPE)
+def near(floats, ints, at, h, x0, v0, x1, v1, radii, more, found):
+    """One by one: a ball about the path's end that it does not leave."""
+    clear_of = clear_at(ints[at + CLEAR])
+    for k in range(radii.size):
+        way = 0.0
+        for c in range(3 * k, 3 * k + 3):
+            # The largest component of the Bezier coefficients of the path's velocity.
+            middle = 3.0 * (x1[c] - x0[c]) / h - v0[c] - v1[c]
+            way += max(abs(middle), max(abs(v0[c]), abs(v1[c])))
+        reach = h * way + radii[k] + more
+        if found[k] == 0.0 and not clear_of(floats, ints, at, x1[3 * k], x1[3 * k + 1], x1[3 * k + 2], reach):
+            found[k] = 1.0
+
+
+@lean_inlined
 def turn(floats, at, x, y, z):
     """A vector turned by the quaternion at floats[at:]."""
     w, a, b, c = floats[at], floats[at + 1], floats[at + 2], floats[at + 3]
@@ -84,7 +103,7 @@ def turn(floats, at, x, y, z):
     return x + 2.0 * (b * r - c * q), y + 2.0 * (c * p - a * r), z + 2.0 * (a * q - b * p)
 
 
-@inlined
+@lean_inlined
 def unturn(floats, at, x, y, z):
     """A vector turned back."""
     w, a, b, c = floats[at], -floats[at + 1], -floats[at + 2], -floats[at + 3]
@@ -94,14 +113,14 @@ def unturn(floats, at, x, y, z):
     return x + 2.0 * (b * r - c * q), y + 2.0 * (c * p - a * r), z + 2.0 * (a * q - b * p)
 
 
-@inlined
+@lean_inlined
 def inward(floats, ints, at, x, y, z):
     """A point in the object's own coordinates."""
     p = ints[at + PLACE]
     return unturn(floats, ints[at + ROTATION], x - floats[p], y - floats[p + 1], z - floats[p + 2])
 
 
-@inlined
+@lean_inlined
 def carried(floats, ints, at, pose, x, y, z):
     """Where a point that is fixed to the object stands in its pose BEFORE or AFTER."""
     a, b, c = inward(floats, ints, at, x, y, z)
@@ -110,7 +129,7 @@ def carried(floats, ints, at, pose, x, y, z):
     return a + floats[p], b + floats[p + 1], c + floats[p + 2]
 
 
-@kernel(THREE(A, I, N, F, F, F))
+@lean(THREE(A, I, N, F, F, F))
 def velocity(floats, ints, at, x, y, z):
     """Velocity [m/s] of the object's own point at (x, y, z)."""
     if ints[at + MOVING] == 0:
@@ -121,7 +140,7 @@ def velocity(floats, ints, at, x, y, z):
     return (p - a) / (2.0 * apart), (q - b) / (2.0 * apart), (r - c) / (2.0 * apart)
 
 
-@kernel(THREE(A, I, N, F, F, F))
+@lean(THREE(A, I, N, F, F, F))
 def acceleration(floats, ints, at, x, y, z):
     """Acceleration [m/s^2] of the object's own point at (x, y, z)."""
     if ints[at + MOVING] == 0:

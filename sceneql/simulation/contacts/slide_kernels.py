@@ -5,7 +5,7 @@ import math
 
 from numba import types
 
-from sceneql.kernels import inlined, kernel
+from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.contacts.impulse_kernels import (
     FRICTION,
     HEAD,
@@ -35,7 +35,7 @@ FAST = 4.0
 """Slip, as a multiple of what friction can take from it in a step, above which its direction hardly turns."""
 
 
-@inlined
+@lean_inlined
 def start_with(path, x, y, z):
     """Start with another velocity; the kinetic energy by mass that this takes."""
     before = path[3] ** 2 + path[4] ** 2 + path[5] ** 2
@@ -43,7 +43,7 @@ def start_with(path, x, y, z):
     return 0.5 * (before - x * x - y * y - z * z)
 
 
-@inlined
+@lean_inlined
 def fly_on(path, ax, ay, az, h):
     """End the path after a time h of constant acceleration."""
     path[6] = path[0] + h * (path[3] + 0.5 * h * ax)
@@ -54,20 +54,20 @@ def fly_on(path, ax, ay, az, h):
     path[11] = path[5] + h * az
 
 
-@inlined
+@lean_inlined
 def along(ax, ay, az, vx, vy, vz, speed):
     """The acceleration's component along the velocity."""
     return (ax * vx + ay * vy + az * vz) / speed if speed > 0.0 else math.sqrt(ax * ax + ay * ay + az * az)
 
 
-@inlined
+@lean_inlined
 def tangential(x, y, z, nx, ny, nz):
     """A vector without its part along the unit normal n."""
     part = x * nx + y * ny + z * nz
     return x - part * nx, y - part * ny, z - part * nz
 
 
-@kernel(F(A, A, F, F, F, F, F, F, F, F))
+@lean(F(A, A, F, F, F, F, F, F, F, F))
 def slide(path, mean, nx, ny, nz, ux, uy, uz, press, friction):
     """The rest of the path along the surface, with Coulomb's friction; its work by mass [J/kg]."""
     normal = mean[0] * nx + mean[1] * ny + mean[2] * nz
@@ -109,7 +109,7 @@ def slide(path, mean, nx, ny, nz, ux, uy, uz, press, friction):
     return lost
 
 
-@kernel(types.void(F, N, N, F, A, A, A, I))
+@lean(types.void(F, N, N, F, A, A, A, I))
 def brake(t, k, j, h, y0, y1, floats, ints):
     """Coulomb's friction of a creeping pair in the step of length h, which was made without: at most it stops the slip.
 

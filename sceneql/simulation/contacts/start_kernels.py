@@ -3,13 +3,13 @@
 
 from numba import types
 
-from sceneql.kernels import kernel
+from sceneql.kernels import lean
 from sceneql.simulation.contacts.impulse_kernels import BODIES, HEAD, INVERSE, OBJECTS, POSITION, scale_of
 from sceneql.simulation.contacts.shape_kernels import OBJECT, clear, surface
 from sceneql.system_kernels import A, F, I, N
 
 
-@kernel(types.Tuple((F, N, N))(A, A, I))
+@lean(types.Tuple((F, N, N))(A, A, I))
 def deepest(y, floats, ints):
     """(depth of its center [m], body, object) of the body that is deepest inside an object; depth 0 for none."""
     depth, body, other = 0.0, -1, -1

@@ -41,6 +41,7 @@ class Attractor(Force):
             "sceneql.simulation.forces.attractor_kernels:attractor",
             (*ints, *parameters),
             lambda: Slopes(slopes, *masses.own_blocks(bodies, bodies.position_at)),
+            apart=True,
         )
         assembly.remember(*parameters)
 

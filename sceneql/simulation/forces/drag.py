@@ -45,4 +45,5 @@ class Drag(Force):
             "sceneql.simulation.forces.drag_kernels:drag",
             (*ints, *parameters),
             lambda: Slopes(slopes, *masses.own_blocks(bodies, bodies.velocity_at)),
+            apart=True,
         )

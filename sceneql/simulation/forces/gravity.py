@@ -39,7 +39,7 @@ class Gravity(Force):
         ints = (bodies.velocity_at, bodies.count, bodies.mass_at, given)
         parameters = (assembly.value(vector), assembly.value(self.strength))
         kernel = "sceneql.simulation.forces.gravity_kernels:gravity"
-        assembly.term("force", kernel, (*ints, *parameters), Slopes("", (), ()))
+        assembly.term("force", kernel, (*ints, *parameters), Slopes("", (), ()), apart=True)
         assembly.remember(given, *parameters)
 
     def potential(self, bodies: Bodies, state: ModelState) -> float:

@@ -30,7 +30,7 @@ class Turbulence(Force):
         """Add the force to every mass, and its power to the work."""
         import numpy as np
 
-        from sceneql.simulation.forces.turbulence_kernels import LANES, turbulence_tile
+        from sceneql.simulation.forces.turbulence_kernels import PART, turbulence_tile
         from sceneql.simulation.threads_kernels import threads, tile_address
 
         omega = 0.0 if self.lifetime is None else 1.0 / self.lifetime
@@ -38,7 +38,7 @@ class Turbulence(Force):
             *(bodies.position_at, bodies.velocity_at, bodies.count, bodies.work_at, bodies.inverse_at),
             *(assembly.value(self.speed), assembly.value(self.linear), assembly.floats(self.velocity)),
             assembly.floats([self.size, omega]),
-            assembly.floats(np.zeros(bodies.count // LANES + 1)),
+            assembly.floats(np.zeros(bodies.count // PART + 1)),
             *(self.octaves, self.seed, *threads(), tile_address(turbulence_tile)),
         )
-        assembly.term("force", "sceneql.simulation.forces.turbulence_kernels:turbulence", ints)
+        assembly.term("force", "sceneql.simulation.forces.turbulence_kernels:turbulence", ints, apart=True)

@@ -41,4 +41,5 @@ class Vortex(Force):
             rows, columns = (np.concatenate(places) for places in zip(*both, strict=True))
             return Slopes("sceneql.simulation.forces.vortex_slopes_kernels:vortex", rows, columns)
 
-        assembly.term("force", "sceneql.simulation.forces.vortex_kernels:vortex", (*ints, *parameters), slopes)
+        kernel = "sceneql.simulation.forces.vortex_kernels:vortex"
+        assembly.term("force", kernel, (*ints, *parameters), slopes, apart=True)

@@ -48,4 +48,5 @@ class Wind(Force):
         slopes = "sceneql.simulation.forces.wind_slopes_kernels:wind"
         kernel = "sceneql.simulation.forces.wind_kernels:wind"
         ints = (*masses_of, *parameters)
-        assembly.term("force", kernel, ints, lambda: Slopes(slopes, *masses.own_blocks(bodies, bodies.velocity_at)))
+        places = (bodies, bodies.velocity_at)
+        assembly.term("force", kernel, ints, lambda: Slopes(slopes, *masses.own_blocks(*places)), apart=True)

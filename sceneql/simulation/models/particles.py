@@ -152,6 +152,12 @@ class Particles(Model):
             fixed=np.zeros(n, dtype=bool),
         )
 
+    def assemble_part(
+        self, name: str, assembly: Assembly, bodies: Bodies, start: ModelState, first: int, last: int
+    ) -> Bodies | None:
+        """Any part of them, but for those that are born and die."""
+        return None if self.emit is not None else masses.reserve_part(assembly, bodies, start, first, last)
+
     def _bound(self, count: float) -> None:
         """Raise LimitRefused for more particles than can be held."""
         try:

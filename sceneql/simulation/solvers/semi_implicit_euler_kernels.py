@@ -15,8 +15,8 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         y1[k] = y0[k] + h * rate0[k]
     for pair in range(ints[1]):
         at = ints[0] + 3 * pair
-        position = ints[at]
-        velocity = ints[at + 1]
-        for k in range(ints[at + 2]):
-            y1[position + k] += h * (h * rate0[velocity + k])
+        place = y1[ints[at] : ints[at] + ints[at + 2]]
+        acceleration = rate0[ints[at + 1] : ints[at + 1] + ints[at + 2]]
+        for k in range(place.size):
+            place[k] += h * (h * acceleration[k])
     return 0.0

@@ -3,7 +3,7 @@
 
 import math
 
-from sceneql.kernels import inlined, kernel
+from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.contacts.shape_kernels import (
     BEND_TYPE,
     CLEAR_TYPE,
@@ -16,13 +16,13 @@ from sceneql.simulation.contacts.shape_kernels import (
 )
 
 
-@inlined
+@lean_inlined
 def beyond(x, half):
     """How far a coordinate is past the side, with its sign; 0 between the sides."""
     return math.copysign(max(abs(x) - half, 0.0), x)
 
 
-@kernel(SURFACE_TYPE)
+@lean(SURFACE_TYPE)
 def surface(floats, ints, at, x, y, z):
     """Signed distance and normal; inside, those of the nearest side."""
     size = ints[at + SIZE]
@@ -41,7 +41,7 @@ def surface(floats, ints, at, x, y, z):
     return d, a, b, c
 
 
-@kernel(BEND_TYPE)
+@lean(BEND_TYPE)
 def bend(floats, ints, at, x, y, z, vx, vy, vz):
     """(v^2 - (v.n)^2) / rho over the axes past the sides, rho the distance: around edges and corners alone."""
     size = ints[at + SIZE]
@@ -56,7 +56,7 @@ def bend(floats, ints, at, x, y, z, vx, vy, vz):
     return max(0.0, vx * vx + vy * vy + vz * vz - along * along) / rho
 
 
-@kernel(CLEAR_TYPE)
+@lean(CLEAR_TYPE)
 def clear(floats, ints, at, x, y, z, radius):
     """By the distance."""
     size = ints[at + SIZE]

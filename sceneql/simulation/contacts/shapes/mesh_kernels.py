@@ -13,7 +13,7 @@ import math
 
 from numba import types
 
-from sceneql.kernels import inlined, kernel
+from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.contacts.shape_kernels import (
     BEND_TYPE,
     CLEAR_TYPE,
@@ -34,7 +34,7 @@ FACE, EDGE, VERTEX = 0, 1, 4
 """Features of a triangle: the face, edges EDGE.., vertices VERTEX.."""
 
 
-@inlined
+@lean_inlined
 def outside2(floats, box, x, y, z):
     """Squared distance of a point from a box, 0 within."""
     a = max(0.0, max(floats[box] - x, x - floats[box + 3]))
@@ -43,19 +43,19 @@ def outside2(floats, box, x, y, z):
     return a * a + b * b + c * c
 
 
-@inlined
+@lean_inlined
 def corner(floats, t, k, x, y, z):
     """Vector from vertex k of a triangle to a point."""
     return x - floats[t + 3 * k], y - floats[t + 3 * k + 1], z - floats[t + 3 * k + 2]
 
 
-@inlined
+@lean_inlined
 def dot(a, b, c, x, y, z):
     """Scalar product."""
     return a * x + b * y + c * z
 
 
-@inlined
+@lean_inlined
 def on_triangle(floats, t, x, y, z):
     """Weights of vertices 1 and 2 in the nearest point of a triangle, and its feature (Ericson 2005, 5.1.5)."""
     ax, ay, az = corner(floats, t, 0, x, y, z)
@@ -85,7 +85,7 @@ def on_triangle(floats, t, x, y, z):
     return wb / (wa + wb + wc), wc / (wa + wb + wc), FACE
 
 
-@kernel(types.Tuple((F, F, F, F, N, N))(A, I, N, F, F, F, F))
+@lean(types.Tuple((F, F, F, F, N, N))(A, I, N, F, F, F, F))
 def nearest(floats, ints, at, x, y, z, within):
     """Vector from the nearest point of the surface to a point, its square, and offset and feature of the triangle.
 
@@ -115,7 +115,7 @@ def nearest(floats, ints, at, x, y, z, within):
     return best, bx, by, bz, found, feature
 
 
-@kernel(SURFACE_TYPE)
+@lean(SURFACE_TYPE)
 def surface(floats, ints, at, x, y, z):
     """Signed distance and normal; on the surface that of the feature."""
     x, y, z = inward(floats, ints, at, x, y, z)
@@ -131,7 +131,7 @@ def surface(floats, ints, at, x, y, z):
     return side * d, a, b, c
 
 
-@kernel(BEND_TYPE)
+@lean(BEND_TYPE)
 def bend(floats, ints, at, x, y, z, vx, vy, vz):
     """(v^2 - (v.n)^2 - (v.e)^2) / d around an edge of direction e, without e around a vertex; 0 over a face."""
     x, y, z = inward(floats, ints, at, x, y, z)
@@ -148,7 +148,7 @@ def bend(floats, ints, at, x, y, z, vx, vy, vz):
     return max(0.0, across) / math.sqrt(square)
 
 
-@kernel(CLEAR_TYPE)
+@lean(CLEAR_TYPE)
 def clear(floats, ints, at, x, y, z, radius):
     """By the distance, looking no farther than the radius."""
     x, y, z = inward(floats, ints, at, x, y, z)

@@ -3,10 +3,11 @@
 
 import math
 
-from sceneql.kernels import inlined, kernel
+from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.contacts.shape_kernels import (
     BEND_TYPE,
     CLEAR_TYPE,
+    NEAR_TYPE,
     PLACE,
     ROTATION,
     SIZE,
@@ -14,30 +15,51 @@ from sceneql.simulation.contacts.shape_kernels import (
     turn,
 )
 
+UNIT = 4e-16
+"""How far from 1 the square of a normal may be that counts as of unit length: an ulp or two."""
 
-@inlined
+
+@lean_inlined
 def facing(floats, ints, at, x, y, z):
     """Signed distance and normal."""
     place, size = ints[at + PLACE], ints[at + SIZE]
-    a, b, c = turn(floats, ints[at + ROTATION], floats[size], floats[size + 1], floats[size + 2])
-    scale = 1.0 / math.sqrt(a * a + b * b + c * c)
-    a, b, c = a * scale, b * scale, c * scale
+    a, b, c = floats[size], floats[size + 1], floats[size + 2]
+    if floats[ints[at + ROTATION]] != 1.0:
+        a, b, c = turn(floats, ints[at + ROTATION], a, b, c)
+    square = a * a + b * b + c * c
+    if abs(square - 1.0) > UNIT:
+        scale = 1.0 / math.sqrt(square)
+        a, b, c = a * scale, b * scale, c * scale
     return a * (x - floats[place]) + b * (y - floats[place + 1]) + c * (z - floats[place + 2]), a, b, c
 
 
-@kernel(SURFACE_TYPE)
+@lean(SURFACE_TYPE)
 def surface(floats, ints, at, x, y, z):
     """Signed distance and normal."""
     return facing(floats, ints, at, x, y, z)
 
 
-@kernel(BEND_TYPE)
+@lean(BEND_TYPE)
 def bend(floats, ints, at, x, y, z, vx, vy, vz):
     """0: it is flat."""
     return 0.0
 
 
-@kernel(CLEAR_TYPE)
+@lean(CLEAR_TYPE)
 def clear(floats, ints, at, x, y, z, radius):
     """By the distance."""
     return facing(floats, ints, at, x, y, z)[0] > radius
+
+
+@lean(NEAR_TYPE)
+def near(floats, ints, at, h, x0, v0, x1, v1, radii, more, found):
+    """By the distances of the path's four control points: it does not leave their hull (Bezier)."""
+    d, a, b, c = facing(floats, ints, at, 0.0, 0.0, 0.0)
+    third = h / 3.0
+    for k in range(radii.size):
+        start = d + (a * x0[3 * k] + b * x0[3 * k + 1] + c * x0[3 * k + 2])
+        end = d + (a * x1[3 * k] + b * x1[3 * k + 1] + c * x1[3 * k + 2])
+        leaves = start + third * (a * v0[3 * k] + b * v0[3 * k + 1] + c * v0[3 * k + 2])
+        comes = end - third * (a * v1[3 * k] + b * v1[3 * k + 1] + c * v1[3 * k + 2])
+        away = min(min(start, end), min(leaves, comes))
+        found[k] = 1.0 if away <= radii[k] + more else found[k]
