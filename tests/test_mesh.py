@@ -25,6 +25,7 @@ from sceneql.mesh.cases import CENTERS, cases, decisions
 from sceneql.mesh.cube import FACES_OF, segments
 from sceneql.mesh.measures import area, edge_counts, euler_characteristic, volume
 from sceneql.mesh.polygonise import polygonise
+from sceneql.mesh.refine import refined
 from sceneql.mesh.sharp import polygonise_sharp
 from sceneql.mesh.tolerance import distance, polygonise_within
 from sceneql.mesh.unresolved import unresolved
@@ -311,7 +312,7 @@ def test_same_bytes_for_one_and_two_threads(monkeypatch):
     for threads in ("1", "2"):
         monkeypatch.setenv("SCENEQL_THREADS", threads)
         gyroid = "abs(sin(9*x)*cos(9*y) + sin(9*y)*cos(9*z) + sin(9*z)*cos(9*x)) - 0.3"
-        made = cut(gyroid, 1.0, 50), cut_sharp(gyroid, 1.0, 24)
+        made = cut(gyroid, 1.0, 50), cut_sharp(gyroid, 1.0, 24), cut_finer(PART, 1.0, 16)[0]
         meshes.append([a.tobytes() for found in made for a in (found.vertices, found.triangles, found.normals)])
     assert meshes[0] == meshes[1]
 
@@ -379,6 +380,66 @@ def test_what_passes_between_the_samples_is_told():
     assert with_drop.volume - alone.volume > 4 / 3 * math.pi * 0.01**3
     wall = "abs(sqrt(x^2 + y^2 + z^2) - 0.7) - 0.0005"
     assert unresolved(tape_of(wall), (-1.0,) * 3, (1.0,) * 3, 0.125).volume > 0.0061575226482
+
+
+WALL = "abs(sqrt(x^2 + y^2 + z^2) - 0.7) - 0.0005"  # of 1 mm
+FAR_DROP = "min(sqrt(x^2 + y^2 + z^2) - 0.5, sqrt((x - 0.83)^2 + (y - 0.04)^2 + (z - 0.03)^2) - 0.04)"
+
+
+def cut_finer(text, half, cells):
+    """As ``cut``, with cells refined where they are too coarse; what is left unresolved."""
+    return refined(tape_of(text), (-half,) * 3, (half,) * 3, 2 * half / cells)
+
+
+@pytest.mark.parametrize(
+    ("text", "half", "cells"),
+    [(PART, 1.0, 20), (STEINER, 0.6, 40), (WALL, 1.0, 16), (TURNED, 1.3, 20), (TANGLECUBE, 3.0, 16)],
+    ids=["part", "steiner", "wall", "cube", "tanglecube"],
+)
+def test_refined_cells_meet_the_others_without_gaps(text, half, cells):
+    found, _ = cut_finer(text, half, cells)
+    assert_closed_manifold(found)
+    assert len(np.unique(found.triangles)) == len(found.vertices)
+    assert len(found.triangles) > len(cut(text, half, cells).triangles)
+    slopes = np.linalg.norm(field_gradients(tape_of(text), found.vertices), axis=1)
+    steep = slopes > 1e-3
+    assert (np.abs(field_values(tape_of(text), found.vertices))[steep] / slopes[steep]).max() < 1e-6
+
+
+@settings(max_examples=40, deadline=None)
+@given(tape=tapes(), cell=st.sampled_from([0.3, 0.5]))
+def test_any_field_whatever_gives_a_closed_manifold_when_refined(tape, cell):
+    found, left = refined(tape, (-1.5,) * 3, (1.5,) * 3, cell)
+    assert_closed_manifold(found)
+    assert np.isfinite(found.vertices).all()
+    assert np.isfinite(left.volume)
+
+
+def test_what_passes_between_the_samples_is_found_by_finer_ones():
+    assert euler_characteristic(cut(FAR_DROP, 1.0, 16).triangles) == 2
+    found, left = cut_finer(FAR_DROP, 1.0, 16)
+    assert euler_characteristic(found.triangles) == 4
+    assert left.volume < 1e-2 * unresolved(tape_of(FAR_DROP), (-1.0,) * 3, (1.0,) * 3, 0.125).volume
+    assert euler_characteristic(cut_finer(TANGLECUBE, 3.0, 16)[0].triangles) == -8
+
+
+def test_faces_that_hold_nodes_hide_nothing():
+    # Cells of 0.1 m cut in four have nodes at 0.7 m, where f is exactly zero.
+    assert cut_finer("max(abs(x), abs(y), abs(z)) - 0.7", 1.0, 20)[1].volume == 0.0
+
+
+def test_refined_walls_that_stay_too_thin_are_told():
+    before = unresolved(tape_of(WALL), (-1.0,) * 3, (1.0,) * 3, 0.125)
+    _, left = cut_finer(WALL, 1.0, 16)
+    assert 0.0061575226482 < left.volume < 0.3 * before.volume
+
+
+def test_refined_edges_are_cut_less():
+    errors = [
+        1.4**3 - volume(found.vertices, found.triangles)
+        for found in (cut(TURNED, 1.3, 32), cut_finer(TURNED, 1.3, 32)[0])
+    ]
+    assert 0.0 < errors[1] < errors[0] / 12  # cells of a quarter, so a sixteenth of what is cut off
 
 
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-3])

@@ -12,6 +12,8 @@ from sceneql.mesh.extract_kernels import NODES, sample
 
 DEPTH = 2
 """How often a cube is halved before it is left unresolved."""
+SHALLOW = 1.0e-12
+"""Where f goes no further than this to the other side of zero, it touches zero but for rounding."""
 
 
 @inlined
@@ -25,9 +27,9 @@ def proved(code, constants, parts, scratch, x, y, z, half, negative):
     if negative:
         if status != WHOLE:
             return False
-        if high < 0.0:
+        if high < SHALLOW:
             return True
-    elif low >= 0.0:
+    elif low >= -SHALLOW:
         return True
     if status != WHOLE:
         return False
@@ -67,14 +69,16 @@ def doubtful(code, constants, parts, scratch, x, y, z, half, negative, stack):
 
 
 @lean(
-    f"Tuple((int64, float64))({TAPE}, int32[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1],"
-    " float64[::1], float64[:, ::1], float64[::1], int32[:, ::1])"
+    f"int64({TAPE}, int32[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1],"
+    " float64[::1], float64[:, ::1], float64[::1], int32[:, ::1], int32[:, ::1], float64[::1])"
 )
-def hidden(code, constants, parts, scratch, short, near, registers, points, values, stack, grid, blocks):
-    """(cubes, volume [m^3]) of some blocks that have one sign at their corners, but not provably all over."""
+def hidden(code, constants, parts, scratch, short, near, registers, points, values, stack, grid, blocks, cells, rest):
+    """The cubes of some blocks that have one sign at their corners, but not provably all over: their number.
+
+    Their places go into ``cells`` (n, 3), the volumes [m^3] without a proof into ``rest``.
+    """
     h = grid[3]
     count = 0
-    volume = 0.0
     for b in range(blocks.shape[0]):
         i = blocks[b, 0] * BLOCK
         j = blocks[b, 1] * BLOCK
@@ -104,12 +108,14 @@ def hidden(code, constants, parts, scratch, short, near, registers, points, valu
                     # Every point of a cube is within half a side, along each axis, of a corner.
                     if not same or least > far:
                         continue
-                    rest = doubtful(
+                    rest[count] = doubtful(
                         code2, constants, parts2, scratch,
                         grid[0] + (i + x + 0.5) * h, grid[1] + (j + y + 0.5) * h, grid[2] + (k + z + 0.5) * h,
                         0.5 * h * (1.0 + 1.0e-12), negative, stack,
                     )  # fmt: skip
-                    if rest > 0.0:
+                    if rest[count] > 0.0:
+                        cells[count, 0] = i + x
+                        cells[count, 1] = j + y
+                        cells[count, 2] = k + z
                         count += 1
-                        volume += rest
-    return count, volume
+    return count

@@ -2,46 +2,67 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from sceneql.kernels import over_tiles
 from sceneql.mesh.bounded import Corner, bounded
+from sceneql.mesh.cull_kernels import BLOCK
 from sceneql.mesh.grid import grid_around
-from sceneql.mesh.hidden_kernels import DEPTH, hidden
+from sceneql.mesh.hidden_kernels import hidden
 from sceneql.mesh.workshop import BATCH, Workshop
 
 if TYPE_CHECKING:
-    from sceneql.frame import Tape
+    from sceneql.frame import Floats, Ints, Tape
 
 
-class Unresolved(NamedTuple):
+@dataclass(frozen=True, slots=True, eq=False)
+class Unresolved:
     """Cells whose corners have one sign, which f could not be proved to keep inside."""
 
-    cells: int
-    volume: float
-    """[m^3] of the parts of them that no proof was found for."""
+    where: Ints
+    """(n, 3) cells, counted from the grid's first node."""
+    volumes: Floats
+    """(n,) [m^3] of the parts of them that no proof was found for."""
+
+    @property
+    def cells(self) -> int:
+        """How many they are."""
+        return len(self.where)
+
+    @property
+    def volume(self) -> float:
+        """[m^3] in all."""
+        return float(self.volumes.sum())
 
 
 def unresolved(tape: Tape, low: Corner, high: Corner, cell: float) -> Unresolved:
     """What the cells of ``polygonise`` may hide: walls and drops that pass between their corners.
 
-    A cell is halved up to DEPTH times, each part proved by the interval of f or by the mean value theorem (Moore 1966).
     Raises ValueError as ``grid_around``.
+    """
+    shop = Workshop(bounded(tape, low, high), grid_around(low, high, cell))
+    return hidden_in(shop, shop.met())
+
+
+def hidden_in(shop: Workshop, blocks: Ints) -> Unresolved:
+    """What the cells of some blocks may hide.
+
+    A cell is halved up to DEPTH times, each part proved by the interval of f or by the mean value theorem (Moore 1966).
     """
     import numpy as np
 
-    shop = Workshop(bounded(tape, low, high), grid_around(low, high, cell))
-    blocks = shop.met()
     count = -(-len(blocks) // BATCH)
-    found: list[tuple[int, float]] = [(0, 0.0)] * count
-    stacks = np.empty((count, 8 * DEPTH + 8, 4))
+    found: list[tuple[Ints, Floats]] = [(np.zeros((0, 3), np.int32), np.zeros(0))] * (count + 1)
 
     def work(batch: int) -> None:
         r, mine = shop.room(), blocks[batch * BATCH : (batch + 1) * BATCH]
-        found[batch] = hidden(
-            *shop.program, r.scratch, r.short, r.near, r.registers, r.points, r.values, stacks[batch],
-            shop.grid.numbers, mine,
+        cells, rest = np.empty((len(mine) * BLOCK**3, 3), dtype=np.int32), np.empty(len(mine) * BLOCK**3)
+        n = hidden(
+            *shop.program, r.scratch, r.short, r.near, r.registers, r.points, r.values, r.stack,
+            shop.grid.numbers, mine, cells, rest,
         )  # fmt: skip
+        found[batch] = cells[:n].copy(), rest[:n].copy()
 
     over_tiles(count, work)
-    return Unresolved(sum(cells for cells, _ in found), float(sum(volume for _, volume in found)))
+    return Unresolved(*(np.concatenate(column) for column in zip(*found, strict=True)))

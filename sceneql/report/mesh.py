@@ -13,8 +13,11 @@ from sceneql.quantities.diagnostic import suggestion
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from sceneql.frame import Implicit
+    from sceneql.frame import Implicit, Tape
     from sceneql.graph import SimulationGraph
+    from sceneql.mesh.bounded import Corner
+    from sceneql.mesh.polygons import Polygons
+    from sceneql.mesh.unresolved import Unresolved
     from sceneql.simulation.run import Instant
 
 CELLS = 128
@@ -70,10 +73,8 @@ def mesh(
     """
     from sceneql.mesh.files import format_of, write
     from sceneql.mesh.measures import area, edge_counts, euler_characteristic, volume
-    from sceneql.mesh.polygonise import polygonise
-    from sceneql.mesh.sharp import polygonise_sharp
+    from sceneql.mesh.refine import refined
     from sceneql.mesh.tolerance import polygonise_within
-    from sceneql.mesh.unresolved import unresolved
 
     format_of(output)
     if not 0.0 <= time <= graph.settings.clock.end:
@@ -82,17 +83,16 @@ def mesh(
     size = max(high - low for low, high in zip(solid.low, solid.high, strict=True))
     if cell is None:
         cell = size / CELLS
-    method = polygonise_sharp if sharp else polygonise
+    box = solid.tape, solid.low, solid.high
+    method = _kept_sharp if sharp else refined
     try:
-        if tolerance is None:
-            polygons = method(solid.tape, solid.low, solid.high, cell)
-        else:
-            polygons, cell = polygonise_within(solid.tape, solid.low, solid.high, tolerance, cell, method)
+        if tolerance is not None:
+            _, cell = polygonise_within(*box, tolerance, cell, lambda *cells: method(*cells)[0])
+        polygons, hidden = method(*box, cell)
     except ValueError as error:
         raise Unsuitable(f"{name} cannot be polygonised: {error}") from error
     if not len(polygons.triangles):
         raise Unsuitable(f"{name} has no surface in cells of {cell:g} m")
-    hidden = unresolved(solid.tape, solid.low, solid.high, cell)
     write(output, polygons)
     vertices, triangles = polygons.vertices, polygons.triangles
     return Account(
@@ -107,6 +107,14 @@ def mesh(
         unresolved=hidden.cells,
         unresolved_volume=hidden.volume,
     )
+
+
+def _kept_sharp(tape: Tape, low: Corner, high: Corner, cell: float) -> tuple[Polygons, Unresolved]:
+    """As ``refined``, but with edges and corners kept."""
+    from sceneql.mesh.sharp import polygonise_sharp
+    from sceneql.mesh.unresolved import unresolved
+
+    return polygonise_sharp(tape, low, high, cell), unresolved(tape, low, high, cell)
 
 
 def _solid(graph: SimulationGraph, name: str, moment: Instant) -> Implicit:
