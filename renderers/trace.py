@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal
 
-from sceneql.kinds import Renderer, field
+from sceneql.kinds import FixedScalar, Renderer, field
 
 
 class Trace(Renderer):
@@ -17,10 +17,16 @@ class Trace(Renderer):
 
     kernels: ClassVar[str] = "renderers.tracing.draw"
 
+    tolerance: FixedScalar = field(
+        "Of roots of implicit surfaces, relative to the way through an object; finer things are undecided.",
+        "1e-9",
+        above=0,
+        at_most=1e-3,
+    )
     samples: Literal[1, 2, 4, 8, 16, 32, 64] = field("Rays in a pixel in which things meet.", 8)
 
     def draw(self, frame: Any) -> Any:
         """The Picture of a frame: linear (h, w, 3) and the number of undecided pixels."""
         from renderers.tracing.draw import draw
 
-        return draw(frame, self.samples)
+        return draw(frame, self.samples, self.tolerance)

@@ -135,8 +135,12 @@ def render(
     click.echo(line + (f" ({report.compilations} functions)" if report.compilations else ""))
     for found in report.conserved if account else ():
         click.echo(found)
-    if report.undecided:
-        click.echo(f"{report.undecided} pixels undecided: proved neither hit nor miss at the tolerance")
+    for name, frames in report.undecided.items():
+        worst = max(frames, key=lambda index: frames[index])
+        click.echo(
+            f"{name}: {sum(frames.values())} pixels undecided in {len(frames)} frames, at most {frames[worst]} in frame"
+            f" {worst}: proved neither hit nor miss at the tolerance; `renderer: undecided` shows them"
+        )
 
 
 @cli.command()

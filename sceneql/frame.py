@@ -95,7 +95,11 @@ class Tape:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Implicit:
-    """The solid {tape < 0} inside the world box low..high (it is cut at the box and capped there)."""
+    """The solid {tape < 0} inside the world box low..high (it is cut at the box and capped there).
+
+    With ``within`` it is the sheet {tape = 0} inside the solid {within < 0} and the box instead: seen from both sides,
+    open where it is cut, and there also where the field only touches zero.
+    """
 
     name: str
     surface: Surface
@@ -104,6 +108,7 @@ class Implicit:
     high: tuple[float, float, float]
     paint: Tape | None = None
     """The color at a point of the surface, in place of the surface's: the last three registers are linear RGB."""
+    within: Tape | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

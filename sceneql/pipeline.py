@@ -55,15 +55,15 @@ class Report:
 
     files: list[Path] = field(default_factory=list)
     frames: int = 0
-    undecided: int = 0
-    """Pixels whose ray could be proved neither hit nor miss, over all frames."""
+    undecided: dict[str, dict[int, int]] = field(default_factory=dict)
+    """By output and frame: pixels whose ray could be proved neither hit nor miss; only frames that have some."""
     compile_seconds: float = 0.0
     compilations: int = 0
     run_seconds: float = 0.0
     """Wall time, compilation left out."""
     steps: int = 0
-    present: dict[str, bool] = field(default_factory=dict)
-    """Implicit solids that were drawn, and whether any frame may show something of them."""
+    present: dict[str, str] = field(default_factory=dict)
+    """Implicit objects that were drawn, and what none of their values was in any frame; nothing where some may be."""
     warnings: tuple[Diagnostic, ...] = ()
     conserved: list[str] = field(default_factory=list)
     """For each island that tells an energy, how far it drifted; momentum where it is conserved."""
@@ -213,7 +213,8 @@ class Tools:
         look(frame.shapes, self.report.present)
         self._frames += 1
         self.report.frames += 1
-        self.report.undecided += picture.undecided
+        if picture.undecided:
+            self.report.undecided.setdefault(self.name, {})[frame.index] = picture.undecided
         return develop(picture.linear, exposure=output.exposure, data=renderer.data)
 
     def encoder(self, word: str, **settings: Any) -> Any:

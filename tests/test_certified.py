@@ -82,7 +82,7 @@ def certified(tape, origins, directions, t0, t1, sign=1.0, anywhere=False, touch
     room = scratch(tape)
     program = tape.code, tape.constants, tape.parts, room
     found = [
-        certify(*program, *o, *d, a, b, TOLERANCE, sign, anywhere, touching)
+        certify(*program, *o, *d, a, b, TOLERANCE * (b - a), sign, anywhere, touching)
         for o, d, a, b in zip(origins, directions, t0, t1, strict=True)
     ]
     return np.array([status for status, _ in found]), np.array([t for _, t in found])
@@ -229,6 +229,13 @@ def test_poles_and_jumps_are_no_part_of_a_surface():
         assert status[0] == (HIT if places else MISS)
         if places:
             assert t[0] == pytest.approx(1.0 - places[0], abs=1e-9)
+
+
+def test_what_is_zero_all_along_is_undecided():
+    """A polynomial that is zero but for its rounding."""
+    tape = tape_of("(x + 1)^4 - x^4 - 4*x^3 - 6*x^2 - 4*x - 1")
+    for surface in (False, True):
+        assert cast(tape, [[0.3, 0.2, 1.0]], [[0.1, 0.2, -1.0]], 0.0, 2.0, surface=surface)[0][0] == UNDECIDED
 
 
 def test_a_ray_that_begins_on_a_surface_does_not_meet_it_there():

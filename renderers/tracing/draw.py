@@ -9,7 +9,7 @@ import numpy as np
 from renderers.tracing.edges_kernels import smooth_rows
 from renderers.tracing.filter_kernels import deepen, widen
 from renderers.tracing.gather_kernels import gather_rows
-from renderers.tracing.pack import pack, scratch
+from renderers.tracing.pack import TOLERANCE, pack, scratch
 from renderers.tracing.picture import Picture, over_rows
 from renderers.tracing.record_kernels import COLUMNS
 from renderers.tracing.refine_kernels import refine_rows, shade_rows
@@ -43,13 +43,15 @@ def _buffers(count: int, columns: int) -> Buffers:
     return kept if kept is not None and kept.shape == (count, columns) else Buffers(count, columns)
 
 
-def draw(frame: Frame, samples: int = 8) -> Picture:
+def draw(frame: Frame, samples: int = 8, tolerance: float = TOLERANCE, march: int = 0) -> Picture:
     """Ray-trace a frame; ``samples``, a power of two from 1 to 64: rays in a pixel in which things meet.
+
+    ``tolerance`` is that of roots of implicit surfaces; with ``march`` they are looked for at so many places of a ray.
 
     Roots of implicit surfaces are certified (sceneql.field); shadows and the sky's light are sampled once a pixel by a
     net and averaged over the surface around it, so that the picture has no grain and repeats to the bit.
     """
-    scene, rows = pack(frame)
+    scene, rows = pack(frame, tolerance, march)
     width, height = frame.view.size
     columns = FIRST_LIGHT + 2 * int(scene.ints[LIGHT_COUNT])
     buffers = _buffers(width * height, columns)

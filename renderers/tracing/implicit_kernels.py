@@ -4,17 +4,30 @@
 import numpy as np
 from numba import types
 
-from renderers.tracing.scene_kernels import CELLS, CELLS_AT, CROSSING, EMPTY, FULL, MIXED, SCENE, SCRATCH, part
+from renderers.tracing.scene_kernels import (
+    CELLS,
+    CELLS_AT,
+    CROSSING,
+    EMPTY,
+    FULL,
+    MIXED,
+    SCENE,
+    SCRATCH,
+    TOLERANCE,
+    WITHIN,
+    part,
+)
 from renderers.tracing.solids_kernels import NONE, box_span, inverse
 from sceneql.field.interval_kernels import box
-from sceneql.field.isolation_kernels import exit_root, isolate
-from sceneql.field.tape_ops import HIT, NOWHERE, UNDECIDED, WHOLE
+from sceneql.field.isolation_kernels import exit_root, isolate, surface_root
+from sceneql.field.tape_kernels import value
+from sceneql.field.tape_ops import HIT, MISS, NOWHERE, UNDECIDED, WHOLE
 from sceneql.kernels import kernel
 
-TOLERANCE = 1e-9
-"""Of a root, relative to the searched piece of the ray."""
 RETRIES = 8
 """Undecided places passed on one ray before it counts as a miss."""
+FARTHER = 10.0
+"""By how much farther each of them is passed than the one before."""
 BLOCK = 4
 """Cells along a side of the coarse blocks that are tried before their cells."""
 PAD = 1e-7
@@ -25,7 +38,7 @@ PAD = 1e-7
 def tape_of(scene, k, first=0):
     """Where the tape of the implicit object whose reals begin at k lies: begin and end of code, constants and parts.
 
-    Its own are the ranges from the ``first`` on, its paint's those from PAINT on.
+    Its own are the ranges from the ``first`` on, those of others from PAINT and from WITHIN on.
     """
     n = scene.ints
     r = int(scene.reals[k + 6]) + first
@@ -40,15 +53,21 @@ def cells_at(scene, k):
 
 
 @part
-def region(scene, scratch, k, i, j, l, side):
-    """What the cells (i..i+side, ...) of implicit object k are proved to be."""
+def is_sheet(scene, k):
+    """Whether implicit object k is a sheet, not a solid."""
+    return scene.ints[int(scene.reals[k + 6]) + WITHIN + 1] > 0
+
+
+@part
+def bounds(scene, scratch, k, first, i, j, l, side):
+    """(low, high, status) of a tape of implicit object k in the cells (i..i+side, ...)."""
     b = scene.reals
-    c0, c1, k0, k1, p0, p1 = tape_of(scene, k)
+    c0, c1, k0, k1, p0, p1 = tape_of(scene, k, first)
     code = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
     constants = scene.reals[k0:k1]
     parts = scene.reals[p0:p1].reshape((p1 - p0) // 8, 8)
     h = ((b[k + 3] - b[k]) / CELLS, (b[k + 4] - b[k + 1]) / CELLS, (b[k + 5] - b[k + 2]) / CELLS)
-    low, high, status = box(
+    return box(
         code,
         constants,
         parts,
@@ -60,8 +79,16 @@ def region(scene, scratch, k, i, j, l, side):
         b[k + 2] + (l - PAD) * h[2],
         b[k + 2] + (l + side + PAD) * h[2],
     )
+
+
+@part
+def region(scene, scratch, k, i, j, l, side):
+    """What the cells (i..i+side, ...) of implicit object k are proved to be."""
+    low, high, status = bounds(scene, scratch, k, 0, i, j, l, side)
     if status == NOWHERE or low > 0.0:
         return EMPTY
+    if is_sheet(scene, k):
+        return EMPTY if high < 0.0 or bounds(scene, scratch, k, WITHIN, i, j, l, side)[0] > 0.0 else MIXED
     return FULL if status == WHOLE and high < 0.0 else MIXED
 
 
@@ -158,8 +185,45 @@ def box_part(scene, k, ox, oy, oz, dx, dy, dz, near, far):
 
 
 @kernel(CROSSING.signature, _nrt=False)
+def sheet(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
+    """Crossing of the sheet of implicit object k behind ``near``: its first root inside what it lies within."""
+    c0, c1, k0, k1, p0, p1 = tape_of(scene, k)
+    code = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
+    constants = scene.reals[k0:k1]
+    parts = scene.reals[p0:p1].reshape((p1 - p0) // 8, 8)
+    c0, c1, k0, k1, p0, p1 = tape_of(scene, k, WITHIN)
+    code_within = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
+    constants_within = scene.reals[k0:k1]
+    parts_within = scene.reals[p0:p1].reshape((p1 - p0) // 8, 8)
+    b = scene.reals
+    side = min(b[k + 3] - b[k], b[k + 4] - b[k + 1], b[k + 5] - b[k + 2]) / CELLS
+    t, stop = box_part(scene, k, ox, oy, oz, dx, dy, dz, near, far)
+    past = 0.1 * PAD * side / np.sqrt(dx * dx + dy * dy + dz * dz)
+    tolerance = b[TOLERANCE]
+    tries = 0
+    while t < stop and tries < RETRIES:
+        begin, end, _ = occupied(scene, k, ox, oy, oz, dx, dy, dz, t, stop)
+        if not begin < stop:
+            return NONE
+        end = max(end, begin + past)
+        status, root = surface_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, begin, end, tolerance)
+        if status == HIT:
+            x, y, z = ox + root * dx, oy + root * dy, oz + root * dz
+            if value(code_within, constants_within, parts_within, scratch, x, y, z) < 0.0:
+                return root
+        elif status == UNDECIDED:
+            scratch[scratch.shape[0] - 1, 0] += 1.0
+            root += tolerance * (end - begin) * FARTHER**tries
+            tries += 1
+        t = end + past if status == MISS else root + past
+    return NONE
+
+
+@kernel(CROSSING.signature, _nrt=False)
 def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """Crossing of implicit object k behind ``near``; with ``anywhere`` of any place inside, not the first."""
+    if is_sheet(scene, k):
+        return sheet(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere)
     c0, c1, k0, k1, p0, p1 = tape_of(scene, k)
     code = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
     constants = scene.reals[k0:k1]
@@ -169,6 +233,7 @@ def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     enter, stop = box_part(scene, k, ox, oy, oz, dx, dy, dz, near, far)
     if not enter < stop:
         return NONE
+    tolerance = b[TOLERANCE]
     t = enter
     tries = 0
     past = 0.1 * PAD * side / np.sqrt(dx * dx + dy * dy + dz * dz)  # into the next cell, within what its pad covers
@@ -180,18 +245,18 @@ def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
             return begin
         end = max(end, begin + past)
         status, root = isolate(
-            code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, begin, end, TOLERANCE, 1.0, anywhere
+            code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, begin, end, tolerance, 1.0, anywhere
         )
         if status == HIT:
-            if anywhere or root - begin > TOLERANCE * (end - begin) or begin > enter or enter > near:
+            if anywhere or root - begin > tolerance * (end - begin) or begin > enter or enter > near:
                 return root
             # The ray begins inside: the way out.
-            status, root = exit_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, enter, stop, TOLERANCE)
+            status, root = exit_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, enter, stop, tolerance)
             return root if status == HIT else (stop if stop < far else NONE)
         if status == UNDECIDED:
             scratch[scratch.shape[0] - 1, 0] += 1.0
+            t = root + 4.0 * tolerance * (end - begin) * FARTHER**tries
             tries += 1
-            t = root + 4.0 * TOLERANCE * (end - begin)
         else:
             t = end + past
     return NONE

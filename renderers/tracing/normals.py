@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from renderers.tracing.normals_kernels import normal_rows
-from renderers.tracing.pack import pack, scratch
+from renderers.tracing.normals_kernels import normal_rows, undecided_rows
+from renderers.tracing.pack import TOLERANCE, pack, scratch
 from renderers.tracing.picture import Picture, over_rows
 from renderers.tracing.sampling_kernels import subpixels
 
@@ -25,6 +25,20 @@ def draw_normals(frame: Frame, samples: int = 1) -> Picture:
 
     def band(start: int, stop: int) -> None:
         undecided.append(normal_rows(scene, scratch(rows), start, stop, points, picture))
+
+    over_rows(height, band)
+    return Picture(picture, sum(undecided))
+
+
+def draw_undecided(frame: Frame, tolerance: float = TOLERANCE) -> Picture:
+    """Orange where a root could not be decided at the ``tolerance``, else gray, black where nothing is shown."""
+    scene, rows = pack(frame, tolerance)
+    width, height = frame.view.size
+    picture = np.empty((height, width, 3), dtype=np.float32)
+    undecided: list[int] = []
+
+    def band(start: int, stop: int) -> None:
+        undecided.append(undecided_rows(scene, scratch(rows), start, stop, picture))
 
     over_rows(height, band)
     return Picture(picture, sum(undecided))

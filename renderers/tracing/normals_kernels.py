@@ -5,8 +5,11 @@ import numpy as np
 from numba import types
 
 from renderers.tracing.camera_kernels import camera_ray
-from renderers.tracing.scene_kernels import SCENE, SCRATCH, WIDTH, normal_at, part, walk_at
+from renderers.tracing.scene_kernels import CAMERA, SCENE, SCRATCH, WIDTH, normal_at, part, walk_at
 from sceneql.kernels import kernel
+
+UNDECIDED = (1.0, 0.15, 0.0)
+"""Color of pixels with an undecided root."""
 
 
 @part
@@ -21,6 +24,28 @@ def seen_normal(scene, scratch, px, py):
     )
     side = 1.0 if dx * fx + dy * fy + dz * fz <= 0.0 else -1.0
     return True, side * nx, side * ny, side * nz
+
+
+@kernel(types.int64(SCENE, SCRATCH, types.int64, types.int64, types.float32[:, :, ::1]), _nrt=False)
+def undecided_rows(scene, scratch, start, stop, picture):
+    """Fill rows start..stop of picture (h, w, 3): UNDECIDED where a root is, else gray, black where nothing is.
+
+    Returns the number of pixels with an undecided root.
+    """
+    counter = scratch.shape[0] - 1
+    undecided = 0
+    for y in range(start, stop):
+        for x in range(int(scene.reals[WIDTH])):
+            scratch[counter, 0] = 0.0
+            hit, nx, ny, nz = seen_normal(scene, scratch, x + 0.5, y + 0.5)
+            c = scene.reals
+            facing = abs(nx * c[CAMERA + 9] + ny * c[CAMERA + 10] + nz * c[CAMERA + 11])
+            for channel in range(3):
+                picture[y, x, channel] = 0.2 + 0.5 * facing if hit else 0.0
+            if scratch[counter, 0] > 0.0:
+                undecided += 1
+                picture[y, x, 0], picture[y, x, 1], picture[y, x, 2] = UNDECIDED
+    return undecided
 
 
 @kernel(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from renderers.tracing import hierarchy_kernels
-from renderers.tracing.addresses import addresses
+from renderers.tracing.addresses import addresses, marching
 from renderers.tracing.implicit_kernels import BLOCK, occupy
 from renderers.tracing.scene_kernels import (
     CAMERA,
@@ -26,14 +26,17 @@ from renderers.tracing.scene_kernels import (
     RANGES,
     REALS_AT,
     ROUND,
+    SAMPLES,
     SHAPE,
     SKY,
     SUN,
     SURFACE_AT,
     SURFACE_SIZE,
     TRIANGLE,
+    WITHIN,
     Scene,
 )
+from renderers.tracing.scene_kernels import TOLERANCE as ROOT_TOLERANCE
 from sceneql.field.tape_ops import SCRATCH_COLUMNS, scratch_rows
 from sceneql.frame import Frame, Implicit, Mesh, Points, Quadric, Segments, Sky, Sun, Surface, View
 from sceneql.kernels import over_tiles
@@ -47,10 +50,15 @@ if TYPE_CHECKING:
 UNBOUNDED = np.repeat([-np.inf, np.inf], 3)
 
 
-def pack(frame: Frame) -> tuple[Scene, int]:
+TOLERANCE = 1e-9
+"""Of roots of implicit objects, relative to the searched piece of a ray, where nothing is said."""
+
+
+def pack(frame: Frame, tolerance: float = TOLERANCE, samples: int = 0) -> tuple[Scene, int]:
     """The scene of a frame, and the rows of scratch that its kernels need.
 
-    ValueError names a shape that is none of the closed set.
+    With ``samples`` rays are not searched for roots of implicit objects but sampled at so many places. ValueError
+    names a shape that is none of the closed set.
     """
     tables = Rows()
     for index, shape in enumerate(frame.shapes):
@@ -65,6 +73,7 @@ def pack(frame: Frame) -> tuple[Scene, int]:
     lights = _lights(frame.lights)
     head = np.zeros(LIGHTS)
     head[SKY : SKY + 14] = _sky(frame.lights)
+    head[[ROOT_TOLERANCE, SAMPLES]] = tolerance, samples
     head[CAMERA : CAMERA + 16] = _camera(frame.view)
     surfaces_at = LIGHTS + lights.size
     nodes_at = surfaces_at + SURFACE_SIZE * len(frame.shapes)
@@ -79,11 +88,14 @@ def pack(frame: Frame) -> tuple[Scene, int]:
     header = [len(nodes), len(items), len(endless), len(lights), nodes_at, links_at, 0, 0]
     ints = np.concatenate([header, items.ravel(), links.ravel(), *tables.ranges, *tables.codes], dtype=np.int32)
     for k in range(len(tables.implicits)):
-        ranges = ints[ranges_at + RANGES * k : ranges_at + RANGES * (k + 1)]
-        ranges[[0, CELLS_AT, PAINT]] += ranges_at + sum(map(len, tables.ranges))
-        ranges[[2, 4, PAINT + 2, PAINT + 4]] += reals_at
-        reals[reals_at + tables.implicits[k] + 6] = ranges_at + RANGES * k
+        place = ranges_at + RANGES * k
+        ranges = ints[place : place + RANGES]
+        ranges[[0, CELLS_AT, PAINT, WITHIN]] += ranges_at + sum(map(len, tables.ranges))
+        ranges[[2, 4, PAINT + 2, PAINT + 4, WITHIN + 2, WITHIN + 4]] += reals_at
+        reals[reals_at + tables.implicits[k] + 6] = place
     scene = Scene(reals, ints, *addresses())
+    if samples:
+        return scene._replace(crossing=marching()), tables.rows + 1
     slabs = CELLS // BLOCK
     over_tiles(
         len(tables.implicits) * slabs,
@@ -173,7 +185,8 @@ class Rows:
         self._items(index, IMPLICIT, box[:, :6], box)
         ranges = self._tape(shape.tape)
         ranges.append(self._code(np.full(CELLS**3, MIXED, dtype=np.int32)))
-        ranges += [0] * (RANGES - PAINT) if shape.paint is None else self._tape(shape.paint)
+        for other in (shape.paint, shape.within):
+            ranges += [0] * (WITHIN - PAINT) if other is None else self._tape(other)
         self.ranges.append(np.array(ranges))
 
     def _tape(self, tape: Tape) -> list[int]:

@@ -70,8 +70,9 @@ ROUND (sphere or capsule): end, axis to the other end, radius, color (NaN: the s
 QUADRIC: map to local (3, 4), squares, linear, constant, low, high: 25.
 HALF_SPACE (a quadric that is nothing else): unit normal, height of its face along that: 4.
 IMPLICIT: low, high, place of its ranges: 7. The ranges, in ints: place of the code, its rows, place of the constants,
-their number, place of the parts, their rows; place of the cells; the same six of its paint (no rows: it has none)."""
-CELLS_AT, PAINT, RANGES = 6, 7, 13
+their number, place of the parts, their rows; place of the cells; the same six of its paint and of what a sheet lies
+within (no rows: it has none)."""
+CELLS_AT, PAINT, WITHIN, RANGES = 6, 7, 13, 19
 """Columns of the ranges, and how many there are."""
 
 LINK = 3
@@ -80,6 +81,8 @@ LINK = 3
 SKY = 0
 """Zenith, horizon, ground, visible; whether there is a sky, whether `visible` is given: 14."""
 HAS_SKY, HAS_VISIBLE = 12, 13
+TOLERANCE, SAMPLES = 14, 15
+"""Of roots of implicit objects, relative to the searched piece of a ray; samples on it where they are only sampled."""
 CAMERA = 16
 """Origin, right, up, back, half height, orthographic, width, height: 16."""
 WIDTH, HEIGHT = CAMERA + 14, CAMERA + 15

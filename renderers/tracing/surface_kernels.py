@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from renderers.tracing.implicit_kernels import tape_of
+from renderers.tracing.implicit_kernels import is_sheet, tape_of
 from renderers.tracing.scene_kernels import (
     CHECKER,
     CHECKER_COLOR,
@@ -25,6 +25,8 @@ from sceneql.field.tape_kernels import gradient
 from sceneql.kernels import kernel
 
 TRIANGLE_NORMALS, TRIANGLE_COLORS, ROUND_COLOR = 9, 18, 7
+BESIDE = 1e-5
+"""How far beside a sheet its gradient is asked where it vanishes on it, relative to the box."""
 
 
 @part
@@ -80,6 +82,22 @@ def implicit_normal(scene, scratch, k, x, y, z):
     constants = scene.reals[k0:k1]
     parts = scene.reals[p0:p1].reshape((p1 - p0) // 8, 8)
     _, gx, gy, gz = gradient(code, constants, parts, scratch, x, y, z)
+    if not is_sheet(scene, k):
+        return unit(gx, gy, gz)
+    # At a root of multiplicity m > 1 the gradient, m h^(m-1) grad h, vanishes; beside it, on both sides, it is along
+    # grad h: turned around for an even m, where the difference of the two is left, not for an odd one.
+    best = gx * gx + gy * gy + gz * gz
+    step = BESIDE * (b[k + 3] - b[k] + b[k + 4] - b[k + 1] + b[k + 5] - b[k + 2])
+    for axis in range(3):
+        sx, sy, sz = step if axis == 0 else 0.0, step if axis == 1 else 0.0, step if axis == 2 else 0.0
+        _, px, py, pz = gradient(code, constants, parts, scratch, x + sx, y + sy, z + sz)
+        _, qx, qy, qz = gradient(code, constants, parts, scratch, x - sx, y - sy, z - sz)
+        for sign in (-1.0, 1.0):
+            ex, ey, ez = px + sign * qx, py + sign * qy, pz + sign * qz
+            size = 0.01 * (ex * ex + ey * ey + ez * ez)
+            if size > best:
+                best = size
+                gx, gy, gz = ex, ey, ez
     return unit(gx, gy, gz)
 
 

@@ -40,15 +40,32 @@ def polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign
 
 
 @woven
+def slope(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t):
+    """df/dt at the place t of a ray."""
+    _, gx, gy, gz = gradient(code, constants, parts, scratch, ox + t * dx, oy + t * dy, oz + t * dz)
+    return gx * dx + gy * dy + gz * dz
+
+
+@woven
 def lowest(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign):
-    """Where sign df/dt goes from < 0 at a to >= 0 at b: bisection."""
-    for _ in range(60):
-        t = 0.5 * (a + b)
-        if t <= a or t >= b:
+    """Where sign df/dt goes from < 0 at a to >= 0 at b: bisection and the secant by turns."""
+    fa = sign * slope(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a)
+    fb = sign * slope(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, b)
+    for turn in range(100):
+        if not b - a > FINE * (abs(a) + abs(b)):
             break
-        _, gx, gy, gz = gradient(code, constants, parts, scratch, ox + t * dx, oy + t * dy, oz + t * dz)
-        if sign * (gx * dx + gy * dy + gz * dz) < 0.0:
+        t = 0.5 * (a + b)
+        if turn % 2 == 0 and fa < fb:
+            t = a + (b - a) * (fa / (fa - fb))
+        if t <= a or t >= b:
+            t = 0.5 * (a + b)
+            if t <= a or t >= b:
+                break
+        f = sign * slope(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t)
+        if f < 0.0:
             a = t
+            fa = f
         else:
             b = t
+            fb = f
     return b

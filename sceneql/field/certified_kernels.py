@@ -20,82 +20,94 @@ SPLIT = 0.4609375
 """Where pieces are halved: off the middle, so that a root at the end of a piece is not at an end again."""
 WIDEST = 1.0e-3
 """Half of the widest piece, relative to the ray, that a root of even multiplicity may be spread over by rounding."""
-CROSSES, TOUCHES, UNKNOWN = range(3)
-"""What rounding hides: a change of sign, a root without one, or neither can be told."""
+CROSSES, TOUCHES, JUMPS, UNKNOWN = range(4)
+"""What may be hidden: a change of sign, a root without one, a pole or an edge of where f is defined; or unknown."""
+UNDEFINED = 2
 SURE = 1.0 - 1.0e-14
 
 
 @woven
 def surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, sign):
-    """(1, 0 or -1, bounds of sign df/dt (2)): whether sign f(t) is proved > 0 (or undefined), unknown, proved < 0."""
+    """(side, bounds of sign df/dt (2)): 1 where sign f(t) is proved > 0, -1 where < 0, or UNDEFINED; else 0."""
     low, high, least, most, status = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t, sign)
-    if status == NOWHERE or low > 0.0:
+    if status == NOWHERE:
+        return UNDEFINED, least, most
+    if low > 0.0:
         return 1, least, most
     return (-1 if status == WHOLE and high < 0.0 else 0), least, most
 
 
 @lean(
-    f"Tuple((int64, float64, float64, float64))({TAPE}, float64, float64, float64, float64, float64, float64,"
+    f"Tuple((int64, int64, float64, float64, float64))({TAPE}, float64, float64, float64, float64, float64, float64,"
     " float64, float64, float64, float64, float64, float64)"
 )
 def hidden(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, t0, t1, least, sign):
-    """(kind, place, from, to) of what rounding hides about the piece a..b, within t0..t1.
+    """(kind, side at the end, place, from, to) of what cannot be told of the piece a..b, within t0..t1.
 
-    from..to is the piece with a..b in it, grown by doubling until sign f is proved < 0 at an end, or > 0 and on its way
-    down at the first or up at the last. It CROSSES zero from > 0 to < 0, or it TOUCHES it, > 0 at both ends.
+    from..to is the piece with a..b in it, grown fourfold until sign f is proved < 0 at an end, or undefined, or > 0 and
+    on its way down at the first or up at the last. It CROSSES zero from > 0 to < 0, or it TOUCHES it, > 0 at both ends.
+    It JUMPS where it is undefined at one end, or goes from > 0 to < 0 on its way from zero at both: at a pole.
     """
     reach = WIDEST * (t1 - t0) + 2.0 * least
     step = least
     before = a
-    first, _, falling = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, before, sign)
-    while not (first < 0 or (first > 0 and falling < 0.0)) and before > t0 and step < reach:
+    first, gone, falling = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, before, sign)
+    while (first == 0 or (first == 1 and not falling < 0.0)) and before > t0 and step < reach:
         before = max(a - step, t0)
-        first, _, falling = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, before, sign)
-        step *= 2.0
+        first, gone, falling = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, before, sign)
+        step *= 4.0
     step = least
     after = b
     last, rising, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, after, sign)
-    while not (last < 0 or (last > 0 and rising > 0.0)) and after < t1 and step < reach:
+    while (last == 0 or (last == 1 and not rising > 0.0)) and after < t1 and step < reach:
         after = min(b + step, t1)
         last, rising, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, after, sign)
-        step *= 2.0
-    if first == 1 and last == -1:
+        step *= 4.0
+    place = a
+    kind = UNKNOWN
+    if first > 0 and last == -1:
         place = polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, before, after, sign)
-        return CROSSES, place, before, after
-    if first == 1 and last == 1 and falling < 0.0 and rising > 0.0:
+        kind = JUMPS if first == UNDEFINED or (gone > 0.0 and rising > 0.0) else CROSSES
+    elif first == 1 and last == 1 and falling < 0.0 and rising > 0.0:
         place = lowest(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, before, after, sign)
-        return TOUCHES, place, before, after
-    return UNKNOWN, a, before, after
+        kind = TOUCHES
+    elif (first == UNDEFINED and last == 1) or (first == 1 and last == UNDEFINED):
+        kind = JUMPS
+    return kind, last, place, before, after
 
 
 @lean(
     f"Tuple((int64, float64))({TAPE}, float64, float64, float64, float64, float64, float64,"
     " float64, float64, float64, float64, boolean, boolean)"
 )
-def certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, sign, anywhere, touching):
+def certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, finest, sign, anywhere, touching):
     """(status, t) of the first place in [t0, t1] where sign f < 0 begins, or with ``anywhere`` of any place of it.
 
     With ``touching`` the first root of f instead, also one without a change of sign: where f is zero up to its
-    rounding, and df/dt changes sign. UNDECIDED: all before is proved, and t lies behind what could not be resolved.
+    rounding, and df/dt changes sign. UNDECIDED: all before t is proved, and there a piece
+    no longer than ``finest`` could not be told.
     What begins nearer to an end of [t0, t1] than f can be told from zero is not met: a ray may begin on a surface.
     """
     a = t0
     end = t1
     found = MISS  # at `end`
     where = t1
-    least = max(tolerance * (t1 - t0), 4.0e-15 * (abs(t0) + abs(t1)))
+    least = max(finest, 4.0e-15 * (abs(t0) + abs(t1)))
     if touching:
         step = 0.125 * least
         side, _, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, sign)
-        while side == 0 and a < t1:
+        while side == 0 and step < WIDEST * (t1 - t0) + least:
             a = min(t0 + step, t1)
-            step *= 2.0
+            step *= 4.0
             side, _, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, sign)
+        if side == 0:
+            return UNDECIDED, a
         if side < 0:
             sign = -sign
     b = end
-    for _ in range(EVALUATIONS):
-        if not a < end:
+    eager = True  # to look at what rounding hides before it is narrowed down
+    for count in range(EVALUATIONS):
+        if count > 0 and not a < end:
             return found, where
         width = b - a
         middle = a + SPLIT * width
@@ -129,19 +141,26 @@ def certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tol
                 if not clear:
                     b = min(b + width, end)
                     continue
-        if not clear and (width <= least or (status == WHOLE and below <= 0.0 <= above)):
+        if not clear and (width <= least or (eager and status == WHOLE and below <= 0.0 <= above)):
             first = a if width <= least else middle
             last = b if width <= least else middle
-            kind, place, before, after = hidden(
-                code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, first, last, t0, end, 0.125 * least, sign
+            kind, behind, place, before, after = hidden(
+                code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, first, last, t0, t1, 0.125 * least, sign
             )
             if width <= least or kind != UNKNOWN:
-                if kind == CROSSES and touching and status != WHOLE:
-                    kind = UNKNOWN
-                found = HIT if kind == CROSSES or (kind == TOUCHES and touching) else UNDECIDED
-                where = place if found == HIT else after
+                if kind == JUMPS and (touching or behind > 0):
+                    if behind < 0:
+                        sign = -sign
+                        end = t1
+                        found = MISS
+                    a = after
+                    b = min(a + 2.0 * width, end)
+                    continue
+                found = HIT if kind == CROSSES or kind == (TOUCHES if touching else JUMPS) else UNDECIDED
                 b = end = max(before, a)
+                where = place if found == HIT else b
                 continue
+            eager = False
         if not clear and status == WHOLE and below > 0.0:
             # f >= below - slope1 (middle - t) before the middle, and >= below + slope0 (t - middle) behind it.
             blur = 1.0e-15 * (abs(a) + abs(b))

@@ -1,4 +1,4 @@
-"""Proofs that a tape's solid {f < 0} has nothing in a box, for Python callers.
+"""Proofs that a tape's solid {f < 0} or surface {f = 0} has nothing in a box, for Python callers.
 
 Imports numpy and numba: to be imported by the function that needs it.
 """
@@ -27,7 +27,22 @@ Corner = tuple[float, float, float]
 def proved_empty(tape: Tape, low: Corner, high: Corner) -> bool:
     """Whether f is proved to be nowhere negative, where it is defined at all, in the box low..high [m]."""
     return _all_settled(
-        tape, low, high, lambda least, status: status == NOWHERE or least >= -SHALLOW, lambda value, status: value < 0.0
+        tape,
+        low,
+        high,
+        lambda least, most, status: status == NOWHERE or least >= -SHALLOW,
+        lambda value, status: value < 0.0,
+    )
+
+
+def proved_rootless(tape: Tape, low: Corner, high: Corner) -> bool:
+    """Whether f is proved to be nowhere zero in the box low..high [m]."""
+    return _all_settled(
+        tape,
+        low,
+        high,
+        lambda least, most, status: status == NOWHERE or least > 0.0 or most < 0.0,
+        lambda value, status: value == 0.0,
     )
 
 
@@ -37,7 +52,7 @@ def nowhere_defined(tape: Tape, low: Corner, high: Corner) -> bool:
         tape,
         low,
         high,
-        lambda least, status: status == NOWHERE,
+        lambda least, most, status: status == NOWHERE,
         lambda value, status: status == WHOLE or value == value,
     )
 
@@ -46,13 +61,13 @@ def _all_settled(
     tape: Tape,
     low: Corner,
     high: Corner,
-    settled: Callable[[float, int], bool],
+    settled: Callable[[float, float, int], bool],
     refuted: Callable[[float, int], bool],
 ) -> bool:
     """Branch and bound (Land and Doig 1960): halve boxes until all are settled, the least first; no once refuted.
 
-    ``settled`` gets the least value that f may have in a box and where it is defined, ``refuted`` the value in its
-    middle and where it is defined.
+    ``settled`` gets the least and the largest value that f may have in a box and where it is defined, ``refuted`` the
+    value in its middle and where it is defined.
     """
     program = (tape.code, tape.constants, tape.parts, scratch(tape))
     boxes: list[tuple[float, int, Corner, Corner]] = [(0.0, 0, low, high)]
@@ -65,8 +80,10 @@ def _all_settled(
         middle = 0.5 * (first[axis] + last[axis])
         for part, (a, b) in enumerate(((first[axis], middle), (middle, last[axis]))):
             one, two = _moved(first, axis, a), _moved(last, axis, b)
-            least, _, status = interval_kernels.box(*program, *(c for pair in zip(one, two, strict=True) for c in pair))
-            if settled(least, status):
+            least, most, status = interval_kernels.box(
+                *program, *(c for pair in zip(one, two, strict=True) for c in pair)
+            )
+            if settled(least, most, status):
                 continue
             center = (0.5 * (c + d) for c, d in zip(one, two, strict=True))
             if refuted(tape_kernels.value(*program, *center), status):

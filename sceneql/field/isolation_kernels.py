@@ -6,8 +6,8 @@ twice as long; else the segment is cut where the enclosure allows no zero, and h
 that lies before a root returned is proved to be outside, up to the tolerance.
 """
 
-from sceneql.field.bracket_kernels import FINE, along, polished
-from sceneql.field.certified_kernels import certify, surely
+from sceneql.field.bracket_kernels import FINE, along
+from sceneql.field.certified_kernels import CROSSES, TOUCHES, certify, hidden, surely
 from sceneql.field.enclosure_kernels import segment
 from sceneql.field.slope_kernels import on_ray
 from sceneql.field.tape_kernels import TAPE
@@ -87,9 +87,6 @@ def search(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tole
             break
         if b - a >= 0.5 * width or b - a <= 1.0e-4 * least:
             if b - a <= least:
-                if sign * along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, b) < 0.0:
-                    outcome = HIT
-                    a = polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign)
                 break
             b = a + 0.5 * (b - a)
     return outcome, a
@@ -101,8 +98,8 @@ def isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tol
     status, t = search(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, sign, anywhere)
     if status == UNDECIDED:
         t = max(t - BACK * (t1 - t0), t0)
-        share = tolerance * (t1 - t0) / max(t1 - t, tolerance * (t1 - t0))
-        return certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, share, sign, anywhere, False)
+        finest = tolerance * (t1 - t0)
+        return certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, finest, sign, anywhere, False)
     return status, t
 
 
@@ -144,12 +141,13 @@ def surface_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1
     """(status, t) of the first root of f on the ray o + t d, t in [t0, t1], with or without a change of sign.
 
     HIT: all before t is proved to have none, and at t is one, up to rounding: see ``certify``. MISS: none is there.
-    UNDECIDED: all before is proved, and t lies behind what could not be told. Where f jumps or has a pole is no root.
+    UNDECIDED: all before t is proved. Where f jumps or has a pole is no root.
     """
     near = tolerance * (t1 - t0)
     start = t0
     for _ in range(POLES):
         side, _, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, 1.0)
+        side = min(side, 1)
         status = UNDECIDED
         t = start
         if side != 0:
@@ -158,10 +156,16 @@ def surface_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1
             )
         if status == MISS:
             return MISS, t1
+        if status == UNDECIDED and side != 0:
+            kind, _, place, _, _ = hidden(
+                code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t, start, t1, 0.1 * near, float(side)
+            )
+            if kind == CROSSES or kind == TOUCHES:
+                status = HIT
+                t = place
         if status == UNDECIDED:
             t = max(t - BACK * (t1 - t0), start)
-            share = near / max(t1 - t, near)
-            status, t = certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, share, 1.0, False, True)
+            status, t = certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, near, 1.0, False, True)
             if status != HIT:
                 return status, t
         _, _, _, _, known = on_ray(

@@ -1,4 +1,4 @@
-"""Which solids of a film had anything to draw, so that the film says what it never showed."""
+"""Which solids and surfaces of a film had anything to draw, so that the film says what it never showed."""
 
 from __future__ import annotations
 
@@ -12,25 +12,26 @@ if TYPE_CHECKING:
     from sceneql.graph import Task
 
 
-def look(shapes: Iterable[Shape], present: dict[str, bool]) -> None:
-    """Note of each implicit solid by name whether it may have anything in its box, now or at a moment before."""
-    from sceneql.field.emptiness import proved_empty
+def look(shapes: Iterable[Shape], present: dict[str, str]) -> None:
+    """Note of each implicit shape by name why its box holds nothing of it, or nothing where it may, now or before."""
+    from sceneql.field.emptiness import proved_empty, proved_rootless
     from sceneql.frame import Implicit
 
     for shape in shapes:
-        if isinstance(shape, Implicit) and not present.get(shape.name):
-            present[shape.name] = not proved_empty(shape.tape, shape.low, shape.high)
+        if isinstance(shape, Implicit) and present.get(shape.name, "new"):
+            proved, found = (proved_empty, "negative") if shape.within is None else (proved_rootless, "zero")
+            present[shape.name] = found if proved(shape.tape, shape.low, shape.high) else ""
 
 
-def missing(present: Mapping[str, bool], tasks: Mapping[str, Task]) -> tuple[Diagnostic, ...]:
-    """A warning for each solid that was proved empty at every moment."""
+def missing(present: Mapping[str, str], tasks: Mapping[str, Task]) -> tuple[Diagnostic, ...]:
+    """A warning for each shape that was proved empty at every moment."""
     return tuple(
         Diagnostic(
             "empty-solid",
-            f"nothing of '{name}' was ever there: its field is nowhere negative in its bounds",
+            f"nothing of '{name}' was ever there: its field is nowhere {found} in its bounds",
             tasks[name].span,
             severity="warning",
         )
-        for name, there in present.items()
-        if not there
+        for name, found in present.items()
+        if found
     )

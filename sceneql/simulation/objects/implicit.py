@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import field_validator
@@ -11,6 +12,7 @@ from sceneql.kinds import Axis, FieldBuilder, FixedLength, FixedScalar, Formula,
 from sceneql.kinds import field as described
 from sceneql.quantities.expression import Link, Symbol, walk
 from sceneql.simulation.formula import COORDINATES, in_coordinates, written_out
+from sceneql.simulation.placement import inverse
 from sceneql.simulation.solid import Solid, block, length, less, traced
 
 if TYPE_CHECKING:
@@ -41,18 +43,23 @@ class Within(Record):
 
 
 class Implicit(Solid):
-    """The solid {field < level} within its bounds.
+    """The solid {field < level} within its bounds, or the surface {field = level}.
 
     The formula takes plain numbers x, y, z and the time t in seconds; x = 1 stands for the length `unit`, so textbook
     formulas need no dimensions. Where the formula is not defined is outside. Its field is max(unit (field - level),
     distance to the bounds), which is negative inside but is a distance only where |grad field| = 1.
+
+    As a surface it is drawn as a thin sheet, seen from both sides and open at its bounds, also where the field touches
+    the level and does not pass it, as (x^2 + y^2 - 1)^2 does 0; to contacts, meshes and other objects it is the solid.
     """
 
     field: Annotated[Formula, Symbols(("x", "y", "z", "t"))] = described("The formula.")
     level: FixedScalar = described("The value that the formula has on the surface.", "0")
     unit: FixedLength = described("The length that x = 1 stands for.", "1 m", above=0)
     bounds: Within = described("Where the formula is looked at, in units of the formula.", Within(ball=1.0))
-    mode: Literal["solid"] = described("`solid`: all that is below the level.", "solid")
+    mode: Literal["solid", "surface"] = described(
+        "`solid`: all that is below the level; `surface`: a sheet where it is reached.", "solid"
+    )
 
     @field_validator("field")
     @classmethod
@@ -62,6 +69,10 @@ class Implicit(Solid):
 
     def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
         """The formula and its bounds, in meters."""
+        return build.op("mul", build.op("max", *self._parts(build, x, y, z, moment)), build.constant(self.unit))
+
+    def _parts(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> tuple[int, int]:
+        """Registers of the formula less the level, and of the distance to the bounds, in units."""
         per_unit = build.constant(1.0 / self.unit)
         u, v, w = (build.op("mul", register, per_unit) for register in (x, y, z))
         formula = written_out(self.field.expr, moment)
@@ -70,7 +81,7 @@ class Implicit(Solid):
             limit = less(build, length(build, u, v, w), self.bounds.ball)
         else:
             limit = block(build, (u, v, w), *self.bounds.corners)
-        return build.op("mul", build.op("max", value, limit), build.constant(self.unit))
+        return value, limit
 
     def reach(self, moment: Moment) -> tuple[Any, Any]:
         """The box around its bounds."""
@@ -82,11 +93,21 @@ class Implicit(Solid):
         from sceneql.failure import RunFailure
         from sceneql.field.emptiness import nowhere_defined
 
-        for shape in traced(self, name, place, moment):
+        for solid in traced(self, name, place, moment):
+            shape = solid if self.mode == "solid" else self._sheet(solid, place, moment)
             if self._holds_still() and nowhere_defined(shape.tape, shape.low, shape.high):
                 message = "the formula is defined nowhere in its bounds, so there is nothing to draw"
                 raise RunFailure(message, part="field", time=moment.time, span=self.field.span)
             yield shape
+
+    def _sheet(self, solid: frame.Implicit, place: frame.Floats, moment: Moment) -> frame.Implicit:
+        """The surface of the solid that it would be."""
+        from sceneql.field.builder import TapeBuilder
+
+        build = TapeBuilder()
+        world = build.affine(inverse(place), build.x, build.y, build.z)
+        value, limit = self._parts(build, *build.affine(inverse(self.local(moment)), *world), moment)
+        return replace(solid, tape=build.finish(value), within=build.finish(limit))
 
     def _holds_still(self) -> bool:
         """Whether its formula depends on nothing but the place."""

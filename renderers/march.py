@@ -1,0 +1,27 @@
+"""march: the ray tracer with implicit surfaces looked for at fixed places of each ray."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from sceneql.kinds import Renderer, field
+
+
+class March(Renderer):
+    """Draws as `trace` does, but finds implicit surfaces as most programs do: by samples and bisection.
+
+    A field is asked at fixed places along the ray through an object's box, and where its sign changes from one to the
+    next, the root between is found by bisection. Nothing is proved: what is thinner than the way between two samples
+    has holes or is not there at all, and what is touched without a change of sign is never seen. It is here to show
+    that, and for `sceneql bench` to measure.
+    """
+
+    kernels: ClassVar[str] = "renderers.tracing.draw"
+
+    samples: int = field("Places on a ray at which a field is sampled.", 64, at_least=1, at_most=100000)
+
+    def draw(self, frame: Any) -> Any:
+        """The Picture of a frame: linear (h, w, 3), with nothing undecided."""
+        from renderers.tracing.draw import draw
+
+        return draw(frame, march=self.samples)
