@@ -62,6 +62,10 @@ class Object(Kind):
         """
         raise TypeError(f"{type(self).__name__} has no inside")
 
+    def domain(self) -> Any:
+        """Its inside as a flat domain of fields (simulation.grids.cut.Level with bounds); None: it is none."""
+        return None
+
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
         """Low and high corner (3,) of a world box around it; infinite where it is unbounded."""
         raise TypeError(f"{type(self).__name__} has no extent")

@@ -97,7 +97,7 @@ class _Builder:
             outside=~self.inside,
         )
         assembly.grid(grid)
-        assembly.remember(self.at, n, assembly.floats(cells.volumes))
+        assembly.remember(self.at, assembly.floats(cells.volumes), self.box, *cells.shape)
 
     def _start(self) -> Floats:
         start = np.zeros(self.count) if self.model.initial is None else at_points(self.model.initial, self.centers)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.simulation.grids.cells import SIDES
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -56,6 +58,10 @@ def conditions(model: Diffusion, cells: Cells, line: Span | None) -> tuple[list[
     rest = [(name, part) for name, part in model.boundary.items() if name == "rest"]
     named = [(name, part) for name, part in model.boundary.items() if name != "rest"]
     for number, (name, part) in enumerate(named + rest):
+        if name not in (*cells.names, "rest") and part.where is None:
+            known = ", ".join((*cells.names, "rest"))
+            text = f"the boundary has no part '{name}'"
+            raise ScriptError([Diagnostic("unknown-boundary", text, _span(part) or line, f"it has {known}")])
         mine = _faces_of(name, part, cells, taken)
         both = mine & taken
         if both.any():
@@ -65,6 +71,9 @@ def conditions(model: Diffusion, cells: Cells, line: Span | None) -> tuple[list[
         taken |= mine
         owner[mine] = number
         if part.periodic:
+            if name not in SIDES:
+                text = f"'{name}' is no side of a box, which alone can be periodic"
+                raise ScriptError([Diagnostic("unknown-boundary", text, line)])
             axis = cells.names.index(name) // 2
             if cells.shape[axis] < 3:
                 text = f"'{name}' can be periodic where there are 3 cells or more in its direction"
@@ -116,3 +125,25 @@ def _span(part: Part) -> Span | None:
         if formula is not None:
             return formula.span
     return None
+
+
+def held_by(model: Diffusion, names: tuple[str, ...]) -> Callable[[Floats, Any], Any] | None:
+    """From points of a boundary (m, 3) and their pieces (m,) whether a value is given there; None: nowhere."""
+    from sceneql.simulation.grids.assembly import at_points
+
+    if all(part.value is None for part in model.boundary.values()):
+        return None
+
+    def held(points: Floats, pieces: Any) -> Any:
+        found, taken = np.zeros(len(points), dtype=bool), np.zeros(len(points), dtype=bool)
+        for name, part in sorted(model.boundary.items(), key=lambda item: item[0] == "rest"):
+            mine = ~taken
+            if name in names:
+                mine &= pieces == names.index(name)
+            if part.where is not None:
+                mine &= at_points(part.where, points) > 0.0
+            taken |= mine
+            found |= mine & (part.value is not None)
+        return found
+
+    return held

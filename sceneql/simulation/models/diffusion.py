@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import model_validator
@@ -13,6 +14,7 @@ from sceneql.kinds import (
     Formula,
     Gives,
     Model,
+    ObjectRef,
     Quantity,
     Record,
     Symbols,
@@ -25,13 +27,42 @@ from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Link, Symbol, walk
 
 if TYPE_CHECKING:
-    from sceneql.simulation.grids.cells import Cells
+    from sceneql.frame import Floats
     from sceneql.system import Assembly, ModelState
 
 PLACE = Annotated[Formula, Symbols(("x", "y", "z"))]
 PLACE_AND_TIME = Annotated[Formula, Symbols(("x", "y", "z", "t"))]
 ANYTHING = Annotated[Formula, Symbols(("x", "y", "z", "t", "c"))]
 UNITS = {"concentration": dim.DENSITY, "temperature": dim.TEMPERATURE, "number": dim.PLAIN}
+
+
+@dataclass(frozen=True, slots=True)
+class FieldLayout:
+    """A field on its grid: cell (i, j, k) is y[at + i + nx (j + ny k)]; where its volume is 0 it is outside."""
+
+    shape: tuple[int, int, int]
+    at: int
+    volumes_at: int
+    """In the floats."""
+    low: tuple[float, ...]
+    """Low corner [m]."""
+    spacing: tuple[float, ...]
+    """Sides of a cell [m]."""
+
+    @property
+    def count(self) -> int:
+        """Cells, also those outside."""
+        return self.shape[0] * self.shape[1] * self.shape[2]
+
+    def centers(self) -> Floats:
+        """(cells, 3) [m]."""
+        import numpy as np
+
+        nx, ny, _ = self.shape
+        cell = np.arange(self.count)
+        index = np.stack([cell % nx, cell // nx % ny, cell // (nx * ny)], axis=1)
+        centers: Floats = np.array(self.low) + (index + 0.5) * np.array(self.spacing)
+        return centers
 
 
 class Exchange(Record):
@@ -69,8 +100,13 @@ class Diffusion(Model):
 
     has_bodies = False
 
-    size: Annotated[tuple[float, ...], Quantity(dim.LENGTH, (None,))] = field(
-        "Sides of a box: two for a flat domain, three for a deep one.", above=0
+    domain: ObjectRef | None = field("The object whose inside, at the start, it spreads in; or give `size`.", None)
+    flat: bool = field("The section of that object at z = 0 alone.", False)
+    edges: Literal["cut_cell", "staircase"] = field(
+        "How cells meet the object's boundary: cut by it, or whole where their centers lie inside.", "cut_cell"
+    )
+    size: Annotated[tuple[float, ...], Quantity(dim.LENGTH, (None,))] | None = field(
+        "Sides of a box in place of a domain: two for a flat one, three for a deep one.", None, above=0
     )
     corner: Annotated[tuple[float, ...], Quantity(dim.LENGTH, (None,))] | None = field(
         "Low corner of that box; by default the origin.", None
@@ -84,7 +120,10 @@ class Diffusion(Model):
     initial: PLACE | None = field("The field at the start; by default 0.", None)
     source: ANYTHING | None = field("What comes in a second and cubic meter; below 0 it leaves.", None)
     boundary: dict[str, Part] = field(
-        "What holds on the sides `left`, `right` (x), `bottom`, `top` (y), `back`, `front` (z), or on `rest`.", {}
+        "What holds on the sides `left`, `right` (x), `bottom`, `top` (y), `back`, `front` (z) of a box, on the pieces "
+        "of an outline, on the boundary of another object by its name, on any part `where` a formula holds, or on "
+        "`rest`.",
+        {},
     )
 
     @classmethod
@@ -106,6 +145,10 @@ class Diffusion(Model):
     def _fits(self) -> Diffusion:
         from sceneql.simulation.grids.cells import MOST_CELLS, SIDES, counts
 
+        if (self.size is None) == (self.domain is None):
+            raise ValueError("it spreads in one of `domain` and `size`")
+        if self.size is None:
+            return self
         if len(self.size) not in (2, 3) or (self.corner is not None and len(self.corner) != len(self.size)):
             raise ValueError("a domain has two or three sides, and its corner as many numbers")
         shape = counts(self.size, self.cell)
@@ -125,43 +168,47 @@ class Diffusion(Model):
         if any(isinstance(node, Symbol | Link) for node in walk(self.coefficient.expr)):
             return
         d = float(evaluate(self.coefficient.expr, {}))
-        shape = counts(self.size, self.cell)
-        rate = 4.0 * d * sum((n / side) ** 2 for n, side in zip(shape, self.size, strict=False))
+        if self.size is None:
+            rate = 8.0 * d / self.cell**2  # of a flat domain; that of a deep one is larger
+        else:
+            shape = counts(self.size, self.cell)
+            rate = 4.0 * d * sum((n / side) ** 2 for n, side in zip(shape, self.size, strict=False))
         yield Oscillation(0.0, rate, f"the spread over cells of {self.cell:g} m", ("cell",))
-
-    def cells(self) -> Cells:
-        """Its grid."""
-        from sceneql.simulation.grids import cells
-
-        corner = self.corner or (0.0,) * len(self.size)
-        return cells.box(self.size, corner, self.cell, self.depth)
 
     def assemble(self, name: str, assembly: Assembly) -> None:
         """Reserve a number a cell and one for the inflow, and add the terms of the rate. Raises ScriptError."""
         from sceneql.simulation.grids.assembly import assemble
+        from sceneql.simulation.grids.domain import cells_of
 
-        assemble(self, self.cells(), assembly)
+        assemble(self, cells_of(self, assembly), assembly)
+
+    def layout(self, state: ModelState) -> FieldLayout:
+        """Where its field lies, for pictures."""
+        at, volumes_at, box_at, nx, ny, nz = state.ints[:6]
+        box = state.floats[box_at : box_at + 6]
+        return FieldLayout((nx, ny, nz), at, volumes_at, tuple(box[:3].tolist()), tuple(box[3:].tolist()))
 
     def read(self, output: str, state: ModelState) -> Any:
-        """An output: (cells,), (cells, 3) or float."""
+        """An output: (cells of the domain,), (cells, 3) or float."""
         import numpy as np
 
-        at, count, volumes_at = state.ints[:3]
-        field = state.y[at : at + count]
-        volumes = state.floats[volumes_at : volumes_at + count]
+        layout = self.layout(state)
+        field = state.y[layout.at : layout.at + layout.count]
+        volumes = state.floats[layout.volumes_at : layout.volumes_at + layout.count]
+        inside = volumes > 0.0
         match output:
             case "concentration":
-                return field.copy()
+                return field[inside]
             case "centers":
-                return self.cells().centers()
+                return layout.centers()[inside]
             case "mass":
                 return float(volumes @ field)
             case "inflow":
-                return float(state.y[at + count])
+                return float(state.y[layout.at + layout.count])
             case "max":
-                return float(field.max())
+                return float(field[inside].max())
             case "min":
-                return float(field.min())
+                return float(field[inside].min())
             case "mean":
                 return float(np.average(field, weights=volumes))
         raise KeyError(output)

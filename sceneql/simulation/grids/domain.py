@@ -1,0 +1,83 @@
+"""The cells of a model's domain: a box by its sides, or the inside of an object of the script."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from sceneql.failure import LimitRefused
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.simulation.grids import cells, cut
+from sceneql.simulation.grids.boundary import held_by
+from sceneql.simulation.start import Start
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats, Tape
+    from sceneql.kinds import Moment, Object
+    from sceneql.simulation.models.diffusion import Diffusion
+    from sceneql.system import Assembly
+
+
+class TapeLevel:
+    """The inside of an object with a field (cut.Level); its boundary is one piece."""
+
+    def __init__(self, tape: Tape, name: str) -> None:
+        self._tape, self.names = tape, (name,)
+
+    def values(self, points: Floats) -> Floats:
+        """The field (k,)."""
+        from sceneql.field.solid import field_values
+
+        return field_values(self._tape, points)
+
+    def pieces(self, points: Floats) -> NDArray[int64]:
+        """(k,) zeros."""
+        return np.zeros(len(points), dtype=np.int64)
+
+
+def cells_of(model: Diffusion, assembly: Assembly) -> cells.Cells:
+    """The grid of a model. Raises ScriptError where its domain is an object without an inside, or holds no cell."""
+    if model.size is not None:
+        corner = model.corner or (0.0,) * len(model.size)
+        return cells.box(model.size, corner, model.cell, model.depth)
+    assert model.domain is not None
+    try:
+        level, low, high, flat = _inside(model.domain.name, assembly.object(model.domain), model.flat, assembly)
+    except (TypeError, ValueError) as error:
+        message = f"'{model.domain.name}' cannot be a domain: {error}"
+        raise ScriptError([Diagnostic("no-domain", message, model.domain.span)]) from error
+    sides = (high - low)[: 2 if flat else 3]
+    count = float(np.prod(np.ceil(sides / model.cell)))
+    if not count <= cells.MOST_CELLS:
+        raise LimitRefused(
+            f"{count:.3g} cells: at most {cells.MOST_CELLS:,} are possible", assembly.line(), "take a larger `cell`"
+        )
+    grid = cut.frame(low, high, model.cell, model.depth, flat)
+    found = (
+        cut.cut(level, grid, held_by(model, level.names)) if model.edges == "cut_cell" else cut.staircase(level, grid)
+    )
+    if not (found.volumes > 0.0).any():
+        message = f"no cell of {model.cell:g} m lies inside '{model.domain.name}'"
+        raise ScriptError([Diagnostic("no-cell", message, model.domain.span, "take a smaller `cell`")])
+    return found
+
+
+def _inside(name: str, kind: Object, flat: bool, assembly: Assembly) -> tuple[Any, Floats, Floats, bool]:
+    """Level set, low and high corner (3,) of the box around it, whether it is flat."""
+    from sceneql.field.builder import TapeBuilder
+
+    own = kind.domain()
+    if own is not None:
+        low, high = own.bounds
+        return own, low, high, True
+    start = cast("Moment", Start(assembly))
+    build = TapeBuilder()
+    tape = build.finish(kind.implicit(build, build.x, build.y, build.z, start))
+    low, high = kind.extent(np.eye(3, 4), start)
+    if not (np.isfinite(low).all() and np.isfinite(high).all()):
+        raise ValueError("it is unbounded")
+    return TapeLevel(tape, name), low, high, flat
