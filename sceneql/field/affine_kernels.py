@@ -28,6 +28,8 @@ GROW = F(1.0 + 2.0e-6)
 TINY = F(1.0e-37)
 """More than underflow takes away."""
 LEAST = F(1.0e-30)
+FAR = F(1.0e18)
+"""Up to here the square of a reciprocal is far from underflow."""
 ZERO, HALF, ONE, TWO, QUARTER = F(0.0), F(0.5), F(1.0), F(2.0), F(0.25)
 INFINITE = F(np.inf)
 WAVES = F(1.5)
@@ -119,7 +121,7 @@ def reciprocal(a0, a1, ea):
     gap = HALF * (p + q) - middle
     c0 = -c0 if a0 < ZERO else c0
     e = (gap - slope * ea) * GROW + F(8.0) * PAD * p
-    return c0 + slope * a0, slope * a1, e if near > LEAST else INFINITE
+    return c0 + slope * a0, slope * a1, e if near > LEAST and far < FAR else INFINITE
 
 
 @lane
@@ -191,8 +193,12 @@ def logged(a0, a1, ea):
     safe = low if low > LEAST else LEAST
     top = high if high > LEAST else LEAST
     f = logarithm(a0 if a0 > LEAST else LEAST)
-    c0, c1, e = curve(f, ONE / a0, -(ONE / (safe * safe)) * GROW, ZERO, a1, ea)
-    e += LOG_ERROR * (ONE + abs(f)) + PAD * (abs(a1) + ea) / safe
+    slope = ONE / a0
+    ratio = reach / safe  # before it is squared, since 1/a^2 may underflow
+    sag = QUARTER * ratio * ratio
+    c0 = f - sag
+    c1 = slope * a1
+    e = (sag + abs(slope) * ea) * GROW + LOG_ERROR * (ONE + abs(f)) + PAD * (abs(f) + sag + (abs(a1) + ea) / safe)
     bottom = logarithm(safe)
     top = logarithm(top)
     flat_e = HALF * (top - bottom) * GROW + (LOG_ERROR + PAD) * (ONE + abs(top) + abs(bottom))

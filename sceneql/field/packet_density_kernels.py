@@ -16,6 +16,7 @@ PAD = F(5.0e-7)
 GROW = F(1.0 + 4.0e-6)
 TINY = F(1.0e-37)
 ZERO, HALF, ONE, TWO, THREE = F(0.0), F(0.5), F(1.0), F(2.0), F(3.0)
+INFINITE = F(np.inf)
 ROUND = F(1.3e-7)
 """Two half units in the last place."""
 PART = 11
@@ -41,14 +42,48 @@ def pack_part(part, out):
 
 
 @inlined
+def span(row, n):
+    """Least and largest of what n lanes of a register reach, but for those that are not numbers."""
+    low = INFINITE
+    high = -INFINITE
+    for i in range(n):
+        reach = (abs(row[C1 + i]) + row[E + i]) * GROW
+        bottom, top = row[i] - reach, row[i] + reach
+        low = bottom if bottom < low else low
+        high = top if top > high else high
+    hair = PAD * (abs(low) + abs(high))
+    if not (low <= high):
+        return -INFINITE, INFINITE
+    return low - hair, high + hair
+
+
+@inlined
+def gap(a, axis, low, high):
+    """How far a segment a, a + axis along one coordinate stays off low..high."""
+    first = a if axis > ZERO else a + axis
+    last = a + axis if axis > ZERO else a
+    return max(max(first - high, low - last), ZERO)
+
+
+@inlined
 def density_lanes(parts, start, stop, x, y, z, out, n):
     """Enclosure of the density of parts start..stop-1 at the point with enclosures x, y, z, into ``out``."""
     for i in range(n):
         out[i] = out[C1 + i] = out[E + i] = ZERO
+    x_low, x_high = span(x, n)
+    y_low, y_high = span(y, n)
+    z_low, z_high = span(z, n)
     for part in range(start, stop):
         p = parts[part]
         ax, ay, az = p[0], p[1], p[2]
         sx, sy, sz = p[3], p[4], p[5]
+        # A part off the box around all lanes is left out.
+        gx = gap(ax, sx, x_low, x_high)
+        gy = gap(ay, sy, y_low, y_high)
+        gz = gap(az, sz, z_low, z_high)
+        reach = p[9] * GROW + p[10] + p[10]
+        if gx * gx + gy * gy + gz * gz > reach * reach * GROW:
+            continue
         inverse, weight, shrink, radius, blur = p[6], p[7], p[8], p[9], p[10]
         size = abs(weight)
         for i in range(n):
@@ -104,6 +139,46 @@ def density_lanes(parts, start, stop, x, y, z, out, n):
         unknown += ZERO * (x[E + i] + y[E + i] + z[E + i])
         out[i] += unknown
         out[E + i] += PAD * (abs(out[i]) + abs(out[C1 + i])) + TINY
+
+
+@inlined
+def within_reach(p, x, y, z, first, stop):
+    """Whether a part (PART,) may have a density in one of the lanes first..stop-1."""
+    ax, ay, az = p[0], p[1], p[2]
+    sx, sy, sz = p[3], p[4], p[5]
+    shrink, blur = p[8], p[10]
+    reach = p[9] * GROW + blur
+    lanes = 0
+    for i in range(first, stop):
+        wx, wy, wz = x[i] - ax, y[i] - ay, z[i] - az
+        q = (wx * sx + wy * sy + wz * sz) * shrink
+        q = q if q > ZERO else ZERO
+        q = q if q < ONE else ONE
+        wx, wy, wz = abs(wx - q * sx), abs(wy - q * sy), abs(wz - q * sz)
+        hx = (abs(x[C1 + i]) + x[E + i]) * GROW + PAD * abs(x[i])
+        hy = (abs(y[C1 + i]) + y[E + i]) * GROW + PAD * abs(y[i])
+        hz = (abs(z[C1 + i]) + z[E + i]) * GROW + PAD * abs(z[i])
+        # The distance changes no faster than the point moves.
+        far = reach + np.sqrt(hx * hx + hy * hy + hz * hz) * GROW
+        near = wx * wx + wy * wy + wz * wz <= far * far * GROW + TINY
+        lanes += 1 if near else 0
+    return lanes > 0
+
+
+@inlined
+def keep_near(code, k, registers, first, stop, singles, parts, kept, short, near_singles, near_parts):
+    """Copy the parts of density row k that are near lanes first..stop-1 behind those kept; how many there are then."""
+    p = code[k, 3]
+    short[k, 1] = kept
+    for part in range(code[k, 1], code[k, 2]):
+        if within_reach(singles[part], registers[p], registers[p + 1], registers[p + 2], first, stop):
+            for j in range(PART):
+                near_singles[kept, j] = singles[part, j]
+            for j in range(8):
+                near_parts[kept, j] = parts[part, j]
+            kept += 1
+    short[k, 2] = kept
+    return kept
 
 
 @lean("void(float64[:, ::1], float32[:, ::1])")

@@ -49,6 +49,7 @@ from sceneql.field.tape_ops import (
     NOWHERE,
     PARTIAL,
     POW,
+    SIGN,
     SIN,
     SQRT,
     SQUARE,
@@ -261,8 +262,11 @@ def enclose(code, constants, parts, registers, point, status, n):
             wave_lanes(op, a, out, twin, n)
         elif op <= ATAN2:
             binary_lanes(op, a, b, out, n, status)
-        else:
+        elif op <= SIGN:
             unary_lanes(op, a, out, n, status)
+        else:  # nothing is claimed of an operation that has no lanes
+            for i in range(n):
+                out[i] = F(np.nan)
 
 
 @lean(

@@ -22,11 +22,12 @@ from sceneql.field.hunt_kernels import (
     hunt,
 )
 from sceneql.field.isolation_kernels import isolate
+from sceneql.field.packet_density_kernels import keep_near
 from sceneql.field.packet_kernels import C1, LANES, PACKET, E, enclose, load_constants, place
-from sceneql.field.tape_ops import HIT, MISS, NOWHERE, UNDECIDED
+from sceneql.field.tape_ops import DENSITY, HIT, MISS, NOWHERE, SKELETON, UNDECIDED
 from sceneql.kernels import inlined, lean
 
-GROUP, SLABS = 16, 16
+GROUP, SLABS = 16, 8
 BEAMS = LANES // SLABS
 PLACE, WAY, PLACE_OFF, WAY_OFF, BEGIN, STOP = 0, 3, 6, 9, 12, 13
 BEAM = 14
@@ -179,10 +180,43 @@ def polish(code, constants, parts, registers, points, rays, queue, count, found)
                 found[FOUND_ROOT, j] = root
 
 
+@inlined
+def has(code, op):
+    """Whether a tape has an operation."""
+    for k in range(code.shape[0]):
+        if code[k, 0] == op:
+            return True
+    return False
+
+
+@inlined
+def certify_ray(code, constants, parts, scratch, rays, j, anywhere, found):
+    """Settle ray j from FOUND_LOW on by the certified routine."""
+    ox, oy, oz, dx, dy, dz = rays[0, j], rays[1, j], rays[2, j], rays[3, j], rays[4, j], rays[5, j]
+    begin = rays[6, j] + found[FOUND_LOW, j] * (1.0 - 1e-7)
+    outcome, t = isolate(
+        code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, begin, rays[7, j], TOLERANCE, 1.0, anywhere
+    )
+    found[FOUND_STATUS, j] = outcome
+    found[FOUND_ROOT, j] = t
+
+
+@inlined
+def certify(code, constants, parts, scratch, rays, count, anywhere, found):
+    """Settle all rays one at a time: for operations that packets do not know. Returns their number."""
+    certified = 0
+    for j in range(count):
+        found[FOUND_LOW, j] = 0.0
+        if rays[6, j] < rays[7, j]:
+            certify_ray(code, constants, parts, scratch, rays, j, anywhere, found)
+            certified += 1
+    return certified
+
+
 @lean(
     f"UniTuple(int64, 2)({PACKET}, float32[::1], float32[::1], int64[::1], float64[:, ::1], float32[:, ::1],"
     " int64[::1], int64, boolean, float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1],"
-    " float64[:, ::1])",
+    " float64[:, ::1], int32[:, ::1], float32[:, ::1], float64[:, ::1])",
 )
 def first_roots(
     code,
@@ -204,6 +238,9 @@ def first_roots(
     beams,
     doubles,
     points,
+    short,
+    near_singles,
+    near_parts,
 ):
     """Settle the first ``count`` rays: outcomes and places [t] into rows FOUND_STATUS and FOUND_ROOT of ``found``.
 
@@ -217,6 +254,8 @@ def first_roots(
     queued = 0
     for j in range(count):
         found[FOUND_STATUS, j] = MISS
+    if has(code, SKELETON):
+        return 0, certify(code, constants, parts, scratch, rays, count, anywhere, found)
     groups = (count + GROUP - 1) // GROUP
     base = bundle(rays, count, groups, beams)
     if base == np.inf:
@@ -230,6 +269,16 @@ def first_roots(
         first, final, _ = left_of_slabs(last, status, 0, LANES)
         if first == LANES:
             return spent, 0
+        if has(code, DENSITY):
+            kept = 0
+            for k in range(code.shape[0]):
+                for j in range(4):
+                    short[k, j] = code[k, j]
+                if code[k, 0] == DENSITY:
+                    kept = keep_near(
+                        code, k, registers, first, final + 1, singles, parts, kept, short, near_singles, near_parts
+                    )
+            code, singles, parts = short, near_singles, near_parts
         depth = (end - begin) / LANES
         begin, end = base + (first - 1e-6) * depth, base + (final + 1 + 1e-6) * depth
     waiting = 0
@@ -267,15 +316,9 @@ def first_roots(
     certified = 0
     for k in range(queued):
         j = queue[k]
-        t0, t1 = rays[6, j], rays[7, j]
-        t = t0 + found[FOUND_ROOT, j]
         if found[FOUND_STATUS, j] == UNDECIDED:
             certified += 1
-            ox, oy, oz, dx, dy, dz = rays[0, j], rays[1, j], rays[2, j], rays[3, j], rays[4, j], rays[5, j]
-            t0 = max(t0 + found[FOUND_LOW, j] * (1.0 - 1e-7), t0)
-            outcome, t = isolate(
-                code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, TOLERANCE, 1.0, anywhere
-            )
-            found[FOUND_STATUS, j] = outcome
-        found[FOUND_ROOT, j] = t
+            certify_ray(code, constants, parts, scratch, rays, j, anywhere, found)
+        else:
+            found[FOUND_ROOT, j] += rays[6, j]
     return spent, certified

@@ -5,7 +5,7 @@ Imports numpy and numba: to be imported by the function that needs it.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -62,22 +62,22 @@ class Memory:
         )
         self.asked, self.queue = np.zeros((3, count), dtype=single), np.zeros(count, dtype=np.int64)
         self.singles = single_parts(tape)
-        self.rest = (
-            tape.parts,
-            scratch(tape),
-            np.zeros((BEAM, -(-count // GROUP) + 1)),
-            np.zeros((rows, LANES)),
-            np.zeros((3, LANES)),
-        )
+        beams, doubles = np.zeros((BEAM, -(-count // GROUP) + 1)), np.zeros((rows, LANES))
+        near = np.zeros_like(tape.code), np.zeros_like(self.singles), np.zeros_like(tape.parts)
+        self.rest = tape.parts, scratch(tape), beams, doubles, np.zeros((3, LANES)), *near
+
+    @property
+    def bundle(self) -> tuple[Any, ...]:
+        """The arrays of a bundle of rays, in the order in which kernels take them."""
+        packet = self.tape.code, self.tape.constants, self.singles, *self.packet
+        return *packet, self.rays, self.asked, self.queue
 
     def settle(self, count: int, anywhere: bool) -> tuple[int, int]:
         """First roots of the first ``count`` of ``rays`` into ``found``: see packet_roots_kernels.first_roots."""
-        code, constants = self.tape.code, self.tape.constants
-        packet, rays = (code, constants, self.singles, *self.packet), (self.rays, self.asked, self.queue)
-        found: tuple[int, int] = packet_roots_kernels.first_roots(
-            *packet, *rays, count, anywhere, self.found, *self.rest
+        counts: tuple[int, int] = packet_roots_kernels.first_roots(
+            *self.bundle, count, anywhere, self.found, *self.rest
         )
-        return found
+        return counts
 
 
 def cast_together(

@@ -1,0 +1,190 @@
+"""Ray tracing the common implicit scenes in packets, beside POV-Ray on the same machine.
+
+Run it as ``python tests/bench/bench_implicit.py [SCENE...]``. The picture has 640 x 360 pixels, one ray each, and a shadow
+ray where the light is faced. A pixel is wrong where its center disagrees with the certified routine, or is undecided.
+POV-Ray is run where it is installed; its figures from another machine are given else.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from bench_polygonise import SCENES, register, scene_tape
+
+from sceneql.field.builder import TapeBuilder
+from sceneql.field.packets import Memory
+from sceneql.field.solid import cast, field_values
+from sceneql.field.tape_ops import HIT, INSIDE
+from sceneql.kernels import over_tiles
+
+FILE = Path(__file__).parent / "scenes" / "implicit.json"
+VIEW = json.loads(FILE.read_text(encoding="utf-8"))["view"]
+WIDTH, HEIGHT = VIEW["size"]
+POV_ELSEWHERE = {"blob40": (88, 84), "gyroid": (1410, 707), "barth_sextic": (246, 124), "kummer": (120, 63)}
+POV_ELSEWHERE |= {"steiner": (113, 104), "shell": (133, 133)}
+"""ms with 1 and 2 threads on a Zen 5 machine, POV-Ray 3.7: blob, isosurface, polynomial with sturm."""
+BARS = {"blob40": 12, "gyroid": 25, "barth_sextic": 25, "kummer": 25, "steiner": 25}
+ROUNDS = 15
+
+
+def view(name: str) -> Any:
+    """(5, 3): right, up and the way of the rays, the light, (pixel size, distance of the eye's plane, 0)."""
+    a, b = np.radians(VIEW["pitch_deg"]), np.radians(VIEW["yaw_deg"])
+    pitch = np.array([[1, 0, 0], [0, np.cos(a), -np.sin(a)], [0, np.sin(a), np.cos(a)]])
+    yaw = np.array([[np.cos(b), 0, np.sin(b)], [0, 1, 0], [-np.sin(b), 0, np.cos(b)]])
+    axes = (pitch @ yaw).T
+    light = axes @ np.array(VIEW["light_view"]) / np.linalg.norm(VIEW["light_view"])
+    clip = SCENES[name]["clip"]
+    size = VIEW["window_height_over_clip"] * clip / HEIGHT
+    return np.array([axes[:, 0], axes[:, 1], -axes[:, 2], light, [size, 2.0 * clip, 0.0]])
+
+
+class Picture:
+    """A scene drawn again and again into the same arrays."""
+
+    def __init__(self, name: str) -> None:
+        self.tape, self.view, self.clip = scene_tape(name), view(name), SCENES[name]["clip"]
+        self.picture = np.zeros((HEIGHT, WIDTH), dtype=np.float32)
+        self.depth = np.zeros((HEIGHT, WIDTH))
+
+    def draw(self) -> Any:
+        """(enclosures, certified, undecided) of all rays."""
+        from implicit_picture_kernels import draw_row
+
+        counts = np.zeros((-(-HEIGHT // 16), 3), dtype=np.int64)
+        spare: list[tuple[Memory, Any]] = []
+
+        def work(row: int) -> None:
+            memory, slopes = spare.pop() if spare else (
+                Memory(self.tape, 256), np.zeros((len(self.tape.code), 3, 64))
+            )  # fmt: skip
+            counts[row] = draw_row(
+                *memory.bundle, memory.found, *memory.rest, slopes, self.view, self.clip, row, self.picture, self.depth
+            )
+            spare.append((memory, slopes))
+
+        over_tiles(len(counts), work)
+        return counts.sum(axis=0)
+
+    def wrong(self) -> int:
+        """Pixels whose center disagrees with the certified routine."""
+        size, far = self.view[4, :2]
+        x = size * (np.arange(WIDTH) + 0.5 - 0.5 * WIDTH)
+        y = size * (0.5 * HEIGHT - np.arange(HEIGHT) - 0.5)
+        origins = x[None, :, None] * self.view[0] + y[:, None, None] * self.view[1] - far * self.view[2]
+        origins = origins.reshape(-1, 3)
+        along = -origins @ self.view[2]
+        left = along**2 - (origins**2).sum(axis=1) + self.clip**2
+        inside = np.flatnonzero(left > 0.0)
+        reach = np.sqrt(left[inside])
+        status, _ = cast(self.tape, origins[inside], self.view[2], along[inside] - reach, along[inside] + reach)
+        met = np.zeros(WIDTH * HEIGHT, dtype=bool)
+        met[inside] = (status == HIT) | (status == INSIDE)
+        return int((met != (self.depth.ravel() >= 0.0)).sum())
+
+
+def milliseconds(picture: Picture, threads: int) -> float:
+    """Least time of a picture."""
+    os.environ["SCENEQL_THREADS"] = str(threads)
+    seconds = []
+    for _ in range(ROUNDS):
+        start = time.perf_counter()
+        picture.draw()
+        seconds.append(time.perf_counter() - start)
+    return 1e3 * min(seconds)
+
+
+def coefficients(name: str) -> str:
+    """POV-Ray's polynomial of a scene: expanded from values, its order and coefficients."""
+    order = {"barth_sextic": 6, "kummer": 4, "steiner": 4}[name]
+    build = TapeBuilder()
+    tape = build.finish(register(build, SCENES[name]["f"], SCENES[name].get("where", {})))
+    powers = [p for p in product(range(order, -1, -1), repeat=3) if sum(p) <= order]
+    grid = np.array(list(product(np.cos(np.pi * (np.arange(order + 1) + 0.5) / (order + 1)), repeat=3)))
+    terms = np.prod(grid[:, None, :] ** np.array(powers)[None], axis=2)
+    found = np.linalg.lstsq(terms, field_values(tape, grid), rcond=None)[0]
+    return f"{order}, <{', '.join(f'{c:.12g}' for c in np.round(found, 11))}>"
+
+
+def vector(v: Any) -> str:
+    """A vector as POV-Ray writes it."""
+    return f"<{', '.join(f'{x:.12g}' for x in v)}>"
+
+
+def povray_object(name: str) -> str:
+    """The object of a scene as POV-Ray has it: its own blob, sturm, isosurface with the true gradient."""
+    ball = f"sphere {{ 0, {SCENES[name]['clip']} }}"
+    if name == "blob40":
+        parts = "".join(f"sphere {{ {vector(row[:3])}, {row[3]:.12g}, 1 }}" for row in SCENES[name]["parts"])
+        return f"blob {{ threshold 0.3 {parts} pigment {{ rgb 1 }} }}"
+    if name == "gyroid":
+        waves = "+".join(f"sin(20*{a})*cos(20*{b})" for a, b in ("xy", "yz", "zx"))
+        function = f"max(sqrt(x*x+y*y+z*z)-0.9, abs({waves})-0.3)"
+        return (
+            f"isosurface {{ function {{ {function} }} contained_by {{ {ball} }} max_gradient 35 pigment {{ rgb 1 }} }}"
+        )
+    return f"intersection {{ poly {{ {coefficients(name)} sturm }} {ball} pigment {{ rgb 1 }} }}"
+
+
+def povray(name: str, threads: int) -> float:
+    """Least ms in which POV-Ray traces a scene."""
+    right, up, way, light, (size, far, _) = view(name)
+    camera = f"location {vector(-far * way)} right {vector(WIDTH * size * right)} up {vector(HEIGHT * size * up)}"
+    text = (
+        "#version 3.7; global_settings { assumed_gamma 1 }"
+        f" camera {{ orthographic {camera} direction {vector(way)} }}"
+        f" light_source {{ {vector(1e4 * light)}, rgb 1 parallel point_at 0 }} {povray_object(name)}"
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder, "scene.pov").write_text(text, encoding="utf-8")
+        command = [
+            "povray",
+            "+Iscene.pov",
+            "-O/dev/null",
+            "-D",
+            "-F",
+            "-A",
+            f"+W{WIDTH}",
+            f"+H{HEIGHT}",
+            f"+WT{threads}",
+        ]
+        times = []
+        for _ in range(3):
+            run = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+            found = re.search(r"Trace Time:.*?\(([\d.]+) seconds\)", run.stderr, re.DOTALL)
+            if found is None:
+                raise RuntimeError(run.stderr[-2000:])
+            times.append(1e3 * float(found[1]))
+    return min(times)
+
+
+def main(names: list[str]) -> None:
+    """The table."""
+    for name in names:
+        picture = Picture(name)
+        spent, certified, undecided = picture.draw()
+        one, two = milliseconds(picture, 1), milliseconds(picture, 2)
+        rays = WIDTH * HEIGHT
+        line = f"{name:13} {one:6.1f} / {two:5.1f} ms (1 / 2 threads), {spent / rays:.1f} enclosures a pixel,"
+        line += f" {certified} rays certified, {undecided} undecided, {picture.wrong()} wrong"
+        if name in BARS:
+            here = name != "shell" and shutil.which("povray")
+            peer = (povray(name, 1), povray(name, 2)) if here else POV_ELSEWHERE[name]
+            line += f"; POV-Ray {'here' if here else 'elsewhere'} {peer[0]:.0f} / {peer[1]:.0f} ms:"
+            line += f" ratio {peer[0] / one:.1f} / {peer[1] / two:.1f} (bar {BARS[name]})"
+        print(line, flush=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:] or ["blob40", "gyroid", "barth_sextic", "kummer", "steiner", "shell"])
