@@ -1,5 +1,7 @@
 """Laws of packets: float32 enclosures contain what they claim, and roots found in packets are the certified ones."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -7,8 +9,8 @@ from hypothesis import strategies as st
 
 from sceneql.field.packets import cast_together, enclosures
 from sceneql.field.solid import cast, field_values
-from sceneql.field.tape_ops import HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
-from test_field import NAMES, implicit, kernels, of_one, rays, tapes
+from sceneql.field.tape_ops import DENSITY, HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
+from test_field import NAMES, PARTS, implicit, kernels, of_one, rays, tapes
 
 
 def check_enclosures(tape, origin, direction, t0, t1):
@@ -64,8 +66,8 @@ def bundle(origin, direction, generator, count, spread):
 @given(tape=tapes(), ray=rays(), spread=st.sampled_from([0.0, 1e-3, 0.5]), seed=st.integers(0, 99))
 def test_no_crossing_of_any_tape_is_missed_in_packets(tape, ray, spread, seed):
     origin, direction, t0, t1 = ray
-    origins, directions = bundle(origin, direction, np.random.default_rng(seed), 83, spread)
-    t0, t1 = np.full(83, t0), np.full(83, t1)
+    origins, directions = bundle(origin, direction, np.random.default_rng(seed), 150, spread)
+    t0, t1 = np.full(150, t0), np.full(150, t1)
     status, t = cast_together(tape, origins, directions, t0, t1)
     blocked, _ = cast_together(tape, origins, directions, t0, t1, anywhere=True)
     places = t0[:, None] + (t1 - t0)[:, None] * np.linspace(0.0, 1.0, 101)
@@ -122,3 +124,13 @@ def test_a_thin_shell_has_no_holes_in_packets():
     assert ((status == HIT) == (off < 0.7005**2)).all()
     hit = status == HIT
     assert t[hit] == pytest.approx(2.0 - np.sqrt(0.7005**2 - off[hit]), abs=1e-6)
+
+
+def test_nothing_is_claimed_of_an_operation_without_lanes():
+    def formula(b, op, c):
+        return op("sub", c(0.3), b.density(PARTS, b.x, b.y, b.z))
+
+    tape = implicit(formula)
+    unknown = replace(tape, code=np.where(tape.code == DENSITY, 99, tape.code))
+    origins, ends = np.zeros((2, 3)), np.ones(2)
+    assert np.isnan(enclosures(unknown, origins, origins + 1.0, 0.0 * ends, ends)[0]).all()

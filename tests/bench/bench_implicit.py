@@ -1,7 +1,7 @@
 """Ray tracing the common implicit scenes in packets, beside POV-Ray on the same machine.
 
-Run it as ``python tests/bench/bench_implicit.py [SCENE...]``. The picture has 640 x 360 pixels, one ray each, and a shadow
-ray where the light is faced. A pixel is wrong where its center disagrees with the certified routine, or is undecided.
+Run it as ``python tests/bench/bench_implicit.py [SCENE...]``. The picture has 640 x 360 pixels, one ray each, and a
+shadow ray where the light is faced. A pixel is wrong where its center disagrees with the certified routine.
 POV-Ray is run where it is installed; its figures from another machine are given else.
 """
 
