@@ -1,7 +1,6 @@
 """Laws of polygonising: closed, oriented, on the surface, of the right topology and order, honest about the rest."""
 
 import math
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -158,23 +157,24 @@ def test_vertices_lie_on_the_surface_with_the_gradient_for_normal(name):
 
 
 @pytest.mark.parametrize(
-    ("text", "half", "exact", "off"),
+    ("text", "half", "exact", "most"),
     [
-        (BALL, 1.1, 4 * math.pi / 3, 0.02),
-        (TORUS, 1.5, 3.1582734083, 0.02),
-        (CAPSULE, 1.0, math.pi * 0.4**2 * (1.0 + 4 * 0.4 / 3), 0.02),
-        (STEINER, 0.6, 1 / 6, 0.15),  # its sheets cross, which samples see late
+        (BALL, 1.1, 4 * math.pi / 3, 4e-5),
+        (TORUS, 1.5, 3.1582734083, 1.5e-4),
+        (CAPSULE, 1.0, math.pi * 0.4**2 * (1.0 + 4 * 0.4 / 3), 1.1e-4),
+        (STEINER, 0.6, 1 / 6, 4.2e-4),
     ],
     ids=["ball", "torus", "capsule", "steiner"],
 )
-def test_volumes_converge_with_order_two_and_extrapolate(text, half, exact, off):
+def test_volumes_converge_with_order_two_and_extrapolate(text, half, exact, most):
     errors = []
-    for cells in (32, 64, 128):
+    for cells in (128, 256):
         found = cut(text, half, cells)
         errors.append(1.0 - volume(found.vertices, found.triangles) / exact)
-    orders = [math.log2(coarse / fine) for coarse, fine in pairwise(errors)]
-    assert orders[-1] == pytest.approx(2.0, abs=off)
-    assert abs(4 * errors[-1] - errors[-2]) / 3 < 0.2 * errors[-1]
+    assert errors[-1] < most
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.1 if text == STEINER else 0.02)
+    # Steiner's fins end in creases as thin as one likes: a part of the error falls with the power 2.5.
+    assert abs(4 * errors[1] - errors[0]) / 3 * (exact if text == STEINER else 1.0) < 1e-6
 
 
 def test_area_of_a_torus():
@@ -503,6 +503,39 @@ def test_what_cannot_be_polygonised_is_told(graph, tmp_path):
         mesh(graph, "floor", tmp_path / "a.ply")
     with pytest.raises(Unsuitable, match="ends at 1 s"):
         mesh(graph, "ring", tmp_path / "a.ply", time=2.0)
-    with pytest.raises(Unsuitable, match="above 0"):
+    with pytest.raises(RunFailure, match="above 0"):
         mesh(graph, "ring", tmp_path / "a.ply", cell=-1.0)
+    with pytest.raises(RunFailure, match="too many"):
+        mesh(graph, "ring", tmp_path / "a.ply", cell=1e-9)
+    assert not list(tmp_path.glob("a.*"))
+
+
+EMPTY = """
+sceneql: 1
+objects:
+  never: {implicit: {field: x^2 + y^2 + z^2 + 1, bounds: {ball: 1}}}
+  undefined: {implicit: {field: sqrt(-1 - x^2), bounds: {ball: 1}}}
+  speck: {implicit: {field: (x - 0.31)^2 + y^2 + z^2 - 1e-6, bounds: {ball: 1}}}
+  pointer: {arrow: {vector: 0 1 0 m}}
+  endless: {sphere: {radius: 1e300 m}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "line", "message"),
+    [
+        ("never", 4, "its field is nowhere negative in its bounds, so it has no surface"),
+        ("undefined", 5, "its field is nowhere defined in its bounds"),
+        ("speck", 6, "no surface was met by cells of 1 m; a smaller --cell finds smaller things"),
+        ("pointer", 7, "Arrow has no inside"),
+        ("endless", 8, "cells of 1 m are too many for a box of 2e+300 m"),
+    ],
+)
+def test_what_has_no_mesh_is_told_with_its_place(tmp_path, name, line, message):
+    path = tmp_path / "empty.yaml"
+    path.write_text(EMPTY, encoding="utf-8")
+    with pytest.raises(RunFailure) as failed:
+        mesh(pipeline.load(path, pruned=False), name, tmp_path / "a.ply", cell=1.0)
+    assert failed.value.message == message
+    assert failed.value.span.line == line
     assert not list(tmp_path.glob("a.*"))

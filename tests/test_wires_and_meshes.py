@@ -122,6 +122,13 @@ def test_a_broken_mesh_file_is_refused(tmp_path, text, message):
         list(Mesh(file=str(path)).lower("mesh", IDENTITY, FakeMoment()))
 
 
+def test_a_binary_file_is_no_mesh(tmp_path):
+    path = tmp_path / "ball.obj"
+    path.write_bytes(b"ply\nformat binary_little_endian 1.0\n\x93\xff\xfe\x80")
+    with pytest.raises(ValueError, match="no OBJ mesh"):
+        list(Mesh(file=str(path)).lower("mesh", IDENTITY, FakeMoment()))
+
+
 def test_a_huge_mesh_file_is_refused_before_it_is_read(tmp_path):
     path = tmp_path / "huge.obj"
     with path.open("wb") as stream:

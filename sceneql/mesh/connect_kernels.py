@@ -3,7 +3,7 @@
 
 from sceneql.field.tape_kernels import TAPE, gradient
 from sceneql.kernels import inlined, lean
-from sceneql.mesh.cull_kernels import BLOCK
+from sceneql.mesh.grid import BLOCK
 
 CENTERS = 12
 BEND = 0.5

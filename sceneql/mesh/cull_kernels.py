@@ -6,9 +6,8 @@ from sceneql.field.simplify_kernels import simplify
 from sceneql.field.tape_kernels import TAPE
 from sceneql.field.tape_ops import NOWHERE, WHOLE
 from sceneql.kernels import inlined, lean
+from sceneql.mesh.grid import BLOCK
 
-BLOCK = 8
-"""Cells along a block."""
 REACH = 4
 """Blocks along the boxes that are looked at first."""
 CLEAR, CUT, BROKEN = range(3)

@@ -8,8 +8,8 @@ The planes are those of the surface where it crosses the cube's edges; the verte
 from sceneql.field.tape_kernels import TAPE, gradient
 from sceneql.kernels import inlined, lean
 from sceneql.mesh.connect_kernels import vertex
-from sceneql.mesh.cull_kernels import BLOCK
 from sceneql.mesh.fit_kernels import held
+from sceneql.mesh.grid import BLOCK
 
 TURNS = 3
 NEARER = 0.05

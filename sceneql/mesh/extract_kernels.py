@@ -5,8 +5,9 @@ from sceneql.field.batch_kernels import LANES, evaluate
 from sceneql.field.simplify_kernels import simplify
 from sceneql.field.tape_kernels import TAPE
 from sceneql.kernels import inlined, lean
-from sceneql.mesh.cull_kernels import BLOCK, CLEAR, CUT, verdict
+from sceneql.mesh.cull_kernels import CLEAR, CUT, verdict
 from sceneql.mesh.decide_kernels import CASES, decide
+from sceneql.mesh.grid import BLOCK
 from sceneql.mesh.polish_kernels import DX, DY, DZ, FA, FB, SIDE, UNDEFINED, A, B, T, normals, polish
 
 NODES = BLOCK + 1

@@ -1,4 +1,4 @@
-"""The cells that a solid is looked at in. Imports numpy and numba."""
+"""The cells that a solid is looked at in. Imports numpy."""
 
 from __future__ import annotations
 
@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from sceneql.mesh.bounded import Corner
-from sceneql.mesh.cull_kernels import BLOCK
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
+BLOCK = 8
+"""Cells along a block."""
 MOST_BLOCKS = 2**23
 """Blocks of a grid, the empty ones included."""
 
@@ -43,8 +44,11 @@ def grid_around(low: Corner, high: Corner, cell: float) -> Grid:
         raise ValueError("a grid needs a finite box and a cell above 0")
     cells = np.ceil((corners[1] - corners[0]) / cell * (1.0 - 1e-12)) + 1.0
     blocks = np.ceil(cells / BLOCK)
-    if not np.prod(blocks) <= MOST_BLOCKS:
-        raise ValueError(f"cells of {cell:g} m are too many for a box of {np.ptp(corners, axis=0).max():g} m")
+    with np.errstate(over="ignore"):
+        too_many = not np.prod(blocks) <= MOST_BLOCKS
+    if too_many:
+        size = max(b - a for a, b in zip(low, high, strict=True))
+        raise ValueError(f"cells of {cell:g} m are too many for a box of {size:g} m")
     # A quarter of a cell off the middle: planes of symmetry then hold neither nodes nor middles of cells, where samples
     # are exactly zero and errors do not average out.
     first = 0.5 * (corners[0] + corners[1]) - 0.5 * cells * cell - 0.25 * cell

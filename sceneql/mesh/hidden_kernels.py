@@ -7,11 +7,12 @@ from sceneql.field.slope_kernels import steepness
 from sceneql.field.tape_kernels import TAPE, value
 from sceneql.field.tape_ops import NOWHERE, WHOLE
 from sceneql.kernels import inlined, lean
-from sceneql.mesh.cull_kernels import BLOCK, CLEAR, CUT, verdict
+from sceneql.mesh.cull_kernels import CLEAR, CUT, verdict
 from sceneql.mesh.extract_kernels import NODES, sample
+from sceneql.mesh.grid import BLOCK
 
-DEPTH = 2
-"""How often a cube is halved before it is left unresolved."""
+DEEPEST = 2
+"""How often a cube may be halved before it is left unresolved."""
 SHALLOW = 1.0e-12
 """Where f goes no further than this to the other side of zero, it touches zero but for rounding."""
 
@@ -39,7 +40,7 @@ def proved(code, constants, parts, scratch, x, y, z, half, negative):
 
 
 @inlined
-def doubtful(code, constants, parts, scratch, x, y, z, half, negative, stack):
+def doubtful(code, constants, parts, scratch, x, y, z, half, negative, deepest, stack):
     """Volume [m^3] of what in a cube is not proved to have its corners' sign."""
     volume = 0.0
     stack[0, 0] = x
@@ -56,7 +57,7 @@ def doubtful(code, constants, parts, scratch, x, y, z, half, negative, stack):
         side = half * 0.5**depth
         if proved(code, constants, parts, scratch, x, y, z, side, negative):
             continue
-        if depth == DEPTH:
+        if depth == deepest:
             volume += 8.0 * side * side * side
             continue
         for k in range(8):
@@ -70,12 +71,15 @@ def doubtful(code, constants, parts, scratch, x, y, z, half, negative, stack):
 
 @lean(
     f"int64({TAPE}, int32[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1],"
-    " float64[::1], float64[:, ::1], float64[::1], int32[:, ::1], int32[:, ::1], float64[::1])"
+    " float64[::1], float64[:, ::1], float64[::1], int32[:, ::1], int64, int32[:, ::1], float64[::1])"
 )
-def hidden(code, constants, parts, scratch, short, near, registers, points, values, stack, grid, blocks, cells, rest):
+def hidden(
+    code, constants, parts, scratch, short, near, registers, points, values, stack, grid, blocks, deepest, cells, rest
+):
     """The cubes of some blocks that have one sign at their corners, but not provably all over: their number.
 
-    Their places go into ``cells`` (n, 3), the volumes [m^3] without a proof into ``rest``.
+    Cubes are halved up to ``deepest`` times. Their places go into ``cells`` (n, 3), the volumes [m^3] without a proof
+    into ``rest``.
     """
     h = grid[3]
     count = 0
@@ -111,7 +115,7 @@ def hidden(code, constants, parts, scratch, short, near, registers, points, valu
                     rest[count] = doubtful(
                         code2, constants, parts2, scratch,
                         grid[0] + (i + x + 0.5) * h, grid[1] + (j + y + 0.5) * h, grid[2] + (k + z + 0.5) * h,
-                        0.5 * h * (1.0 + 1.0e-12), negative, stack,
+                        0.5 * h * (1.0 + 1.0e-12), negative, deepest, stack,
                     )  # fmt: skip
                     if rest[count] > 0.0:
                         cells[count, 0] = i + x

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 from sceneql.mesh.bounded import Corner, bounded
 from sceneql.mesh.cases import cases
-from sceneql.mesh.cull_kernels import BLOCK
 from sceneql.mesh.faces import Curves, Sides, among, border_curves, face_sides
-from sceneql.mesh.grid import Grid, grid_around
+from sceneql.mesh.grid import BLOCK, Grid, grid_around
+from sceneql.mesh.hidden_kernels import DEEPEST
 from sceneql.mesh.polygonise import connected
 from sceneql.mesh.polygons import Polygons
 from sceneql.mesh.stitch import stitched
@@ -28,13 +28,15 @@ if TYPE_CHECKING:
 
     Keys = NDArray[np.int64]
 
+MANY_GROUPS = 2**12
+"""With more groups, fine cells are not halved further to prove that they hide nothing."""
 FINE = 4
 """Parts that a cell's side is cut into."""
 GROUP = BLOCK // FINE
 """Cells along a group, which is one block of the fine grid."""
 
 
-MOST_GROUPS = 2**16
+MOST_GROUPS = 2**15
 """Groups to be refined; more are a field of noise, or a grid far too coarse."""
 
 
@@ -119,7 +121,8 @@ def refined(tape: Tape, low: Corner, high: Corner, cell: float) -> tuple[Polygon
         more = _unmatched(sides, curves)
         if not len(more):
             # Every cell in doubt is in a group, so what the fine cells hide is all.
-            return stitched(whole, coarse, kept, fine, sides, curves), hidden_in(fine_shop, owned[: len(groups)])
+            left = hidden_in(fine_shop, owned[: len(groups)], DEEPEST if len(groups) < MANY_GROUPS else 0)
+            return stitched(whole, coarse, kept, fine, sides, curves), left
         groups = np.unique(np.concatenate([groups, more // GROUP]), axis=0)
     return Polygons(coarse.places, coarse.triangles, coarse.normals), doubt
 

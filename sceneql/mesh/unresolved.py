@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 from sceneql.kernels import over_tiles
 from sceneql.mesh.bounded import Corner, bounded
-from sceneql.mesh.cull_kernels import BLOCK
-from sceneql.mesh.grid import grid_around
-from sceneql.mesh.hidden_kernels import hidden
+from sceneql.mesh.grid import BLOCK, grid_around
+from sceneql.mesh.hidden_kernels import DEEPEST, hidden
 from sceneql.mesh.workshop import BATCH, Workshop
 
 if TYPE_CHECKING:
@@ -45,10 +44,11 @@ def unresolved(tape: Tape, low: Corner, high: Corner, cell: float) -> Unresolved
     return hidden_in(shop, shop.met())
 
 
-def hidden_in(shop: Workshop, blocks: Ints) -> Unresolved:
+def hidden_in(shop: Workshop, blocks: Ints, deepest: int = DEEPEST) -> Unresolved:
     """What the cells of some blocks may hide.
 
-    A cell is halved up to DEPTH times, each part proved by the interval of f or by the mean value theorem (Moore 1966).
+    A cell is halved up to so many times, each part proved by the interval of f or by the mean value theorem (Moore
+    1966).
     """
     import numpy as np
 
@@ -60,7 +60,7 @@ def hidden_in(shop: Workshop, blocks: Ints) -> Unresolved:
         cells, rest = np.empty((len(mine) * BLOCK**3, 3), dtype=np.int32), np.empty(len(mine) * BLOCK**3)
         n = hidden(
             *shop.program, r.scratch, r.short, r.near, r.registers, r.points, r.values, r.stack,
-            shop.grid.numbers, mine, cells, rest,
+            shop.grid.numbers, mine, deepest, cells, rest,
         )  # fmt: skip
         found[batch] = cells[:n].copy(), rest[:n].copy()
 

@@ -10,9 +10,10 @@ from sceneql.field.batch_kernels import LANES
 from sceneql.field.solid import scratch
 from sceneql.kernels import over_tiles
 from sceneql.mesh.cases import cases
-from sceneql.mesh.cull_kernels import BLOCK, REACH, cull
+from sceneql.mesh.cull_kernels import REACH, cull
 from sceneql.mesh.extract_kernels import CUBES, EDGES, NODES, OWN, TRIANGLES, VERTICES, extract
-from sceneql.mesh.hidden_kernels import DEPTH
+from sceneql.mesh.grid import BLOCK
+from sceneql.mesh.hidden_kernels import DEEPEST
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -43,7 +44,7 @@ class Room:
         self.place, self.normal = np.empty((BATCH * EDGES, 3)), np.empty((BATCH * EDGES, 3))
         self.cubes = np.empty((BATCH * BLOCK**3, 2), dtype=np.int32)
         self.local = np.empty(EDGES, dtype=np.int32)
-        self.stack = np.empty((8 * DEPTH + 8, 4))
+        self.stack = np.empty((8 * DEEPEST + 8, 4))
         self.low, self.fit = np.empty(3), np.empty((15, 3))
 
 

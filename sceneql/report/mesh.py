@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from sceneql.frame import Implicit, Tape
-    from sceneql.graph import SimulationGraph
+    from sceneql.graph import SimulationGraph, Task
     from sceneql.mesh.bounded import Corner
     from sceneql.mesh.polygons import Polygons
     from sceneql.mesh.unresolved import Unresolved
@@ -68,31 +68,33 @@ def mesh(
 ) -> Account:  # fmt: skip
     """Polygonise an object at an instant [s] by cells [m], or by cells that keep within a distance [m] of the surface.
 
-    With ``sharp``, its edges and corners are kept. Raises RunFailure, OSError, and Unsuitable for what has no inside,
-    is empty or unbounded, or needs too many cells.
+    With ``sharp``, its edges and corners are kept. Raises OSError, Unsuitable for what is no object or file, and
+    RunFailure for what has no inside, is empty or unbounded, or needs too many cells.
     """
     from sceneql.mesh.files import format_of, write
+    from sceneql.mesh.grid import grid_around
     from sceneql.mesh.measures import area, edge_counts, euler_characteristic, volume
-    from sceneql.mesh.refine import refined
-    from sceneql.mesh.tolerance import polygonise_within
 
     format_of(output)
     if not 0.0 <= time <= graph.settings.clock.end:
         raise Unsuitable(f"the scene ends at {graph.settings.clock.end:g} s, so there is nothing at {time:g} s")
-    solid = _solid(graph, name, next(pipeline.simulate(graph, [time])))
+    task = _object(graph, name)
+    moment = next(pipeline.simulate(graph, [time]))
+    solid = _solid(task, name, moment)
+    box = solid.tape, solid.low, solid.high
     size = max(high - low for low, high in zip(solid.low, solid.high, strict=True))
     if cell is None:
         cell = size / CELLS
-    box = solid.tape, solid.low, solid.high
-    method = _kept_sharp if sharp else refined
-    try:
+    with failing_as(name, moment.time, task.span):
+        grid_around(solid.low, solid.high, cell)
+        method = _kept_sharp if sharp else _refined
         if tolerance is not None:
+            from sceneql.mesh.tolerance import polygonise_within
+
             _, cell = polygonise_within(*box, tolerance, cell, lambda *cells: method(*cells)[0])
         polygons, hidden = method(*box, cell)
-    except ValueError as error:
-        raise Unsuitable(f"{name} cannot be polygonised: {error}") from error
-    if not len(polygons.triangles):
-        raise Unsuitable(f"{name} has no surface in cells of {cell:g} m")
+        if not len(polygons.triangles):
+            raise ValueError(_why_empty(*box, cell))
     write(output, polygons)
     vertices, triangles = polygons.vertices, polygons.triangles
     return Account(
@@ -117,17 +119,44 @@ def _kept_sharp(tape: Tape, low: Corner, high: Corner, cell: float) -> tuple[Pol
     return polygonise_sharp(tape, low, high, cell), unresolved(tape, low, high, cell)
 
 
-def _solid(graph: SimulationGraph, name: str, moment: Instant) -> Implicit:
-    """An object's field in its box in the world. Raises RunFailure, and Unsuitable where there is none."""
-    from sceneql.simulation.solid import traced
+def _refined(tape: Tape, low: Corner, high: Corner, cell: float) -> tuple[Polygons, Unresolved]:
+    """``refined``, whose kernels are loaded once they are needed."""
+    from sceneql.mesh.refine import refined
 
+    return refined(tape, low, high, cell)
+
+
+def _why_empty(tape: Tape, low: Corner, high: Corner, cell: float) -> str:
+    """Why there is no surface."""
+    from sceneql.field.emptiness import nowhere_defined, proved_empty
+
+    if nowhere_defined(tape, low, high):
+        return "its field is nowhere defined in its bounds"
+    if proved_empty(tape, low, high):
+        return "its field is nowhere negative in its bounds, so it has no surface"
+    return f"no surface was met by cells of {cell:g} m; a smaller --cell finds smaller things"
+
+
+def _object(graph: SimulationGraph, name: str) -> Task:
+    """The task of an object. Raises Unsuitable where none is named so."""
     task = graph.tasks.get(name)
     if task is None or not isinstance(task.kind, Object):
         objects = [other for other, found in graph.tasks.items() if isinstance(found.kind, Object)]
         hint = suggestion(name, objects)
         raise Unsuitable(f"no object is named '{name}'" + (f": {hint}" if hint else ""))
+    return task
+
+
+def _solid(task: Task, name: str, moment: Instant) -> Implicit:
+    """An object's field in its box in the world. Raises RunFailure where it has none."""
+    from sceneql.field.builder import TapeBuilder
+    from sceneql.simulation.solid import traced
+
     with failing_as(name, moment.time, task.span):
+        assert isinstance(task.kind, Object)
+        build = TapeBuilder()
+        task.kind.implicit(build, build.x, build.y, build.z, moment)  # refused here where there is no inside
         found = list(traced(task.kind, name, moment.place(name), moment))
-    if not found:
-        raise Unsuitable(f"{name} is empty at {moment.time:g} s")
+        if not found:
+            raise ValueError("it is empty")
     return found[0]

@@ -1,7 +1,8 @@
-"""Polygonising the common scenes, beside a numpy grid with scikit-image; errors of volumes and topology.
+"""Polygonising the common scenes, beside a numpy grid with scikit-image, PyMCubes and VTK; errors of the meshes.
 
-Run it as ``python tests/bench/bench_polygonise.py [CELLS] [ROUNDS]``; scikit-image is needed for the comparison. Ours
-evaluates, extracts, brings the vertices onto the surface and computes normals; what cells may hide is timed apart.
+Run it as ``python tests/bench/bench_polygonise.py [CELLS] [ROUNDS]``; peers that are not installed are left out. Ours
+evaluates, extracts, brings the vertices onto the surface and computes normals. The peers get a numpy grid evaluated
+slab by slab, so that intermediate arrays stay in the cache; for the blobs also with each blob in its own box alone.
 """
 
 from __future__ import annotations
@@ -12,15 +13,18 @@ import statistics
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from sceneql.field.builder import TapeBuilder
+from sceneql.field.solid import field_gradients
 from sceneql.mesh.measures import edge_counts, euler_characteristic, volume
 from sceneql.mesh.polygonise import polygonise
-from sceneql.mesh.unresolved import unresolved
+from sceneql.mesh.refine import refined
 from sceneql.quantities.bind import bind
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.expression import Symbol
@@ -29,6 +33,10 @@ from sceneql.quantities.span import Source, Span
 
 SCENES = json.loads((Path(__file__).parent / "scenes" / "implicit.json").read_text(encoding="utf-8"))["scenes"]
 PHI = (1 + 5**0.5) / 2
+SLAB = 8
+"""Layers of nodes that numpy evaluates at a time."""
+MODULES = {"scikit-image": "skimage", "PyMCubes": "mcubes", "VTK FlyingEdges": "vtkmodules"}
+Mesh = tuple[Any, Any]
 BARS = {"steiner": 5, "barth_sextic": 5, "blob40": 40}
 SHAPES = {
     "ball": ("sqrt(x^2 + y^2 + z^2) - 1", 1.1, 4 * np.pi / 3),
@@ -64,56 +72,133 @@ def scene_tape(name: str) -> Any:
     return build.finish(build.op("max", value, ball))
 
 
-def grid_values(name: str, n: int) -> Any:
-    """f of a common scene on a grid of n^3 nodes, as one writes it in numpy."""
+def slab_values(name: str, x: Any, y: Any, z: Any, boxed: bool) -> Any:
+    """f of a common scene on the nodes of the sparse grid x, y, z, as one writes it in numpy."""
     scene = SCENES[name]
-    t = np.linspace(-scene["clip"], scene["clip"], n)
-    x, y, z = np.meshgrid(t, t, t, indexing="ij", sparse=True)
     if name == "steiner":
         f = x**2 * y**2 + y**2 * z**2 + z**2 * x**2 - x * y * z
     elif name == "barth_sextic":
         planes = (PHI**2 * x**2 - y**2) * (PHI**2 * y**2 - z**2) * (PHI**2 * z**2 - x**2)
         f = (1 + 2 * PHI) * (x**2 + y**2 + z**2 - 1) ** 2 - 4 * planes
     else:
-        f = np.full((n, n, n), scene["threshold"])
+        f = np.full((x.size, y.size, z.size), scene["threshold"])
         for a, b, c, radius in scene["parts"]:
-            f -= np.maximum(1 - ((x - a) ** 2 + (y - b) ** 2 + (z - c) ** 2) / radius**2, 0) ** 3
+            part = tuple(
+                slice(*np.searchsorted(t.ravel(), [m - radius, m + radius])) if boxed else slice(None)
+                for t, m in ((x, a), (y, b), (z, c))
+            )
+            u, v, w = x[part[0]] - a, y[:, part[1]] - b, z[:, :, part[2]] - c
+            f[part] -= np.maximum(1 - (u**2 + v**2 + w**2) / radius**2, 0) ** 3
     return np.maximum(f, np.sqrt(x**2 + y**2 + z**2) - scene["clip"])
 
 
-def median(work: Callable[[], object], rounds: int) -> tuple[float, float]:
-    """Medians of the wall and processor seconds of a call."""
-    walls, cpus = [], []
+def grid_values(name: str, half: float, n: int, boxed: bool) -> Any:
+    """f of a common scene on a grid of n^3 nodes."""
+    x, y, z = np.meshgrid(*[np.linspace(-half, half, n)] * 3, indexing="ij", sparse=True)
+    values = np.empty((n, n, n))
+    for k in range(0, n, SLAB):
+        values[k : k + SLAB] = slab_values(name, x[k : k + SLAB], y, z, boxed)
+    return values
+
+
+def by_scikit_image(values: Any) -> Mesh:
+    """Lewiner's marching cubes, vertices in cells."""
+    from skimage.measure import marching_cubes
+
+    vertices, triangles, _, _ = marching_cubes(values, 0.0)
+    return vertices, triangles
+
+
+def by_pymcubes(values: Any) -> Mesh:
+    """Marching cubes of PyMCubes, vertices in cells."""
+    from mcubes import marching_cubes
+
+    vertices, triangles = marching_cubes(values, 0.0)
+    return vertices, triangles
+
+
+def by_flying_edges(values: Any) -> Mesh:
+    """VTK's FlyingEdges3D, vertices in cells."""
+    from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+    from vtkmodules.vtkCommonDataModel import vtkImageData
+    from vtkmodules.vtkFiltersCore import vtkFlyingEdges3D
+
+    image = vtkImageData()
+    image.SetDimensions(*values.shape)
+    image.GetPointData().SetScalars(numpy_to_vtk(values.ravel()))  # VTK's x runs fastest: axes in reverse
+    edges = vtkFlyingEdges3D()
+    edges.SetInputData(image)
+    edges.SetValue(0, 0.0)
+    edges.ComputeNormalsOff()
+    edges.Update()
+    found = edges.GetOutput()
+    vertices = vtk_to_numpy(found.GetPoints().GetData())[:, ::-1]
+    triangles = vtk_to_numpy(found.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    return vertices, triangles
+
+
+PEERS = {"scikit-image": by_scikit_image, "PyMCubes": by_pymcubes, "VTK FlyingEdges": by_flying_edges}
+
+
+def median(work: Callable[[], object], rounds: int) -> float:
+    """Median of the seconds of a call."""
+    walls = []
     for _ in range(rounds):
-        wall, cpu = time.perf_counter(), time.process_time()
+        start = time.perf_counter()
         work()
-        walls.append(time.perf_counter() - wall)
-        cpus.append(time.process_time() - cpu)
-    return statistics.median(walls), statistics.median(cpus)
+        walls.append(time.perf_counter() - start)
+    return statistics.median(walls)
+
+
+def flaws(tape: Any, vertices: Any, triangles: Any) -> str:
+    """Open edges, and the part of triangles that face inward: against the gradient in their middle."""
+    few = triangles[:: max(1, len(triangles) // 50_000)]
+    a, b, c = (vertices[few[:, k]].astype(float) for k in range(3))
+    facing = (np.cross(b - a, c - a) * field_gradients(tape, (a + b + c) / 3)).sum(axis=1)
+    inward = (facing < 0).mean()
+    # A library may count its triangles clockwise throughout.
+    inward, turned = (1 - inward, ", clockwise") if inward > 0.5 else (inward, "")
+    return f"{edge_counts(triangles)[1]} open edges, {100 * inward:.2g} % inward{turned}"
+
+
+def row(name: str, who: str, seconds: float, ours: float, mesh: Mesh, tape: Any) -> None:
+    """Print a line of the table."""
+    vertices, triangles = mesh
+    off = ""
+    if name == "steiner":
+        off = f", volume off by {abs(abs(volume(vertices.astype(float), triangles)) * 6 - 1):.1e}"
+    print(
+        f"{name:13} {who:28} {seconds * 1e3:7.1f} ms, ratio {seconds / ours:6.1f}: {flaws(tape, vertices, triangles)}"
+        f"{off}",
+        flush=True,
+    )
 
 
 def compare(cells: int, rounds: int) -> None:
-    """Time against scikit-image, in turn so that both meet the same machine."""
-    from skimage.measure import marching_cubes
-
+    """Time and flaws beside the peers, in turn so that all meet the same machine."""
     for name, bar in BARS.items():
-        tape, half = scene_tape(name), SCENES[name]["clip"]
+        tape, half = scene_tape(name), 1.02 * SCENES[name]["clip"]
         box = ((-half,) * 3, (half,) * 3, 2 * half / cells)
-        polygonise(tape, *box)
+        found = polygonise(tape, *box)
         seconds = {}
         for threads in (1, 2):
             os.environ["SCENEQL_THREADS"] = str(threads)
-            seconds[threads] = median(lambda box=box, tape=tape: polygonise(tape, *box), rounds)
-        few = 1 if name == "blob40" else max(1, rounds // 2)
-        peer = median(lambda name=name: marching_cubes(grid_values(name, cells), 0.0), few)
-        hidden = median(lambda box=box, tape=tape: unresolved(tape, *box), 1)
-        print(
-            f"{name:13} ours {seconds[1][0] * 1e3:.0f} / {seconds[2][0] * 1e3:.0f} ms (1 / 2 threads), CPU"
-            f" {seconds[1][1] * 1e3:.0f} ms; numpy + scikit-image {peer[0] * 1e3:.0f} ms, CPU {peer[1] * 1e3:.0f} ms;"
-            f" ratio {peer[0] / seconds[2][0]:.1f} (bar {bar}), of CPU {peer[1] / seconds[1][1]:.1f};"
-            f" what cells may hide {hidden[0] * 1e3:.0f} ms",
-            flush=True,
-        )
+            seconds[threads] = median(partial(polygonise, tape, *box), rounds)
+        for threads, spent in seconds.items():
+            row(name, f"ours, {threads} threads", spent, seconds[2], (found.vertices, found.triangles), tape)
+        scale = 2 * half / (cells - 1)
+        for boxed in (False, True) if "parts" in SCENES[name] else (False,):
+            few = 3 if boxed or name != "blob40" else 1
+            evaluated = median(partial(grid_values, name, half, cells, boxed), few)
+            values = grid_values(name, half, cells, boxed)
+            for peer, made in PEERS.items():
+                if find_spec(MODULES[peer]) is None:
+                    continue
+                spent = evaluated + median(partial(made, values), 3)
+                vertices, triangles = made(values)
+                who = f"numpy{', boxed,' if boxed else ''} + {peer}"
+                row(name, who, spent, seconds[2], (vertices * scale - half, triangles), tape)
+        print(f"{name:13} bar beside numpy + scikit-image: {bar}", flush=True)
 
 
 def converge() -> None:
@@ -121,17 +206,22 @@ def converge() -> None:
     for name, (text, half, exact) in SHAPES.items():
         build = TapeBuilder()
         tape = build.finish(register(build, text, {}))
-        errors = []
-        for cells in (64, 128, 256):
-            found = polygonise(tape, (-half,) * 3, (half,) * 3, 2 * half / cells)
-            errors.append(1 - volume(found.vertices, found.triangles) / exact)
-        order = np.log2(errors[1] / errors[2])
-        print(
-            f"{name:13} volume error {errors[2]:.2e} at 256, order {order:.3f}, extrapolated"
-            f" {abs(4 * errors[2] - errors[1]) / 3:.1e}; Euler {euler_characteristic(found.triangles)}, open edges"
-            f" {edge_counts(found.triangles)[1]}",
-            flush=True,
-        )
+        for how, made in (("plain", polygonise), ("refined", lambda *box: refined(*box)[0])):
+            errors = []
+            for cells in (64, 128, 256):
+                start = time.perf_counter()
+                found = made(tape, (-half,) * 3, (half,) * 3, 2 * half / cells)
+                spent = time.perf_counter() - start
+                errors.append(1 - volume(found.vertices, found.triangles) / exact)
+            orders = [np.log2(errors[k] / errors[k + 1]) for k in (0, 1)]
+            rest = abs(4 * errors[2] - errors[1]) / 3
+            print(
+                f"{name:8} {how:8} volume off by {errors[2]:.2e} at 256, orders {orders[0]:.3f} {orders[1]:.3f},"
+                f" extrapolated {rest:.1e} ({rest * exact:.1e} m^3);"
+                f" Euler {euler_characteristic(found.triangles)}, {flaws(tape, found.vertices, found.triangles)};"
+                f" {len(found.triangles)} triangles in {spent:.2f} s",
+                flush=True,
+            )
 
 
 if __name__ == "__main__":
