@@ -33,7 +33,10 @@ templates:
     objects:
       bulb: {sphere: {position: at, radius: size}}
   spare:
-    objects: {post: {box: {size: 0.1 1 0.1 m}}}
+    fields: {wide: 0.1 m, high: }
+    objects: {post: {box: {size: [wide, high, wide]}}}
+    models: {way: {motion: {position: [0 m, high/2, 0 m]}}}
+    gives: {tip: way.position}
 parts:
   left: {lamp: {at: -1 0 0 m}}
   right: {lamp: {at: 1 0 0 m}}
@@ -97,6 +100,9 @@ MISTAKES = [
     ("bulb.position}", "bulb.positon}", "unknown-output"),
     ("position: at,", "positoin: at,", "unknown-field"),
     ("objects: {post:", "objetcs: {post:", "unknown-section"),
+    ("size: [wide, high", "size: [wid, high", "unknown-name"),
+    ("high/2, 0 m", "high/, 0 m", "syntax"),
+    ("tip: way.position", "tip: way.positoin", "unknown-output"),
     ("left: {lamp:", "left: {lamb:", "unknown-template"),
     ("count: n,", "count: 2.5,", "repeat-count"),
     ("lattice: {count: 3 3 3,", "lattice: {count: 3 3,", "wrong-count"),
@@ -110,6 +116,9 @@ MISTAKES = [
     ('"max(0.1 m, r)"', "max(0.1 m, r)", "torn-expression"),
     ("left.top", "left.topp", "unknown-name"),
     ("tube: 0.1 m", "tube: -0.1 m", "out-of-range"),
+    ("radius: 0.05 m", "radius: 0,05 m", "decimal-comma"),
+    ("position: 2 3 1 m", "position: 2, 3, 3", "decimal-comma"),
+    ("size: 1 1 0.1 m", "size: (1 m, 1 m, 0.1 m)", "torn-expression"),
     ("about: y, angle", "abot: y, angle", "rotation-shape"),
     ("[cup, lid]", "[cup, lit]", "unknown-name"),
     ("cup: {sphere", "my-cup: {sphere", "part-name"),
@@ -135,7 +144,6 @@ HIDES = {
     "left: {lamb:": ["left.topp"],
     "mases: {a:": ["[a, zz], name"],
     "positoin: at,": ["bulb.positon}"],
-    "lihts:": ["lamp_light: {pointt"],
     **MAY_DEFINE,
 }
 """By what is written: the mistakes that cannot be seen beside this one."""

@@ -11,7 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sceneql.language import compose as composer
-from sceneql.language.compose import compose, compose_node, kind_of, source_of
+from sceneql.language.compose import compose, compose_node, source_of
+from sceneql.language.plain import kind_of
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.span import Source

@@ -23,7 +23,7 @@ from sceneql.kinds import Gives, Kind, Object, Quantity, Ref, Refers, Settings, 
 from sceneql.language.scope import Entry
 from sceneql.language.script import Script
 from sceneql.language.tree import Mapping as MappingNode
-from sceneql.language.tree import Node, Scalar, Sequence, unsure, whole, written
+from sceneql.language.tree import Node, Scalar, unsure, whole, written
 from sceneql.quantities.diagnostic import Diagnostics, suggestion
 from sceneql.quantities.expression import Link, Type, walk
 
@@ -48,6 +48,11 @@ def check(script: Script, catalogue: Catalogue, found: Diagnostics) -> Checked:
     for family, entries in script.sections.items():
         for name in entries:
             checker.task(family, name)
+    made = dict(checker.tasks)
+    for family, entries in script.unmade.items():
+        for name in entries:
+            checker.task(family, name)
+    checker.tasks = made
     checker.gives()
     checker.defaults()
     settings = checker.settings()
@@ -63,10 +68,12 @@ class _Checker:
         self._done: set[str] = set()
         self.timed = True
         self.folder = Path(script.sources[0].name).parent
-        for family, entries in script.sections.items():
+        for family, entries in (*script.sections.items(), *script.unmade.items()):
             for name, entry in entries.items():
                 self.family_of.setdefault(name, family)  # a name used twice is reported by the language
                 self.entries.setdefault(name, entry)
+        templates = script.root.entries.get("templates")
+        self.templates = templates.entries if isinstance(templates, MappingNode) else {}
         define = script.settings.get("define")
         self.names = Names(
             defines=define.entries if isinstance(define, MappingNode) else {},
@@ -103,8 +110,7 @@ class _Checker:
 
     def defaults(self) -> None:
         """The words under ``defaults`` and their fields' names, whether or not a part uses them."""
-        root = self.script.root.entries
-        section, templates = root.get("defaults"), root.get("templates")
+        section = self.script.root.entries.get("defaults")
         if not isinstance(section, MappingNode):
             return
         used = {entry.word for entry in self.entries.values()}
@@ -113,12 +119,12 @@ class _Checker:
             if kinds and isinstance(fields, MappingNode):
                 known = dict.fromkeys(written_name(name) for cls in kinds for name in cls.model_fields)
                 report_unknown(fields, known, word, self.found)
-                if word not in used and not _mentions(templates, word):
+                if word not in used:
                     self.unused_defaults(word, fields, kinds)
             elif not kinds:
                 words = [each for family in self.catalogue.families for each in self.catalogue.words(family)]
                 help = suggestion(word, words) or "defaults are written by word, `{sphere: {radius: 1 m}}`"
-                if isinstance(templates, MappingNode) and word in templates.entries:
+                if word in self.templates:
                     help = "the defaults of a template stand in its own `fields:`"
                 self.found.error("unknown-word", f"'{word}' is no word", section.keys[word].span, help=help)
 
@@ -169,8 +175,10 @@ class _Checker:
         if cls is None:
             words = self.catalogue.choices(family)
             others = self.catalogue.families_of(entry.word)
-            if others:
-                hint: str | None = f"it belongs under '{others[0]}:'"
+            if entry.word in self.templates:
+                hint: str | None = "it is a template: what is made of it stands under 'parts:'"
+            elif others:
+                hint = f"it belongs under '{others[0]}:'"
             elif self.catalogue.load(family, entry.name) is not None:
                 hint = f"'{entry.name}' is a word, but stands where a name does: write `name: {{{entry.name}: ...}}`"
             else:
@@ -267,15 +275,6 @@ class _Checker:
         choices = [n for n in self.entries if self.family(n) in (mark.family, mark.also)]
         hint = suggestion(name, [*choices, *self.catalogue.words(mark.family)])
         self.found.error("unknown-name", f"no part of {mark} is called '{node.text}'", node.span, help=hint)
-
-
-def _mentions(node: Node | None, word: str) -> bool:
-    """Whether a word may be used somewhere below, as in a template that no instance is made of."""
-    if isinstance(node, Scalar):
-        return node.text == word
-    if isinstance(node, MappingNode):
-        return word in node.entries or any(_mentions(item, word) for item in node.entries.values())
-    return isinstance(node, Sequence) and any(_mentions(item, word) for item in node.items)
 
 
 def values_of(part: Any) -> list[Value]:

@@ -132,14 +132,24 @@ class Names:
             help = unit_hint(wanted) or suggestion(wanted, self.defines) or "units are such as m, s, kg, N or deg"
             self.found.error("unknown-unit", message, span, help=help)
             return
-        parts_known = list(self.parts)
+        message, parts_known = f"nothing is called '{wanted}'", list(self.parts)
         if parts == ("t",):
             hint: str | None = "the time is written 'time'"
         elif wanted in parts_known:
-            hint = f"'{wanted}' is a part; write one of its outputs, such as '{self._some_output(wanted)}'"
+            message = f"'{wanted}' is a part, not a value"
+            hint = f"write one of its outputs, such as '{self._some_output(wanted)}'"
         else:
-            hint = suggestion(wanted, [*self.defines, *parts_known, "time"])
-        self.found.error("unknown-name", f"nothing is called '{wanted}'", span, help=hint)
+            hint = suggestion(wanted, [*self._inside(), *self.defines, *parts_known, "time"])
+        self.found.error("unknown-name", message, span, help=hint)
+
+    def _inside(self) -> list[str]:
+        """The names that a template or a copy has of its own."""
+        names: list[str] = []
+        scope = self.scope
+        while scope is not None:
+            names += [*scope.fields, *scope.names]
+            scope = scope.outer
+        return names
 
     def _some_output(self, task: str) -> str:
         outputs = self.outputs_of(task) or {}

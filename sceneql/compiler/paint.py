@@ -5,7 +5,7 @@ from __future__ import annotations
 from sceneql.compiler.css_colors import NAMED, css_color
 from sceneql.compiler.keyframes import read_keys
 from sceneql.compiler.names import Names
-from sceneql.compiler.values import parsed_text, read_value, time_reader
+from sceneql.compiler.values import parsed_text, read_expr, read_value, time_reader
 from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, unsure
@@ -32,10 +32,11 @@ def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
         return None if expr is None else Value(expr, node.span)
     if isinstance(node, Scalar):
         text = node.text.strip()
-        if text.startswith("#") or (text.isidentifier() and text not in names.defines):
+        called = text.startswith(("rgb(", "rgba(", "hsl(", "hsla("))  # as CSS writes them
+        if called or text.startswith("#") or (text.isidentifier() and text not in names.defines):
             components = css_color(text)
             if components is None:
-                hint = suggestion(text, NAMED) or 'write a CSS name, "#rrggbb" or three numbers'
+                hint = suggestion(text, NAMED) or 'write a CSS name, "#rrggbb" or three numbers from 0 to 1'
                 found.error("unknown-color", f"'{text}' is no color", node.span, help=hint)
                 return None
             return Value(Vector(tuple(Number(c) for c in components), RGB), node.span)
@@ -46,27 +47,33 @@ def read_rotation(node: Node, names: Names, found: Diagnostics) -> Value | None:
     """A rotation as a unit quaternion [w, x, y, z] (4,)."""
     if unsure(node):
         return None
-    if not isinstance(node, MappingNode):
-        return read_value(node, Quantity(PLAIN, (4,)), "rotation", names, found)
-    if "keys" in node.entries:
+    if isinstance(node, MappingNode):
+        given = node.entries
+        if "keys" in given:
 
-        def key(item: Node) -> Expr | None:
-            return _expr(read_rotation(item, names, found))
+            def key(item: Node) -> Expr | None:
+                return _expr(read_rotation(item, names, found))
 
-        expr = read_keys(node, "rotation", key, None, time_reader(names, found), QUATERNION, found)
-        return None if expr is None else Value(expr, node.span)
-    given = list(node.entries)
-    if sorted(given) == ["about", "angle"]:
-        axis = _axis(node.entries["about"], names, found)
-        angle = read_value(node.entries["angle"], Quantity(PLAIN, needs_unit=True), "angle", names, found)
-        if axis is None or angle is None:
+            turned = read_keys(node, "rotation", key, None, time_reader(names, found), QUATERNION, found)
+            return None if turned is None else Value(turned, node.span)
+        if given.keys() == {"about", "angle"}:
+            axis = _axis(given["about"], names, found)
+            angle = read_value(given["angle"], Quantity(PLAIN, needs_unit=True), "angle", names, found)
+            if axis is None or angle is None:
+                return None
+            return Value(Call("about", (axis, angle.expr), QUATERNION, node.span), node.span)
+        order = next(iter(given), "")
+        if len(given) == 1 and order in ORDERS:
+            angles = read_value(given[order], Quantity(PLAIN, (3,), needs_unit=True), order, names, found)
+            if angles is None:
+                return None
+            return Value(Call(f"euler_{order}", (angles.expr,), QUATERNION, node.span), node.span)
+    else:
+        expr = read_expr(node, QUATERNION.shape, PLAIN, "rotation", names, found)
+        if expr is None:
             return None
-        return Value(Call("about", (axis, angle.expr), QUATERNION, node.span), node.span)
-    if len(given) == 1 and given[0] in ORDERS:
-        angles = read_value(node.entries[given[0]], Quantity(PLAIN, (3,), needs_unit=True), given[0], names, found)
-        if angles is None:
-            return None
-        return Value(Call(f"euler_{given[0]}", (angles.expr,), QUATERNION, node.span), node.span)
+        if expr.type.shape in (QUATERNION.shape, (None,)):
+            return read_value(node, Quantity(PLAIN, QUATERNION.shape), "rotation", names, found)
     found.error(
         "rotation-shape",
         "a rotation names its axis or its order",

@@ -33,7 +33,6 @@ from sceneql.kinds import (
     Value,
     written_name,
 )
-from sceneql.language.sections import empty
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, broken, unsure, whole
 from sceneql.language.tree import written as plainly
@@ -68,7 +67,8 @@ class Reader:
         if isinstance(node, MappingNode):
             written = node.entries
         elif node is not None and not (isinstance(node, Scalar) and node.kind == "null"):
-            raise self._fail("wrong-shape", f"{title} takes fields, `{{name: value}}`", node.span)
+            fields = ", ".join(map(written_name, cls.model_fields))
+            raise self._fail("wrong-shape", f"{title} takes fields, `{{name: value}}`", node.span, f"it has {fields}")
         symbols = self.symbols
         if isinstance(node, MappingNode) and issubclass(cls, Kind):
             symbols = cls.formula_symbols(plainly(node))
@@ -220,7 +220,9 @@ class Reader:
                 return choice
         every = ", ".join(str(c) for c in choices)
         if other:
-            raise self._fail("unknown-choice", f"{what} is {other} or one of {every}, not '{text}'", node.span)
+            several = text.replace("x", " ").replace("*", " ").split()  # 640x360
+            hint = f"write `{' '.join(several)}`" if len(several) > 1 and "".join(several).isdecimal() else None
+            raise self._fail("unknown-choice", f"{what} is {other} or one of {every}, not '{text}'", node.span, hint)
         hint = suggestion(text, [str(c) for c in choices]) or f"one of {every}"
         raise self._fail("unknown-choice", f"{what} cannot be '{text}'", node.span, hint)
 
@@ -301,13 +303,8 @@ def report_unknown(node: MappingNode, known: Collection[str], title: str, found:
     """Report the fields of a mapping that are not among the known ones; True if there are none."""
     unknown = [name for name in node.entries if name not in known]
     for name in unknown:
-        place = node.keys[name].span
-        if name[:1].isdecimal() and empty(node.entries[name]):
-            message = "a comma ends a value here; a decimal number is written with a point"
-            found.error("decimal-comma", message, place)
-        else:
-            help = suggestion(name, known) or "it has " + ", ".join(known)
-            found.error("unknown-field", f"{title} has no field '{name}'", place, help=help)
+        help = suggestion(name, known) or "it has " + ", ".join(known)
+        found.error("unknown-field", f"{title} has no field '{name}'", node.keys[name].span, help=help)
     return not unknown
 
 

@@ -10,7 +10,7 @@ from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, unsure
 from sceneql.quantities.bind import bind
-from sceneql.quantities.diagnostic import Diagnostics, ScriptError, suggestion
+from sceneql.quantities.diagnostic import Diagnostics, Note, ScriptError, suggestion
 from sceneql.quantities.dimension import PLAIN, TIME, Dimension
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import (
@@ -160,6 +160,7 @@ def _fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnost
             "wrong-shape",
             f"{what} is {_shape_text(quantity.shape)}, not {_shape_text(expr.type.shape)}",
             span,
+            notes=_origin(expr, span),
         )
         return False
     has = expr.type.dimension
@@ -169,6 +170,7 @@ def _fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnost
             "dimension-mismatch",
             f"{what} is {describe(quantity.dimension)}, but this is {describe(has)}",
             span,
+            notes=_origin(expr, span),
         )
         return False
     if quantity.direction and Value(expr).constant and not any(numbers(evaluate(expr, {}))):
@@ -178,6 +180,17 @@ def _fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnost
         found.error("unit-needed", f"{what} needs a unit", span, help=f"write `{span.text} deg` or `{span.text} rad`")
         return False
     return True
+
+
+def _origin(expr: Expr, span: Span) -> list[Note]:
+    """Where a value is defined, if that is elsewhere than where it is used; of a vector, its first item that counts."""
+    one = expr
+    if isinstance(expr, Vector):
+        one = next((item for item in expr.items if not _zero(item)), expr)
+    place = one.span
+    if place is None or (place.source is span.source and span.start <= place.start <= place.end <= span.end):
+        return []
+    return [Note("the value stands here", place)]
 
 
 def _bare(expr: Expr) -> bool:

@@ -6,14 +6,15 @@ import gc
 import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, Final, Literal, NoReturn, cast
+from typing import Any, Final, NoReturn, cast
 
 import yaml
 
 from sceneql.language.mend import blanked, cut_short, joined, mended
+from sceneql.language.plain import cut_off, kind_of
 from sceneql.language.syntax import explain, place, unprintable
 from sceneql.language.torn import Fault, report, swallowed, torn_halves, torn_near
-from sceneql.language.tree import Mapping, Node, Scalar, Sequence, hole
+from sceneql.language.tree import Mapping, Node, Scalar, Sequence, broken, hole
 from sceneql.quantities.diagnostic import LIMITS, Diagnostic, Diagnostics, Note, ScriptError
 from sceneql.quantities.span import Source, Span
 
@@ -25,30 +26,11 @@ MOST_ERRORS: Final = 100
 MOST_REREAD: Final = 2_000_000
 """Characters that are read again, beyond once, to go on behind what is torn."""
 
-Kind = Literal["null", "boolean", "integer", "number", "text"]
-
-_WORDS: Final[dict[str, Kind]] = {
-    **dict.fromkeys(("", "~", "null", "Null", "NULL"), "null"),
-    **dict.fromkeys(("true", "True", "TRUE", "false", "False", "FALSE"), "boolean"),
-}
-_NUMBER = re.compile(
-    r"(?P<integer>[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+)"
-    r"|[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)"
-)
 _PROPERTIES = re.compile(r"(?:[&!][^\s,\[\]{}]*(?:\s+#[^\n]*|\s)*)*")
 _TAG = re.compile(r"!\S*")
 
 _LARGE: Final = "keep large tables in data files of their own"
 _DEEP: Final = "give the inner parts names of their own, and refer to them by name"
-
-
-def kind_of(text: str) -> Kind:
-    """The YAML 1.2 core type of a plain scalar: ``1e3`` is a number, ``no`` and ``yes`` are text."""
-    if (word := _WORDS.get(text)) is not None:
-        return word
-    if text[0] not in "+-.0123456789" or (found := _NUMBER.fullmatch(text)) is None:
-        return "text"
-    return "number" if found["integer"] is None else "integer"
 
 
 def source_of(name: str, data: bytes) -> Source:
@@ -225,6 +207,9 @@ class _Composer:
                     else:
                         node = Scalar(text, kind_of(text), False, source, event.start_mark.index, end)
                         if not text:
+                            if key is not None and cut_off(key.text) and self.cut(key, here):
+                                key = None
+                                continue
                             self.empty(node)
                         elif faults and text[0] == "x":
                             node = self.meant(event, node)
@@ -300,6 +285,17 @@ class _Composer:
         fault = swallowed(node, self.text)
         if fault is not None and len(self.colors) < MOST_ERRORS:
             self.colors.append(fault)
+
+    def cut(self, key: Scalar, mapping: Mapping) -> bool:
+        """Report what a comma cut off the value before a key, which becomes a hole; False if there is none."""
+        if key.quoted or not mapping.flow or not mapping.entries:
+            return False
+        before = next(reversed(mapping.entries))
+        if not broken(mapping.entries[before]):
+            help = "a decimal number has a point, and a vector is `0 1.2 0 m` or `[a, b, c]`"
+            self.error("decimal-comma", "a comma ends the value before this", key.span, help=help)
+            mapping.entries[before] = hole(mapping.entries[before].span)
+        return True
 
     def meant(self, event: Any, node: Scalar) -> Node:
         """What is meant by a scalar that stands in place of something torn; any other one itself."""

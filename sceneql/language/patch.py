@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from typing import Final, cast
 
-from sceneql.language.compose import compose_node, kind_of
+from sceneql.language.compose import compose_node
+from sceneql.language.plain import kind_of
 from sceneql.language.sections import empty
 from sceneql.language.syntax import unprintable
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence, broken, unsure

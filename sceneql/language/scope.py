@@ -77,10 +77,12 @@ class Expanded:
 
     ``gives`` holds the outputs of instances (``lantern.0.lit``); ``groups`` the names of all parts that stand for one
     written name (``dust``: ``dust.0``, ``dust.1``, ...; ``front_left``: ``front_left.hip``, ...); ``broken`` those of
-    entries that were reported and left out.
+    entries that were reported and left out. ``unmade`` is what templates hold that no instance is made of, with names
+    that no script can write: it is checked, and nothing is made of it.
     """
 
     sections: dict[str, dict[str, Entry]] = field(default_factory=dict)
     gives: dict[str, Given] = field(default_factory=dict)
     groups: dict[str, list[str]] = field(default_factory=dict)
     broken: Broken = field(default_factory=lambda: Broken())
+    unmade: dict[str, dict[str, Entry]] = field(default_factory=dict)

@@ -13,10 +13,10 @@ from sceneql.language.include import OutsideError, Read, folder_reader, read_inc
 from sceneql.language.nesting import unnested
 from sceneql.language.patch import VARIANT_OPTIONS, Patch, apply_patch, parse_set, variant, variant_names
 from sceneql.language.scope import Broken, Entry, Expanded, Given, Scope
-from sceneql.language.sections import NAMED, join, names_in
+from sceneql.language.sections import NAMED, join, with_known_keys
 from sceneql.language.templates import expand
 from sceneql.language.tree import Mapping, Node, Scalar, broken
-from sceneql.quantities.diagnostic import Diagnostics, ScriptError, suggestion
+from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.span import Source
 
 __all__ = ["FAMILIES", "SETTINGS", "VERSION", "Entry", "Given", "Scope", "Script", "read_script"]
@@ -33,8 +33,8 @@ class Script:
 
     ``sections`` holds the entries of each family in the order written, ``settings`` the other top-level values as
     nodes, ``defaults`` the fields by word (already filled into the entries), ``gives`` and ``groups`` what instances
-    give and which parts stand for one written name, ``broken`` the names of entries that cannot be read (see
-    `Expanded`). ``hash`` is the SHA-256 of all texts and patches.
+    give and which parts stand for one written name, ``broken`` the names of entries that cannot be read, ``unmade``
+    what is only checked (see `Expanded`). ``hash`` is the SHA-256 of all texts and patches.
     """
 
     name: str
@@ -46,6 +46,7 @@ class Script:
     gives: dict[str, Given]
     groups: dict[str, list[str]]
     broken: Broken
+    unmade: dict[str, dict[str, Entry]]
     variants: tuple[str, ...]
     variant: str | None
     may_fail: bool
@@ -71,14 +72,14 @@ def read_script(
     source = script if isinstance(script, Source) else read_source(script)
     if read is None:
         read = _no_folder if isinstance(script, Source) else folder_reader(script.parent)
-    first = compose(source, found)
-    trees = read_included(first, Path(source.name).name, read, found)
+    known, lost = (*families, *settings, *NAMED, *_REWRITTEN), Broken()
+    first = with_known_keys(compose(source, found), known, "a script", lost, found)
+    _, *included = read_included(first, Path(source.name).name, read, found)
+    trees = [first, *(with_known_keys(tree, known, "a script", lost, found) for tree in included)]
     root = join(trees, families, found)
     for tree in trees:
         _check_version(tree, found)
-    lost = Broken()
     lost.any = root.partial
-    _check_sections(root, families, settings, lost, found)
     patches = _patches(root, variant, sets, families, settings, found)
     patched = apply_patch(root, patches, families, settings, found)
     expanded = expand(unnested(patched, families, found), families, lost, found)
@@ -95,6 +96,7 @@ def read_script(
         gives=expanded.gives,
         groups=expanded.groups,
         broken=expanded.broken,
+        unmade=expanded.unmade,
         variants=variant_names(root),
         variant=variant,
         may_fail=_may_fail(root, variant),
@@ -114,19 +116,6 @@ def _check_version(tree: Mapping, found: Diagnostics) -> None:
         found.error(
             "version", f"this program reads version {VERSION} of the language, not {written}", node.span, help=help
         )
-
-
-def _check_sections(
-    root: Mapping, families: Sequence[str], settings: Sequence[str], lost: Broken, found: Diagnostics
-) -> None:
-    """Report unknown sections; what they name is lost."""
-    known = (*families, *settings, *NAMED, *_REWRITTEN)
-    for key in root.entries:
-        if key not in known:
-            help = suggestion(key, known) or f"the sections are {', '.join(dict.fromkeys(known))}"
-            found.error("unknown-section", f"there is no section '{key}'", root.keys[key].span, help=help)
-            for name in names_in(root.entries[key]):
-                lost.add(name)
 
 
 def _patches(

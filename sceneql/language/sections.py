@@ -6,8 +6,9 @@ from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 from typing import Final
 
+from sceneql.language.scope import Broken
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence, broken
-from sceneql.quantities.diagnostic import Diagnostics, Note
+from sceneql.quantities.diagnostic import Diagnostics, Note, nearest, suggestion
 
 NAMED: Final = ("define", "templates", "parts", "defaults", "variants", "expect")
 """Sections beside the families that hold names."""
@@ -60,12 +61,35 @@ def read_entry(what: str, node: Node, found: Diagnostics) -> Written | None:
     return Written(node.keys[words[0]], None if empty(fields) else fields, node.entries.get("repeat"))
 
 
-def names_in(node: Node) -> list[str]:
+def with_known_keys(node: Mapping, known: Collection[str], holder: str, lost: Broken, found: Diagnostics) -> Mapping:
+    """The sections of a script or template (``holder``), unknown ones reported.
+
+    What holds parts is read as the section that its key is most like, unless that stands there too; what others name
+    is lost.
+    """
+    result = node.holding({}, {})
+    for key, value in node.entries.items():
+        name = key
+        if key not in known:
+            near = nearest(key, known)
+            help = suggestion(key, known) or f"{holder} may have {', '.join(dict.fromkeys(known))}"
+            found.error("unknown-section", f"{holder} has no section '{key}'", node.keys[key].span, help=help)
+            taken = node.entries.keys() | result.entries.keys()
+            if near is not None and near not in taken and not isinstance(value, Scalar):
+                name = near
+            else:
+                for inner in _names_in(value):
+                    lost.add(inner)
+        result.entries[name], result.keys[name] = value, node.keys[key]
+    return result
+
+
+def _names_in(node: Node) -> list[str]:
     """The names that something which may be a section gives."""
     if isinstance(node, Mapping):
         return list(node.entries)
     words = node.items if isinstance(node, Sequence) else []
-    return [name for word in words for name in ([word.text] if isinstance(word, Scalar) else names_in(word))]
+    return [name for word in words for name in ([word.text] if isinstance(word, Scalar) else _names_in(word))]
 
 
 def section(name: str, node: Node, taken: Collection[str], found: Diagnostics) -> Mapping:

@@ -6,12 +6,13 @@ import re
 from collections.abc import Iterator
 from collections.abc import Mapping as Table
 from collections.abc import Sequence as List
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Final
 
 from sceneql.language.repeat import read_repeat
 from sceneql.language.scope import Broken, Entry, Expanded, Given, Scope
-from sceneql.language.sections import Written, duplicate, empty, names_in, read_entry, section
+from sceneql.language.sections import Written, duplicate, empty, read_entry, section, with_known_keys
 from sceneql.language.tree import Mapping, Node, Scalar, broken, hole, unsure
 from sceneql.quantities.diagnostic import Diagnostics, Note, nearest, suggestion
 from sceneql.quantities.span import Span
@@ -38,6 +39,9 @@ def expand(root: Mapping, families: List[str], lost: Broken, found: Diagnostics)
         key = root.keys.get("parts") or next(iter(root.keys.values()))
         help = "a model such as `particles` holds many bodies in one part"
         found.error("too-many-parts", message, key.span, help=help)
+    else:
+        for name in expander.templates:
+            expander.unmade(name)
     return expander.done
 
 
@@ -88,6 +92,8 @@ class _Expander:
                 help = f"write `{word}: {{field: value}}`"
                 found.error("section-shape", f"the defaults of '{word}' are fields with values", node.span, help=help)
         self.read: dict[str, _Template | None] = {}
+        self.made: set[str] = set()
+        self.sections = self.done.sections
         self.count = 0
 
     def named(self, mapping: Mapping, key: str) -> dict[str, Node]:
@@ -130,17 +136,9 @@ class _Expander:
                 help = "it holds `fields:` and sections such as `objects:`"
                 self.found.error("section-shape", f"the template '{name}' is not a mapping", node.span, help=help)
                 return None
-            known = ("fields", "gives", "parts", *self.families)
             self.done.broken.any |= node.partial
-            for key in [key for key in node.entries if key not in known]:
-                for inner in names_in(node.entries[key]):
-                    self.done.broken.add(inner)
-                self.found.error(
-                    "unknown-section",
-                    f"a template has no section '{key}'",
-                    node.keys[key].span,
-                    help=suggestion(key, known) or f"it may have {', '.join(known)}",
-                )
+            known = ("fields", "gives", "parts", *self.families)
+            node = with_known_keys(node, known, "a template", self.done.broken, self.found)
             written = node.entries.get("fields")
             partial = node.partial or (written is not None and unsure(written))
             self.read[name] = _Template(
@@ -226,7 +224,7 @@ class _Expander:
         span, word = section.keys[key].span, written.word.text
         fields = filled(word, written.fields, self.defaults, written.word.span)
         entry = Entry(name, word, fields, span, written.word.span, scope)
-        self.done.sections.setdefault(family, {})[name] = entry
+        self.sections.setdefault(family, {})[name] = entry
         for front, names in place.around:
             names[name.removeprefix(front)] = name
         whole = name
@@ -263,19 +261,36 @@ class _Expander:
             return
         for full, outer in self.copies(name, written.repeat, place):
             self.group(full, place)
-            scope = Scope({}, given, outer)
-            for key, node in template.fields.items():
-                if key not in given:
-                    scope = Scope({}, {key: node}, scope)
-            names: dict[str, str] = {}
-            front = f"{full}."
-            scope = Scope(names, {}, scope)
-            inner = _Place(front, scope, (*place.around, (front, names)), (*place.templates, word.text))
-            self.body(template.body, inner)
-            for key, node in template.gives.items():
-                self.done.gives[front + key] = Given(node, scope)
-                for before, known in inner.around:
-                    known[(front + key).removeprefix(before)] = front + key
+            self.instance(word.text, template, given, full, outer, place)
+
+    def instance(
+        self, name: str, template: _Template, given: dict[str, Node], full: str, outer: Scope | None, place: _Place
+    ) -> None:
+        """Add what one instance of a template holds; its own name in the whole script is ``full``."""
+        self.made.add(name)
+        scope = Scope({}, given, outer)
+        for key, node in template.fields.items():
+            if key not in given:
+                scope = Scope({}, {key: node}, scope)
+        names: dict[str, str] = {}
+        front = f"{full}."
+        scope = Scope(names, {}, scope)
+        inner = _Place(front, scope, (*place.around, (front, names)), (*place.templates, name))
+        self.body(template.body, inner)
+        for key, node in template.gives.items():
+            self.done.gives[front + key] = Given(node, scope)
+            for before, known in inner.around:
+                known[(front + key).removeprefix(before)] = front + key
+
+    def unmade(self, name: str) -> None:
+        """Add what a template holds that no instance is made of, apart from the rest; nothing is said of its fields."""
+        template = self.template(name)
+        if template is None or name in self.made:
+            return
+        self.sections = self.done.unmade
+        given: dict[str, Node] = {key: hole(node.span) for key, node in template.fields.items() if empty(node)}
+        with suppress(_FullError):
+            self.instance(name, template, given, f"the template {name}", None, _Place("", None, ()))
 
     def given(self, word: Scalar, fields: Node | None, template: _Template | None) -> dict[str, Node] | None:
         """The fields of an instance, None after reporting what is wrong with them."""

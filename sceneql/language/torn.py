@@ -24,6 +24,8 @@ _PROPERTY = re.compile(r"[&!][^\s,\[\]{}]*\s*")
 _QUOTED = re.compile(r"\"(?:[^\"\\]|\\.)*\"|'(?:[^']|'')*'", re.DOTALL)
 _UNIT = re.compile(r"[^\W\d_]|[%°]")
 NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+_ITEM = r"(?:[^(),]|\([^(),]*\))+"
+_PARENTHESES = re.compile(rf"\(({_ITEM}(?:,{_ITEM})+)\)[ \t]*([^\W\d_][^()\[\]{{}},\s]*)?")
 _BLOCK_VALUE = re.compile(r"\s*(?:- +)*(?:[^\s\[{\"'#][^\[{\"'#]*?:\s+)?(?=[\[{])")
 
 
@@ -91,6 +93,8 @@ def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
                     message, help = f"{written} is read as a comment here, so the value is missing", f"quote it: {line}"
                 case "unit-after-bracket":
                     message, help = f"the unit '{written}' cannot stand behind a bracket", f"write: {line}"
+                case _ if written.startswith("(") and fault.fixed[0] not in "\"'":
+                    message, help = "a vector has no parentheses", f"write: {line}"
                 case _:
                     message, help = "YAML cuts this expression in two at a comma or bracket", f"quote it: {line}"
             found.error(fault.code, message, Span(source, fault.caret, fault.end), help=help)
@@ -154,7 +158,10 @@ class _Scan:
 
     def torn(self, start: int, end: int) -> Fault:
         """An expression that YAML cuts."""
-        return Fault("torn-expression", start, end, start, _quote(self.written[start:end]))
+        written = self.written[start:end]
+        vector = _PARENTHESES.fullmatch(written)  # as other languages write one
+        fixed = _quote(written) if vector is None else _with_unit(vector[1], vector[2] or "")
+        return Fault("torn-expression", start, end, start, fixed)
 
     def collection(self, at: int, depth: int) -> int:
         """Read a list or mapping in brackets."""
@@ -238,16 +245,16 @@ def _quote(text: str) -> str:
 
 
 def _with_unit(inside: str, unit: str) -> str:
-    """A list with its unit where one may stand: ``0, 1, 0`` in m becomes ``0 1 0 m``."""
+    """A list with its unit, if any, where one may stand: ``0, 1, 0`` in m becomes ``0 1 0 m``."""
     items = _split(inside)
     if all(NUMBER.fullmatch(item) for item in items):
-        return " ".join([*items, unit])
+        return " ".join([*items, unit]).rstrip()
     written = []
     for item in items:
         if item.startswith("[") and item.endswith("]"):
             written.append(_with_unit(item[1:-1], unit))
         else:
-            written.append(f"{item} {unit}" if NUMBER.fullmatch(item) else item)
+            written.append(f"{item} {unit}".rstrip() if NUMBER.fullmatch(item) else item)
     text = f"[{', '.join(written)}]"
     return _quote(text) if any("(" in item and "," in item for item in written) else text
 

@@ -138,10 +138,12 @@ def _place(diagnostic: Diagnostic) -> tuple[str, int]:
 
 
 def nearest(name: str, choices: Iterable[str]) -> str | None:
-    """The choice that is most like the name, or None where none is."""
+    """The choice that is most like the name, or that it abbreviates (``fov``); None where none is."""
     from difflib import get_close_matches
 
-    close = get_close_matches(name, list(choices), n=1, cutoff=0.6)
+    choices = list(choices)
+    initials = [choice for choice in choices if name == "".join(part[:1] for part in choice.split("_"))]
+    close = get_close_matches(name, choices, n=1, cutoff=0.6) or (initials if len(name) > 1 else [])
     return close[0] if close else None
 
 

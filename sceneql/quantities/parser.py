@@ -215,7 +215,8 @@ class _Parser:
 
     def _leftover(self, expr: Expr) -> ScriptError:
         if self.kind == "sign" and self.token not in "([":
-            return self._fail("syntax", f"'{self.token}' cannot stand here")
+            comma = "a vector is `0 1.2 0 m` or `[a, b, c]`, and a decimal number has a point"
+            return self._fail("syntax", f"'{self.token}' cannot stand here", help=comma if self.token == "," else None)
         if isinstance(expr, Number) and self.kind == "number":
             help = "a vector is numbers alone and one unit, `0 1.2 0 m`, or expressions in brackets, `[a, b, c]`"
         else:
