@@ -157,7 +157,7 @@ def test_a_run_that_explodes_keeps_its_frames_though_the_camera_fits_the_whole_f
     [
         ("objects: {a: {sphere: {position: [log(0.5 - time/1 s)*1 m, 0 m, 0 m]}}}", "a", 1),
         ("objects: {a: {sphere: {radius: 0.5 m - time*1 m/s}}}", "a.radius", 1),
-        ("objects: {a: sphere}\ncameras: {c: {perspective: {position: 0 0 1 m, look_at: [0 m, 0 m, time*1 m/s]}}}", "c", 2),
+        ("objects: {a: sphere}\ncameras: {c: {perspective: {position: 0 0 1 m, look_at: {z: time*1 m/s}}}}", "c", 2),
         ("objects: {a: sphere}\nlights: {l: {point: {position: [0 m, 1 m*s/(time - time), 0 m]}}}", "l", 2),
         ("objects: {a: sphere}\nbackground: [log(-time/1 s), 0, 0]", "background", 2),
     ],
