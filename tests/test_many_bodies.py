@@ -36,10 +36,12 @@ def forces(rate, models):
 def gravity(n, softening=0.05, count=2):
     y, m, models, places = island(n)
     room = -(-n // direct_kernels.LANES) * direct_kernels.LANES
-    floats = np.concatenate([[2.0, softening, 0.0, 0.0], m, np.zeros(4 * room)])
+    parts = direct_kernels.parts_of(room)
+    floats = np.concatenate([[2.0, softening, 0.0, 0.0], m, np.zeros((4 + 3 * parts) * room)])
     entry, _ = threads()
     after = HEAD + n
-    numbers = (0, 1, 1, after, after + 3 * room, room, entry, count, tile_address(direct_kernels.direct_tile))
+    tile = tile_address(direct_kernels.direct_tile)
+    numbers = (0, 1, 1, after, after + 3 * room, room, after + 4 * room, parts, entry, count, tile)
     weights = (HEAD, 1, HEAD + models[0].count, 1)
     ints = np.array([*numbers, *layout(models), *weights], dtype=np.int64)
     rate = np.zeros_like(y)
@@ -66,9 +68,10 @@ def test_bodies_at_one_place_do_not_pull_each_other():
     y, m, models, _ = island(40)
     y[: 3 * models[0].count] = 0.25
     room = direct_kernels.LANES
-    floats = np.concatenate([[2.0, 0.0, 0.0, 0.0], m, np.zeros(4 * room)])
+    floats = np.concatenate([[2.0, 0.0, 0.0, 0.0], m, np.zeros(7 * room)])
     entry, count = threads()
-    numbers = (0, 1, 1, 44, 44 + 3 * room, room, entry, count, tile_address(direct_kernels.direct_tile))
+    tile = tile_address(direct_kernels.direct_tile)
+    numbers = (0, 1, 1, 44, 44 + 3 * room, room, 44 + 4 * room, 1, entry, count, tile)
     ints = np.array([*numbers, *layout(models), HEAD, 1, HEAD + models[0].count, 1], dtype=np.int64)
     rate = np.zeros_like(y)
     direct_kernels.direct(0.0, y, rate, floats, ints)

@@ -1,15 +1,17 @@
 # mypy: ignore-errors
 """Forces of 1/r^2 between all pairs: F_i = c w_i sum_j w_j d_ij / (r^2 + softening^2)^(3/2), d_ij from i to j.
 
-Few bodies go pair by pair, with the third law of Newton to the last bit. Many go by tiles of targets that lie in the
-lanes of vectors; the sum over the sources has one order, whatever the number of threads.
+Few bodies go pair by pair. Many go by pairs of tiles, one of which lies in the lanes of vectors: each pair is computed
+once, for both of its bodies, so that momentum is kept to rounding. The rows of tiles are dealt to parts with sums of
+their own, which are added in one order: the bytes do not depend on the number of threads.
 """
 
 import math
 
 import numpy as np
+from numba import types
 
-from sceneql.kernels import inlined, kernel
+from sceneql.kernels import inlined, kernel, lean, lean_inlined
 from sceneql.simulation.arithmetic_kernels import fma, inverse_cube, widest
 from sceneql.simulation.nbody.weights_kernels import (
     CONSTANT,
@@ -23,15 +25,22 @@ from sceneql.simulation.nbody.weights_kernels import (
 )
 from sceneql.simulation.threads_kernels import TILE, over_threads
 from sceneql.simulation.together_kernels import gather, velocity_of
-from sceneql.system_kernels import TERM, A, I
+from sceneql.system_kernels import TERM, A, F, I, N
 
-ENTRY, THREADS, TILE_AT, BODIES = range(6, 10)
-"""Places in ints after those of weights_kernels: threads; the bodies."""
+FORCES, PARTS, ENTRY, THREADS, TILE_AT, BODIES = range(6, 12)
+"""Places in ints after those of weights_kernels: room for 3 ROOM sums of each part, and the number of parts; threads;
+the bodies."""
 FEW = 32
 LANES = 128
-"""Targets of a tile; ROOM is a multiple of it."""
+"""Bodies of a tile; ROOM is a multiple of it."""
+MOST_PARTS = 16
 ALONE = 1024
 """Up to so many bodies one thread is quicker."""
+X, Y, Z, W, FX, FY, FZ, ROWS = range(8)
+"""Rows of a tile: places, weights, forces."""
+SOURCES, STRIP = 4, 16
+"""Bodies of the other tile that are worked on together, so that the sums stay in registers for four; lanes of a tile
+whose pull on such a body is summed apart."""
 
 
 @inlined
@@ -72,51 +81,109 @@ def few(y, rate, floats, ints, c):
             rate[vj + 2] -= f * dz
 
 
-@kernel(TILE)
-def direct_tile(tile, t, y, rate, floats, ints):
-    """The forces of all bodies on LANES of them."""
+@lean_inlined
+def pull(source, j, soft, px, py, pz, w):
+    """The force of body j of a tile on a body at (px, py, pz) of weight w: its size by distance, and the way (3)."""
+    dx, dy, dz = source[X * LANES + j] - px, source[Y * LANES + j] - py, source[Z * LANES + j] - pz
+    return inverse_cube(fma(dx, dx, fma(dy, dy, fma(dz, dz, soft))), w * source[W * LANES + j]), dx, dy, dz
+
+
+@lean(types.void(A, A, N, F, A))
+def strips(one, other, j, soft, sums):
+    """The forces between all lanes of one tile and the bodies j..j + 3 of the other, whose sums are kept by lane."""
     widest()
-    n, room = ints[BODIES], ints[ROOM]
-    x = floats[ints[POINTS] : ints[POINTS] + room]
-    y_ = floats[ints[POINTS] + room : ints[POINTS] + 2 * room]
-    z = floats[ints[POINTS] + 2 * room : ints[POINTS] + 3 * room]
-    w = floats[ints[WEIGHTS] : ints[WEIGHTS] + room]
-    soft = floats[ints[SOFTENING]] * floats[ints[SOFTENING]] + FLOOR
-    first = tile * LANES
-    lanes = np.zeros(6 * LANES)
+    for first in range(0, LANES, STRIP):
+        for l in range(STRIP):
+            k = first + l
+            px, py, pz, w = one[X * LANES + k], one[Y * LANES + k], one[Z * LANES + k], one[W * LANES + k]
+            fx, fy, fz = one[FX * LANES + k], one[FY * LANES + k], one[FZ * LANES + k]
+            f, dx, dy, dz = pull(other, j, soft, px, py, pz, w)
+            fx, fy, fz = fma(f, dx, fx), fma(f, dy, fy), fma(f, dz, fz)
+            ax, ay, az = fma(f, dx, sums[l]), fma(f, dy, sums[STRIP + l]), fma(f, dz, sums[2 * STRIP + l])
+            f, dx, dy, dz = pull(other, j + 1, soft, px, py, pz, w)
+            fx, fy, fz = fma(f, dx, fx), fma(f, dy, fy), fma(f, dz, fz)
+            bx, by, bz = (
+                fma(f, dx, sums[3 * STRIP + l]),
+                fma(f, dy, sums[4 * STRIP + l]),
+                fma(f, dz, sums[5 * STRIP + l]),
+            )
+            f, dx, dy, dz = pull(other, j + 2, soft, px, py, pz, w)
+            fx, fy, fz = fma(f, dx, fx), fma(f, dy, fy), fma(f, dz, fz)
+            cx, cy, cz = (
+                fma(f, dx, sums[6 * STRIP + l]),
+                fma(f, dy, sums[7 * STRIP + l]),
+                fma(f, dz, sums[8 * STRIP + l]),
+            )
+            f, dx, dy, dz = pull(other, j + 3, soft, px, py, pz, w)
+            one[FX * LANES + k], one[FY * LANES + k], one[FZ * LANES + k] = (
+                fma(f, dx, fx),
+                fma(f, dy, fy),
+                fma(f, dz, fz),
+            )
+            sums[9 * STRIP + l] = fma(f, dx, sums[9 * STRIP + l])
+            sums[10 * STRIP + l] = fma(f, dy, sums[10 * STRIP + l])
+            sums[11 * STRIP + l] = fma(f, dz, sums[11 * STRIP + l])
+            sums[l], sums[STRIP + l], sums[2 * STRIP + l] = ax, ay, az
+            sums[3 * STRIP + l], sums[4 * STRIP + l], sums[5 * STRIP + l] = bx, by, bz
+            sums[6 * STRIP + l], sums[7 * STRIP + l], sums[8 * STRIP + l] = cx, cy, cz
+
+
+@lean(types.void(A, A, A, F))
+def attract(one, other, sums, soft):
+    """Add the forces between the bodies of two tiles; sums (3 SOURCES STRIP,): scratch."""
+    for j in range(0, LANES, SOURCES):
+        for k in range(3 * SOURCES * STRIP):
+            sums[k] = 0.0
+        strips(one, other, j, soft, sums)
+        for source in range(SOURCES):
+            for c in range(3):
+                total = 0.0
+                for l in range(STRIP):
+                    total += sums[(3 * source + c) * STRIP + l]
+                other[(FX + c) * LANES + j + source] -= total
+
+
+@lean(types.void(A, I, A, N))
+def take(floats, ints, tile, first):
+    """Places and weights of the LANES bodies from ``first`` on, and no forces."""
     for k in range(LANES):
-        lanes[3 * LANES + k] = x[first + k]
-        lanes[4 * LANES + k] = y_[first + k]
-        lanes[5 * LANES + k] = z[first + k]
-    for j in range(0, room, 4):
-        # Four sources at a time, so that the sums stay in registers for four.
-        xa, ya, za, wa = x[j], y_[j], z[j], w[j]
-        xb, yb, zb, wb = x[j + 1], y_[j + 1], z[j + 1], w[j + 1]
-        xc, yc, zc, wc = x[j + 2], y_[j + 2], z[j + 2], w[j + 2]
-        xd, yd, zd, wd = x[j + 3], y_[j + 3], z[j + 3], w[j + 3]
+        for c in range(3):
+            tile[c * LANES + k] = floats[ints[POINTS] + c * ints[ROOM] + first + k]
+            tile[(FX + c) * LANES + k] = 0.0
+        tile[W * LANES + k] = floats[ints[WEIGHTS] + first + k]
+
+
+@lean(types.void(A, A, N, N))
+def leave(tile, floats, at, room):
+    """Add the forces of a tile to the sums at floats[at:]."""
+    for c in range(3):
         for k in range(LANES):
-            px, py, pz = lanes[3 * LANES + k], lanes[4 * LANES + k], lanes[5 * LANES + k]
-            fx, fy, fz = lanes[k], lanes[LANES + k], lanes[2 * LANES + k]
-            dx, dy, dz = xa - px, ya - py, za - pz
-            f = inverse_cube(fma(dx, dx, fma(dy, dy, fma(dz, dz, soft))), wa)
-            fx, fy, fz = fma(f, dx, fx), fma(f, dy, fy), fma(f, dz, fz)
-            dx, dy, dz = xb - px, yb - py, zb - pz
-            f = inverse_cube(fma(dx, dx, fma(dy, dy, fma(dz, dz, soft))), wb)
-            fx, fy, fz = fma(f, dx, fx), fma(f, dy, fy), fma(f, dz, fz)
-            dx, dy, dz = xc - px, yc - py, zc - pz
-            f = inverse_cube(fma(dx, dx, fma(dy, dy, fma(dz, dz, soft))), wc)
-            fx, fy, fz = fma(f, dx, fx), fma(f, dy, fy), fma(f, dz, fz)
-            dx, dy, dz = xd - px, yd - py, zd - pz
-            f = inverse_cube(fma(dx, dx, fma(dy, dy, fma(dz, dz, soft))), wd)
-            fx, fy, fz = fma(f, dx, fx), fma(f, dy, fy), fma(f, dz, fz)
-            lanes[k], lanes[LANES + k], lanes[2 * LANES + k] = fx, fy, fz
-    c = ints[SIGN] * floats[ints[CONSTANT]]
-    for k in range(min(LANES, n - first)):
-        at = velocity_of(first + k, ints, BODIES)
-        own = c * w[first + k]
-        rate[at] += own * lanes[k]
-        rate[at + 1] += own * lanes[LANES + k]
-        rate[at + 2] += own * lanes[2 * LANES + k]
+            floats[at + c * room + k] += tile[(FX + c) * LANES + k]
+
+
+@kernel(TILE)
+def direct_tile(part, t, y, rate, floats, ints):
+    """The sums of one part: of its rows of tiles, dealt to and fro so that all have as much to do."""
+    room, parts = ints[ROOM], ints[PARTS]
+    sums = ints[FORCES] + 3 * room * part
+    for k in range(3 * room):
+        floats[sums + k] = 0.0
+    soft = floats[ints[SOFTENING]] * floats[ints[SOFTENING]] + FLOOR
+    one, other, scratch = np.empty(ROWS * LANES), np.empty(ROWS * LANES), np.empty(3 * SOURCES * STRIP)
+    tiles = room // LANES
+    for turn in range(0, tiles, parts):
+        row = turn + (part if turn // parts % 2 == 0 else parts - 1 - part)
+        if row >= tiles:
+            continue
+        take(floats, ints, one, LANES * row)
+        # A tile with itself: every pair is found twice, so only one of the two is kept.
+        take(floats, ints, other, LANES * row)
+        attract(one, other, scratch, soft)
+        for column in range(row + 1, tiles):
+            take(floats, ints, other, LANES * column)
+            attract(one, other, scratch, soft)
+            leave(other, floats, sums + LANES * column, room)
+        leave(one, floats, sums + LANES * row, room)
 
 
 @kernel(TERM)
@@ -130,7 +197,20 @@ def direct(t, y, rate, floats, ints):
         return
     spread_out(floats, ints)
     count = 1 if n <= ALONE else ints[THREADS]
-    over_threads(ints[ENTRY], count, ints[TILE_AT], ints[ROOM] // LANES, t, y, rate, floats, ints)
+    over_threads(ints[ENTRY], count, ints[TILE_AT], ints[PARTS], t, y, rate, floats, ints)
+    room, constant = ints[ROOM], ints[SIGN] * floats[ints[CONSTANT]]
+    for k in range(n):
+        at = velocity_of(k, ints, BODIES)
+        for c in range(3):
+            total = 0.0
+            for part in range(ints[PARTS]):
+                total += floats[ints[FORCES] + (3 * part + c) * room + k]
+            rate[at + c] += constant * total
+
+
+def parts_of(room: int) -> int:
+    """How many parts the tiles of so many bodies are dealt to."""
+    return max(1, min(MOST_PARTS, room // LANES // 4))
 
 
 @kernel((A, A, I, A))

@@ -49,10 +49,12 @@ class Pairs:
 
     def _direct(self, assembly: Assembly, n: int) -> tuple[str, tuple[int, ...]]:
         """Kernel and integers up to the bodies (direct_kernels)."""
-        from sceneql.simulation.nbody.direct_kernels import LANES, direct_tile
+        from sceneql.simulation.nbody.direct_kernels import LANES, direct_tile, parts_of
         from sceneql.simulation.threads_kernels import threads, tile_address
 
-        ints = (*self._numbers(assembly, -(-n // LANES) * LANES), *threads(), tile_address(direct_tile))
+        room = -(-n // LANES) * LANES
+        sums = (_scratch(assembly, 3 * room * parts_of(room)), parts_of(room))
+        ints = (*self._numbers(assembly, room), *sums, *threads(), tile_address(direct_tile))
         return "direct_kernels:direct", ints
 
     def _tree(self, assembly: Assembly, n: int) -> tuple[str, tuple[int, ...]]:
