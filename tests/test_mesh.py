@@ -22,8 +22,10 @@ from sceneql.frame import Tape
 from sceneql.mesh.bounded import bounded
 from sceneql.mesh.cases import CENTERS, cases, decisions
 from sceneql.mesh.cube import FACES_OF, segments
+from sceneql.mesh.hausdorff import hausdorff
 from sceneql.mesh.measures import area, edge_counts, euler_characteristic, volume
 from sceneql.mesh.polygonise import polygonise
+from sceneql.mesh.polygons import Polygons
 from sceneql.mesh.refine import refined
 from sceneql.mesh.sharp import polygonise_sharp
 from sceneql.mesh.tolerance import distance, polygonise_within
@@ -440,6 +442,31 @@ def test_refined_edges_are_cut_less():
         for found in (cut(TURNED, 1.3, 32), cut_finer(TURNED, 1.3, 32)[0])
     ]
     assert 0.0 < errors[1] < errors[0] / 12  # cells of a quarter, so a sixteenth of what is cut off
+
+
+def test_hausdorff_distances_are_those_of_geometry():
+    # An octahedron in the unit sphere: its faces' middles are nearest to the center, at 1/sqrt(3).
+    corners = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], dtype=float)
+    faces = [[x, y, z] if (x + y + z) % 2 == 0 else [y, x, z] for x in (0, 1) for y in (2, 3) for z in (4, 5)]
+    octahedron = Polygons(corners, np.array(faces, dtype=np.int32), corners)
+    found = hausdorff(octahedron, tape_of(BALL))
+    assert found.to_surface == pytest.approx(1.0 - 3**-0.5, rel=1e-3)
+    assert found.to_mesh == pytest.approx(1.0 - 3**-0.5, rel=1e-3)
+    assert found.distance == max(found)
+    # A cube that is too large by 0.1 on all sides: its corners are off by the diagonal, the faces in it by 0.1.
+    cube = hausdorff(
+        cut_sharp("max(abs(x), abs(y), abs(z)) - 0.8", 1.0, 16), tape_of("max(abs(x), abs(y), abs(z)) - 0.7")
+    )
+    assert cube.to_surface == pytest.approx(0.1 * 3**0.5, rel=0.03)
+    assert cube.to_mesh == pytest.approx(0.1, abs=1e-9)
+
+
+def test_hausdorff_distances_fall_with_the_square_of_the_cell_and_stay_with_sharp_edges():
+    torus = [hausdorff(cut(TORUS, 1.5, cells), tape_of(TORUS), 4000).distance for cells in (32, 64)]
+    assert math.log2(torus[0] / torus[1]) == pytest.approx(2.0, abs=0.4)
+    chamfered, sharp = (hausdorff(made(TURNED, 1.3, 32), tape_of(TURNED), 4000) for made in (cut, cut_sharp))
+    assert chamfered.distance > 0.01
+    assert sharp.distance < 1e-9
 
 
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-3])

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import os
-import statistics
 import sys
 import time
 from collections.abc import Callable
@@ -140,14 +139,14 @@ def by_flying_edges(values: Any) -> Mesh:
 PEERS = {"scikit-image": by_scikit_image, "PyMCubes": by_pymcubes, "VTK FlyingEdges": by_flying_edges}
 
 
-def median(work: Callable[[], object], rounds: int) -> float:
-    """Median of the seconds of a call."""
-    walls = []
+def medians(work: Callable[[], object], rounds: int) -> Any:
+    """(2,) medians of the wall and the processor seconds of a call; the latter hardly feel what else runs."""
+    spent = []
     for _ in range(rounds):
-        start = time.perf_counter()
+        wall, cpu = time.perf_counter(), time.process_time()
         work()
-        walls.append(time.perf_counter() - start)
-    return statistics.median(walls)
+        spent.append((time.perf_counter() - wall, time.process_time() - cpu))
+    return np.median(spent, axis=0)
 
 
 def flaws(tape: Any, vertices: Any, triangles: Any) -> str:
@@ -161,15 +160,15 @@ def flaws(tape: Any, vertices: Any, triangles: Any) -> str:
     return f"{edge_counts(triangles)[1]} open edges, {100 * inward:.2g} % inward{turned}"
 
 
-def row(name: str, who: str, seconds: float, ours: float, mesh: Mesh, tape: Any) -> None:
-    """Print a line of the table."""
+def row(name: str, who: str, spent: Any, ours: dict[int, Any], mesh: Mesh, tape: Any) -> None:
+    """Print a line of the table: wall against ours on two threads, processor seconds against ours on one."""
     vertices, triangles = mesh
     off = ""
     if name == "steiner":
         off = f", volume off by {abs(abs(volume(vertices.astype(float), triangles)) * 6 - 1):.1e}"
     print(
-        f"{name:13} {who:28} {seconds * 1e3:7.1f} ms, ratio {seconds / ours:6.1f}: {flaws(tape, vertices, triangles)}"
-        f"{off}",
+        f"{name:13} {who:30} {spent[0] * 1e3:7.1f} ms, ratio {spent[0] / ours[2][0]:6.1f};"
+        f" CPU {spent[1] * 1e3:7.1f} ms, ratio {spent[1] / ours[1][1]:6.1f}; {flaws(tape, vertices, triangles)}{off}",
         flush=True,
     )
 
@@ -183,21 +182,21 @@ def compare(cells: int, rounds: int) -> None:
         seconds = {}
         for threads in (1, 2):
             os.environ["SCENEQL_THREADS"] = str(threads)
-            seconds[threads] = median(partial(polygonise, tape, *box), rounds)
+            seconds[threads] = medians(partial(polygonise, tape, *box), rounds)
         for threads, spent in seconds.items():
-            row(name, f"ours, {threads} threads", spent, seconds[2], (found.vertices, found.triangles), tape)
+            row(name, f"ours, {threads} threads", spent, seconds, (found.vertices, found.triangles), tape)
         scale = 2 * half / (cells - 1)
         for boxed in (False, True) if "parts" in SCENES[name] else (False,):
             few = 3 if boxed or name != "blob40" else 1
-            evaluated = median(partial(grid_values, name, half, cells, boxed), few)
+            evaluated = medians(partial(grid_values, name, half, cells, boxed), few)
             values = grid_values(name, half, cells, boxed)
             for peer, made in PEERS.items():
                 if find_spec(MODULES[peer]) is None:
                     continue
-                spent = evaluated + median(partial(made, values), 3)
+                spent = evaluated + medians(partial(made, values), 3)
                 vertices, triangles = made(values)
                 who = f"numpy{', boxed,' if boxed else ''} + {peer}"
-                row(name, who, spent, seconds[2], (vertices * scale - half, triangles), tape)
+                row(name, who, spent, seconds, (vertices * scale - half, triangles), tape)
         print(f"{name:13} bar beside numpy + scikit-image: {bar}", flush=True)
 
 
