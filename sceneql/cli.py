@@ -199,7 +199,7 @@ def bench(
     output: Path | None,
     error: float | None,
 ) -> None:
-    """Measure error against run time: the scene's physics by every solver that applies."""
+    """Measure error against run time: physics by every solver that applies, implicit surfaces by rays and meshes."""
     from sceneql import pipeline
     from sceneql.report.bench import bench as measure
     from sceneql.report.progress import bar

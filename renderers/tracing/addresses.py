@@ -28,3 +28,11 @@ def marching() -> Any:
     from renderers.tracing.march_kernels import sampled
 
     return address(sampled, CROSSING)
+
+
+@cache
+def certifying() -> Any:
+    """What may stand for Scene.crossing: certified intervals alone."""
+    from renderers.tracing.certain_kernels import certain
+
+    return address(certain, CROSSING)

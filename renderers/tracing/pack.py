@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from renderers.tracing import hierarchy_kernels
-from renderers.tracing.addresses import addresses, marching
+from renderers.tracing.addresses import addresses, certifying, marching
 from renderers.tracing.implicit_kernels import BLOCK, occupy
 from renderers.tracing.scene_kernels import (
     CAMERA,
@@ -54,11 +54,11 @@ TOLERANCE = 1e-9
 """Of roots of implicit objects, relative to the searched piece of a ray, where nothing is said."""
 
 
-def pack(frame: Frame, tolerance: float = TOLERANCE, samples: int = 0) -> tuple[Scene, int]:
+def pack(frame: Frame, tolerance: float = TOLERANCE, samples: int = 0, certain: bool = False) -> tuple[Scene, int]:
     """The scene of a frame, and the rows of scratch that its kernels need.
 
-    With ``samples`` rays are not searched for roots of implicit objects but sampled at so many places. ValueError
-    names a shape that is none of the closed set.
+    With ``samples`` rays are not searched for roots of implicit objects but sampled at so many places; ``certain``:
+    they are searched by certified intervals alone. ValueError names a shape that is none of the closed set.
     """
     tables = Rows()
     for index, shape in enumerate(frame.shapes):
@@ -94,8 +94,8 @@ def pack(frame: Frame, tolerance: float = TOLERANCE, samples: int = 0) -> tuple[
         ranges[[2, 4, PAINT + 2, PAINT + 4, WITHIN + 2, WITHIN + 4]] += reals_at
         reals[reals_at + tables.implicits[k] + 6] = place
     scene = Scene(reals, ints, *addresses())
-    if samples:
-        return scene._replace(crossing=marching()), tables.rows + 1
+    if samples or certain:
+        return scene._replace(crossing=marching() if samples else certifying()), tables.rows + 1
     slabs = CELLS // BLOCK
     over_tiles(
         len(tables.implicits) * slabs,

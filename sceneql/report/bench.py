@@ -1,4 +1,4 @@
-"""`bench`: the error that each solver leaves against the time it takes, as tables, plots and a page."""
+"""`bench`: the error of each solver, and of each way to draw a surface, against the time it takes."""
 
 from __future__ import annotations
 
@@ -17,11 +17,13 @@ from sceneql.failure import LimitRefused, RunFailure, Unsuitable
 from sceneql.files import whole
 from sceneql.graph import SimulationGraph
 from sceneql.quantities.diagnostic import ScriptError
+from sceneql.report.bench_surfaces import Section, surface_section
 from sceneql.report.drift import Drift, drift
 from sceneql.report.order import observed_order
 from sceneql.report.page import Table, beside, file_names, write_page
 from sceneql.report.plots import drift_against_time, error_against_step, error_against_time, legend
 from sceneql.report.reference import reference
+from sceneql.report.surfaces import pictured
 from sceneql.report.work_precision import Measurement, Reference, measurements, solvers, warm
 
 CLEAR = 10.0
@@ -39,15 +41,19 @@ def bench(
     asked: float | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> str:
-    """Run every island by every solver that applies; write tables, plots and a page; the report as text.
+    """Run every island by every solver that applies, and look at implicit surfaces by rays and meshes; as text.
 
     ``output`` is a folder, or the files' path without extension: CSV and JSON with all runs, SVGs of the error against
-    run time and step and of the drift of energy, HTML with all of it. ``words`` is a folder of the user's own words;
-    ``asked`` the relative error for which the cheapest solver is named. Raises Unsuitable for a scene without an
-    island, RunFailure where no reference reaches the end.
+    run time and step and of the drift of energy, HTML with all of it; what is of implicit surfaces, those of the first
+    picture at its start, has files of its own (``rays``, ``meshes``, ``surfaces``). ``words`` is a
+    folder of the user's own words; ``asked`` the relative error for which the cheapest solver is named. Raises
+    Unsuitable for a scene without either, RunFailure where no reference reaches the end.
     """
-    if not graph.islands:
-        raise Unsuitable(f"nothing in {graph.name} is solved in time, so there is nothing to measure")
+    frame = pictured(graph)
+    if not graph.islands and frame is None:
+        raise Unsuitable(
+            f"nothing in {graph.name} is solved in time or drawn as an implicit surface, so there is nothing to measure"
+        )
     catalogue = Catalogue(words)
     rows: list[Measurement] = []
     drifts: list[Drift] = []
@@ -77,9 +83,15 @@ def bench(
         named = cheapest_lines([row for row in rows if row.island == title], truth, asked)
         lines += named
         summary += named
-    lines.append(f"compiled in {compile_seconds:.1f} s, which is in none of the times")
+    if graph.islands:
+        lines.append(f"compiled in {compile_seconds:.1f} s, which is in none of the times")
+        summary.append(lines[-1])
     stem = file_names(graph.name, "bench", output)
-    made = _write(stem, graph, rows, orders, drifts, [graph.settings.about, *summary, lines[-1]])
+    section = None if frame is None else surface_section(frame, graph.name, stem)
+    if section is not None:
+        lines += section.lines
+        summary.append(section.lines[0])
+    made = _write(stem, graph, rows, orders, drifts, [graph.settings.about, *summary], section)
     return "\n".join([*lines, *_drift_lines(drifts), f"wrote {', '.join(map(str, made))}"])
 
 
@@ -146,22 +158,34 @@ def _write(
     orders: Orders,
     drifts: Sequence[Drift],
     summary: Sequence[str],
+    section: Section | None,
 ) -> list[Path]:
     """Write all files of the report."""
     table, data, time, step, moved, page = (
         beside(stem, extension) for extension in ("csv", "json", "svg", "step.svg", "drift.svg", "html")
     )
-    _write_csv(table, rows, orders)
-    _write_json(data, graph, rows, orders, drifts)
-    error_against_time(time, graph.name, rows, orders)
-    error_against_step(step, graph.name, rows, orders, graph.settings.clock.end)
-    plots = [("Error against run time", time), ("Error against step", step)]
+    files: list[Path] = []
+    plots: list[tuple[str, Path]] = []
+    tables: list[Table] = []
+    if graph.islands:
+        _write_csv(table, rows, orders)
+        error_against_time(time, graph.name, rows, orders)
+        error_against_step(step, graph.name, rows, orders, graph.settings.clock.end)
+        plots += [("Error against run time", time), ("Error against step", step)]
+        tables.append(_table(rows))
+        files.append(table)
+    _write_json(data, graph, rows, orders, drifts, section)
     if drifts:
         drift_against_time(moved, graph.name, drifts)
         plots.append(("Drift of energy", moved))
+    files += [data, *(path for _, path in plots)]
+    if section is not None:
+        plots += section.plots
+        tables += section.tables
+        files += section.files
     lines = [line for line in (*summary, *_drift_lines(drifts)) if line]
-    write_page(page, f"{graph.name}: error against run time", lines, plots, [_table(rows)])
-    return [table, data, *(path for _, path in plots), page]
+    write_page(page, f"{graph.name}: error against run time", lines, plots, tables)
+    return [*files, page]
 
 
 def _table(rows: Sequence[Measurement]) -> Table:
@@ -192,9 +216,14 @@ def _write_csv(path: Path, rows: Sequence[Measurement], orders: Orders) -> None:
 
 
 def _write_json(
-    path: Path, graph: SimulationGraph, rows: Sequence[Measurement], orders: Orders, drifts: Sequence[Drift]
+    path: Path,
+    graph: SimulationGraph,
+    rows: Sequence[Measurement],
+    orders: Orders,
+    drifts: Sequence[Drift],
+    section: Section | None,
 ) -> None:
-    found = {
+    found: dict[str, Any] = {
         "scene": graph.name,
         "script_hash": graph.script_hash,
         "end": graph.settings.clock.end,
@@ -202,6 +231,8 @@ def _write_json(
         "orders": [{"island": i, "solver": s, "order": order} for (i, s), order in orders.items()],
         "drifts": [asdict(one) for one in drifts],
     }
+    if section is not None:
+        found["surfaces"] = section.data
     write_json(path, found)
 
 

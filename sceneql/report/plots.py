@@ -14,6 +14,7 @@ from sceneql.files import whole
 if TYPE_CHECKING:
     from sceneql.report.drift import Drift
     from sceneql.report.stability_map import Cell
+    from sceneql.report.surfaces import MeshRun, RayRun
     from sceneql.report.work_precision import Measurement
 
 MARKS = "osD^vP*X<>"
@@ -75,6 +76,32 @@ def _errors(
                 done = [row for row in runs if row.ok and row.error > 0.0]
                 text = legend(solver, orders[island, solver], sum(not row.ok for row in runs))
                 axes.plot([place(row) for row in done], [row.error for row in done], marker=mark, ms=4, label=text)
+            _explain(axes)
+
+
+def surface_errors(path: Path, title: str, rays: Sequence[RayRun], meshes: Sequence[MeshRun]) -> None:
+    """Write an SVG: wrong pixels and depth error of rays over run time [s], errors of each mesh over its cells [m]."""
+    named = list(dict.fromkeys(mesh.name for mesh in meshes))
+    with _figure(path, (9.0, 4.2 * (2 + len(named)))) as figure:
+        for k, label in enumerate(("share of wrong pixels (none: a tenth of one)", "mean error of depth [m]")):
+            axes = figure.add_subplot(2 + len(named), 1, k + 1)
+            axes.set(xscale="log", yscale="log", xlabel="run time [s]", ylabel=label, title=title)
+            axes.grid(True, which="major", alpha=0.3)
+            for renderer, mark in zip(dict.fromkeys(run.renderer for run in rays), MARKS, strict=False):
+                mine = [run for run in rays if run.renderer == renderer]
+                wrong = [max(run.wrong, 0.1) / max(run.pixels, 1) for run in mine]
+                errors = [wrong, [max(run.depth_error, SMALLEST) for run in mine]][k]
+                axes.plot([run.seconds for run in mine], errors, marker=mark, ms=4, label=renderer)
+            _explain(axes)
+        for k, name in enumerate(named):
+            axes = figure.add_subplot(2 + len(named), 1, 3 + k)
+            axes.set(xscale="log", yscale="log", xlabel="cell [m]", ylabel="error", title=f"{title}: mesh of {name}")
+            axes.grid(True, which="major", alpha=0.3)
+            own = [mesh for mesh in meshes if mesh.name == name]
+            cells = [mesh.cell for mesh in own]
+            axes.plot(cells, [mesh.hausdorff for mesh in own], marker="o", ms=4, label="Hausdorff distance [m]")
+            axes.plot(cells, [mesh.volume_error for mesh in own], marker="s", ms=4, label="volume, relative")
+            axes.plot(cells, [mesh.area_error for mesh in own], marker="D", ms=4, label="area, relative")
             _explain(axes)
 
 

@@ -1,0 +1,87 @@
+"""The part of `bench` on implicit surfaces: rays and meshes, as lines, tables, plots and files."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from sceneql.files import whole
+from sceneql.report.page import Table, beside
+from sceneql.report.plots import surface_errors
+from sceneql.report.surfaces import MeshRun, RayRun, mesh_runs, ray_runs
+
+if TYPE_CHECKING:
+    from sceneql.frame import Frame
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A part of a report: lines of text, tables, plots by caption, files written, and all of it as plain data."""
+
+    lines: Sequence[str]
+    tables: Sequence[Table]
+    plots: Sequence[tuple[str, Path]]
+    files: Sequence[Path]
+    data: dict[str, Any]
+
+
+def surface_section(frame: Frame, title: str, stem: Path) -> Section:
+    """Measure the implicit objects of a frame; write CSVs and a plot beside ``stem``."""
+    rays = list(ray_runs(frame))
+    meshes = [run for shape in frame.shapes if shape.within is None for run in mesh_runs(shape)]  # type: ignore[union-attr, arg-type]  # all are Implicit
+    width, height = frame.view.size
+    lines = [
+        f"implicit surfaces at {width} x {height}, {rays[0].pixels} pixels of them: rays against certified intervals",
+        *map(ray_line, rays),
+        *map(mesh_line, meshes),
+    ]
+    files = [beside(stem, "rays.csv"), beside(stem, "meshes.csv")]
+    for path, kind, runs in ((files[0], RayRun, rays), (files[1], MeshRun, meshes)):
+        _write_csv(path, kind, runs)
+    plot = beside(stem, "surfaces.svg")
+    surface_errors(plot, title, rays, meshes)
+    tables = [_table("Rays", RayRun, rays), *([_table("Meshes", MeshRun, meshes)] if meshes else [])]
+    data = {"rays": [asdict(run) for run in rays], "meshes": [asdict(run) for run in meshes]}
+    return Section(lines, tables, [("Implicit surfaces", plot)], [*files, plot], data)
+
+
+def ray_line(run: RayRun) -> str:
+    """A run as a line of text."""
+    setting = f"tolerance {run.setting:.0e}" if run.renderer == "trace" else f"{run.setting:.0f} samples"
+    return (
+        f"  {run.renderer:<6} {setting:<17} {run.wrong:6d} wrong pixels, {run.undecided} undecided;"
+        f" depth {run.depth_error:.1e} m, normal {run.normal_error:.1e} rad; {run.seconds * 1e3:.1f} ms"
+    )
+
+
+def mesh_line(run: MeshRun) -> str:
+    """A run as a line of text."""
+    away = "the finest" if math.isnan(run.hausdorff) else f"Hausdorff {run.hausdorff:.1e} m"
+    return (
+        f"  mesh of {run.name}, cells of {run.cell:.3g} m: {away}; volume {run.volume:.6g} m^3"
+        f" ({run.volume_error:.1e}), area {run.area:.6g} m^2 ({run.area_error:.1e}),"
+        f" Euler characteristic {run.euler}; {run.seconds * 1e3:.1f} ms"
+    )
+
+
+def _table(caption: str, kind: type, runs: Sequence[Any]) -> Table:
+    head = [item.name.replace("_", " ") for item in fields(kind)]
+    return Table(caption, head, [[(_cell(value), "") for value in asdict(run).values()] for run in runs])
+
+
+def _cell(value: Any) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def _write_csv(path: Path, kind: type, runs: Sequence[Any]) -> None:
+    text = io.StringIO()
+    writer = csv.DictWriter(text, [item.name for item in fields(kind)], lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(asdict(run) for run in runs)
+    with whole(path) as file:
+        file.write(text.getvalue().encode())
