@@ -65,7 +65,8 @@ def test_space_is_of_second_order(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("word", "order"), [("implicit_euler", 1), ("crank_nicolson", 2), ("tr_bdf2", 2), ("implicit_midpoint", 2)]
+    ("word", "order"),
+    [("implicit_euler", 1), ("crank_nicolson", 2), ("tr_bdf2", 2), ("implicit_midpoint", 2), ("adi", 2)],
 )
 def test_schemes_are_of_their_order_in_time(tmp_path, word, order):
     fine = Field(tmp_path, "{rk4: {step: 50 us}}", 0.02, initial=MODE, boundary=SQUARE).at(0.02).values
@@ -130,6 +131,21 @@ def test_linear_solvers_agree_and_conserve(tmp_path, linear, size):
     if linear != "direct":
         assert done.residuals[-1] < 1e-6 * done.residuals[0]
         assert linear in field.run.march.prepared_text
+
+
+@pytest.mark.parametrize("size", ["1 1 m", "1 0.7 0.5 m"])
+def test_alternating_directions_conserve_and_reach_the_steady_state(tmp_path, size):
+    sides = "{left: {value: 2}, right: {robin: {coefficient: 3 m/s, outside: 1}}, bottom: {periodic: yes}}"
+    fields = {"size": size, "cell": "1/9 m", "initial": "where(x<0.4, 1, 0)+y", "boundary": sides}
+    field = Field(tmp_path, "{adi: {step: 5 ms}}", 3, **fields)
+    start = field.at(0.0).read("mass")
+    field.at(0.1)
+    exact = Field(tmp_path, "{tr_bdf2: {tolerance: 1e-7}}", **fields).at(0.1)
+    assert np.abs(field.values - exact.values).max() < 2e-3
+    field.at(3)
+    assert field.read("mass") - field.read("inflow") == pytest.approx(start, abs=1e-12)
+    # Through the side's own resistance 1/3 and the meter from 2 to 1: the flux is 1/(1 + 1/3).
+    assert np.abs(field.values - (2 - 0.75 * field.centers[:, 0])).max() < 1e-6
 
 
 def test_multigrid_needs_as_many_iterations_on_a_finer_grid(tmp_path):

@@ -23,6 +23,8 @@ class Model(Kind):
 
     family: ClassVar[str] = "models"
     kinematic: ClassVar[bool] = False
+    is_field: ClassVar[bool] = False
+    """Whether it is a field on a grid (system.Grid)."""
     has_bodies: ClassVar[bool] = True
     """Whether forces that name no model act on it."""
 
@@ -122,6 +124,8 @@ class Solver(Kind):
     """Marches a system in time. Sees only its rate, its Jacobian, its invariants and its events."""
 
     family: ClassVar[str] = "solvers"
+    fields_only: ClassVar[bool] = False
+    """Whether it marches fields on grids and nothing else."""
 
     on: tuple[ModelRef, ...] | None = field("The models it marches; by default all.", None)
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, cast
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.failure import RunFailure
 from sceneql.graph import Island, SimulationGraph
-from sceneql.kinds import Solver
+from sceneql.kinds import Model, Solver
 
 if TYPE_CHECKING:
     from sceneql.simulation.run import Instant, IslandRun
@@ -80,14 +80,15 @@ def solvers(graph: SimulationGraph, island: Island, catalogue: Catalogue) -> dic
     step, tolerance = settings(graph, island)
     given = {"step": step, "tolerance": tolerance}
     own = graph.tasks[island.solver]
+    field = all(cast(Model, graph.tasks[name].kind).is_field for name in island.models)
     found: dict[str, Solver] = {own.word: cast(Solver, own.kind)}
     for word in catalogue.words("solvers"):
-        cls = catalogue.load("solvers", word)
-        if cls is None or word in found:
+        cls = cast("type[Solver] | None", catalogue.load("solvers", word))
+        if cls is None or word in found or (cls.fields_only and not field):
             continue
         needed = {name for name, info in cls.model_fields.items() if info.is_required()}
         if needed <= set(given):
-            solver = cast(Solver, cls.model_validate({name: given[name] for name in needed}))
+            solver = cls.model_validate({name: given[name] for name in needed})
             found[word] = at(solver, given["tolerance" if adaptive(solver) else "step"])
     kept: dict[str, Solver] = {}
     for word in sorted(found, key=lambda word: (word == "auto", word)):

@@ -10,6 +10,7 @@ import numpy as np
 
 from sceneql.kinds import Force, Model
 from sceneql.quantities.diagnostic import Diagnostic
+from sceneql.simulation.grids.ringing import ringing
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -77,6 +78,7 @@ class Watch:
         self.always = always
         islands = [island for island in run.islands if always or _cheap(island)]
         self.balances = [Balance(island, models) for island in islands if (models := _telling(island))]
+        self._ringing = [found for island in run.islands if (found := ringing(island)) is not None]
         self._started, self._spent = time.perf_counter(), 0.0
 
     def look(self, moment: Instant, *, last: bool = False) -> None:
@@ -89,8 +91,8 @@ class Watch:
         self._spent += time.perf_counter() - started
 
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """Energy that came from nowhere, and springs beyond what springs can do."""
-        found = []
+        """Energy that came from nowhere, springs beyond what springs can do, and fields that ring."""
+        found = list(self._ringing)
         for balance in self.balances:
             tasks, title = balance.island.graph.tasks, ", ".join(balance.models)
             span = tasks[balance.models[0]].span

@@ -99,6 +99,7 @@ class Diffusion(Model):
     """
 
     has_bodies = False
+    is_field = True
 
     domain: ObjectRef | None = field("The object whose inside, at the start, it spreads in; or give `size`.", None)
     flat: bool = field("The section of that object at z = 0 alone.", False)
