@@ -9,8 +9,10 @@ from collections.abc import Callable
 from heapq import heappop, heappush
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from sceneql.field import interval_kernels, tape_kernels
-from sceneql.field.solid import scratch
+from sceneql.field.solid import field_values, scratch
 from sceneql.field.tape_ops import NOWHERE, WHOLE
 
 if TYPE_CHECKING:
@@ -18,6 +20,8 @@ if TYPE_CHECKING:
 
 BOXES = 4096
 """Boxes that a proof may take; without one by then the answer is no."""
+SAMPLES = 7
+"""Along each axis."""
 SHALLOW = 1e-12
 """A solid nowhere deeper than this is taken for empty."""
 
@@ -55,6 +59,13 @@ def nowhere_defined(tape: Tape, low: Corner, high: Corner) -> bool:
         lambda least, most, status: status == NOWHERE,
         lambda value, status: status == WHOLE or value == value,
     )
+
+
+def nowhere_finite(tape: Tape, low: Corner, high: Corner) -> bool:
+    """Whether f is infinite or no number at all of SAMPLES^3 places of the box low..high [m]: a reason, no proof."""
+    ticks = [np.linspace(a, b, SAMPLES + 2)[1:-1] for a, b in zip(low, high, strict=True)]
+    points = np.stack(np.meshgrid(*ticks), axis=-1).reshape(-1, 3)
+    return not np.isfinite(field_values(tape, points)).any()
 
 
 def _all_settled(

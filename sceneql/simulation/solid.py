@@ -54,7 +54,9 @@ def traced(solid: Object, name: str, place: Floats, moment: Moment) -> Iterable[
     low, high = solid.extent(place, moment)
     if not (high > low).all():
         return
-    if not (np.isfinite(low).all() and np.isfinite(high).all()):
+    with np.errstate(over="ignore", invalid="ignore"):
+        finite = np.isfinite(high - low).all()
+    if not finite:
         raise TypeError(f"{name} is unbounded, and cannot be drawn: intersect it with a box")
     build = TapeBuilder()
     value = solid.implicit(build, *build.affine(inverse(place), build.x, build.y, build.z), moment)

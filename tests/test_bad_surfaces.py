@@ -1,0 +1,63 @@
+"""Implicit surfaces that cannot be, or are nowhere: each gets a message with its line, and none a crash."""
+
+from __future__ import annotations
+
+import pytest
+
+from sceneql import pipeline
+from sceneql.failure import LimitRefused, RunFailure
+from sceneql.quantities.diagnostic import ScriptError
+
+SCENE = """\
+sceneql: 1
+objects:
+  a: {%s}
+outputs: {still: {image: {size: 16 9, renderer: normals}}}
+"""
+
+
+def rendered(tmp_path, entry):
+    path = tmp_path / "scene.yaml"
+    path.write_text(SCENE % entry)
+    return pipeline.render(pipeline.load(path), output=tmp_path / "still.png")
+
+
+@pytest.mark.parametrize(
+    ("entry", "message"),
+    [
+        ('implicit: {field: "sqrt(-1 - x^2)"}', "defined nowhere in its bounds"),
+        ('implicit: {field: "log(-1 - x^2)", mode: surface}', "defined nowhere in its bounds"),
+        ('implicit: {field: "x + 1/0"}', "not finite"),
+        ('implicit: {field: "1e400*x"}', "too large"),
+        ('implicit: {field: "x", bounds: {ball: 1e308}}', "unbounded"),
+        ("union: {of: [{sphere: {radius: 1 m}}, {plane: {}}]}", "unbounded"),
+        ("intersection: {of: [{plane: {}}, {plane: {position: 0 1 0}}]}", "unbounded"),
+    ],
+)
+def test_what_cannot_be_drawn_is_refused_at_its_place(tmp_path, entry, message):
+    with pytest.raises((RunFailure, ScriptError, LimitRefused), match=message) as failure:
+        rendered(tmp_path, entry)
+    assert "scene.yaml:3:" in str(failure.value)
+
+
+@pytest.mark.parametrize(
+    ("entry", "message"),
+    [
+        ('implicit: {field: "x^2 + y^2 + z^2 + 1"}', "nowhere negative"),
+        ('implicit: {field: "x^2 + y^2 + z^2 + 1", mode: surface}', "nowhere zero"),
+        ('implicit: {field: "log(x - 2) + t"}', "nowhere negative"),
+        ('implicit: {field: "exp(1000*x + 2000) - 1"}', "nowhere finite"),
+        ('implicit: {field: "1/(x - x)"}', "nowhere finite"),
+        ('implicit: {field: "exp(exp(10 + x^2))", mode: surface}', "nowhere finite"),
+    ],
+)
+def test_what_is_nowhere_is_told_with_its_place(tmp_path, entry, message):
+    (warning,) = rendered(tmp_path, entry).warnings
+    assert message in warning.message
+    assert warning.span is not None
+    assert warning.span.line == 3
+
+
+def test_values_that_overflow_in_a_part_of_the_bounds_do_no_harm(tmp_path):
+    report = rendered(tmp_path, 'implicit: {field: "exp(1000*x) - exp(1000*(y - 2))"}')
+    assert report.frames == 1

@@ -1,0 +1,44 @@
+"""A changed number, another time and a new formula compile nothing: fields are data."""
+
+from __future__ import annotations
+
+import pytest
+
+from sceneql import pipeline
+from sceneql.kernels import compiled
+
+SCENE = """\
+sceneql: 1
+define: {k: 0.5}
+clock: {end: 1 s}
+objects:
+  a: {implicit: {field: "FIELD", bounds: {ball: 1}, mode: MODE}}
+outputs: {still: {image: {size: 16 9, renderer: RENDERER, time: 1 s}}}
+"""
+FIELDS = ["x^2 + y^2 + z^2 - k", "sin(9*x)*cos(9*y) + sin(9*z) + k*t", "max(x*y*z, abs(atan2(x, y + 2))^2.5 - k)"]
+
+
+def compilations(tmp_path, field, *sets, mode="solid", renderer="trace"):
+    path = tmp_path / "scene.yaml"
+    path.write_text(SCENE.replace("FIELD", field).replace("MODE", mode).replace("RENDERER", renderer))
+    before = compiled.count
+    pipeline.render(pipeline.load(path, sets=sets), output=tmp_path / "still.png")
+    return compiled.count - before
+
+
+@pytest.mark.parametrize("renderer", ["trace", "march"])
+def test_numbers_times_and_formulas_compile_nothing(tmp_path, renderer):
+    compilations(tmp_path, FIELDS[0], renderer=renderer)
+    assert compilations(tmp_path, FIELDS[0], "define.k=0.3", renderer=renderer) == 0
+    for mode in ("solid", "surface"):
+        for field in FIELDS:
+            assert compilations(tmp_path, field, mode=mode, renderer=renderer) == 0
+            assert compilations(tmp_path, field, "outputs.still.time=0.25 s", mode=mode, renderer=renderer) == 0
+
+
+def test_the_account_counts_what_is_compiled():
+    from numba import njit
+
+    before = compiled.count
+    njit("float64(float64)")(lambda x: 2.0 * x)
+    assert compiled.count == before + 1
