@@ -7,9 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from renderers.tracing.bundles import camera_roots
+from renderers.tracing.pack import pack
 from sceneql.field.packets import cast_together, enclosures
 from sceneql.field.solid import cast, field_values
 from sceneql.field.tape_ops import DENSITY, HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
+from sceneql.frame import Frame, Implicit, Surface, View
 from test_field import NAMES, PARTS, implicit, kernels, of_one, rays, tapes
 
 
@@ -134,3 +137,34 @@ def test_nothing_is_claimed_of_an_operation_without_lanes():
     unknown = replace(tape, code=np.where(tape.code == DENSITY, 99, tape.code))
     origins, ends = np.zeros((2, 3)), np.ones(2)
     assert np.isnan(enclosures(unknown, origins, origins + 1.0, 0.0 * ends, ends)[0]).all()
+
+
+@pytest.mark.parametrize("orthographic", [False, True])
+@pytest.mark.parametrize("eye", [(0.3, 0.2, 4.0), (0.9, 0.0, 1.2), (0.1, 0.0, -3.0)])
+def test_the_cameras_rays_meet_solids_where_the_certified_routine_says(eye, orthographic):
+    tape = kernels(np.random.default_rng(3).uniform(-1, 1, (12, 3)), 0.3, 0.7)
+    box = np.array([[-1.3, -0.9, -1.3], [1.3, 1.3, 1.0]])
+    solid = Implicit("blobs", Surface(), tape, tuple(box[0]), tuple(box[1]))
+    view = View(eye, np.eye(3), (50, 37), 0.9, orthographic)
+    scene, _ = pack(Frame(0, 0.0, (solid,), (), view))
+    shapes, roots = camera_roots((solid,), view, scene, 16, 37)
+    assert shapes.tolist() == [0]
+    x, y = np.meshgrid(np.arange(50) + 0.5, np.arange(16, 37) + 0.5)
+    u, v = (2 * x - 50).ravel() / 37 * 0.9, (1 - 2 * y / 37).ravel() * 0.9
+    window = np.column_stack([u, v, np.zeros(u.size)])
+    origins = eye + (np.add(window, [0, 0, 1e4]) if orthographic else 0.0 * window)
+    ways = np.tile([0.0, 0, -1], (u.size, 1)) if orthographic else window - [0, 0, 1]
+    ways = ways / np.linalg.norm(ways, axis=1)[:, None]
+    with np.errstate(divide="ignore"):
+        ends = (box[:, None] - origins) / ways
+    enter, leave = np.maximum(np.nanmax(ends.min(axis=0), axis=1), 0.0), np.nanmin(ends.max(axis=0), axis=1)
+    seen = enter < leave
+    status, t = cast(tape, origins[seen], ways[seen], enter[seen], leave[seen])
+    assert np.isinf(roots[0, ~seen]).all()
+    told = ~np.isnan(roots[0, seen])
+    begins_inside = (status != MISS) & (t <= 1e-9)
+    assert (told | begins_inside | (status == UNDECIDED)).all()
+    assert not (told & begins_inside).any()
+    assert (np.isfinite(roots[0, seen]) == ((status == HIT) | (status == INSIDE)))[told].all()
+    hit = told & (status != MISS)
+    assert roots[0, seen][hit] == pytest.approx(t[hit], abs=1e-6)

@@ -16,9 +16,13 @@ from renderers.tracing.refine_kernels import refine_rows, shade_rows
 from renderers.tracing.sampling_kernels import subpixels
 from renderers.tracing.scene_kernels import LIGHT_COUNT, Scene
 from renderers.tracing.visibility_kernels import FIRST_LIGHT
+from sceneql.frame import Implicit
 
 if TYPE_CHECKING:
-    from sceneql.frame import Frame
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats, Frame, Shape, View
 
 
 class Buffers:
@@ -59,7 +63,10 @@ def draw(frame: Frame, samples: int = 8, tolerance: float = TOLERANCE, march: in
 
     def gather(start: int, stop: int) -> None:
         b, spare = buffers, np.empty(COLUMNS, np.float32)
-        undecided.append(gather_rows(scene, scratch(rows), start, stop, b.records, b.radiance, b.visibility, spare))
+        told = _told(() if march or tolerance != TOLERANCE else frame.shapes, frame.view, scene, start, stop)
+        undecided.append(
+            gather_rows(scene, scratch(rows), start, stop, b.records, b.radiance, b.visibility, spare, *told)
+        )
 
     over_rows(height, gather)
     for layer in range(2):
@@ -80,6 +87,15 @@ def draw(frame: Frame, samples: int = 8, tolerance: float = TOLERANCE, march: in
     over_rows(height, smooth)
     _kept[:] = [buffers]
     return Picture(linear.reshape(height, width, 3), sum(undecided))
+
+
+def _told(shapes: tuple[Shape, ...], view: View, scene: Scene, start: int, stop: int) -> tuple[NDArray[int64], Floats]:
+    """What gathering need not look for: see bundles.camera_roots. Its kernels are for frames with implicit shapes."""
+    if not any(isinstance(shape, Implicit) for shape in shapes):
+        return np.zeros(0, dtype=np.int64), np.zeros((0, 0))
+    from renderers.tracing.bundles import camera_roots
+
+    return camera_roots(shapes, view, scene, start, stop)
 
 
 def _filter(scene: Scene, rows: int, buffers: Buffers, layer: int, width: int, height: int) -> None:

@@ -18,7 +18,9 @@ from renderers.tracing.scene_kernels import (
     ROW,
     SCENE,
     SCRATCH,
+    SHAPE_COUNT,
     SURFACE_AT,
+    TOLD,
     TRANSMISSION,
     WIDTH,
     gather_at,
@@ -61,6 +63,7 @@ def gather(scene, scratch, px, py, first, second, spare, visibility):
     bounce = 0
     while True:
         t, item, _ = walk_at(scene.walk)(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, np.inf, False)
+        scratch[scratch.shape[0] - 1, TOLD] = 0.0
         goes_on = False
         if item < 0:
             r, g, b = backdrop(scene.reals, dy) if straight else sky_radiance(scene.reals, dy)
@@ -134,20 +137,26 @@ def gather(scene, scratch, px, py, first, second, spare, visibility):
             wr, wg, wb, radius, spread = w2, w2, w2, radius2, spread2
 
 
-@kernel(_i(SCENE, SCRATCH, _i, _i, _stack, _rows, _stack, ROW), _nrt=False)
-def gather_rows(scene, scratch, start, stop, records, radiance, visibility, spare):
+@kernel(_i(SCENE, SCRATCH, _i, _i, _stack, _rows, _stack, ROW, _i[::1], _f[:, ::1]), _nrt=False)
+def gather_rows(scene, scratch, start, stop, records, radiance, visibility, spare, shapes, roots):
     """Fill rows start..stop of a picture (h, w): records (2, h w, COLUMNS), radiance (h w, 3), visibility (2, h w, V).
 
-    Returns the number of pixels with an undecided root. Radiance holds what needs no visibility.
+    Returns the number of pixels with an undecided root. Radiance holds what needs no visibility. ``roots`` (k, n), by
+    pixel of these rows, are where the camera's rays first meet implicit ``shapes`` (k,), NaN where that is not told.
     """
     width = int(scene.reals[WIDTH])
     counter = scratch.shape[0] - 1
     undecided = 0
+    for row in range(counter - scene.ints[SHAPE_COUNT], counter):
+        scratch[row, 0] = np.nan
     for y in range(start, stop):
         for x in range(width):
             k = y * width + x
             number = morton(x, y)
             scratch[counter, 0] = 0.0
+            for m in range(len(shapes)):
+                scratch[counter, TOLD] = 1.0
+                scratch[counter - 1 - shapes[m], 0] = roots[m, k - start * width]
             r, g, b = gather_at(scene.gather)(
                 scene, scratch, x + 0.5, y + 0.5, records[0, k], records[1, k], spare, visibility[0, k]
             )

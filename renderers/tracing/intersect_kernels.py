@@ -12,7 +12,9 @@ from renderers.tracing.scene_kernels import (
     QUADRIC,
     REALS_AT,
     ROUND,
+    SHAPE,
     SURFACE_AT,
+    TOLD,
     TRANSMISSION,
     TRIANGLE,
     WALK,
@@ -36,6 +38,11 @@ def meet(scene, scratch, item, ox, oy, oz, dx, dy, dz, near, far, anywhere):
         return round_solid(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
     if kind == QUADRIC:
         return quadric(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
+    last = scratch.shape[0] - 1
+    if scratch[last, TOLD] != 0.0:
+        t = scratch[last - 1 - scene.ints[ITEMS + 4 * item + SHAPE], 0]
+        if t == t:
+            return t if near < t < far else NONE
     return crossing_at(scene.crossing)(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere)
 
 

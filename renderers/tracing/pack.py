@@ -85,7 +85,7 @@ def pack(frame: Frame, tolerance: float = TOLERANCE, samples: int = 0, certain: 
     links_at = ITEMS + items.size
     ranges_at = links_at + links.size
     reals = np.concatenate([head, lights.ravel(), *tables.surfaces, nodes.ravel(), *tables.reals])
-    header = [len(nodes), len(items), len(endless), len(lights), nodes_at, links_at, 0, 0]
+    header = [len(nodes), len(items), len(endless), len(lights), nodes_at, links_at, len(frame.shapes), 0]
     ints = np.concatenate([header, items.ravel(), links.ravel(), *tables.ranges, *tables.codes], dtype=np.int32)
     for k in range(len(tables.implicits)):
         place = ranges_at + RANGES * k
@@ -94,14 +94,15 @@ def pack(frame: Frame, tolerance: float = TOLERANCE, samples: int = 0, certain: 
         ranges[[2, 4, PAINT + 2, PAINT + 4, WITHIN + 2, WITHIN + 4]] += reals_at
         reals[reals_at + tables.implicits[k] + 6] = place
     scene = Scene(reals, ints, *addresses())
+    rows = tables.rows + len(frame.shapes) + 1
     if samples or certain:
-        return scene._replace(crossing=marching() if samples else certifying()), tables.rows + 1
+        return scene._replace(crossing=marching() if samples else certifying()), rows
     slabs = CELLS // BLOCK
     over_tiles(
         len(tables.implicits) * slabs,
-        lambda tile: occupy(scene, scratch(tables.rows + 1), reals_at + tables.implicits[tile // slabs], tile % slabs),
+        lambda tile: occupy(scene, scratch(rows), reals_at + tables.implicits[tile // slabs], tile % slabs),
     )
-    return scene, tables.rows + 1
+    return scene, rows
 
 
 def scratch(rows: int) -> Floats:

@@ -44,7 +44,10 @@ _f, _i = types.float64, types.int64
 ROW = types.float32[::1]
 """Type of a record, and of a row of visibility."""
 SCRATCH = types.float64[:, ::1]
-"""Working memory of one thread: what root isolation needs, and a last row whose first entry counts the undecided."""
+"""Working memory of one thread: what root isolation needs, a row for each shape, the last shape's first, and a last row
+whose first entry counts the undecided. Where its entry TOLD is set, the rows of implicit shapes begin with their first
+crossing on the ray at hand, or with NaN."""
+TOLD = 1
 SCENE = types.NamedTuple((types.float64[::1], types.int32[::1], _i, _i, _i, _i, _i, _i), Scene)
 _ray = (_f,) * 8
 CROSSING = types.FunctionType(_f(SCENE, SCRATCH, _i, *_ray, types.boolean))
@@ -57,7 +60,7 @@ FUNCTIONS = (CROSSING, WALK, NORMAL, LOOK, SHADE, GATHER)
 crossing_at, walk_at, normal_at, look_at, shade_at, gather_at = map(function_at, FUNCTIONS)
 """Make functions of the addresses."""
 
-NODE_COUNT, ITEM_COUNT, ENDLESS_COUNT, LIGHT_COUNT, NODES_AT, LINKS_AT = range(6)
+NODE_COUNT, ITEM_COUNT, ENDLESS_COUNT, LIGHT_COUNT, NODES_AT, LINKS_AT, SHAPE_COUNT = range(7)
 """The header. The first ENDLESS_COUNT items have no bounds; they stand in the first node, which has none either."""
 
 ITEMS = 8

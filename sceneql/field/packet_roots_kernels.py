@@ -7,6 +7,7 @@ routine.
 """
 
 import numpy as np
+from numba.core.sigutils import normalize_signature
 
 from sceneql.field.affine_kernels import GROW, HALF, PAD, F
 from sceneql.field.batch_kernels import evaluate
@@ -213,11 +214,13 @@ def certify(code, constants, parts, scratch, rays, count, anywhere, found):
     return certified
 
 
-@lean(
-    f"UniTuple(int64, 2)({PACKET}, float32[::1], float32[::1], int64[::1], float64[:, ::1], float32[:, ::1],"
-    " int64[::1], int64, boolean, float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1],"
-    " float64[:, ::1], int32[:, ::1], float32[:, ::1], float64[:, ::1])",
-)
+BUNDLE = f"{PACKET}, float32[::1], float32[::1], int64[::1], float64[:, ::1], float32[:, ::1], int64[::1]"
+FOUND = "float64[:, ::1]," * 6 + "int32[:, ::1], float32[:, ::1], float64[:, ::1]"
+ARGUMENTS = normalize_signature(f"void({BUNDLE}, {FOUND})")[0]
+"""Types of the arrays that ``first_roots`` takes before and behind its two numbers."""
+
+
+@lean(f"UniTuple(int64, 2)({BUNDLE}, int64, boolean, {FOUND})")
 def first_roots(
     code,
     constants,
