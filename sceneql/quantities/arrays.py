@@ -8,9 +8,9 @@ from types import SimpleNamespace
 from typing import Any
 
 from sceneql.quantities import chance
-from sceneql.quantities.curves import interpolate, table_of
-from sceneql.quantities.evaluate import item_of, last_key
-from sceneql.quantities.expression import Call, Expr, Keys, Link, Number, Shape, Symbol, Vector, each_once
+from sceneql.quantities.curves import interpolate, known_table, table_of, value_at
+from sceneql.quantities.evaluate import item_of
+from sceneql.quantities.expression import Call, Expr, Keys, Link, Number, Shape, Symbol, Vector, children, each_once
 from sceneql.quantities.operations import OPERATIONS
 
 
@@ -20,7 +20,7 @@ def evaluate_arrays(expr: Expr, look_up: Callable[[Any], Any]) -> Any:
 
     values: dict[int, Any] = {}
     with np.errstate(all="ignore"):
-        for node in each_once(expr):
+        for node in each_once(expr, below=_below):
             match node:
                 case Number(value=number):
                     value: Any = np.float64(number)
@@ -149,18 +149,25 @@ def _reduce(name: str, value: Any, shape: Shape) -> Any:
     return getattr(np, name)(value, axis=axes)
 
 
+def _below(expr: Expr) -> tuple[Expr, ...]:
+    """The children that are evaluated: keys that never change are a table."""
+    return (expr.argument,) if isinstance(expr, Keys) and known_table(expr) is not None else children(expr)
+
+
 def _keys(keys: Keys, values: dict[int, Any]) -> Any:
     import numpy as np
 
-    o = numpy_arithmetic()
+    o, t = numpy_arithmetic(), values[id(keys.argument)]
+    table = known_table(keys)
+    if table is not None and np.ndim(t) == 0:
+        found = value_at(table, float(t))
+        return np.array(found) if keys.type.shape else np.float64(found[0])
 
     def components(expr: Expr) -> tuple[Any, ...]:
         value = values[id(expr)]
         return tuple(value[..., k] for k in range(value.shape[-1])) if keys.type.shape else (value,)
 
-    table = table_of(o, keys, lambda expr: float(values[id(expr)]), components)
-    t = values[id(keys.argument)]
-    # Of one number the piece is known: a path of a hundred points costs no more than one of two.
-    found = interpolate(o, table, t, last_key if np.ndim(t) == 0 else None)
-    result = np.broadcast_arrays(*found, t)[:-1]
+    if table is None:
+        table = table_of(o, keys, lambda expr: float(values[id(expr)]), components)
+    result = np.broadcast_arrays(*interpolate(o, table, t), t)[:-1]
     return np.stack(result, axis=-1) if keys.type.shape else result[0]

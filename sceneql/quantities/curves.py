@@ -47,6 +47,27 @@ def keys_table(keys: Keys) -> Table:
     return table_of(FLOATS, keys, lambda expr: float(evaluate(expr, {})), components)
 
 
+_TABLES: dict[tuple[int, int, str, int], tuple[Keys, Table | None]] = {}
+"""By the identity of the keys, with what keeps it theirs."""
+_MOST_TABLES = 10_000
+
+
+def known_table(keys: Keys) -> Table | None:
+    """The table of keyframes whose times and values are constant vectors or numbers, made once; None of others."""
+    if len(keys.type.shape) > 1:
+        return None
+    place = id(keys.keys), id(keys.cycle), keys.curve, len(keys.type.shape)
+    if place not in _TABLES:
+        if len(_TABLES) >= _MOST_TABLES:
+            _TABLES.clear()
+        try:
+            table = keys_table(keys)
+        except (KeyError, TypeError):  # a symbol, a link
+            table = None
+        _TABLES[place] = keys, table
+    return _TABLES[place][1]
+
+
 def table_of(o: Any, keys: Keys, number: Callable[[Expr], float], components: Callable[[Expr], Components]) -> Table:
     """The table of keyframes over an arithmetic ``o``: times by ``number``, values and slopes by ``components``.
 

@@ -59,12 +59,11 @@ def _keys(keys: Keys, values: Mapping[int, Any]) -> Any:
         return value if isinstance(value, tuple) else (value,)
 
     table = table_of(FLOATS, keys, lambda expr: float(values[id(expr)]), components)
-    result = interpolate(FLOATS, table, values[id(keys.argument)], last_key)
+    result = interpolate(FLOATS, table, values[id(keys.argument)], _last_key)
     return result if keys.type.shape else result[0]
 
 
-def last_key(t: float, times: tuple[float, ...]) -> int:
-    """The last key not after t; -1 before the first."""
+def _last_key(t: float, times: tuple[float, ...]) -> int:
     return bisect_right(times, t) - 1 if t == t else 0
 
 

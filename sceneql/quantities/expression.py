@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -139,8 +139,11 @@ def walk(expr: Expr) -> Iterator[Expr]:
         stack.extend(reversed(children(node)))
 
 
-def each_once(*roots: Expr) -> list[Expr]:
-    """All distinct nodes (by identity), every node after its children: a shared part is listed once."""
+def each_once(*roots: Expr, below: Callable[[Expr], tuple[Expr, ...]] = children) -> list[Expr]:
+    """All distinct nodes (by identity), every node after its children: a shared part is listed once.
+
+    ``below`` gives the children to go down to.
+    """
     order: list[Expr] = []
     known: set[int] = set()
     stack: list[tuple[Expr, bool]] = [(root, False) for root in reversed(roots)]
@@ -151,5 +154,5 @@ def each_once(*roots: Expr) -> list[Expr]:
         elif id(node) not in known:
             known.add(id(node))
             stack.append((node, True))
-            stack.extend((child, False) for child in reversed(children(node)))
+            stack.extend((child, False) for child in reversed(below(node)))
     return order

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Mapping
+from functools import cache
 from typing import ClassVar
 
 from sceneql.kinds import (
@@ -80,22 +81,14 @@ class Motion(Model):
 
     def _path(self, progress: Expr) -> Expr:
         """The place on the path at a share of it."""
-        points, reached = self._knots()
-        keys = tuple(Key(Number(r / reached[-1]), _point(p)) for r, p in zip(reached, points, strict=True))
-        return Keys(progress, keys, "cubic", Number(1.0) if points[0] == points[-1] else None, POINT)
-
-    def _knots(self) -> tuple[list[Place], list[float]]:
-        """Points of the path, and the lengths up to them."""
-        points = list(self.along or ())
-        if self.even:
-            points = finer(points)
-        return points, list(itertools.accumulate((math.dist(p, q) for p, q in itertools.pairwise(points)), initial=0.0))
+        keys, lap, _ = path_of(self.along or (), self.even)
+        return Keys(progress, keys, "cubic", lap, POINT)
 
     def _turn(self) -> Expr:
         """Its rotation over time."""
         if self.heading is None:
             return self.rotation.expr
-        half = Number(self.heading / self._knots()[1][-1])
+        half = Number(self.heading / path_of(self.along or (), self.even)[2])
         ahead, behind = (self._path(Call(op, (self.progress.expr, half), NUMBER)) for op in ("add", "sub"))
         way = Call("normalize", (Call("sub", (ahead, behind), POINT),), Type((3,)))
         x, y, z = (Call("component", (way, Number(float(k))), NUMBER) for k in range(3))
@@ -124,7 +117,16 @@ def _point(place: Place) -> Expr:
     return Vector(tuple(Number(c, Type((), dim.LENGTH)) for c in place), POINT)
 
 
-def finer(points: list[Place]) -> list[Place]:
+@cache
+def path_of(along: tuple[Place, ...], even: bool) -> tuple[tuple[Key, ...], Number | None, float]:
+    """(keys over the share of the path, its period where it is closed, its length [m])."""
+    points = finer(along) if even else along
+    reached = list(itertools.accumulate((math.dist(p, q) for p, q in itertools.pairwise(points)), initial=0.0))
+    keys = tuple(Key(Number(r / reached[-1]), _point(p)) for r, p in zip(reached, points, strict=True))
+    return keys, Number(1.0) if points[0] == points[-1] else None, reached[-1]
+
+
+def finer(points: tuple[Place, ...]) -> tuple[Place, ...]:
     """More points of the cubic through points with the slopes of chords, over the polygon's length."""
     closed = points[0] == points[-1]
     steps = [math.dist(p, q) for p, q in itertools.pairwise(points)]
@@ -150,4 +152,4 @@ def finer(points: list[Place]) -> list[Place]:
             )
             found.append((x, y, z))
         found.append(points[k + 1])
-    return found
+    return tuple(found)
