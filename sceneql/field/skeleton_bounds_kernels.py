@@ -36,31 +36,65 @@ def box_of(scratch, p):
 
 @inlined
 def range_of(parts, i, x, y, z, diagonal):
-    """(vector from the part at row i, how far it may be off, least and most s = d^2/R^2, least R) in a ball of radius
-    ``diagonal`` about a point."""
+    """(vector w from the part's best point, how far it may be off, least and most s, least and most R there) in a
+    ball of radius ``diagonal`` about a point, for the part at row i."""
     wx, wy, wz, q = to_part(parts, i, x, y, z)
     size = abs(x) + abs(y) + abs(z)
-    length2 = 0.0
+    length2 = away2 = 0.0
     for k in range(3):
         size += abs(parts[i, k]) + abs(parts[i, k + 3]) + abs(parts[i + 1, k])
         length2 += (parts[i, k + 3] - parts[i, k]) ** 2
     off = diagonal * (1.0 + 1.0e-14) + 8.0 * ULPS * size * parts[i + 1, CONDITION]
-    distance = np.sqrt(wx * wx + wy * wy + wz * wz)
-    near = max(distance * (1.0 - ULPS) - off, 0.0)
-    far = distance * (1.0 + ULPS) + off
     one = parts[i, RADIUS]
     two = radius_at(parts, i, 1.0)
-    least = min(one, two)
-    most = max(one, two)
-    if most > least:
-        reach = off / np.sqrt(length2) * (most - least) if length2 > 0.0 else 0.0
-        radius = radius_at(parts, i, q)
-        least = max(least, radius - reach - ULPS * most)
-        most = min(most, radius + reach + ULPS * most)
-    return (
-        wx, wy, wz, off, near * near / (most * most) * (1.0 - 4.0 * ULPS),
-        far * far / (least * least) * (1.0 + 4.0 * ULPS), least,
+    radius = radius_at(parts, i, q)
+    small = min(one, two)
+    large = max(one, two)
+    r = np.sqrt(wx * wx + wy * wy + wz * wz)
+    nearest = max(r / radius * (1.0 - 8.0 * ULPS) - off / small, 0.0)
+    farthest = (r + off) / radius * (1.0 + 8.0 * ULPS)
+    if one != two and length2 > 0.0:
+        # How far the best point may go: dq/dx = (s R(a) + r (2 w - q s))/den.
+        along = 0.0
+        change = two - one
+        p = (x, y, z)
+        for k in range(3):
+            along += (p[k] - parts[i, k]) * (parts[i, k + 3] - parts[i, k])
+            away2 += (p[k] - parts[i, k]) ** 2
+        length = np.sqrt(length2)
+        den = length2 * one + along * change - abs(change) * length * off
+        move = length
+        if den > 0.0:
+            step = (length * (one + abs(change)) + 2.0 * abs(change) * (np.sqrt(away2) + off)) / den * off
+            move = min(length, length * step)
+        off += move * (1.0 + 1.0e-12)
+        small = max(small, radius - abs(change) * move / length * (1.0 + 1.0e-12))
+        large = min(large, radius + abs(change) * move / length * (1.0 + 1.0e-12))
+    return wx, wy, wz, off, nearest * nearest, farthest * farthest, small, large
+
+
+@inlined
+def clear_of(parts, i, scratch, p):
+    """Whether the box in rows p..p+2 of scratch has nothing in common with the node at row i."""
+    return outside_node(
+        parts, i, scratch[p, 0], scratch[p, 1], scratch[p + 1, 0], scratch[p + 1, 1], scratch[p + 2, 0],
+        scratch[p + 2, 1],
     )  # fmt: skip
+
+
+@inlined
+def rival(parts, i, stop, scratch, p, x, y, z, diagonal):
+    """The least s that one part of the group at row i has all over the box; those that stay above it never count."""
+    group = parts[i + 1, GROUP]
+    least = np.inf
+    while i < stop and (parts[i + 1, SHAPE] == NODE or parts[i + 1, GROUP] == group):
+        if parts[i + 1, SHAPE] == NODE:
+            i += STRIDE + (int(parts[i, RADIUS]) if clear_of(parts, i, scratch, p) else 0)
+            continue
+        _, _, _, _, _, farthest, _, _ = range_of(parts, i, x, y, z, diagonal)
+        least = min(least, farthest)
+        i += STRIDE
+    return least * (1.0 + 1.0e-12)
 
 
 @inlined
@@ -74,13 +108,9 @@ def skeleton_box(parts, start, stop, scratch, p):
     i = start
     while i < stop:
         if parts[i + 1, SHAPE] == NODE:
-            clear = outside_node(
-                parts, i, scratch[p, 0], scratch[p, 1], scratch[p + 1, 0], scratch[p + 1, 1], scratch[p + 2, 0],
-                scratch[p + 2, 1],
-            )  # fmt: skip
-            i += STRIDE + (int(parts[i, RADIUS]) if clear else 0)
+            i += STRIDE + (int(parts[i, RADIUS]) if clear_of(parts, i, scratch, p) else 0)
             continue
-        _, _, _, _, nearest, farthest, _ = range_of(parts, i, x, y, z, diagonal)
+        _, _, _, _, nearest, farthest, _, _ = range_of(parts, i, x, y, z, diagonal)
         if nearest < 1.0:
             kernel = parts[i + 1, KERNEL]
             if parts[i + 1, GROUP] != group:
@@ -110,36 +140,26 @@ def skeleton_steepness(parts, start, stop, scratch, p):
     a0 = a1 = b0 = b1 = c0 = c1 = 0.0
     # Of the group at hand.
     x0 = x1 = y0 = y1 = z0 = z1 = 0.0
-    group = -1.0
+    group = limited = -1.0
+    limit = np.inf
     fresh = True
     i = start
     while i < stop:
         if parts[i + 1, SHAPE] == NODE:
-            clear = outside_node(
-                parts, i, scratch[p, 0], scratch[p, 1], scratch[p + 1, 0], scratch[p + 1, 1], scratch[p + 2, 0],
-                scratch[p + 2, 1],
-            )  # fmt: skip
-            i += STRIDE + (int(parts[i, RADIUS]) if clear else 0)
+            i += STRIDE + (int(parts[i, RADIUS]) if clear_of(parts, i, scratch, p) else 0)
             continue
-        wx, wy, wz, off, nearest, farthest, radius = range_of(parts, i, x, y, z, diagonal)
-        if nearest < 1.0:
+        wx, wy, wz, off, nearest, farthest, small, large = range_of(parts, i, x, y, z, diagonal)
+        if parts[i + 1, GROUP] != limited:
+            limited = parts[i + 1, GROUP]
+            limit = rival(parts, i, stop, scratch, p, x, y, z, diagonal)
+        if nearest < 1.0 and nearest <= limit:
             kernel = parts[i + 1, KERNEL]
             weight = parts[i, WEIGHT]
             steep = falloff_slope(kernel, nearest) * (1.0 + 1.0e-12) - 1.0e-14
             flat = min(falloff_slope(kernel, farthest) * (1.0 - 1.0e-12) + 1.0e-14, 0.0)
             scale = 2.0 * weight
-            most = max(parts[i, RADIUS], radius_at(parts, i, 1.0))
-            strong = steep / (radius * radius)
-            weak = flat / (most * most)
-            rest = 0.0
-            if most > radius or radius_at(parts, i, 0.0) != radius_at(parts, i, 1.0):
-                length2 = 0.0
-                for k in range(3):
-                    length2 += (parts[i, k + 3] - parts[i, k]) ** 2
-                if length2 > 0.0:
-                    change = abs(radius_at(parts, i, 1.0) - parts[i, RADIUS]) / np.sqrt(length2)
-                    rest = -scale * steep * min(farthest, 1.0) / radius * change
-                    rest = abs(rest) * (1.0 + 1.0e-12)
+            strong = steep / (small * small)
+            weak = flat / (large * large)
             d0, d1 = scaled(strong, weak, scale, wx - off, wx + off)
             e0, e1 = scaled(strong, weak, scale, wy - off, wy + off)
             f0, f1 = scaled(strong, weak, scale, wz - off, wz + off)
@@ -148,12 +168,12 @@ def skeleton_steepness(parts, start, stop, scratch, p):
                 a0, a1, b0, b1, c0, c1 = a0 + x0, a1 + x1, b0 + y0, b1 + y1, c0 + z0, c1 + z1
                 fresh = True
             if fresh:
-                x0, x1, y0, y1, z0, z1 = d0 - rest, d1 + rest, e0 - rest, e1 + rest, f0 - rest, f1 + rest
+                x0, x1, y0, y1, z0, z1 = d0, d1, e0, e1, f0, f1
                 fresh = False
             else:
-                x0, x1 = min(x0, d0 - rest), max(x1, d1 + rest)
-                y0, y1 = min(y0, e0 - rest), max(y1, e1 + rest)
-                z0, z1 = min(z0, f0 - rest), max(z1, f1 + rest)
+                x0, x1 = min(x0, d0), max(x1, d1)
+                y0, y1 = min(y0, e0), max(y1, e1)
+                z0, z1 = min(z0, f0), max(z1, f1)
         i += STRIDE
     return a0 + x0, a1 + x1, b0 + y0, b1 + y1, c0 + z0, c1 + z1
 
@@ -176,20 +196,21 @@ def scaled(strong, weak, scale, low, high):
 
 @inlined
 def skeleton_near(parts, start, stop, scratch, p, near, found):
-    """Copy the parts within reach of the box in rows p..p+2 of scratch to rows found.. of near; the row behind them."""
+    """Copy the parts that may count in the box in rows p..p+2 of scratch to rows found.. of near; the row behind."""
     x, y, z, hx, hy, hz = box_of(scratch, p)
     diagonal = np.sqrt(hx * hx + hy * hy + hz * hz)
+    group = -1.0
+    limit = np.inf
     i = start
     while i < stop:
         if parts[i + 1, SHAPE] == NODE:
-            clear = outside_node(
-                parts, i, scratch[p, 0], scratch[p, 1], scratch[p + 1, 0], scratch[p + 1, 1], scratch[p + 2, 0],
-                scratch[p + 2, 1],
-            )  # fmt: skip
-            i += STRIDE + (int(parts[i, RADIUS]) if clear else 0)
+            i += STRIDE + (int(parts[i, RADIUS]) if clear_of(parts, i, scratch, p) else 0)
             continue
-        _, _, _, _, nearest, _, _ = range_of(parts, i, x, y, z, diagonal)
-        if nearest < 1.0:
+        _, _, _, _, nearest, _, _, _ = range_of(parts, i, x, y, z, diagonal)
+        if parts[i + 1, GROUP] != group:
+            group = parts[i + 1, GROUP]
+            limit = rival(parts, i, stop, scratch, p, x, y, z, diagonal)
+        if nearest < 1.0 and nearest <= limit:
             for j in range(8):
                 near[found, j] = parts[i, j]
                 near[found + 1, j] = parts[i + 1, j]

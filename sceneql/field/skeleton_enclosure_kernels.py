@@ -1,15 +1,26 @@
 # mypy: ignore-errors
 """First-order enclosures of skeletons' densities along a ray segment; see enclosure_kernels for what one claims.
 
-Nothing here knows a kernel or a shape: a squared distance to a convex set is convex along a line, with a second
-derivative of at most twice the square of the speed, and every kernel is convex in it.
+Nothing here knows a kernel or a shape: what is used of s is how its graph along a line may bend, and that every kernel
+is convex in it.
 """
 
 import numpy as np
 
 from sceneql.field.falloff_kernels import falloff, falloff_slope
-from sceneql.field.forms_kernels import PAD, TINY, larger_of, product
-from sceneql.field.skeleton_kernels import GROUP, KERNEL, NODE, RADIUS, SHAPE, STRIDE, WEIGHT, radius_at, to_part
+from sceneql.field.forms_kernels import PAD, TINY, larger_of
+from sceneql.field.skeleton_kernels import (
+    GROUP,
+    KERNEL,
+    NODE,
+    RADIUS,
+    RADIUS_B,
+    SHAPE,
+    STRIDE,
+    WEIGHT,
+    radius_at,
+    to_part,
+)
 from sceneql.kernels import inlined
 
 CONDITION = 7
@@ -39,58 +50,58 @@ def segment_outside(parts, i, cx, cy, cz, ux, uy, uz, blur):
 
 
 @inlined
-def inverse_square(low, high, r0, r1, er):
-    """Enclosure of 1/R^2 for an R = r0 + r1 tau +- er in low..high, low > 0."""
-    middle = 0.5 * (low + high)
-    g = 1.0 / (middle * middle)
-    slope = -2.0 * g / middle
-    half = 0.5 * (high - low)
-    gap = max(1.0 / (low * low) - (g - slope * half), 1.0 / (high * high) - (g + slope * half), 0.0)
-    e = abs(slope) * er + 0.5 * gap
-    return g + slope * (r0 - middle) + 0.5 * gap, slope * r1, e + 4.0 * PAD * (abs(slope) * (middle + abs(r0)) + g)
+def rounding(table, i, cx, cy, cz, ux, uy, uz):
+    """How far the computed vector to the part at row i may be off, for points c + u tau."""
+    size = abs(cx) + abs(cy) + abs(cz) + abs(ux) + abs(uy) + abs(uz)
+    for k in range(3):
+        size += abs(table[i, k]) + abs(table[i, k + 3]) + abs(table[i + 1, k])
+    return 8.0 * PAD * size * table[i + 1, CONDITION]
+
+
+@inlined
+def span_of(table, i, cx, cy, cz, half, blur):
+    """(least, most) r = sqrt(s) of the part at row i within ``half`` of a point: r changes by no more than way/R."""
+    wx, wy, wz, q = to_part(table, i, cx, cy, cz)
+    r = np.sqrt(wx * wx + wy * wy + wz * wz)
+    radius = radius_at(table, i, q)
+    way = (half + blur) * (1.0 + 8.0 * PAD)
+    least = r / radius * (1.0 - 8.0 * PAD) - way / min(table[i, RADIUS], table[i + 1, RADIUS_B])
+    return least, (r + way) / radius * (1.0 + 8.0 * PAD)
 
 
 @inlined
 def part_segment(table, i, cx, cy, cz, ux, uy, uz, speed2, point_blur):
-    """(least s, s0, s1, e): s = d^2/R^2 of the part at row i lies in s0 + s1 tau +- e at the point c + u tau."""
+    """(least s, s0, s1, e): s of the part at row i lies in s0 + s1 tau +- e at the point c + u tau.
+
+    s is the least of parabolas, each of second derivative 2 |u|^2/R^2 at most: it lies above its chord less that much
+    of 1 - tau^2, and below its tangent in the middle plus that much of tau^2. Of one radius it is convex besides,
+    and so below its chord.
+    """
     ax, ay, az, first = to_part(table, i, cx - ux, cy - uy, cz - uz)
     bx, by, bz, second = to_part(table, i, cx + ux, cy + uy, cz + uz)
-    size = abs(cx) + abs(cy) + abs(cz) + abs(ux) + abs(uy) + abs(uz)
-    length = 0.0
-    for k in range(3):
-        size += abs(table[i, k]) + abs(table[i, k + 3]) + abs(table[i + 1, k])
-        length += abs(table[i, k + 3] - table[i, k])
-    blur = point_blur + 8.0 * PAD * size * table[i + 1, CONDITION]
-    low = ax * ax + ay * ay + az * az
-    high = bx * bx + by * by + bz * bz
-    top = max(low, high)
-    error = blur * (2.0 * np.sqrt(top) + 3.0 * blur) + 4.0 * PAD * top
+    blur = point_blur + rounding(table, i, cx, cy, cz, ux, uy, uz)
+    one = radius_at(table, i, first)
+    two = radius_at(table, i, second)
+    low = (ax * ax + ay * ay + az * az) / (one * one)
+    high = (bx * bx + by * by + bz * bz) / (two * two)
+    small = min(table[i, RADIUS], table[i + 1, RADIUS_B])
+    steep = speed2 / (small * small) * (1.0 + 8.0 * PAD)
     mean = 0.5 * (low + high)
     slope = 0.5 * (high - low)
     least = min(low, high)
-    if abs(slope) < 2.0 * speed2:
-        least = mean - speed2 - slope * slope / (4.0 * speed2)
-    least = max(least - error - 8.0 * PAD * (mean + speed2), 0.0)
-    d0 = mean - 0.5 * speed2
-    ed = 0.5 * speed2 + error + 4.0 * PAD * (mean + speed2)
-    one = table[i, RADIUS]
-    two = radius_at(table, i, 1.0)
-    if one == two:
-        inverse = 1.0 / (one * one)
-        return least * inverse * (1.0 - 4.0 * PAD), d0 * inverse, slope * inverse, ed * inverse * (1.0 + 4.0 * PAD)
-    start = radius_at(table, i, first)
-    end = radius_at(table, i, second)
-    most = max(one, two)
-    er = 8.0 * PAD * most
-    if length > 0.0:
-        er += min(2.0 * blur / length, 1.0) * abs(two - one)
-    if not (first > 0.0 and first < 1.0 and second > 0.0 and second < 1.0):
-        er += abs(end - start)  # a monotone R stays between its ends, however it gets from one to the other
-    near = max(min(start, end) - er, min(one, two) * (1.0 - 4.0 * PAD))
-    far = min(max(start, end) + er, most * (1.0 + 4.0 * PAD))
-    g0, g1, eg = inverse_square(near, far, 0.5 * (start + end), 0.5 * (end - start), er)
-    s0, s1, e = product(d0, slope, ed, g0, g1, eg)
-    return least / (far * far) * (1.0 - 8.0 * PAD), s0, s1, e
+    if abs(slope) < 2.0 * steep:
+        least = mean - steep - slope * slope / (4.0 * steep)
+    bottom = mean - steep
+    top = mean
+    if table[i, RADIUS] != table[i + 1, RADIUS_B]:
+        wx, wy, wz, q = to_part(table, i, cx, cy, cz)
+        radius = radius_at(table, i, q)
+        inverse = 1.0 / (radius * radius)
+        tangent = 2.0 * inverse * (wx * ux + wy * uy + wz * uz)
+        top = inverse * (wx * wx + wy * wy + wz * wz) + abs(tangent - slope) + steep
+    reach = np.sqrt(max(max(low, high), top))
+    error = blur / small * (4.0 * reach + 4.0 * blur / small) + 16.0 * PAD * (reach * reach + steep)
+    return max(least - error, 0.0), 0.5 * (bottom + top), slope, 0.5 * (top - bottom) + error
 
 
 @inlined
@@ -113,10 +124,32 @@ def fallen(kind, least, s0, s1, es):
 
 
 @inlined
+def within_reach(parts, start, stop, scratch, base, cx, cy, cz, ux, uy, uz, point_blur):
+    """Copy the parts that reach to the points c + u tau +- blur to rows base.. of scratch; how many rows."""
+    half = np.sqrt(ux * ux + uy * uy + uz * uz)
+    found = 0
+    i = start
+    while i < stop:
+        if parts[i + 1, SHAPE] == NODE:
+            clear = segment_outside(parts, i, cx, cy, cz, ux, uy, uz, point_blur)
+            i += STRIDE + (int(parts[i, RADIUS]) if clear else 0)
+            continue
+        blur = point_blur + rounding(parts, i, cx, cy, cz, ux, uy, uz)
+        least, _ = span_of(parts, i, cx, cy, cz, half, blur)
+        if least < 1.0:
+            for j in range(8):
+                scratch[base + found, j] = parts[i, j]
+                scratch[base + found + 1, j] = parts[i + 1, j]
+            found += STRIDE
+        i += STRIDE
+    return found
+
+
+@inlined
 def skeleton_segment(parts, start, stop, scratch, k, base, p, survey):
     """(c0, c1, e) of the density of the skeleton in rows start..stop-1 at the point enclosed in rows p..p+2 of scratch.
 
-    A survey goes down the hierarchy and copies the parts within reach to rows base.. of scratch (the number of rows to
+    A survey goes down the hierarchy and copies the parts that may count to rows base.. of scratch (their number to
     scratch[k, 3]); later calls, on pieces of the surveyed segment, look only at those.
     """
     cx = scratch[p, 0]
@@ -127,38 +160,50 @@ def skeleton_segment(parts, start, stop, scratch, k, base, p, survey):
     uz = scratch[p + 2, 1]
     point_blur = scratch[p, 2] + scratch[p + 1, 2] + scratch[p + 2, 2]
     speed2 = (ux * ux + uy * uy + uz * uz) * (1.0 + 4.0 * PAD) + TINY
-    table, i, last = parts, start, stop
-    if not survey:
-        table, i, last = scratch, base, base + int(scratch[k, 3])
+    if survey:
+        scratch[k, 3] = within_reach(parts, start, stop, scratch, base, cx, cy, cz, ux, uy, uz, point_blur)
+    half = np.sqrt(speed2)
+    last = base + int(scratch[k, 3])
     found = 0
     c0 = c1 = e = 0.0
-    m0 = m1 = em = weight = 0.0
-    group = -1.0
+    i = base
     while i < last:
-        if table[i + 1, SHAPE] == NODE:
-            i += STRIDE + (
-                int(table[i, RADIUS]) if segment_outside(table, i, cx, cy, cz, ux, uy, uz, point_blur) else 0
-            )
-            continue
-        least, s0, s1, es = part_segment(table, i, cx, cy, cz, ux, uy, uz, speed2, point_blur)
-        if least < 1.0:
-            if survey:
-                for j in range(8):
-                    scratch[base + found, j] = parts[i, j]
-                    scratch[base + found + 1, j] = parts[i + 1, j]
-                found += STRIDE
-            f0, f1, ef = fallen(table[i + 1, KERNEL], least, s0, s1, es)
-            if table[i + 1, GROUP] == group:
-                m0, m1, em = larger_of(m0, m1, em, f0, f1, ef)
-            else:
-                c0 += weight * m0
-                c1 += weight * m1
-                e += abs(weight) * em + PAD * (abs(c0) + abs(c1))
-                group = table[i + 1, GROUP]
-                m0, m1, em, weight = f0, f1, ef, table[i, WEIGHT]
-        i += STRIDE
+        group = scratch[i + 1, GROUP]
+        weight = scratch[i, WEIGHT]
+        end = i
+        rival = np.inf  # one part of the group is nowhere farther; those that are nowhere as near are not the largest
+        while end < last and scratch[end + 1, GROUP] == group:
+            if end > i or (end + STRIDE < last and scratch[end + STRIDE + 1, GROUP] == group):
+                blur = point_blur + rounding(scratch, end, cx, cy, cz, ux, uy, uz)
+                _, most = span_of(scratch, end, cx, cy, cz, half, blur)
+                rival = min(rival, most)
+            end += STRIDE
+        m0 = m1 = em = 0.0
+        alone = True
+        while i < end:
+            near = True
+            if rival < np.inf:
+                blur = point_blur + rounding(scratch, i, cx, cy, cz, ux, uy, uz)
+                nearest, _ = span_of(scratch, i, cx, cy, cz, half, blur)
+                near = nearest <= rival
+            if near:
+                least, s0, s1, es = part_segment(scratch, i, cx, cy, cz, ux, uy, uz, speed2, point_blur)
+                if survey:
+                    for j in range(8):
+                        scratch[base + found, j] = scratch[i, j]
+                        scratch[base + found + 1, j] = scratch[i + 1, j]
+                    found += STRIDE
+                if least < 1.0:
+                    f0, f1, ef = fallen(scratch[i + 1, KERNEL], least, s0, s1, es)
+                    if alone:
+                        m0, m1, em = f0, f1, ef
+                    else:
+                        m0, m1, em = larger_of(m0, m1, em, f0, f1, ef)
+                    alone = False
+            i += STRIDE
+        c0 += weight * m0
+        c1 += weight * m1
+        e += abs(weight) * em + PAD * (abs(c0) + abs(c1))
     if survey:
         scratch[k, 3] = found
-    c0 += weight * m0
-    c1 += weight * m1
-    return c0, c1, e + abs(weight) * em + 4.0 * PAD * (abs(c0) + abs(c1))
+    return c0, c1, e + 4.0 * PAD * (abs(c0) + abs(c1))

@@ -2,9 +2,10 @@
 """Density fields of skeletons: values and gradients of parts of any shape and kernel, in a hierarchy of boxes.
 
 A part takes two rows of the tape's parts: end a (3), end b (3), radius at a, weight; corner c (3), radius at b, kernel,
-group, shape. Its density is K(d^2/R^2), d the distance to the segment a b or the triangle a b c, R the radius, which
-changes along a segment from a's to b's. Of the parts of one group, which follow each other, the largest density counts;
-what groups give is added up. A NODE is a box (low, high) and the number of rows behind it that reach no farther.
+group, shape. Its density is K(s), s the least |x - p|^2/R(p)^2 over the points p of the segment a b or the triangle
+a b c; R changes evenly along a segment from a's radius to b's. Of the parts of one group, which follow each other, the
+largest density counts; what groups give is added up. A NODE is a box (low, high) and the number of rows behind it that
+reach no farther.
 """
 
 import numpy as np
@@ -21,8 +22,11 @@ STRIDE = 2
 
 
 @inlined
-def to_segment(ax, ay, az, bx, by, bz, x, y, z):
-    """(vector from the nearest point of a segment to (x, y, z), its place on the segment from 0 to 1)."""
+def to_segment(ax, ay, az, bx, by, bz, ra, rb, x, y, z):
+    """(vector from the point of a segment with the least |x - p|/R to (x, y, z), its place on it from 0 to 1).
+
+    d/dq |w - q s|^2/(ra + q r)^2 has the sign of q den - num.
+    """
     wx = x - ax
     wy = y - ay
     wz = z - az
@@ -30,9 +34,20 @@ def to_segment(ax, ay, az, bx, by, bz, x, y, z):
     sy = by - ay
     sz = bz - az
     length2 = sx * sx + sy * sy + sz * sz
+    along = wx * sx + wy * sy + wz * sz
     q = 0.0
     if length2 > 0.0:
-        q = min(max((wx * sx + wy * sy + wz * sz) / length2, 0.0), 1.0)
+        if ra == rb:
+            q = min(max(along / length2, 0.0), 1.0)
+        else:
+            r = rb - ra
+            d2 = wx * wx + wy * wy + wz * wz
+            den = length2 * ra + along * r
+            num = along * ra + r * d2
+            if den > 0.0:
+                q = min(max(num / den, 0.0), 1.0)
+            elif (d2 - 2.0 * along + length2) * ra * ra < d2 * rb * rb:
+                q = 1.0
     return wx - q * sx, wy - q * sy, wz - q * sz, q
 
 
@@ -58,13 +73,13 @@ def to_triangle(ax, ay, az, bx, by, bz, cx, cy, cz, x, y, z):
     if n2 > 0.0 and q >= 0.0 and r >= 0.0 and q + r <= n2:
         h = (wx * nx + wy * ny + wz * nz) / n2
         return h * nx, h * ny, h * nz
-    px, py, pz, _ = to_segment(ax, ay, az, bx, by, bz, x, y, z)
+    px, py, pz, _ = to_segment(ax, ay, az, bx, by, bz, 1.0, 1.0, x, y, z)
     best = px * px + py * py + pz * pz
-    wx, wy, wz, _ = to_segment(bx, by, bz, cx, cy, cz, x, y, z)
+    wx, wy, wz, _ = to_segment(bx, by, bz, cx, cy, cz, 1.0, 1.0, x, y, z)
     d2 = wx * wx + wy * wy + wz * wz
     if d2 < best:
         best, px, py, pz = d2, wx, wy, wz
-    wx, wy, wz, _ = to_segment(cx, cy, cz, ax, ay, az, x, y, z)
+    wx, wy, wz, _ = to_segment(cx, cy, cz, ax, ay, az, 1.0, 1.0, x, y, z)
     if wx * wx + wy * wy + wz * wz < best:
         px, py, pz = wx, wy, wz
     return px, py, pz
@@ -72,7 +87,7 @@ def to_triangle(ax, ay, az, bx, by, bz, cx, cy, cz, x, y, z):
 
 @inlined
 def to_part(parts, i, x, y, z):
-    """(vector from the nearest point of the part at row i to (x, y, z), place along it)."""
+    """(vector from the point of the part at row i with the least |x - p|/R to (x, y, z), its place along it)."""
     ax = parts[i, 0]
     ay = parts[i, 1]
     az = parts[i, 2]
@@ -84,7 +99,7 @@ def to_part(parts, i, x, y, z):
             ax, ay, az, bx, by, bz, parts[i + 1, 0], parts[i + 1, 1], parts[i + 1, 2], x, y, z
         )  # fmt: skip
         return wx, wy, wz, 0.0
-    return to_segment(ax, ay, az, bx, by, bz, x, y, z)
+    return to_segment(ax, ay, az, bx, by, bz, parts[i, RADIUS], parts[i + 1, RADIUS_B], x, y, z)
 
 
 @inlined
@@ -138,19 +153,8 @@ def part_gradient(parts, i, x, y, z):
     weight = parts[i, WEIGHT]
     density = weight * falloff(parts[i + 1, KERNEL], s)
     slope = weight * falloff_slope(parts[i + 1, KERNEL], s)
-    gx = 2.0 * slope * inverse * wx
-    gy = 2.0 * slope * inverse * wy
-    gz = 2.0 * slope * inverse * wz
-    if q > 0.0 and q < 1.0:
-        sx = parts[i, 3] - parts[i, 0]
-        sy = parts[i, 4] - parts[i, 1]
-        sz = parts[i, 5] - parts[i, 2]
-        turn = -2.0 * slope * s / radius * (parts[i + 1, RADIUS_B] - parts[i, RADIUS])
-        turn /= sx * sx + sy * sy + sz * sz
-        gx += turn * sx
-        gy += turn * sy
-        gz += turn * sz
-    return density, gx, gy, gz
+    # The place p is the best one, so that its own motion changes s by nothing.
+    return density, 2.0 * slope * inverse * wx, 2.0 * slope * inverse * wy, 2.0 * slope * inverse * wz
 
 
 @inlined
