@@ -78,6 +78,9 @@ class Slopes:
     newtons per meter and per m/s, since the island multiplies by inverse masses and adds dx/dt = v. Places may repeat
     (their entries are summed) and stay the same for the run; rows of the energy taken out (Bodies.work_at) are left
     out. It stands in a kernel file of its own, which explicit solvers then never load.
+
+    While floats[2] is 1, Newton's method far from a solution asks for slopes that keep its systems positive definite:
+    a kernel that can leaves out what pushes away, such as the part of a spring's compression across it.
     """
 
     kernel: str
@@ -288,6 +291,8 @@ class Stepper:
     """What takes its place where the steps are held by stability."""
     last_stage: int = -1
     """Array of ``work`` that after a step holds the rate at its end (first same as last); -1: none does."""
+    unsolved: str = ""
+    """What it means where a step of a given length has no finite end; else that the step is unstable."""
     extend: str | None = None
     """Compiled function of the step's signature, for what `dense` needs beyond the step (more stages, into `work`):
     called once before a frame is read off a step. Where contacts are exact, `dense` is read after every step without

@@ -77,18 +77,25 @@ def net(columns, rows, seed):
     return matrix
 
 
-@settings(max_examples=25, deadline=None)
-@given(columns=st.integers(1, 14), rows=st.integers(1, 14), seed=st.integers(0, 2**32), symmetric=st.booleans())
-def test_fronts_solve_to_rounding(columns, rows, seed, symmetric):
+@settings(max_examples=40, deadline=None)
+@given(
+    columns=st.integers(1, 24),
+    rows=st.integers(1, 14),
+    seed=st.integers(0, 2**32),
+    symmetric=st.booleans(),
+    dissected=st.booleans(),
+)
+def test_fronts_solve_to_rounding(columns, rows, seed, symmetric, dissected):
     pattern = net(columns, rows, seed)
     matrix = csr_array(0.5 * (pattern + pattern.T)) if symmetric else pattern.copy()
     matrix.setdiag(matrix.diagonal() + 30.0)
-    plan = fronts.plan(pattern)
+    places = np.stack(np.meshgrid(np.arange(columns), np.arange(rows), [0], indexing="ij"), axis=-1).reshape(-1, 3)
+    plan = fronts.plan(pattern, points=places.repeat(3, axis=0).astype(float) if dissected else None)
     factors, work, numbers = np.zeros(plan.factors), np.zeros(plan.work), plan.numbers.copy()
     right = np.random.default_rng(seed).standard_normal(matrix.shape[0])
     x = right.copy()
-    assert fronts_kernels.factor(numbers, matrix.data, factors, work, symmetric)
-    fronts_kernels.solve(numbers, factors, x, work, symmetric)
+    assert fronts_kernels.factor_system(numbers, matrix.data, factors, work, symmetric)
+    fronts_kernels.solve_system(numbers, matrix.data, factors, x, work, symmetric)
     assert np.abs(matrix @ x - right).max() <= 1e-12
 
 
@@ -97,7 +104,7 @@ def test_fronts_refuse_a_singular_matrix():
     plan = fronts.plan(pattern)
     factors, work = np.zeros(plan.factors), np.zeros(plan.work)
     for symmetric in (True, False):
-        assert not fronts_kernels.factor(plan.numbers, np.zeros(pattern.nnz), factors, work, symmetric)
+        assert not fronts_kernels.factor_system(plan.numbers, np.zeros(pattern.nnz), factors, work, symmetric)
 
 
 @pytest.mark.parametrize("symmetric", [True, False])
@@ -111,6 +118,6 @@ def test_iterations_converge(symmetric):
     plan = np.concatenate([[n], matrix.indptr, diagonal, matrix.indices]).astype(np.int64)
     right = np.random.default_rng(1).standard_normal(n)
     factors, x = np.zeros(matrix.nnz), right.copy()
-    krylov.factor(plan, matrix.data, factors)
-    assert krylov.solve(plan, matrix.data, factors, x, np.zeros(8 * n), symmetric)
+    krylov.factor_system(plan, matrix.data, factors, np.zeros(0), symmetric)
+    assert krylov.solve_system(plan, matrix.data, factors, x, np.zeros(8 * n), symmetric)
     assert np.abs(matrix @ x - right).max() <= 1e-9

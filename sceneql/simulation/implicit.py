@@ -17,6 +17,7 @@ KERNELS = "sceneql.simulation.solvers.implicit_runge_kutta_kernels"
 ON_GRIDS = "sceneql.simulation.grids.stage_kernels"
 NEWTON = 1e-10
 """Relative and absolute tolerance of Newton's method where steps are fixed."""
+UNSOLVED = "Newton's method finds no solution of this step: take a shorter one"
 SHARE = 0.02
 """Part of the tolerance that Newton's method may leave as its own error."""
 
@@ -58,9 +59,12 @@ class ImplicitTableau:
         """Places of the stages inside the step: the row sums."""
         return tuple(sum(row) for row in self.a)
 
-    def fixed(self, step: float, linear: str = "auto") -> Stepper:
-        """Steps of one length [s]; ``linear``: how the systems are solved on a grid."""
-        return self._stepper(first_step=step, linear=linear)
+    def fixed(self, step: float, linear: str = "auto", newton: float = NEWTON) -> Stepper:
+        """Steps of one length [s]; ``linear``: how the systems are solved on a grid.
+
+        ``newton``: relative and absolute error that may be left in a stage.
+        """
+        return self._stepper(first_step=step, linear=linear, newton=newton)
 
     def adaptive(
         self,
@@ -101,16 +105,17 @@ class ImplicitTableau:
         largest_step: float = inf,
         linear: str,
         by_scale: bool = False,
+        newton: float = NEWTON,
     ) -> Stepper:
         adaptive = tolerance > 0.0
         differences = [b - other for b, other in zip(self.b, self.b_hat or self.b, strict=True)]
-        newton = (tolerance, absolute, SHARE) if adaptive else (NEWTON, NEWTON, 1.0)
+        left = (tolerance, absolute, SHARE) if adaptive else (newton, newton, 1.0)
         lower = [entry for i, row in enumerate(self.a) for entry in row[:i]]
         whole = Stepper(
             step=f"{KERNELS}:step",
             dense=self.dense,
             order=self.order,
-            settings=(0.0, 1.0, *newton, self.diagonal, *self.c, *self.b, *differences, *lower),
+            settings=(0.0, 1.0, *left, 0.0, 0.0, self.diagonal, *self.c, *self.b, *differences, *lower),
             numbers=(self.stages, int(not self.a[0]), int(self.stiffly_accurate), int(adaptive), self.error_order),
             first_step=first_step,
             adaptive=adaptive,
@@ -123,6 +128,7 @@ class ImplicitTableau:
             last_stage=self.stages if self.stiffly_accurate else -1,
             linear=linear,
             by_scale=by_scale,
+            unsolved=UNSOLVED,
         )
         on_grid = replace(
             whole,
@@ -147,7 +153,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     return Prepared(
         settings=np.concatenate([stepper.settings, plan.scales]),
         numbers=np.concatenate([stepper.numbers, [len(stepper.settings), room], plan.numbers]),
-        work=(2 + stages) * len(system.y) + room + plan.store,
+        work=(4 + stages) * len(system.y) + room + plan.store,
         text=plan.text,
     )
 

@@ -36,8 +36,9 @@ VECTORS = 12
 """Arrays of the state's size that a run keeps: ends and rates of a step, and the stages of a solver."""
 GROUPS_AT = 5
 """Integers before those of the groups (driver.py)."""
-RESERVED_FLOATS = 2
-"""floats[0] counts rate evaluations; floats[1] is set by a contact that changed the state (march_kernels)."""
+RESERVED_FLOATS = 3
+"""floats[0] counts rate evaluations; floats[1] is set by a contact that changed the state (march_kernels); floats[2] is
+1 while slopes are to leave out what makes a system indefinite (system.Slopes)."""
 
 
 class Setting(Protocol):

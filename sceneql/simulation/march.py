@@ -275,7 +275,8 @@ class March:
         if status != kernels.REACHED:
             at = int(counts[kernels.INDEX])
             why = "the equations run away" if self.stepper.adaptive else "the step is unstable"
-            self._fail(-1 if status == kernels.STUCK else at, MESSAGES[status].format(why))
+            unsolved = self.stepper.unsolved if status == kernels.NOT_FINITE else ""
+            self._fail(-1 if status == kernels.STUCK else at, unsolved or MESSAGES[status].format(why))
 
     def _look(self) -> None:
         """Let the other method take over where it is time to see which is the better one."""

@@ -59,7 +59,8 @@ def must_be_outside(model: str, refs: Sequence[Ref], ints: Sequence[int], assemb
 def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """All but the last of an object's integers, and the further ones of its shape."""
     from sceneql.simulation.contacts import shape_kernels as one_by_one
-    from sceneql.simulation.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, NEAR_TYPE, SURFACE_TYPE, number_of
+    from sceneql.simulation.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, NEAR_TYPE, SURFACE_TYPE
+    from sceneql.simulation.numbered_kernels import number_of
 
     kind = assembly.object(ref)
     try:

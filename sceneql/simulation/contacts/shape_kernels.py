@@ -20,12 +20,10 @@ seconds between its poses, 0 if it never moves; of position and rotation so much
 place in ints of further integers of the shape. Velocities and accelerations are central differences of the poses.
 """
 
-from typing import Any
-
-import numba
 from numba import types
 
-from sceneql.kernels import address, function_at, lean, lean_inlined
+from sceneql.kernels import lean, lean_inlined
+from sceneql.simulation.numbered_kernels import kernel_at
 from sceneql.system_kernels import A, F, I, N
 
 SURFACE, BEND, CLEAR, NEAR, PLACE, ROTATION, SIZE, DEPTH, MOVING, BEFORE = range(10)
@@ -39,23 +37,6 @@ SURFACE_TYPE = FOUR(A, I, N, F, F, F)
 BEND_TYPE = F(A, I, N, F, F, F, F, F, F)
 CLEAR_TYPE = types.boolean(A, I, N, F, F, F, F)
 NEAR_TYPE = types.void(A, I, N, F, A, A, A, A, A, F, A)
-
-_uncompiled: list[Any] = []
-"""Functions that stand for their addresses where numba is switched off."""
-
-
-def number_of(function: Any, signature: Any) -> int:
-    """The integer by which kernels find another kernel of that signature."""
-    if not numba.config.DISABLE_JIT:
-        return int(address(function, types.FunctionType(signature)))
-    _uncompiled.append(function)
-    return len(_uncompiled) - 1
-
-
-def kernel_at(signature: Any) -> Any:
-    """What makes of a ``number_of`` the kernel."""
-    return _uncompiled.__getitem__ if numba.config.DISABLE_JIT else function_at(types.FunctionType(signature))
-
 
 surface_at, bend_at, clear_at, near_at = (kernel_at(kind) for kind in (SURFACE_TYPE, BEND_TYPE, CLEAR_TYPE, NEAR_TYPE))
 

@@ -10,6 +10,7 @@ import math
 from numba import types
 
 from sceneql.kernels import lean
+from sceneql.simulation.linear.solver_kernels import FACTOR_SYSTEM, SOLVE_SYSTEM
 from sceneql.system_kernels import A, I, N
 
 FACTOR = types.boolean(A, N, I)
@@ -132,3 +133,19 @@ def solve_complex(a, b, n, pivots, x, y):
             im -= p * y[j] + q * x[j]
         p, q = a[i * n + i], b[i * n + i]
         x[i], y[i] = re * p - im * q, re * q + im * p
+
+
+@lean(FACTOR_SYSTEM)
+def factor_system(plan, values, factors, work, symmetric):
+    """`factor` as a linear solver has it; ``plan``: the number of unknowns, then room for the pivots."""
+    n = plan[0]
+    for k in range(n * n):
+        factors[k] = values[k]
+    return factor(factors, n, plan[1:])
+
+
+@lean(SOLVE_SYSTEM)
+def solve_system(plan, values, factors, b, work, symmetric):
+    """`solve` likewise."""
+    solve(factors, plan[0], plan[1:], b)
+    return True

@@ -10,16 +10,17 @@ from dataclasses import dataclass
 from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
+from sceneql.simulation.linear.dissection import dissected
 from sceneql.simulation.linear.ordering import Groups, elimination_order, grouped
 
 if TYPE_CHECKING:
     from numpy import int64
     from numpy.typing import NDArray
 
+    from sceneql.frame import Floats
+
     Rows = NDArray[int64]
 
-WIDEST = 48
-"""Unknowns eliminated in one front: a wider one is a chain of fronts, so that its panel stays in the cache."""
 MERGED = 12
 """A front and its parent become one when both together eliminate no more than this."""
 
@@ -46,17 +47,46 @@ class Plan:
     """Multiplications of a symmetric factorization; an unsymmetric one takes twice as many."""
 
 
-def plan(pattern: Any, groups: Groups | None = None) -> Plan:
-    """Analyze a symmetric (n, n) scipy CSR pattern that has its whole diagonal (and may be grouped already)."""
+def plan(pattern: Any, groups: Groups | None = None, points: Floats | None = None) -> Plan:
+    """Analyze a symmetric (n, n) scipy CSR pattern that has its whole diagonal (and may be grouped already).
+
+    ``points`` (n, 3): where the unknowns lie in space, for an order by nested dissection; else by minimum degree.
+    """
     import numpy as np
 
     groups = groups or grouped(pattern)
-    order, parents = elimination_order(groups.graph)
+    if points is None:
+        order, parents = elimination_order(groups.graph)
+        graph = groups.graph[order][:, order]
+    else:
+        blocks, parents = dissected(groups.graph, points[[members[0] for members in groups.members]])
+        order = np.concatenate(blocks)
+        graph = groups.graph[order][:, order]
     sizes = np.array([len(groups.members[k]) for k in order], dtype=np.int64)
-    fronts = _split(_fronts(groups.graph[order][:, order], parents, sizes), sizes)
+    fronts = _fronts(graph, parents, sizes) if points is None else _fronts_of_blocks(graph, parents, blocks)
     first = np.concatenate([[0], np.cumsum(sizes)])
     scalars = np.concatenate([groups.members[k] for k in order])
     return _laid_out(pattern, scalars, fronts, first)
+
+
+def _fronts_of_blocks(graph: Any, parents: list[int], blocks: list[Rows]) -> list[_Front]:
+    """A front for each block of a dissection, whose vertices are in the order of the blocks."""
+    import numpy as np
+
+    starts, columns = graph.indptr, graph.indices.astype(np.int64)
+    reached: list[list[Rows]] = [[] for _ in blocks]
+    fronts: list[_Front] = []
+    low = 0
+    for k, block in enumerate(blocks):
+        high = low + len(block)
+        own = columns[starts[low] : starts[high]]
+        beyond = np.unique(np.concatenate([own[own >= high], *(rest[rest >= high] for rest in reached[k])]))
+        if parents[k] >= 0:
+            reached[parents[k]].append(beyond)
+        mine = np.arange(low, high)
+        fronts.append(_Front(mine.tolist(), np.concatenate([mine, beyond]), parents[k]))
+        low = high
+    return fronts
 
 
 def _fronts(graph: Any, parents: list[int], sizes: Rows) -> list[_Front]:
@@ -92,79 +122,73 @@ def _fronts(graph: Any, parents: list[int], sizes: Rows) -> list[_Front]:
     return fronts
 
 
-def _split(fronts: list[_Front], sizes: Rows) -> list[_Front]:
-    """Wide fronts as chains of fronts of at most WIDEST unknowns."""
-    found: list[_Front] = []
-    firsts: list[int] = []
-    for front in fronts:
-        firsts.append(len(found))
-        chunks: list[list[int]] = [[]]
-        width = 0
-        for column in front.columns:
-            if width + sizes[column] > WIDEST and chunks[-1]:
-                chunks.append([])
-                width = 0
-            chunks[-1].append(column)
-            width += int(sizes[column])
-        done = 0
-        for k, chunk in enumerate(chunks):
-            last = k == len(chunks) - 1
-            found.append(_Front(chunk, front.rows[done:], -2 - front.parent if last else len(found) + 1))
-            done += len(chunk)
-    for front in found:
-        if front.parent < 0:
-            parent = -2 - front.parent
-            front.parent = firsts[parent] if parent >= 0 else -1
-    return found
-
-
 def _laid_out(pattern: Any, scalars: Rows, fronts: list[_Front], first: Rows) -> Plan:
     import numpy as np
 
     from sceneql.simulation.linear.fronts_kernels import FIELDS, HEAD
 
-    n, count = len(scalars), len(fronts)
+    n, count, groups = len(scalars), len(fronts), len(first) - 1
+    sizes = np.diff(first)
+    group_of = np.repeat(np.arange(groups), sizes)
+    lengths = np.array([len(front.rows) for front in fronts])
+    rows = np.concatenate([front.rows for front in fronts])
+    widths = np.array([first[front.columns[-1] + 1] - first[front.columns[0]] for front in fronts])
+    # Where each group starts among the unknowns of its front, found by the number (front, group), which rises.
+    numbered = np.repeat(np.arange(count), lengths) * groups + rows
+    before = np.cumsum(sizes[rows]) - sizes[rows]
+    row_starts = np.concatenate([[0], before[np.cumsum(lengths)[:-1]], [sizes[rows].sum()]])
+    heights = np.diff(row_starts)
+    expanded = np.repeat(first[rows] - before, sizes[rows]) + np.arange(row_starts[-1])
+
     place = np.empty(n, dtype=np.int64)
     place[scalars] = np.arange(n)
-    rows = [np.concatenate([np.arange(first[k], first[k + 1]) for k in front.rows.tolist()]) for front in fronts]
-    widths = [int(sum(first[k + 1] - first[k] for k in front.columns)) for front in fronts]
-    front_of = np.repeat(np.arange(count), widths)
+    i = np.repeat(place, np.diff(pattern.indptr))
+    j = place[pattern.indices]
+    owner = np.repeat(np.arange(count), widths)[np.minimum(i, j)]
 
-    coo = pattern.tocoo()
-    i, j = place[coo.row], place[coo.col]
-    owner = front_of[np.minimum(i, j)]
+    def inside(front: Rows, unknown: Rows) -> Rows:
+        """The places in fronts of unknowns."""
+        group = group_of[unknown]
+        found = before[np.searchsorted(numbered, front * groups + group)]
+        places: Rows = found - row_starts[front] + unknown - first[group]
+        return places
+
+    target = inside(owner, i) * heights[owner] + inside(owner, j)
     by_owner = np.argsort(owner, kind="stable")
     bounds = np.searchsorted(owner[by_owner], np.arange(count + 1)).tolist()
-    i, j = i[by_owner], j[by_owner]
+    entries = np.column_stack([by_owner, target[by_owner]]).ravel()
 
-    last_child, before = [-1] * count, [-1] * count
-    table, entries, maps, factors = [], [], [], 0
-    stack = most = 0
-    waiting: list[list[int]] = [[] for _ in fronts]
-    map_starts = list(accumulate((len(r) - w for r, w in zip(rows, widths, strict=True)), initial=0))
-    row_starts = list(accumulate((len(r) for r in rows), initial=0))
+    last_child, earlier = [-1] * count, [-1] * count
+    table: list[int] = []
+    factors = stack = most = 0
+    waiting = [0] * count
+    rests = (heights - widths).tolist()
+    parents = np.array([front.parent for front in fronts])
+    up = np.flatnonzero((parents >= 0) & (heights > widths))
+    climbing = np.concatenate(
+        [np.zeros(0, np.int64), *(np.arange(row_starts[k] + widths[k], row_starts[k + 1]) for k in up)]
+    )
+    maps = inside(np.repeat(parents[up], (heights - widths)[up]), expanded[climbing])
+    map_at = 0
     operations = 0.0
-    for k, front in enumerate(fronts):
-        height, width, rest = len(rows[k]), widths[k], len(rows[k]) - widths[k]
+    for k, (front, height, width, rest) in enumerate(
+        zip(fronts, heights.tolist(), widths.tolist(), rests, strict=True)
+    ):
+        table += [int(first[front.columns[0]]), width, height, int(row_starts[k]), map_at, factors, bounds[k], 0, 0]
         if front.parent >= 0:
-            before[k], last_child[front.parent] = last_child[front.parent], k
-            waiting[front.parent].append(rest * rest)
-            maps.append(np.searchsorted(rows[front.parent], rows[k][width:]))
-        table += [int(first[front.columns[0]]), width, height, row_starts[k], map_starts[k], factors]
-        table += [bounds[k], 0, 0]
-        low, high = bounds[k], bounds[k + 1]
-        target = np.searchsorted(rows[k], i[low:high]) * height + np.searchsorted(rows[k], j[low:high])
-        entries.append(np.column_stack([by_owner[low:high], target]).ravel())
+            earlier[k], last_child[front.parent] = last_child[front.parent], k
+            waiting[front.parent] += rest * rest
+            map_at += rest
+            stack += rest * rest
+        stack -= waiting[k]
+        most = max(most, stack + waiting[k])
         factors += width * height + width * rest
-        stack += (rest * rest if front.parent >= 0 else 0) - sum(waiting[k])
-        most = max(most, stack + sum(waiting[k]))
         operations += width * rest * (rest + width) / 2.0 + width**3 / 6.0
-    table += [n, 0, 0, row_starts[-1], map_starts[-1], factors, bounds[-1], -1, -1]
+    table += [n, 0, 0, int(row_starts[-1]), map_at, factors, bounds[-1], -1, -1]
     for k in range(count):
-        table[FIELDS * k + 7 : FIELDS * k + 9] = last_child[k], before[k]
-    largest = max((len(r) for r in rows), default=0)
-    parts: list[Any] = [table, scalars, np.concatenate(rows), np.concatenate([np.zeros(0, np.int64), *maps]),
-             np.concatenate(entries), np.zeros(n, dtype=np.int64)]  # fmt: skip
+        table[FIELDS * k + 7 : FIELDS * k + 9] = last_child[k], earlier[k]
+    largest = int(heights.max(initial=0))
+    parts: list[Any] = [table, scalars, expanded, maps, entries, np.zeros(n, dtype=np.int64)]
     starts = list(accumulate((len(part) for part in parts), initial=HEAD))
     head = [n, count, *starts[1:6], most]
     numbers = np.concatenate([np.array(part, dtype=np.int64) for part in (head, *parts)])

@@ -8,10 +8,8 @@ ILU(0): Meijerink & van der Vorst (1977), Math. Comp. 31, 148-162.
 
 import math
 
-from numba import types
-
 from sceneql.kernels import lean, lean_inlined
-from sceneql.system_kernels import A, I
+from sceneql.simulation.linear.solver_kernels import FACTOR_SYSTEM, SOLVE_SYSTEM
 
 REDUCTION = 1e-11
 """Of the residual, until the iterations end."""
@@ -19,12 +17,9 @@ MOST = 3000
 ACCEPTED = 1e-7
 """A reduction that is accepted after MOST iterations."""
 
-FACTOR = types.void(I, A, A)
-SOLVE = types.boolean(I, A, A, A, A, types.boolean)
 
-
-@lean(FACTOR)
-def factor(plan, values, factors):
+@lean(FACTOR_SYSTEM)
+def factor_system(plan, values, factors, work, symmetric):
     """Incomplete L U on the pattern itself; the diagonal of U as reciprocals. A pivot that is lost is the matrix's."""
     n = plan[0]
     diagonal, columns = 2 + n, 2 + 2 * n
@@ -51,6 +46,7 @@ def factor(plan, values, factors):
         if not factors[own] / values[own] > 1e-3:
             factors[own] = values[own]
         factors[own] = 1.0 / factors[own]
+    return True
 
 
 @lean_inlined
@@ -150,8 +146,8 @@ def bicgstab(plan, values, factors, b, x, r, z, p, q, s, t):
     return left / start
 
 
-@lean(SOLVE)
-def solve(plan, values, factors, b, work, symmetric):
+@lean(SOLVE_SYSTEM)
+def solve_system(plan, values, factors, b, work, symmetric):
     """Solve A x = b; x takes the place of b (n,). False where the iterations do not converge. ``work`` (8 n,)."""
     n = plan[0]
     x, r, z, p = work[:n], work[n : 2 * n], work[2 * n : 3 * n], work[3 * n : 4 * n]

@@ -21,9 +21,6 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.simulation.island import System
 
-DENSE, FRONTS, KRYLOV = range(3)
-"""How a stage system is solved: dense LU, sparse multifrontal LU, preconditioned iterations."""
-
 SMALL = 96
 """Up to so many unknowns a dense factorization is as quick as a sparse one."""
 MOST_GROUPS = 100_000
@@ -32,8 +29,6 @@ MOST_OPERATIONS = 2e10
 SOLID = 16
 """Neighbors of a mass from which on a net counts as a solid, whose factors fill up."""
 SOLID_GROUPS = 3000
-
-HEAD = 24
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,7 +55,7 @@ class _Reduced:
     first: NDArray[int64]
     """(., 3): place in the Jacobian, row and column of what is left: the coefficient is -a."""
     second: NDArray[int64]
-    """(., 5): place in the Jacobian, of the position's one, row, column, position: the coefficient is -a^2."""
+    """(., 4): place in the Jacobian, row and column of what is left, which position: the coefficient is -a^2."""
     tallies: NDArray[int64]
     """Entries that depend on others by unknown slopes and that nothing depends on."""
 
@@ -68,6 +63,10 @@ class _Reduced:
 def stage_plan(system: System) -> StagePlan:
     """Analyze an island whose Jacobian was asked for. Raises LimitRefused where it could not be had."""
     import numpy as np
+
+    from sceneql.simulation.linear.solver_kernels import FACTOR_SYSTEM, SOLVE_SYSTEM
+    from sceneql.simulation.linear.stage_kernels import HEAD
+    from sceneql.simulation.numbered_kernels import number_of
 
     if system.pattern is None:
         raise LimitRefused(
@@ -80,38 +79,41 @@ def stage_plan(system: System) -> StagePlan:
     reduced = _reduce(system, inverse)
     scales = 1.0 / inverse[reduced.core]
     m = len(reduced.core)
-    rows = np.concatenate([reduced.first[:, 1], reduced.second[:, 2], np.arange(m)])
-    columns = np.concatenate([reduced.first[:, 2], reduced.second[:, 3], np.arange(m)])
-    if m <= SMALL:
-        places, solver, kind = rows * m + columns, _Solver(m * m, [], 0, m), DENSE
-        twins = np.zeros(0, dtype=np.int64)
-        text = f"dense LU factorization of {m} unknowns"
-    else:
-        pattern = _symmetric_pattern(rows, columns, m)
-        kind, solver, text = _choose(pattern)
-        order = np.repeat(np.arange(m, dtype=np.int64), np.diff(pattern.indptr)) * m + pattern.indices
-        places = np.searchsorted(order, rows * m + columns)
-        twins = np.searchsorted(order, pattern.indices.astype(np.int64) * m + order // m)
+    rows = np.concatenate([reduced.first[:, 1], reduced.second[:, 1], np.arange(m)])
+    columns = np.concatenate([reduced.first[:, 2], reduced.second[:, 2], np.arange(m)])
+    pattern = _pattern(rows, columns, m)
+    order = np.repeat(np.arange(m, dtype=np.int64), np.diff(pattern.indptr)) * m + pattern.indices
+    places = np.searchsorted(order, rows * m + columns)
+    twins = np.searchsorted(order, pattern.indices.astype(np.int64) * m + order // m)
+    solver = _choose(pattern, _points(system, reduced.core))
     f, s = len(reduced.first), len(reduced.second)
-    first = np.column_stack([reduced.first[:, 0], places[:f], reduced.first[:, 1]])
-    second = np.column_stack([reduced.second[:, :2], places[f : f + s], reduced.second[:, 2], reduced.second[:, 4]])
-    parts = [reduced.core, reduced.positions.ravel(), first.ravel(), second.ravel(), places[f + s :], twins]
-    parts += [solver.numbers, np.zeros(solver.pivots), reduced.tallies]
-    starts = list(accumulate((len(part) for part in parts), initial=HEAD))
-    counts = [len(system.y), kind, m, solver.values, len(reduced.positions), f, s, len(reduced.tallies)]
-    head = [*counts, *starts[:-1], solver.factors, 0, 0, 0, 0, 0, 0]
+    parts = np.full((pattern.nnz, 4), -1, dtype=np.int64)
+    parts[:, 0] = order // m
+    parts[places[:f], 1] = reduced.first[:, 0]
+    parts[places[f : f + s], 2] = reduced.second[:, 0]
+    parts[places[f : f + s], 3] = reduced.second[:, 3]
+    lists = [reduced.core, reduced.positions.ravel(), parts.ravel(), places[f + s :], twins]
+    lists += [solver.numbers, reduced.tallies]
+    starts = list(accumulate((len(part) for part in lists), initial=HEAD))
+    counts = [len(system.y), m, pattern.nnz, len(reduced.positions), len(reduced.tallies)]
+    kernels = (
+        number_of(solver.kernels.factor_system, FACTOR_SYSTEM),
+        number_of(solver.kernels.solve_system, SOLVE_SYSTEM),
+    )
+    head = [*counts, *starts[:-1], solver.factors, 0, *kernels]
     assert len(head) == HEAD
-    numbers = np.concatenate([np.asarray(part, dtype=np.int64) for part in (head, *parts)])
-    return StagePlan(numbers, scales, solver.values + solver.factors + solver.work + m, text)
+    numbers = np.concatenate([np.asarray(part, dtype=np.int64) for part in (head, *lists)])
+    return StagePlan(numbers, scales, pattern.nnz + solver.factors + solver.work + m, solver.text)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Solver:
-    values: int
+    kernels: Any
+    """The module with its `factor` and `solve` (solver_kernels.py)."""
     numbers: Any
     factors: int
-    pivots: int
-    work: int = 0
+    work: int
+    text: str
 
 
 def _inverse_masses(system: System) -> Floats:
@@ -120,13 +122,20 @@ def _inverse_masses(system: System) -> Floats:
 
     assert system.pattern is not None
     inverse = np.ones(len(system.y))
-    if system.pattern.exact:
-        section = system.ints[4]
-        at, count = system.ints[section + 4], system.ints[section + 5]
-        for velocity_at, inverse_at, masses in system.ints[at : at + 3 * count].reshape(-1, 3).tolist():
-            own = system.floats[inverse_at : inverse_at + masses]
-            inverse[velocity_at : velocity_at + 3 * masses] = np.repeat(own, 3)
+    for velocity_at, inverse_at, count in _masses(system):
+        inverse[velocity_at : velocity_at + 3 * count] = np.repeat(system.floats[inverse_at : inverse_at + count], 3)
     return inverse
+
+
+def _masses(system: System) -> list[list[int]]:
+    """(velocity_at, inverse_at, count) of each model of masses, where the slopes are known."""
+    assert system.pattern is not None
+    if not system.pattern.exact:
+        return []
+    section = system.ints[4]
+    at, count = system.ints[section + 4], system.ints[section + 5]
+    masses: list[list[int]] = system.ints[at : at + 3 * count].reshape(-1, 3).tolist()
+    return masses
 
 
 def _known(system: System) -> NDArray[numpy.bool_]:
@@ -169,6 +178,8 @@ def _reduce(system: System, inverse: Floats) -> _Reduced:
     found = off & position[rows] & (columns == partner[rows])
     one[rows[found]] = places[found]
     eliminated = np.flatnonzero(position)
+    rank = np.full(n, -1, dtype=np.int64)
+    rank[eliminated] = np.arange(len(eliminated))
     direct = known & in_core[rows] & in_core[columns]
     through = known & in_core[rows] & position[columns] & in_core[partner[columns]]
     bare = columns[through]
@@ -176,42 +187,72 @@ def _reduce(system: System, inverse: Floats) -> _Reduced:
         core=core,
         positions=np.column_stack([eliminated, partner[eliminated], one[eliminated]]),
         first=np.column_stack([places[direct], number[rows[direct]], number[columns[direct]]]),
-        second=np.column_stack([places[through], one[bare], number[rows[through]], number[partner[bare]], bare]),
+        second=np.column_stack([places[through], number[rows[through]], number[partner[bare]], rank[bare]]),
         tallies=np.flatnonzero(tally),
     )
 
 
-def _symmetric_pattern(rows: Any, columns: Any, m: int) -> Any:
+def _pattern(rows: Any, columns: Any, m: int) -> Any:
+    """The symmetric pattern of entries as (m, m) scipy CSR, indices sorted; where it is small, the full one."""
     import numpy as np
     from scipy.sparse import csr_array
 
+    if m <= SMALL:
+        return csr_array(np.ones((m, m)))
     both = (np.concatenate([rows, columns]), np.concatenate([columns, rows]))
     pattern = csr_array((np.ones(2 * len(rows)), both), shape=(m, m))
     pattern.sum_duplicates()
     return pattern
 
 
-def _choose(pattern: Any) -> tuple[int, _Solver, str]:
+def _points(system: System, core: NDArray[int64]) -> Floats | None:
+    """(unknowns, 3) where the masses whose velocities they are lie at the start; None where one is no velocity."""
+    import numpy as np
+
+    points = np.full((len(system.y), 3), np.nan)
+    position_of = np.full(len(system.y), -1, dtype=np.int64)
+    paired = np.flatnonzero(system.partner >= 0)
+    position_of[system.partner[paired]] = paired
+    for velocity_at, _, count in _masses(system):
+        positions = position_of[velocity_at : velocity_at + 3 * count]
+        if (positions >= 0).all():
+            points[velocity_at : velocity_at + 3 * count] = system.y[positions].reshape(-1, 3).repeat(3, axis=0)
+    found = points[core]
+    return None if np.isnan(found).any() else found
+
+
+def _choose(pattern: Any, points: Floats | None) -> _Solver:
     """How to solve systems of a pattern, by its size and fill."""
     import numpy as np
+
+    m = pattern.shape[0]
+    if m <= SMALL:
+        from sceneql.simulation.linear import dense_kernels
+
+        numbers = np.concatenate([[m], np.zeros(m)])
+        return _Solver(dense_kernels, numbers, m * m, 0, f"dense LU factorization of {m} unknowns")
 
     from sceneql.simulation.linear import fronts
     from sceneql.simulation.linear.ordering import grouped
 
-    m = pattern.shape[0]
     groups = grouped(pattern)
     graph = groups.graph
     size = graph.shape[0]
     solid = graph.nnz > (SOLID + 1) * size and size > SOLID_GROUPS
     if not solid and size <= MOST_GROUPS:
-        plan = fronts.plan(pattern, groups)
+        plan = fronts.plan(pattern, groups, points)
         if plan.operations <= MOST_OPERATIONS:
+            from sceneql.simulation.linear import fronts_kernels
+
             text = f"sparse factorization of {m} unknowns, {plan.factors:.3g} numbers in its factors"
-            return FRONTS, _Solver(pattern.nnz, plan.numbers, plan.factors, 0, plan.work), text
+            return _Solver(fronts_kernels, plan.numbers, plan.factors, plan.work, text)
+
+    from sceneql.simulation.linear import krylov_kernels
+
     diagonal = np.searchsorted(
         np.repeat(np.arange(m, dtype=np.int64), np.diff(pattern.indptr)) * m + pattern.indices,
         np.arange(m, dtype=np.int64) * (m + 1),
     )
     numbers = np.concatenate([[m], pattern.indptr, diagonal, pattern.indices])
     text = f"iterations (conjugate gradients or BiCGStab, incomplete factors) on {m} unknowns"
-    return KRYLOV, _Solver(pattern.nnz, numbers, pattern.nnz, 0, 8 * m), text
+    return _Solver(krylov_kernels, numbers, pattern.nnz, 8 * m, text)

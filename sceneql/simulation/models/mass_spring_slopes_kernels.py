@@ -10,6 +10,8 @@ BLOCK = 5
 """Floats of a spring (mass_spring_kernels.py)."""
 ENTRIES = 36
 """Of a spring: four blocks of 3x3."""
+DEFINITE_AT = 2
+"""floats[2]: whether slopes are to be definite (system.Slopes)."""
 
 
 @lean_inlined
@@ -28,10 +30,12 @@ def springs(t, y, entries, floats, ints):
     ints: those of mass_spring_kernels.springs. For spring s the four blocks of 3x3 entries (a by a, a by b, b by a,
     b by b) by positions from 36 s on, by velocities from 36 (count + s) on. With u along the spring, w the relative
     velocity and p = w . u: d(force)/dx = k u u + (k (L - L0) + c p)/L (1 - u u) + c u (w - p u)/L, d(force)/dv = c u u.
+    Definite slopes: the second part where it is not negative, without the third (Choi & Ko 2002).
     """
     position_at, velocity_at, blocks_at, count = ints[0], ints[1], ints[3], ints[6]
     model_stiffness, model_damping = floats[ints[4]], floats[ints[5]]
     damped = entries.size > ENTRIES * count
+    definite = floats[DEFINITE_AT] > 0.0
     for s in range(count):
         a, b = 3 * ints[7 + 2 * s], 3 * ints[8 + 2 * s]
         block = blocks_at + BLOCK * s
@@ -51,10 +55,13 @@ def springs(t, y, entries, floats, ints):
         )
         speed = w[0] * u[0] + w[1] * u[1] + w[2] * u[2]
         across = (k * (length - floats[block]) + c * speed) / length
+        turning = c / length
+        if definite:
+            across, turning = max(0.0, across), 0.0
         for i in range(3):
             for j in range(3):
                 along = u[i] * u[j]
-                slope = (k - across) * along + c * u[i] * (w[j] - speed * u[j]) / length
+                slope = (k - across) * along + turning * u[i] * (w[j] - speed * u[j])
                 if i == j:
                     slope += across
                 add_blocks(entries, ENTRIES * s + 3 * i + j, slope)

@@ -26,21 +26,27 @@ class Bdf2(Solver):
         "Absolute error of a step, in SI units; by default the number of the relative.", None, above=0
     )
     step: FixedTime | None = field("Length of a step, in place of a tolerance.", None, above=0)
+    newton: FixedScalar = field(
+        "Relative and absolute error that Newton's method leaves in a step of a given length, in SI units.",
+        "1e-10",
+        above=0,
+        below=1,
+    )
     first_step: FixedTime | None = field("Length of the first step; by default it is chosen.", None, above=0)
     largest_step: FixedTime | None = field("No step is longer; by default any may be.", None, above=0)
 
     def stepper(self) -> Stepper:
         """Fixed steps, or by the error."""
-        from sceneql.simulation.implicit import NEWTON, SHARE
+        from sceneql.simulation.implicit import SHARE, UNSOLVED
 
         adaptive = self.step is None
         absolute = self.tolerance if self.absolute is None else self.absolute
-        newton = (self.tolerance, absolute, SHARE) if adaptive else (NEWTON, NEWTON, 1.0)
+        newton = (self.tolerance, absolute, SHARE) if adaptive else (self.newton, self.newton, 1.0)
         return Stepper(
             step="sceneql.simulation.solvers.bdf2_kernels:step",
             dense=None,
             order=2,
-            settings=(0.0, 1.0, *newton, float("-inf"), float("-inf"), 1.0),
+            settings=(0.0, 1.0, *newton, 0.0, 0.0, float("-inf"), float("-inf"), 1.0),
             numbers=(int(adaptive), 0),
             first_step=self.step or self.first_step or 0.0,
             adaptive=adaptive,
@@ -51,6 +57,7 @@ class Bdf2(Solver):
             prepare="sceneql.simulation.solvers.bdf2:prepare",
             controls=adaptive,
             last_stage=1,
+            unsolved=UNSOLVED,
         )
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from sceneql.kinds import FixedTime, Solver, field
+from sceneql.kinds import FixedScalar, FixedTime, Solver, field
 from sceneql.simulation.grids.names import Linear
 
 if TYPE_CHECKING:
@@ -22,6 +22,12 @@ class ImplicitMidpoint(Solver):
     """
 
     step: FixedTime = field("Length of a step.", "1 ms", above=0)
+    newton: FixedScalar = field(
+        "Relative and absolute error that Newton's method leaves in a step of a given length, in SI units.",
+        "1e-10",
+        above=0,
+        below=1,
+    )
 
     linear: Linear = field("How the linear systems are solved where the island is a field on a grid.", "auto")
 
@@ -29,7 +35,7 @@ class ImplicitMidpoint(Solver):
         """Fixed steps of the tableau."""
         from sceneql.simulation.implicit import IMPLICIT_MIDPOINT
 
-        return IMPLICIT_MIDPOINT.fixed(self.step, self.linear)
+        return IMPLICIT_MIDPOINT.fixed(self.step, self.linear, self.newton)
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """max |(1 + h lambda / 2) / (1 - h lambda / 2)|."""

@@ -4,8 +4,8 @@
 ``settings``: the memory of Newton's method (newton_kernels), then the diagonal g, c (s), b (s), b - b_hat (s), the rows
 of a below the diagonal, packed; then the scales of the stage plan. ``numbers``: [stages, 1 if the first is explicit,
 1 if y1 is the last stage, 1 if there is an embedded method, order of its error, where the scales start, entries of the
-Jacobian's room], then the stage plan. ``work``: the step to try next, in an array of y's size; the s slopes k; one
-array of scratch; the Jacobian; the store of the stage plan.
+Jacobian's room], then the stage plan. ``work``: the step to try next, in an array of y's size; the s slopes k; three
+arrays of scratch; the Jacobian; the store of the stage plan.
 """
 
 import math
@@ -38,9 +38,9 @@ def add_slopes(settings, at, count, h, y0, work, out):
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after a step of length h; the embedded error, filtered by the stage system (Hosea & Shampine 1996)."""
     n, stages = y0.size, numbers[STAGES]
-    base, scratch = work[:n], work[(1 + stages) * n : (2 + stages) * n]
-    jacobian = work[(2 + stages) * n : (2 + stages) * n + numbers[ROOM]]
-    store = work[(2 + stages) * n + numbers[ROOM] :]
+    base, scratch = work[:n], work[(1 + stages) * n : (4 + stages) * n]
+    jacobian = work[(4 + stages) * n : (4 + stages) * n + numbers[ROOM]]
+    store = work[(4 + stages) * n + numbers[ROOM] :]
     scales, plan = settings[numbers[SCALES_AT] :], numbers[HEAD:]
     diagonal = settings[MEMORY]
     c = MEMORY + 1
@@ -68,15 +68,16 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         add_slopes(settings, b, stages, h, y0, work, y1)
     if numbers[EMBEDDED] == 0:
         return 0.0
+    wrong = scratch[:n]
     for k in range(n):
-        scratch[k] = 0.0
+        wrong[k] = 0.0
     for j in range(stages):
         weight = h * settings[e + j]
         slope = work[(1 + j) * n : (2 + j) * n]
         for k in range(n):
-            scratch[k] += weight * slope[k]
-    solve_stage(plan, a, jacobian, scales, store, scratch)
-    error = norm(scratch, y0, y1, settings)
+            wrong[k] += weight * slope[k]
+    solve_stage(plan, a, jacobian, scales, store, wrong)
+    error = norm(wrong, y0, y1, settings)
     factor = min(5.0, max(0.2, 0.9 * max(error, 1e-8) ** (-1.0 / numbers[ERROR_ORDER])))
     work[0] = h if 1.0 <= factor <= KEPT else h * factor
     return error

@@ -29,6 +29,12 @@ class TrBdf2(Solver):
         above=0,
     )
     step: FixedTime | None = field("Length of a step, in place of a tolerance.", None, above=0)
+    newton: FixedScalar = field(
+        "Relative and absolute error that Newton's method leaves in a step of a given length, in SI units.",
+        "1e-10",
+        above=0,
+        below=1,
+    )
     first_step: FixedTime | None = field("Length of the first step; by default it is chosen.", None, above=0)
     largest_step: FixedTime | None = field("No step is longer; by default any may be.", None, above=0)
 
@@ -39,7 +45,7 @@ class TrBdf2(Solver):
         from sceneql.simulation.implicit import TR_BDF2
 
         if self.step is not None:
-            return TR_BDF2.fixed(self.step, self.linear)
+            return TR_BDF2.fixed(self.step, self.linear, self.newton)
         return TR_BDF2.adaptive(
             self.tolerance,
             self.tolerance if self.absolute is None else self.absolute,

@@ -33,8 +33,8 @@ def collider(kind: Object, assembly: Assembly) -> Collider:
     from sceneql.field import interval_kernels, tape_kernels
     from sceneql.field.builder import TapeBuilder
     from sceneql.field.tape_ops import SCRATCH_COLUMNS, scratch_rows
-    from sceneql.simulation.contacts.shape_kernels import number_of
     from sceneql.simulation.contacts.shapes.implicit_kernels import BOX_TYPE, GRADIENT_TYPE
+    from sceneql.simulation.numbered_kernels import number_of
 
     own = kind
     if isinstance(kind, Placed):
