@@ -42,7 +42,7 @@ def factor_direct(plan, nx, ny, nz, scale, volume, sink, gx, gy, gz, own):
             value -= gz[front]
         own[e] = value
     factors = own[count:]
-    return fronts.factor(plan[ENTRIES + 2 * count :], own, factors, factors[plan[FACTORS] :], True)
+    return fronts.factor_system(plan[ENTRIES + 2 * count :], own, factors, factors[plan[FACTORS] :], True)
 
 
 @lean_inlined
@@ -52,4 +52,4 @@ def solve_direct(plan, r, d, own):
     for c in range(r.size if r.size < d.size else d.size):
         d[c] = r[c]
     factors = own[count:]
-    fronts.solve(plan[ENTRIES + 2 * count :], factors, d, factors[plan[FACTORS] :], True)
+    fronts.solve_system(plan[ENTRIES + 2 * count :], own, factors, d, factors[plan[FACTORS] :], True)

@@ -53,7 +53,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     grid = system.grid
     assert grid is not None
     stages, explicit_first, _, embedded, error_order = stepper.numbers
-    _, _, relative, absolute, _, *tableau = stepper.settings
+    _, _, relative, absolute, _, _, _, *tableau = stepper.settings
     share = kernels.SHARE if stepper.adaptive else 1.0
     largest = float(np.abs(system.y).max(initial=0.0)) or 1.0
     absolute *= largest if stepper.by_scale else 1.0
