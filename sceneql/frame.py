@@ -7,7 +7,7 @@ is counterclockwise. Colors are linear, scene-referred RGB. Arrays are numpy arr
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     from numpy import float64, int32
@@ -113,7 +113,7 @@ class Implicit:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Points:
-    """Spheres, many: particles."""
+    """Spheres, many: particles. Or soft discs that face the camera, each brightest in its middle."""
 
     name: str
     surface: Surface
@@ -123,6 +123,11 @@ class Points:
     """(n,) [m]."""
     colors: Floats | None = None
     """(n, 3) linear RGB."""
+    soft: Literal["adds", "covers"] | None = None
+    """None: solid spheres. Discs: their light is added to what is behind, or covers it. They take no light, throw no
+    shadow and are not seen in mirrors."""
+    opacity: float = 1.0
+    """Of a disc in its middle; of one that adds, what its light is multiplied by."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

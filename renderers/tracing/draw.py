@@ -15,6 +15,7 @@ from renderers.tracing.record_kernels import COLUMNS
 from renderers.tracing.refine_kernels import refine_rows, shade_rows
 from renderers.tracing.sampling_kernels import subpixels
 from renderers.tracing.scene_kernels import LIGHT_COUNT, Scene
+from renderers.tracing.sprites import over
 from renderers.tracing.visibility_kernels import FIRST_LIGHT
 from sceneql.frame import Implicit
 
@@ -85,6 +86,7 @@ def draw(frame: Frame, samples: int = 8, tolerance: float = TOLERANCE, march: in
         smooth_rows(scene, scratch(rows), start, stop, points, b.records, b.radiance, b.visibility, own, found, linear)
 
     over_rows(height, smooth)
+    over(frame, buffers.records[0], linear)
     _kept[:] = [buffers]
     return Picture(linear.reshape(height, width, 3), sum(undecided))
 

@@ -138,6 +138,8 @@ class Rows:
                 self._items(index, HALF_SPACE, UNBOUNDED[None, :], plane)
         elif isinstance(shape, Implicit):
             self._implicit(index, shape)
+        elif isinstance(shape, Points) and shape.soft is not None:
+            pass  # drawn over the picture (sprites.py)
         elif isinstance(shape, Points):
             zero = np.zeros((len(shape.centers), 3))
             self._rounds(index, shape.centers, zero, shape.radii, shape.colors)
