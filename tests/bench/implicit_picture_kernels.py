@@ -8,7 +8,7 @@ from sceneql.field.batch_kernels import evaluate
 from sceneql.field.hunt_kernels import FOUND_ROOT, FOUND_STATUS
 from sceneql.field.packet_kernels import LANES, PACKET
 from sceneql.field.packet_roots_kernels import first_roots
-from sceneql.field.tape_ops import HIT, UNDECIDED
+from sceneql.field.tape_ops import DENSITY, HIT, UNDECIDED
 from sceneql.kernels import inlined, lean
 
 TILE, BLOCK = 16, 4
@@ -109,6 +109,11 @@ def draw_row(
                 picture[py, px] = 0.0
             if not hit:
                 rays[7, j] = rays[6, j]
+        # Of a density field, a bundle that hits something has left the parts that matter to it.
+        near, near_of = code, parts
+        for k in range(last + 1):
+            if code[k, 0] == DENSITY:
+                near, near_of = short, near_parts
         facing = 0
         for start in range(0, n, LANES):
             hits = 0
@@ -121,8 +126,8 @@ def draw_row(
                     hits += 1
             if hits == 0:
                 continue
-            evaluate(code, constants, parts, doubles, points, hits)
-            differentiate(code, constants, parts, doubles, slopes, hits)
+            evaluate(near, constants, near_of, doubles, points, hits)
+            differentiate(near, constants, near_of, doubles, slopes, hits)
             for i in range(hits):
                 j = queue[i]
                 nx, ny, nz = slopes[0, last, i], slopes[1, last, i], slopes[2, last, i]
