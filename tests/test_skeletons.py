@@ -108,6 +108,20 @@ def test_density_is_the_kernel_of_the_distance(kernel, kind):
     assert (field_values(tape_of(skeleton(KINDS[kind], kernel=kernel)), far[distances(kind, far) > 0.9]) == 0).all()
 
 
+@pytest.mark.parametrize("kernel", KERNELS)
+@pytest.mark.parametrize("radii", [[0.9, 0.3], [0.2, 0.8], [0.3, 2.5]])
+def test_a_radius_that_changes_is_that_of_the_best_point(kernel, radii):
+    a, b = np.array(KINDS["segment"][0][:2])
+    points = np.random.default_rng(5).uniform(-1.6, 1.6, (200, 3))
+    q = np.linspace(0.0, 1.0, 4001)
+    away = np.linalg.norm(points[:, None] - (a + q[:, None] * (b - a)), axis=2)
+    r = (away / (radii[0] + q * (radii[1] - radii[0]))).min(axis=1)
+    expected = np.where(r < 1, FALLOFF[kernel](np.minimum(r, 1.0)), 0.0)
+    assert field_values(tape_of(skeleton(KINDS["segment"], radii, kernel=kernel)), points) == pytest.approx(
+        expected, abs=1e-6
+    )
+
+
 def check_segment(tape, origin, direction, t0, t1):
     room = arguments(tape)
     c0, c1, e, status = segment(*room, *origin, *direction, t0, t1, True)

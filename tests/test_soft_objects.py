@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,7 +15,9 @@ from sceneql.field.solid import field_values, paint_values
 from sceneql.frame import Implicit, Mesh, Segments
 from sceneql.mesh.measures import edge_counts, euler_characteristic, pieces
 from sceneql.pipeline import load
+from sceneql.quantities.arrays import evaluate_arrays
 from sceneql.quantities.diagnostic import ScriptError
+from sceneql.quantities.expression import Key, Keys, Number, Symbol, Type
 from sceneql.simulation.ears import ears
 from sceneql.simulation.objects.blobby import Blobby
 from sceneql.simulation.run import Run
@@ -224,3 +227,15 @@ def test_pieces_are_counted_by_what_hangs_together():
     assert pieces(ring) == 1
     assert pieces(np.concatenate([ring, ring + 41, ring + 82])) == 3
     assert pieces(np.zeros((0, 3), dtype=np.int32)) == 0
+
+
+@pytest.mark.parametrize("curve", ["step", "linear", "smooth", "cubic"])
+def test_keys_that_never_change_give_one_time_what_they_give_many(curve):
+    values = [(0.0, 2.0), (0.5, -1.0), (1.2, 0.5), (2.0, 2.0)]
+    keys = Keys(Symbol("time", Type()), tuple(Key(Number(t), Number(v)) for t, v in values), curve, Number(2.0))
+    moving = replace(keys, keys=(*keys.keys[:1], Key(Number(0.5), Symbol("height", Type())), *keys.keys[2:]))
+    times = np.linspace(-1.0, 5.0, 77)
+    for expr, height in ((keys, -1.0), (moving, -1.0), (moving, 3.0), (keys, 3.0)):
+        many = evaluate_arrays(expr, lambda node, h=height: times if node.name == "time" else h)
+        single = [evaluate_arrays(expr, lambda node, t=t, h=height: t if node.name == "time" else h) for t in times]
+        assert single == pytest.approx(many, abs=1e-14)

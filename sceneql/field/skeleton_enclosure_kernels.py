@@ -124,9 +124,8 @@ def fallen(kind, least, s0, s1, es):
 
 
 @inlined
-def within_reach(parts, start, stop, scratch, base, cx, cy, cz, ux, uy, uz, point_blur):
+def within_reach(parts, start, stop, scratch, base, cx, cy, cz, ux, uy, uz, speed2, point_blur):
     """Copy the parts that reach to the points c + u tau +- blur to rows base.. of scratch; how many rows."""
-    half = np.sqrt(ux * ux + uy * uy + uz * uz)
     found = 0
     i = start
     while i < stop:
@@ -134,8 +133,7 @@ def within_reach(parts, start, stop, scratch, base, cx, cy, cz, ux, uy, uz, poin
             clear = segment_outside(parts, i, cx, cy, cz, ux, uy, uz, point_blur)
             i += STRIDE + (int(parts[i, RADIUS]) if clear else 0)
             continue
-        blur = point_blur + rounding(parts, i, cx, cy, cz, ux, uy, uz)
-        least, _ = span_of(parts, i, cx, cy, cz, half, blur)
+        least, _, _, _ = part_segment(parts, i, cx, cy, cz, ux, uy, uz, speed2, point_blur)
         if least < 1.0:
             for j in range(8):
                 scratch[base + found, j] = parts[i, j]
@@ -161,7 +159,7 @@ def skeleton_segment(parts, start, stop, scratch, k, base, p, survey):
     point_blur = scratch[p, 2] + scratch[p + 1, 2] + scratch[p + 2, 2]
     speed2 = (ux * ux + uy * uy + uz * uz) * (1.0 + 4.0 * PAD) + TINY
     if survey:
-        scratch[k, 3] = within_reach(parts, start, stop, scratch, base, cx, cy, cz, ux, uy, uz, point_blur)
+        scratch[k, 3] = within_reach(parts, start, stop, scratch, base, cx, cy, cz, ux, uy, uz, speed2, point_blur)
     half = np.sqrt(speed2)
     last = base + int(scratch[k, 3])
     found = 0
