@@ -131,6 +131,8 @@ class Grid:
     periodic: tuple[bool, bool, bool]
     varying: bool
     """Whether g and sink depend on time or on the field: the rate leaves them in the floats."""
+    fed_at: int
+    """What is fed, where it does not vary; else -1."""
     outside: Any
     """(cells,) bool: not part of the domain."""
 

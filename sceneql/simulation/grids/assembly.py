@@ -94,6 +94,7 @@ class _Builder:
             faces_at=(faces[0], faces[1], faces[2]),
             periodic=periodic,
             varying=varying or reaction > 0,
+            fed_at=-1 if varying or self.feeding else fed,
             outside=~self.inside,
         )
         assembly.grid(grid)
@@ -199,7 +200,8 @@ class _Builder:
         if source is not None and not varies(source):
             fixed += volumes * at_points(source, self.centers)
         fed = assembly.floats(fixed)
-        if not later and not varies(source):
+        self.feeding = bool(later) or varies(source)
+        if not self.feeding:
             return fed, 0
         base, fed = fed, assembly.floats(fixed)
         reaction = 0

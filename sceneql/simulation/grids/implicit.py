@@ -13,15 +13,25 @@ if TYPE_CHECKING:
     from numpy import int64
     from numpy.typing import NDArray
 
+    from sceneql.frame import Floats
     from sceneql.simulation.island import System
     from sceneql.simulation.march import March
 
 DIRECT_CELLS = {2: 40_000, 3: 4_000}
 """Up to so many cells of a flat or deep grid factors are small: `auto` takes them."""
 LARGEST_FACTORED = {2: 500_000, 3: 30_000}
-MOST = {"multigrid": 100, "conjugate_gradient": 20_000, "gauss_seidel": 20_000, "sor": 20_000, "direct": 1}
+MOST = {
+    "multigrid": 100,
+    "conjugate_gradient": 20_000,
+    "gauss_seidel": 20_000,
+    "sor": 20_000,
+    "direct": 1,
+    "fast_transform": 1,
+}
 """Iterations for one system."""
 COARSEST = 2
+LONGEST_ROW = 512
+"""Cells of a row up to which `auto` transforms: a cell costs twice as many multiplications."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,12 +67,14 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     share = kernels.SHARE if stepper.adaptive else 1.0
     largest = float(np.abs(system.y).max(initial=0.0)) or 1.0
     absolute *= largest if stepper.by_scale else 1.0
-    name, why = _choice(grid, stepper.linear)
+    wanted = stepper.linear == "fast_transform" or (stepper.linear == "auto" and grid.shape[0] <= LONGEST_ROW)
+    separated = separate(grid, system.floats) if wanted else None
+    name, why = _choice(grid, stepper.linear, separated is not None)
     cells = grid.shape[0] * grid.shape[1] * grid.shape[2]
-    plan = _PLANS[name](grid)
+    plan = _PLANS[name](grid) if separated is None or name != "fast_transform" else _transform(grid, separated)
     kind = getattr(kernels, name.upper())
     offsets = (grid.volumes_at, grid.sink_at, *grid.faces_at)
-    head = [kind, *grid.shape, grid.at, *offsets, int(grid.varying), MOST[name], plan.levels, kernels.PLAN]
+    head = [kind, *grid.shape, grid.at, *offsets, int(grid.varying), MOST[name], plan.levels, kernels.PLAN, grid.fed_at]
     assert len(head) == kernels.PLAN
     store = 2 * cells + plan.room + kernels.RECORD
     return Prepared(
@@ -82,7 +94,7 @@ def report(march: March) -> LinearReport:
     return LinearReport(int(record[SOLVES]), int(record[ITERATIONS]), residuals)
 
 
-def _choice(grid: Grid, asked: str) -> tuple[str, str]:
+def _choice(grid: Grid, asked: str, separable: bool) -> tuple[str, str]:
     """The linear solver by name, and why."""
     nx, ny, nz = grid.shape
     dims, cells = (3 if nz > 1 else 2), nx * ny * nz
@@ -92,8 +104,17 @@ def _choice(grid: Grid, asked: str) -> tuple[str, str]:
             None,
             "take `linear: multigrid`",
         )
+    if asked == "fast_transform" and not separable:
+        raise LimitRefused(
+            "a fast transform needs a flat box whose coefficient and boundary do not vary along x, nor in time, and "
+            "that is not periodic along y",
+            None,
+            "take `linear: auto`",
+        )
     if asked != "auto":
         return asked, "as the script says"
+    if separable and grid.shape[0] <= LONGEST_ROW:
+        return "fast_transform", "chosen since the box and its coefficient are the same in every row"
     if cells > DIRECT_CELLS[dims]:
         return "multigrid", f"chosen since {cells} cells are more than {DIRECT_CELLS[dims]} (factors fill up)"
     if grid.varying:
@@ -127,6 +148,38 @@ def _direct(grid: Grid) -> _Plan:
     numbers = np.concatenate([[len(entries), plan.factors, plan.work], entries.ravel(), plan.numbers])
     text = f"a sparse factorization with {plan.factors:.3g} numbers, made once for each length of step"
     return _Plan(0, numbers, len(entries) + plan.factors + plan.work, text)
+
+
+def separate(grid: Grid, floats: Floats) -> tuple[Floats, ...] | None:
+    """Modes of a row (nx, nx), transposed, eigenvalues, conductances and sinks along y, volume, of M = V/a + Kx + Ky; else None."""
+    import numpy as np
+
+    nx, ny, nz = grid.shape
+    if nz > 1 or grid.varying or grid.periodic[1] or nx > 4 * LONGEST_ROW or grid.outside.any():
+        return None
+    n = nx * ny
+    offsets = (grid.volumes_at, grid.sink_at, *grid.faces_at[:2])
+    volume, sink, gx, gy = (floats[at : at + n].reshape(ny, nx) for at in offsets)
+    along_y = sink[:, nx // 2]
+    along_x = sink[ny // 2] - sink[ny // 2, nx // 2]
+    same = (volume, volume[0, 0]), (gx, gx[0]), (gy, gy[:, :1]), (sink, along_y[:, None] + along_x)
+    if not all(np.allclose(one, other, rtol=1e-13, atol=1e-13 * float(np.abs(one).max())) for one, other in same):
+        return None
+    g = gx[0]
+    matrix = np.diag(g + np.roll(g, -1) + along_x)
+    for i in range(nx):
+        matrix[i, i - 1] -= g[i]
+        matrix[i - 1, i] -= g[i]
+    values, vectors = np.linalg.eigh(matrix)
+    return vectors.T, vectors, values, gy[:, 0], along_y, volume[0, :1]
+
+
+def _transform(grid: Grid, separated: tuple[Floats, ...]) -> _Plan:
+    import numpy as np
+
+    table = np.concatenate([np.ravel(part) for part in separated]).view(np.int64)
+    cells = grid.shape[0] * grid.shape[1]
+    return _Plan(0, table, 3 * cells, "modes of the rows along x and tridiagonal systems along y")
 
 
 def _pattern(grid: Grid) -> tuple[Any, NDArray[int64]]:

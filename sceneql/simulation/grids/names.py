@@ -4,4 +4,4 @@ from __future__ import annotations
 
 from typing import Literal
 
-Linear = Literal["auto", "direct", "multigrid", "conjugate_gradient", "gauss_seidel", "sor"]
+Linear = Literal["auto", "direct", "multigrid", "conjugate_gradient", "gauss_seidel", "sor", "fast_transform"]

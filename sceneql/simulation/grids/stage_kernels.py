@@ -21,14 +21,15 @@ from sceneql.simulation.grids import multigrid_kernels as multigrid
 from sceneql.simulation.grids import relaxation_kernels as relaxation
 from sceneql.simulation.grids.direct_kernels import factor_direct, solve_direct
 from sceneql.simulation.grids.stencil_kernels import dot
+from sceneql.simulation.grids.transform_kernels import factor_transform, solve_transform
 from sceneql.simulation.pointers_kernels import AT_RATE, rate_at
 from sceneql.system_kernels import DENSE, STEP, A, F, I
 
 STAGES, EXPLICIT_FIRST, EMBEDDED, ERROR_ORDER, HEAD = range(5)
 RELATIVE, ABSOLUTE, DIAGONAL, TABLEAU = range(4)
 
-KIND, NX, NY, NZ, AT, VOLUME, SINK, GX, GY, GZ, VARYING, MOST, LEVELS, TABLE, PLAN = range(15)
-MULTIGRID, CONJUGATE_GRADIENT, GAUSS_SEIDEL, SOR, DIRECT = range(5)
+KIND, NX, NY, NZ, AT, VOLUME, SINK, GX, GY, GZ, VARYING, MOST, LEVELS, TABLE, FED, PLAN = range(16)
+MULTIGRID, CONJUGATE_GRADIENT, GAUSS_SEIDEL, SOR, DIRECT, FAST_TRANSFORM = range(6)
 
 FACTORED, TAKEN_IN, SOLVES, ITERATIONS, HISTORY, RECORD = 0, 1, 2, 3, 4, 132
 """Of the store's last entries: the a that is prepared (0: none), whether coarse levels are filled, systems solved,
@@ -65,6 +66,8 @@ def prepare(plan, a, volume, sink, gx, gy, gz, own, record):
     elif plan[KIND] == DIRECT:
         if not factor_direct(plan[plan[TABLE] :], plan[NX], plan[NY], plan[NZ], 1.0 / a, volume, sink, gx, gy, gz, own):
             return False
+    elif plan[KIND] == FAST_TRANSFORM:
+        factor_transform(plan[plan[TABLE] :], plan[NX], plan[NY], 1.0 / a, own)
     record[FACTORED] = a
     return True
 
@@ -97,6 +100,9 @@ def solve_linear(plan, a, target, floats, r, d, store):
         count = relaxation.conjugate_gradient(
             nx, ny, nz, scale, volume, sink, gx, gy, gz, r, d, own, p, q, target, most, history
         )
+    elif kind == FAST_TRANSFORM:
+        solve_transform(plan[plan[TABLE] :], nx, ny, r, d, own)
+        count = 1
     elif kind == DIRECT:
         solve_direct(plan[plan[TABLE] :], r, d, own)
         count = 1
@@ -144,6 +150,17 @@ def solve_stage(rate, t, a, base, y, slope, r, d, store, plan, settings, floats,
     n = plan[NX] * plan[NY] * plan[NZ]
     volume = floats[plan[VOLUME] : plan[VOLUME] + n]
     x, r, d = y[at : at + n], r[:n], d[:n]
+    if plan[KIND] >= DIRECT and plan[FED] >= 0:
+        # Linear and solved to rounding: once is enough.
+        fed = floats[plan[FED] : plan[FED] + n]
+        for c in range(n):
+            r[c] = volume[c] * base[at + c] / a + fed[c]
+        if not solve_linear(plan, a, 0.0, floats, r, d, store):
+            return False
+        for c in range(n):
+            x[c] = d[c]
+        rate(t, y, slope, floats, ints)
+        return True
     cells = math.sqrt(dot(volume, volume))
     before = math.inf
     for iteration in range(MOST_NEWTON):
