@@ -95,7 +95,7 @@ def below(phi: Floats, slopes: Floats, sides: Floats) -> Floats:
     k = slopes.shape[1]
     rise = np.abs(slopes) * sides
     total = rise.sum(axis=1)
-    some = total > 0.0
+    some = total > np.maximum(1e-9 * np.abs(phi), 1e-300)
     rise = np.where(some[:, None], rise / np.where(some, total, 1.0)[:, None], 1.0 / k)
     rise = np.maximum(rise, LEAST_SLOPE)
     whole = rise.sum(axis=1)

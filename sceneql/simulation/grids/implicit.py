@@ -151,7 +151,7 @@ def _direct(grid: Grid) -> _Plan:
 
 
 def separate(grid: Grid, floats: Floats) -> tuple[Floats, ...] | None:
-    """Modes of a row (nx, nx), transposed, eigenvalues, conductances and sinks along y, volume, of M = V/a + Kx + Ky; else None."""
+    """Modes of a row (nx, nx), transposed, eigenvalues, conductances and sinks along y, volume; None: rows differ."""
     import numpy as np
 
     nx, ny, nz = grid.shape
