@@ -36,7 +36,7 @@ MOST = 25
 """Iterations of a plain stage."""
 MOST_CAREFUL = 100
 """Those of one with definite slopes."""
-PLAIN_AFTER = 10
+PLAIN_AFTER = 30
 """Careful iterations after which the plain one is tried again; twice as many after it failed there."""
 HELPS = 0.7
 """Contraction that the plain iteration needs there."""
