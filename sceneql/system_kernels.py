@@ -22,6 +22,10 @@ JACOBIAN = types.void(I, F, A, A, A, I)
 STEP = types.float64(I, F, F, A, A, A, A, A, I, A, I)
 DENSE = types.void(F, F, A, A, A, A, A, A, I, A)
 
+EVENT = types.Tuple((N, F))(I, F, F, A, A, A, A, A, A, A, I, A, I, A, I, F)
+"""events_kernels.find_event."""
+
 JACOBIAN_FUNCTION = types.FunctionType(JACOBIAN)
 STEP_FUNCTION = types.FunctionType(STEP)
 DENSE_FUNCTION = types.FunctionType(DENSE)
+EVENT_FUNCTION = types.FunctionType(EVENT)

@@ -22,7 +22,7 @@ from numba import types
 
 from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.pointers_kernels import AT_DENSE, AT_GAP, AT_RATE, AT_STEP, dense_at, gap_at, rate_at, step_at
-from sceneql.system_kernels import A, F, I, N
+from sceneql.system_kernels import EVENT, A, F, I, N
 
 SAMPLES = 6
 """Places inside a step where the gaps are looked at; a body that enters and leaves between two of them is missed."""
@@ -31,7 +31,6 @@ ULP = 2.3e-16
 
 LOCATE = types.float64(I, N, F, types.boolean, F, F, F, A, A, A, A, A, I, A, I, A)
 FIRST_OF = types.Tuple((N, F))(I, N, F, F, F, A, A, A, A, A, A, I, A, I, A, A, A, I, F)
-FIND_EVENT = types.Tuple((N, F))(I, F, F, A, A, A, A, A, A, A, I, A, I, A, I, F)
 
 
 @lean_inlined
@@ -146,7 +145,7 @@ def first_of(
         high = length
 
 
-@lean(FIND_EVENT)
+@lean(EVENT)
 def find_event(
     functions, t0, h, y0, rate0, y1, rate1,
     sample, work, settings, numbers, floats, ints, gaps, leaving, slop,

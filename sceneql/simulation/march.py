@@ -99,7 +99,9 @@ class March:
         self._dense = kernels.hermite if stepper.dense is None or local else function(stepper.dense)
         self._extend = None if stepper.extend is None or local else function(stepper.extend)
         self._extended = math.nan
-        self._functions = addresses(self._step, self._dense, *self.driver, self._jacobian)
+        # Islands without exact contacts have no events: the kernels that find them are not even loaded.
+        event = function("sceneql.simulation.events_kernels:find_event") if system.pairs else None
+        self._functions = addresses(self._step, self._dense, *self.driver, self._jacobian, event)
         if stepper.prepare is None:
             prepared = Prepared(stepper.settings, stepper.numbers, max(1, stepper.work) * len(system.y))
         else:

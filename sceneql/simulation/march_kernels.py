@@ -12,12 +12,13 @@ import math
 from numba import types
 
 from sceneql.kernels import lean, lean_inlined
-from sceneql.simulation.events_kernels import find_event
 from sceneql.simulation.pointers_kernels import (
+    AT_EVENT,
     AT_IMPACT,
     AT_RATE,
     AT_SETTLE,
     AT_STEP,
+    event_at,
     impact_at,
     rate_at,
     settle_at,
@@ -211,7 +212,7 @@ def march(
             # (What a first-order method holds may follow what pressed at the step's start.)
             rate(t1, y1, rate1, floats, ints)
         if leaving.size > 0:
-            pair, reached = find_event(
+            pair, reached = event_at(functions[AT_EVENT])(
                 functions, t0, t1 - t0, y0, rate0, y1, rate1,
                 sample, work, settings, numbers, floats, ints, gaps, leaving, clock[SLOP],
             )  # fmt: skip

@@ -13,6 +13,7 @@ import numpy as np
 from sceneql.kernels import address, function_at
 from sceneql.system_kernels import (
     DENSE_FUNCTION,
+    EVENT_FUNCTION,
     GAP_FUNCTION,
     IMPACT_FUNCTION,
     JACOBIAN_FUNCTION,
@@ -29,17 +30,18 @@ KINDS = (
     IMPACT_FUNCTION,
     SETTLE_FUNCTION,
     JACOBIAN_FUNCTION,
+    EVENT_FUNCTION,
 )
-AT_STEP, AT_DENSE, AT_RATE, AT_GAP, AT_IMPACT, AT_SETTLE, AT_JACOBIAN = range(len(KINDS))
+AT_STEP, AT_DENSE, AT_RATE, AT_GAP, AT_IMPACT, AT_SETTLE, AT_JACOBIAN, AT_EVENT = range(len(KINDS))
 """Places in the array of addresses: ``rate = rate_at(functions[AT_RATE])``."""
 
 
 def addresses(*functions: Any) -> Any:
-    """(7,) int64 addresses of KINDS; 0 for None, which must not be called. Keep the functions alive."""
+    """(8,) int64 addresses of KINDS; 0 for None, which must not be called. Keep the functions alive."""
     if numba.config.DISABLE_JIT:
         return functions
     found = [0 if f is None else address(f, kind) for f, kind in zip(functions, KINDS, strict=True)]
     return np.array(found, dtype=np.int64)
 
 
-step_at, dense_at, rate_at, gap_at, impact_at, settle_at, jacobian_at = (function_at(kind) for kind in KINDS)
+step_at, dense_at, rate_at, gap_at, impact_at, settle_at, jacobian_at, event_at = (function_at(kind) for kind in KINDS)
