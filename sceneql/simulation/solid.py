@@ -1,10 +1,13 @@
-"""Solids: objects that are known by an implicit field, negative inside; how they become shapes of a frame."""
+"""Solids: objects that are known by an implicit field, negative inside; how they are drawn and measured."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar
 
+from sceneql.kinds import Gives, quantity_type
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.expression import Type
 from sceneql.simulation.placement import Placed, compose, inverse, mapped_box
 
 if TYPE_CHECKING:
@@ -15,10 +18,18 @@ if TYPE_CHECKING:
 INFINITY = float("inf")
 MARGIN = 1e-6
 """By how much the box around a traced field is larger than the solid, in parts of its size."""
+CELLS = 96
+"""Along the longest side of its box, where a solid is measured."""
+MEASURES: Mapping[str, Gives] = {
+    "pieces": Gives(Type(), f"Of how many closed surfaces it is, by marching cubes with {CELLS} cells along it."),
+    "volume": Gives(quantity_type(dim.VOLUME), "What they hold, likewise."),
+}
 
 
 class Solid(Placed):
     """An object with a field in its own coordinates."""
+
+    gives: ClassVar[Mapping[str, Gives]] = MEASURES
 
     def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
         """Register of its field, negative inside; (x, y, z) are registers of a point in its own coordinates."""
@@ -39,6 +50,10 @@ class Solid(Placed):
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[frame.Shape]:
         """Its field as a tape."""
         return traced(self, name, place, moment)
+
+    def read(self, output: str, moment: Moment) -> Any:
+        """One of its measures."""
+        return measure(self, output, moment)
 
 
 def traced(solid: Object, name: str, place: Floats, moment: Moment) -> Iterable[frame.Implicit]:
@@ -63,6 +78,23 @@ def traced(solid: Object, name: str, place: Floats, moment: Moment) -> Iterable[
     room = MARGIN * float(np.max(high - low))
     surface = moment.surface(name, solid.material, solid.color)
     yield frame.Implicit(name, surface, build.finish(value), triple(low - room), triple(high + room))
+
+
+def measure(solid: Object, output: str, moment: Moment) -> Any:
+    """Of any object with a field: the number of its closed surfaces, or its volume [m^3]; 0 where it is nowhere.
+
+    Raises TypeError where it is unbounded.
+    """
+    import numpy as np
+
+    from sceneql.mesh.measures import pieces, volume
+    from sceneql.mesh.polygonise import polygonise
+
+    for shape in traced(solid, "it", np.eye(3, 4), moment):
+        cell = max(high - low for low, high in zip(shape.low, shape.high, strict=True)) / CELLS
+        mesh = polygonise(shape.tape, shape.low, shape.high, cell)
+        return pieces(mesh.triangles) if output == "pieces" else volume(mesh.vertices, mesh.triangles)
+    return 0.0
 
 
 def quadric(

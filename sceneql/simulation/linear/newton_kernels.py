@@ -44,6 +44,8 @@ SLOW = 0.2
 """Contraction from which on the Jacobian is evaluated anew."""
 UNSEEN = 0.05
 """Contraction that is believed before there are two changes to tell it by."""
+TINY = 0.01
+"""Change, in units of the tolerance, that is believed to be the last one by itself."""
 OVERSHOT = 0.9
 """Part of its work at the start that the residual may do against a change at its end."""
 NEAR = 1000.0
@@ -185,6 +187,8 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             contraction = size / before if before > 0.0 else 0.0
             memory[CONTRACTION] = max(contraction, 1e-3)
         done = size == 0.0 or (contraction < 1.0 and size * contraction <= memory[SHARE] * (1.0 - contraction))
+        # Steps of a given length have no estimate of their error beside this one: there, two changes have to tell it.
+        done = done and (since > 0 or memory[SHARE] < 1.0 or size < TINY)
         if done and part == 1.0:
             if not definite:
                 memory[CAREFUL] = 0.0

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
-from sceneql.kinds import FieldBuilder, FixedScalar, Gives, Moment, Object, Points, Problem, field, quantity_type
-from sceneql.quantities import dimension as dim
-from sceneql.quantities.expression import Type
+from sceneql.kinds import FieldBuilder, FixedScalar, Gives, Moment, Object, Points, Problem, field
 from sceneql.simulation.placement import balls_box, inverse
 from sceneql.simulation.skeleton_parts import (
     MOST,
@@ -18,15 +16,12 @@ from sceneql.simulation.skeleton_parts import (
     each,
     failure,
 )
-from sceneql.simulation.solid import traced
+from sceneql.simulation.solid import MEASURES, measure, traced
 
 if TYPE_CHECKING:
     from sceneql import frame
     from sceneql.field.skeleton import Skeleton
     from sceneql.frame import Floats
-
-CELLS = 96
-"""Along it, where it is measured."""
 
 Kernel = Literal["wyvill", "soft_object", "metaball", "gaussian", "inverse_square"]
 
@@ -47,10 +42,7 @@ class Blobby(Object):
     at the surface of a lone part of mean radius.
     """
 
-    gives: ClassVar[Mapping[str, Gives]] = {
-        "pieces": Gives(Type(), "Of how many closed surfaces it is, by marching cubes with 96 cells along it."),
-        "volume": Gives(quantity_type(dim.VOLUME), "What they hold, likewise."),
-    }
+    gives: ClassVar[Mapping[str, Gives]] = MEASURES
 
     skeleton: tuple[Part, ...] = field("Parts of any kind, each with its radius, weight and color.", ())
     points: Points | None = field("The points of the skeleton, or more of them.", None)
@@ -152,17 +144,8 @@ class Blobby(Object):
         return balls_box(place, skeleton.corners[solid], reach[solid, None])
 
     def read(self, output: str, moment: Moment) -> Any:
-        """Number of surfaces, or volume [m^3]: 0 where it is nowhere."""
-        import numpy as np
-
-        from sceneql.mesh.measures import pieces, volume
-        from sceneql.mesh.polygonise import polygonise
-
-        for shape in traced(self, "", np.eye(3, 4), moment):
-            cell = max(high - low for low, high in zip(shape.low, shape.high, strict=True)) / CELLS
-            mesh = polygonise(shape.tape, shape.low, shape.high, cell)
-            return pieces(mesh.triangles) if output == "pieces" else volume(mesh.vertices, mesh.triangles)
-        return 0.0
+        """One of its measures."""
+        return measure(self, output, moment)
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[frame.Shape]:
         """Its density as a tape, with one of its colors where parts have theirs."""
