@@ -13,7 +13,7 @@ test: $(VENV)/installed-test
 	$(BIN)/ruff format --check
 	$(BIN)/lint-imports
 	$(BIN)/mypy
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto --dist worksteal
 
 test-long: $(VENV)/installed-test
 	SCENEQL_FUZZ=1000000 $(BIN)/python -m pytest tests -k "fuzz"
