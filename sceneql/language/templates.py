@@ -26,7 +26,8 @@ MOST_PARTS: Final = 100_000
 def expand(root: Mapping, families: List[str], lost: Broken, found: Diagnostics) -> Expanded:
     """The entries of a script, templates and copies written out and defaults filled in.
 
-    ``lost`` are names of what cannot be read already; those of entries found to be wrong here are added to them.
+    ``lost`` are names of what cannot be read already; those of entries found to be wrong here are added to them. Raises
+    ScriptError where there are too many parts to be looked at.
     """
     expander = _Expander(root, families, lost, found)
     expander.unique(root)
@@ -39,9 +40,9 @@ def expand(root: Mapping, families: List[str], lost: Broken, found: Diagnostics)
         key = root.keys.get("parts") or next(iter(root.keys.values()))
         help = "a model such as `particles` holds many bodies in one part"
         found.error("too-many-parts", message, key.span, help=help)
-    else:
-        for name in expander.templates:
-            expander.unmade(name)
+        found.raise_errors()  # to check them all would take as long as a limit shall save
+    for name in expander.templates:
+        expander.unmade(name)
     return expander.done
 
 
