@@ -24,9 +24,13 @@ class Trace(Renderer):
         at_most=1e-3,
     )
     samples: Literal[1, 2, 4, 8, 16, 32, 64] = field("Rays in a pixel in which things meet.", 8)
+    packets: bool = field(
+        "The camera's rays meet implicit solids in packets: up to a third faster, but twice as much to compile once.",
+        False,
+    )
 
     def draw(self, frame: Any) -> Any:
         """The Picture of a frame: linear (h, w, 3) and the number of undecided pixels."""
         from renderers.tracing.draw import draw
 
-        return draw(frame, self.samples, self.tolerance)
+        return draw(frame, self.samples, self.tolerance, packets=self.packets)

@@ -48,10 +48,13 @@ def _buffers(count: int, columns: int) -> Buffers:
     return kept if kept is not None and kept.shape == (count, columns) else Buffers(count, columns)
 
 
-def draw(frame: Frame, samples: int = 8, tolerance: float = TOLERANCE, march: int = 0) -> Picture:
+def draw(
+    frame: Frame, samples: int = 8, tolerance: float = TOLERANCE, march: int = 0, packets: bool = False
+) -> Picture:
     """Ray-trace a frame; ``samples``, a power of two from 1 to 64: rays in a pixel in which things meet.
 
     ``tolerance`` is that of roots of implicit surfaces; with ``march`` they are looked for at so many places of a ray.
+    ``packets``: the camera's rays look for them in bundles, at the usual tolerance alone.
 
     Roots of implicit surfaces are certified (sceneql.field); shadows and the sky's light are sampled once a pixel by a
     net and averaged over the surface around it, so that the picture has no grain and repeats to the bit.
@@ -61,10 +64,11 @@ def draw(frame: Frame, samples: int = 8, tolerance: float = TOLERANCE, march: in
     columns = FIRST_LIGHT + 2 * int(scene.ints[LIGHT_COUNT])
     buffers = _buffers(width * height, columns)
     undecided: list[int] = []
+    bundled = packets and not march and tolerance == TOLERANCE
 
     def gather(start: int, stop: int) -> None:
         b, spare = buffers, np.empty(COLUMNS, np.float32)
-        told = _told(() if march or tolerance != TOLERANCE else frame.shapes, frame.view, scene, start, stop)
+        told = _told(frame.shapes if bundled else (), frame.view, scene, start, stop)
         undecided.append(
             gather_rows(scene, scratch(rows), start, stop, b.records, b.radiance, b.visibility, spare, *told)
         )
