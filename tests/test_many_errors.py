@@ -227,4 +227,6 @@ def test_what_stands_before_a_break_is_read(folder, chosen, line, rng):
     unknown = {*UNKNOWN, *(["on: [eye]"] if at < line_of("  eye: {") else [])}
     expected = [(code, line_of(old)) for old, new, code in told(chosen) if line_of(old) <= at and new not in unknown]
     behind = {(code, line_of(old) + 1) for old, _, code in told(chosen) if line_of(old) > at}
-    assert [one for one in found if one not in behind] == sorted([*expected, *breaks])
+    # The heading of the section that breaks is not whole: whether it is misspelled is told once the break is mended.
+    behind.add(("unknown-section", at))
+    assert [one for one in found if one not in behind] == sorted({*expected, *breaks} - behind)

@@ -153,7 +153,7 @@ class Names:
 
     def _some_output(self, task: str) -> str:
         outputs = self.outputs_of(task) or {}
-        return f"{task}.{next(iter(outputs), 'position')}"
+        return f"{task}.{'position' if 'position' in outputs else next(iter(outputs), 'position')}"
 
 
 def plain(expr: Any) -> Any:

@@ -27,7 +27,10 @@ def schema(catalogue: Catalogue) -> dict[str, Any]:
     properties: dict[str, Any] = {
         "sceneql": {"const": 1, "description": "Version of the language."},
         "define": {"type": "object", "description": "Names for values."},
-        "include": {"type": "array", "items": {"type": "string"}, "description": "Scripts of this folder to add."},
+        "include": {
+            "anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}],
+            "description": "Scripts of this folder to add.",
+        },
         "templates": {"type": "object", "description": "Parts with fields, to be used under `parts`."},
         "parts": {"type": "object", "description": "Instances of templates."},
         "defaults": {"type": "object", "description": "Fields by word, for all entries that leave them out."},
