@@ -12,8 +12,6 @@ if TYPE_CHECKING:
 
 STEPS = 12
 """Of Newton's method from a sample to the surface."""
-NEIGHBORS = 12
-"""Triangles, by the nearness of their centers, that a point's distance is measured to."""
 
 
 class Hausdorff(NamedTuple):
@@ -40,15 +38,15 @@ def hausdorff(polygons: Polygons, tape: Tape, samples: int = 20_000) -> Hausdorf
     """
     import numpy as np
 
+    from sceneql.mesh.distance import distances
+
     if not len(polygons.triangles):
         raise ValueError("a mesh without triangles is no distance from anything")
-    corners = polygons.vertices[polygons.triangles]
-    points = _spread(corners, samples)
+    points = _spread(polygons.vertices[polygons.triangles], samples)
     feet, reached = _feet(tape, points)
     lengths = np.linalg.norm(feet - points, axis=1)
-    return Hausdorff(
-        float(lengths[reached].max(initial=0.0)), float(_from_triangles(corners, feet[reached]).max(initial=0.0))
-    )
+    back = distances(feet[reached], polygons.vertices, polygons.triangles)
+    return Hausdorff(float(lengths[reached].max(initial=0.0)), float(back.max(initial=0.0)))
 
 
 def _spread(corners: Floats, samples: int) -> Floats:
@@ -81,35 +79,3 @@ def _feet(tape: Tape, points: Floats) -> tuple[Floats, Ints]:
             feet -= np.where(finite[:, None], moves, 0.0)
     size = np.ptp(points, axis=0).max()
     return feet, finite & (np.linalg.norm(moves, axis=1) < 1e-9 * size)
-
-
-def _from_triangles(corners: Floats, points: Floats) -> Floats:
-    """(n,) distances of points from triangles (m, 3, 3), the nearest of the NEIGHBORS with the nearest centers."""
-    import numpy as np
-    from scipy.spatial import KDTree
-
-    count = min(NEIGHBORS, len(corners))
-    _, near = KDTree(corners.mean(axis=1)).query(points, k=count)
-    near = near.reshape(len(points), count)
-    least = np.full(len(points), np.inf)
-    for column in range(count):
-        least = np.minimum(least, _from_triangle(corners[near[:, column]], points))
-    return least
-
-
-def _from_triangle(corners: Floats, points: Floats) -> Floats:
-    """(n,) distances of points from one triangle each: from its plane over its inside, else from its sides."""
-    import numpy as np
-
-    a, b, c = (corners[:, k] for k in range(3))
-    across = np.cross(b - a, c - a)
-    square = (across**2).sum(axis=1)
-    least = np.full(len(points), np.inf)
-    inside = square > 0.0
-    for first, second in ((a, b), (b, c), (c, a)):
-        side, away = second - first, points - first
-        share = (away * side).sum(axis=1) / np.maximum((side**2).sum(axis=1), 1e-300)
-        least = np.minimum(least, np.linalg.norm(away - np.clip(share, 0.0, 1.0)[:, None] * side, axis=1))
-        inside = inside & ((np.cross(side, away) * across).sum(axis=1) >= 0.0)
-    height = np.abs(((points - a) * across).sum(axis=1)) / np.sqrt(np.maximum(square, 1e-300))
-    return np.where(inside, np.minimum(height, least), least)

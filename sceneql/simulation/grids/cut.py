@@ -94,8 +94,11 @@ def below(phi: Floats, slopes: Floats, sides: Floats) -> Floats:
     """Part of boxes (m,) in which phi + slopes . x < 0, x from -sides/2 to sides/2: (m,); slopes (m, k), sides (k,)."""
     k = slopes.shape[1]
     rise = np.abs(slopes) * sides
+    largest = np.maximum(rise.max(axis=1), np.abs(phi))
+    largest = np.where(largest > 0.0, largest, 1.0)
+    rise, phi = rise / largest[:, None], phi / largest
     total = rise.sum(axis=1)
-    some = total > np.maximum(1e-9 * np.abs(phi), 1e-300)
+    some = total > 1e-9 * np.abs(phi)
     rise = np.where(some[:, None], rise / np.where(some, total, 1.0)[:, None], 1.0 / k)
     rise = np.maximum(rise, LEAST_SLOPE)
     whole = rise.sum(axis=1)
