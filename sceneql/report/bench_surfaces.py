@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sceneql.files import whole
+from sceneql.frame import Implicit
 from sceneql.report.page import Table, beside
 from sceneql.report.plots import surface_errors
 from sceneql.report.surfaces import MeshRun, RayRun, mesh_runs, ray_runs
@@ -33,7 +34,8 @@ class Section:
 def surface_section(frame: Frame, title: str, stem: Path) -> Section:
     """Measure the implicit objects of a frame; write CSVs and a plot beside ``stem``."""
     rays = list(ray_runs(frame))
-    meshes = [run for shape in frame.shapes if shape.within is None for run in mesh_runs(shape)]  # type: ignore[union-attr, arg-type]  # all are Implicit
+    solids = [shape for shape in frame.shapes if isinstance(shape, Implicit) and shape.within is None]
+    meshes = [run for solid in solids for run in mesh_runs(solid)]
     width, height = frame.view.size
     lines = [
         f"implicit surfaces at {width} x {height}, {rays[0].pixels} pixels of them: rays against certified intervals",
