@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats, Tape
-    from sceneql.kinds import Moment, Object
+    from sceneql.kinds import Moment, Ref
     from sceneql.simulation.models.diffusion import Diffusion
     from sceneql.system import Assembly
 
@@ -26,13 +26,13 @@ class TapeLevel:
     """The inside of an object with a field (cut.Level); its boundary is one piece."""
 
     def __init__(self, tape: Tape, name: str) -> None:
-        self._tape, self.names = tape, (name,)
+        self.tape, self.names = tape, (name,)
 
     def values(self, points: Floats) -> Floats:
         """The field (k,)."""
         from sceneql.field.solid import field_values
 
-        return field_values(self._tape, points)
+        return field_values(self.tape, points)
 
     def pieces(self, points: Floats) -> NDArray[int64]:
         """(k,) zeros."""
@@ -46,7 +46,7 @@ def cells_of(model: Diffusion, assembly: Assembly) -> cells.Cells:
         return cells.box(model.size, corner, model.cell, model.depth)
     assert model.domain is not None
     try:
-        level, low, high, flat = _inside(model.domain.name, assembly.object(model.domain), model.flat, assembly)
+        level, low, high, flat = inside(model.domain, model.flat, cast("Moment", Start(assembly)))
     except (TypeError, ValueError) as error:
         message = f"'{model.domain.name}' cannot be a domain: {error}"
         raise ScriptError([Diagnostic("no-domain", message, model.domain.span)]) from error
@@ -66,18 +66,21 @@ def cells_of(model: Diffusion, assembly: Assembly) -> cells.Cells:
     return found
 
 
-def _inside(name: str, kind: Object, flat: bool, assembly: Assembly) -> tuple[Any, Floats, Floats, bool]:
-    """Level set, low and high corner (3,) of the box around it, whether it is flat."""
+def inside(ref: Ref, flat: bool, start: Moment) -> tuple[Any, Floats, Floats, bool]:
+    """Level set of an object at the start, low and high corner (3,) of the box around it, whether it is flat.
+
+    Raises TypeError or ValueError for an object without an inside.
+    """
     from sceneql.field.builder import TapeBuilder
 
+    kind = start.object(ref)
     own = kind.domain()
     if own is not None:
         low, high = own.bounds
         return own, low, high, True
-    start = cast("Moment", Start(assembly))
     build = TapeBuilder()
     tape = build.finish(kind.implicit(build, build.x, build.y, build.z, start))
     low, high = kind.extent(np.eye(3, 4), start)
     if not (np.isfinite(low).all() and np.isfinite(high).all()):
         raise ValueError("it is unbounded")
-    return TapeLevel(tape, name), low, high, flat
+    return TapeLevel(tape, ref.name), low, high, flat
