@@ -1,9 +1,9 @@
-"""A diffusion model on its cells, as state, numbers and terms of an island."""
+"""Fields that spread over cells, as state, numbers and terms of an island."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.kinds import Formula
     from sceneql.simulation.grids.cells import Cells
-    from sceneql.simulation.models.diffusion import Diffusion
+    from sceneql.simulation.grids.medium import Boundary
     from sceneql.system import Assembly
 
 KERNELS = "sceneql.simulation.models.diffusion_kernels"
@@ -27,9 +27,54 @@ SLOPES = "sceneql.simulation.models.diffusion_slopes_kernels:spread"
 ZERO = Number(0.0)
 
 
-def assemble(model: Diffusion, cells: Cells, assembly: Assembly) -> None:
-    """Add everything. Raises ScriptError for a coefficient below 0 and for boundary parts that overlap."""
-    _Builder(model, cells, assembly).build()
+class Spreading(Protocol):
+    """A field of a model."""
+
+    @property
+    def coefficient(self) -> Formula | None:
+        """D; None: 0."""
+
+    @property
+    def initial(self) -> Formula | None:
+        """At the start; None: 0."""
+
+    @property
+    def source(self) -> Formula | None:
+        """What comes in a second and cubic meter."""
+
+    @property
+    def boundary(self) -> Boundary:
+        """What holds on the boundary."""
+
+
+class Ground:
+    """The cells of a model with their numbers in an island."""
+
+    def __init__(self, cells: Cells, assembly: Assembly) -> None:
+        self.cells = cells
+        self.count = len(cells.volumes)
+        self.inside = cells.volumes > 0.0
+        self.centers = cells.centers()
+        if cells.flat:
+            self.centers[:, 2] = 0.0
+        low_z = -0.5 * cells.spacing[2] if cells.flat else cells.low[2]
+        self.box_at = assembly.floats([*cells.low[:2], low_z, *cells.spacing])
+        self.volumes_at = assembly.floats(cells.volumes)
+        self.divisors_at = assembly.floats(np.where(self.inside, cells.volumes, 1.0))
+        """1 outside, where nothing is divided by it."""
+
+    @property
+    def memory(self) -> tuple[int, ...]:
+        """What medium.layout_of reads."""
+        return (self.volumes_at, self.box_at, *self.cells.shape)
+
+
+def add_field(field: Spreading, ground: Ground, assembly: Assembly) -> Grid:
+    """Reserve a number a cell and one for the inflow, and add the terms of the rate.
+
+    Raises ScriptError for a coefficient below 0 and for boundary parts that overlap.
+    """
+    return _Builder(field, ground, assembly).build()
 
 
 def varies(formula: Formula | None) -> bool:
@@ -53,27 +98,19 @@ def at_points(formula: Formula, points: Floats, **more: Any) -> Floats:
 
 @dataclass
 class _Builder:
-    model: Diffusion
-    cells: Cells
+    field: Spreading
+    ground: Ground
     assembly: Assembly
 
-    def build(self) -> None:
-        model, cells, assembly = self.model, self.cells, self.assembly
+    def build(self) -> Grid:
+        field, cells, assembly = self.field, self.ground.cells, self.assembly
         nx, ny, nz = cells.shape
-        n = nx * ny * nz
-        self.count = n
-        self.inside = cells.volumes > 0.0
-        self.centers = cells.centers()
-        if cells.flat:
-            self.centers[:, 2] = 0.0
+        n = self.count = self.ground.count
+        self.cells, self.inside, self.centers = cells, self.ground.inside, self.ground.centers
         self.at = assembly.state(np.append(self._start(), 0.0))
-        self.conditions, periodic = conditions(model, cells, assembly.line())
-        self.box = assembly.floats([*cells.low[:2], -0.5 * cells.spacing[2] if cells.flat else cells.low[2],
-                                    *cells.spacing])  # fmt: skip
-        self.volumes = assembly.floats(np.where(self.inside, cells.volumes, 1.0))
+        self.conditions, periodic = conditions(field.boundary, cells, assembly.line())
         ties = [self._ties(axis, periodic[axis]) for axis in range(3 if nz > 1 else 2)]
-        varying = varies(model.coefficient)
-        self.dummy = Slopes("", [self.at], [self.at])
+        varying = varies(field.coefficient)
         if varying:
             faces, sink, weights, bend = self._varying_coefficient(ties)
         else:
@@ -82,14 +119,15 @@ class _Builder:
         fed, reaction = self._fed(weights)
         faces = (*faces, faces[0])[:3] if len(faces) == 2 else faces
         ties_at = tuple(self.ties_at) if bend else (0, 0, 0)
-        ints = (self.at, nx, ny, nz, self.volumes, sink, fed, *faces, self.at + n)
+        volumes = self.ground.divisors_at
+        ints = (self.at, nx, ny, nz, volumes, sink, fed, *faces, self.at + n)
         slopes = self._slopes(periodic)
         more = (*ints, bend, *(*ties_at, 0)[:3], reaction)
         assembly.term("close", f"{KERNELS}:spread", ints, Slopes(SLOPES, *slopes, more))
-        grid = Grid(
+        return Grid(
             shape=cells.shape,
             at=self.at,
-            volumes_at=self.volumes,
+            volumes_at=volumes,
             sink_at=sink,
             faces_at=(faces[0], faces[1], faces[2]),
             periodic=periodic,
@@ -97,16 +135,14 @@ class _Builder:
             fed_at=-1 if varying or self.feeding else fed,
             outside=~self.inside,
         )
-        assembly.grid(grid)
-        assembly.remember(self.at, assembly.floats(cells.volumes), self.box, *cells.shape)
 
     def _start(self) -> Floats:
-        start = np.zeros(self.count) if self.model.initial is None else at_points(self.model.initial, self.centers)
+        start = np.zeros(self.count) if self.field.initial is None else at_points(self.field.initial, self.centers)
         start[~self.inside] = 0.0
         if not np.isfinite(start).all():
             message = "the field at the start is not finite everywhere"
-            assert self.model.initial is not None
-            raise ScriptError([Diagnostic("not-finite", message, self.model.initial.span)])
+            assert self.field.initial is not None
+            raise ScriptError([Diagnostic("not-finite", message, self.field.initial.span)])
         return start
 
     def _ties(self, axis: int, periodic: bool) -> Floats:
@@ -129,7 +165,8 @@ class _Builder:
     def _constant_coefficient(self, ties: list[Floats]) -> tuple[tuple[int, ...], int, list[Floats]]:
         """Offsets of conductances and sink, and the weights of the boundary's conditions."""
         assembly = self.assembly
-        d = at_points(self.model.coefficient, self.centers)
+        formula = self.field.coefficient
+        d = np.zeros(self.count) if formula is None else at_points(formula, self.centers)
         self._must_be_positive(d)
         faces = []
         for axis, tie in enumerate(ties):
@@ -147,7 +184,8 @@ class _Builder:
 
     def _varying_coefficient(self, ties: list[Floats]) -> tuple[tuple[int, ...], int, list[Floats], int]:
         assembly, n = self.assembly, self.count
-        formula = self.model.coefficient
+        formula = self.field.coefficient
+        assert formula is not None
         start = at_points(formula, self.centers, time=0.0, c=assembly.start()[self.at : self.at + n]) if not any(
             isinstance(node, Link) for node in walk(formula.expr)) else np.zeros(n)  # fmt: skip
         self._must_be_positive(start)
@@ -183,8 +221,8 @@ class _Builder:
 
     def _fed(self, weights: list[Floats]) -> tuple[int, int]:
         """Offsets of what is fed, and of d(source)/dc times the volume (0: none)."""
-        model, assembly, n = self.model, self.assembly, self.count
-        moving = varies(model.coefficient)
+        assembly, n = self.assembly, self.count
+        moving = varies(self.field.coefficient)
         fixed = np.zeros(n)
         later: list[tuple[Condition, int]] = []
         first = 0
@@ -195,7 +233,7 @@ class _Builder:
                 given = one.areas if moving else weight
                 np.add.at(fixed, one.cells, given * at_points(one.formula, one.points))
             first += len(one.cells)
-        source = model.source
+        source = self.field.source
         volumes = np.where(self.inside, self.cells.volumes, 0.0)
         if source is not None and not varies(source):
             fixed += volumes * at_points(source, self.centers)
@@ -223,7 +261,7 @@ class _Builder:
         return fed, reaction
 
     def _cells_kernel(self, expr: Expr, arrays: tuple[int, int, int]) -> None:
-        kernel, ints = over_cells(self.assembly, expr, self.at, arrays, self.cells.shape, self.box)
+        kernel, ints = over_cells(self.assembly, expr, self.at, arrays, self.cells.shape, self.ground.box_at)
         self.assembly.term("internal", kernel, ints, self._dummy(kernel))
 
     def _dummy(self, kernel: str) -> Slopes:
@@ -249,4 +287,5 @@ class _Builder:
         if len(bad):
             x, y, z = self.centers[bad[0]]
             message = f"the coefficient must be at least 0, and is {d[bad[0]]:g} at ({x:g}, {y:g}, {z:g}) m"
-            raise ScriptError([Diagnostic("out-of-range", message, self.model.coefficient.span)])
+            formula = self.field.coefficient
+            raise ScriptError([Diagnostic("out-of-range", message, None if formula is None else formula.span)])

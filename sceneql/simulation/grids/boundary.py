@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from sceneql.kinds import Formula
     from sceneql.quantities.span import Span
     from sceneql.simulation.grids.cells import Cells
-    from sceneql.simulation.models.diffusion import Diffusion, Part
+    from sceneql.simulation.grids.medium import Boundary, Part
 
 GIVEN_FLUX = -1.0
 
@@ -45,7 +45,7 @@ class Condition:
         return weights
 
 
-def conditions(model: Diffusion, cells: Cells, line: Span | None) -> tuple[list[Condition], tuple[bool, bool, bool]]:
+def conditions(boundary: Boundary, cells: Cells, line: Span | None) -> tuple[list[Condition], tuple[bool, bool, bool]]:
     """The conditions that let something through, and which directions are periodic. Raises ScriptError.
 
     ``line`` of the script where the model stands.
@@ -55,8 +55,8 @@ def conditions(model: Diffusion, cells: Cells, line: Span | None) -> tuple[list[
     owner = np.full(len(faces.cells), -1)
     found: list[Condition] = []
     periodic = [False, False, False]
-    rest = [(name, part) for name, part in model.boundary.items() if name == "rest"]
-    named = [(name, part) for name, part in model.boundary.items() if name != "rest"]
+    rest = [(name, part) for name, part in boundary.items() if name == "rest"]
+    named = [(name, part) for name, part in boundary.items() if name != "rest"]
     for number, (name, part) in enumerate(named + rest):
         if name not in (*cells.names, "rest") and part.where is None:
             known = ", ".join((*cells.names, "rest"))
@@ -127,23 +127,30 @@ def _span(part: Part) -> Span | None:
     return None
 
 
-def held_by(model: Diffusion, names: tuple[str, ...]) -> Callable[[Floats, Any], Any] | None:
-    """From points of a boundary (m, 3) and their pieces (m,) whether a value is given there; None: nowhere."""
-    from sceneql.simulation.grids.assembly import at_points
-
-    if all(part.value is None for part in model.boundary.values()):
+def held_by(boundaries: Sequence[Boundary], names: tuple[str, ...]) -> Callable[[Floats, Any], Any] | None:
+    """From points of a boundary (m, 3) and their pieces (m,) whether a field's value is given there; None: nowhere."""
+    if all(part.value is None for boundary in boundaries for part in boundary.values()):
         return None
 
     def held(points: Floats, pieces: Any) -> Any:
-        found, taken = np.zeros(len(points), dtype=bool), np.zeros(len(points), dtype=bool)
-        for name, part in sorted(model.boundary.items(), key=lambda item: item[0] == "rest"):
-            mine = ~taken
-            if name in names:
-                mine &= pieces == names.index(name)
-            if part.where is not None:
-                mine &= at_points(part.where, points) > 0.0
-            taken |= mine
-            found |= mine & (part.value is not None)
+        found = np.zeros(len(points), dtype=bool)
+        for boundary in boundaries:
+            found |= _held(boundary, names, points, pieces)
         return found
 
     return held
+
+
+def _held(boundary: Boundary, names: tuple[str, ...], points: Floats, pieces: Any) -> Any:
+    from sceneql.simulation.grids.assembly import at_points
+
+    found, taken = np.zeros(len(points), dtype=bool), np.zeros(len(points), dtype=bool)
+    for name, part in sorted(boundary.items(), key=lambda item: item[0] == "rest"):
+        mine = ~taken
+        if name in names:
+            mine &= pieces == names.index(name)
+        if part.where is not None:
+            mine &= at_points(part.where, points) > 0.0
+        taken |= mine
+        found |= mine & (part.value is not None)
+    return found

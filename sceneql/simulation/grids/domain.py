@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from sceneql.frame import Floats, Tape
     from sceneql.kinds import Moment, Ref
-    from sceneql.simulation.models.diffusion import Diffusion
+    from sceneql.simulation.grids.medium import Medium
     from sceneql.system import Assembly
 
 
@@ -39,7 +39,7 @@ class TapeLevel:
         return np.zeros(len(points), dtype=np.int64)
 
 
-def cells_of(model: Diffusion, assembly: Assembly) -> cells.Cells:
+def cells_of(model: Medium, assembly: Assembly) -> cells.Cells:
     """The grid of a model. Raises ScriptError where its domain is an object without an inside, or holds no cell."""
     if model.size is not None:
         corner = model.corner or (0.0,) * len(model.size)
@@ -57,9 +57,10 @@ def cells_of(model: Diffusion, assembly: Assembly) -> cells.Cells:
             f"{count:.3g} cells: at most {cells.MOST_CELLS:,} are possible", assembly.line(), "take a larger `cell`"
         )
     grid = cut.frame(low, high, model.cell, model.depth, flat)
-    found = (
-        cut.cut(level, grid, held_by(model, level.names)) if model.edges == "cut_cell" else cut.staircase(level, grid)
-    )
+    if model.edges == "cut_cell":
+        found = cut.cut(level, grid, held_by(tuple(model.boundaries()), level.names))
+    else:
+        found = cut.staircase(level, grid)
     if not (found.volumes > 0.0).any():
         message = f"no cell of {model.cell:g} m lies inside '{model.domain.name}'"
         raise ScriptError([Diagnostic("no-cell", message, model.domain.span, "take a smaller `cell`")])

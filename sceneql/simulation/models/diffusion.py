@@ -3,92 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
-from pydantic import model_validator
-
-from sceneql.kinds import (
-    Exceeds,
-    FixedLength,
-    Formula,
-    Gives,
-    Model,
-    ObjectRef,
-    Quantity,
-    Record,
-    Symbols,
-    field,
-    quantity_type,
-)
+from sceneql.kinds import Gives, field
 from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
-from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import Link, Symbol, walk
+from sceneql.simulation.grids.medium import ANYTHING, PLACE, Boundary, FieldLayout, Medium, gives_of, layout_of
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats
     from sceneql.system import Assembly, ModelState
 
-PLACE = Annotated[Formula, Symbols(("x", "y", "z"))]
-PLACE_AND_TIME = Annotated[Formula, Symbols(("x", "y", "z", "t"))]
-ANYTHING = Annotated[Formula, Symbols(("x", "y", "z", "t", "c"))]
 UNITS = {"concentration": dim.DENSITY, "temperature": dim.TEMPERATURE, "number": dim.PLAIN}
 
 
-@dataclass(frozen=True, slots=True)
-class FieldLayout:
-    """A field on its grid: cell (i, j, k) is y[at + i + nx (j + ny k)]; where its volume is 0 it is outside."""
-
-    shape: tuple[int, int, int]
-    at: int
-    volumes_at: int
-    """In the floats."""
-    low: tuple[float, ...]
-    """Low corner [m]."""
-    spacing: tuple[float, ...]
-    """Sides of a cell [m]."""
-
-    @property
-    def count(self) -> int:
-        """Cells, also those outside."""
-        return self.shape[0] * self.shape[1] * self.shape[2]
-
-    def centers(self) -> Floats:
-        """(cells, 3) [m]."""
-        import numpy as np
-
-        nx, ny, _ = self.shape
-        cell = np.arange(self.count)
-        index = np.stack([cell % nx, cell // nx % ny, cell // (nx * ny)], axis=1)
-        centers: Floats = np.array(self.low) + (index + 0.5) * np.array(self.spacing)
-        return centers
-
-
-class Exchange(Record):
-    """What crosses a boundary in proportion to a difference: coefficient (outside - c) a second and square meter."""
-
-    coefficient: Annotated[float, Quantity(dim.VELOCITY)] = field("How well it crosses.", at_least=0)
-    outside: ANYTHING | None = field("The value outside; by default 0.", None)
-
-
-class Part(Record):
-    """What holds on a part of the boundary: one of value, flux, robin, periodic."""
-
-    value: ANYTHING | None = field("The value there (Dirichlet).", None)
-    flux: ANYTHING | None = field("What comes in a second and square meter, D dc/dn outwards (Neumann).", None)
-    robin: Exchange | None = field("Exchange with the outside (Robin).", None)
-    periodic: bool = field("The sides of this direction are one: what leaves here comes in at the other.", False)
-    where: PLACE | None = field("Only where this formula is above 0.", None)
-
-    @model_validator(mode="after")
-    def _one(self) -> Part:
-        if (self.value is not None) + (self.flux is not None) + (self.robin is not None) + self.periodic != 1:
-            raise ValueError("a part of the boundary has one of `value`, `flux`, `robin` and `periodic`")
-        return self
-
-
-class Diffusion(Model):
+class Diffusion(Medium):
     """Diffusion dc/dt = div(D grad c) + source by finite volumes on a grid of cells, which conserve what there is.
 
     A face between two cells carries D area (difference)/(distance); D there is the harmonic mean of the cells' where it
@@ -98,29 +26,13 @@ class Diffusion(Model):
     (1980), 4.2; Crank, The Mathematics of Diffusion (1975).
     """
 
-    has_bodies = False
-    is_field = True
-
-    domain: ObjectRef | None = field("The object whose inside, at the start, it spreads in; or give `size`.", None)
-    flat: bool = field("The section of that object at z = 0 alone.", False)
-    edges: Literal["cut_cell", "staircase"] = field(
-        "How cells meet the object's boundary: cut by it, or whole where their centers lie inside.", "cut_cell"
-    )
-    size: Annotated[tuple[float, ...], Quantity(dim.LENGTH, (None,))] | None = field(
-        "Sides of a box in place of a domain: two for a flat one, three for a deep one.", None, above=0
-    )
-    corner: Annotated[tuple[float, ...], Quantity(dim.LENGTH, (None,))] | None = field(
-        "Low corner of that box; by default the origin.", None
-    )
-    depth: FixedLength = field("How thick a flat domain is.", "1 m", above=0)
-    cell: FixedLength = field("Largest side of a cell.", above=0)
     of: Literal["concentration", "temperature", "number"] = field(
         "What spreads, which gives its unit.", "concentration"
     )
     coefficient: ANYTHING = field("The coefficient D [m^2/s].")
     initial: PLACE | None = field("The field at the start; by default 0.", None)
     source: ANYTHING | None = field("What comes in a second and cubic meter; below 0 it leaves.", None)
-    boundary: dict[str, Part] = field(
+    boundary: Boundary = field(
         "What holds on the sides `left`, `right` (x), `bottom`, `top` (y), `back`, `front` (z) of a box, on the pieces "
         "of an outline, on the boundary of another object by its name, on any part `where` a formula holds, or on "
         "`rest`.",
@@ -131,85 +43,32 @@ class Diffusion(Model):
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
         """In the unit of what spreads."""
         unit = UNITS.get(str(written.get("of", "concentration")), dim.PLAIN)
-        one, amount = quantity_type(unit), quantity_type(unit * dim.VOLUME)
-        return {
-            "concentration": Gives(quantity_type(unit, (None,)), "The field in every cell of the domain."),
-            "centers": Gives(quantity_type(dim.LENGTH, (None, 3)), "The centers of these cells."),
-            "mass": Gives(amount, "How much there is: the field over the volume."),
-            "inflow": Gives(amount, "How much has come in through the boundary and from sources since the start."),
-            "max": Gives(one, "Largest value."),
-            "min": Gives(one, "Least value."),
-            "mean": Gives(one, "Mean over the volume."),
-        }
+        found = dict(gives_of("The field in every cell of the domain.", unit))
+        return {"concentration": found.pop("field"), **found}
 
-    @model_validator(mode="after")
-    def _fits(self) -> Diffusion:
-        from sceneql.simulation.grids.cells import MOST_CELLS, SIDES, counts
-
-        if (self.size is None) == (self.domain is None):
-            raise ValueError("it spreads in one of `domain` and `size`")
-        if self.size is None:
-            return self
-        if len(self.size) not in (2, 3) or (self.corner is not None and len(self.corner) != len(self.size)):
-            raise ValueError("a domain has two or three sides, and its corner as many numbers")
-        shape = counts(self.size, self.cell)
-        cells = shape[0] * shape[1] * shape[2]
-        if cells > MOST_CELLS:
-            raise Exceeds(f"{cells:.3g} cells: at most {MOST_CELLS:,} are possible; take a larger `cell`")
-        known = (*SIDES[: 2 * len(self.size)], "rest")
-        for name, part in self.boundary.items():
-            if name not in known and part.where is None:
-                raise ValueError(f"the boundary has no side '{name}': it has {', '.join(known)}; or say `where`")
-        return self
+    def boundaries(self) -> Iterable[Boundary]:
+        """That of its field."""
+        return (self.boundary,)
 
     def fastest(self, name: str) -> Iterable[Oscillation]:
-        """The decay of the checkerboard, at most 4 D sum of 1/spacing^2 (von Neumann's bound)."""
-        from sceneql.simulation.grids.cells import counts
-
-        if any(isinstance(node, Symbol | Link) for node in walk(self.coefficient.expr)):
-            return
-        d = float(evaluate(self.coefficient.expr, {}))
-        if self.size is None:
-            rate = 8.0 * d / self.cell**2  # of a flat domain; that of a deep one is larger
-        else:
-            shape = counts(self.size, self.cell)
-            rate = 4.0 * d * sum((n / side) ** 2 for n, side in zip(shape, self.size, strict=False))
-        yield Oscillation(0.0, rate, f"the spread over cells of {self.cell:g} m", ("cell",))
+        """The decay of the checkerboard."""
+        found = self.checkerboard(self.coefficient)
+        return () if found is None else (found,)
 
     def assemble(self, name: str, assembly: Assembly) -> None:
         """Reserve a number a cell and one for the inflow, and add the terms of the rate. Raises ScriptError."""
-        from sceneql.simulation.grids.assembly import assemble
+        from sceneql.simulation.grids.assembly import Ground, add_field
         from sceneql.simulation.grids.domain import cells_of
 
-        assemble(self, cells_of(self, assembly), assembly)
+        ground = Ground(cells_of(self, assembly), assembly)
+        grid = add_field(self, ground, assembly)
+        assembly.grid(grid)
+        assembly.remember(grid.at, *ground.memory)
 
-    def layout(self, state: ModelState) -> FieldLayout:
+    def layout(self, state: ModelState, output: str = "concentration") -> FieldLayout:
         """Where its field lies, for pictures."""
-        at, volumes_at, box_at, nx, ny, nz = state.ints[:6]
-        box = state.floats[box_at : box_at + 6]
-        return FieldLayout((nx, ny, nz), at, volumes_at, tuple(box[:3].tolist()), tuple(box[3:].tolist()))
+        return layout_of(state.ints[0], state.ints[1:], state.floats)
 
     def read(self, output: str, state: ModelState) -> Any:
         """An output: (cells of the domain,), (cells, 3) or float."""
-        import numpy as np
-
-        layout = self.layout(state)
-        field = state.y[layout.at : layout.at + layout.count]
-        volumes = state.floats[layout.volumes_at : layout.volumes_at + layout.count]
-        inside = volumes > 0.0
-        match output:
-            case "concentration":
-                return field[inside]
-            case "centers":
-                return layout.centers()[inside]
-            case "mass":
-                return float(volumes @ field)
-            case "inflow":
-                return float(state.y[layout.at + layout.count])
-            case "max":
-                return float(field[inside].max())
-            case "min":
-                return float(field[inside].min())
-            case "mean":
-                return float(np.average(field, weights=volumes))
-        raise KeyError(output)
+        return self.measure("field" if output == "concentration" else output, self.layout(state), state)

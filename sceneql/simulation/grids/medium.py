@@ -1,0 +1,190 @@
+"""What models of fields on grids share: where they spread, what holds on the boundary, what is read of a field."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import model_validator
+
+from sceneql.kinds import (
+    Exceeds,
+    FixedLength,
+    Formula,
+    Gives,
+    Model,
+    ObjectRef,
+    Quantity,
+    Record,
+    Symbols,
+    field,
+    quantity_type,
+)
+from sceneql.kinds.stable_step import Oscillation
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.dimension import Dimension
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Link, Symbol, walk
+from sceneql.simulation.grids.cells import MOST_CELLS, SIDES, counts
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.system import ModelState
+
+PLACE = Annotated[Formula, Symbols(("x", "y", "z"))]
+ANYTHING = Annotated[Formula, Symbols(("x", "y", "z", "t", "c"))]
+SIZES = Annotated[tuple[float, ...], Quantity(dim.LENGTH, (None,))]
+
+
+@dataclass(frozen=True, slots=True)
+class FieldLayout:
+    """A field on its grid: cell (i, j, k) is y[at + i + nx (j + ny k)]; where its volume is 0 it is outside."""
+
+    shape: tuple[int, int, int]
+    at: int
+    volumes_at: int
+    """In the floats."""
+    low: tuple[float, ...]
+    """Low corner [m]."""
+    spacing: tuple[float, ...]
+    """Sides of a cell [m]."""
+
+    @property
+    def count(self) -> int:
+        """Cells, also those outside."""
+        return self.shape[0] * self.shape[1] * self.shape[2]
+
+    def centers(self) -> Floats:
+        """(cells, 3) [m]."""
+        import numpy as np
+
+        nx, ny, _ = self.shape
+        cell = np.arange(self.count)
+        index = np.stack([cell % nx, cell // nx % ny, cell // (nx * ny)], axis=1)
+        centers: Floats = np.array(self.low) + (index + 0.5) * np.array(self.spacing)
+        return centers
+
+
+class Exchange(Record):
+    """What crosses a boundary in proportion to a difference: coefficient (outside - c) a second and square meter."""
+
+    coefficient: Annotated[float, Quantity(dim.VELOCITY)] = field("How well it crosses.", at_least=0)
+    outside: ANYTHING | None = field("The value outside; by default 0.", None)
+
+
+class Part(Record):
+    """What holds on a part of the boundary: one of value, flux, robin, periodic."""
+
+    value: ANYTHING | None = field("The value there (Dirichlet).", None)
+    flux: ANYTHING | None = field("What comes in a second and square meter, D dc/dn outwards (Neumann).", None)
+    robin: Exchange | None = field("Exchange with the outside (Robin).", None)
+    periodic: bool = field("The sides of this direction are one: what leaves here comes in at the other.", False)
+    where: PLACE | None = field("Only where this formula is above 0.", None)
+
+    @model_validator(mode="after")
+    def _one(self) -> Part:
+        if (self.value is not None) + (self.flux is not None) + (self.robin is not None) + self.periodic != 1:
+            raise ValueError("a part of the boundary has one of `value`, `flux`, `robin` and `periodic`")
+        return self
+
+
+Boundary = dict[str, Part]
+
+
+class Medium(Model):
+    """A domain on a grid of cells."""
+
+    has_bodies = False
+    is_field = True
+
+    domain: ObjectRef | None = field("The object whose inside, at the start, it spreads in; or give `size`.", None)
+    flat: bool = field("The section of that object at z = 0 alone.", False)
+    edges: Literal["cut_cell", "staircase"] = field(
+        "How cells meet the object's boundary: cut by it, or whole where their centers lie inside.", "cut_cell"
+    )
+    size: SIZES | None = field(
+        "Sides of a box in place of a domain: two for a flat one, three for a deep one.", None, above=0
+    )
+    corner: SIZES | None = field("Low corner of that box; by default the origin.", None)
+    depth: FixedLength = field("How thick a flat domain is.", "1 m", above=0)
+    cell: FixedLength = field("Largest side of a cell.", above=0)
+
+    def boundaries(self) -> Iterable[Boundary]:
+        """What holds on the boundary, of every field."""
+        raise NotImplementedError
+
+    @model_validator(mode="after")
+    def _fits(self) -> Medium:
+        if (self.size is None) == (self.domain is None):
+            raise ValueError("it spreads in one of `domain` and `size`")
+        if self.size is None:
+            return self
+        if len(self.size) not in (2, 3) or (self.corner is not None and len(self.corner) != len(self.size)):
+            raise ValueError("a domain has two or three sides, and its corner as many numbers")
+        shape = counts(self.size, self.cell)
+        cells = shape[0] * shape[1] * shape[2]
+        if cells > MOST_CELLS:
+            raise Exceeds(f"{cells:.3g} cells: at most {MOST_CELLS:,} are possible; take a larger `cell`")
+        known = (*SIDES[: 2 * len(self.size)], "rest")
+        for name, part in (item for boundary in self.boundaries() for item in boundary.items()):
+            if name not in known and part.where is None:
+                raise ValueError(f"the boundary has no side '{name}': it has {', '.join(known)}; or say `where`")
+        return self
+
+    def checkerboard(self, coefficient: Formula) -> Oscillation | None:
+        """The decay of the checkerboard, at most 4 D sum of 1/spacing^2 (von Neumann's bound), of a constant D."""
+        if any(isinstance(node, Symbol | Link) for node in walk(coefficient.expr)):
+            return None
+        d = float(evaluate(coefficient.expr, {}))
+        if self.size is None:
+            rate = 8.0 * d / self.cell**2  # of a flat domain; that of a deep one is larger
+        else:
+            shape = counts(self.size, self.cell)
+            rate = 4.0 * d * sum((n / side) ** 2 for n, side in zip(shape, self.size, strict=False))
+        return Oscillation(0.0, rate, f"the spread over cells of {self.cell:g} m", ("cell",))
+
+    def measure(self, what: str, layout: FieldLayout, state: ModelState) -> Any:
+        """Of a field: `field` (cells of the domain,), `centers` (cells, 3), mass, inflow, max, min, mean (floats)."""
+        import numpy as np
+
+        field = state.y[layout.at : layout.at + layout.count]
+        volumes = state.floats[layout.volumes_at : layout.volumes_at + layout.count]
+        inside = volumes > 0.0
+        match what:
+            case "field":
+                return field[inside]
+            case "centers":
+                return layout.centers()[inside]
+            case "mass":
+                return float(volumes @ field)
+            case "inflow":
+                return float(state.y[layout.at + layout.count])
+            case "max":
+                return float(field[inside].max())
+            case "min":
+                return float(field[inside].min())
+            case "mean":
+                return float(np.average(field, weights=volumes))
+        raise KeyError(what)
+
+
+def gives_of(field: str, unit: Dimension) -> Mapping[str, Gives]:
+    """The outputs of `measure`, in the unit of a field; ``field``: its line of the manual."""
+    one, amount = quantity_type(unit), quantity_type(unit * dim.VOLUME)
+    return {
+        "field": Gives(quantity_type(unit, (None,)), field),
+        "centers": Gives(quantity_type(dim.LENGTH, (None, 3)), "The centers of these cells."),
+        "mass": Gives(amount, "How much there is: the field over the volume."),
+        "inflow": Gives(amount, "How much has come in through the boundary and from sources since the start."),
+        "max": Gives(one, "Largest value."),
+        "min": Gives(one, "Least value."),
+        "mean": Gives(one, "Mean over the volume."),
+    }
+
+
+def layout_of(at: int, ints: tuple[int, ...], floats: Floats) -> FieldLayout:
+    """Where a field lies; ``ints``: offsets of volumes and box, nx, ny, nz."""
+    volumes_at, box_at, nx, ny, nz = ints[:5]
+    box = floats[box_at : box_at + 6]
+    return FieldLayout((nx, ny, nz), at, volumes_at, tuple(box[:3].tolist()), tuple(box[3:].tolist()))
