@@ -7,6 +7,7 @@ from PIL import Image
 from sceneql import pipeline
 from sceneql.report.expect import outcomes
 from sceneql.report.gallery import check, compare, update
+from sceneql.simulation.run import Instant
 
 SCENE = """
 models:
@@ -54,6 +55,35 @@ def test_expectations_hold_or_do_not(tmp_path):
     }
     assert str(found["wrong"]).startswith("DIFFERS")
     assert "exact" in str(found["right"])
+
+
+MEASURED = """
+clock: {end: 1 s, fps: 10}
+objects:
+  ball: {sphere: {radius: 1 m + time*(1 m/s)}}
+expect:
+  first: {of: initial(ball.volume), value: 4/3*pi*(1 m)^3, tolerance: 5e-3, because: exact}
+  last: {of: final(ball.volume), value: 4/3*pi*(2 m)^3, tolerance: 0.04, because: exact}
+  end: {of: ball.volume, value: final(ball.volume), tolerance: 0, because: exact}
+  middle: {of: "at(ball.volume, 0.55 s)", value: 4/3*pi*(1.55 m)^3, tolerance: 0.02, because: exact}
+  whole: {of: max(ball.pieces), value: 1, tolerance: 0, because: exact}
+"""
+
+
+def test_a_measure_is_read_only_when_it_counts(tmp_path, monkeypatch):
+    read = []
+
+    def measured(self, task, output):
+        read.append((output, self.time))
+        return plain(self, task, output)
+
+    plain = Instant.read
+    monkeypatch.setattr(Instant, "read", measured)
+    path = tmp_path / "ball.yaml"
+    path.write_text(MEASURED)
+    assert all(outcome.holds for outcome in outcomes(pipeline.load(path, pruned=False)))
+    assert sorted(time for output, time in read if output == "volume") == pytest.approx([0.0, 0.55, 1.0])
+    assert len([time for output, time in read if output == "pieces"]) == 12
 
 
 @pytest.fixture

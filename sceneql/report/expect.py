@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from sceneql import pipeline
 from sceneql.graph import SimulationGraph
 from sceneql.kinds import Expect
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import Call, Expr, Link, Symbol, Vector, walk
+from sceneql.quantities.expression import Call, Expr, Link, Symbol, Vector, children, walk
 from sceneql.quantities.operations import OPERATIONS
 
 
@@ -51,19 +51,50 @@ def outcomes(graph: SimulationGraph, variant: str | None = None) -> list[Outcome
     nodes = [node for value in values for node in walk(value.expr)]
     instants |= {_instant(node) for node in nodes if isinstance(node, Call) and node.op == "at"}
     times = sorted(t for t in instants if t <= clock.end)
-    links = {node for node in nodes if isinstance(node, Link)}
-    series = _sample(graph, times, links)
+    wants: dict[Link, set[float]] = {}
+    for value in values:
+        for link, when in _wanted(value.expr, times[-1:] if _plain(value.expr) else times, times):
+            wants.setdefault(link, set()).update(when)
+    series = _sample(graph, times, wants)
     return [_outcome(name, expect, series, times) for name, expect in wanted.items()]
 
 
-def _sample(graph: SimulationGraph, times: list[float], links: set[Link]) -> dict[Symbol | Link, Any]:
+def _plain(expr: Expr) -> bool:
+    """Whether nothing in an expression asks for more than one time: it is then read at the end."""
+    calls = (OPERATIONS[node.op] for node in walk(expr) if isinstance(node, Call))
+    return not any(operation.series or operation.reduces for operation in calls)
+
+
+def _wanted(expr: Expr, when: Sequence[float], times: Sequence[float]) -> Iterator[tuple[Link, Sequence[float]]]:
+    """The links of an expression that counts at some of the times, with those at which each counts."""
+    if isinstance(expr, Link):
+        yield expr, when
+    if isinstance(expr, Call) and OPERATIONS[expr.op].series:
+        when = _SERIES[expr.op].instants(times, expr)
+    for child in children(expr):
+        yield from _wanted(child, when, times)
+
+
+def _sample(graph: SimulationGraph, times: list[float], wants: Mapping[Link, set[float]]) -> dict[Symbol | Link, Any]:
+    """Links at the times, each (times, ...): NaN when it is not wanted, for reading may cost a mesh."""
     import numpy as np
 
-    rows: dict[Link, list[Any]] = {link: [] for link in links}
-    for moment in pipeline.simulate(graph, times):
+    rows: dict[Link, list[Any]] = {link: [] for link in wants}
+    for time, moment in zip(times, pipeline.simulate(graph, times), strict=True):
         for link, row in rows.items():
-            row.append(moment.read(link.task, link.output))
-    return {Symbol("time"): np.array(times), **{link: np.array(row) for link, row in rows.items()}}
+            row.append(moment.read(link.task, link.output) if time in wants[link] else None)
+    return {Symbol("time"): np.array(times), **{link: _filled(row) for link, row in rows.items()}}
+
+
+def _filled(row: list[Any]) -> Any:
+    """(times, ...) of values, NaN where there are none."""
+    import numpy as np
+
+    known = [np.asarray(value) for value in row if value is not None]
+    if len(known) == len(row):
+        return np.array(row)
+    blank = np.full(known[0].shape, np.nan)
+    return np.array([blank if value is None else value for value in row])
 
 
 def _outcome(name: str, expect: Expect, series: Mapping[Symbol | Link, Any], times: list[float]) -> Outcome:
@@ -101,12 +132,10 @@ def measure(expr: Expr, series: Mapping[Symbol | Link, Any], times: list[float])
             return node
         value = evaluate(args[0], look_up, arrays=True)
         symbol = Symbol(f"series {len(known)}", node.type)
-        known[symbol] = _SERIES[node.op](value, times, node)
+        known[symbol] = _SERIES[node.op].of(value, times, node)
         return symbol
 
-    if not any(
-        isinstance(node, Call) and (OPERATIONS[node.op].series or OPERATIONS[node.op].reduces) for node in walk(expr)
-    ):
+    if _plain(expr):
         return evaluate(expr, lambda node: look_up(node)[-1], arrays=True)
     return evaluate(solve(expr), look_up, arrays=True)
 
@@ -128,10 +157,19 @@ def _drift(value: Any, times: list[float], node: Call) -> Any:
     return (value - value[0]) / scale
 
 
-_SERIES: Mapping[str, Any] = {
-    "final": lambda value, times, node: value[-1],
-    "initial": lambda value, times, node: value[0],
-    "at": _at,
-    "relative_drift": _drift,
-    "spread": lambda value, times, node: value.max(axis=0) - value.min(axis=0),
+class _Series(NamedTuple):
+    """What an operation on time makes of a series."""
+
+    of: Callable[[Any, list[float], Call], Any]
+    """(series, its times, the call) to its value."""
+    instants: Callable[[Sequence[float], Call], Sequence[float]] = lambda times, node: times
+    """The times that count."""
+
+
+_SERIES: Mapping[str, _Series] = {
+    "final": _Series(lambda value, times, node: value[-1], lambda times, node: times[-1:]),
+    "initial": _Series(lambda value, times, node: value[0], lambda times, node: times[:1]),
+    "at": _Series(_at, lambda times, node: [_instant(node)] if _instant(node) <= times[-1] else times[-1:]),
+    "relative_drift": _Series(_drift),
+    "spread": _Series(lambda value, times, node: value.max(axis=0) - value.min(axis=0)),
 }
