@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Surface
     from sceneql.kinds.objects import Object
     from sceneql.kinds.values import Ref, Value
+    from sceneql.system import ModelState
 
 
 class Moment(Protocol):
@@ -29,6 +30,9 @@ class Moment(Protocol):
 
     def read(self, task: str, output: str) -> Any:
         """An output of a part now."""
+
+    def state(self, name: str) -> ModelState:
+        """The state of a model that is solved, or of a contact, now."""
 
     def object(self, ref: Ref) -> Object:
         """The kind of an object."""

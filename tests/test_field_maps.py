@@ -1,0 +1,270 @@
+"""Fields in pictures: interpolated, cut along boundaries, in colors, with lines and surfaces of one value."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from renderers.tracing.draw import draw
+from runs import complaint
+from sceneql.frame import Mesh, Segments
+from sceneql.mesh.measures import area, pieces, volume
+from sceneql.pipeline import frame_of, load
+from sceneql.simulation.color import linear
+from sceneql.simulation.maps.colors import CONTROLS, colored, from_oklab, oklab, table
+from sceneql.simulation.maps.domains import cut_open, flat, section, surface
+from sceneql.simulation.maps.interpolation import Interpolation
+from sceneql.simulation.maps.iso import iso_sheet
+from sceneql.simulation.maps.sheets import Sheet, contour, kept, lattice
+from sceneql.simulation.models.diffusion import FieldLayout
+from sceneql.simulation.run import Run
+
+FLAT = FieldLayout((12, 9, 1), 0, 0, (-1.0, 0.5, -0.5), (0.25, 0.2, 1.0))
+DEEP = FieldLayout((6, 5, 4), 0, 0, (-1.0, 0.5, 2.0), (0.25, 0.2, 0.3))
+
+
+class Ball:
+    """A disk or ball as a domain (grids.cut.Level)."""
+
+    def __init__(self, center, radius):
+        self.center, self.radius = np.array(center), radius
+
+    def values(self, points):
+        return np.linalg.norm(points - self.center, axis=1) - self.radius
+
+
+def inside_of(layout, ball):
+    return ball.values(layout.centers()) < 0.0
+
+
+def somewhere(layout, count=200):
+    low, spacing = np.array(layout.low), np.array(layout.spacing)
+    points = low + np.random.default_rng(1).random((count, 3)) * spacing * layout.shape
+    points[:, 2] *= layout.shape[2] > 1
+    return points
+
+
+# --- between the centers of cells ---
+
+
+@pytest.mark.parametrize("layout", [FLAT, DEEP])
+def test_linear_fields_are_themselves_up_to_the_walls(layout):
+    between = Interpolation(layout, np.ones(layout.count, dtype=bool))
+    plane = np.array([1.5, -2.0, 0.7 if layout is DEEP else 0.0])
+    points = somewhere(layout)
+    found = between.at(between.filled(layout.centers() @ plane + 3.0), points)
+    np.testing.assert_allclose(found, points @ plane + 3.0, atol=1e-12)
+
+
+def test_linear_fields_are_themselves_up_to_a_curved_shore():
+    ball = Ball((0.4, 1.4, 0.0), 0.8)
+    inside = inside_of(FLAT, ball)
+    between = Interpolation(FLAT, inside)
+    points = somewhere(FLAT)
+    points = points[ball.values(points) < 0.0]
+    found = between.at(between.filled(FLAT.centers()[inside] @ [0.0, 1.0, 0.0]), points)
+    np.testing.assert_allclose(found, points[:, 1], atol=1e-12)
+
+
+@given(st.lists(st.sampled_from([0.0, 1.0]), min_size=FLAT.count, max_size=FLAT.count))
+@settings(max_examples=30, deadline=None)
+def test_no_value_is_made_that_a_field_of_steps_does_not_have(values):
+    inside = inside_of(FLAT, Ball((0.4, 1.4, 0.0), 0.9))
+    between = Interpolation(FLAT, inside)
+    found = between.at(between.filled(np.array(values)[inside]), somewhere(FLAT))
+    assert found.min() >= 0.0
+    assert found.max() <= 1.0
+
+
+# --- sheets ---
+
+
+def test_a_flat_domain_ends_on_its_shore():
+    ball = Ball((0.4, 1.4, 0.0), 0.75)
+    sheet = flat(FLAT, ball)
+    away = ball.values(sheet.vertices)
+    assert away.max() < 1e-9
+    assert area(sheet.vertices, sheet.triangles) == pytest.approx(np.pi * 0.75**2, rel=2e-3)
+    assert (np.abs(away) < 1e-9).sum() > 60
+
+
+def test_a_section_of_a_ball_is_a_disk_across_any_direction():
+    ball = Ball((-0.2, 1.0, 2.6), 0.45)
+    normal = np.array([2.0, -1.0, 0.5]) / np.linalg.norm([2.0, -1.0, 0.5])
+    found = section(DEEP, ball, (ball.center + 0.2 * normal, normal))
+    np.testing.assert_allclose((found.vertices - ball.center) @ normal, 0.2, atol=1e-12)
+    assert area(found.vertices, found.triangles) == pytest.approx(np.pi * (0.45**2 - 0.2**2), rel=0.01)
+
+
+def test_a_box_that_is_cut_open_has_lost_what_lies_before_both_planes():
+    middle = np.array(DEEP.low) + 0.5 * np.array(DEEP.spacing) * DEEP.shape
+    planes = [(middle, np.eye(3)[0]), (middle, np.eye(3)[2])]
+    whole = surface(DEEP, None)
+    box = float(np.prod(np.array(DEEP.spacing) * DEEP.shape))
+    assert volume(whole.vertices, whole.triangles) == pytest.approx(box, rel=1e-12)
+    opened = cut_open(whole, [section(DEEP, None, plane) for plane in planes], planes)
+    assert volume(opened.vertices, opened.triangles) == pytest.approx(0.75 * box, rel=1e-12)
+
+
+@given(st.floats(-2.0, 2.0), st.floats(-2.0, 2.0), st.floats(-1.0, 1.0))
+@settings(max_examples=40, deadline=None)
+def test_what_a_half_plane_keeps_and_what_it_takes_are_all(a, b, c):
+    sheet = lattice((0, 0, 0), (1, 0, 0), (0, 1, 0), (7, 5))
+
+    def side(points):
+        return points @ [a, b, 0.0] + c
+
+    parts = kept(sheet, side), kept(sheet, lambda points: -side(points))
+    both = sum(area(part.vertices, part.triangles) for part in parts)
+    assert both == pytest.approx(1.0 if (a, b) != (0.0, 0.0) or c else 0.0, rel=1e-9)
+
+
+def test_the_line_of_a_value_is_straight_on_a_plane_and_round_on_a_cone():
+    sheet = lattice((-1, -1, 0), (2, 0, 0), (0, 2, 0), (40, 40))
+    x, y, _ = sheet.vertices.T
+    line = contour(sheet, 2 * x - y, 0.3)
+    np.testing.assert_allclose(2 * line[..., 0] - line[..., 1], 0.3, atol=1e-12)
+    assert np.linalg.norm(line[:, 1] - line[:, 0], axis=1).sum() == pytest.approx(np.sqrt(5), rel=1e-9)
+    ring = contour(sheet, np.hypot(x, y), 0.6)
+    assert abs(np.hypot(ring[..., 0], ring[..., 1]) - 0.6).max() < 0.05**2 / 0.6  # h^2/8 of the second derivative
+    assert np.linalg.norm(ring[:, 1] - ring[:, 0], axis=1).sum() == pytest.approx(1.2 * np.pi, rel=2e-3)
+
+
+# --- surfaces of one value ---
+
+
+def nodes(n, low=-1.0, high=1.0):
+    axis = np.linspace(low, high, n)
+    z, y, x = np.meshgrid(axis, axis, axis, indexing="ij")
+    return (axis, axis, axis), x, y, z
+
+
+def test_the_surface_of_a_ball_is_of_second_order_and_faces_outwards():
+    errors = []
+    for n in (12, 23, 45):
+        axes, x, y, z = nodes(n)
+        sheet = iso_sheet(axes, np.sqrt(x * x + y * y + z * z) - 0.7)
+        assert pieces(sheet.triangles) == 1
+        errors.append(abs(volume(sheet.vertices, sheet.triangles) / (4 / 3 * np.pi * 0.7**3) - 1))
+    orders = np.log2(errors[:-1]) - np.log2(errors[1:])
+    assert orders.min() > 1.8
+
+
+@given(st.integers(0, 2**32 - 1))
+@settings(max_examples=25, deadline=None)
+def test_surfaces_of_any_values_are_closed(seed):
+    axes, *_ = nodes(6)
+    values = np.pad(np.random.default_rng(seed).standard_normal((4, 4, 4)), 1, constant_values=1.0)
+    sheet = iso_sheet(axes, values)
+    edges = np.concatenate([sheet.triangles[:, [k, (k + 1) % 3]] for k in range(3)])
+    forth = {(a, b) for a, b in edges.tolist()}
+    assert len(forth) == len(edges)
+    assert forth == {(b, a) for a, b in forth}
+
+
+# --- colors ---
+
+
+def test_oklab_is_as_published():
+    np.testing.assert_allclose(oklab([1.0, 1.0, 1.0]), [1.0, 0.0, 0.0], atol=1e-4)
+    np.testing.assert_allclose(oklab([1.0, 0.0, 0.0]), [0.627955, 0.224863, 0.125846], atol=1e-5)
+    np.testing.assert_allclose(from_oklab(oklab([0.2, 0.5, 0.1])), [0.2, 0.5, 0.1], atol=1e-9)
+
+
+@pytest.mark.parametrize("name", list(CONTROLS))
+def test_maps_pass_through_their_control_colors(name):
+    hexes = CONTROLS[name].split()
+    wanted = [linear(int(text[k : k + 2], 16) / 255 for k in (0, 2, 4)) for text in hexes]
+    found = colored(np.linspace(-3.0, 5.0, len(hexes)), (-3.0, 5.0), name)
+    np.testing.assert_allclose(found, wanted, atol=2e-3)
+    np.testing.assert_allclose(colored(np.array([-9.0, 99.0]), (-3.0, 5.0), name), [wanted[0], wanted[-1]], atol=1e-6)
+
+
+@pytest.mark.parametrize("name", ["viridis", "inferno", "gray"])
+def test_maps_from_dark_to_light_grow_lighter_evenly(name):
+    lightness = oklab(table(name))[:, 0]
+    rise = np.diff(lightness)
+    assert rise.min() > 0.0
+    assert rise.max() < 4.0 * rise.mean()
+
+
+def test_the_map_with_a_middle_is_lightest_there_and_falls_to_both_sides():
+    lightness = oklab(table("coolwarm"))[:, 0]
+    assert abs(int(np.argmax(lightness)) - len(lightness) / 2) < 0.02 * len(lightness)
+    assert lightness[0] == pytest.approx(lightness[-1], abs=0.06)
+
+
+# --- the word ---
+
+PLATE = """
+clock: {{end: 1 s, fps: 10}}
+models:
+  plate: {{diffusion: {{size: 2 1 m, cell: 0.05 m, of: number, coefficient: "0.001", initial: "x"}}}}
+objects:
+  map: {{field_map: {{of: plate.concentration, {fields}}}}}
+solvers: {{main: {{ftcs: {{step: 0.1 s}}}}}}
+lights: {{even: {{sky: {{color: white}}}}}}
+cameras: {{plan: {{orthographic: {{height: 0.5 m, look_at: 1 0.5 0 m}}}}}}
+outputs: {{film: {{image: {{size: 64 32}}}}}}
+"""
+
+
+def shapes(folder, fields, time=0.0):
+    path = folder / "scene.yaml"
+    path.write_text(PLATE.format(fields=fields), encoding="utf-8")
+    graph = load(path)
+    (moment,) = Run(graph).moments([time])
+    return frame_of(graph, "film", (64, 32), moment, 0)
+
+
+def test_under_an_even_sky_a_picture_has_the_colors_of_the_map(tmp_path):
+    frame = shapes(tmp_path, "range: 0 2")
+    picture = draw(frame, samples=1).linear
+    x = 1.0 + (np.arange(64) + 0.5 - 32) / 64
+    np.testing.assert_allclose(picture[10], colored(x, (0.0, 2.0), "viridis"), atol=3e-3)
+
+
+def test_the_range_is_that_of_the_start_at_any_time(tmp_path):
+    for time in (0.0, 0.7):
+        mesh = next(shape for shape in shapes(tmp_path, "colors: gray", time).shapes if isinstance(shape, Mesh))
+        near = np.abs(mesh.vertices[:, 0] - 1.0) < 1e-9
+        assert near.any()
+        wanted = colored(np.ones(near.sum()), (0.025, 1.975), "gray")
+        np.testing.assert_allclose(mesh.colors[near], wanted, atol=1e-9)
+
+
+def test_contours_and_heights_are_where_the_field_has_the_value(tmp_path):
+    frame = shapes(tmp_path, "range: 0 2, contours: 0.5 1.25, height: 0.1 m, contour_radius: 2 mm")
+    mesh = next(shape for shape in frame.shapes if isinstance(shape, Mesh))
+    lines = next(shape for shape in frame.shapes if isinstance(shape, Segments))
+    np.testing.assert_allclose(mesh.vertices[:, 2], 0.1 * mesh.vertices[:, 0], atol=1e-12)
+    places = np.unique(np.round(lines.ends[..., 0], 9))
+    np.testing.assert_allclose(places, [0.5, 1.25], atol=1e-9)
+    assert set(lines.radii) == {0.002}
+
+
+def test_what_cannot_be_drawn_is_told_with_its_place(tmp_path):
+    for fields, told in (
+        ("range: 0 1 kg", "the field as a plain number"),
+        ("height: 1 s", "a height is a length for a unit of the field"),
+        ("cut: [{normal: 0 0 0}]", "a plane needs a direction"),
+    ):
+        assert told.removeprefix("the field as ") in complaint(tmp_path, PLATE.format(fields=fields)), fields
+    path = tmp_path / "scene.yaml"
+    path.write_text(PLATE.format(fields="cut: [{normal: 0 0 1}]"), encoding="utf-8")
+    graph = load(path)
+    (moment,) = Run(graph).moments([0.0])
+    with pytest.raises(Exception, match="a flat field has no inside"):
+        frame_of(graph, "film", (64, 32), moment, 0)
+
+
+def test_a_field_is_one_parts(tmp_path):
+    told = complaint(tmp_path, PLATE.format(fields="range: 0 1").replace("plate.concentration,", "'[1, 2]',"))
+    assert "a field is one part's" in told
+
+
+def test_an_empty_sheet_stays_empty():
+    empty = kept(Sheet(np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int32)), lambda points: points[:, 0])
+    assert len(empty.triangles) == 0
