@@ -13,12 +13,12 @@ from sceneql.frame import Mesh, Segments
 from sceneql.mesh.measures import area, pieces, volume
 from sceneql.pipeline import frame_of, load
 from sceneql.simulation.color import linear
+from sceneql.simulation.grids.medium import FieldLayout
 from sceneql.simulation.maps.colors import CONTROLS, colored, from_oklab, oklab, table
 from sceneql.simulation.maps.domains import cut_open, flat, section, surface
 from sceneql.simulation.maps.interpolation import Interpolation
 from sceneql.simulation.maps.iso import iso_sheet
 from sceneql.simulation.maps.sheets import Sheet, contour, kept, lattice
-from sceneql.simulation.models.diffusion import FieldLayout
 from sceneql.simulation.run import Run
 
 FLAT = FieldLayout((12, 9, 1), 0, 0, (-1.0, 0.5, -0.5), (0.25, 0.2, 1.0))

@@ -11,7 +11,7 @@ from sceneql.simulation.maps.sheets import Sheet, Side, flat_normals, joined, ke
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.simulation.models.diffusion import FieldLayout
+    from sceneql.simulation.grids.medium import FieldLayout
 
 FINEST = 4
 """Steps of a sheet in a cell, at most."""

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats
-    from sceneql.simulation.models.diffusion import FieldLayout
+    from sceneql.simulation.grids.medium import FieldLayout
 
 LAYERS = 3
 """Of cells outside that get values: what a point of the domain lies between is among them."""

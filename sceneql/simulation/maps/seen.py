@@ -14,8 +14,8 @@ from sceneql.quantities.units import describe
 if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.kinds import Moment
+    from sceneql.simulation.grids.medium import FieldLayout
     from sceneql.simulation.maps.interpolation import Interpolation
-    from sceneql.simulation.models.diffusion import FieldLayout
 
 Field = Annotated[Value, Quantity(None, (None,))]
 """An expression of a field's values: ``lake.concentration``, ``dish.u - dish.v``."""
