@@ -47,7 +47,7 @@ class Kernel:
 def rate_kernel(system: RateSystem) -> Kernel:
     """Kernel that adds dy/dt to ``out`` (n,)."""
     constants = Constants()
-    meanings, rows = _lift(system, constants)
+    meanings, rows = lifted(system, constants)
     printer = _printer(system, meanings, constants)
     rates = [printer.name(row) for row in rows]
     return _kernel("rate", system, printer, [f"out[first + {k}] += {rate}" for k, rate in enumerate(rates)])
@@ -60,7 +60,21 @@ def jacobian_kernel(system: RateSystem) -> Kernel:
     evaluated once however often w is used. Raises TypeError for an operation without a derivative.
     """
     constants = Constants()
-    meanings, rows = _lift(system, constants)
+    meanings, rows = lifted(system, constants)
+    entries, derived = derivatives(system.states, meanings, rows)
+    printer = _printer(system, {**meanings, **derived}, constants)
+    places = tuple(place for place, entry in enumerate(entries) if entry != ZERO)
+    lines = [f"out[block + {k}] += {printer.name(entries[place])}" for k, place in enumerate(places)]
+    return _kernel("jacobian", system, printer, lines, places)
+
+
+def derivatives(
+    states: Sequence[str], meanings: Mapping[str, Expr], rows: Sequence[Expr]
+) -> tuple[list[Expr], dict[str, Expr]]:
+    """The entries of the Jacobian, row by row, and the meanings of the symbols that stand in them for dw/dy.
+
+    Raises TypeError for an operation without a derivative.
+    """
     slopes: dict[tuple[str, str], Expr] = {}
     derived: dict[str, Expr] = {}
 
@@ -81,14 +95,10 @@ def jacobian_kernel(system: RateSystem) -> Kernel:
             slopes[name, state] = ZERO if expr == ZERO else symbol
         return slopes[name, state]
 
-    entries = [total(row, state) for row in rows for state in system.states]
-    printer = _printer(system, {**meanings, **derived}, constants)
-    places = tuple(place for place, entry in enumerate(entries) if entry != ZERO)
-    lines = [f"out[block + {k}] += {printer.name(entries[place])}" for k, place in enumerate(places)]
-    return _kernel("jacobian", system, printer, lines, places)
+    return [total(row, state) for row in rows for state in states], derived
 
 
-def _lift(system: RateSystem, constants: Constants) -> tuple[dict[str, Expr], list[Expr]]:
+def lifted(system: RateSystem, constants: Constants) -> tuple[dict[str, Expr], list[Expr]]:
     """Helper quantities and rows without vectors, numbers and links."""
     meanings = {name: constants.lift(components(expr)[0]) for name, expr in system.where.items()}
     return meanings, [constants.lift(components(row)[0]) for row in system.rows]

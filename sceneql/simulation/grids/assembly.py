@@ -42,10 +42,6 @@ class Spreading(Protocol):
     def source(self) -> Formula | None:
         """What comes in a second and cubic meter."""
 
-    @property
-    def boundary(self) -> Boundary:
-        """What holds on the boundary."""
-
 
 class Ground:
     """The cells of a model with their numbers in an island."""
@@ -69,12 +65,12 @@ class Ground:
         return (self.volumes_at, self.box_at, *self.cells.shape)
 
 
-def add_field(field: Spreading, ground: Ground, assembly: Assembly) -> Grid:
+def add_field(field: Spreading, boundary: Boundary, ground: Ground, assembly: Assembly) -> Grid:
     """Reserve a number a cell and one for the inflow, and add the terms of the rate.
 
     Raises ScriptError for a coefficient below 0 and for boundary parts that overlap.
     """
-    return _Builder(field, ground, assembly).build()
+    return _Builder(field, boundary, ground, assembly).build()
 
 
 def varies(formula: Formula | None) -> bool:
@@ -99,18 +95,19 @@ def at_points(formula: Formula, points: Floats, **more: Any) -> Floats:
 @dataclass
 class _Builder:
     field: Spreading
+    boundary: Boundary
     ground: Ground
     assembly: Assembly
 
     def build(self) -> Grid:
-        field, cells, assembly = self.field, self.ground.cells, self.assembly
+        cells, assembly = self.ground.cells, self.assembly
         nx, ny, nz = cells.shape
         n = self.count = self.ground.count
         self.cells, self.inside, self.centers = cells, self.ground.inside, self.ground.centers
         self.at = assembly.state(np.append(self._start(), 0.0))
-        self.conditions, periodic = conditions(field.boundary, cells, assembly.line())
+        self.conditions, periodic = conditions(self.boundary, cells, assembly.line())
         ties = [self._ties(axis, periodic[axis]) for axis in range(3 if nz > 1 else 2)]
-        varying = varies(field.coefficient)
+        varying = varies(self.field.coefficient)
         if varying:
             faces, sink, weights, bend = self._varying_coefficient(ties)
         else:

@@ -61,7 +61,7 @@ class Diffusion(Medium):
         from sceneql.simulation.grids.domain import cells_of
 
         ground = Ground(cells_of(self, assembly), assembly)
-        grid = add_field(self, ground, assembly)
+        grid = add_field(self, self.boundary, ground, assembly)
         assembly.grid(grid)
         assembly.remember(grid.at, *ground.memory)
 
