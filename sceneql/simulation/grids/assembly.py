@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from sceneql.kinds import Formula
 from sceneql.quantities.derivative import components, differentiate
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.evaluate import evaluate
@@ -17,9 +18,8 @@ from sceneql.system import Grid, Slopes
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.kinds import Formula
     from sceneql.simulation.grids.cells import Cells
-    from sceneql.simulation.grids.medium import Boundary
+    from sceneql.simulation.grids.medium import Boundary, Picture
     from sceneql.system import Assembly
 
 KERNELS = "sceneql.simulation.models.diffusion_kernels"
@@ -35,7 +35,7 @@ class Spreading(Protocol):
         """D; None: 0."""
 
     @property
-    def initial(self) -> Formula | None:
+    def initial(self) -> Formula | Picture | None:
         """At the start; None: 0."""
 
     @property
@@ -134,13 +134,28 @@ class _Builder:
         )
 
     def _start(self) -> Floats:
-        start = np.zeros(self.count) if self.field.initial is None else at_points(self.field.initial, self.centers)
+        initial = self.field.initial
+        if initial is None:
+            return np.zeros(self.count)
+        if not isinstance(initial, Formula):
+            return self._pictured(initial)
+        start = at_points(initial, self.centers)
         start[~self.inside] = 0.0
         if not np.isfinite(start).all():
             message = "the field at the start is not finite everywhere"
-            assert self.field.initial is not None
-            raise ScriptError([Diagnostic("not-finite", message, self.field.initial.span)])
+            raise ScriptError([Diagnostic("not-finite", message, initial.span)])
         return start
+
+    def _pictured(self, initial: Picture) -> Floats:
+        """The field at the start by a picture over the box around the domain."""
+        from sceneql.simulation.grids.picture import sampled
+
+        low, high = (corner[:2] for corner in self.cells.around)
+        try:
+            light = sampled(initial.file, (self.centers[:, :2] - low) / (high - low))
+        except ValueError as error:
+            raise ScriptError([Diagnostic("no-picture", str(error), self.assembly.line())]) from error
+        return np.where(self.inside, initial.black + (initial.white - initial.black) * light, 0.0)
 
     def _ties(self, axis: int, periodic: bool) -> Floats:
         """Area over distance of all faces of an axis."""

@@ -58,7 +58,7 @@ def conditions(boundary: Boundary, cells: Cells, line: Span | None) -> tuple[lis
     rest = [(name, part) for name, part in boundary.items() if name == "rest"]
     named = [(name, part) for name, part in boundary.items() if name != "rest"]
     for number, (name, part) in enumerate(named + rest):
-        if name not in (*cells.names, "rest") and part.where is None:
+        if name not in (*cells.names, "rest") and not part.chosen:
             known = ", ".join((*cells.names, "rest"))
             text = f"the boundary has no part '{name}'"
             raise ScriptError([Diagnostic("unknown-boundary", text, _span(part) or line, f"it has {known}")])
@@ -84,24 +84,33 @@ def conditions(boundary: Boundary, cells: Cells, line: Span | None) -> tuple[lis
     return [one for one in found if len(one.cells)], (periodic[0], periodic[1], periodic[2])
 
 
-HELP = "give each face to one part: say `where`, or name other sides"
+HELP = "give each face to one part: say `where` or `near`, or name other sides"
 
 
 def _faces_of(name: str, part: Part, cells: Cells, taken: Any) -> Any:
     """(faces,) bool."""
-    from sceneql.simulation.grids.assembly import at_points
-
     faces = cells.boundary
     mine = ~taken if name == "rest" else np.ones(len(faces.cells), dtype=bool)
     if name in cells.names:
         piece = cells.names.index(name)
         mine = faces.pieces // 2 == piece // 2 if part.periodic else faces.pieces == piece
+    points = faces.points.copy()
+    if cells.flat:
+        points[:, 2] = 0.0
+    return mine & _chosen(part, points)
+
+
+def _chosen(part: Part, points: Floats) -> Any:
+    """(m,) bool: whether a part holds at points (m, 3) of the pieces that it is for."""
+    from sceneql.simulation.grids.assembly import at_points
+
+    found = np.ones(len(points), dtype=bool)
     if part.where is not None:
-        points = faces.points.copy()
-        if cells.flat:
-            points[:, 2] = 0.0
-        mine = mine & (at_points(part.where, points) > 0.0)
-    return mine
+        found &= at_points(part.where, points) > 0.0
+    if part.near is not None and part.within is not None:
+        away = points[:, : len(part.near)] - np.array(part.near)
+        found &= np.einsum("ij,ij->i", away, away) <= part.within**2
+    return found
 
 
 def _condition(part: Part, cells: Cells, mine: Any) -> Condition:
@@ -142,15 +151,12 @@ def held_by(boundaries: Sequence[Boundary], names: tuple[str, ...]) -> Callable[
 
 
 def _held(boundary: Boundary, names: tuple[str, ...], points: Floats, pieces: Any) -> Any:
-    from sceneql.simulation.grids.assembly import at_points
-
     found, taken = np.zeros(len(points), dtype=bool), np.zeros(len(points), dtype=bool)
     for name, part in sorted(boundary.items(), key=lambda item: item[0] == "rest"):
         mine = ~taken
         if name in names:
             mine &= pieces == names.index(name)
-        if part.where is not None:
-            mine &= at_points(part.where, points) > 0.0
+        mine &= _chosen(part, points)
         taken |= mine
         found |= mine & (part.value is not None)
     return found

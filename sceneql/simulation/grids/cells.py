@@ -49,6 +49,8 @@ class Cells:
     boundary: BoundaryFaces
     names: tuple[str, ...]
     """Of the boundary's pieces."""
+    around: tuple[Floats, Floats]
+    """Low and high corner (3,) of the box around the domain [m]; along z of no account where it is flat."""
 
     @property
     def flat(self) -> bool:
@@ -106,4 +108,13 @@ def box(sides: tuple[float, ...], corner: tuple[float, ...], cell: float, depth:
         piece,
     )
     names = SIDES[: 2 * len(sides)]
-    return Cells((nx, ny, nz), low, spacing, np.full(n, volume), (areas[0], areas[1], areas[2]), boundary, names)
+    return Cells(
+        (nx, ny, nz),
+        low,
+        spacing,
+        np.full(n, volume),
+        (areas[0], areas[1], areas[2]),
+        boundary,
+        names,
+        (low, low + np.array(shape) * spacing),
+    )

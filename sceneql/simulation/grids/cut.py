@@ -78,6 +78,13 @@ class Frame:
             points[:, 2] = 0.0
         return points
 
+    def cells(self, volumes: Floats, areas: list[Floats], boundary: BoundaryFaces, names: tuple[str, ...]) -> Cells:
+        """Cells of this grid; the box around is that of the grid."""
+        around = self.low, self.low + np.array(self.shape) * self.spacing
+        return Cells(
+            self.shape, self.low, self.spacing, volumes, (areas[0], areas[1], areas[2]), boundary, names, around
+        )
+
 
 def frame(low: Floats, high: Floats, cell: float, depth: float, flat: bool) -> Frame:
     """A grid of cells [m] over a box, a little more of it where they do not fit."""
@@ -178,7 +185,7 @@ def cut(level: Level, grid: Frame, held: Callable[[Floats, Any], Any] | None = N
     if stiff.any():
         boundary = _joined(boundary, _held_faces(level, grid, phi, (volumes > 0.0) & stiff, areas))
     volumes = _relieved(volumes, areas, grid)
-    return Cells(grid.shape, grid.low, grid.spacing, volumes, (areas[0], areas[1], areas[2]), boundary, level.names)
+    return grid.cells(volumes, areas, boundary, level.names)
 
 
 def staircase(level: Level, grid: Frame) -> Cells:
@@ -207,7 +214,7 @@ def staircase(level: Level, grid: Frame) -> Cells:
     distances = np.concatenate([np.full(len(cells), 0.5 * grid.spacing[axis]) for cells, axis, _, _ in faces])
     boundary = BoundaryFaces(owners, size, distances, points, level.pieces(points))
     volumes = np.where(inside, whole, np.zeros(n))
-    return Cells(grid.shape, grid.low, grid.spacing, volumes, (areas[0], areas[1], areas[2]), boundary, level.names)
+    return grid.cells(volumes, areas, boundary, level.names)
 
 
 def _shifted(values: Any, grid: Frame, axis: int) -> tuple[Any, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -10,6 +11,7 @@ from sceneql.failure import LimitRefused
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.simulation.grids import cells, cut
 from sceneql.simulation.grids.boundary import held_by
+from sceneql.simulation.grids.mesh import MeshLevel
 from sceneql.simulation.start import Start
 
 if TYPE_CHECKING:
@@ -64,7 +66,7 @@ def cells_of(model: Medium, assembly: Assembly) -> cells.Cells:
     if not (found.volumes > 0.0).any():
         message = f"no cell of {model.cell:g} m lies inside '{model.domain.name}'"
         raise ScriptError([Diagnostic("no-cell", message, model.domain.span, "take a smaller `cell`")])
-    return found
+    return replace(found, around=(low, high))
 
 
 def inside(ref: Ref, flat: bool, start: Moment) -> tuple[Any, Floats, Floats, bool]:
@@ -75,10 +77,11 @@ def inside(ref: Ref, flat: bool, start: Moment) -> tuple[Any, Floats, Floats, bo
     from sceneql.field.builder import TapeBuilder
 
     kind = start.object(ref)
-    own = kind.domain()
+    triangles = getattr(kind, "triangles_at", None)
+    own = kind.domain() if triangles is None else MeshLevel(triangles(start), ref.name)
     if own is not None:
         low, high = own.bounds
-        return own, low, high, True
+        return own, low, high, flat or own.flat
     build = TapeBuilder()
     tape = build.finish(kind.implicit(build, build.x, build.y, build.z, start))
     low, high = kind.extent(np.eye(3, 4), start)

@@ -10,7 +10,9 @@ from pydantic import model_validator
 
 from sceneql.kinds import (
     Exceeds,
+    File,
     FixedLength,
+    FixedScalar,
     Formula,
     Gives,
     Model,
@@ -73,6 +75,14 @@ class Exchange(Record):
     outside: ANYTHING | None = field("The value outside; by default 0.", None)
 
 
+class Picture(Record):
+    """A field from the brightness of a picture that covers the box around the domain in x and y."""
+
+    file: File = field("Path of the picture, inside the scene's folder.")
+    black: FixedScalar = field("The field where it is black, in SI.", "0")
+    white: FixedScalar = field("The field where it is white, in SI.", "1")
+
+
 class Part(Record):
     """What holds on a part of the boundary: one of value, flux, robin, periodic."""
 
@@ -81,12 +91,21 @@ class Part(Record):
     robin: Exchange | None = field("Exchange with the outside (Robin).", None)
     periodic: bool = field("The sides of this direction are one: what leaves here comes in at the other.", False)
     where: PLACE | None = field("Only where this formula is above 0.", None)
+    near: SIZES | None = field("Only around this place, of two or three numbers.", None)
+    within: FixedLength | None = field("How far around it.", None, above=0)
 
     @model_validator(mode="after")
     def _one(self) -> Part:
         if (self.value is not None) + (self.flux is not None) + (self.robin is not None) + self.periodic != 1:
             raise ValueError("a part of the boundary has one of `value`, `flux`, `robin` and `periodic`")
+        if (self.near is None) != (self.within is None) or (self.near is not None and len(self.near) not in (2, 3)):
+            raise ValueError("`near` is a place of two or three numbers, and goes with `within`")
         return self
+
+    @property
+    def chosen(self) -> bool:
+        """Whether it says by itself where it holds."""
+        return self.where is not None or self.near is not None
 
 
 Boundary = dict[str, Part]
@@ -128,8 +147,10 @@ class Medium(Model):
             raise Exceeds(f"{cells:.3g} cells: at most {MOST_CELLS:,} are possible; take a larger `cell`")
         known = (*SIDES[: 2 * len(self.size)], "rest")
         for name, part in (item for boundary in self.boundaries() for item in boundary.items()):
-            if name not in known and part.where is None:
-                raise ValueError(f"the boundary has no side '{name}': it has {', '.join(known)}; or say `where`")
+            if name not in known and not part.chosen:
+                raise ValueError(
+                    f"the boundary has no side '{name}': it has {', '.join(known)}; or say `where` or `near`"
+                )
         return self
 
     def checkerboard(self, coefficient: Formula) -> Oscillation | None:

@@ -11,8 +11,10 @@ if TYPE_CHECKING:
 
     from sceneql.frame import Floats
 
-AT_ONCE = 2_000_000
-"""Pairs of a point and a side that are looked at together."""
+GROUP = 12
+"""Sides in one box of the search for the nearest."""
+TILE = 4096
+"""Points of one task of a thread."""
 
 Corners = tuple[tuple[float, float], ...]
 Place = tuple[str, int]
@@ -63,6 +65,8 @@ def _turn_back(a: tuple[float, float], b: tuple[float, float], c: tuple[float, f
 class Polygon:
     """The inside of polygons by the even-odd rule, as a level set (grids.cut.Level); phi is the distance."""
 
+    flat = True
+
     def __init__(self, rings: Mapping[str, Floats], pieces: Mapping[str, tuple[int, int]]) -> None:
         """``pieces`` of the ring `shore`: from a corner to another."""
         import numpy as np
@@ -70,7 +74,16 @@ class Polygon:
         self.starts = np.concatenate(list(rings.values()))
         self.ends = np.concatenate([np.roll(ring, -1, axis=0) for ring in rings.values()])
         self.names = (*rings, *pieces)
-        self._piece = np.repeat(np.arange(len(rings)), [len(ring) for ring in rings.values()])
+        self._sides = np.concatenate([self.starts, self.ends], axis=1)
+        sizes = [len(ring) for ring in rings.values()]
+        begins = np.concatenate([[0], np.cumsum(sizes)])
+        self._firsts = np.concatenate(
+            [*(np.arange(begin, begin + size, GROUP) for begin, size in zip(begins, sizes, strict=False)), begins[-1:]]
+        ).astype(np.int64)
+        low, high = np.minimum(self.starts, self.ends), np.maximum(self.starts, self.ends)
+        heads = self._firsts[:-1]
+        self._boxes = np.concatenate([np.minimum.reduceat(low, heads), np.maximum.reduceat(high, heads)], axis=1)
+        self._piece = np.repeat(np.arange(len(rings)), sizes)
         count = len(rings["shore"])
         for number, (first, last) in enumerate(pieces.values(), len(rings)):
             self._piece[(first + np.arange((last - first) % count)) % count] = number
@@ -84,39 +97,26 @@ class Polygon:
 
     def values(self, points: Floats) -> Floats:
         """Signed distance at points (k, 3), negative inside: (k,)."""
-        import numpy as np
-
-        found = np.empty(len(points))
-        for some in self._chunks(len(points)):
-            square, _ = self._nearest(points[some])
-            x, y = points[some, 0, None], points[some, 1, None]
-            (ax, ay), (bx, by) = self.starts.T, self.ends.T
-            over = (ay > y) != (by > y)
-            rise = np.where(by == ay, 1.0, by - ay)
-            inside = (over & (x < ax + (y - ay) * (bx - ax) / rise)).sum(axis=1) % 2 == 1
-            found[some] = np.sqrt(square) * np.where(inside, -1.0, 1.0)
-        return found
+        return self._nearest(points)[0]
 
     def pieces(self, points: Floats) -> NDArray[int64]:
         """(k,) the piece of the nearest side, an index into `names`."""
-        import numpy as np
-
-        found = np.empty(len(points), dtype=np.int64)
-        for some in self._chunks(len(points)):
-            found[some] = self._piece[self._nearest(points[some])[1]]
+        found: NDArray[int64] = self._piece[self._nearest(points)[1]]
         return found
 
-    def _chunks(self, count: int) -> list[slice]:
-        size = max(1, AT_ONCE // len(self.starts))
-        return [slice(k, min(count, k + size)) for k in range(0, count, size)]
-
     def _nearest(self, points: Floats) -> tuple[Floats, NDArray[int64]]:
-        """Square of the distance (k,) and number of the nearest side."""
+        """Signed distance (k,) and number of the nearest side."""
         import numpy as np
 
-        along = self.ends - self.starts
-        reach = points[:, None, :2] - self.starts
-        t = np.clip((reach * along).sum(axis=2) / (along * along).sum(axis=1), 0.0, 1.0)
-        square = ((reach - t[:, :, None] * along) ** 2).sum(axis=2)
-        nearest = square.argmin(axis=1)
-        return square[np.arange(len(points)), nearest], nearest
+        from sceneql.kernels import over_tiles
+        from sceneql.simulation.grids.polygon_kernels import distances
+
+        points = np.ascontiguousarray(points)
+        found, sides = np.empty(len(points)), np.zeros(len(points), dtype=np.int64)
+
+        def work(tile: int) -> None:
+            last = min(len(points), (tile + 1) * TILE)
+            distances(points, self._sides, self._boxes, self._firsts, found, sides, tile * TILE, last)
+
+        over_tiles(-(-len(points) // TILE), work)
+        return found, sides

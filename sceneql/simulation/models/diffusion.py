@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from sceneql.kinds import Gives, field
 from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
-from sceneql.simulation.grids.medium import ANYTHING, PLACE, Boundary, FieldLayout, Medium, gives_of, layout_of
+from sceneql.simulation.grids.medium import ANYTHING, PLACE, Boundary, FieldLayout, Medium, Picture, gives_of, layout_of
 
 if TYPE_CHECKING:
     from sceneql.system import Assembly, ModelState
@@ -30,12 +30,12 @@ class Diffusion(Medium):
         "What spreads, which gives its unit.", "concentration"
     )
     coefficient: ANYTHING = field("The coefficient D [m^2/s].")
-    initial: PLACE | None = field("The field at the start; by default 0.", None)
+    initial: PLACE | Picture | None = field("The field at the start, a formula or a picture; by default 0.", None)
     source: ANYTHING | None = field("What comes in a second and cubic meter; below 0 it leaves.", None)
     boundary: Boundary = field(
         "What holds on the sides `left`, `right` (x), `bottom`, `top` (y), `back`, `front` (z) of a box, on the pieces "
-        "of an outline, on the boundary of another object by its name, on any part `where` a formula holds, or on "
-        "`rest`.",
+        "of an outline, on the boundary of another object by its name, on any part `where` a formula holds or `near` a "
+        "place, or on `rest`.",
         {},
     )
 

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 class Mesh(Placed):
     """Triangles of an OBJ file. Edges that turn by less than `crease` are shaded smooth, others stay sharp.
 
-    It has no field, so it is no member of a union, intersection or difference; a closed one can be collided with. A
-    file of more than 64 MiB or 4 million triangles is refused.
+    It has no field, so it is no member of a union, intersection or difference; a closed one can be collided
+    with, filled, and be the domain of a field. A file of more than 64 MiB or 4 million triangles is refused.
     """
 
     imports: ClassVar[tuple[str, ...]] = ("trimesh",)

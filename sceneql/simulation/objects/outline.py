@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Annotated, Any
+from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import model_validator
-
-from sceneql.kinds import Length, Moment, Object, Quantity, Record, field
+from sceneql.kinds import (
+    File,
+    FixedLength,
+    FixedScalar,
+    Length,
+    Moment,
+    Object,
+    Problem,
+    Quantity,
+    Record,
+    field,
+)
 from sceneql.quantities import dimension as dim
+from sceneql.simulation.grids.polygon import Corners, crossing
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Shape
@@ -26,38 +36,95 @@ class Piece(Record):
 class Outline(Object):
     """What lies inside a polygon in the plane z = 0, less what lies inside its islands: a shore, a plate.
 
-    Its corners stand in order, either way round; a side joins the last with the first. As the domain of a diffusion its
-    boundary has the pieces that are named here, the islands, and `shore` for all the rest. It is drawn as a line.
+    Its corners stand in order, either way round; a side joins the last with the first. Or a file has it: the closed
+    paths of an SVG, of which the largest is the outline and those within are islands by their ids, or a picture, in
+    which it goes round what is brighter than `threshold`. As the domain of a diffusion its boundary has the pieces that
+    are named here, the islands, and `shore` for all the rest. It is drawn as a line.
     """
 
-    points: tuple[Corner, ...] = field("Its corners, x and y.")
+    points: tuple[Corner, ...] | None = field("Its corners, x and y.", None)
+    file: File | None = field("In their place an SVG file (.svg) or a picture.", None)
+    width: FixedLength | None = field("How wide the outline of the file is.", None, above=0)
+    corner: Corner = field("Low corner of the box around the outline of the file.", "0 0 m")
+    threshold: FixedScalar = field("Brightness at its edge in a picture, from 0 (black) to 1.", "0.5", above=0, below=1)
+    inside: Literal["bright", "dark"] = field("Which side of that edge is inside.", "bright")
     islands: dict[str, tuple[Corner, ...]] = field("Polygons that are cut out of it.", {})
     pieces: dict[str, Piece] = field("Names of runs of sides: `{inlet: {first: 3, last: 5}}`.", {})
     thickness: Length = field("Of the line.", "1 cm", above=0)
 
-    @model_validator(mode="after")
-    def _simple(self) -> Outline:
-        from sceneql.simulation.grids.polygon import crossing
-
-        rings = {"outline": self.points, **self.islands}
-        for name, ring in rings.items():
-            if len(ring) < 3:
-                raise ValueError(f"the {name} has {len(ring)} corners: a polygon has three or more")
-        found = crossing(rings)
+    def problems(self) -> Iterator[Problem]:
+        """Not one source, polygons that cross, pieces that are none."""
+        if (self.points is None) == (self.file is None):
+            yield Problem("an outline has either `points` or a `file`")
+            return
+        if self.file is not None and self.width is None:
+            yield Problem("the outline of a file needs a `width`", ("file",))
+            return
+        at = ("points" if self.file is None else "file",)
+        try:
+            rings = self._corners()
+        except ValueError as error:
+            yield Problem(str(error), at)
+            return
+        few = [(name, ring) for name, ring in rings.items() if len(ring) < 3]
+        for name, ring in few:
+            where = ("islands", name) if name in self.islands else at
+            yield Problem(f"the {_told(name)} has {len(ring)} corners: a polygon has three or more", where)
+        found = None if few else crossing(rings)
         if found is not None:
             (a, i), (b, k) = found
-            other = "itself" if a == b else f"the {b}"
-            raise ValueError(f"the {a} crosses {other}: the side from corner {i} meets that from corner {k}")
+            other = "itself" if a == b else f"the {_told(b)}"
+            text = f"the {_told(a)} crosses {other}: the side from corner {i} meets that from corner {k}"
+            if self.file is not None:
+                x, y = rings[a][i]
+                text += f", near ({x:g}, {y:g}) m"
+            yield Problem(text, ("islands", a) if a in self.islands else at)
+        last = len(self.points or ()) - 1
         for name, piece in self.pieces.items():
-            if max(piece.first, piece.last) >= len(self.points) or piece.first == piece.last:
-                raise ValueError(f"the piece {name} runs from one corner to another, of 0 to {len(self.points) - 1}")
-        return self
+            if self.points is None:
+                yield Problem("pieces are runs of `points`; on the outline of a file say `where`", ("pieces", name))
+            elif max(piece.first, piece.last) > last or piece.first == piece.last:
+                text = f"the piece {name} runs from one corner to another, of 0 to {last}"
+                yield Problem(text, ("pieces", name))
+
+    def _corners(self) -> Mapping[str, Corners]:
+        """The polygons that are known without numpy; the outline itself is `shore`. Raises ValueError."""
+        found: dict[str, Corners] = {}
+        if self.points is not None:
+            found["shore"] = self.points
+        elif self.file is not None and self._is_svg:
+            from sceneql.simulation.grids import svg
+
+            for number, (name, ring) in enumerate(svg.rings(self.file).items()):
+                found["shore" if number == 0 else f"{name}_" if name == "shore" else name] = ring
+            found = self._scaled(found)
+        return {**found, **self.islands}
+
+    @property
+    def _is_svg(self) -> bool:
+        return self.file is not None and self.file.lower().endswith(".svg")
+
+    def _scaled(self, rings: Mapping[str, Any]) -> dict[str, Any]:
+        """Polygons of a file, its width and corner as asked for."""
+        shore = rings["shore"]
+        low_x, high_x = min(x for x, _ in shore), max(x for x, _ in shore)
+        low_y = min(y for _, y in shore)
+        scale, (x0, y0) = (self.width or 1.0) / (high_x - low_x), self.corner
+        return {
+            name: tuple((x0 + scale * (x - low_x), y0 + scale * (y - low_y)) for x, y in ring)
+            for name, ring in rings.items()
+        }
 
     def rings(self) -> Mapping[str, Floats]:
-        """The polygons by name, each (corners, 2) [m]; the outline itself is `shore`."""
+        """The polygons by name, each (corners, 2) [m]; the outline itself is `shore`. Raises ValueError."""
         import numpy as np
 
-        return {name: np.array(ring) for name, ring in {"shore": self.points, **self.islands}.items()}
+        found = self._corners()
+        if self.file is not None and not self._is_svg:
+            from sceneql.simulation.grids.picture import contours
+
+            found = {**self._scaled(contours(self.file, self.threshold, self.inside == "bright")), **found}
+        return {name: np.array(ring, dtype=float) for name, ring in found.items()}
 
     def domain(self) -> Any:
         """Its inside as the domain of a field (grids.polygon.Polygon)."""
@@ -69,13 +136,9 @@ class Outline(Object):
         """The box around its corners, mapped by ``place``."""
         import numpy as np
 
-        corners = np.concatenate([self._corners(), np.ones((len(self.points), 1))], axis=1) @ place.T
+        shore = self.rings()["shore"]
+        corners = np.column_stack([shore, np.zeros(len(shore)), np.ones(len(shore))]) @ place.T
         return corners.min(axis=0), corners.max(axis=0)
-
-    def _corners(self) -> Floats:
-        import numpy as np
-
-        return np.column_stack([np.array(self.points), np.zeros(len(self.points))])
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """Its sides as segments."""
@@ -89,3 +152,7 @@ class Outline(Object):
         flat = np.concatenate(sides)
         ends = np.concatenate([flat, np.zeros((*flat.shape[:2], 1))], axis=2) @ place[:, :3].T + place[:, 3]
         yield Segments(name, surface, ends, np.full(len(ends), 0.5 * positive(moment, self.thickness, "thickness")))
+
+
+def _told(name: str) -> str:
+    return "outline" if name == "shore" else name

@@ -1,0 +1,139 @@
+"""Path data of SVG as cubic curves (Scalable Vector Graphics 2, W3C 2018, chapter 9 and appendix B.2)."""
+
+from __future__ import annotations
+
+import cmath
+import math
+import re
+
+Curve = tuple[complex, complex, complex, complex]
+"""Cubic Bezier curve of points x + i y: both ends and the two controls between them."""
+
+COUNTS = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7, "Z": 0}
+"""Numbers that a command takes."""
+NUMBER = re.compile(r"[\s,]*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)")
+FLAG = re.compile(r"[\s,]*([01])")
+COMMAND = re.compile(r"[\s,]*([MLHVCSQTAZmlhvcsqtaz])")
+ARC = math.pi / 8
+"""Most of an ellipse that one curve stands for: it is then within 1e-7 of its radius."""
+
+
+def curves(data: str) -> list[list[Curve]]:
+    """The paths of a text, each a row of curves, those that are open closed by a line. Raises ValueError."""
+    paths: list[list[Curve]] = []
+    here = start = control = 0j
+    before, at = "", 0
+    while data[at:].strip():
+        match = COMMAND.match(data, at)
+        if match:
+            letter, at = match[1], match.end()
+        elif before in ("", "Z", "z"):
+            raise ValueError(f"path data cannot have '{data[at : at + 12].strip()}' there")
+        else:
+            letter = {"M": "L", "m": "l"}.get(before, before)  # more numbers: the command again
+        if not before and letter not in "Mm":
+            raise ValueError("path data begins with M")
+        kind, relative = letter.upper(), letter.islower()
+        numbers, at = _numbers(data, at, kind)
+        origin = here if relative else 0j
+        if kind in "HV":
+            points = [_along(kind, numbers[0], here, relative)]
+        else:
+            tail = numbers[5:] if kind == "A" else numbers
+            points = [origin + complex(x, y) for x, y in zip(tail[::2], tail[1::2], strict=True)]
+        if kind == "M":
+            start = points[0]
+            paths.append([])
+        elif kind == "Z":
+            paths[-1].append(_line(here, start))
+            points = [start]
+            paths.append([])
+        elif kind == "A":
+            paths[-1] += _arc(here, numbers, points[0])
+        else:
+            curve = _curve(kind, here, points, control if before.upper() in _LIKE.get(kind, "") else here)
+            paths[-1].append(curve)
+            control = 2 * curve[3] - curve[2] if kind in "CS" else curve[3] + _LAST * (curve[3] - curve[2])
+        here, before = points[-1], letter
+    return [[*path, _line(path[-1][3], path[0][0])] for path in paths if path]
+
+
+_LIKE = {"S": "CS", "T": "QT"}
+"""What a smooth curve takes its first control from."""
+_LAST = 1.5
+"""From a cubic's last control to that of the quadratic which it is."""
+
+
+def _numbers(data: str, at: int, kind: str) -> tuple[list[float], int]:
+    found = []
+    for k in range(COUNTS[kind]):
+        match = (FLAG if kind == "A" and k in (3, 4) else NUMBER).match(data, at)
+        if match is None:
+            raise ValueError(f"'{kind}' of path data takes {COUNTS[kind]} numbers; there is '{data[at : at + 12]}'")
+        found.append(float(match[1]))
+        at = match.end()
+    if not all(map(math.isfinite, found)):
+        raise ValueError("path data has a number that is not finite")
+    return found, at
+
+
+def _along(kind: str, to: float, here: complex, relative: bool) -> complex:
+    """End of a horizontal or vertical line."""
+    if kind == "H":
+        return complex(here.real + to if relative else to, here.imag)
+    return complex(here.real, here.imag + to if relative else to)
+
+
+def _line(a: complex, b: complex) -> Curve:
+    return a, a + (b - a) / 3, b + (a - b) / 3, b
+
+
+def _curve(kind: str, here: complex, points: list[complex], mirrored: complex) -> Curve:
+    """A line, cubic or quadratic curve; ``mirrored``: the first control of a smooth one."""
+    if kind == "C":
+        return here, points[0], points[1], points[2]
+    if kind == "S":
+        return here, mirrored, points[0], points[1]
+    if kind in "QT":
+        control, end = (points[0], points[1]) if kind == "Q" else (mirrored, points[0])
+        return here, here + 2 / 3 * (control - here), end + 2 / 3 * (control - end), end
+    return _line(here, points[0])
+
+
+def _arc(a: complex, numbers: list[float], b: complex) -> list[Curve]:
+    """An elliptical arc by its center (appendix B.2.4), cut into short curves."""
+    rx, ry, turned, large, sweep = abs(numbers[0]), abs(numbers[1]), numbers[2], numbers[3], numbers[4]
+    if a == b:
+        return []
+    if rx == 0.0 or ry == 0.0:
+        return [_line(a, b)]
+    turn = cmath.rect(1.0, math.radians(turned))
+
+    def unit(z: complex) -> complex:
+        """In the frame where the ellipse is the unit circle."""
+        z /= turn
+        return complex(z.real / rx, z.imag / ry)
+
+    chord = unit(b - a)
+    half = 0.5 * abs(chord)
+    grown = max(1.0, half)  # radii that do not reach are made just large enough
+    way = math.sqrt(max(0.0, grown * grown - half * half)) * (1 if large != sweep else -1)
+    center = 0.5 * chord + 1j * way * chord / abs(chord)  # from a
+    first = cmath.phase(-center)
+    sweep_angle = cmath.phase((chord - center) / -center)
+    if sweep and sweep_angle < 0:
+        sweep_angle += math.tau
+    elif not sweep and sweep_angle > 0:
+        sweep_angle -= math.tau
+
+    def place(z: complex) -> complex:
+        return a + turn * complex(rx * (z.real + center.real), ry * (z.imag + center.imag))
+
+    count = max(1, math.ceil(abs(sweep_angle) / ARC))
+    step = sweep_angle / count
+    reach = 4 / 3 * math.tan(step / 4) * 1j
+    row = []
+    for k in range(count):
+        p, q = cmath.rect(grown, first + k * step), cmath.rect(grown, first + (k + 1) * step)
+        row.append((place(p), place(p + reach * p), place(q - reach * q), place(q)))
+    return [*row[:-1], (*row[-1][:3], b)]
