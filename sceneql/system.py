@@ -303,5 +303,7 @@ class Stepper:
     """What takes its place on an island that is one field on a grid (System.grid)."""
     by_scale: bool = False
     """Whether on a grid the absolute tolerance counts in units of the largest value at the start."""
+    march: str | None = None
+    """``"package.module:class"``, a march.March of its own, in place of compiled steps."""
     linear: str = "auto"
     """How its linear systems are solved on a grid (simulation/grids/implicit.py)."""

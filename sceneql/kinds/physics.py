@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.frame import Shape as Drawn
     from sceneql.kinds.moment import Moment
-    from sceneql.system import Assembly, Bodies, ModelState, Stepper
+    from sceneql.system import Assembly, Bodies, Grid, ModelState, Stepper
 
 
 class Model(Kind):
@@ -137,8 +137,11 @@ class Solver(Kind):
         """Its compiled step and control."""
         raise NotImplementedError
 
-    def on_grid(self) -> Solver:
-        """What marches in its place where an island is one field on a grid: itself, unless it chooses by itself."""
+    def on_grid(self, grid: Grid, floats: Floats) -> Solver:
+        """What marches in its place where an island is one field on a grid: itself, unless it chooses by itself.
+
+        ``floats``: those of the island, which the grid's offsets are into.
+        """
         return self
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:

@@ -129,6 +129,14 @@ def _contact_why(graph: SimulationGraph, run: IslandRun) -> str:
     return "asked for by the script"
 
 
+def _control(island: dict[str, Any]) -> str:
+    """Order and steps of its solver; nothing of one that makes no steps."""
+    if island["order"] == 0:
+        return ""
+    steps = f"steps by the tolerance {island['tolerance']:g}" if island["adaptive"] else f"step {island['step']:g} s"
+    return f" of order {island['order']}, {steps}"
+
+
 def text(plan: dict[str, Any]) -> str:
     """The plan for people."""
     lines = [f"{plan['scene']}: {plan['about']}".rstrip(": "), "", "will run, in this order:"]
@@ -147,10 +155,7 @@ def text(plan: dict[str, Any]) -> str:
             lines.append(
                 f"  contacts: {', '.join(island['contacts'])}, {island['contact_mode']}: {island['contact_why']}"
             )
-        control = (
-            f"steps by the tolerance {island['tolerance']:g}" if island["adaptive"] else f"step {island['step']:g} s"
-        )
-        lines.append(f"  solver: {island['solver']} of order {island['order']}, {control}; {island['why']}")
+        lines.append(f"  solver: {island['solver']}{_control(island)}; {island['why']}")
         lines.append(f"  stability: {island['bound_text']}")
     if plan["ahead"]:
         lines += ["", f"the physics runs once ahead of the film: {', '.join(plan['ahead'])} frames all of it"]

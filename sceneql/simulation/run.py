@@ -76,6 +76,7 @@ class IslandRun:
 
     def __init__(self, graph: SimulationGraph, island: Island) -> None:
         from sceneql.simulation.assembled import blocks_of, models_of
+        from sceneql.simulation.driver import function
         from sceneql.simulation.march import March
         from sceneql.simulation.march_blocks import BlockMarch
 
@@ -88,17 +89,19 @@ class IslandRun:
         made.act()
         made.found.raise_errors()
         if assembly.only_field is not None:
-            self.solver = self.solver.on_grid()
+            self.solver = self.solver.on_grid(assembly.only_field, assembly.numbers())
         stepper, end = self.solver.stepper(), graph.settings.clock.end
         if assembly.only_field is not None and stepper.on_grid is not None:
             stepper = stepper.on_grid
         system = assembly.finish(stepper.jacobian)
         blocks = blocks_of(made, system, stepper)
-        self.march: March = (
-            BlockMarch(system, stepper, end, blocks)
-            if blocks
-            else March(system, stepper, end, lambda: assembly.finish(jacobian=True))
-        )
+        self.march: March
+        if stepper.march is not None:
+            self.march = function(stepper.march)(system, stepper, end)
+        elif blocks:
+            self.march = BlockMarch(system, stepper, end, blocks)
+        else:
+            self.march = March(system, stepper, end, lambda: assembly.finish(jacobian=True))
         self.members = {*island.models, *(contact for contact, _, _ in island.contacts)}
         self._now: tuple[float, Floats, Floats] | None = None
 

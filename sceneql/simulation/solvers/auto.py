@@ -5,13 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import FixedScalar, Solver, field
+from sceneql.simulation.solvers.exact import Exact
 from sceneql.simulation.solvers.radau import Radau
 from sceneql.simulation.solvers.tr_bdf2 import TrBdf2
 from sceneql.simulation.tableau import DORMAND_PRINCE
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.system import Stepper
+    from sceneql.system import Grid, Stepper
 
 
 class Auto(Solver):
@@ -19,9 +20,9 @@ class Auto(Solver):
 
     The choice is made at the start, by the fastest mode of the island and the step that the tolerance allows, and
     looked at again during the run; `explain` says the first and why. Local contacts keep it with dopri5, since they act
-    at the ends of steps, which stiffness must not make long. A field on a grid is marched by tr_bdf2. Sources: see the
-    words dopri5, radau and tr_bdf2; the sign of stiffness is that of Hairer & Wanner, Solving Ordinary Differential
-    Equations II (1996), IV.2.
+    at the ends of steps, which stiffness must not make long. A field on a grid is marched by tr_bdf2, and on a box
+    whose coefficient and boundary do not vary by exact. Sources: see these words; the sign of stiffness is that of
+    Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.2.
     """
 
     tolerance: FixedScalar = field(
@@ -46,8 +47,12 @@ class Auto(Solver):
             stiff=replace(Radau(tolerance=self.tolerance).stepper(), name="radau"),
         )
 
-    def on_grid(self) -> Solver:
-        """tr_bdf2."""
+    def on_grid(self, grid: Grid, floats: Floats) -> Solver:
+        """exact where it applies, else tr_bdf2."""
+        from sceneql.simulation.grids.separable import axes_of
+
+        if axes_of(grid, floats) is not None:
+            return Exact()
         return TrBdf2(tolerance=min(100.0 * self.tolerance, 0.1))
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
