@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 from sceneql.kinds import Renderer, field
 
@@ -16,9 +16,12 @@ class March(Renderer):
     that, and for `sceneql bench` to measure.
     """
 
-    kernels: ClassVar[str] = "renderers.tracing.draw"
-
     samples: int = field("Places on a ray at which a field is sampled.", 64, at_least=1, at_most=100000)
+
+    def kernels(self, traced: bool) -> tuple[str, ...]:
+        """Of the tracer."""
+        own = "renderers.tracing.draw"
+        return (own, "renderers.tracing.implicit", "renderers.tracing.march_kernels") if traced else (own,)
 
     def draw(self, frame: Any) -> Any:
         """The Picture of a frame: linear (h, w, 3), with nothing undecided."""

@@ -13,10 +13,15 @@ class Normals(Renderer):
     Data: not developed. Normals face the viewer.
     """
 
-    kernels: ClassVar[str] = "renderers.tracing.normals"
     data: ClassVar[bool] = True
 
     samples: Literal[1, 2, 4, 8, 16, 32, 64] = field("Rays in a pixel; 1 keeps every normal's length.", 1)
+
+    def kernels(self, traced: bool) -> tuple[str, ...]:
+        """Of the tracer."""
+        from renderers.tracing import certified
+
+        return certified("renderers.tracing.normals") if traced else ("renderers.tracing.normals",)
 
     def draw(self, frame: Any) -> Any:
         """The Picture of a frame: (h, w, 3) in 0..1 and the number of undecided pixels."""

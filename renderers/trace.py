@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Literal
+from typing import Any, Literal
 
 from sceneql.kinds import FixedScalar, Renderer, field
 
@@ -15,8 +15,6 @@ class Trace(Renderer):
     film has no grain; the bytes are the same from run to run and for any number of threads.
     """
 
-    kernels: ClassVar[str] = "renderers.tracing.draw"
-
     tolerance: FixedScalar = field(
         "Of roots of implicit surfaces, relative to the way through an object; finer things are undecided.",
         "1e-9",
@@ -28,6 +26,12 @@ class Trace(Renderer):
         "The camera's rays meet implicit solids in packets: up to a third faster, but twice as much to compile once.",
         False,
     )
+
+    def kernels(self, traced: bool) -> tuple[str, ...]:
+        """Of the tracer."""
+        from renderers.tracing import certified
+
+        return certified("renderers.tracing.draw") if traced else ("renderers.tracing.draw",)
 
     def draw(self, frame: Any) -> Any:
         """The Picture of a frame: linear (h, w, 3) and the number of undecided pixels."""

@@ -14,10 +14,15 @@ class Undecided(Renderer):
     centers of pixels. Data: not developed.
     """
 
-    kernels: ClassVar[str] = "renderers.tracing.normals"
     data: ClassVar[bool] = True
 
     tolerance: FixedScalar = field("As of `trace`.", "1e-9", above=0, at_most=1e-3)
+
+    def kernels(self, traced: bool) -> tuple[str, ...]:
+        """Of the tracer."""
+        from renderers.tracing import certified
+
+        return certified("renderers.tracing.normals") if traced else ("renderers.tracing.normals",)
 
     def draw(self, frame: Any) -> Any:
         """The Picture of a frame: (h, w, 3) in 0..1 and the number of undecided pixels."""

@@ -8,7 +8,9 @@ kernels compute nor what they may contain, but for closures, comprehensions, ``w
 import gc
 import operator
 from contextlib import contextmanager
+from copy import copy
 
+from llvmlite import binding
 from numba import types
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase
@@ -95,6 +97,20 @@ class HelperCompiler(CompilerBase):
     def define_pipelines(self):
         """The one list of passes."""
         return _pipeline(*FRONT, HelperLowering, NoPythonBackend)
+
+
+def call_by_name(kernel):
+    """Let other kernels call this one by its name, where numba would put its code into each of them once more.
+
+    The name is the function's own: what numba makes of it differs from process to process, and callers are cached.
+    """
+    for made in kernel.overloads.values():
+        called = copy(made.fndesc)
+        called.mangled_name = f"{made.fndesc.modname}.{made.fndesc.qualname}"
+        binding.add_symbol(called.mangled_name, made.library.get_pointer_to_function(made.fndesc.mangled_name))
+        context = made.target_context
+        context.remove_user_function(made.entry_point)
+        context.insert_user_function(made.entry_point, called, [])
 
 
 @contextmanager

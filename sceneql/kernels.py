@@ -13,19 +13,26 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from functools import cache
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
+
+try:
+    import fcntl
+except ImportError:  # not on Windows
+    fcntl = None
 
 import numba
 from numba import types
 from numba.core import cgutils, event
 from numba.extending import intrinsic
 
-from sceneql.compiling import HelperCompiler, KernelCompiler, collecting_later
+from sceneql.compiling import HelperCompiler, KernelCompiler, call_by_name, collecting_later
 
 OURS = ("sceneql", "renderers", "sceneql_generated")
 IMPORTED = re.compile(r"^from ([\w.]+) import", re.MULTILINE)
@@ -77,6 +84,7 @@ class CompileAccount(event.Listener):
         self.count = 0
         self.seconds = 0.0
         self._depth = 0
+        self._block = 0
         self._started = 0.0
 
     def on_start(self, event: Any) -> None:
@@ -88,13 +96,41 @@ class CompileAccount(event.Listener):
     def on_end(self, event: Any) -> None:
         """A compilation ends."""
         self._depth -= 1
-        if self._depth == 0:
+        if self._depth == self._block:
             self.count += 1
+        self._leave()
+
+    def _leave(self) -> None:
+        if self._depth == 0:
             self.seconds += time.perf_counter() - self._started
+
+    @contextmanager
+    def whole_block(self) -> Iterator[None]:
+        """Count all the seconds spent in a block."""
+        self.on_start(None)
+        self._block += 1
+        try:
+            yield
+        finally:
+            self._block -= 1
+            self._depth -= 1
+            self._leave()
 
 
 compiled = CompileAccount()
 event.register("numba:compile", compiled)
+
+
+@contextmanager
+def alone(path: Path) -> Iterator[None]:
+    """Let one process at a time through, where the system has such locks: what it compiles the next one loads."""
+    if fcntl is None or numba.config.DISABLE_JIT:
+        yield
+        return
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
 
 
 def kernel(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
@@ -104,9 +140,13 @@ def kernel(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any
     """
 
     def compile(function: Callable[..., Any]) -> Any:
-        numba.config.CACHE_DIR = str(cache_folder(function.__module__))
-        with collecting_later():
-            return numba.njit(signature, cache=True, pipeline_class=KernelCompiler, **COMMON, **options)(function)
+        folder = cache_folder(function.__module__)
+        numba.config.CACHE_DIR = str(folder)
+        with alone(folder / function.__name__), collecting_later():
+            made = numba.njit(signature, cache=True, pipeline_class=KernelCompiler, **COMMON, **options)(function)
+        if not numba.config.DISABLE_JIT:
+            call_by_name(made)
+        return made
 
     return compile
 
@@ -163,23 +203,25 @@ def function_at(kind: Any) -> Any:
     return at
 
 
-def compile_ahead(module: str) -> Callable[[], None]:
-    """Compile a module's kernels in a process beside this one, unless that was done before; call the result to wait.
+def compile_ahead(modules: tuple[str, ...]) -> Callable[[], None]:
+    """Compile modules' kernels in a process beside this one, unless that was done before; call the result to wait.
 
     Compiling holds the interpreter's lock, so a second core can only help from a second process; what it compiles
-    comes here from the cache. The seconds waited count as compilation.
+    comes here from the cache. The wait is spent on the modules from the last one on, and counts as compilation.
     """
-    done = cache_folder(module) / "all.compiled"
-    if done.exists() or numba.config.DISABLE_JIT:
+    marks = [cache_folder(module) / "all.compiled" for module in modules]
+    if all(mark.exists() for mark in marks) or numba.config.DISABLE_JIT:
         return lambda: None
-    process = subprocess.Popen([sys.executable, "-c", f"import {module}"], stdin=subprocess.DEVNULL)
+    process = subprocess.Popen([sys.executable, "-c", f"import {', '.join(modules)}"], stdin=subprocess.DEVNULL)
 
     def wait() -> None:
-        started = time.perf_counter()
-        if process.wait() == 0:
-            done.parent.mkdir(parents=True, exist_ok=True)
-            done.touch()
-        compiled.seconds += time.perf_counter() - started
+        with compiled.whole_block():
+            for module in reversed(modules):
+                import_module(module)
+            process.wait()
+        for mark in marks:
+            mark.parent.mkdir(parents=True, exist_ok=True)
+            mark.touch()
 
     return cache(wait)
 

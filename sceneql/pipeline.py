@@ -19,7 +19,7 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.compile import compile_script
 from sceneql.failure import Unsuitable, failing_as
 from sceneql.graph import SimulationGraph
-from sceneql.kinds import FAMILIES, Camera, Clock, Illumination, Output, Picture, Renderer, Settings
+from sceneql.kinds import FAMILIES, Camera, Clock, Illumination, Object, Output, Picture, Renderer, Settings
 from sceneql.language.script import read_script
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
 
@@ -227,8 +227,12 @@ class Tools:
 
     def prepare(self, output: Picture) -> Callable[[], None]:
         """Start compiling what the output is drawn with, beside the physics; call the result to wait for it."""
-        module = self._renderer(output).kernels
-        return _compile_ahead(module) if module else lambda: None
+        modules = self._renderer(output).kernels(any(map(self._traced, self.graph.drawn[self.name])))
+        return _compile_ahead(modules) if modules else lambda: None
+
+    def _traced(self, name: str) -> bool:
+        kind = self.graph.tasks[name].kind
+        return isinstance(kind, Object) and (kind.traced or any(self._traced(ref.name) for ref in kind.members()))
 
     def _renderer(self, output: Picture) -> Renderer:
         if output.renderer is not None:
@@ -240,11 +244,11 @@ class Tools:
 
 
 @cache
-def _compile_ahead(module: str) -> Callable[[], None]:
+def _compile_ahead(modules: tuple[str, ...]) -> Callable[[], None]:
     """Start compiling a renderer's kernels, once for all outputs that it draws."""
     from sceneql.kernels import compile_ahead
 
-    return compile_ahead(module)
+    return compile_ahead(modules)
 
 
 def frame_of(graph: SimulationGraph, output: str, size: tuple[int, int], moment: Instant, index: int) -> Any:

@@ -418,6 +418,8 @@ def test_tapes_agree_with_the_expressions_of_scripts(name, numbers):
     expected = evaluate(expr, dict(zip(map(Symbol, "xyz"), numbers, strict=True)))
     found = field_values(builder.finish(register), [numbers])[0]
     halfway = name == "round" and (numbers[0] - 0.5).is_integer()  # the tape rounds these up
+    turns = numbers[0] / numbers[1] if name == "mod" and numbers[1] else 0.5  # at whole ones mod jumps
+    halfway |= abs(turns - round(turns)) < 1e-12 * abs(turns)
     if math.isfinite(expected) and not halfway and not (name in ("pow", "smoothstep") and math.isnan(found)):
         assert found == pytest.approx(expected, rel=1e-12, abs=1e-12)
 

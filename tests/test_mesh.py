@@ -15,8 +15,8 @@ from sceneql.field.batch_kernels import LANES, evaluate
 from sceneql.field.builder import TapeBuilder
 from sceneql.field.interval_kernels import box
 from sceneql.field.simplify_kernels import simplify
-from sceneql.field.slope_kernels import steepness
 from sceneql.field.solid import field_gradients, field_values, scratch
+from sceneql.field.steepness_kernels import steepness
 from sceneql.field.tape_ops import WHOLE
 from sceneql.frame import Tape
 from sceneql.mesh.bounded import bounded

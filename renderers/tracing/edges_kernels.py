@@ -4,9 +4,12 @@
 from numba import types
 
 from renderers.tracing.filter_kernels import SLACK
+from renderers.tracing.gather_kernels import gather
 from renderers.tracing.record_kernels import OWNER, TRACED, alike
 from renderers.tracing.sampling_kernels import morton
-from renderers.tracing.scene_kernels import HEIGHT, SCENE, SCRATCH, WIDTH, gather_at, look_at, part, shade_at
+from renderers.tracing.scene_kernels import HEIGHT, SCENE, SCRATCH, WIDTH, part
+from renderers.tracing.shade_kernels import shade
+from renderers.tracing.visibility_kernels import look_around
 from sceneql.kernels import kernel
 
 _i = types.int64
@@ -76,8 +79,8 @@ def finished(scene, scratch, records, visibility, own, k, x, y, number, found):
         if own[layer, OWNER] == 0.0:
             continue
         if not borrow(records[layer], visibility[layer], own[layer], x, y, width, height, found):
-            look_at(scene.look)(scene, scratch, own[layer], number, ANEW, ANEW, found)
-        red, green, blue = shade_at(scene.shade)(scene, own[layer], found)
+            look_around(scene, scratch, own[layer], number, ANEW, ANEW, found)
+        red, green, blue = shade(scene, own[layer], found)
         r, g, b = r + red, g + green, b + blue
     return r, g, b
 
@@ -109,7 +112,7 @@ def smooth_rows(scene, scratch, start, stop, points, records, radiance, visibili
                 if used == TRIAL and plain:
                     break
                 px, py = x + points[s, 0], y + points[s, 1]
-                r, g, b = gather_at(scene.gather)(scene, scratch, px, py, own[0], own[1], own[2], found)
+                r, g, b = gather(scene, scratch, px, py, own[0], own[1], own[2], found)
                 fr, fg, fb = finished(scene, scratch, records, visibility, own, k, x, y, number, found)
                 r, g, b = min(r + fr, BRIGHTEST), min(g + fg, BRIGHTEST), min(b + fb, BRIGHTEST)
                 red, green, blue = red + r, green + g, blue + b

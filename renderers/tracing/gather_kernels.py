@@ -5,12 +5,12 @@ import numpy as np
 from numba import types
 
 from renderers.tracing.camera_kernels import camera_ray
+from renderers.tracing.intersect_kernels import walk
 from renderers.tracing.light_kernels import backdrop, dielectric, sharpness, sky_radiance, smoothstep
 from renderers.tracing.path_kernels import behind, bend, describe, faded, mirrored, refracted
 from renderers.tracing.record_kernels import OWNER, TINT, TRACED, WEIGHT, copy_record, erase, start_of
 from renderers.tracing.sampling_kernels import morton
 from renderers.tracing.scene_kernels import (
-    GATHER,
     INDEX,
     ITEMS,
     METALLIC,
@@ -23,12 +23,9 @@ from renderers.tracing.scene_kernels import (
     TOLD,
     TRANSMISSION,
     WIDTH,
-    gather_at,
-    look_at,
-    shade_at,
-    walk_at,
 )
-from renderers.tracing.shade_kernels import facing_ratio, mean_specular
+from renderers.tracing.shade_kernels import facing_ratio, mean_specular, shade
+from renderers.tracing.visibility_kernels import look_around
 from sceneql.kernels import kernel
 
 _f = types.float64
@@ -43,7 +40,7 @@ QUICK = 8
 """Samples of light and sky on surfaces that are seen only in a thing seen in another."""
 
 
-@kernel(GATHER.signature, _nrt=False)
+@kernel(types.UniTuple(_f, 3)(SCENE, SCRATCH, _f, _f, ROW, ROW, ROW, ROW), _nrt=False)
 def gather(scene, scratch, px, py, first, second, spare, visibility):
     """Radiance (3) of the picture's point (px, py) but for its records ``first`` and ``second``, which it writes.
 
@@ -62,7 +59,7 @@ def gather(scene, scratch, px, py, first, second, spare, visibility):
     qx, qy, qz, rx, ry, rz, w2, radius2, spread2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     bounce = 0
     while True:
-        t, item, _ = walk_at(scene.walk)(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, np.inf, False)
+        t, item, _ = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, np.inf, False)
         scratch[scratch.shape[0] - 1, TOLD] = 0.0
         goes_on = False
         if item < 0:
@@ -97,8 +94,8 @@ def gather(scene, scratch, px, py, first, second, spare, visibility):
                 copy_record(spare, second)
                 keep = False
             elif outside or not glass:
-                look_at(scene.look)(scene, scratch, spare, 0, QUICK, QUICK, visibility)
-                r, g, b = shade_at(scene.shade)(scene, spare, visibility)
+                look_around(scene, scratch, spare, 0, QUICK, QUICK, visibility)
+                r, g, b = shade(scene, spare, visibility)
                 cr, cg, cb = cr + r, cg + g, cb + b
             goes_on = (glass or traced > 0.0) and bounce < BOUNCES
             if goes_on:
@@ -157,12 +154,10 @@ def gather_rows(scene, scratch, start, stop, records, radiance, visibility, spar
             for m in range(len(shapes)):
                 scratch[counter, TOLD] = 1.0
                 scratch[counter - 1 - shapes[m], 0] = roots[m, k - start * width]
-            r, g, b = gather_at(scene.gather)(
-                scene, scratch, x + 0.5, y + 0.5, records[0, k], records[1, k], spare, visibility[0, k]
-            )
+            r, g, b = gather(scene, scratch, x + 0.5, y + 0.5, records[0, k], records[1, k], spare, visibility[0, k])
             undecided += scratch[counter, 0] > 0.0
             radiance[k, 0], radiance[k, 1], radiance[k, 2] = r, g, b
             for layer in range(2):
                 if records[layer, k, OWNER] > 0.0:
-                    look_at(scene.look)(scene, scratch, records[layer, k], number, 1, 1, visibility[layer, k])
+                    look_around(scene, scratch, records[layer, k], number, 1, 1, visibility[layer, k])
     return undecided

@@ -2,26 +2,19 @@
 """Rays against implicit objects: certified roots inside what an occupancy grid leaves of the object's box."""
 
 import numpy as np
-from numba import types
 
+from renderers.tracing.ranges_kernels import box_part, cells_at, tape_of
 from renderers.tracing.scene_kernels import (
     CELLS,
-    CELLS_AT,
     CROSSING,
     EMPTY,
     FULL,
-    MIXED,
-    SCENE,
-    SCRATCH,
     TOLERANCE,
-    WITHIN,
     part,
 )
-from renderers.tracing.solids_kernels import NONE, box_span, inverse
-from sceneql.field.interval_kernels import box
-from sceneql.field.isolation_kernels import exit_root, isolate, surface_root
-from sceneql.field.tape_kernels import value
-from sceneql.field.tape_ops import HIT, MISS, NOWHERE, UNDECIDED, WHOLE
+from renderers.tracing.solids_kernels import NONE, inverse
+from sceneql.field.isolation_kernels import exit_root, isolate
+from sceneql.field.tape_ops import HIT, UNDECIDED
 from sceneql.kernels import kernel
 
 RETRIES = 8
@@ -32,80 +25,6 @@ BLOCK = 4
 """Cells along a side of the coarse blocks that are tried before their cells."""
 PAD = 1e-7
 """By which a cell is enlarged, relative to its side, so that rounding in the walk does no harm."""
-
-
-@part
-def tape_of(scene, k, first=0):
-    """Where the tape of the implicit object whose reals begin at k lies: begin and end of code, constants and parts.
-
-    Its own are the ranges from the ``first`` on, those of others from PAINT and from WITHIN on.
-    """
-    n = scene.ints
-    r = int(scene.reals[k + 6]) + first
-    code, constants, parts = int(n[r]), int(n[r + 2]), int(n[r + 4])
-    return code, code + 4 * n[r + 1], constants, constants + n[r + 3], parts, parts + 8 * n[r + 5]
-
-
-@part
-def cells_at(scene, k):
-    """Place of the occupancy cells of the implicit object whose reals begin at k."""
-    return scene.ints[int(scene.reals[k + 6]) + CELLS_AT]
-
-
-@part
-def is_sheet(scene, k):
-    """Whether implicit object k is a sheet, not a solid."""
-    return scene.ints[int(scene.reals[k + 6]) + WITHIN + 1] > 0
-
-
-@part
-def bounds(scene, scratch, k, first, i, j, l, side):
-    """(low, high, status) of a tape of implicit object k in the cells (i..i+side, ...)."""
-    b = scene.reals
-    c0, c1, k0, k1, p0, p1 = tape_of(scene, k, first)
-    code = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
-    constants = scene.reals[k0:k1]
-    parts = scene.reals[p0:p1].reshape((p1 - p0) // 8, 8)
-    h = ((b[k + 3] - b[k]) / CELLS, (b[k + 4] - b[k + 1]) / CELLS, (b[k + 5] - b[k + 2]) / CELLS)
-    return box(
-        code,
-        constants,
-        parts,
-        scratch,
-        b[k] + (i - PAD) * h[0],
-        b[k] + (i + side + PAD) * h[0],
-        b[k + 1] + (j - PAD) * h[1],
-        b[k + 1] + (j + side + PAD) * h[1],
-        b[k + 2] + (l - PAD) * h[2],
-        b[k + 2] + (l + side + PAD) * h[2],
-    )
-
-
-@part
-def region(scene, scratch, k, i, j, l, side):
-    """What the cells (i..i+side, ...) of implicit object k are proved to be."""
-    low, high, status = bounds(scene, scratch, k, 0, i, j, l, side)
-    if status == NOWHERE or low > 0.0:
-        return EMPTY
-    if is_sheet(scene, k):
-        return EMPTY if high < 0.0 or bounds(scene, scratch, k, WITHIN, i, j, l, side)[0] > 0.0 else MIXED
-    return FULL if status == WHOLE and high < 0.0 else MIXED
-
-
-@kernel(types.void(SCENE, SCRATCH, types.int64, types.int64), _nrt=False)
-def occupy(scene, scratch, k, slab):
-    """Fill a slab (BLOCK layers of cells along x) of implicit object k: coarse blocks first, then their cells."""
-    base = cells_at(scene, k)
-    for bj in range(0, CELLS, BLOCK):
-        for bl in range(0, CELLS, BLOCK):
-            coarse = region(scene, scratch, k, slab * BLOCK, bj, bl, BLOCK)
-            for i in range(slab * BLOCK, slab * BLOCK + BLOCK):
-                for j in range(bj, bj + BLOCK):
-                    for l in range(bl, bl + BLOCK):
-                        found = coarse
-                        if coarse == MIXED:
-                            found = region(scene, scratch, k, i, j, l, 1)
-                        scene.ints[base + (i * CELLS + j) * CELLS + l] = found
 
 
 @part
@@ -168,62 +87,9 @@ def occupied(scene, k, ox, oy, oz, dx, dy, dz, start, stop):
     return begin, stop, False
 
 
-@part
-def box_part(scene, k, ox, oy, oz, dx, dy, dz, near, far):
-    """(from, to) of the ray inside the box of implicit object k."""
-    b = scene.reals
-    enter = near
-    leave = far
-    e, f = box_span(b[k], b[k + 3], ox, inverse(dx))
-    enter = max(enter, e)
-    leave = min(leave, f)
-    e, f = box_span(b[k + 1], b[k + 4], oy, inverse(dy))
-    enter = max(enter, e)
-    leave = min(leave, f)
-    e, f = box_span(b[k + 2], b[k + 5], oz, inverse(dz))
-    return max(enter, e), min(leave, f)
-
-
-@kernel(CROSSING.signature, _nrt=False)
-def sheet(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
-    """Crossing of the sheet of implicit object k behind ``near``: its first root inside what it lies within."""
-    c0, c1, k0, k1, p0, p1 = tape_of(scene, k)
-    code = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
-    constants = scene.reals[k0:k1]
-    parts = scene.reals[p0:p1].reshape((p1 - p0) // 8, 8)
-    c0, c1, k0, k1, p0, p1 = tape_of(scene, k, WITHIN)
-    code_within = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
-    constants_within = scene.reals[k0:k1]
-    parts_within = scene.reals[p0:p1].reshape((p1 - p0) // 8, 8)
-    b = scene.reals
-    side = min(b[k + 3] - b[k], b[k + 4] - b[k + 1], b[k + 5] - b[k + 2]) / CELLS
-    t, stop = box_part(scene, k, ox, oy, oz, dx, dy, dz, near, far)
-    past = 0.1 * PAD * side / np.sqrt(dx * dx + dy * dy + dz * dz)
-    tolerance = b[TOLERANCE]
-    tries = 0
-    while t < stop and tries < RETRIES:
-        begin, end, _ = occupied(scene, k, ox, oy, oz, dx, dy, dz, t, stop)
-        if not begin < stop:
-            return NONE
-        end = max(end, begin + past)
-        status, root = surface_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, begin, end, tolerance)
-        if status == HIT:
-            x, y, z = ox + root * dx, oy + root * dy, oz + root * dz
-            if value(code_within, constants_within, parts_within, scratch, x, y, z) < 0.0:
-                return root
-        elif status == UNDECIDED:
-            scratch[scratch.shape[0] - 1, 0] += 1.0
-            root += tolerance * (end - begin) * FARTHER**tries
-            tries += 1
-        t = end + past if status == MISS else root + past
-    return NONE
-
-
 @kernel(CROSSING.signature, _nrt=False)
 def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """Crossing of implicit object k behind ``near``; with ``anywhere`` of any place inside, not the first."""
-    if is_sheet(scene, k):
-        return sheet(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere)
     c0, c1, k0, k1, p0, p1 = tape_of(scene, k)
     code = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
     constants = scene.reals[k0:k1]

@@ -1,6 +1,8 @@
 # mypy: ignore-errors
 """Rays against the whole scene: what is met first, or how much light comes through."""
 
+from numba import types
+
 from renderers.tracing.scene_kernels import (
     HALF_SPACE,
     ITEMS,
@@ -10,14 +12,17 @@ from renderers.tracing.scene_kernels import (
     NODE_COUNT,
     NODES_AT,
     QUADRIC,
+    RAY,
     REALS_AT,
     ROUND,
+    SCENE,
+    SCRATCH,
     SHAPE,
+    SHEET,
     SURFACE_AT,
     TOLD,
     TRANSMISSION,
     TRIANGLE,
-    WALK,
     crossing_at,
     part,
 )
@@ -43,7 +48,8 @@ def meet(scene, scratch, item, ox, oy, oz, dx, dy, dz, near, far, anywhere):
         t = scratch[last - 1 - scene.ints[ITEMS + 4 * item + SHAPE], 0]
         if t == t:
             return t if near < t < far else NONE
-    return crossing_at(scene.crossing)(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere)
+    crossing = scene.sheet if kind == SHEET else scene.solid
+    return crossing_at(crossing)(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere)
 
 
 @part
@@ -62,7 +68,7 @@ def misses(nodes, k, ox, oy, oz, ix, iy, iz, near, far):
     return min(leave, max(a, b)) < max(enter, min(a, b))
 
 
-@kernel(WALK.signature, _nrt=False)
+@kernel(types.Tuple((types.float64, types.int64, types.float64))(SCENE, SCRATCH, *RAY, types.boolean), _nrt=False)
 def walk(scene, scratch, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """(t, item, light) of the ray inside (near, far): where it first meets an item, or (inf, -1, 1).
 

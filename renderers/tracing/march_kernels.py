@@ -1,7 +1,7 @@
 # mypy: ignore-errors
 """Implicit objects met by fixed samples along the ray and bisection: what the certified search is compared with."""
 
-from renderers.tracing.implicit_kernels import box_part, is_sheet, tape_of
+from renderers.tracing.ranges_kernels import box_part, is_sheet, tape_of
 from renderers.tracing.scene_kernels import CROSSING, SAMPLES, WITHIN
 from renderers.tracing.solids_kernels import NONE
 from sceneql.field.bracket_kernels import along

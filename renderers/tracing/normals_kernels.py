@@ -5,7 +5,9 @@ import numpy as np
 from numba import types
 
 from renderers.tracing.camera_kernels import camera_ray
-from renderers.tracing.scene_kernels import CAMERA, SCENE, SCRATCH, WIDTH, normal_at, part, walk_at
+from renderers.tracing.intersect_kernels import walk
+from renderers.tracing.scene_kernels import CAMERA, SCENE, SCRATCH, WIDTH, part
+from renderers.tracing.surface_kernels import normal_at
 from sceneql.kernels import kernel
 
 UNDECIDED = (1.0, 0.15, 0.0)
@@ -16,12 +18,10 @@ UNDECIDED = (1.0, 0.15, 0.0)
 def seen_normal(scene, scratch, px, py):
     """(whether the picture's point shows a surface, its unit normal (3) on the viewer's side)."""
     ox, oy, oz, dx, dy, dz, _, _ = camera_ray(scene.reals, px, py)
-    t, item, _ = walk_at(scene.walk)(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, np.inf, False)
+    t, item, _ = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, np.inf, False)
     if item < 0:
         return False, 0.0, 0.0, 0.0
-    nx, ny, nz, fx, fy, fz, _, _, _, _ = normal_at(scene.normal)(
-        scene, scratch, item, ox + t * dx, oy + t * dy, oz + t * dz
-    )
+    nx, ny, nz, fx, fy, fz, _, _, _, _ = normal_at(scene, scratch, item, ox + t * dx, oy + t * dy, oz + t * dz)
     side = 1.0 if dx * fx + dy * fy + dz * fz <= 0.0 else -1.0
     return True, side * nx, side * ny, side * nz
 

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from renderers.tracing import hierarchy_kernels
-from renderers.tracing.addresses import addresses, certifying, marching
-from renderers.tracing.implicit_kernels import BLOCK, occupy
 from renderers.tracing.scene_kernels import (
     CAMERA,
     CELLS,
@@ -28,6 +26,7 @@ from renderers.tracing.scene_kernels import (
     ROUND,
     SAMPLES,
     SHAPE,
+    SHEET,
     SKY,
     SUN,
     SURFACE_AT,
@@ -39,7 +38,6 @@ from renderers.tracing.scene_kernels import (
 from renderers.tracing.scene_kernels import TOLERANCE as ROOT_TOLERANCE
 from sceneql.field.tape_ops import SCRATCH_COLUMNS, scratch_rows
 from sceneql.frame import Frame, Implicit, Mesh, Points, Quadric, Segments, Sky, Sun, Surface, View
-from sceneql.kernels import over_tiles
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -93,15 +91,14 @@ def pack(frame: Frame, tolerance: float = TOLERANCE, samples: int = 0, certain: 
         ranges[[0, CELLS_AT, PAINT, WITHIN]] += ranges_at + sum(map(len, tables.ranges))
         ranges[[2, 4, PAINT + 2, PAINT + 4, WITHIN + 2, WITHIN + 4]] += reals_at
         reals[reals_at + tables.implicits[k] + 6] = place
-    scene = Scene(reals, ints, *addresses())
+    scene = Scene(reals, ints, 0, 0, 0)
     rows = tables.rows + len(frame.shapes) + 1
-    if samples or certain:
-        return scene._replace(crossing=marching() if samples else certifying()), rows
-    slabs = CELLS // BLOCK
-    over_tiles(
-        len(tables.implicits) * slabs,
-        lambda tile: occupy(scene, scratch(rows), reals_at + tables.implicits[tile // slabs], tile % slabs),
-    )
+    if tables.implicits:
+        from renderers.tracing.implicit import prepared
+
+        places = [reals_at + place for place in tables.implicits]
+        sheets = any(isinstance(shape, Implicit) and shape.within is not None for shape in frame.shapes)
+        scene = prepared(scene, rows, places, sheets=sheets, march=samples > 0, certain=certain)
     return scene, rows
 
 
@@ -185,7 +182,7 @@ class Rows:
     def _implicit(self, index: int, shape: Implicit) -> None:
         box = np.array([[*shape.low, *shape.high, 0.0]], dtype=np.float64)
         self.implicits.append(self._size)
-        self._items(index, IMPLICIT, box[:, :6], box)
+        self._items(index, IMPLICIT if shape.within is None else SHEET, box[:, :6], box)
         ranges = self._tape(shape.tape)
         ranges.append(self._code(np.full(CELLS**3, MIXED, dtype=np.int32)))
         for other in (shape.paint, shape.within):

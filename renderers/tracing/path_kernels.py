@@ -16,9 +16,9 @@ from renderers.tracing.record_kernels import (
     put,
     start_of,
 )
-from renderers.tracing.scene_kernels import ENDLESS_COUNT, ITEMS, SHAPE, SURFACE_AT, normal_at, part
+from renderers.tracing.scene_kernels import ENDLESS_COUNT, ITEMS, SHAPE, SURFACE_AT, part
 from renderers.tracing.shade_kernels import facing_ratio
-from renderers.tracing.surface_kernels import color_at
+from renderers.tracing.surface_kernels import color_at, normal_at
 
 FADE = 0.04
 """Sine of the angle to an endless floor below which it fades into the backdrop: a horizon without an edge."""
@@ -28,7 +28,7 @@ FADE = 0.04
 def describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, radius, record):
     """Write the record of a met item, but for its weight; returns whether the ray comes from its outer side."""
     x, y, z = ox + t * dx, oy + t * dy, oz + t * dz
-    nx, ny, nz, fx, fy, fz, lift, red, green, blue = normal_at(scene.normal)(scene, scratch, item, x, y, z)
+    nx, ny, nz, fx, fy, fz, lift, red, green, blue = normal_at(scene, scratch, item, x, y, z)
     outside = dx * fx + dy * fy + dz * fz <= 0.0
     if not outside:
         nx, ny, nz, lift = -nx, -ny, -nz, 0.0
@@ -83,7 +83,7 @@ def bend(scene, scratch, record):
         hx, hy, hz, length = ny, nz, nx, 1.0
     step = record[RADIUS] / length
     x, y, z = record[PLACE] + step * hx, record[PLACE + 1] + step * hy, record[PLACE + 2] + step * hz
-    mx, my, mz, _, _, _, _, _, _, _ = normal_at(scene.normal)(scene, scratch, int(record[ITEM]), x, y, z)
+    mx, my, mz, _, _, _, _, _, _, _ = normal_at(scene, scratch, int(record[ITEM]), x, y, z)
     turn = abs(mx * nx + my * ny + mz * nz)
     return np.sqrt(max(2.0 - 2.0 * turn, 0.0)) / max(nv, 0.1)
 

@@ -5,7 +5,9 @@ import numpy as np
 from numba import types
 
 from renderers.tracing.camera_kernels import camera_ray
-from renderers.tracing.scene_kernels import SCENE, SCRATCH, WIDTH, normal_at, walk_at
+from renderers.tracing.intersect_kernels import walk
+from renderers.tracing.scene_kernels import SCENE, SCRATCH, WIDTH
+from renderers.tracing.surface_kernels import normal_at
 from sceneql.kernels import kernel
 
 
@@ -28,10 +30,10 @@ def probe_rows(scene, scratch, start, stop, depth, normals, undecided):
         for x in range(int(scene.reals[WIDTH])):
             ox, oy, oz, dx, dy, dz, _, _ = camera_ray(scene.reals, x + 0.5, y + 0.5)
             scratch[counter, 0] = 0.0
-            t, item, _ = walk_at(scene.walk)(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, np.inf, False)
+            t, item, _ = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, np.inf, False)
             undecided[y, x] = scratch[counter, 0] > 0.0
             depth[y, x] = t
             normals[y, x, 0], normals[y, x, 1], normals[y, x, 2] = 0.0, 0.0, 0.0
             if item >= 0:
-                met = normal_at(scene.normal)(scene, scratch, item, ox + t * dx, oy + t * dy, oz + t * dz)
+                met = normal_at(scene, scratch, item, ox + t * dx, oy + t * dy, oz + t * dz)
                 normals[y, x, 0], normals[y, x, 1], normals[y, x, 2] = met[0], met[1], met[2]

@@ -6,8 +6,9 @@ from numba import types
 from renderers.tracing.filter_kernels import REACH, SLACK
 from renderers.tracing.record_kernels import OWNER, RADIUS, alike
 from renderers.tracing.sampling_kernels import COUNT, SIDE, morton
-from renderers.tracing.scene_kernels import HEIGHT, LIGHT_COUNT, SCENE, SCRATCH, WIDTH, look_at, part, shade_at
-from renderers.tracing.visibility_kernels import FIRST_LIGHT, shadow_sample
+from renderers.tracing.scene_kernels import HEIGHT, LIGHT_COUNT, SCENE, SCRATCH, WIDTH, part
+from renderers.tracing.shade_kernels import shade
+from renderers.tracing.visibility_kernels import FIRST_LIGHT, look_around, shadow_sample
 from sceneql.kernels import kernel
 
 _i = types.int64
@@ -67,7 +68,7 @@ def refine_rows(scene, scratch, start, stop, records, visibility, means, fine):
                 continue
             if means[k, 0] < FEW:
                 samples = OWN if means[k, 0] < 0.5 * FEW else OWN // 2
-                look_at(scene.look)(scene, scratch, records[k], morton(x, y), samples, 0, fine[k])
+                look_around(scene, scratch, records[k], morton(x, y), samples, 0, fine[k])
                 for c in range(FIRST_LIGHT):
                     joined = samples * fine[k, c] + means[k, 0] * means[k, 1 + c]
                     fine[k, c] = joined / (samples + means[k, 0])
@@ -137,7 +138,7 @@ def shade_rows(scene, start, stop, records, fine, visibility, radiance):
                     height,
                     visibility[layer, k],
                 )
-                r, g, b = shade_at(scene.shade)(scene, records[layer, k], visibility[layer, k])
+                r, g, b = shade(scene, records[layer, k], visibility[layer, k])
                 radiance[k, 0] += r
                 radiance[k, 1] += g
                 radiance[k, 2] += b

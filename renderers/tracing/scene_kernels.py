@@ -16,28 +16,18 @@ part = lean_inlined
 
 
 class Scene(NamedTuple):
-    """A frame as arrays (lengths in meters, colors linear), and the addresses of the tracer's large functions.
-
-    A kernel that another one names is compiled into it once more, with all that it names itself; by address each is
-    compiled once.
-    """
+    """A frame as arrays (lengths in meters, colors linear), and addresses of what only implicit objects need."""
 
     reals: np.ndarray
     """float64: sky, camera and lights where SKY, CAMERA and LIGHTS say; then nodes, surfaces and items of all kinds."""
     ints: np.ndarray
     """int32: the header; four for each item; links of nodes, ranges and cells of implicit objects, code of tapes."""
-    crossing: int
-    """Of implicit_kernels.crossing."""
-    walk: int
-    """Of intersect_kernels.walk."""
-    normal: int
-    """Of surface_kernels.normal_at."""
-    look: int
-    """Of visibility_kernels.look_around."""
-    shade: int
-    """Of shade_kernels.shade."""
-    gather: int
-    """Of gather_kernels.gather."""
+    solid: int
+    """Of what finds a solid's crossing: implicit_kernels.crossing or what stands for it; 0 without implicit objects."""
+    sheet: int
+    """Of what finds a sheet's: sheet_kernels.crossing or what stands for it; 0 without sheets."""
+    skin: int
+    """Of skin_kernels.skin; 0 without implicit objects."""
 
 
 _f, _i = types.float64, types.int64
@@ -48,16 +38,12 @@ SCRATCH = types.float64[:, ::1]
 whose first entry counts the undecided. Where its entry TOLD is set, the rows of implicit shapes begin with their first
 crossing on the ray at hand, or with NaN."""
 TOLD = 1
-SCENE = types.NamedTuple((types.float64[::1], types.int32[::1], _i, _i, _i, _i, _i, _i), Scene)
-_ray = (_f,) * 8
-CROSSING = types.FunctionType(_f(SCENE, SCRATCH, _i, *_ray, types.boolean))
-WALK = types.FunctionType(types.Tuple((_f, _i, _f))(SCENE, SCRATCH, *_ray, types.boolean))
-NORMAL = types.FunctionType(types.UniTuple(_f, 10)(SCENE, SCRATCH, _i, _f, _f, _f))
-LOOK = types.FunctionType(types.void(SCENE, SCRATCH, ROW, _i, _i, _i, ROW))
-SHADE = types.FunctionType(types.UniTuple(_f, 3)(SCENE, ROW, ROW))
-GATHER = types.FunctionType(types.UniTuple(_f, 3)(SCENE, SCRATCH, _f, _f, ROW, ROW, ROW, ROW))
-FUNCTIONS = (CROSSING, WALK, NORMAL, LOOK, SHADE, GATHER)
-crossing_at, walk_at, normal_at, look_at, shade_at, gather_at = map(function_at, FUNCTIONS)
+SCENE = types.NamedTuple((types.float64[::1], types.int32[::1], _i, _i, _i), Scene)
+RAY = (_f,) * 8
+"""Types of origin, direction, near and far."""
+CROSSING = types.FunctionType(_f(SCENE, SCRATCH, _i, *RAY, types.boolean))
+SKIN = types.FunctionType(types.UniTuple(_f, 6)(SCENE, SCRATCH, _i, _f, _f, _f))
+crossing_at, skin_at = map(function_at, (CROSSING, SKIN))
 """Make functions of the addresses."""
 
 NODE_COUNT, ITEM_COUNT, ENDLESS_COUNT, LIGHT_COUNT, NODES_AT, LINKS_AT, SHAPE_COUNT = range(7)
@@ -66,15 +52,15 @@ NODE_COUNT, ITEM_COUNT, ENDLESS_COUNT, LIGHT_COUNT, NODES_AT, LINKS_AT, SHAPE_CO
 ITEMS = 8
 """First of the items, by leaf: kind, place of its reals, place of its surface, index of its shape."""
 KIND, REALS_AT, SURFACE_AT, SHAPE = range(4)
-TRIANGLE, ROUND, QUADRIC, HALF_SPACE, IMPLICIT = range(5)
+TRIANGLE, ROUND, QUADRIC, HALF_SPACE, IMPLICIT, SHEET = range(6)
 """Kinds. Their reals:
 TRIANGLE: corner, edge, edge; normals at the corners, colors at the corners (a NaN first: there are none): 27.
 ROUND (sphere or capsule): end, axis to the other end, radius, color (NaN: the surface's): 10.
 QUADRIC: map to local (3, 4), squares, linear, constant, low, high: 25.
 HALF_SPACE (a quadric that is nothing else): unit normal, height of its face along that: 4.
-IMPLICIT: low, high, place of its ranges: 7. The ranges, in ints: place of the code, its rows, place of the constants,
-their number, place of the parts, their rows; place of the cells; the same six of its paint and of what a sheet lies
-within (no rows: it has none)."""
+IMPLICIT and SHEET: low, high, place of its ranges: 7. The ranges, in ints: place of the code, its rows, place of the
+constants, their number, place of the parts, their rows; place of the cells; the same six of its paint and of what a
+sheet lies within (no rows: it has none)."""
 CELLS_AT, PAINT, WITHIN, RANGES = 6, 7, 13, 19
 """Columns of the ranges, and how many there are."""
 

@@ -2,6 +2,7 @@
 """From a record and its visibility to radiance: Lambert, GGX, the sky's blurred reflection."""
 
 import numpy as np
+from numba import types
 
 from renderers.tracing.light_kernels import highlight, mean_reflectance, schlick, sky_ambient, sky_radiance
 from renderers.tracing.record_kernels import NORMAL, PLACE, SURFACE, TINT, TRACED, VIEW, WEIGHT
@@ -13,7 +14,8 @@ from renderers.tracing.scene_kernels import (
     METALLIC,
     POINT,
     ROUGHNESS,
-    SHADE,
+    ROW,
+    SCENE,
     SPECULAR,
     TRANSMISSION,
     part,
@@ -73,7 +75,7 @@ def light_width(reals, k, distance, roughness):
     return min(np.sqrt(alpha * alpha + size * size + SHARPEST * SHARPEST), 1.0)
 
 
-@kernel(SHADE.signature, _nrt=False)
+@kernel(types.UniTuple(types.float64, 3)(SCENE, ROW, ROW), _nrt=False)
 def shade(scene, record, visibility):
     """Radiance (3) of a record times its weight, but for what is traced further."""
     u = scene.reals

@@ -2,8 +2,8 @@
 """What a ray finds where it meets an item: normal, color, and how far a smooth mesh's facets lie off its curve."""
 
 import numpy as np
+from numba import types
 
-from renderers.tracing.implicit_kernels import is_sheet, tape_of
 from renderers.tracing.scene_kernels import (
     CHECKER,
     CHECKER_COLOR,
@@ -11,22 +11,21 @@ from renderers.tracing.scene_kernels import (
     HALF_SPACE,
     ITEMS,
     KIND,
-    NORMAL,
-    PAINT,
     QUADRIC,
     REALS_AT,
     ROUND,
+    SCENE,
+    SCRATCH,
     SURFACE_AT,
     TRIANGLE,
     part,
+    skin_at,
 )
 from renderers.tracing.solids_kernels import local_point
-from sceneql.field.tape_kernels import gradient
 from sceneql.kernels import kernel
 
 TRIANGLE_NORMALS, TRIANGLE_COLORS, ROUND_COLOR = 9, 18, 7
-BESIDE = 1e-5
-"""How far beside a sheet its gradient is asked where it vanishes on it, relative to the box."""
+_f = types.float64
 
 
 @part
@@ -64,53 +63,6 @@ def quadric_normal(q, k, x, y, z):
         b += slope * q[k + 4 * axis + 1]
         c += slope * q[k + 4 * axis + 2]
     return unit(a, b, c)
-
-
-@part
-def implicit_normal(scene, scratch, k, x, y, z):
-    """Outward unit normal of implicit object k: of a face of its box where the point lies on one, else its gradient."""
-    b = scene.reals
-    p = (x, y, z)
-    for axis in range(3):
-        near = 1e-9 * (b[k + 3 + axis] - b[k + axis] + abs(p[axis]))
-        if abs(p[axis] - b[k + axis]) < near:
-            return (-1.0 if axis == 0 else 0.0), (-1.0 if axis == 1 else 0.0), (-1.0 if axis == 2 else 0.0)
-        if abs(p[axis] - b[k + 3 + axis]) < near:
-            return (1.0 if axis == 0 else 0.0), (1.0 if axis == 1 else 0.0), (1.0 if axis == 2 else 0.0)
-    c0, c1, k0, k1, p0, p1 = tape_of(scene, k)
-    code = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
-    constants = scene.reals[k0:k1]
-    parts = scene.reals[p0:p1].reshape((p1 - p0) // 8, 8)
-    _, gx, gy, gz = gradient(code, constants, parts, scratch, x, y, z)
-    if not is_sheet(scene, k):
-        return unit(gx, gy, gz)
-    # At a root of multiplicity m > 1 the gradient, m h^(m-1) grad h, vanishes; beside it, on both sides, it is along
-    # grad h: turned around for an even m, where the difference of the two is left, not for an odd one.
-    best = gx * gx + gy * gy + gz * gz
-    step = BESIDE * (b[k + 3] - b[k] + b[k + 4] - b[k + 1] + b[k + 5] - b[k + 2])
-    for axis in range(3):
-        sx, sy, sz = step if axis == 0 else 0.0, step if axis == 1 else 0.0, step if axis == 2 else 0.0
-        _, px, py, pz = gradient(code, constants, parts, scratch, x + sx, y + sy, z + sz)
-        _, qx, qy, qz = gradient(code, constants, parts, scratch, x - sx, y - sy, z - sz)
-        for sign in (-1.0, 1.0):
-            ex, ey, ez = px + sign * qx, py + sign * qy, pz + sign * qz
-            size = 0.01 * (ex * ex + ey * ey + ez * ez)
-            if size > best:
-                best = size
-                gx, gy, gz = ex, ey, ez
-    return unit(gx, gy, gz)
-
-
-@part
-def painted(scene, scratch, k, x, y, z):
-    """Color (3) of implicit object k at a point by its paint; NaN where it has none, or that says nothing."""
-    c0, c1, k0, k1, p0, p1 = tape_of(scene, k, PAINT)
-    if c0 == c1:
-        return np.nan, np.nan, np.nan
-    code = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
-    gradient(code, scene.reals[k0:k1], scene.reals[p0:p1].reshape((p1 - p0) // 8, 8), scratch, x, y, z)
-    last = (c1 - c0) // 4 - 1
-    return scratch[last - 2, 0], scratch[last - 1, 0], scratch[last, 0]
 
 
 @part
@@ -173,7 +125,7 @@ def triangle_normal(scene, k, x, y, z):
     return nx, ny, nz, fx, fy, fz, max(lift, 0.0)
 
 
-@kernel(NORMAL.signature, _nrt=False)
+@kernel(types.UniTuple(_f, 10)(SCENE, SCRATCH, types.int64, _f, _f, _f), _nrt=False)
 def normal_at(scene, scratch, item, x, y, z):
     """(normal, facet normal, lift, paint) of an item at a point of its surface.
 
@@ -192,8 +144,7 @@ def normal_at(scene, scratch, item, x, y, z):
     elif kind == HALF_SPACE:
         nx, ny, nz = scene.reals[k], scene.reals[k + 1], scene.reals[k + 2]
     else:
-        nx, ny, nz = implicit_normal(scene, scratch, k, x, y, z)
-        r, g, b = painted(scene, scratch, k, x, y, z)
+        nx, ny, nz, r, g, b = skin_at(scene.skin)(scene, scratch, k, x, y, z)
     return nx, ny, nz, nx, ny, nz, 0.0, r, g, b
 
 

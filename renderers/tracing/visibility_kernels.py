@@ -2,7 +2,9 @@
 """How much of each light, and of the sky, a record sees."""
 
 import numpy as np
+from numba import types
 
+from renderers.tracing.intersect_kernels import walk
 from renderers.tracing.light_kernels import sky_ambient, sky_radiance
 from renderers.tracing.record_kernels import NORMAL, PLACE, RADIUS, start_of
 from renderers.tracing.sampling_kernels import COUNT, DISK, JITTER, SKY_COUNT, SKY_DISK, across
@@ -13,16 +15,17 @@ from renderers.tracing.scene_kernels import (
     LIGHT,
     LIGHT_COUNT,
     LIGHTS,
-    LOOK,
+    ROW,
+    SCENE,
+    SCRATCH,
     SUN,
     SURFACE_AT,
-    normal_at,
     part,
-    walk_at,
 )
-from renderers.tracing.surface_kernels import color_at
+from renderers.tracing.surface_kernels import color_at, normal_at
 from sceneql.kernels import kernel
 
+_i = types.int64
 SKY = 0
 """First of three columns of visibility: how much less than the open sky's mean radiance comes in (RGB)."""
 FIRST_LIGHT = 3
@@ -58,7 +61,7 @@ def seen(scene, scratch, l, x, y, z, disk_x, disk_y):
     if far == np.inf:
         length = np.sqrt(dx * dx + dy * dy + dz * dz)
         dx, dy, dz = dx / length, dy / length, dz / length
-    blocker, _, share = walk_at(scene.walk)(scene, scratch, x, y, z, dx, dy, dz, 0.0, far, True)
+    blocker, _, share = walk(scene, scratch, x, y, z, dx, dy, dz, 0.0, far, True)
     return share, blocker
 
 
@@ -74,7 +77,7 @@ def shadow_width(scene, l, x, y, z, blocker):
 @part
 def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius):
     """Radiance (3) that a place sends back: its own light, and the lights and part of the sky reflected once, matte."""
-    nx, ny, nz, fx, fy, fz, lift, red, green, blue = normal_at(scene.normal)(scene, scratch, item, x, y, z)
+    nx, ny, nz, fx, fy, fz, lift, red, green, blue = normal_at(scene, scratch, item, x, y, z)
     if dx * fx + dy * fy + dz * fz > 0.0:
         nx, ny, nz, fx, fy, fz = -nx, -ny, -nz, -fx, -fy, -fz
     r, g, b = color_at(scene, item, (red, green, blue), x, y, z, nx, ny, nz, dx, dy, dz, radius)
@@ -86,7 +89,7 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius):
         lx, ly, lz, far, ir, ig, ib = light_at(scene.reals, l, sx, sy, sz)
         cosine = nx * lx + ny * ly + nz * lz
         if cosine > 0.0 and fx * lx + fy * ly + fz * lz > 0.0:
-            _, _, share = walk_at(scene.walk)(scene, scratch, sx, sy, sz, lx, ly, lz, 0.0, far, True)
+            _, _, share = walk(scene, scratch, sx, sy, sz, lx, ly, lz, 0.0, far, True)
             cosine *= share / np.pi
             er += cosine * ir
             eg += cosine * ig
@@ -105,7 +108,7 @@ def sky_loss(scene, scratch, record, sample):
     w = np.sqrt(max(1.0 - u * u - v * v, 0.0))
     dx, dy, dz = u * ax + v * bx + w * nx, u * ay + v * by + w * ny, u * az + v * bz + w * nz
     x, y, z = start_of(record)
-    t, item, _ = walk_at(scene.walk)(scene, scratch, x, y, z, dx, dy, dz, 0.0, np.inf, False)
+    t, item, _ = walk(scene, scratch, x, y, z, dx, dy, dz, 0.0, np.inf, False)
     if item < 0:
         return 0.0, 0.0, 0.0
     radius = record[RADIUS] + 0.05 * t
@@ -139,7 +142,7 @@ def shadow_sample(scene, scratch, record, l, sample, jitter):
     return share, width
 
 
-@kernel(LOOK.signature, _nrt=False)
+@kernel(types.void(SCENE, SCRATCH, ROW, _i, _i, _i, ROW), _nrt=False)
 def look_around(scene, scratch, record, number, of_sky, of_lights, visibility):
     """Fill a row of visibility with means of nets of so many samples (powers of two), those of pixel ``number``.
 

@@ -67,6 +67,23 @@ def distance_squared(parts, i, p0, p1, scratch):
 
 
 @inlined
+def passes_by(parts, i, cx, cy, cz, ux, uy, uz, speed2, blur):
+    """Whether the points c + u tau +- blur, tau in [-1, 1], are surely farther from point part i than its radius."""
+    if parts[i, 0] != parts[i, 3] or parts[i, 1] != parts[i, 4] or parts[i, 2] != parts[i, 5]:
+        return False
+    wx = cx - parts[i, 0]
+    wy = cy - parts[i, 1]
+    wz = cz - parts[i, 2]
+    square = wx * wx + wy * wy + wz * wz
+    way = abs(wx * ux + wy * uy + wz * uz)
+    radius = parts[i, 6] + 2.0 * blur
+    least = radius * radius * (1.0 + 1.0e-9) + 1.0e-12 * (square + speed2)
+    if way < speed2:
+        return square * speed2 - way * way > least * speed2
+    return square - 2.0 * way + speed2 > least
+
+
+@inlined
 def density_segment(parts, start, stop, scratch, k, base, p, survey):
     """(c0, c1, e) of the density of parts start..stop-1 at the point whose enclosures are rows p..p+2 of scratch.
 
@@ -84,7 +101,12 @@ def density_segment(parts, start, stop, scratch, k, base, p, survey):
     table, first, last = parts, start, stop
     if not survey:
         table, first, last = scratch, base, base + int(scratch[k, 3])
+    cx = scratch[p, 0]
+    cy = scratch[p + 1, 0]
+    cz = scratch[p + 2, 0]
     for i in range(first, last):
+        if survey and passes_by(table, i, cx, cy, cz, ux, uy, uz, speed2, point_blur):
+            continue
         d0, d1, d2, d3, blur = distance_squared(table, i, p, speed2, scratch)
         blur += point_blur
         radius = table[i, 6]

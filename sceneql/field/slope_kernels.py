@@ -231,19 +231,6 @@ def differentiate(code, parts, scratch, columns, dx, dy, dz):
     return True
 
 
-@lean(f"UniTuple(float64, 3)({TAPE})")
-def steepness(code, constants, parts, scratch):
-    """Bounds of |df/dx|, |df/dy|, |df/dz| in the box for which ``box`` left WHOLE in scratch; infinite without any."""
-    if not differentiate(code, parts, scratch, 8, 0.0, 0.0, 0.0):
-        return np.inf, np.inf, np.inf
-    last = code.shape[0] - 1
-    return (
-        max(-scratch[last, 2], scratch[last, 3]),
-        max(-scratch[last, 4], scratch[last, 5]),
-        max(-scratch[last, 6], scratch[last, 7]),
-    )
-
-
 @lean(
     f"Tuple((float64, float64, float64, float64, int64))({TAPE}, float64, float64, float64, float64, float64, float64,"
     " float64, float64, float64)"

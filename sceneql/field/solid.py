@@ -5,7 +5,7 @@ Imports numpy and numba: to be imported by the function that needs it.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -50,10 +50,12 @@ def cast(
 ) -> tuple[NDArray[np.int64], Floats]:
     """(status, t), each (n,): the first entry of rays o + t d, t in [t0, t1], as of isolation_kernels.first_root.
 
-    ``surface``: the first root of f instead, as of isolation_kernels.surface_root.
+    ``surface``: the first root of f instead, as of sheet_roots_kernels.surface_root.
     """
     room = scratch(tape)
-    first = isolation_kernels.surface_root if surface else isolation_kernels.first_root
+    first: Any = isolation_kernels.first_root
+    if surface:
+        from sceneql.field.sheet_roots_kernels import surface_root as first
     origins, directions = np.broadcast_arrays(np.atleast_2d(origins), np.atleast_2d(directions))
     starts = np.broadcast_to(np.asarray(t0, dtype=np.float64), len(origins))
     ends = np.broadcast_to(np.asarray(t1, dtype=np.float64), len(origins))

@@ -50,10 +50,12 @@ class Renderer(Kind):
     """Draws a frame."""
 
     family: ClassVar[str] = "renderers"
-    kernels: ClassVar[str] = ""
-    """The module whose import compiles what it draws with."""
     data: ClassVar[bool] = False
     """Whether its pictures are data (depth, normals), which are not developed."""
+
+    def kernels(self, traced: bool) -> tuple[str, ...]:
+        """Modules whose import compiles what it draws with; ``traced``: objects that are found by roots among it."""
+        return ()
 
     def draw(self, frame: Any) -> Any:
         """The Picture of a frame."""

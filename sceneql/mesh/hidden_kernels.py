@@ -3,7 +3,7 @@
 
 from sceneql.field.interval_kernels import box
 from sceneql.field.simplify_kernels import simplify
-from sceneql.field.slope_kernels import steepness
+from sceneql.field.steepness_kernels import steepness
 from sceneql.field.tape_kernels import TAPE, value
 from sceneql.field.tape_ops import NOWHERE, WHOLE
 from sceneql.kernels import inlined, lean

@@ -25,6 +25,7 @@ class Box(Solid):
     """
 
     collides: ClassVar[bool] = True
+    traced: ClassVar[bool] = False
 
     size: Position = field("Its sides along its own x, y and z.", "1 1 1 m", above=0)
 

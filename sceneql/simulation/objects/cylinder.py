@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from sceneql.kinds import FieldBuilder, Length, Moment, field
 from sceneql.simulation.placement import compose
@@ -20,6 +20,8 @@ class Cylinder(Solid):
     Its field is max(sqrt(x^2 + z^2) - radius, |y| - height / 2): exact inside and in front of its side and ends, less
     than the distance in front of its rims.
     """
+
+    traced: ClassVar[bool] = False
 
     radius: Length = field("Its radius.", "0.5 m", above=0)
     height: Length = field("Its length along its own y.", "1 m", above=0)

@@ -1,0 +1,44 @@
+"""What only frames with implicit objects need of the tracer."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from renderers.tracing.scene_kernels import CELLS, CROSSING, SKIN
+from renderers.tracing.skin_kernels import skin
+from sceneql.field.tape_ops import SCRATCH_COLUMNS
+from sceneql.kernels import address, over_tiles
+
+if TYPE_CHECKING:
+    from renderers.tracing.scene_kernels import Scene
+
+
+def prepared(scene: Scene, rows: int, places: list[int], *, sheets: bool, march: bool, certain: bool) -> Scene:
+    """The scene with the addresses of what finds its implicit objects, whose reals begin at ``places``.
+
+    Solids and ``sheets`` by certified roots in the cells that are not proved empty; with ``march`` by samples on the
+    ray, with ``certain`` by certified intervals alone, both without cells.
+    """
+    scene = scene._replace(skin=address(skin, SKIN))
+    if march or certain:
+        if march:
+            from renderers.tracing.march_kernels import sampled as other
+        else:
+            from renderers.tracing.certain_kernels import certain as other
+        return scene._replace(solid=address(other, CROSSING), sheet=address(other, CROSSING))
+    from renderers.tracing.implicit_kernels import crossing
+    from renderers.tracing.occupancy_kernels import BLOCK, occupy
+
+    scene = scene._replace(solid=address(crossing, CROSSING))
+    if sheets:
+        from renderers.tracing import sheet_kernels
+
+        scene = scene._replace(sheet=address(sheet_kernels.crossing, CROSSING))
+    slabs = CELLS // BLOCK
+    over_tiles(
+        len(places) * slabs,
+        lambda tile: occupy(scene, np.zeros((rows, SCRATCH_COLUMNS)), places[tile // slabs], tile % slabs),
+    )
+    return scene

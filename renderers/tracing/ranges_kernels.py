@@ -1,0 +1,45 @@
+# mypy: ignore-errors
+"""Where what is known of an implicit object lies in the scene's arrays."""
+
+from renderers.tracing.scene_kernels import CELLS_AT, WITHIN, part
+from renderers.tracing.solids_kernels import box_span, inverse
+
+
+@part
+def tape_of(scene, k, first=0):
+    """Where the tape of the implicit object whose reals begin at k lies: begin and end of code, constants and parts.
+
+    Its own are the ranges from the ``first`` on, those of others from PAINT and from WITHIN on.
+    """
+    n = scene.ints
+    r = int(scene.reals[k + 6]) + first
+    code, constants, parts = int(n[r]), int(n[r + 2]), int(n[r + 4])
+    return code, code + 4 * n[r + 1], constants, constants + n[r + 3], parts, parts + 8 * n[r + 5]
+
+
+@part
+def cells_at(scene, k):
+    """Place of the occupancy cells of the implicit object whose reals begin at k."""
+    return scene.ints[int(scene.reals[k + 6]) + CELLS_AT]
+
+
+@part
+def is_sheet(scene, k):
+    """Whether implicit object k is a sheet, not a solid."""
+    return scene.ints[int(scene.reals[k + 6]) + WITHIN + 1] > 0
+
+
+@part
+def box_part(scene, k, ox, oy, oz, dx, dy, dz, near, far):
+    """(from, to) of the ray inside the box of implicit object k."""
+    b = scene.reals
+    enter = near
+    leave = far
+    e, f = box_span(b[k], b[k + 3], ox, inverse(dx))
+    enter = max(enter, e)
+    leave = min(leave, f)
+    e, f = box_span(b[k + 1], b[k + 4], oy, inverse(dy))
+    enter = max(enter, e)
+    leave = min(leave, f)
+    e, f = box_span(b[k + 2], b[k + 5], oz, inverse(dz))
+    return max(enter, e), min(leave, f)

@@ -1,0 +1,48 @@
+# mypy: ignore-errors
+"""Rays against implicit sheets: certified roots with or without a change of sign."""
+
+import numpy as np
+
+from renderers.tracing.implicit_kernels import FARTHER, PAD, RETRIES, occupied
+from renderers.tracing.ranges_kernels import box_part, tape_of
+from renderers.tracing.scene_kernels import CELLS, CROSSING, TOLERANCE, WITHIN
+from renderers.tracing.solids_kernels import NONE
+from sceneql.field.sheet_roots_kernels import surface_root
+from sceneql.field.tape_kernels import value
+from sceneql.field.tape_ops import HIT, MISS, UNDECIDED
+from sceneql.kernels import kernel
+
+
+@kernel(CROSSING.signature, _nrt=False)
+def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
+    """Crossing of the sheet of implicit object k behind ``near``: its first root inside what it lies within."""
+    c0, c1, k0, k1, p0, p1 = tape_of(scene, k)
+    code = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
+    constants = scene.reals[k0:k1]
+    parts = scene.reals[p0:p1].reshape((p1 - p0) // 8, 8)
+    c0, c1, k0, k1, p0, p1 = tape_of(scene, k, WITHIN)
+    code_within = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
+    constants_within = scene.reals[k0:k1]
+    parts_within = scene.reals[p0:p1].reshape((p1 - p0) // 8, 8)
+    b = scene.reals
+    side = min(b[k + 3] - b[k], b[k + 4] - b[k + 1], b[k + 5] - b[k + 2]) / CELLS
+    t, stop = box_part(scene, k, ox, oy, oz, dx, dy, dz, near, far)
+    past = 0.1 * PAD * side / np.sqrt(dx * dx + dy * dy + dz * dz)
+    tolerance = b[TOLERANCE]
+    tries = 0
+    while t < stop and tries < RETRIES:
+        begin, end, _ = occupied(scene, k, ox, oy, oz, dx, dy, dz, t, stop)
+        if not begin < stop:
+            return NONE
+        end = max(end, begin + past)
+        status, root = surface_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, begin, end, tolerance)
+        if status == HIT:
+            x, y, z = ox + root * dx, oy + root * dy, oz + root * dz
+            if value(code_within, constants_within, parts_within, scratch, x, y, z) < 0.0:
+                return root
+        elif status == UNDECIDED:
+            scratch[scratch.shape[0] - 1, 0] += 1.0
+            root += tolerance * (end - begin) * FARTHER**tries
+            tries += 1
+        t = end + past if status == MISS else root + past
+    return NONE
