@@ -10,7 +10,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -19,7 +19,7 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.compile import compile_script
 from sceneql.failure import Unsuitable, failing_as
 from sceneql.graph import SimulationGraph
-from sceneql.kinds import FAMILIES, Camera, Clock, Illumination, Object, Output, Picture, Renderer, Settings
+from sceneql.kinds import FAMILIES, Camera, Clock, Illumination, Object, Output, Overlay, Picture, Renderer, Settings
 from sceneql.language.script import read_script
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
 
@@ -215,7 +215,12 @@ class Tools:
         self.report.frames += 1
         if picture.undecided:
             self.report.undecided.setdefault(self.name, {})[frame.index] = picture.undecided
-        return develop(picture.linear, exposure=output.exposure, data=renderer.data)
+        pixels = develop(picture.linear, exposure=output.exposure, data=renderer.data)
+        for task in () if renderer.data else self.graph.tasks.values():
+            if isinstance(task.kind, Overlay):
+                with failing_as(task.name, moment.time, task.span):
+                    task.kind.draw(pixels, frame.view, moment, partial(develop, exposure=output.exposure))
+        return pixels
 
     def encoder(self, word: str, **settings: Any) -> Any:
         """A writer of the encoders' folder."""

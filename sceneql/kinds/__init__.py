@@ -11,7 +11,7 @@ from sceneql.kinds.moment import Moment
 from sceneql.kinds.objects import Collider, FieldBuilder, Object
 from sceneql.kinds.outputs import Output, Picture, Sink, Tools
 from sceneql.kinds.physics import Contact, Force, Model, Solver
-from sceneql.kinds.pictures import Camera, Illumination, Material, Renderer
+from sceneql.kinds.pictures import Camera, Illumination, Material, Overlay, Renderer
 from sceneql.kinds.settings import MOST_MOMENTS, Clock, Exceeds, Expect, Gallery, Settings, bounded_moments
 from sceneql.kinds.types import (
     Acceleration,
@@ -76,5 +76,6 @@ FAMILIES: tuple[type[Kind], ...] = (
     Illumination,
     Material,
     Renderer,
+    Overlay,
     Output,
 )

@@ -1,13 +1,16 @@
-"""The families of pictures: cameras, lights, materials, renderers."""
+"""The families of pictures: cameras, lights, materials, renderers, overlays."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from sceneql.kinds.word import Kind
 
 if TYPE_CHECKING:
+    from numpy import uint8
+    from numpy.typing import NDArray
+
     from sceneql.frame import RGB, Light, Surface, View
     from sceneql.kinds.moment import Moment
 
@@ -59,4 +62,16 @@ class Renderer(Kind):
 
     def draw(self, frame: Any) -> Any:
         """The Picture of a frame."""
+        raise NotImplementedError
+
+
+class Overlay(Kind):
+    """Something that is drawn over a finished picture: a legend, a caption."""
+
+    family: ClassVar[str] = "overlays"
+
+    def draw(
+        self, pixels: NDArray[uint8], view: View, moment: Moment, develop: Callable[[Any], NDArray[uint8]]
+    ) -> None:
+        """Draw on a developed picture (h, w, 3); ``develop`` brings linear RGB (h, w, 3) to its display pixels."""
         raise NotImplementedError

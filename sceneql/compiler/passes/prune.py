@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from sceneql.graph import Island, LeftOut, Task
-from sceneql.kinds import Illumination, Model, Object, Output
+from sceneql.kinds import Illumination, Model, Object, Output, Overlay
 
 
 def prune(
@@ -15,7 +15,7 @@ def prune(
     cameras: Mapping[str, str],
 ) -> tuple[dict[str, Task], dict[str, tuple[str, ...]], tuple[LeftOut, ...]]:
     """The needed tasks, each behind those it needs; for each the outputs that need it; and the rest with reasons."""
-    lights = [t.name for t in tasks.values() if isinstance(t.kind, Illumination)]
+    seen_by_all = [t.name for t in tasks.values() if isinstance(t.kind, Illumination | Overlay)]
     island_of = {name: island for island in islands for name in island.models}
     order: dict[str, Task] = {}
     needed_by: dict[str, list[str]] = {}
@@ -37,7 +37,7 @@ def prune(
 
     for output in [t for t in tasks.values() if isinstance(t.kind, Output)]:
         if output.name in drawn:
-            for name in (*drawn[output.name], *lights, cameras[output.name]):
+            for name in (*drawn[output.name], *seen_by_all, cameras[output.name]):
                 visit(name, output.name, ())
         visit(output.name, output.name, ())
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from sceneql.kinds import Color, FixedLength, FixedPosition, Moment, Object, Problem, Quantity, Record, Value, field
 from sceneql.kinds.types import Axis
-from sceneql.quantities.dimension import LENGTH
+from sceneql.quantities.dimension import LENGTH, PLAIN
 from sceneql.simulation.color import linear
 from sceneql.simulation.maps.names import ColorMap
 from sceneql.simulation.maps.seen import Bounds, Field, Levels, seen, unfit
@@ -15,6 +15,7 @@ from sceneql.simulation.placement import apply, uniform_scale
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Shape
+    from sceneql.simulation.maps.key import ColorKey
     from sceneql.simulation.maps.seen import Seen
     from sceneql.simulation.maps.sheets import Sheet
 
@@ -86,6 +87,13 @@ class FieldMap(Object):
             values = moment.at(self.of)
             low, high = min(low, float(values.min())), max(high, float(values.max()))
         return (low, high) if high > low else (low, low + 1.0)
+
+    def color_key(self, moment: Moment) -> ColorKey:
+        """What its colors mean, for a legend."""
+        from sceneql.simulation.maps.key import ColorKey
+
+        marks = () if self.contours is None else moment.at(self.contours)
+        return ColorKey(self.colors, *self.scale(moment), self.of.expr.type.dimension or PLAIN, tuple(marks))
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """A mesh with a color a vertex, and lines as segments. Raises ValueError for a cut through a flat field."""

@@ -1,0 +1,82 @@
+"""Letters and panels on developed pictures."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from numpy import uint8
+    from numpy.typing import NDArray
+
+PAPER = (250, 250, 250)
+INK = (28, 28, 32)
+SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+
+
+class Letterer:
+    """Draws on a picture (h, w, 3) uint8, in place once it is done."""
+
+    def __init__(self, pixels: NDArray[uint8], text_height: float) -> None:
+        """``text_height`` in parts of the picture's height; letters are never smaller than 9 pixels."""
+        from PIL import Image, ImageDraw
+
+        self._pixels = pixels
+        self.height, self.width = pixels.shape[:2]
+        self.em = max(9, round(text_height * self.height))
+        self.font = font(self.em)
+        self._image = Image.fromarray(pixels)
+        self.draw: Any = ImageDraw.Draw(self._image, "RGBA")
+
+    def extent(self, text: str) -> tuple[int, int]:
+        """Width and height of a text [pixels]; all texts of one line are of one height."""
+        return int(self.draw.textlength(text, font=self.font) + 0.5), sum(self.font.getmetrics())
+
+    def panel(self, box: tuple[int, int, int, int], opacity: float) -> None:
+        """A light panel with round corners: left, top, right, bottom."""
+        self.draw.rounded_rectangle(box, self.em // 3, (*PAPER, round(255 * opacity)))
+
+    def text(self, place: tuple[float, float], text: str, anchor: str = "lm", ink: tuple[int, ...] = INK) -> None:
+        """A text at a place [pixels], anchored as Pillow names it: ``lm`` is the middle of its left end."""
+        self.draw.text(place, text, ink, font=self.font, anchor=anchor)
+
+    def paste(self, block: NDArray[uint8], left: int, top: int) -> None:
+        """Pixels (h, w, 3) over the picture."""
+        from PIL import Image
+
+        self._image.paste(Image.fromarray(block), (left, top))
+
+    def done(self) -> None:
+        """Write all of it into the picture."""
+        import numpy as np
+
+        self._pixels[:] = np.asarray(self._image)
+
+
+@cache
+def font(size: int) -> Any:
+    """Pillow's own letters, so that a picture is the same on every machine."""
+    from PIL import ImageFont
+
+    return ImageFont.load_default(size)
+
+
+def shown_unit(text: str) -> str:
+    """A unit as it is printed: ``kg/m^3`` with a raised 3."""
+    head, *tails = text.replace("**", "^").replace("*", "·").split("^")
+    raised = head
+    for tail in tails:
+        digits = len(tail) - len(tail.lstrip("-0123456789"))
+        raised += tail[:digits].translate(SUPERSCRIPTS) + tail[digits:]
+    return raised
+
+
+def round_numbers(low: float, high: float, count: int) -> list[float]:
+    """About so many numbers from low to high whose steps are 1, 2 or 5 times a power of ten."""
+    import math
+
+    rough = (high - low) / max(count, 1)
+    power = 10.0 ** math.floor(math.log10(rough))
+    step = next(power * factor for factor in (1.0, 2.0, 5.0, 10.0) if power * factor >= rough * (1.0 - 1e-9))
+    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+    return [k * step for k in range(first, last + 1)]
