@@ -268,3 +268,45 @@ def test_a_field_is_one_parts(tmp_path):
 def test_an_empty_sheet_stays_empty():
     empty = kept(Sheet(np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int32)), lambda points: points[:, 0])
     assert len(empty.triangles) == 0
+
+
+# --- surfaces of a value, as a word ---
+
+ROOM = """
+clock: {{end: 1 s, fps: 10}}
+models:
+  room:
+    diffusion: {{size: 1 1 1 m, corner: -0.5 -0.5 -0.5 m, cell: "1/{n} m", of: number, coefficient: "1e-9",
+                 initial: "sqrt(x^2 + y^2 + z^2)"}}
+objects:
+  skin: {{iso_surface: {{of: room.concentration, {fields}}}}}
+solvers: {{main: {{ftcs: {{step: 0.1 s}}}}}}
+outputs: {{film: {{image: {{size: 64 32}}}}}}
+"""
+
+
+def skins(folder, n, fields):
+    path = folder / "scene.yaml"
+    path.write_text(ROOM.format(n=n, fields=fields), encoding="utf-8")
+    graph = load(path)
+    (moment,) = Run(graph).moments([0.0])
+    return moment.lower(["skin"])
+
+
+def test_a_surface_of_a_value_is_the_ball_it_should_be_of_second_order(tmp_path):
+    errors = []
+    for n in (10, 20, 40):
+        (mesh,) = skins(tmp_path, n, "at: 0.4")
+        radii = np.linalg.norm(mesh.vertices, axis=1)
+        inward = -(mesh.normals * mesh.vertices).sum(axis=1) / radii  # the front faces lower values
+        errors.append(abs(radii - 0.4).max())
+        assert inward.min() > 1 - 0.2 / n
+        assert -volume(mesh.vertices, mesh.triangles) == pytest.approx(4 / 3 * np.pi * 0.4**3, rel=4 / n**2)
+    assert np.log2(errors[1] / errors[2]) > 1.8
+
+
+def test_surfaces_of_values_end_on_the_walls_and_have_the_colors_of_a_map(tmp_path):
+    inner, outer = skins(tmp_path, 16, "at: 0.3 0.6, colors: inferno")
+    assert abs(outer.vertices).max() == pytest.approx(0.5, abs=1e-12)
+    assert abs(inner.vertices).max() < 0.31
+    np.testing.assert_allclose([inner.surface.color, outer.surface.color], table("inferno")[[0, -1]], atol=1e-12)

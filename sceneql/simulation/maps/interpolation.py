@@ -88,6 +88,23 @@ class Interpolation:
             total += weight * field[index[2] + dz, index[1] + dy, index[0] + dx]
         return total
 
+    def nodes(self, field: Floats) -> tuple[tuple[Floats, Floats, Floats], Floats]:
+        """Places along x, y, z of the centers of cells and of the walls, and a filled field there (nz, ny, nx)."""
+        low, spacing = self.layout.low, self.layout.spacing
+        axes = []
+        for axis, count in enumerate(self.layout.shape):
+            centers = (np.arange(count) + 0.5) * spacing[axis]
+            axes.append(low[axis] + np.concatenate([[0.0], centers, [count * spacing[axis]]]))
+            rows = np.moveaxis(field, 2 - axis, 0)
+            field = np.concatenate([0.5 * (rows[:1] + rows[1:2]), rows[1:-1], 0.5 * (rows[-2:-1] + rows[-1:])])
+            field = np.moveaxis(field, 0, 2 - axis)
+        return (axes[0], axes[1], axes[2]), np.ascontiguousarray(field)
+
+    def gradient(self, field: Floats, points: Floats) -> Floats:
+        """The gradient (k, 3) [1/m] of a deep filled field: its central differences, interpolated."""
+        slopes = np.gradient(field, *self.layout.spacing[::-1])
+        return np.stack([self.at(slope, points) for slope in reversed(slopes)], axis=1)
+
 
 def _layer(known: NDArray[np.bool_]) -> tuple[Any, list[Source]] | None:
     """The cells beside known ones and where their values come from; they are known then. None: there are none."""

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
 Field = Annotated[Value, Quantity(None, (None,))]
 """An expression of a field's values: ``lake.concentration``, ``dish.u - dish.v``."""
-Level = Annotated[Value, Quantity(None)]
-Levels = Annotated[Value, Quantity(None, (None,))]
+Levels = Annotated[Value, Quantity(None, None)]
+"""A value or several."""
 Bounds = Annotated[Value, Quantity(None, (2,))]
 
 

@@ -54,7 +54,7 @@ class FieldMap(Object):
     )
     cut: tuple[Section, ...] = field("A deep domain is cut open: what lies before all these planes is away.", ())
     surface: bool = field("Of a deep domain; without it the field is seen on the planes of `cut` alone, whole.", True)
-    contours: Levels | None = field("Values whose lines are drawn.", None)
+    contours: Levels | None = field("Values whose lines are drawn, one or several.", None)
     contour_color: Color = field("Color of these lines.", "0.05 0.05 0.06")
     contour_radius: FixedLength | None = field("Radius of these lines; by default a thin one.", None, above=0)
 
@@ -92,8 +92,13 @@ class FieldMap(Object):
         """What its colors mean, for a legend."""
         from sceneql.simulation.maps.key import ColorKey
 
-        marks = () if self.contours is None else moment.at(self.contours)
-        return ColorKey(self.colors, *self.scale(moment), self.of.expr.type.dimension or PLAIN, tuple(marks))
+        dimension = self.of.expr.type.dimension or PLAIN
+        return ColorKey(self.colors, *self.scale(moment), dimension, self._levels(moment))
+
+    def _levels(self, moment: Moment) -> tuple[float, ...]:
+        import numpy as np
+
+        return () if self.contours is None else tuple(np.ravel(moment.at(self.contours)).tolist())
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """A mesh with a color a vertex, and lines as segments. Raises ValueError for a cut through a flat field."""
@@ -117,8 +122,7 @@ class FieldMap(Object):
         matte = Surface(color=(1.0, 1.0, 1.0), roughness=1.0, specular=0.0)
         look = matte if self.material is None else moment.surface(name, self.material, None)
         yield Mesh(name, look, vertices, triangles, normals, colored(values, self.scale(moment), self.colors))
-        levels = () if self.contours is None else np.ravel(moment.at(self.contours))
-        lines = [contour(sheet, values, float(level)) for level in levels]
+        lines = [contour(sheet, values, level) for level in self._levels(moment)]
         if sum(map(len, lines)):
             radius = self.contour_radius or THIN * max(
                 n * h for n, h in zip(field.layout.shape[:2], field.layout.spacing[:2], strict=True)
