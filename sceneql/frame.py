@@ -144,7 +144,25 @@ class Segments:
     """(n, 3) linear RGB."""
 
 
-Shape = Mesh | Quadric | Implicit | Points | Segments
+@dataclass(frozen=True, slots=True, eq=False)
+class Mist:
+    """A volume that absorbs light on its way to the camera, of its surface's color where it is thick.
+
+    It stands in the box low..high of coordinates in which absorption[k, j, i] is that of the point (i, j, k); between
+    these it is trilinear. It throws no shadow and is not seen in mirrors.
+    """
+
+    name: str
+    surface: Surface
+    to_cells: Floats
+    """(3, 4) affine map from the world to these coordinates."""
+    absorption: Floats
+    """(nz, ny, nx) [1/m], not below 0."""
+    low: tuple[float, float, float]
+    high: tuple[float, float, float]
+
+
+Shape = Mesh | Quadric | Implicit | Points | Segments | Mist
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,7 +37,7 @@ from renderers.tracing.scene_kernels import (
 )
 from renderers.tracing.scene_kernels import TOLERANCE as ROOT_TOLERANCE
 from sceneql.field.tape_ops import SCRATCH_COLUMNS, scratch_rows
-from sceneql.frame import Frame, Implicit, Mesh, Points, Quadric, Segments, Sky, Sun, Surface, View
+from sceneql.frame import Frame, Implicit, Mesh, Mist, Points, Quadric, Segments, Sky, Sun, Surface, View
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -135,7 +135,7 @@ class Rows:
                 self._items(index, HALF_SPACE, UNBOUNDED[None, :], plane)
         elif isinstance(shape, Implicit):
             self._implicit(index, shape)
-        elif isinstance(shape, Points) and shape.soft is not None:
+        elif isinstance(shape, Mist) or (isinstance(shape, Points) and shape.soft is not None):
             pass  # drawn over the picture (sprites.py)
         elif isinstance(shape, Points):
             zero = np.zeros((len(shape.centers), 3))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from renderers.tracing.picture import over_rows
-from sceneql.frame import Points
+from sceneql.frame import Mist, Points
 
 if TYPE_CHECKING:
     from numpy import float32
@@ -20,10 +20,15 @@ SMALLEST = 1.25
 
 
 def over(frame: Frame, records: NDArray[float32], linear: NDArray[float32]) -> None:
-    """Draw the frame's soft discs over ``linear`` (pixels, 3); ``records``: what the camera sees in each pixel.
+    """Draw the frame's mists, then its soft discs over ``linear`` (pixels, 3), shapes in their order.
 
-    Discs of one shape that cover are drawn from the farthest on; shapes in their order.
+    ``records``: what the camera sees in each pixel. Discs of one shape that cover are drawn from the farthest on.
     """
+    for shape in frame.shapes:
+        if isinstance(shape, Mist):
+            from renderers.tracing.mist import dim
+
+            dim(shape, frame.view, records, linear)
     for shape in frame.shapes:
         if isinstance(shape, Points) and shape.soft is not None and len(shape.centers):
             _draw(shape, frame.view, records, linear)

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sceneql.frame import Implicit, Mesh, Points, Quadric, Segments, Shape
+from sceneql.frame import Implicit, Mesh, Mist, Points, Quadric, Segments, Shape
+from sceneql.simulation.placement import inverse, mapped_box
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -24,6 +25,8 @@ def box_of(shape: Shape) -> tuple[Floats, Floats]:
             return _around(ends.reshape(-1, 3), np.repeat(radii, 2)[:, None])
         case Implicit(low=low, high=high):
             return np.array(low), np.array(high)
+        case Mist(to_cells=to_cells, low=low, high=high):
+            return mapped_box(inverse(to_cells), low, high)
         case Quadric():
             return _quadric(shape)
 

@@ -46,6 +46,7 @@ class Interpolation:
         room = ((self._around,) * 2, (1, 1), (1, 1))
         known = np.pad(inside.reshape(nz, ny, nx), room)
         self.shape = known.shape
+        self.known = known.copy()
         self._own = np.flatnonzero(known)
         self._layers = [layer for _ in range(LAYERS) if (layer := _layer(known)) is not None]
 
