@@ -15,7 +15,7 @@ from sceneql.pipeline import frame_of, load
 from sceneql.simulation.color import linear
 from sceneql.simulation.grids.medium import FieldLayout
 from sceneql.simulation.maps.colors import CONTROLS, colored, from_oklab, oklab, table
-from sceneql.simulation.maps.domains import cut_open, flat, section, surface
+from sceneql.simulation.maps.domains import cut_open, flat, outside, section
 from sceneql.simulation.maps.interpolation import Interpolation
 from sceneql.simulation.maps.iso import iso_sheet
 from sceneql.simulation.maps.sheets import Sheet, contour, kept, lattice
@@ -101,7 +101,7 @@ def test_a_section_of_a_ball_is_a_disk_across_any_direction():
 def test_a_box_that_is_cut_open_has_lost_what_lies_before_both_planes():
     middle = np.array(DEEP.low) + 0.5 * np.array(DEEP.spacing) * DEEP.shape
     planes = [(middle, np.eye(3)[0]), (middle, np.eye(3)[2])]
-    whole = surface(DEEP, None)
+    whole = outside(DEEP, None)
     box = float(np.prod(np.array(DEEP.spacing) * DEEP.shape))
     assert volume(whole.vertices, whole.triangles) == pytest.approx(box, rel=1e-12)
     opened = cut_open(whole, [section(DEEP, None, plane) for plane in planes], planes)

@@ -7,11 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sceneql.simulation.maps.kept import Kept
+from sceneql.simulation.maps.seen import level_of
 from sceneql.simulation.maps.sheets import Sheet, Side, flat_normals, joined, kept, lattice
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
+    from sceneql.kinds import Moment
     from sceneql.simulation.grids.medium import FieldLayout
+    from sceneql.simulation.maps.seen import Seen
 
 FINEST = 4
 """Steps of a sheet in a cell, at most."""
@@ -22,6 +26,31 @@ CREASE = 0.75
 
 Plane = tuple[Any, Any]
 """A point (3,) and a unit normal (3,)."""
+Numbers = tuple[tuple[tuple[float, ...], tuple[float, ...]], ...]
+"""A point and a direction of each of some planes."""
+
+
+_sheets: Kept[Sheet] = Kept()
+
+
+def sheet_of(field: Seen, moment: Moment, cut: Numbers, surface: bool) -> Sheet:
+    """A flat domain; or the surface of a deep one, cut open by planes; without it their whole sections."""
+
+    def make() -> Sheet:
+        planes = [(np.array(through), np.array(normal) / np.linalg.norm(normal)) for through, normal in cut]
+        return _made(field.layout, level_of(field, moment), planes, surface)
+
+    return _sheets.get(field.model, (field.layout.shape, cut, surface), make)
+
+
+def _made(layout: FieldLayout, level: Any, planes: list[Plane], surface: bool) -> Sheet:
+    if layout.shape[2] == 1:
+        return flat(layout, level)
+    sections = [section(layout, level, plane) for plane in planes]
+    if not surface:
+        return joined(sections)
+    whole = outside(layout, level)
+    return cut_open(whole, sections, planes) if planes else whole
 
 
 def sides(layout: FieldLayout) -> Floats:
@@ -64,13 +93,10 @@ def section(layout: FieldLayout, level: Any, plane: Plane) -> Sheet:
     return sheet if level is None else kept(sheet, level.values)
 
 
-def surface(layout: FieldLayout, level: Any) -> Sheet:
-    """The surface of a deep domain, facing outwards."""
-    return _box(layout) if level is None else outside(level, layout)
-
-
-def outside(level: Any, layout: FieldLayout) -> Sheet:
-    """The surface of what lies inside a level set, with edges kept sharp where it is an object's own field."""
+def outside(layout: FieldLayout, level: Any) -> Sheet:
+    """The surface of a deep domain, facing outwards, with edges kept sharp where it is an object's own field."""
+    if level is None:
+        return _box(layout)
     low, extent = np.array(layout.low), sides(layout)
     cell = min(layout.spacing) / min(2.0, FINEST)
     if not hasattr(level, "tape"):

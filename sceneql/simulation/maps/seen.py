@@ -10,6 +10,7 @@ from sceneql.kinds import Problem, Quantity, Ref, Value
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Link, Symbol
 from sceneql.quantities.units import describe
+from sceneql.simulation.maps.kept import Kept
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -46,12 +47,12 @@ def seen(of: Value, moment: Moment) -> Seen:
 
     from sceneql.simulation.maps.interpolation import interpolation
 
-    task = of.links[0].task
+    task, output = of.links[0].task, of.links[0].output
     model: Any = moment.object(Ref(task, of.span))
     if not hasattr(model, "layout"):
         raise ValueError(f"'{task}' is no field on a grid")
     state = moment.state(task)
-    layout = model.layout(state)
+    layout = model.layout(state, output)
     inside = state.floats[layout.volumes_at : layout.volumes_at + layout.count] > 0.0
     values = np.asarray(moment.at(of), dtype=float)
     if values.shape != (int(inside.sum()),):
@@ -89,8 +90,14 @@ def level_of(field: Seen, moment: Moment) -> Any:
         return None
     from sceneql.simulation.grids.domain import inside
 
-    level, *_ = inside(field.model.domain, field.model.flat, cast("Moment", AtStart(moment)))
-    return level
+    def make() -> Any:
+        level, *_ = inside(field.model.domain, field.model.flat, cast("Moment", AtStart(moment)))
+        return level
+
+    return _levels.get(field.model, None, make)
+
+
+_levels: Kept[Any] = Kept()
 
 
 def unfit(of: Value, others: dict[str, Value | None]) -> Iterator[Problem]:

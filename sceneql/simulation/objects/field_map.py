@@ -133,7 +133,7 @@ class FieldMap(Object):
 
     def _sheet(self, field: Seen, moment: Moment) -> Sheet:
         """What the field is seen on, made once for all frames."""
-        from sceneql.simulation.maps.kept import sheet_of
+        from sceneql.simulation.maps.domains import sheet_of
 
         if field.layout.shape[2] == 1 and self.cut:
             raise ValueError("a flat field has no inside to be cut open")
