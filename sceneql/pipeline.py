@@ -7,6 +7,7 @@ report = sceneql.render(graph)
 
 from __future__ import annotations
 
+import gc
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
@@ -124,6 +125,8 @@ def render(
         watch = Watch(run, always=account)
         for done, moment in enumerate(run.moments(instants)):
             progress(done, len(instants))
+            if done == 1:
+                gc.freeze()  # what lives by now lives on, and is not looked over in every collection
             watch.look(moment, last=done == len(instants) - 1)
             for name, sink in sinks.items():
                 if moment.time in wanted[name]:

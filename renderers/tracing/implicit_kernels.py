@@ -90,10 +90,6 @@ def occupied(scene, k, ox, oy, oz, dx, dy, dz, start, stop):
 @kernel(CROSSING.signature, _nrt=False)
 def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """Crossing of implicit object k behind ``near``; with ``anywhere`` of any place inside, not the first."""
-    c0, c1, k0, k1, p0, p1 = tape_of(scene, k)
-    code = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
-    constants = scene.reals[k0:k1]
-    parts = scene.reals[p0:p1].reshape((p1 - p0) // 8, 8)
     b = scene.reals
     side = min(b[k + 3] - b[k], b[k + 4] - b[k + 1], b[k + 5] - b[k + 2]) / CELLS
     enter, stop = box_part(scene, k, ox, oy, oz, dx, dy, dz, near, far)
@@ -109,6 +105,10 @@ def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
             return NONE
         if full and anywhere:
             return begin
+        c0, c1, k0, k1, p0, p1 = tape_of(scene, k)
+        code = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
+        constants = scene.reals[k0:k1]
+        parts = scene.reals[p0:p1].reshape((p1 - p0) // 8, 8)
         end = max(end, begin + past)
         status, root = isolate(
             code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, begin, end, tolerance, 1.0, anywhere

@@ -1,12 +1,12 @@
 # mypy: ignore-errors
 """First-order enclosures of density fields along a ray segment; see enclosure_kernels for what an enclosure claims."""
 
-from sceneql.kernels import inlined
+from sceneql.kernels import inlined, woven
 
 PAD = 1.0e-15
 
 
-@inlined
+@woven
 def distance_squared(parts, i, p0, p1, scratch):
     """(d0, d1, d2, d3, blur): d^2 to part i lies in d0 + d1 tau + d2 tau^2 +- d3 for tau in [-1, 1].
 
