@@ -25,7 +25,7 @@ class Legend(Overlay):
 
     of: ObjectRef = field("What shows the field in colors: a `field_map`.")
     unit: str | None = field("The unit of the numbers: `mg/L`; by default that of SI.", None)
-    title: str = field("What is said above the bar, before the unit.", "")
+    title: str = field("What is said above the bar; the unit follows.", "")
     place: Literal["left", "right"] = field("The side of the picture where it stands.", "right")
     numbers: int = field("About how many numbers there are.", 5, at_least=2, at_most=20)
     text: FixedScalar = field("Height of its letters in parts of the picture's.", "0.034", above=0, at_most=0.2)
@@ -60,17 +60,17 @@ class Legend(Overlay):
             raise ValueError(f"the field is {describe(key.dimension)}, which {text} is no unit of")
         low, high = (key.low - offset) / scale, (key.high - offset) / scale
         ticks = [(value, (value - low) / (high - low)) for value in round_numbers(low, high, self.numbers)]
-        title = f"{self.title} [{shown_unit(text)}]".strip() if text != "1" else self.title
+        lines = [line for line in (self.title, "" if text == "1" else shown_unit(text)) if line]
         marks = [(mark - key.low) / (key.high - key.low) for mark in key.marks]
         letters = Letterer(pixels, self.text)
-        self._bar(letters, key, title, ticks, [mark for mark in marks if 0 < mark < 1], develop)
+        self._bar(letters, key, lines, ticks, [mark for mark in marks if 0 < mark < 1], develop)
         letters.done()
 
     def _bar(
         self,
         letters: Any,
         key: ColorKey,
-        title: str,
+        lines: list[str],
         ticks: list[tuple[float, float]],
         marks: list[float],
         develop: Callable[[Any], NDArray[uint8]],
@@ -84,14 +84,15 @@ class Legend(Overlay):
         long, wide = round(LONG * letters.height), em
         words = [f"{value:.6g}".replace("-", "\u2212") for value, _ in ticks]
         widest = max((letters.extent(word)[0] for word in words), default=0)
-        head = round(1.5 * em) if title else 0
-        width, height = max(wide + round(0.5 * em) + widest, letters.extent(title)[0]), head + long
+        head = round((1.25 * len(lines) + 0.35) * em) if lines else 0
+        width, height = max(wide + round(0.5 * em) + widest, *(letters.extent(line)[0] for line in lines)), head + long
         margin, room = round(0.8 * em), round(0.7 * em)
         left = margin if self.place == "left" else letters.width - margin - width - 2 * room
         top = (letters.height - height) // 2 - room
         letters.panel((left, top, left + width + 2 * room, top + height + 2 * room), self.panel)
         left, top = left + room, top + room
-        letters.text((left, top + 0.5 * em), title)
+        for k, line in enumerate(lines):
+            letters.text((left, top + (0.5 + 1.25 * k) * em), line)
         top += head
         ramp = key.ramp((np.arange(long, 0, -1) - 0.5) / long).astype(np.float32)
         letters.paste(develop(np.repeat(ramp[:, None], wide, axis=1)), left, top)
