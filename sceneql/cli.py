@@ -59,9 +59,7 @@ def cli() -> None:
 
 def main() -> None:
     """The entry point of the program: exceptions become messages and exit codes."""
-    import os
-
-    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # looking for them costs more than reading a scene
+    _without_plugins()
     try:
         code = cli.main(prog_name="sceneql", standalone_mode=False)
     except click.exceptions.Abort as error:  # click's for KeyboardInterrupt
@@ -74,6 +72,15 @@ def main() -> None:
     except Exception as error:
         code = _failure(error)
     sys.exit(code if isinstance(code, int) else OK)
+
+
+def _without_plugins() -> None:
+    """Let pydantic find no plugins: what it imports to look for them takes longer than reading a scene."""
+    from types import ModuleType
+
+    loader = ModuleType("pydantic.plugin._loader")
+    loader.get_plugins = tuple  # type: ignore[attr-defined]  # a module of our own making
+    sys.modules[loader.__name__] = loader
 
 
 def _failure(error: Exception) -> int:

@@ -42,6 +42,7 @@ def modules_after(tmp_path, script, *command):
 def test_check_imports_neither_numpy_nor_numba(tmp_path):
     names = modules_after(tmp_path, FALL, "check")
     assert not names & {"numpy", "numba", "scipy", "trimesh", "imageio", "av", "matplotlib", "rich", "PIL"}
+    assert "importlib.metadata" not in names  # an eighth of the time that a check takes
 
 
 def test_check_imports_nothing_that_only_runs_need(tmp_path):
@@ -78,6 +79,16 @@ def test_a_picture_without_physics_imports_no_solver_no_mesh_and_no_video(tmp_pa
     assert (tmp_path / "scene.png").is_file()
     assert not names & {"trimesh", "av", "imageio", "matplotlib"}  # numba itself asks for scipy
     assert not [name for name in names if name.startswith(("sceneql.simulation.solvers.", "sceneql.simulation.march"))]
+
+
+def test_a_picture_without_implicit_objects_compiles_nothing_that_finds_them(tmp_path):
+    names = modules_after(tmp_path, STILL, "render")
+    assert "renderers.tracing.intersect_kernels" in names
+    assert not names & {"renderers.tracing.implicit_kernels", "sceneql.field.enclosure_kernels"}
+    blob = STILL.replace("objects:\n", "objects:\n  drop: {blobby: {skeleton: [{point: 0 1 0 m, radius: 1 m}]}}\n")
+    names = modules_after(tmp_path, blob, "render")
+    assert "renderers.tracing.implicit_kernels" in names
+    assert "renderers.tracing.sheet_kernels" not in names
 
 
 def test_only_the_words_that_are_needed_are_loaded(tmp_path):

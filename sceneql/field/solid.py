@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sceneql.field import isolation_kernels, tape_kernels
+from sceneql.field import tape_kernels
 from sceneql.field.tape_ops import SCRATCH_COLUMNS, scratch_rows
 
 if TYPE_CHECKING:
@@ -52,10 +52,12 @@ def cast(
 
     ``surface``: the first root of f instead, as of sheet_roots_kernels.surface_root.
     """
-    room = scratch(tape)
-    first: Any = isolation_kernels.first_root
+    first: Any
     if surface:
         from sceneql.field.sheet_roots_kernels import surface_root as first
+    else:
+        from sceneql.field.isolation_kernels import first_root as first
+    room = scratch(tape)
     origins, directions = np.broadcast_arrays(np.atleast_2d(origins), np.atleast_2d(directions))
     starts = np.broadcast_to(np.asarray(t0, dtype=np.float64), len(origins))
     ends = np.broadcast_to(np.asarray(t1, dtype=np.float64), len(origins))

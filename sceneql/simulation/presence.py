@@ -14,11 +14,12 @@ if TYPE_CHECKING:
 
 def look(shapes: Iterable[Shape], present: dict[str, str]) -> None:
     """Note of each implicit shape by name why its box holds nothing of it, or nothing where it may, now or before."""
-    from sceneql.field.emptiness import nowhere_finite, proved_empty, proved_rootless
     from sceneql.frame import Implicit
 
     for shape in shapes:
         if isinstance(shape, Implicit) and present.get(shape.name, "new"):
+            from sceneql.field.emptiness import nowhere_finite, proved_empty, proved_rootless
+
             proved, found = (proved_empty, "negative") if shape.within is None else (proved_rootless, "zero")
             if not proved(shape.tape, shape.low, shape.high):
                 found = "finite" if nowhere_finite(shape.tape, shape.low, shape.high) else ""
