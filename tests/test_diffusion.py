@@ -20,11 +20,11 @@ MODE = "sin(pi*x)*sin(pi*y)"
 class Field:
     """One diffusion model on its way."""
 
-    def __init__(self, folder, solver, end=0.1, **fields):
+    def __init__(self, folder, solver, end=0.1, before="", **fields):
         fields = {"size": "1 1 m", "cell": "1/16 m", "of": "number", "coefficient": "1", **fields}
-        lines = "\n".join(f"      {key}: {value}" for key, value in fields.items())
+        lines = "\n".join(f"      {key}: {value}" for key, value in fields.items() if value is not None)
         path = folder / "scene.yaml"
-        text = f"clock: {{end: {end} s, fps: 10}}\nmodels:\n  plate:\n    diffusion:\n{lines}\n"
+        text = f"clock: {{end: {end} s, fps: 10}}\n{before}models:\n  plate:\n    diffusion:\n{lines}\n"
         path.write_text(f"{text}solvers: {{main: {solver}}}\n", encoding="utf-8")
         graph = load(path, pruned=False)
         self.model, self.end = graph.tasks["plate"].kind, end

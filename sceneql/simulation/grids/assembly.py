@@ -14,11 +14,13 @@ from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import TIME_SYMBOL, Expr, Link, Number, Symbol, walk
 from sceneql.simulation.grids.boundary import Condition, conditions
 from sceneql.simulation.grids.cell_program import FIELD, over_cells, over_faces
+from sceneql.simulation.grids.flow import Flow, flow_of
 from sceneql.system import Grid, Slopes
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.simulation.grids.cells import Cells
+    from sceneql.simulation.grids.drift import Drift
     from sceneql.simulation.grids.medium import Boundary, Picture
     from sceneql.system import Assembly
 
@@ -65,12 +67,12 @@ class Ground:
         return (self.volumes_at, self.box_at, *self.cells.shape)
 
 
-def add_field(field: Spreading, boundary: Boundary, ground: Ground, assembly: Assembly) -> Grid:
+def add_field(field: Spreading, boundary: Boundary, drift: Drift | None, ground: Ground, assembly: Assembly) -> Grid:
     """Reserve a number a cell and one for the inflow, and add the terms of the rate.
 
     Raises ScriptError for a coefficient below 0 and for boundary parts that overlap.
     """
-    return _Builder(field, boundary, ground, assembly).build()
+    return _Builder(field, boundary, drift, ground, assembly).build()
 
 
 def varies(formula: Formula | None) -> bool:
@@ -96,6 +98,7 @@ def at_points(formula: Formula, points: Floats, **more: Any) -> Floats:
 class _Builder:
     field: Spreading
     boundary: Boundary
+    drift: Drift | None
     ground: Ground
     assembly: Assembly
 
@@ -105,7 +108,8 @@ class _Builder:
         n = self.count = self.ground.count
         self.cells, self.inside, self.centers = cells, self.ground.inside, self.ground.centers
         self.at = assembly.state(np.append(self._start(), 0.0))
-        self.conditions, periodic = conditions(self.boundary, cells, assembly.line())
+        given, periodic = conditions(self.boundary, cells, assembly.line())
+        self.conditions = [one for one in given if not one.open]
         ties = [self._ties(axis, periodic[axis]) for axis in range(3 if nz > 1 else 2)]
         varying = varies(self.field.coefficient)
         if varying:
@@ -121,6 +125,8 @@ class _Builder:
         slopes = self._slopes(periodic)
         more = (*ints, bend, *(*ties_at, 0)[:3], reaction)
         assembly.term("close", f"{KERNELS}:spread", ints, Slopes(SLOPES, *slopes, more))
+        if self.drift is not None:
+            self._drifts(self.drift, flow_of(self.drift, cells, ties, given, periodic), given, periodic)
         return Grid(
             shape=cells.shape,
             at=self.at,
@@ -129,9 +135,32 @@ class _Builder:
             faces_at=(faces[0], faces[1], faces[2]),
             periodic=periodic,
             varying=varying or reaction > 0,
-            fed_at=-1 if varying or self.feeding else fed,
+            fed_at=-1 if varying or self.feeding or self.drift is not None else fed,
             outside=~self.inside,
         )
+
+    def _drifts(self, drift: Drift, flow: Flow, given: list[Condition], periodic: tuple[bool, ...]) -> None:
+        """What goes through the boundary with the drift, and the drift itself."""
+        from sceneql.simulation.grids.carrying import add_drift
+
+        assembly, n = self.assembly, self.count
+        leaving, coming = np.zeros(n), np.zeros(n)
+        later: list[tuple[Condition, Floats]] = []
+        for one, out in zip(given, flow.through, strict=True):
+            np.add.at(leaving, one.cells, np.maximum(out, 0.0))
+            into = np.maximum(-out, 0.0)
+            if one.formula is not None and into.any():
+                if varies(one.formula):
+                    later.append((one, into))
+                else:
+                    np.add.at(coming, one.cells, into * at_points(one.formula, one.points))
+        brought = base = assembly.floats(coming)
+        if later:
+            brought = assembly.floats(coming)
+            assembly.term("internal", f"{KERNELS}:begin", (n, base, brought), self._dummy(f"{KERNELS}:begin"))
+        for one, into in later:
+            self._faces_kernel(one, brought, assembly.floats(into))
+        add_drift(drift, flow, self.at, self.ground, periodic, brought, leaving, assembly)
 
     def _start(self) -> Floats:
         initial = self.field.initial
@@ -266,11 +295,14 @@ class _Builder:
         else:
             assembly.term("internal", f"{KERNELS}:begin", (n, base, fed), self._dummy(f"{KERNELS}:begin"))
         for one, weight_at in later:
-            assert one.formula is not None
-            points = assembly.floats(one.points)
-            kernel, ints = over_faces(assembly, one.formula.expr, self.at, fed, weight_at, points, one.cells.tolist())
-            assembly.term("internal", kernel, ints, self._dummy(kernel))
+            self._faces_kernel(one, fed, weight_at)
         return fed, reaction
+
+    def _faces_kernel(self, one: Condition, target: int, weight: int) -> None:
+        assert one.formula is not None
+        points = self.assembly.floats(one.points)
+        kernel, ints = over_faces(self.assembly, one.formula.expr, self.at, target, weight, points, one.cells.tolist())
+        self.assembly.term("internal", kernel, ints, self._dummy(kernel))
 
     def _cells_kernel(self, expr: Expr, arrays: tuple[int, int, int]) -> None:
         kernel, ints = over_cells(self.assembly, expr, self.at, arrays, self.cells.shape, self.ground.box_at)

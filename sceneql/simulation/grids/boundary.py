@@ -36,11 +36,20 @@ class Condition:
     """The value outside or the flux; None: 0."""
     resistance: float
     """Of the boundary itself [s/m], 0 where the value is given; GIVEN_FLUX."""
+    open: bool = False
+    """Whether a drift goes through freely, and nothing else does."""
+
+    @property
+    def through(self) -> bool:
+        """Whether a drift goes through."""
+        return self.open or self.resistance == 0.0
 
     def weights(self, d: Floats) -> Floats:
         """What multiplies the formula: w = A D/(D r + distance) by the cells' coefficients, or the area."""
         if self.resistance == GIVEN_FLUX:
             return self.areas
+        if self.open:
+            return np.zeros(len(self.cells))
         weights: Floats = self.areas * d / (d * self.resistance + self.distances)
         return weights
 
@@ -124,7 +133,10 @@ def _condition(part: Part, cells: Cells, mine: Any) -> Condition:
     elif part.robin is not None:
         k = part.robin.coefficient
         formula, resistance = part.robin.outside, (1.0 / k if k > 0.0 else float("inf"))
-    return Condition(faces.cells[mine], faces.areas[mine], faces.distances[mine], points, formula, resistance)
+    if part.open:
+        resistance = float("inf")
+    ways = faces.cells[mine], faces.areas[mine], faces.distances[mine]
+    return Condition(*ways, points, formula, resistance, part.open)
 
 
 def _span(part: Part) -> Span | None:

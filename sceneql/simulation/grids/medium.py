@@ -29,6 +29,7 @@ from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Link, Symbol, walk
 from sceneql.simulation.grids.cells import MOST_CELLS, SIDES, counts
+from sceneql.simulation.grids.drift import Drift
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -84,20 +85,22 @@ class Picture(Record):
 
 
 class Part(Record):
-    """What holds on a part of the boundary: one of value, flux, robin, periodic."""
+    """What holds on a part of the boundary: one of value, flux, robin, periodic, open."""
 
     value: ANYTHING | None = field("The value there (Dirichlet).", None)
     flux: ANYTHING | None = field("What comes in a second and square meter, D dc/dn outwards (Neumann).", None)
     robin: Exchange | None = field("Exchange with the outside (Robin).", None)
     periodic: bool = field("The sides of this direction are one: what leaves here comes in at the other.", False)
+    open: bool = field("A drift goes through: out with what it carries, in with nothing.", False)
     where: PLACE | None = field("Only where this formula is above 0.", None)
     near: SIZES | None = field("Only around this place, of two or three numbers.", None)
     within: FixedLength | None = field("How far around it.", None, above=0)
 
     @model_validator(mode="after")
     def _one(self) -> Part:
-        if (self.value is not None) + (self.flux is not None) + (self.robin is not None) + self.periodic != 1:
-            raise ValueError("a part of the boundary has one of `value`, `flux`, `robin` and `periodic`")
+        given = [self.value is not None, self.flux is not None, self.robin is not None, self.periodic, self.open]
+        if sum(given) != 1:
+            raise ValueError("a part of the boundary has one of `value`, `flux`, `robin`, `periodic` and `open`")
         if (self.near is None) != (self.within is None) or (self.near is not None and len(self.near) not in (2, 3)):
             raise ValueError("`near` is a place of two or three numbers, and goes with `within`")
         return self
@@ -128,6 +131,7 @@ class Medium(Model):
     corner: SIZES | None = field("Low corner of that box; by default the origin.", None)
     depth: FixedLength = field("How thick a flat domain is.", "1 m", above=0)
     cell: FixedLength = field("Largest side of a cell.", above=0)
+    drift: Drift | None = field("A given flow that carries what spreads.", None)
 
     def boundaries(self) -> Iterable[Boundary]:
         """What holds on the boundary, of every field."""
@@ -139,6 +143,8 @@ class Medium(Model):
             raise ValueError("it spreads in one of `domain` and `size`")
         if self.size is None:
             return self
+        if self.drift is not None:
+            self._drifts(len(self.size))
         if len(self.size) not in (2, 3) or (self.corner is not None and len(self.corner) != len(self.size)):
             raise ValueError("a domain has two or three sides, and its corner as many numbers")
         shape = counts(self.size, self.cell)
@@ -153,17 +159,33 @@ class Medium(Model):
                 )
         return self
 
-    def checkerboard(self, coefficient: Formula) -> Oscillation | None:
-        """The decay of the checkerboard, at most 4 D sum of 1/spacing^2 (von Neumann's bound), of a constant D."""
-        if any(isinstance(node, Symbol | Link) for node in walk(coefficient.expr)):
+    def _drifts(self, sides: int) -> None:
+        assert self.drift is not None
+        velocity = self.drift.velocity
+        if velocity is not None and velocity.expr.type.shape != (sides,):
+            raise ValueError(f"the velocity of a drift needs {sides} components, one for each side")
+        if velocity is None and sides == 3:
+            raise ValueError("a deep drift has a velocity, not a stream function")
+
+    def spreading(self, coefficient: Formula | None) -> Oscillation | None:
+        """What limits the explicit step of a field of constant D: the decay of the checkerboard, and the drift.
+
+        The first is at most 4 D sum of 1/spacing^2 (von Neumann's bound); None where a coefficient varies.
+        """
+        if coefficient is not None and any(isinstance(node, Symbol | Link) for node in walk(coefficient.expr)):
             return None
-        d = float(evaluate(coefficient.expr, {}))
-        if self.size is None:
-            rate = 8.0 * d / self.cell**2  # of a flat domain; that of a deep one is larger
-        else:
-            shape = counts(self.size, self.cell)
-            rate = 4.0 * d * sum((n / side) ** 2 for n, side in zip(shape, self.size, strict=False))
-        return Oscillation(0.0, rate, f"the spread over cells of {self.cell:g} m", ("cell",))
+        d = 0.0 if coefficient is None else float(evaluate(coefficient.expr, {}))
+        spacing: tuple[float, ...] = (self.cell, self.cell)  # of a flat domain; rates of a deep one are larger
+        if self.size is not None:
+            spacing = tuple(side / n for n, side in zip(counts(self.size, self.cell), self.size, strict=False))
+        rate = 4.0 * d * sum(1.0 / side**2 for side in spacing)
+        carried = 0.0
+        if self.drift is not None and coefficient is not None and self.size is not None:
+            carried = self.drift.fastest(self.corner or (0.0,) * len(spacing), self.size, spacing)
+        ways = " and ".join(way for way, one in (("spread", rate), ("drift", carried)) if one > 0.0)
+        if not ways:
+            return None
+        return Oscillation(0.0, rate + carried, f"the {ways} over cells of {self.cell:g} m", ("cell",))
 
     def measure(self, what: str, layout: FieldLayout, state: ModelState) -> Any:
         """Of a field: `field` (cells of the domain,), `centers` (cells, 3), mass, inflow, max, min, mean (floats)."""

@@ -51,8 +51,8 @@ class Diffusion(Medium):
         return (self.boundary,)
 
     def fastest(self, name: str) -> Iterable[Oscillation]:
-        """The decay of the checkerboard."""
-        found = self.checkerboard(self.coefficient)
+        """What limits the explicit step."""
+        found = self.spreading(self.coefficient)
         return () if found is None else (found,)
 
     def assemble(self, name: str, assembly: Assembly) -> None:
@@ -61,7 +61,7 @@ class Diffusion(Medium):
         from sceneql.simulation.grids.domain import cells_of
 
         ground = Ground(cells_of(self, assembly), assembly)
-        grid = add_field(self, self.boundary, ground, assembly)
+        grid = add_field(self, self.boundary, self.drift, ground, assembly)
         assembly.grid(grid)
         assembly.remember(grid.at, *ground.memory)
 

@@ -26,7 +26,9 @@ OWN = "c"
 class Species(Record):
     """One field: how it spreads, where it starts, how fast it is made."""
 
-    coefficient: ANYTHING | None = field("The coefficient D [m^2/s] of its spread; by default it stays in place.", None)
+    coefficient: ANYTHING | None = field(
+        "The coefficient D [m^2/s] of its spread; by default it stays in place, whatever drifts.", None
+    )
     initial: PLACE | None = field("The field at the start; by default 0.", None)
     rate: Formula | None = field("What the reactions make of it a second, by place, time and all species.", None)
     source: ANYTHING | None = field("What comes in besides, a second and cubic meter.", None)
@@ -102,8 +104,8 @@ class ReactionDiffusion(Medium):
         return [self.boundary if one.boundary is None else one.boundary for one in self.species.values()]
 
     def fastest(self, name: str) -> Iterable[Oscillation]:
-        """The decay of each species' checkerboard; what reactions add is not known before the run."""
-        found = [self.checkerboard(one.coefficient) for one in self.species.values() if one.coefficient is not None]
+        """What limits the explicit step of each species' spread; what reactions add is not known before the run."""
+        found = [self.spreading(one.coefficient) for one in self.species.values()]
         return [one for one in found if one is not None]
 
     def assemble(self, name: str, assembly: Assembly) -> None:
@@ -116,7 +118,8 @@ class ReactionDiffusion(Medium):
         ground = Ground(cells_of(self, assembly), assembly)
         fields = []
         for one, boundary in zip(self.species.values(), self.boundaries(), strict=True):
-            fields.append(add_field(one, boundary, ground, assembly).at)
+            drift = None if one.coefficient is None else self.drift
+            fields.append(add_field(one, boundary, drift, ground, assembly).at)
         rows = self.rows
         self._must_be_finite(ground, fields, assembly)
         if any(one.rate is not None for one in self.species.values()):

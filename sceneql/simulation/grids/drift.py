@@ -1,0 +1,77 @@
+"""What a script says of a flow that carries fields."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import product
+from typing import Annotated, Literal
+
+from sceneql.kinds import Formula, Problem, Record, Scalar, Symbols, field
+from sceneql.quantities.derivative import components, differentiate
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Call, Expr, Symbol
+
+PLACE = Annotated[Formula, Symbols(("x", "y", "z"))]
+SAMPLES = {2: 24, 3: 8}
+"""Places along each side at which a flow is looked at before the run."""
+LIMITED = 4.0
+"""No step h lets new extrema arise up to h sum |v|/spacing = 1/2 (Sweby 1984, with limiters up to 2), for the method
+that bounds h times this sum and factor by 2: the explicit Euler method."""
+
+
+class Drift(Record):
+    """A given flow that carries the field: its velocity v, or of a flat one its stream function, v = (ds/dy, -ds/dx).
+
+    An incompressible flow is made so within the domain: what of it would run through closed walls, or gather anywhere,
+    is taken away by the gradient of a potential. Then no limiter lets new extrema arise. Through the boundary it goes
+    where a `value` is given, as the formula says, and where it is `open`, as the rest of the flow needs it.
+    """
+
+    velocity: PLACE | None = field("The velocity [m/s]: a vector with a component for each side.", None)
+    stream_function: PLACE | None = field("The stream function [m^2/s].", None)
+    strength: Scalar = field("A factor of it, which may vary in time.", "1")
+    incompressible: bool = field("Make it free of divergence; else what runs against a wall piles up there.", True)
+    limiter: Literal["koren", "van_leer", "none"] = field(
+        "What values faces carry: limited ones of order 3 or 2 where the field is smooth, or the upstream cell's.",
+        "koren",
+    )
+
+    @property
+    def formula(self) -> Formula:
+        """The one that is given."""
+        formula = self.velocity or self.stream_function
+        assert formula is not None
+        return formula
+
+    def problems(self) -> Iterable[Problem]:
+        """Both or neither of velocity and stream function, or not one number where one is needed."""
+        if (self.velocity is None) == (self.stream_function is None):
+            yield Problem("a drift has one of `velocity` and `stream_function`")
+        elif self.velocity is not None and self.velocity.expr.type.shape not in ((2,), (3,)):
+            yield Problem("a velocity is a vector of two or three formulas, `[-y, x]`", ("velocity",))
+        elif self.stream_function is not None and self.stream_function.expr.type.shape != ():
+            yield Problem("a stream function is one number at every place", ("stream_function",))
+
+    def components(self) -> tuple[Expr, ...]:
+        """The velocity: two or three scalar formulas."""
+        if self.velocity is not None:
+            return components(self.velocity.expr)
+        (stream,) = components(self.formula.expr)
+        return differentiate(stream, Symbol("y")), Call("neg", (differentiate(stream, Symbol("x")),))
+
+    def fastest(self, corner: Sequence[float], size: Sequence[float], spacing: Sequence[float]) -> float:
+        """The rate [1/s] that an explicit step is bounded by on a box, looked for at some places; 0: not known."""
+        if not self.strength.constant:
+            return 0.0
+        try:
+            velocity = self.components()
+        except TypeError:  # an operation without a derivative
+            return 0.0
+        count = SAMPLES[len(size)]
+        most = 0.0
+        sides = [[low + side * k / count for k in range(count + 1)] for low, side in zip(corner, size, strict=True)]
+        for place in product(*sides):
+            known = dict(zip(map(Symbol, "xyz"), (*place, 0.0), strict=False))
+            speeds = [abs(float(evaluate(part, known))) for part in velocity]
+            most = max(most, sum(speed / side for speed, side in zip(speeds, spacing, strict=True)))
+        return LIMITED * abs(float(self.strength.number())) * most
