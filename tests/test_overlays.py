@@ -91,6 +91,7 @@ def test_a_unit_is_printed_with_raised_numbers():
     assert shown_unit("kg/m^3") == "kg/m³"
     assert shown_unit("m^2*s^-1") == "m²·s⁻¹"
     assert shown_unit("mg/L") == "mg/L"
+    assert shown_unit("degC") == "°C"
 
 
 def test_a_point_is_where_the_camera_sees_it():

@@ -62,8 +62,8 @@ def font(size: int) -> Any:
 
 
 def shown_unit(text: str) -> str:
-    """A unit as it is printed: ``kg/m^3`` with a raised 3."""
-    head, *tails = text.replace("**", "^").replace("*", "·").split("^")
+    """A unit as it is printed: ``kg/m^3`` with a raised 3, ``degC`` with a small ring."""
+    head, *tails = text.replace("**", "^").replace("*", "·").replace("deg", "°").split("^")
     raised = head
     for tail in tails:
         digits = len(tail) - len(tail.lstrip("-0123456789"))
