@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from renderers.tracing.bundles import camera_roots
 from renderers.tracing.pack import pack
-from sceneql.field.packets import cast_together, enclosures
+from sceneql.field.packets import cast_together, enclosures, plan_of
+from sceneql.field.skeleton import Skeleton
 from sceneql.field.solid import cast, field_values
 from sceneql.field.tape_ops import DENSITY, HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
 from sceneql.frame import Frame, Implicit, Surface, View
@@ -102,6 +103,63 @@ def test_blobs_in_packets_have_the_certified_roots(centers, radius):
     assert hit.sum() > 100
     assert t[hit] == pytest.approx(places[hit], abs=1e-7)
     assert ((cast_together(tape, origins, directions, near, far, anywhere=True)[0] == HIT) == hit).all()
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    count=st.sampled_from([1, 3, 20, 200]),
+    seed=st.integers(0, 999),
+    below=st.booleans(),
+    clipped=st.booleans(),
+    spread=st.sampled_from([0.0, 0.1, 2.0]),
+)
+def test_densities_of_points_are_met_where_the_certified_routine_meets_them(count, seed, below, clipped, spread):
+    generator = np.random.default_rng(seed)
+    centers = generator.uniform(-1, 1, (count, 3))
+    radii = generator.uniform(0.5, 1.5, count) * 0.9 / count ** (1 / 3)
+    weights = generator.choice([1.0, -0.5], count) if below else np.ones(count)
+    points = Skeleton(centers[:, None].repeat(3, axis=1), radii[:, None].repeat(2, axis=1), weights, np.arange(count))
+
+    def formula(b, op, c):
+        field = op("sub", c(0.2), b.skeleton(points, b.x, b.y, b.z))
+        return op("max", field, op("sub", b.x, c(0.3))) if clipped else field
+
+    tape = implicit(formula)
+    assert plan_of(tape)[0] >= 0
+    origins, directions = bundle(np.array([0.1, 0.2, 3.0]), np.array([0.0, 0.1, -2.0]), generator, 200, spread)
+    t0, t1 = np.full(200, 0.3), np.full(200, 2.5)
+    status, t = cast_together(tape, origins, directions, t0, t1)
+    exact, places = cast(tape, origins, directions, t0, t1)
+    told = (status != UNDECIDED) & (exact != UNDECIDED)
+    assert told.mean() > 0.9
+    met, truly = np.isin(status, [HIT, INSIDE]), np.isin(exact, [HIT, INSIDE])
+    assert (met == truly)[told].all()
+    assert t[met & told] == pytest.approx(places[met & told], abs=2e-6)
+    blocked, _ = cast_together(tape, origins, directions, t0, t1, anywhere=True)
+    told &= blocked != UNDECIDED
+    assert (np.isin(blocked, [HIT, INSIDE]) == truly)[told].all()
+
+
+def test_other_fields_than_densities_of_points_have_no_plan():
+    segment, point = PARTS[:1].copy(), PARTS[:1].copy()
+    segment[0, 3:6] = segment[0, :3] + [0.1, 0.0, 0.0]
+    point[0, 3:6] = point[0, :3]
+
+    def minus(parts, scale=1.0):
+        return implicit(lambda b, op, c: op("sub", c(0.3), b.density(parts, op("mul", b.x, c(scale)), b.y, b.z)))
+
+    assert plan_of(minus(point))[0] >= 0
+    assert plan_of(minus(segment))[0] < 0
+    assert plan_of(minus(point, 2.0))[0] < 0
+    assert plan_of(implicit(lambda b, op, c: op("sub", b.density(point, b.x, b.y, b.z), c(0.3))))[0] < 0
+    corners = np.zeros((1, 3, 3))
+    for kernel, groups in ((1, [0]), (0, [0, 0])):
+        number = len(groups)
+        other = Skeleton(
+            corners.repeat(number, axis=0), np.ones((number, 2)), np.ones(number), np.array(groups), kernel
+        )  # fmt: skip
+        tape = implicit(lambda b, op, c, other=other: op("sub", c(0.3), b.skeleton(other, b.x, b.y, b.z)))
+        assert plan_of(tape)[0] < 0
 
 
 def test_a_thin_shell_has_no_holes_in_packets():

@@ -17,9 +17,10 @@ TILE, BLOCK = 16, 4
 
 @part
 def pixel_of(j):
-    """(x, y) in its tile of the pixel of ray j: a column of rays is a block of pixels."""
+    """(x, y) in its tile of the pixel of ray j: a column of rays is a block of pixels, four make a larger one."""
     g, r = j % TILE, j // TILE
-    return (g % BLOCK) * BLOCK + r % BLOCK, (g // BLOCK) * BLOCK + r // BLOCK
+    x, y = g & 1 | (g >> 1) & 2, (g >> 1) & 1 | (g >> 2) & 2
+    return x * BLOCK + r % BLOCK, y * BLOCK + r // BLOCK
 
 
 @part
@@ -40,7 +41,7 @@ def aim(reals, rays, j, px, py, box):
 @lean(types.void(SCENE, *ARGUMENTS, types.float64[:, ::1], types.int64[::1], types.int64, types.float64[::1]))
 def meet_tiles(
     scene, code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, found, parts, scratch,
-    beams, doubles, points, short, near_singles, near_parts, box, window, start, answers,
+    beams, doubles, points, short, near_singles, near_parts, plan, order, room, table, box, window, start, answers,
 ):  # fmt: skip
     """Where the camera's rays through rows start.. of a picture first meet {f < 0} in ``box``, into ``answers`` (n,).
 
@@ -61,6 +62,7 @@ def meet_tiles(
             first_roots(
                 code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, TILE * TILE, False,
                 found, parts, scratch, beams, doubles, points, short, near_singles, near_parts,
+                plan, order, room, table,
             )  # fmt: skip
             for j in range(TILE * TILE):
                 x, y = pixel_of(j)

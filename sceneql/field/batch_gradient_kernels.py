@@ -11,6 +11,30 @@ from sceneql.kernels import inlined, lean
 
 
 @inlined
+def point_slopes(parts, start, stop, x, y, z, gx, gy, gz, n):
+    """``density_gradient`` at n points, of parts that are all points; False, and nothing done, where one is not."""
+    for part in range(start, stop):
+        for axis in range(3):
+            if parts[part, axis] != parts[part, 3 + axis]:
+                return False
+    for i in range(n):
+        gx[i] = gy[i] = gz[i] = 0.0
+    for part in range(start, stop):
+        ax, ay, az = parts[part, 0], parts[part, 1], parts[part, 2]
+        radius2 = parts[part, 6] * parts[part, 6]
+        scale = -6.0 * parts[part, 7] / radius2
+        for i in range(n):
+            wx, wy, wz = x[i] - ax, y[i] - ay, z[i] - az
+            u = 1.0 - (wx * wx + wy * wy + wz * wz) / radius2
+            u = u if u > 0.0 else 0.0
+            slope = scale * (u * u)
+            gx[i] += slope * wx
+            gy[i] += slope * wy
+            gz[i] += slope * wz
+    return True
+
+
+@inlined
 def density_slopes(code, k, parts, registers, slope, n):
     """Gradient of the density of row k through that of its point."""
     p = code[k, 3]
@@ -58,6 +82,12 @@ def differentiate(code, constants, parts, registers, slope, n):
                 for i in range(n):
                     out[axis, i] = number
             continue
+        if op == DENSITY and code[code[k, 3], 0] == X and code[code[k, 3] + 2, 0] == Z:
+            p = code[k, 3]
+            if point_slopes(
+                parts, left, right, registers[p], registers[p + 1], registers[p + 2], out[0], out[1], out[2], n
+            ):  # fmt: skip
+                continue
         if op == DENSITY or op == SKELETON:
             density_slopes(code, k, parts, registers, slope, n)
             continue

@@ -11,6 +11,7 @@ from numba.core.sigutils import normalize_signature
 
 from sceneql.field.affine_kernels import GROW, HALF, PAD, F
 from sceneql.field.batch_kernels import evaluate
+from sceneql.field.density_roots_kernels import CLIPPED, ROW_OF, density_roots
 from sceneql.field.hunt_kernels import (
     FAR,
     FOUND_HIGH,
@@ -214,8 +215,91 @@ def certify(code, constants, parts, scratch, rays, count, anywhere, found):
     return certified
 
 
+@inlined
+def packet_roots(
+    code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, count, groups, anywhere, found,
+    parts, beams, short, near_singles, near_parts,
+):  # fmt: skip
+    """Settle a bundle by enclosures: (enclosures, rays that may be met, in ``queue``, whether ``short`` was made)."""
+    load_constants(code, constants, registers)
+    last = registers[code.shape[0] - 1]
+    spent = 0
+    queued = 0
+    shortened = False
+    base = bundle(rays, count, groups, beams)
+    if base == np.inf:
+        return 0, 0, False
+    join(beams, groups, groups)
+    begin, end = base, beams[STOP, groups]
+    if groups > BEAMS:
+        place_slabs(beams, groups, base, begin, end, point, 0, LANES)
+        enclose(code, constants, singles, registers, point, status, LANES)
+        spent += LANES
+        first, final, _ = left_of_slabs(last, status, 0, LANES)
+        if first == LANES:
+            return spent, 0, False
+        if has(code, DENSITY):
+            kept = 0
+            for k in range(code.shape[0]):
+                for j in range(4):
+                    short[k, j] = code[k, j]
+                if code[k, 0] == DENSITY:
+                    kept = keep_near(
+                        code, k, registers, first, final + 1, singles, parts, kept, short, near_singles, near_parts
+                    )
+            code, singles, shortened = short, near_singles, True
+        depth = (end - begin) / LANES
+        begin, end = base + (first - 1e-6) * depth, base + (final + 1 + 1e-6) * depth
+    waiting = 0
+    for g in range(groups):
+        low, high = max(beams[BEGIN, g], begin), min(beams[STOP, g], end)
+        if low < high:
+            place_slabs(beams, g, base, low, high, point, SLABS * waiting, SLABS)
+            ids[waiting] = g
+            waiting += 1
+        if waiting == 0 or (waiting < BEAMS and g + 1 < groups):
+            continue
+        enclose(code, constants, singles, registers, point, status, SLABS * waiting)
+        spent += SLABS * waiting
+        for b in range(waiting):
+            first, final, run = left_of_slabs(last, status, SLABS * b, SLABS)
+            if first == SLABS:
+                continue
+            low, high = max(beams[BEGIN, ids[b]], begin), min(beams[STOP, ids[b]], end)
+            depth = (high - low) / SLABS
+            for j in range(ids[b], count, groups):
+                if ask(rays, j, low, depth, first, final, run, asked):
+                    queue[queued] = j
+                    queued += 1
+        waiting = 0
+    spent += hunt(
+        code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, queued, anywhere, found
+    )
+    return spent, queued, shortened
+
+
+@inlined
+def check_inside(code, constants, parts, registers, points, rays, queue, count, found):
+    """Leave rays undecided whose found place is not inside."""
+    width = points.shape[1]
+    for start in range(0, count, width):
+        n = min(width, count - start)
+        for i in range(n):
+            j = queue[start + i]
+            t = rays[6, j] + found[FOUND_HIGH, j]
+            for axis in range(3):
+                points[axis, i] = rays[axis, j] + t * rays[3 + axis, j]
+        evaluate(code, constants, parts, registers, points, n)
+        last = registers[code.shape[0] - 1]
+        for i in range(n):
+            j = queue[start + i]
+            if found[FOUND_STATUS, j] == HIT and not last[i] < 0.0:
+                found[FOUND_STATUS, j] = UNDECIDED
+
+
 BUNDLE = f"{PACKET}, float32[::1], float32[::1], int64[::1], float64[:, ::1], float32[:, ::1], int64[::1]"
-FOUND = "float64[:, ::1]," * 6 + "int32[:, ::1], float32[:, ::1], float64[:, ::1]"
+FOUND = "float64[:, ::1]," * 6 + "int32[:, ::1], float32[:, ::1], float64[:, ::1],"
+FOUND += "int64[::1], int64[::1], float64[:, ::1], float32[:, ::1]"
 ARGUMENTS = normalize_signature(f"void({BUNDLE}, {FOUND})")[0]
 """Types of the arrays that ``first_roots`` takes before and behind its two numbers."""
 
@@ -244,6 +328,10 @@ def first_roots(
     short,
     near_singles,
     near_parts,
+    plan,
+    order,
+    room,
+    table,
 ):
     """Settle the first ``count`` rays: outcomes and places [t] into rows FOUND_STATUS and FOUND_ROOT of ``found``.
 
@@ -251,64 +339,26 @@ def first_roots(
     and end; a ray with begin >= end is a MISS. They stand in GROUP rows, the last perhaps shorter, neighbors in
     columns. Outcomes are those of ``isolation_kernels.isolate``.
     """
-    load_constants(code, constants, registers)
-    last = registers[code.shape[0] - 1]
-    spent = 0
-    queued = 0
     for j in range(count):
         found[FOUND_STATUS, j] = MISS
-    if has(code, SKELETON):
-        return 0, certify(code, constants, parts, scratch, rays, count, anywhere, found)
     groups = (count + GROUP - 1) // GROUP
-    base = bundle(rays, count, groups, beams)
-    if base == np.inf:
-        return 0, 0
-    join(beams, groups, groups)
-    begin, end = base, beams[STOP, groups]
-    if groups > BEAMS:
-        place_slabs(beams, groups, base, begin, end, point, 0, LANES)
-        enclose(code, constants, singles, registers, point, status, LANES)
-        spent += LANES
-        first, final, _ = left_of_slabs(last, status, 0, LANES)
-        if first == LANES:
-            return spent, 0
-        if has(code, DENSITY):
-            kept = 0
-            for k in range(code.shape[0]):
-                for j in range(4):
-                    short[k, j] = code[k, j]
-                if code[k, 0] == DENSITY:
-                    kept = keep_near(
-                        code, k, registers, first, final + 1, singles, parts, kept, short, near_singles, near_parts
-                    )
-            code, singles, parts = short, near_singles, near_parts
-        depth = (end - begin) / LANES
-        begin, end = base + (first - 1e-6) * depth, base + (final + 1 + 1e-6) * depth
-    waiting = 0
-    for g in range(groups):
-        low, high = max(beams[BEGIN, g], begin), min(beams[STOP, g], end)
-        if low < high:
-            place_slabs(beams, g, base, low, high, point, SLABS * waiting, SLABS)
-            ids[waiting] = g
-            waiting += 1
-        if waiting == 0 or (waiting < BEAMS and g + 1 < groups):
-            continue
-        enclose(code, constants, singles, registers, point, status, SLABS * waiting)
-        spent += SLABS * waiting
-        for b in range(waiting):
-            first, final, run = left_of_slabs(last, status, SLABS * b, SLABS)
-            if first == SLABS:
-                continue
-            low, high = max(beams[BEGIN, ids[b]], begin), min(beams[STOP, ids[b]], end)
-            depth = (high - low) / SLABS
-            for j in range(ids[b], count, groups):
-                if ask(rays, j, low, depth, first, final, run, asked):
-                    queue[queued] = j
-                    queued += 1
-        waiting = 0
-    spent += hunt(
-        code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, queued, anywhere, found
-    )
+    if plan[ROW_OF] >= 0:
+        spent, queued = density_roots(
+            code, constants, parts, plan, rays, count, groups, anywhere, found, queue, order, room, table, lanes,
+            short, near_parts,
+        )  # fmt: skip
+        code, parts = short, near_parts
+        if anywhere and plan[CLIPPED]:
+            check_inside(code, constants, parts, doubles, points, rays, queue, queued, found)
+    elif has(code, SKELETON):
+        return 0, certify(code, constants, parts, scratch, rays, count, anywhere, found)
+    else:
+        spent, queued, shortened = packet_roots(
+            code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, count, groups,
+            anywhere, found, parts, beams, short, near_singles, near_parts,
+        )  # fmt: skip
+        if shortened:
+            code, parts = short, near_parts
     if not anywhere:
         hits = 0
         for k in range(queued):  # hits to the front of the queue

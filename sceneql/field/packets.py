@@ -9,13 +9,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sceneql.field import hunt_kernels, packet_density_kernels, packet_kernels, packet_roots_kernels
+from sceneql.field import (
+    density_march_kernels,
+    density_roots_kernels,
+    hunt_kernels,
+    packet_density_kernels,
+    packet_kernels,
+    packet_roots_kernels,
+)
 from sceneql.field.packet_kernels import LANES, WIDTH
 from sceneql.field.packet_roots_kernels import BEAM, GROUP
+from sceneql.field.skeleton import plain_points
 from sceneql.field.solid import scratch
+from sceneql.field.tape_ops import CONSTANT, COPY, DENSITY, MAX, OF_PARTS, SUB, X, Y, Z
 
 if TYPE_CHECKING:
-    from numpy import float32
+    from numpy import float32, int64
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats, Tape
@@ -44,6 +53,25 @@ def enclosures(tape: Tape, origins: Floats, directions: Floats, t0: Floats, t1: 
     return out
 
 
+def plan_of(tape: Tape) -> NDArray[int64]:
+    """(row of the density D, index of the constant c, whether there is a g) of a tape c - D or max(c - D, g).
+
+    -1 for the row of any other; the parts must be points with Wyvill's kernel, alone in their groups.
+    """
+    last = len(tape.code) - 1
+    rows = [last] if tape.code[last, 0] != MAX else [int(row) for row in tape.code[last, 1:3]]
+    for row in rows:
+        op, left, right, _ = tape.code[row]
+        if op != SUB or tape.code[left, 0] != CONSTANT or tape.code[right, 0] not in OF_PARTS:
+            continue
+        kind, start, stop, at = tape.code[right]
+        place = [tape.code[row[1], 0] if row[0] == COPY else row[0] for row in tape.code[at : at + 3]]
+        parts = tape.parts[start:stop] if kind == DENSITY else plain_points(tape.parts[start:stop])
+        if place == [X, Y, Z] and parts is not None and (parts[:, :3] == parts[:, 3:6]).all():
+            return np.array([right, tape.code[left, 1], len(rows) > 1], dtype=np.int64)
+    return np.array([-1, 0, 0], dtype=np.int64)
+
+
 class Memory:
     """What one thread works in for bundles of up to ``count`` rays against a tape."""
 
@@ -64,7 +92,14 @@ class Memory:
         self.singles = single_parts(tape)
         beams, doubles = np.zeros((BEAM, -(-count // GROUP) + 1)), np.zeros((rows, LANES))
         near = np.zeros_like(tape.code), np.zeros_like(self.singles), np.zeros_like(tape.parts)
-        self.rest = tape.parts, scratch(tape), beams, doubles, np.zeros((3, LANES)), *near
+        wide = max(count, LANES, len(tape.parts))
+        march = (
+            plan_of(tape),
+            np.zeros(2 * LANES + count + len(tape.parts), dtype=np.int64),
+            np.zeros((density_roots_kernels.ROOM, wide)),
+            np.zeros((density_roots_kernels.MOST_PARTS, density_march_kernels.COLUMNS), dtype=single),
+        )
+        self.rest = tape.parts, scratch(tape), beams, doubles, np.zeros((3, LANES)), *near, *march
 
     @property
     def bundle(self) -> tuple[Any, ...]:

@@ -102,6 +102,21 @@ class Skeleton:
         return rows
 
 
+def plain_points(rows: Floats) -> Floats | None:
+    """The parts among ``rows`` (r, 8) of a SKELETON, as rows of a DENSITY; None where one has another kernel or group.
+
+    What has a second end as a segment, or a second radius, keeps two ends that differ.
+    """
+    first: Floats
+    first, second = rows[::2], rows[1::2]
+    part = second[:, 6] != NODE
+    first, second = first[part], second[part]
+    alone = len(np.unique(second[:, 5])) == len(second)
+    if not alone or (second[:, 4] != 0).any() or (second[:, 6] != SEGMENT).any() or (first[:, 6] != second[:, 3]).any():
+        return None
+    return first
+
+
 @cache
 def _unit(kernel: int) -> Tape:
     """The tape of one point of radius 1 at the origin."""

@@ -36,6 +36,21 @@ POV_ELSEWHERE |= {"steiner": (113, 104), "shell": (133, 133)}
 """ms with 1 and 2 threads on a Zen 5 machine, POV-Ray 3.7: blob, isosurface, polynomial with sturm."""
 BARS = {"blob40": 12, "gyroid": 25, "barth_sextic": 25, "kummer": 25, "steiner": 25}
 ROUNDS = 15
+CROWD = 4000
+
+
+def crowd(count: int) -> dict[str, Any]:
+    """So many blobs in the ball of blob40's centers, smaller so that their volumes together are as those."""
+    generator = np.random.default_rng(40)
+    few = np.array(SCENES["blob40"]["parts"])
+    centers = generator.normal(size=(count, 3))
+    away = np.linalg.norm(few[:, :3], axis=1).max() * generator.uniform(size=(count, 1)) ** (1 / 3)
+    centers *= away / np.linalg.norm(centers, axis=1)[:, None]
+    radii = generator.uniform(0.3, 0.45, (count, 1)) * (len(few) / count) ** (1 / 3)
+    return SCENES["blob40"] | {"parts": np.concatenate([centers, radii], axis=1)}
+
+
+SCENES["blob4000"] = crowd(CROWD)
 
 
 def view(name: str) -> Any:
@@ -50,6 +65,14 @@ def view(name: str) -> Any:
     return np.array([axes[:, 0], axes[:, 1], -axes[:, 2], light, [size, 2.0 * clip, 0.0]])
 
 
+def tile_pixels() -> Any:
+    """(2, 256): x and y of a tile's pixels; columns of 16 rays are blocks of 4 x 4, four of these one of 8 x 8."""
+    ray = np.arange(256)
+    block, own = ray % 16, ray // 16
+    x, y = block & 1 | (block >> 1) & 2, (block >> 1) & 1 | (block >> 2) & 2
+    return np.array([4 * x + own % 4, 4 * y + own // 4], dtype=np.float64)
+
+
 class Picture:
     """A scene drawn again and again into the same arrays."""
 
@@ -57,21 +80,22 @@ class Picture:
         self.tape, self.view, self.clip = scene_tape(name), view(name), SCENES[name]["clip"]
         self.picture = np.zeros((HEIGHT, WIDTH), dtype=np.float32)
         self.depth = np.zeros((HEIGHT, WIDTH))
+        self.pixels = tile_pixels()
+        self.spare: list[tuple[Memory, Any]] = []
 
     def draw(self) -> Any:
         """(enclosures, certified, undecided) of all rays."""
         from implicit_picture_kernels import draw_row
 
         counts = np.zeros((-(-HEIGHT // 16), 3), dtype=np.int64)
-        spare: list[tuple[Memory, Any]] = []
+        spare = self.spare
 
         def work(row: int) -> None:
             memory, slopes = spare.pop() if spare else (
                 Memory(self.tape, 256), np.zeros((len(self.tape.code), 3, 64))
             )  # fmt: skip
-            counts[row] = draw_row(
-                *memory.bundle, memory.found, *memory.rest, slopes, self.view, self.clip, row, self.picture, self.depth
-            )
+            rest = slopes, self.pixels, self.view, self.clip, row, self.picture, self.depth
+            counts[row] = draw_row(*memory.bundle, memory.found, *memory.rest, *rest)
             spare.append((memory, slopes))
 
         over_tiles(len(counts), work)
@@ -125,7 +149,7 @@ def vector(v: Any) -> str:
 def povray_object(name: str) -> str:
     """The object of a scene as POV-Ray has it: its own blob, sturm, isosurface with the true gradient."""
     ball = f"sphere {{ 0, {SCENES[name]['clip']} }}"
-    if name == "blob40":
+    if name in ("blob40", "blob4000"):
         parts = "".join(f"sphere {{ {vector(row[:3])}, {row[3]:.12g}, 1 }}" for row in SCENES[name]["parts"])
         return f"blob {{ threshold 0.3 {parts} pigment {{ rgb 1 }} }}"
     if name == "gyroid":
@@ -187,4 +211,4 @@ def main(names: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:] or ["blob40", "gyroid", "barth_sextic", "kummer", "steiner", "shell"])
+    main(sys.argv[1:] or ["blob40", "blob4000", "gyroid", "barth_sextic", "kummer", "steiner", "shell"])

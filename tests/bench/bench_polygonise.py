@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from sceneql.field.builder import TapeBuilder
+from sceneql.field.skeleton import Skeleton
 from sceneql.field.solid import field_gradients
 from sceneql.mesh.measures import edge_counts, euler_characteristic, volume
 from sceneql.mesh.polygonise import polygonise
@@ -62,8 +63,12 @@ def scene_tape(name: str) -> Any:
     """The tape of a common scene, cut by its ball."""
     scene, build = SCENES[name], TapeBuilder()
     if "parts" in scene:
-        parts = [[*row[:3], *row[:3], row[3], 1.0] for row in scene["parts"]]
-        density = build.density(np.array(parts), build.x, build.y, build.z)
+        rows = np.array(scene["parts"])
+        count = len(rows)
+        points = Skeleton(
+            rows[:, None, :3].repeat(3, axis=1), rows[:, 3:].repeat(2, axis=1), np.ones(count), np.arange(count)
+        )
+        density = build.skeleton(points, build.x, build.y, build.z)
         value = build.op("sub", build.constant(scene["threshold"]), density)
     else:
         value = register(build, scene["f"], scene.get("where", {}))

@@ -1,0 +1,175 @@
+# mypy: ignore-errors
+"""Beams: capsules around pieces of neighboring rays, and the parts of a density field that reach into one.
+
+A bundle's rays stand in ``wide`` (WIDE, n), those with nothing to search left out: where each begins, its unit
+direction, how far it goes [m], how long its direction was [m per unit of t], and its share of a beam.
+"""
+
+import numpy as np
+
+from sceneql.field.skeleton_kernels import NODE, RADIUS, SHAPE, STRIDE
+from sceneql.kernels import inlined
+
+PX, PY, PZ, DX, DY, DZ, FAR, SPEED, BEHIND, ALONG, OFF = range(11)
+"""Rows of rays; the last: how far the ray begins along the axis of its beam, the cosine between the two, and how far
+it begins off the axis (3 rows)."""
+WIDE = 13
+ORIGIN, WAY, RADIUS_OF, LOW, HIGH, SPREAD = 0, 3, 6, 7, 8, 9
+BEAM = 10
+"""Of a beam: a point and the unit direction of its axis, radius, where it begins and ends along the axis,
+and how much of the radius is due to how the rays part."""
+HAIR = 1.0e-9
+
+
+@inlined
+def gather(rays, count, groups, wide, ids):
+    """Put the rays that have a length into ``wide``, those of a column of ``rays`` together; how many there are."""
+    n = 0
+    for g in range(groups):
+        for j in range(g, count, groups):
+            if rays[6, j] < rays[7, j]:
+                ids[n] = j
+                n += 1
+    for row in range(8):
+        source, target = rays[row], wide[row]
+        for i in range(n):
+            target[i] = source[ids[i]]
+    t0, t1, dx, dy, dz = wide[FAR], wide[SPEED], wide[DX], wide[DY], wide[DZ]
+    for axis in range(3):
+        place, way = wide[PX + axis], wide[DX + axis]
+        for i in range(n):
+            place[i] += t0[i] * way[i]
+    for i in range(n):
+        speed = np.sqrt(dx[i] * dx[i] + dy[i] * dy[i] + dz[i] * dz[i])
+        far = (t1[i] - t0[i]) * speed
+        inverse = 1.0 / speed
+        dx[i], dy[i], dz[i] = dx[i] * inverse, dy[i] * inverse, dz[i] * inverse
+        t0[i] = far
+        t1[i] = speed
+    return n
+
+
+@inlined
+def largest(row, n):
+    """The largest of the first n numbers of a row, which is used up: halves are folded, as vectors can do."""
+    while n > 1:
+        half = (n + 1) // 2
+        for i in range(n - half):
+            row[i] = row[i] if row[i] > row[half + i] else row[half + i]
+        n = half
+    return row[0]
+
+
+@inlined
+def beam_around(wide, first, stop, beam, folds):
+    """The beam around rays first..stop-1; their BEHIND and ALONG are set. Returns the least ALONG.
+
+    ``folds`` (6, n) is working memory.
+    """
+    last = stop - 1
+    for axis in range(3):
+        p, d = wide[PX + axis], wide[DX + axis]
+        beam[ORIGIN + axis] = 0.5 * (p[first] + p[last])
+        beam[WAY + axis] = d[first] + d[last]
+    length = np.sqrt(beam[3] * beam[3] + beam[4] * beam[4] + beam[5] * beam[5])
+    for axis in range(3):
+        beam[WAY + axis] = beam[WAY + axis] / length if length > HAIR else 1.0 * (axis == 0)
+    ox, oy, oz, ax, ay, az = beam[0], beam[1], beam[2], beam[3], beam[4], beam[5]
+    n = stop - first
+    px, py, pz = wide[PX, first:stop], wide[PY, first:stop], wide[PZ, first:stop]
+    vx, vy, vz = wide[DX, first:stop], wide[DY, first:stop], wide[DZ, first:stop]
+    fars, behinds, alongs = wide[FAR, first:stop], wide[BEHIND, first:stop], wide[ALONG, first:stop]
+    off_x, off_y, off_z = wide[OFF, first:stop], wide[OFF + 1, first:stop], wide[OFF + 2, first:stop]
+    off2, spread2, longest, lows, highs, against = folds[0], folds[1], folds[2], folds[3], folds[4], folds[5]
+    for i in range(n):
+        ex, ey, ez = px[i] - ox, py[i] - oy, pz[i] - oz
+        behind = ex * ax + ey * ay + ez * az
+        along = vx[i] * ax + vy[i] * ay + vz[i] * az
+        behinds[i] = behind
+        alongs[i] = along
+        ex, ey, ez = ex - behind * ax, ey - behind * ay, ez - behind * az
+        off_x[i], off_y[i], off_z[i] = ex, ey, ez
+        off2[i] = ex * ex + ey * ey + ez * ez
+    for i in range(n):
+        along, behind, far = alongs[i], behinds[i], fars[i]
+        dx, dy, dz = vx[i] - along * ax, vy[i] - along * ay, vz[i] - along * az
+        end = behind + along * far
+        spread2[i] = dx * dx + dy * dy + dz * dz
+        longest[i] = far
+        against[i] = -along
+        lows[i] = -(behind if behind < end else end)
+        highs[i] = behind if behind > end else end
+    spread = np.sqrt(largest(spread2, n)) * largest(longest, n)
+    low, high = -largest(lows, n), largest(highs, n)
+    hair = HAIR * (abs(ox) + abs(oy) + abs(oz) + abs(low) + abs(high))
+    beam[SPREAD] = spread + hair
+    beam[RADIUS_OF] = np.sqrt(largest(off2, n)) + beam[SPREAD]
+    beam[LOW] = low - hair
+    beam[HIGH] = high + hair
+    return -largest(against, n)
+
+
+@inlined
+def beam_within(wide, first, stop, beam, folds, own):
+    """The beam around rays first..stop-1 of a beam, with an axis parallel to its, into ``own``."""
+    off_x, off_y, off_z = wide[OFF, first:stop], wide[OFF + 1, first:stop], wide[OFF + 2, first:stop]
+    last = stop - first - 1
+    cx, cy, cz = 0.5 * (off_x[0] + off_x[last]), 0.5 * (off_y[0] + off_y[last]), 0.5 * (off_z[0] + off_z[last])
+    off2 = folds[0]
+    for i in range(stop - first):
+        ex, ey, ez = off_x[i] - cx, off_y[i] - cy, off_z[i] - cz
+        off2[i] = ex * ex + ey * ey + ez * ez
+    for j in range(BEAM):
+        own[j] = beam[j]
+    own[0] += cx
+    own[1] += cy
+    own[2] += cz
+    own[RADIUS_OF] = np.sqrt(largest(off2, stop - first)) + beam[SPREAD]
+
+
+@inlined
+def reached(beam, x, y, z, radius):
+    """(enter, leave) along the axis of a beam of what is within ``radius`` of a point; enter > leave: nothing."""
+    ex, ey, ez = x - beam[0], y - beam[1], z - beam[2]
+    along = ex * beam[3] + ey * beam[4] + ez * beam[5]
+    ex, ey, ez = ex - along * beam[3], ey - along * beam[4], ez - along * beam[5]
+    off = max(np.sqrt(ex * ex + ey * ey + ez * ez) - beam[RADIUS_OF], 0.0)
+    if off >= radius:
+        return np.inf, -np.inf
+    half = np.sqrt(radius * radius - off * off)
+    return max(along - half, beam[LOW]), min(along + half, beam[HIGH])
+
+
+@inlined
+def keep_reaching(parts, start, stop, beam, near):
+    """Copy the points of density rows start..stop-1 that reach into a beam to ``near`` (p, 8); how many."""
+    kept = 0
+    for i in range(start, stop):
+        enter, leave = reached(beam, parts[i, 0], parts[i, 1], parts[i, 2], parts[i, RADIUS])
+        if enter <= leave:
+            for j in range(8):
+                near[kept, j] = parts[i, j]
+            kept += 1
+    return kept
+
+
+@inlined
+def keep_reaching_skeleton(parts, start, stop, beam, near):
+    """The same of skeleton rows, all of them lone points with Wyvill's kernel, by their hierarchy."""
+    kept = 0
+    i = start
+    while i < stop:
+        if parts[i + 1, SHAPE] == NODE:
+            hx, hy, hz = parts[i, 3] - parts[i, 0], parts[i, 4] - parts[i, 1], parts[i, 5] - parts[i, 2]
+            half = 0.5 * np.sqrt(hx * hx + hy * hy + hz * hz) * (1.0 + HAIR)
+            x, y, z = parts[i, 0] + 0.5 * hx, parts[i, 1] + 0.5 * hy, parts[i, 2] + 0.5 * hz
+            enter, leave = reached(beam, x, y, z, half)
+            i += STRIDE + (int(parts[i, RADIUS]) if enter > leave else 0)
+            continue
+        enter, leave = reached(beam, parts[i, 0], parts[i, 1], parts[i, 2], parts[i, RADIUS])
+        if enter <= leave:
+            for j in range(8):
+                near[kept, j] = parts[i, j]
+            kept += 1
+        i += STRIDE
+    return kept

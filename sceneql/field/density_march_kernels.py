@@ -1,0 +1,120 @@
+# mypy: ignore-errors
+"""First roots of c - D along rays in lanes, D the density of points with Wyvill's kernel: by one-sided bounds of slope.
+
+Along a ray of unit direction a point has u(t) = P - (t - T)^2/R^2 and the density w max(u, 0)^3. Its slope rises up to
+Q = T - H/sqrt(5), H the half chord, falls through 0 at T to a least value, and rises to 0 where the chord ends. So its
+largest value between a and b stands at b or at the place in [a, b] nearest to Q, and with the sum S of these the ray is
+outside up to a + (c - D(a))/S: Newton's step, which no root escapes (Kalra & Barr 1989, with the slope of one sign).
+
+``table`` (k, COLUMNS) has P, T and Q of each part in lanes, then its weight and 1/R^2; ``state`` (ROWS,) is float32
+too, what is told of all lanes one behind the other; places are counted from where the table begins.
+"""
+
+import numpy as np
+
+from sceneql.field.single_kernels import lane
+from sceneql.field.tape_ops import HIT, MISS, UNDECIDED
+from sceneql.kernels import inlined
+
+F = np.float32
+LANES = 64
+T, Q, WEIGHT, INVERSE = LANES, 2 * LANES, 3 * LANES, 3 * LANES + 1
+COLUMNS = 3 * LANES + 8
+A, B, END, AT_A, AT_B, SLOPE, STATE, TRIES, FINE, ROOT = range(0, 10 * LANES, LANES)
+"""Where in state there is: a segment, where the search ends, densities at the segment's ends, a sixth of the largest
+slope of D, then the least of f, outcome (LIVE until there is one; UNDECIDED at the first step: the ray begins inside),
+steps so far, width of a bracket that is good enough, the root."""
+ROWS = 10 * LANES
+LIVE, MOST = F(-1.0), F(40.0)
+ZERO, HALF, ONE, TWO, SIX, TENTH = F(0.0), F(0.5), F(1.0), F(2.0), F(6.0), F(0.1)
+LESS, MORE = F(1.0 - 1.0e-5), F(1.0 + 1.0e-5)
+TINY, HUGE = F(1.0e-30), F(1.0e30)
+
+
+@lane
+def risen(p, t, q, a, b, inverse):
+    """(u^3 at a, u^3 at b, largest u^2 (t - .) in [a, b]) of a point."""
+    sa = t - a
+    sb = t - b
+    c = q if q > a else a
+    c = c if c < b else b
+    sc = t - c
+    ua = p - inverse * (sa * sa)
+    ub = p - inverse * (sb * sb)
+    uc = p - inverse * (sc * sc)
+    ua = ua if ua > ZERO else ZERO
+    ub = ub if ub > ZERO else ZERO
+    uc = uc if uc > ZERO else ZERO
+    gb = ub * ub * sb
+    gc = uc * uc * sc
+    return ua * ua * ua, ub * ub * ub, gc if gc > gb else gb
+
+
+@inlined
+def sum_up(table, kept, state, n):
+    """Densities at both ends of n lanes' segments, and a sixth of the largest slope between."""
+    for i in range(n):
+        state[AT_A + i] = state[AT_B + i] = state[SLOPE + i] = ZERO
+    for k in range(kept):
+        row = table[k]
+        weight, inverse = row[WEIGHT], row[INVERSE]
+        steep = weight * inverse
+        if weight > ZERO:
+            for i in range(n):
+                da, db, g = risen(row[i], row[T + i], row[Q + i], state[A + i], state[B + i], inverse)
+                state[AT_A + i] += weight * da
+                state[AT_B + i] += weight * db
+                state[SLOPE + i] += steep * g
+        else:  # the slope of a negative part is that of a positive one met from behind
+            for i in range(n):
+                t = row[T + i]
+                db, da, g = risen(row[i], t, row[Q + i], t + t - state[B + i], t + t - state[A + i], inverse)
+                state[AT_A + i] += weight * da
+                state[AT_B + i] += weight * db
+                state[SLOPE + i] -= steep * g
+
+
+@inlined
+def advance(state, n, threshold, off, off_slope, anywhere):
+    """The next segment of each lane, or its outcome; ``off``, ``off_slope`` bound the rounding of D and its slope."""
+    for i in range(n):
+        a, b, end = state[A + i], state[B + i], state[END + i]
+        fa = threshold - state[AT_A + i]
+        fb = threshold - state[AT_B + i]
+        slope = SIX * state[SLOPE + i]
+        slope = slope * MORE + off_slope
+        clear = fa - off
+        clear = clear if clear > ZERO else ZERO
+        step = clear * LESS / (slope if slope > TINY else TINY)
+        width = b - a
+        full = (clear > ZERO) & (slope * width * MORE < clear)
+        start = b if full else a + step
+        start = start if start < b else b
+        inside = fb + off < ZERO
+        begun = fa + off < ZERO
+        fine = state[FINE + i]
+        # Where the root may be: by the secant, or Newton's way on.
+        r = a + width * (fa / (fa - fb if fa > fb else ONE))
+        past = r + HALF * (r - start if r > start else ZERO) + HALF * fine
+        past = past if past > start else start + HALF * (b - start)
+        past = past if past < b else b
+        on = start + F(2.5) * step
+        on = on if on > start + HALF * width else start + HALF * width
+        on = on if on < b else b
+        then = past if inside else on
+        then = then if then > start + fine else start + fine
+        then = b + TWO * width if full else then
+        then = then if then < end else end
+        narrow = b - start
+        tries = state[TRIES + i] + ONE
+        hit = (inside & (anywhere | (narrow <= fine * TWO)) & (~begun)) | (begun & anywhere)
+        done = full & (b >= end)
+        stuck = begun | (tries > MOST) | (~full) & (~inside) & (width <= fine * TWO) & (step < TENTH * fine)
+        outcome = F(HIT) if hit else (F(MISS) if done else (F(UNDECIDED) if stuck else LIVE))
+        live = state[STATE + i] == LIVE
+        state[STATE + i] = outcome if live else state[STATE + i]
+        state[A + i] = start if live else a
+        state[B + i] = then if live & (~hit) else b
+        state[ROOT + i] = r if live else state[ROOT + i]
+        state[TRIES + i] = tries
+        state[SLOPE + i] = -slope

@@ -1,0 +1,368 @@
+# mypy: ignore-errors
+"""First roots along a bundle of rays of fields c - D and max(c - D, g), D the density of points with Wyvill's kernel.
+
+The parts that reach into the bundle are found once; packets of LANES rays look at them from front to back, a slice of
+their beam at a time, so that what stands behind the first root is seldom looked at. Before the first root of c - D the
+field is outside whatever g is; at the root its value tells.
+"""
+
+import numpy as np
+
+from sceneql.field.beam_kernels import (
+    ALONG,
+    BEAM,
+    BEHIND,
+    DX,
+    FAR,
+    HIGH,
+    LOW,
+    PX,
+    RADIUS_OF,
+    SPEED,
+    WIDE,
+    beam_around,
+    beam_within,
+    gather,
+    keep_reaching,
+    keep_reaching_skeleton,
+    reached,
+)
+from sceneql.field.density_march_kernels import (
+    AT_A,
+    AT_B,
+    END,
+    FINE,
+    INVERSE,
+    LANES,
+    LIVE,
+    ROOT,
+    ROWS,
+    SLOPE,
+    STATE,
+    TRIES,
+    WEIGHT,
+    ZERO,
+    A,
+    B,
+    F,
+    Q,
+    T,
+    advance,
+    sum_up,
+)
+from sceneql.field.hunt_kernels import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_SLOPE, FOUND_STATUS
+from sceneql.field.tape_ops import DENSITY, MISS, UNDECIDED
+from sceneql.kernels import inlined
+
+MOST_PARTS = 512
+"""Rows of ``table``; where more parts reach into a slice, its rays are left to the certified routine."""
+DEEP = 0.5
+"""Depth of a slice, relative to what a part takes of the beam on average."""
+SPOT, SPANS, BEAM_ROW, OWN_ROW, FOLDS, ROOM = WIDE, WIDE + 7, WIDE + 9, WIDE + 10, WIDE + 11, WIDE + 17
+BASE = 6
+"""Rows of ``room`` (ROOM, n): rays, lanes (place, direction, where the slice begins on the ray), where parts are
+entered and left along the axis of a beam, the bundle's beam and a packet's, and working memory of theirs."""
+ROW_OF, THRESHOLD, CLIPPED = range(3)
+"""Of a plan: the row of the density, -1 where a field has another form; of c; whether there is a g."""
+NARROW, HAIR = F(2.0e-5), F(1.0e-6)
+"""Width of a bracket, and what is searched beyond the parts, relative to the ray's piece."""
+QUARTER, INFINITE = F(0.25), F(np.inf)
+GOLDEN = F(0.4472136)
+"""1/sqrt(5)."""
+STEEPEST = 1.72
+"""R times the largest slope of a density of weight 1, a little more than 96/(25 sqrt(5))."""
+UNIT = 1.2e-7
+"""Two half units in the last place."""
+
+
+@inlined
+def list_parts(near, kept, beam, spans, order):
+    """Those parts that reach into a beam into ``order``, and where they do into ``spans``; how many."""
+    m = 0
+    for k in range(kept):
+        enter, leave = reached(beam, near[k, 0], near[k, 1], near[k, 2], near[k, 6])
+        if enter <= leave:
+            spans[0, m], spans[1, m] = enter, leave
+            order[m] = k
+            m += 1
+    return m
+
+
+@inlined
+def next_slice(spans, m, begin):
+    """(first place at or behind ``begin`` where parts are, where a slice from there on ends); inf: nowhere."""
+    start = np.inf
+    last = -np.inf
+    chords = 0.0
+    left = 0
+    for i in range(m):
+        enter, leave = spans[0, i], spans[1, i]
+        if leave > begin:
+            start = min(start, max(enter, begin))
+            last = max(last, enter)
+            chords += leave - enter
+            left += 1
+    end = start + DEEP * chords / max(left, 1)
+    return start, end if last > end else np.inf
+
+
+@inlined
+def place_lanes(room, live, state, n, begin, end, lowest):
+    """Set the lanes' rays at the begin of a slice, and where on them it ends."""
+    bases, far, behind, along = room[SPOT + BASE], room[FAR], room[BEHIND], room[ALONG]
+    for i in range(n):
+        j = live[i]
+        stop = far[j]
+        inverse = 1.0 / along[j]
+        base, last = (begin - behind[j]) * inverse, (end - behind[j]) * inverse
+        base = base if base > 0.0 else 0.0
+        base = base if base < stop else stop
+        last = last if last > base else base
+        last = last if last < stop else stop
+        base = base if lowest > 0.5 else 0.0
+        bases[i] = base
+        state[END + i] = F((last if lowest > 0.5 else stop) - base)
+        state[AT_A + i] = INFINITE
+        state[AT_B + i] = -INFINITE
+    for axis in range(3):
+        place, way, spot, spot_way = room[PX + axis], room[DX + axis], room[SPOT + axis], room[SPOT + 3 + axis]
+        for i in range(n):
+            j = live[i]
+            spot[i] = place[j] + bases[i] * way[j]
+            spot_way[i] = way[j]
+
+
+@inlined
+def set_part(part, room, row, state, n):
+    """A row of the table for a part; how many lanes come into its reach. AT_A and AT_B: where they enter and leave."""
+    cx, cy, cz, radius = part[0], part[1], part[2], part[6]
+    inverse = 1.0 / (radius * radius)
+    x, y, z = room[SPOT], room[SPOT + 1], room[SPOT + 2]
+    dx, dy, dz = room[SPOT + 3], room[SPOT + 4], room[SPOT + 5]
+    for i in range(n):
+        wx, wy, wz = cx - x[i], cy - y[i], cz - z[i]
+        t = wx * dx[i] + wy * dy[i] + wz * dz[i]
+        row[i] = F(1.0 - inverse * (wx * wx + wy * wy + wz * wz - t * t))
+        row[T + i] = F(t)
+    reach = F(radius)
+    lanes = np.int32(0)
+    for i in range(n):
+        p, t = row[i], row[T + i]
+        half = reach * np.sqrt(p if p > ZERO else ZERO)
+        row[Q + i] = t - GOLDEN * half
+        near = (p > ZERO) & (t + half > ZERO) & (t - half < state[END + i])
+        entry, exit = state[AT_A + i], state[AT_B + i]
+        first = entry if entry < t - half else t - half
+        last = exit if exit > t + half else t + half
+        state[AT_A + i] = first if near else entry
+        state[AT_B + i] = last if near else exit
+        lanes += np.int32(1) if near else np.int32(0)
+    row[WEIGHT] = F(part[7])
+    row[INVERSE] = F(inverse)
+    return lanes
+
+
+@inlined
+def rounding(table, rows, reach, threshold):
+    """How far the computed density about c, and the computed slope, may be off where places are off by UNIT reach.
+
+    Of positive parts sum w u^2 <= (sum w u^3)^(2/3) (sum w)^(1/3) by Hoelder's inequality, with |du/dt| <= 2/R.
+    """
+    off = UNIT * reach
+    bulk = bend = stiff = 0.0
+    level = 2.0 * abs(threshold)
+    negative = False
+    for k in range(rows):
+        weight, steep = abs(table[k, WEIGHT]), np.sqrt(table[k, INVERSE])
+        negative = negative or table[k, WEIGHT] < 0.0
+        bulk += weight
+        bend = max(bend, steep)
+        stiff += weight * steep * (30.0 * off * steep + (rows + 40) * UNIT)
+    if negative:
+        level = bulk
+    squares = (level * level * bulk) ** (1.0 / 3.0)
+    return F(3.0 * squares * (2.0 * bend * off + 4.0 * UNIT) + UNIT * (rows + 12) * level), F(STEEPEST * stiff)
+
+
+@inlined
+def start_lanes(room, live, state, n):
+    """Begin the search in each lane, between where the parts of the slice are entered and left."""
+    far = room[FAR]
+    for i in range(n):
+        way = F(far[live[i]])
+        low = state[AT_A + i] - HAIR * way
+        high = state[AT_B + i] + HAIR * way
+        low = low if low > ZERO else ZERO
+        high = high if high < state[END + i] else state[END + i]
+        state[A + i] = low
+        state[B + i] = low + QUARTER * (high - low)
+        state[END + i] = high
+        state[FINE + i] = NARROW * way
+        state[TRIES + i] = ZERO
+        state[STATE + i] = LIVE if low < high else F(MISS)
+    for i in range(n, LANES):
+        state[STATE + i] = F(MISS)
+
+
+@inlined
+def move_lane(table, kept, state, ids, room, i, j):
+    """Put lane j into lane i."""
+    for k in range(kept):
+        row = table[k]
+        row[i] = row[j]
+        row[T + i] = row[T + j]
+        row[Q + i] = row[Q + j]
+    for k in range(0, ROWS, LANES):
+        state[k + i] = state[k + j]
+    room[SPOT + BASE, i] = room[SPOT + BASE, j]
+    ids[i] = ids[j]
+
+
+@inlined
+def note(room, state, i, j, ray, found):
+    """What became of lane i, which is ray j of the beam and ``ray`` of the bundle."""
+    base, inverse = room[SPOT + BASE, i], 1.0 / room[SPEED, j]
+    found[FOUND_STATUS, ray] = state[STATE + i]
+    found[FOUND_LOW, ray] = (base + state[A + i]) * inverse
+    found[FOUND_HIGH, ray] = (base + state[B + i]) * inverse
+    found[FOUND_ROOT, ray] = (base + max(state[A + i], state[ROOT + i])) * inverse
+    found[FOUND_SLOPE, ray] = state[SLOPE + i] * room[SPEED, j]
+
+
+@inlined
+def live_lanes(state, n):
+    """How many of n lanes have no outcome."""
+    lanes = np.int32(0)
+    for i in range(n):
+        lanes += np.int32(1) if state[STATE + i] == LIVE else np.int32(0)
+    return lanes
+
+
+@inlined
+def search_slice(table, kept, state, room, live, n, threshold, off, off_slope, anywhere, rays, found):
+    """March all lanes; (how many are still looking at the end of the slice, put first into ``live``, segments)."""
+    spent = 0
+    left = 0
+    looking = width = n
+    while looking > 0:
+        if 2 * looking <= width:  # close the gaps between lanes
+            i = 0
+            for j in range(width):
+                if live[j] >= 0:
+                    if i < j:
+                        move_lane(table, kept, state, live, room, i, j)
+                    i += 1
+            for i in range(looking, width):
+                state[STATE + i] = F(MISS)
+            width = looking
+        for i in range(width):
+            outcome = state[STATE + i]
+            if outcome == LIVE or live[i] < 0:
+                continue
+            if outcome == F(MISS):
+                live[LANES + left] = live[i]
+                left += 1
+            else:
+                note(room, state, i, live[i], rays[live[i]], found)
+            live[i] = -1
+            looking -= 1
+        if looking > 0:
+            whole = (width + 7) // 8 * 8
+            before = ended = live_lanes(state, whole)
+            while before == ended:
+                sum_up(table, kept, state, whole)
+                advance(state, whole, threshold, off, off_slope, anywhere)
+                spent += looking
+                ended = live_lanes(state, whole)
+    for i in range(left):
+        live[i] = live[LANES + i]
+    return left, spent
+
+
+@inlined
+def leave_undecided(room, live, n, rays, found):
+    """Leave all lanes to the certified routine, from where their slice begins."""
+    for i in range(n):
+        j = live[i]
+        found[FOUND_STATUS, rays[j]] = UNDECIDED
+        found[FOUND_LOW, rays[j]] = room[SPOT + BASE, i] / room[SPEED, j]
+
+
+@inlined
+def search_packet(
+    room, first, stop, near, kept, threshold, anywhere, table, state, live, order, rays, beam, lowest, found
+):
+    """Settle rays first..stop-1 of a gathered bundle; segments looked at."""
+    own = room[OWN_ROW, :BEAM]
+    beam_within(room, first, stop, beam, room[FOLDS:], own)
+    spans = room[SPANS:]
+    m = list_parts(near, kept, own, spans, order)
+    n = stop - first
+    for i in range(n):
+        live[i] = first + i
+    spent = 0
+    begin = beam[LOW]
+    while n > 0:
+        start, end = next_slice(spans, m, begin)
+        if start == np.inf:
+            return spent
+        if lowest <= 0.5:
+            end = np.inf
+        place_lanes(room, live, state, n, start, end, lowest)
+        rows = 0
+        for i in range(m):
+            if spans[0, i] < end and spans[1, i] > start:
+                rows += 1 if set_part(near[order[i]], room, table[rows], state, n) > 0 else 0
+                if rows == table.shape[0]:
+                    leave_undecided(room, live, n, rays, found)
+                    return spent
+        reach = min(end, beam[HIGH]) - start + 2.0 * own[RADIUS_OF]
+        off, off_slope = rounding(table, rows, reach, threshold)
+        start_lanes(room, live, state, n)
+        n, more = search_slice(
+            table, rows, state, room, live, n, F(threshold), off, off_slope, anywhere, rays, found
+        )  # fmt: skip
+        spent += more
+        if end == np.inf:
+            return spent
+        begin = end
+    return spent
+
+
+@inlined
+def density_roots(
+    code, constants, parts, plan, rays, count, groups, anywhere, found, queue, order, room, table, state, short, near
+):  # fmt: skip
+    """Settle a bundle as ``packet_roots_kernels.first_roots`` does; (segments, rays that may be met, in ``queue``).
+
+    ``short`` becomes the tape with the parts alone that reach into the bundle, which are ``near``, as a DENSITY.
+    """
+    k = plan[ROW_OF]
+    for row in range(code.shape[0]):
+        for j in range(4):
+            short[row, j] = code[row, j]
+    ids = order[2 * LANES :]
+    listed = ids[rays.shape[1] :]
+    n = gather(rays, count, groups, room, ids)
+    if n == 0:
+        return 0, 0
+    beam = room[BEAM_ROW, :BEAM]
+    lowest = beam_around(room, 0, n, beam, room[FOLDS:])
+    if code[k, 0] == DENSITY:
+        kept = keep_reaching(parts, code[k, 1], code[k, 2], beam, near)
+    else:
+        kept = keep_reaching_skeleton(parts, code[k, 1], code[k, 2], beam, near)
+    short[k, 0], short[k, 1], short[k, 2] = DENSITY, 0, kept
+    spent = 0
+    if kept > 0:
+        for first in range(0, n, LANES):
+            spent += search_packet(
+                room, first, min(first + LANES, n), near, kept, constants[plan[THRESHOLD]], anywhere, table, state,
+                order, listed, ids, beam, lowest, found,
+            )  # fmt: skip
+    queued = 0
+    for i in range(n):
+        if found[FOUND_STATUS, ids[i]] != MISS:
+            queue[queued] = ids[i]
+            queued += 1
+    return spent, queued
