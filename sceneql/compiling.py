@@ -11,7 +11,9 @@ from contextlib import contextmanager
 from copy import copy
 
 from llvmlite import binding
+from llvmlite.binding import ffi
 from numba import types
+from numba.core import ir
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase
 from numba.core.compiler_machinery import PassManager, register_pass
@@ -145,7 +147,27 @@ def remember_signatures():
     types.Function.get_call_type = remembering
 
 
+def list_quickly():
+    """Let numba list a statement's variables by looking at the types of its parts in one step, not in up to six."""
+    slowly = ir.Inst._rec_list_vars
+
+    def listed(self, value):
+        kind = type(value)
+        if kind is ir.Var:
+            return [value]
+        if kind in WITHOUT_VARIABLES:
+            return ()
+        if kind is dict or kind is list or kind is tuple:
+            return [one for part in (value.values() if kind is dict else value) for one in listed(self, part)]
+        return slowly(self, value)
+
+    ir.Inst._rec_list_vars = listed
+
+
+WITHOUT_VARIABLES = {str, int, float, bool, type(None), ir.Loc, ir.Const, ir.Global, ir.Arg, type(operator.add)}
 PLAIN = (types.Number, types.Boolean)
 PLAIN_OR_PACKED = (*PLAIN, types.Array, types.BaseTuple)
 
 remember_signatures()
+list_quickly()
+ffi.lib._lock._cblist.clear()  # LLVM's calls are many, and how long it is held asks nobody here
