@@ -310,3 +310,21 @@ def test_surfaces_of_values_end_on_the_walls_and_have_the_colors_of_a_map(tmp_pa
     assert abs(outer.vertices).max() == pytest.approx(0.5, abs=1e-12)
     assert abs(inner.vertices).max() < 0.31
     np.testing.assert_allclose([inner.surface.color, outer.surface.color], table("inferno")[[0, -1]], atol=1e-12)
+
+
+ALONE = """
+clock: {end: 1 s, fps: 10}
+models: {plate: {diffusion: {size: 2 1 m, cell: 0.1 m, of: number, coefficient: "0.001", initial: "x"}}}
+"""
+
+
+def test_a_field_that_nothing_shows_is_shown_in_colors(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text(ALONE, encoding="utf-8")
+    graph = load(path)
+    (moment,) = Run(graph).moments([0.5])
+    (mesh,) = moment.lower(graph.drawn["film"])
+    assert mesh.colors is not None
+    np.testing.assert_allclose(mesh.vertices.max(axis=0), [2.0, 1.0, 0.0], atol=1e-12)
+    path.write_text(ALONE + "objects: {map: {field_map: {of: plate.concentration, hidden: yes}}}\n", encoding="utf-8")
+    assert load(path).drawn["film"] == ()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from sceneql.kinds.stable_step import Oscillation
 from sceneql.kinds.types import ModelRef
-from sceneql.kinds.values import Ref
+from sceneql.kinds.values import Ref, Value
 from sceneql.kinds.word import Kind, field
 from sceneql.quantities.expression import Expr
 
@@ -56,6 +56,10 @@ class Model(Kind):
     def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Drawn]:
         """How it draws itself where no object of the script does."""
         return ()
+
+    def shows(self, name: str) -> Value | None:
+        """The field that a `field_map` draws where no object of the script shows any of it."""
+        return None
 
     def drives(self) -> Mapping[str, tuple[str, str]]:
         """Fields of objects that it sets: ``{object name: (field, output)}``."""

@@ -8,7 +8,7 @@ from dataclasses import replace
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.passes.touchable import touchable
 from sceneql.graph import Task
-from sceneql.kinds import Camera, Contact, Illumination, Kind, Model, Output, Picture, Solver, Value
+from sceneql.kinds import Camera, Contact, Illumination, Kind, Model, Object, Output, Picture, Solver, Value
 from sceneql.quantities.expression import Link
 
 
@@ -39,7 +39,21 @@ def expand(tasks: Mapping[str, Task], catalogue: Catalogue) -> dict[str, Task]:
         not any(isinstance(t.kind, Solver) and t.kind.on is None for t in result.values())
     ):
         add("solver", "solvers", "auto")
-    return _drive(result)
+    return _show(_drive(result), catalogue) if has(Picture) else _drive(result)
+
+
+def _show(tasks: dict[str, Task], catalogue: Catalogue) -> dict[str, Task]:
+    """A map of each field that no object reads, in the name of its model."""
+    read = {need for task in tasks.values() if isinstance(task.kind, Object) for need in task.needs}
+    for model in [task for task in tasks.values() if task.name not in read]:
+        of = model.kind.shows(model.name) if isinstance(model.kind, Model) else None
+        cls = None if of is None else catalogue.load("objects", "field_map")
+        if cls is not None:
+            name = f"{model.name}_map"
+            while name in tasks:
+                name += "_"
+            tasks[name] = Task(name, "field_map", cls.model_validate({"of": of}), model.span, (model.name,))
+    return tasks
 
 
 def _drive(tasks: dict[str, Task]) -> dict[str, Task]:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 FINEST = 4
 """Steps of a sheet in a cell, at most."""
-MOST = 100_000
+MOST = 25_000
 """Parallelograms of a flat sheet, about."""
 CREASE = 0.75
 """Cosine between a facet and the surface's normal, 41 degrees, from which an edge is sharp."""
@@ -69,8 +69,7 @@ def flat(layout: FieldLayout, level: Any) -> Sheet:
 
 def _steps(nx: float, ny: float) -> tuple[int, int]:
     """Steps over so many cells: several a cell, but not too many in all."""
-    fine = min(float(FINEST), (MOST / (nx * ny)) ** 0.5)
-    fine = float(int(fine)) if fine >= 1.0 else fine
+    fine = min(FINEST, (MOST / (nx * ny)) ** 0.5)
     return max(1, round(nx * fine)), max(1, round(ny * fine))
 
 

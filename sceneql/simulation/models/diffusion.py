@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
-from sceneql.kinds import Gives, field
+from sceneql.kinds import Gives, Value, field
 from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
+from sceneql.quantities.expression import Link, Type
 from sceneql.simulation.grids.medium import ANYTHING, PLACE, Boundary, FieldLayout, Medium, Picture, gives_of, layout_of
 
 if TYPE_CHECKING:
@@ -68,6 +69,10 @@ class Diffusion(Medium):
     def layout(self, state: ModelState, output: str = "concentration") -> FieldLayout:
         """Where its field lies, for pictures."""
         return layout_of(state.ints[0], state.ints[1:], state.floats)
+
+    def shows(self, name: str) -> Value | None:
+        """The field."""
+        return Value(Link(name, "concentration", Type((None,), UNITS[self.of])))
 
     def read(self, output: str, state: ModelState) -> Any:
         """An output: (cells of the domain,), (cells, 3) or float."""

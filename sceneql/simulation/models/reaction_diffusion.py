@@ -11,7 +11,7 @@ from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import Number
+from sceneql.quantities.expression import Link, Number, Type
 from sceneql.simulation.formula_rows import TIMES, Rows
 from sceneql.simulation.grids.medium import ANYTHING, PLACE, Boundary, FieldLayout, Medium, gives_of, layout_of
 
@@ -152,6 +152,10 @@ class ReactionDiffusion(Medium):
         """Where the field of a species lies, for pictures; ``output``: its name."""
         at = state.ints[5 + list(self.species).index(output)]
         return layout_of(at, state.ints, state.floats)
+
+    def shows(self, name: str) -> Value | None:
+        """Its first species."""
+        return Value(Link(name, next(iter(self.species)), Type((None,))))
 
     def read(self, output: str, state: ModelState) -> Any:
         """An output: (cells of the domain,), (cells, 3) or float."""
