@@ -3,7 +3,7 @@
 
 from sceneql.field.batch_kernels import BATCH
 from sceneql.field.density_kernels import density_gradient
-from sceneql.field.sine_kernels import sine_cosine
+from sceneql.field.sine_kernels import wave_lanes
 from sceneql.field.skeleton_kernels import skeleton_gradient
 from sceneql.field.tape_kernels import slopes
 from sceneql.field.tape_ops import ADD, CONSTANT, COPY, COS, DENSITY, MUL, NEG, SIN, SKELETON, SQUARE, SUB, X, Y, Z
@@ -52,12 +52,7 @@ def density_slopes(code, k, parts, registers, slope, n):
 def any_slopes(op, value, a, b, slope_a, slope_b, slope, n):
     """Gradient of an operation of one or two arguments by its two derivatives."""
     for i in range(n):
-        if op == SIN:
-            u, v = sine_cosine(a[i])[1], 0.0
-        elif op == COS:
-            u, v = -sine_cosine(a[i])[0], 0.0
-        else:
-            u, v = slopes(op, value[i], a[i], b[i])
+        u, v = slopes(op, value[i], a[i], b[i])
         for axis in range(3):
             # A zero slope is skipped: zero times an infinite slope of the branch not taken would be NaN.
             g = 0.0
@@ -66,6 +61,18 @@ def any_slopes(op, value, a, b, slope_a, slope_b, slope, n):
             if v != 0.0:
                 g += v * slope_b[axis, i]
             slope[axis, i] = g
+
+
+@inlined
+def wave_slopes(op, a, slope_a, slope, n):
+    """Gradient of a sine or cosine."""
+    factor = slope[2]  # overwritten last
+    wave_lanes(a, factor, n, op == SIN)
+    sign = 1.0 if op == SIN else -1.0
+    for axis in range(3):
+        for i in range(n):
+            u = sign * factor[i]
+            slope[axis, i] = u * slope_a[axis, i] if u != 0.0 else 0.0
 
 
 @lean(f"void({BATCH}, float64[:, :, ::1], int64)")
@@ -93,6 +100,9 @@ def differentiate(code, constants, parts, registers, slope, n):
             continue
         a = registers[left]
         b = registers[right]
+        if op == SIN or op == COS:
+            wave_slopes(op, a, slope[left], out, n)
+            continue
         for axis in range(3):
             da = slope[left, axis]
             db = slope[right, axis]

@@ -7,7 +7,7 @@
 import numpy as np
 
 from sceneql.field.density_kernels import offset
-from sceneql.field.sine_kernels import sine_cosine
+from sceneql.field.sine_kernels import wave_lanes
 from sceneql.field.skeleton_kernels import skeleton_value
 from sceneql.field.tape_kernels import larger, sign_of, smaller
 from sceneql.field.tape_ops import (
@@ -163,12 +163,8 @@ def evaluate(code, constants, parts, registers, points, n):
         elif op == COPY:
             for i in range(n):
                 out[i] = a[i]
-        elif op == SIN:
-            for i in range(n):
-                out[i] = sine_cosine(a[i])[0]
-        elif op == COS:
-            for i in range(n):
-                out[i] = sine_cosine(a[i])[1]
+        elif op == SIN or op == COS:
+            wave_lanes(a, out, n, op == COS)
         elif op <= ATAN2:
             binary_lanes(op, a, b, out, n)
         else:

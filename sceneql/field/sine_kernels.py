@@ -14,14 +14,12 @@ LARGEST = 1.0e6
 
 
 @inlined
-def sine_cosine(x):
-    """(sin x, cos x), within 2 units in the last place.
+def reduced(x):
+    """(sin x, cos x) where |x| <= LARGEST, within 2 units in the last place; without branches, so that loops are wide.
 
     Argument reduced by three parts of pi/2 (Cody & Waite 1980), then minimax polynomials on [-pi/4, pi/4]
     (coefficients of Sun's fdlibm, 1993).
     """
-    if not abs(x) <= LARGEST:
-        return np.sin(x), np.cos(x)
     turns = np.floor(x * TWO_OVER_PI + 0.5)
     r = ((x - turns * HALF_PI_1) - turns * HALF_PI_2) - turns * HALF_PI_3
     z = r * r
@@ -31,9 +29,35 @@ def sine_cosine(x):
     c = -2.75573143513906633035e-07 + z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)
     c = -1.38888888888741095749e-03 + z * (2.48015872894767294178e-05 + z * c)
     c = 1.0 - (0.5 * z - z * z * (4.16666666666666019037e-02 + z * c))
-    quadrant = int(turns)
-    if quadrant & 1:
-        s, c = c, -s
-    if quadrant & 2:
-        s, c = -s, -c
-    return s, c
+    half = np.floor(0.5 * turns)
+    odd = turns != 2.0 * half
+    back = half != 2.0 * np.floor(0.5 * half)
+    first = c if odd else s
+    second = -s if odd else c
+    return -first if back else first, -second if back else second
+
+
+@inlined
+def sine_cosine(x):
+    """(sin x, cos x), within 2 units in the last place."""
+    if not abs(x) <= LARGEST:
+        return np.sin(x), np.cos(x)
+    return reduced(x)
+
+
+@inlined
+def wave_lanes(a, out, n, cosine):
+    """``sine_cosine`` at n arguments: the cosines, or else the sines."""
+    far = 0
+    for i in range(n):
+        far += 0 if abs(a[i]) <= LARGEST else 1
+    if far > 0:
+        for i in range(n):
+            s, c = sine_cosine(a[i])
+            out[i] = c if cosine else s
+    elif cosine:
+        for i in range(n):
+            out[i] = reduced(a[i])[1]
+    else:
+        for i in range(n):
+            out[i] = reduced(a[i])[0]
