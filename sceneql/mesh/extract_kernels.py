@@ -43,27 +43,47 @@ def sample(code, constants, parts, registers, points, grid, i, j, k, values):
 
 
 @inlined
-def cubes_of(values, signs, corners, first, faces, tunnel, start, own, cubes, at, tally):
+def insides(values, masks):
+    """Into masks (NODES^2,) a bit for each node of a row along x, set where f < 0; whether the nodes differ."""
+    some = 0
+    every = (1 << NODES) - 1
+    for row in range(NODES * NODES):
+        mask = 0
+        for x in range(NODES):
+            mask |= (1 if values[NODES * row + x] < 0.0 else 0) << x
+        masks[row] = mask
+        some |= mask
+        every &= mask
+    return some != 0 and every != (1 << NODES) - 1
+
+
+@inlined
+def cubes_of(values, masks, corners, first, faces, tunnel, start, own, cubes, at, tally):
     """Note the cubes with a change of sign as (place in the block, variant) from ``at`` on; count what they make."""
     n = at
     for z in range(BLOCK):
         for y in range(BLOCK):
-            row = (z * NODES + y) * NODES
-            before = 0
-            for x in range(NODES):
-                p = row + x
-                here = signs[p] | signs[p + NODES] << 2 | signs[p + NODES * NODES] << 4
-                here |= signs[p + NODES * NODES + NODES] << 6
-                config = before | here << 1
-                before = here
-                if x == 0 or config == 0 or config == 255:
+            row = z * NODES + y
+            a = masks[row]
+            b = masks[row + 1]
+            c = masks[row + NODES]
+            d = masks[row + NODES + 1]
+            some = a | b | c | d
+            every = a & b & c & d
+            mixed = (some | some >> 1) & ~(every & every >> 1) & ((1 << BLOCK) - 1)
+            x = -1
+            while mixed >> (x + 1) != 0:
+                x += 1
+                if mixed >> x & 1 == 0:
                     continue
+                config = a >> x & 3 | (b >> x & 3) << 2 | (c >> x & 3) << 4 | (d >> x & 3) << 6
                 variant = first[config]
                 if faces[config, 0, 0] != -1:
-                    for c in range(8):
-                        corners[c] = values[p - 1 + (c & 1) + (c >> 1 & 1) * NODES + (c >> 2) * NODES * NODES]
+                    p = row * NODES + x
+                    for k in range(8):
+                        corners[k] = values[p + (k & 1) + (k >> 1 & 1) * NODES + (k >> 2) * NODES * NODES]
                     variant = decide(corners, config, first, faces, tunnel)
-                cubes[n, 0] = (z * BLOCK + y) * BLOCK + x - 1
+                cubes[n, 0] = (z * BLOCK + y) * BLOCK + x
                 cubes[n, 1] = variant
                 n += 1
                 tally[TRIANGLES] += start[variant + 1] - start[variant]
@@ -98,7 +118,7 @@ def vertices_of(
     j,
     k,
     values,
-    signs,
+    masks,
     keys,
     at,
     place,
@@ -110,19 +130,26 @@ def vertices_of(
     done = at
     for z in range(BLOCK):
         for y in range(BLOCK):
-            for x in range(BLOCK):
-                p = (z * NODES + y) * NODES + x
-                here = signs[p]
-                if here == signs[p + 1] and here == signs[p + NODES] and here == signs[p + NODES * NODES]:
+            row = z * NODES + y
+            mask = masks[row]
+            crossed_x = (mask ^ mask >> 1) & ((1 << BLOCK) - 1)
+            crossed_y = (mask ^ masks[row + 1]) & ((1 << BLOCK) - 1)
+            crossed_z = (mask ^ masks[row + NODES]) & ((1 << BLOCK) - 1)
+            crossed = crossed_x | crossed_y | crossed_z
+            x = -1
+            while crossed >> (x + 1) != 0:
+                x += 1
+                if crossed >> x & 1 == 0:
                     continue
+                p = row * NODES + x
+                up = mask >> x & 1 == 1
                 step = 1
                 for axis in range(3):
                     q = p + step
                     step *= NODES
-                    if here == signs[q]:
+                    if (crossed_x if axis == 0 else crossed_y if axis == 1 else crossed_z) >> x & 1 == 0:
                         continue
                     keys[done + n] = 3 * ((z * BLOCK + y) * BLOCK + x) + axis
-                    up = here == 1
                     outer = values[q] if up else values[p]
                     search[A, n] = 0.0 if up else 1.0
                     search[B, n] = 1.0 if up else 0.0
@@ -149,20 +176,20 @@ def vertices_of(
 
 @lean(
     f"UniTuple(int64, 2)({TAPE}, int32[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, :, ::1],"
-    " float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1], int8[::1], float64[::1],"
+    " float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1], int64[::1], float64[::1],"
     f" float64[::1], int32[:, ::1], {CASES}, int32[::1], int32[::1],"
     " int16[::1], float64[:, ::1], float64[:, ::1], int32[:, ::1], int64[:, ::1])"
 )
 def extract(
     code, constants, parts, scratch, short, near, registers, slope,
-    points, starts, search, values, signs, corners,
+    points, starts, search, values, masks, corners,
     grid, blocks, first, faces, tunnel, start, own,
     keys, place, normal, cubes, tally,
 ):  # fmt: skip
     """Vertices, normals, edge keys and cubes of some blocks, one after the other; their (vertices, cubes).
 
     ``tally`` (blocks, 4) counts by block. ``short``, ``near``, ``registers``, ``slope``, ``points``, ``starts``,
-    ``search``, ``values``, ``signs`` and ``corners`` are room to work in.
+    ``search``, ``values``, ``masks`` and ``corners`` are room to work in.
     """
     vertices = 0
     found = 0
@@ -179,17 +206,13 @@ def extract(
         code2 = short[:rows]
         parts2 = near[:used]
         sample(code2, constants, parts2, registers, points, grid, i, j, k, values)
-        negative = 0
-        for node in range(NODES * NODES * NODES):
-            signs[node] = 1 if values[node] < 0.0 else 0
-            negative += signs[node]
-        if negative == 0 or negative == NODES * NODES * NODES:
+        if not insides(values, masks):
             continue
-        found = cubes_of(values, signs, corners, first, faces, tunnel, start, own, cubes, found, tally[b])
+        found = cubes_of(values, masks, corners, first, faces, tunnel, start, own, cubes, found, tally[b])
         before = vertices
         vertices = vertices_of(
             code2, constants, parts2, registers, slope, points, starts, search,
-            grid, i, j, k, values, signs, keys, vertices, place, normal,
+            grid, i, j, k, values, masks, keys, vertices, place, normal,
         )  # fmt: skip
         tally[b, VERTICES] = vertices - before
     return vertices, found

@@ -38,7 +38,7 @@ class Room:
         self.registers = np.empty((rows, LANES))
         self.slope = np.empty((rows, 3, LANES))
         self.points, self.starts, self.search = np.empty((3, LANES)), np.empty((3, LANES)), np.empty((9, LANES))
-        self.values, self.signs = np.empty(NODES**3), np.empty(NODES**3, dtype=np.int8)
+        self.values, self.masks = np.empty(NODES**3), np.empty(NODES**2, dtype=np.int64)
         self.corners = np.empty(8)
         self.keys = np.empty(BATCH * EDGES, dtype=np.int16)
         self.place, self.normal = np.empty((BATCH * EDGES, 3)), np.empty((BATCH * EDGES, 3))
@@ -117,7 +117,7 @@ class Workshop:
             tally = np.empty((len(mine), 4), dtype=np.int64)
             vertices, cubes = extract(
                 *self.program, r.scratch, r.short, r.near, r.registers, r.slope, r.points, r.starts, r.search,
-                r.values, r.signs, r.corners, self.grid.numbers, mine, table.first, table.faces, table.tunnel,
+                r.values, r.masks, r.corners, self.grid.numbers, mine, table.first, table.faces, table.tunnel,
                 table.start, table.centers, r.keys, r.place, r.normal, r.cubes, tally,
             )  # fmt: skip
             copies: list[Any] = [r.keys[:vertices], r.cubes[:cubes], r.place[:vertices], r.normal[:vertices]]
