@@ -4,13 +4,13 @@
 On the segment o + t d, t = tm + h tau with tau in [-1, 1], every register is enclosed as c0 + c1 tau +- e (columns 0-2
 of its row of scratch), as in the affine arithmetic of Comba & Stolfi (1993) with one symbol kept: e shrinks with h^2,
 so that cutting the segment where the enclosure has no zero converges quadratically. Rounding is covered by widening e
-by some units in the last place of all that was added.
+by some units in the last place of all that was added, and by some of its own.
 """
 
 import numpy as np
 
 from sceneql.field.density_enclosure_kernels import density_segment
-from sceneql.field.forms_kernels import LARGE, PAD, TINY, hull, larger_of, product
+from sceneql.field.forms_kernels import LARGE, PAD, TINY, WIDER, hull, larger_of, product, spread
 from sceneql.field.sine_kernels import sine_cosine
 from sceneql.field.skeleton_enclosure_kernels import skeleton_segment
 from sceneql.field.tape_kernels import TAPE
@@ -45,16 +45,20 @@ from sceneql.field.tape_ops import (
 )
 from sceneql.kernels import inlined, kernel
 
+FAR = 1.0e150
+NEAR = 1.0e-300
+"""Beyond these numbers, and squares, slopes would be lost by underflow: next to nothing is claimed there."""
+
 
 @inlined
 def reciprocal(a0, a1, ea):
     """Enclosure of 1/a where a keeps one sign: midway between the chord and the tangent parallel to it."""
-    reach = abs(a1) + ea
+    reach = spread(a0, a1, ea)
     near = abs(a0) - reach
     far = abs(a0) + reach
-    if not near > 0.0:
+    if not (near > 0.0 and far < FAR):
         return 0.0, 0.0, np.inf
-    slope = -1.0 / (near * far)
+    slope = -1.0 / near / far
     p = np.sqrt(1.0 / near)
     q = np.sqrt(1.0 / far)
     c0 = 0.5 * (p + q) * (p + q)
@@ -67,7 +71,7 @@ def reciprocal(a0, a1, ea):
 @inlined
 def square_root(a0, a1, ea):
     """Enclosure of sqrt(a) where a >= 0: midway between the chord and the tangent parallel to it."""
-    reach = abs(a1) + ea
+    reach = spread(a0, a1, ea)
     high = a0 + reach
     if not high > 0.0:
         return 0.0, 0.0, 0.0
@@ -75,7 +79,7 @@ def square_root(a0, a1, ea):
     p = np.sqrt(low)
     q = np.sqrt(high)
     slope = 1.0 / (p + q)
-    half_gap = 0.125 * (q - p) * (q - p) * slope * 2.0
+    half_gap = 0.125 * (q - p) * (q - p) * slope
     if a0 - reach < 0.0:
         return hull(0.0, q)
     return p * q * slope + half_gap + slope * a0, slope * a1, slope * ea + half_gap + PAD * q * 2.0
@@ -105,7 +109,7 @@ def sine(s, c, a1, ea):
 @inlined
 def exponential(a0, a1, ea):
     """Enclosure of exp(a)."""
-    reach = abs(a1) + ea
+    reach = spread(a0, a1, ea)
     low = np.exp(a0 - reach)
     high = np.exp(a0 + reach)
     if reach > 1.0:
@@ -117,20 +121,23 @@ def exponential(a0, a1, ea):
 @inlined
 def logarithm(a0, a1, ea):
     """Enclosure of log(a) where a > 0; nothing is claimed where a reaches 0."""
-    reach = abs(a1) + ea
+    reach = spread(a0, a1, ea)
     low = a0 - reach
     if not low > 0.0:
         return 0.0, 0.0, np.inf
     if reach > low:
         return hull(np.log(low), np.log(a0 + reach))
     f = np.log(a0)
-    return curve(f, 1.0 / a0, -1.0 / (low * low), 0.0, a1, ea)
+    slope = 1.0 / a0
+    # The second derivative is -1/a^2; a^2 alone may overflow.
+    gap = 0.25 * (reach / low) * (reach / low)
+    return f - gap, slope * a1, gap + slope * ea + PAD * (abs(f) + abs(slope * a1))
 
 
 @inlined
 def power(a0, a1, ea, b0, b1, eb):
     """Enclosure of a^b: exp(b log a) where a > 0; elsewhere a hull for a constant exponent > 0 that is no integer."""
-    reach = abs(a1) + ea
+    reach = spread(a0, a1, ea)
     if a0 > reach:
         l0, l1, el = logarithm(a0, a1, ea)
         p0, p1, ep = product(b0, b1, eb, l0, l1, el)
@@ -146,13 +153,15 @@ def angle(y0, y1, ey, x0, x1, ex):
 
     Where the rectangle of arguments meets the cut x <= 0, y = 0 it is [-pi, pi].
     """
-    reach_x = abs(x1) + ex
-    reach_y = abs(y1) + ey
+    reach_x = spread(x0, x1, ex)
+    reach_y = spread(y0, y1, ey)
     near_x = max(abs(x0) - reach_x, 0.0)
     near_y = max(abs(y0) - reach_y, 0.0)
     if near_y == 0.0 and x0 - reach_x <= 0.0:
         return 0.0, 0.0, np.pi + PAD * 4.0
     r2 = x0 * x0 + y0 * y0
+    if not NEAR < r2 < LARGE:
+        return 0.0, 0.0, np.pi + PAD * 4.0
     to_y = x0 / r2
     to_x = -y0 / r2
     remainder = 0.5 * (reach_x * reach_x + reach_y * reach_y) / (near_x * near_x + near_y * near_y)
@@ -187,7 +196,7 @@ def unary(op, a0, a1, ea):
         return exponential(a0, a1, ea)
     if op == LOG:
         return logarithm(a0, a1, ea)
-    reach = abs(a1) + ea
+    reach = spread(a0, a1, ea)
     low = a0 - reach
     high = a0 + reach
     if op == ABS:
@@ -196,7 +205,7 @@ def unary(op, a0, a1, ea):
         if high <= 0.0:
             return -a0, -a1, ea
         slope = a0 / reach
-        half_gap = -0.5 * low * high / reach
+        half_gap = -0.5 * low * (high / reach)
         return slope * a0 + half_gap, slope * a1, abs(slope) * ea + half_gap + PAD * reach
     if op == FLOOR:
         return hull(np.floor(low), np.floor(high))
@@ -303,12 +312,15 @@ def segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, sur
                 return 0.0, 0.0, np.inf, NOWHERE
             status = max(status, found)
             c0, c1, e = binary(op, a0, a1, ea, b0, b1, eb)
+            e += TINY
         else:
             found = domain(op, a0, abs(a1) + ea, 0.0, 0.0, False)
             if found == NOWHERE:
                 return 0.0, 0.0, np.inf, NOWHERE
             status = max(status, found)
             c0, c1, e = unary(op, a0, a1, ea)
+            e += TINY
+        e *= WIDER
         if not e + abs(c0) + abs(c1) < LARGE:
             return 0.0, 0.0, np.inf, PARTIAL
         scratch[k, 0] = c0

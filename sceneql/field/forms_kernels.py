@@ -7,6 +7,14 @@ PAD = 1.0e-15
 LARGE = 1.0e300
 TINY = 1.0e-300
 """More than underflow takes away."""
+WIDER = 1.0 + 4.0e-15
+"""More than the rounding of some sums and products of what is not negative."""
+
+
+@inlined
+def spread(a0, a1, ea):
+    """How far a form goes from a0, and so much more that a0 -+ it, rounded, are still beyond."""
+    return (abs(a1) + ea) * WIDER + PAD * abs(a0)
 
 
 @inlined
@@ -28,10 +36,10 @@ def hull(low, high):
 @inlined
 def larger_of(a0, a1, ea, b0, b1, eb):
     """Enclosure of max(a, b): where neither wins, b + the chord of max(a - b, 0), or the constant hull if better."""
-    reach_a = abs(a1) + ea
-    reach_b = abs(b1) + eb
+    reach_a = spread(a0, a1, ea)
+    reach_b = spread(b0, b1, eb)
     d0 = a0 - b0
-    reach = abs(a1 - b1) + ea + eb
+    reach = spread(abs(a0) + abs(b0), a1 - b1, ea + eb)
     if d0 >= reach:
         return a0, a1, ea
     if -d0 >= reach:
