@@ -15,8 +15,8 @@ from sceneql.field.enclosure_kernels import segment
 from sceneql.field.interval_kernels import box
 from sceneql.field.simplify_kernels import simplify
 from sceneql.field.skeleton import KERNELS, Skeleton
-from sceneql.field.slope_kernels import steepness
 from sceneql.field.solid import cast, field_gradients, field_values, scratch
+from sceneql.field.steepness_kernels import steepness
 from sceneql.field.tape_ops import HIT, WHOLE
 from sceneql.mesh.measures import euler_characteristic
 from sceneql.mesh.polygonise import polygonise
