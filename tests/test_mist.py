@@ -122,6 +122,23 @@ def test_mist_covers_what_stands_in_it_as_far_as_it_stands():
     np.testing.assert_allclose(seen(wall, block(0.35)), 0.8 * np.exp(-0.35), rtol=1e-5)
 
 
+def test_edges_in_mist_are_as_smooth_as_without():
+    """A slanted edge of a white thing in black mist: what a pixel has is the same share of both as without mist."""
+    shape = {"squares": (0.0, 0.0, 0.0), "linear": (0.0, 0.0, 1.0), "constant": 0.0}
+    turn = np.array([[np.cos(0.3), np.sin(0.3), 0, 0.031], [-np.sin(0.3), np.cos(0.3), 0, 0], [0, 0, 1, 0]])
+    thing = Quadric("w", Surface(color=(0, 0, 0), specular=0.0, emission=(0.2, 0.2, 0.2)), turn,
+                    low=(-3.0, -3.0, -3.0), high=(0.0, 3.0, 3.0), **shape)  # fmt: skip
+    view = View((0.0, 0.0, 6.0), np.eye(3), (SIDE, SIDE), 0.9, True)
+    scenes = (thing,), (thing, block(1.0)), (thing, block(0.4), block(0.6))
+    plain, dimmed, twice = (draw(Frame(0, 0.0, one, (WHITE,), view), samples=64).linear[..., 0] for one in scenes)
+    share = (plain - 0.2) / 0.8  # of the sky behind
+    edge = (share > 0.02) & (share < 0.98)
+    assert edge.sum() > 15
+    wanted = share * np.exp(-2.0) + (1 - share) * 0.2 * np.exp(-1.0)
+    np.testing.assert_allclose(dimmed, wanted, atol=1e-5)
+    np.testing.assert_allclose(twice, wanted, atol=1e-5)
+
+
 def test_mists_that_only_absorb_take_turns_in_any_order():
     np.testing.assert_allclose(seen(block(0.2), block(0.5)), seen(block(0.7)), rtol=1e-6)
 

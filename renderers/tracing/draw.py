@@ -90,7 +90,7 @@ def draw(
         smooth_rows(scene, scratch(rows), start, stop, points, b.records, b.radiance, b.visibility, own, found, linear)
 
     over_rows(height, smooth)
-    over(frame, buffers.records[0], linear)
+    over(frame, buffers.records[0], buffers.radiance, linear)
     _kept[:] = [buffers]
     return Picture(linear.reshape(height, width, 3), sum(undecided))
 

@@ -16,16 +16,25 @@ if TYPE_CHECKING:
 
     from sceneql.frame import Floats, Mist, View
 
+STEP = 0.01
+"""Difference of what is kept from one pixel to the next at which two things meet there."""
+FAINT = 1e-3
+"""Difference of two colors below which it does not matter how much of a pixel each has."""
 
-def dim(shape: Mist, view: View, records: NDArray[float32], linear: NDArray[float32]) -> None:
-    """Draw a mist over ``linear`` (pixels, 3); ``records``: what the camera sees in each pixel.
 
-    What is behind is dimmed by exp(-depth) (Beer, Lambert), and as much of the mist's own color is added.
+def dim(
+    shape: Mist, view: View, records: NDArray[float32], radiance: NDArray[float32], linear: NDArray[float32]
+) -> None:
+    """Draw a mist over ``linear`` (pixels, 3); ``records``, ``radiance``: what the middle of each pixel shows.
+
+    Both are drawn on. What is behind is dimmed by exp(-depth) (Beer, Lambert), and as much of the mist's own color is
+    added.
     """
     width, height = view.size
     turn, shift = np.asarray(shape.to_cells)[:, :3], np.asarray(shape.to_cells)[:, 3]
     field = np.ascontiguousarray(shape.absorption, dtype=np.float64)
     low, high = np.array(shape.low, dtype=np.float64), np.array(shape.high, dtype=np.float64)
+    depth = np.empty(len(records))
 
     def work(start: int, stop: int) -> None:
         rows = slice(start * width, stop * width)
@@ -33,12 +42,43 @@ def dim(shape: Mist, view: View, records: NDArray[float32], linear: NDArray[floa
         seen = records[rows].astype(np.float64)
         far = ((seen[:, PLACE : PLACE + 3] - origins) * ways).sum(axis=1)
         ends = np.where(seen[:, OWNER] == 0.0, np.inf, far)
-        depth = np.empty(len(ways))
-        depths(origins @ turn.T + shift, ways @ turn.T, ends, field, low, high, depth)
-        kept = np.exp(-depth)[:, None]
-        linear[rows] = kept * linear[rows] + (1.0 - kept) * np.array(shape.surface.color)
+        depths(origins @ turn.T + shift, ways @ turn.T, ends, field, low, high, depth[rows])
 
     over_rows(height, work)
+    color = np.array(shape.surface.color)
+    kept = np.exp(-depth)
+    edges, other = _steps(kept.reshape(height, width))
+    own, beside = radiance[edges].astype(np.float64), radiance[other].astype(np.float64)
+    away = own - beside
+    square = (away * away).sum(axis=1)
+    apart = square > FAINT**2
+    share = np.clip(((linear[edges] - beside) * away).sum(axis=1) / np.where(apart, square, 1.0), 0.0, 1.0)[:, None]
+    mixed = kept[edges, None] + (1.0 - share) * (kept[other] - kept[edges])[:, None]
+    parts = share * kept[edges, None] * own + (1.0 - share) * kept[other, None] * beside
+    smooth = (parts + (1.0 - mixed) * color)[apart]
+    for picture in (linear, radiance):  # the next mist lies over this one
+        picture[:] = kept[:, None] * picture + (1.0 - kept[:, None]) * color
+    linear[edges[apart]] = smooth
+
+
+def _steps(kept: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Pixels (k,) beside which much more or less is kept (h, w), and of their four neighbors the most different one.
+
+    There two things meet, and the picture is a mean of both: each has its own depth.
+    """
+    number = np.arange(kept.size).reshape(kept.shape)
+    best, other = np.full(kept.shape, STEP), number.copy()
+    for axis in range(2):
+        for way in (1, -1):
+            beside = np.roll(number, way, axis)
+            at_rim = [slice(None)] * 2
+            at_rim[axis] = slice(0, 1) if way == 1 else slice(-1, None)
+            beside[tuple(at_rim)] = number[tuple(at_rim)]
+            step = abs(kept.ravel()[beside] - kept)
+            other = np.where(step > best, beside, other)
+            best = np.maximum(best, step)
+    edges = np.flatnonzero(best.ravel() > STEP)
+    return edges, other.ravel()[edges]
 
 
 def rays(view: View, start: int, stop: int) -> tuple[Floats, Floats]:

@@ -19,16 +19,17 @@ SMALLEST = 1.25
 """Radius [pixels] below which a disc is drawn larger and as much fainter, so that none slips between pixels."""
 
 
-def over(frame: Frame, records: NDArray[float32], linear: NDArray[float32]) -> None:
+def over(frame: Frame, records: NDArray[float32], radiance: NDArray[float32], linear: NDArray[float32]) -> None:
     """Draw the frame's mists, then its soft discs over ``linear`` (pixels, 3), shapes in their order.
 
-    ``records``: what the camera sees in each pixel. Discs of one shape that cover are drawn from the farthest on.
+    ``records``, ``radiance``: what the middle of each pixel shows. Discs of one shape that cover are drawn from the
+    farthest on.
     """
     for shape in frame.shapes:
         if isinstance(shape, Mist):
             from renderers.tracing.mist import dim
 
-            dim(shape, frame.view, records, linear)
+            dim(shape, frame.view, records, radiance, linear)
     for shape in frame.shapes:
         if isinstance(shape, Points) and shape.soft is not None and len(shape.centers):
             _draw(shape, frame.view, records, linear)
