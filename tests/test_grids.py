@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from sceneql.failure import RunFailure
 from sceneql.pipeline import load
-from sceneql.simulation.grids.cut import below, cut, frame
+from sceneql.simulation.grids.cut import CROWDED, below, cut, frame
 from sceneql.simulation.grids.polygon import Polygon, crossing
 from sceneql.simulation.run import IslandRun
 from sceneql.simulation.stability import stability
@@ -81,10 +81,16 @@ def test_cut_cells_are_of_second_order_and_stairs_of_first(tmp_path):
     stairs = [disk_errors(tmp_path, n, "staircase") for n in counts]
     assert math.log2(cut_cells[0][1] / cut_cells[2][1]) / 2 > 1.85
     for n, (largest, _, _) in zip(counts, cut_cells, strict=True):
-        assert largest < 2.5 * (2 / n) ** 2
+        assert largest < 0.25 * (2 / n) ** 2
     assert 0.7 < math.log2(stairs[0][1] / stairs[2][1]) / 2 < 1.4
     assert stairs[2][0] > 20 * cut_cells[2][0]
     assert max(abs(drift) for *_, drift in cut_cells + stairs) < 1e-14
+
+
+def test_no_sliver_at_the_boundary_spoils_its_neighbor(tmp_path):
+    """On 128 cells the circle leaves 6e-4 of some: where they are left out, what flows through their faces is lost."""
+    largest, _, _ = disk_errors(tmp_path, 128, "cut_cell", 0.05)
+    assert largest < 0.3 * (2 / 128) ** 2
 
 
 @pytest.mark.parametrize("edges", ["cut_cell", "staircase"])
@@ -138,7 +144,7 @@ def test_the_explicit_limit_holds_on_a_lake(tmp_path, edges):
     run = Basin(tmp_path, SHORE, "{ftcs: {step: 1 ms}}", 4, **rough).run
     limit = stability(run.march, run.solver).step
     whole = 0.01 / 4
-    assert 0.4 * whole < limit < 1.05 * whole
+    assert (0.8 * CROWDED if edges == "cut_cell" else 0.9) * whole < limit < 1.05 * whole
     assert Basin(tmp_path, SHORE, f"{{ftcs: {{step: {0.9 * limit} s}}}}", 4, **rough).at(4).read("max") < 1
     with pytest.raises(RunFailure) as failure:
         Basin(tmp_path, SHORE, f"{{ftcs: {{step: {1.1 * limit} s}}}}", 4, **rough).at(4)

@@ -122,9 +122,8 @@ class _Builder:
         ties_at = tuple(self.ties_at) if bend else (0, 0, 0)
         volumes = self.ground.divisors_at
         ints = (self.at, nx, ny, nz, volumes, sink, fed, *faces, self.at + n)
-        slopes = self._slopes(periodic)
         more = (*ints, bend, *(*ties_at, 0)[:3], reaction)
-        assembly.term("close", f"{KERNELS}:spread", ints, Slopes(SLOPES, *slopes, more))
+        assembly.term("close", f"{KERNELS}:spread", ints, lambda: Slopes(SLOPES, *self._slopes(periodic), more))
         if self.drift is not None:
             self._drifts(self.drift, flow_of(self.drift, cells, ties, given, periodic), given, periodic)
         return Grid(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -61,11 +62,23 @@ class Cells:
         """(k, 3) centers of some cells [m]; z is 0 on a flat grid."""
         import numpy as np
 
-        nx, ny, nz = self.shape
-        cell = np.arange(nx * ny * nz)[chosen]
-        index = np.stack([cell % nx, cell // nx % ny, cell // (nx * ny)], axis=1)
+        nx, ny, _ = self.shape
+        if isinstance(chosen, slice):
+            return centers_of(self.shape, self.low, self.spacing)[chosen]
+        index = np.stack([chosen % nx, chosen // nx % ny, chosen // (nx * ny)], axis=1)
         centers: Floats = self.low + (index + 0.5) * self.spacing
         return centers
+
+
+def centers_of(shape: tuple[int, int, int], low: Sequence[float] | Floats, spacing: Sequence[float] | Floats) -> Floats:
+    """(cells, 3) centers of the cells of a grid, x fastest [m]."""
+    import numpy as np
+
+    found = np.empty((*shape[::-1], 3))
+    for axis, count in enumerate(shape):
+        row = low[axis] + (np.arange(count) + 0.5) * spacing[axis]
+        found[..., axis] = row.reshape([-1 if k == 2 - axis else 1 for k in range(3)])
+    return found.reshape(-1, 3)
 
 
 def counts(sides: tuple[float, ...], cell: float) -> tuple[int, ...]:

@@ -29,10 +29,12 @@ if TYPE_CHECKING:
 
 LEAST_SLOPE = 1e-4
 """Of a plane along an axis, in parts of all: below, differences of its cubes would be rounding."""
-LEAST_VOLUME = 1e-3
-"""Of a cell, in parts of a whole one: less is left out."""
-CROWDED = 0.5
-"""Least volume of a cell, in parts of what its open faces would need for the explicit limit of a whole one."""
+LEAST_VOLUME = 1e-6
+"""Of a cell, in parts of a whole one: less is left out. The open face of its neighbor is closed then, which costs the
+second order where it is no sliver too."""
+CROWDED = 0.3
+"""Least volume of a cell, in parts of what its open faces would need for the explicit limit of a whole one: more would
+rule the largest error."""
 NEAREST = 0.2
 """Of a cell's size: its center is taken to be no nearer to the boundary."""
 NEAREST_HELD = 0.05

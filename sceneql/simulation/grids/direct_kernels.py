@@ -6,7 +6,17 @@ The plan: [values of the matrix, factors, scratch], then for every value its cel
 values, factors, scratch.
 """
 
-from sceneql.kernels import lean_inlined
+from sceneql.kernels import lean, lean_inlined
+from sceneql.simulation.grids.linear_kernels import (
+    FACTORED,
+    PLAN,
+    SOLVE,
+    divided,
+    forget,
+    matrix,
+    noted,
+    to_prepare,
+)
 from sceneql.simulation.linear import fronts_kernels as fronts
 
 VALUES, FACTORS, SCRATCH, ENTRIES = range(4)
@@ -53,3 +63,18 @@ def solve_direct(plan, r, d, own):
         d[c] = r[c]
     factors = own[count:]
     fronts.solve_system(plan[ENTRIES + 2 * count :], own, factors, d, factors[plan[FACTORS] :], True)
+
+
+@lean(SOLVE)
+def solve(plan, a, target, floats, r, d, store):
+    """The linear solver (linear_kernels)."""
+    nx, ny, nz, volume, sink, gx, gy, gz = matrix(plan, floats)
+    _, _, own, record = divided(plan, store)
+    forget(record)
+    entries = plan[PLAN:]
+    if to_prepare(plan, a, record):
+        if not factor_direct(entries, nx, ny, nz, 1.0 / a, volume, sink, gx, gy, gz, own):
+            return False
+        record[FACTORED] = a
+    solve_direct(entries, r, d, own)
+    return noted(record, 1)

@@ -28,7 +28,15 @@ MOST = {
     "direct": 1,
     "fast_transform": 1,
 }
-"""Iterations for one system."""
+"""Iterations for one system; 1: it is solved to rounding."""
+KERNELS = {
+    "multigrid": "multigrid_kernels:solve",
+    "conjugate_gradient": "relaxation_kernels:solve_conjugate_gradient",
+    "gauss_seidel": "relaxation_kernels:solve_gauss_seidel",
+    "sor": "relaxation_kernels:solve_sor",
+    "direct": "direct_kernels:solve",
+    "fast_transform": "transform_kernels:solve",
+}
 COARSEST = 2
 LONGEST_ROW = 512
 """Cells of a row up to which `auto` transforms: a cell costs twice as many multiplications."""
@@ -36,7 +44,6 @@ LONGEST_ROW = 512
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Plan:
-    levels: int
     numbers: Any
     room: int
     """Floats that the linear solver keeps."""
@@ -58,13 +65,16 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     """What stage_kernels.step works with. Raises LimitRefused where a named linear solver cannot take the grid."""
     import numpy as np
 
-    from sceneql.simulation.grids import stage_kernels as kernels
+    from sceneql.simulation.driver import function
+    from sceneql.simulation.grids import linear_kernels as linear
+    from sceneql.simulation.grids.stage_kernels import SHARE
+    from sceneql.simulation.numbered_kernels import number_of
 
     grid = system.grid
     assert grid is not None
     stages, explicit_first, _, embedded, error_order = stepper.numbers
     _, _, relative, absolute, _, _, _, *tableau = stepper.settings
-    share = kernels.SHARE if stepper.adaptive else 1.0
+    share = SHARE if stepper.adaptive else 1.0
     largest = float(np.abs(system.y).max(initial=0.0)) or 1.0
     absolute *= largest if stepper.by_scale else 1.0
     wanted = stepper.linear == "fast_transform" or (stepper.linear == "auto" and grid.shape[0] <= LONGEST_ROW)
@@ -72,11 +82,12 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     name, why = _choice(grid, stepper.linear, separated is not None)
     cells = grid.shape[0] * grid.shape[1] * grid.shape[2]
     plan = _PLANS[name](grid) if separated is None or name != "fast_transform" else _transform(grid, separated)
-    kind = getattr(kernels, name.upper())
+    solver = number_of(function(f"sceneql.simulation.grids.{KERNELS[name]}"), linear.SOLVE)
+    exact = int(MOST[name] == 1)
     offsets = (grid.volumes_at, grid.sink_at, *grid.faces_at)
-    head = [kind, *grid.shape, grid.at, *offsets, int(grid.varying), MOST[name], plan.levels, kernels.PLAN, grid.fed_at]
-    assert len(head) == kernels.PLAN
-    store = 2 * cells + plan.room + kernels.RECORD
+    head = [solver, exact, *grid.shape, grid.at, *offsets, int(grid.varying), MOST[name], grid.fed_at]
+    assert len(head) == linear.PLAN
+    store = 2 * cells + plan.room + linear.RECORD
     return Prepared(
         settings=np.array([share * relative, share * absolute if stepper.adaptive else 0.0, *tableau]),
         numbers=np.concatenate([[stages, explicit_first, embedded, error_order], head, plan.numbers]).astype(np.int64),
@@ -87,7 +98,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
 
 def report(march: March) -> LinearReport:
     """What the linear solver of an implicit method on a grid has done so far."""
-    from sceneql.simulation.grids.stage_kernels import HISTORY, ITERATIONS, RECORD, SOLVES
+    from sceneql.simulation.grids.linear_kernels import HISTORY, ITERATIONS, RECORD, SOLVES
 
     record = march.scratch[-RECORD:]
     residuals = tuple(float(size) for size in record[HISTORY:] if size >= 0.0)
@@ -130,12 +141,12 @@ def _multigrid(grid: Grid) -> _Plan:
     starts = list(accumulate(sizes, initial=0))
     table = [number for shape, start in zip(shapes, starts, strict=False) for number in (*shape, start)]
     text = f"conjugate gradients with a V-cycle over {len(shapes)} grids"
-    return _Plan(len(shapes), table, starts[-1] // 2 + 1, text)
+    return _Plan([len(shapes), *table], (starts[-1] + grid.shape[0] + 1) // 2 + 1, text)
 
 
 def _iterations(grid: Grid) -> _Plan:
     nx, ny, nz = grid.shape
-    return _Plan(0, [], nx * ny * nz, "an iteration over all cells")
+    return _Plan([], nx * ny * nz, "an iteration over all cells")
 
 
 def _direct(grid: Grid) -> _Plan:
@@ -147,7 +158,7 @@ def _direct(grid: Grid) -> _Plan:
     plan = fronts.plan(pattern)
     numbers = np.concatenate([[len(entries), plan.factors, plan.work], entries.ravel(), plan.numbers])
     text = f"a sparse factorization with {plan.factors:.3g} numbers, made once for each length of step"
-    return _Plan(0, numbers, len(entries) + plan.factors + plan.work, text)
+    return _Plan(numbers, len(entries) + plan.factors + plan.work, text)
 
 
 def separate(grid: Grid, floats: Floats) -> tuple[Floats, ...] | None:
@@ -179,7 +190,7 @@ def _transform(grid: Grid, separated: tuple[Floats, ...]) -> _Plan:
 
     table = np.concatenate([np.ravel(part) for part in separated]).view(np.int64)
     cells = grid.shape[0] * grid.shape[1]
-    return _Plan(0, table, 3 * cells, "modes of the rows along x and tridiagonal systems along y")
+    return _Plan(table, 3 * cells, "modes of the rows along x and tridiagonal systems along y")
 
 
 def _pattern(grid: Grid) -> tuple[Any, NDArray[int64]]:

@@ -28,7 +28,7 @@ from sceneql.quantities import dimension as dim
 from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Link, Symbol, walk
-from sceneql.simulation.grids.cells import MOST_CELLS, SIDES, counts
+from sceneql.simulation.grids.cells import MOST_CELLS, SIDES, centers_of, counts
 from sceneql.simulation.grids.drift import Drift
 
 if TYPE_CHECKING:
@@ -60,13 +60,7 @@ class FieldLayout:
 
     def centers(self) -> Floats:
         """(cells, 3) [m]."""
-        import numpy as np
-
-        nx, ny, _ = self.shape
-        cell = np.arange(self.count)
-        index = np.stack([cell % nx, cell // nx % ny, cell // (nx * ny)], axis=1)
-        centers: Floats = np.array(self.low) + (index + 0.5) * np.array(self.spacing)
-        return centers
+        return centers_of(self.shape, self.low, self.spacing)
 
 
 class Exchange(Record):

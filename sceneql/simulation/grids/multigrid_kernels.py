@@ -7,23 +7,32 @@ product of constants, is twice what a grid of twice the spacing has (Braess 1995
 The conjugate gradients are the flexible ones (Notay 2000, SIAM J. Sci. Comput. 22, 1444-1460), since rounding makes the
 cycle a slightly different operator every time.
 
-A level is a row of LEVEL integers in the plan: nx, ny, nz, where its float32 arrays start; they lie one after another:
-gx, gy, gz (where nz > 1), volume, sink, inverse diagonal, x, b.
+The plan: the number of levels, then of each a row of LEVEL integers: nx, ny, nz, where its float32 arrays start; they
+lie one after another: gx, gy, gz (where nz > 1), volume, sink, inverse diagonal, x, b. After the last level come nx
+numbers of scratch.
 """
 
 import math
 
 import numpy as np
 
-from sceneql.kernels import lean_inlined
-from sceneql.simulation.grids.stencil_kernels import (
-    add_coarse,
-    dot,
-    first_sweep,
-    multiply,
-    restrict_residual,
-    sweep,
+from sceneql.kernels import lean, lean_inlined
+from sceneql.simulation.grids.linear_kernels import (
+    FACTORED,
+    HISTORY,
+    MOST,
+    PLAN,
+    SOLVE,
+    TAKEN_IN,
+    VARYING,
+    divided,
+    forget,
+    matrix,
+    noted,
+    to_prepare,
 )
+from sceneql.simulation.grids.smoothing_kernels import add_coarse, first_sweep, restrict_residual, sweep
+from sceneql.simulation.grids.stencil_kernels import dot, multiply
 
 LEVEL = 4
 SWEEPS = 2
@@ -110,30 +119,27 @@ def shift(table, levels, arrays, scale):
 
 @lean_inlined
 def cycle(table, levels, arrays):
-    """One V-cycle on level 0: its x from its b, from x = 0."""
-    for level in range(levels):
+    """One V-cycle on level 0: its x from its b, from x = 0; the last numbers of ``arrays`` are scratch."""
+    line = arrays[arrays.size - table[0] :]
+    for stage in range(2 * levels):
+        # Down and up again in one loop: what stands here once is compiled once.
+        down = stage < levels
+        level = stage if down else 2 * levels - 1 - stage
         nx, ny, nz, gx, gy, gz, _, _, inverse, x, b = parts(table, level, arrays)
-        first_sweep(nx, ny, nz, inverse, x, b, 0)
-        sweep(nx, ny, nz, inverse, gx, gy, gz, x, b, 1)
-        for number in range(2, 2 * SWEEPS):
-            sweep(nx, ny, nz, inverse, gx, gy, gz, x, b, number & 1)
-        if level + 1 < levels:
-            mx, my, mz, _, _, _, _, _, _, _, coarse = parts(table, level + 1, arrays)
-            restrict_residual(nx, ny, nz, inverse, gx, gy, gz, x, b, 0, mx, my, mz, coarse)
-    for level in range(levels - 1, -1, -1):
-        nx, ny, nz, gx, gy, gz, _, _, inverse, x, b = parts(table, level, arrays)
-        sweeps = SWEEPS
-        if level + 1 < levels:
-            mx, my, mz, _, _, _, _, _, _, coarse, _ = parts(table, level + 1, arrays)
-            add_coarse(nx, ny, nz, x, mx, my, mz, coarse)
-        else:
-            sweeps = BOTTOM
-        for number in range(2 * sweeps - 1, -1, -1):
-            sweep(nx, ny, nz, inverse, gx, gy, gz, x, b, number & 1)
+        mx, my, mz, _, _, _, _, _, _, coarse_x, coarse_b = parts(table, min(level + 1, levels - 1), arrays)
+        count = 2 * (SWEEPS if level + 1 < levels or down else BOTTOM)
+        if down:
+            first_sweep(nx, ny, nz, inverse, x, b, 0)
+        elif level + 1 < levels:
+            add_coarse(nx, ny, nz, x, mx, my, mz, coarse_x)
+        for number in range(1 if down else 0, count):
+            sweep(nx, ny, nz, inverse, gx, gy, gz, x, b, number & 1 if down else (number + 1) & 1, line)
+        if down and level + 1 < levels:
+            restrict_residual(nx, ny, nz, inverse, gx, gy, gz, x, b, 0, mx, my, mz, coarse_b, line)
 
 
 @lean_inlined
-def solve(nx, ny, nz, scale, volume, sink, gx, gy, gz, table, levels, arrays, r, d, p, q, target, most, history):
+def iterate(nx, ny, nz, scale, volume, sink, gx, gy, gz, table, levels, arrays, r, d, p, q, target, most, history):
     """d from d = 0 with the residual left in r; the iterations taken, negative where ``target`` was not reached.
 
     ``target``: largest 2-norm of the residual. ``history``: its norm after every iteration, as many as there is room.
@@ -168,3 +174,29 @@ def solve(nx, ny, nz, scale, volume, sink, gx, gy, gz, table, levels, arrays, r,
         if not size < math.inf:
             return -iteration - 1
     return -most if size > target else most
+
+
+@lean(SOLVE)
+def solve(plan, a, target, floats, r, d, store):
+    """The linear solver (linear_kernels)."""
+    nx, ny, nz, volume, sink, gx, gy, gz = matrix(plan, floats)
+    p, q, own, record = divided(plan, store)
+    levels, table, arrays = plan[PLAN], plan[PLAN + 1 :], own.view(np.float32)
+    if to_prepare(plan, a, record):
+        if record[TAKEN_IN] == 0.0 or plan[VARYING] == 1:
+            unit = 0.0
+            for c in range(nx * ny * nz):
+                unit = max(unit, gx[c], gy[c])
+            # The float32 arrays are in units of the largest conductance.
+            take_in(table, levels, arrays, unit if unit > 0.0 else 1.0, volume, sink, gx, gy, gz)
+            record[TAKEN_IN] = 1.0
+        shift(table, levels, arrays, 1.0 / a)
+        record[FACTORED] = a
+    forget(record)
+    return noted(
+        record,
+        iterate(
+            nx, ny, nz, 1.0 / a, volume, sink, gx, gy, gz, table, levels, arrays, r, d, p, q, target, plan[MOST],
+            record[HISTORY:],
+        ),
+    )  # fmt: skip

@@ -8,7 +8,8 @@ conjugate gradients), as many as there is room.
 
 import math
 
-from sceneql.kernels import lean_inlined
+from sceneql.kernels import lean, lean_inlined
+from sceneql.simulation.grids.linear_kernels import HISTORY, MOST, SOLVE, divided, forget, matrix, noted
 from sceneql.simulation.grids.stencil_kernels import multiply
 
 CHECKED = 4
@@ -116,3 +117,45 @@ def conjugate_gradient(nx, ny, nz, scale, volume, sink, gx, gy, gz, r, d, weight
         for c in range(n):
             p[c] = r[c] / weights[c] + rz / before * p[c]
     return -most
+
+
+@lean(SOLVE)
+def solve_gauss_seidel(plan, a, target, floats, r, d, store):
+    """A linear solver (linear_kernels)."""
+    nx, ny, nz, volume, sink, gx, gy, gz = matrix(plan, floats)
+    p, q, _, record = divided(plan, store)
+    forget(record)
+    return noted(
+        record,
+        relaxation(
+            nx, ny, nz, 1.0 / a, volume, sink, gx, gy, gz, r, d, p, q, False, target, plan[MOST], record[HISTORY:]
+        ),
+    )
+
+
+@lean(SOLVE)
+def solve_sor(plan, a, target, floats, r, d, store):
+    """A linear solver (linear_kernels)."""
+    nx, ny, nz, volume, sink, gx, gy, gz = matrix(plan, floats)
+    p, q, _, record = divided(plan, store)
+    forget(record)
+    return noted(
+        record,
+        relaxation(
+            nx, ny, nz, 1.0 / a, volume, sink, gx, gy, gz, r, d, p, q, True, target, plan[MOST], record[HISTORY:]
+        ),
+    )
+
+
+@lean(SOLVE)
+def solve_conjugate_gradient(plan, a, target, floats, r, d, store):
+    """A linear solver (linear_kernels)."""
+    nx, ny, nz, volume, sink, gx, gy, gz = matrix(plan, floats)
+    p, q, own, record = divided(plan, store)
+    forget(record)
+    return noted(
+        record,
+        conjugate_gradient(
+            nx, ny, nz, 1.0 / a, volume, sink, gx, gy, gz, r, d, own, p, q, target, plan[MOST], record[HISTORY:]
+        ),
+    )

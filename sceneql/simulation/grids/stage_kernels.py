@@ -13,27 +13,29 @@ store of the plan: p, q (cells), what the linear solver keeps, RECORD entries of
 
 import math
 
-import numpy as np
-from numba import types
-
 from sceneql.kernels import lean, lean_inlined
-from sceneql.simulation.grids import multigrid_kernels as multigrid
-from sceneql.simulation.grids import relaxation_kernels as relaxation
-from sceneql.simulation.grids.direct_kernels import factor_direct, solve_direct
+from sceneql.simulation.grids.linear_kernels import (
+    AT,
+    EXACT,
+    FED,
+    GX,
+    GY,
+    GZ,
+    NX,
+    NY,
+    NZ,
+    SINK,
+    SOLVER,
+    VARYING,
+    VOLUME,
+    solver_at,
+)
 from sceneql.simulation.grids.stencil_kernels import dot
-from sceneql.simulation.grids.transform_kernels import factor_transform, solve_transform
 from sceneql.simulation.pointers_kernels import AT_RATE, rate_at
-from sceneql.system_kernels import DENSE, STEP, A, F, I
+from sceneql.system_kernels import DENSE, STEP
 
 STAGES, EXPLICIT_FIRST, EMBEDDED, ERROR_ORDER, HEAD = range(5)
 RELATIVE, ABSOLUTE, DIAGONAL, TABLEAU = range(4)
-
-KIND, NX, NY, NZ, AT, VOLUME, SINK, GX, GY, GZ, VARYING, MOST, LEVELS, TABLE, FED, PLAN = range(16)
-MULTIGRID, CONJUGATE_GRADIENT, GAUSS_SEIDEL, SOR, DIRECT, FAST_TRANSFORM = range(6)
-
-FACTORED, TAKEN_IN, SOLVES, ITERATIONS, HISTORY, RECORD = 0, 1, 2, 3, 4, 132
-"""Of the store's last entries: the a that is prepared (0: none), whether coarse levels are filled, systems solved,
-iterations of all of them, then the residuals of the last one."""
 
 MOST_NEWTON = 40
 KEPT = 1.2
@@ -42,77 +44,6 @@ SHARE = 0.02
 """Part of the tolerance of adaptive steps that a residual may be: settings hold it times the tolerance."""
 UNSOLVED = 1e-13
 """Part of what cancels in a residual that counts as rounding."""
-
-SOLVE = types.boolean(I, F, F, A, A, A, A)
-
-
-@lean_inlined
-def prepare(plan, a, volume, sink, gx, gy, gz, own, record):
-    """Make the linear solver ready for M = V/a + K; False where that fails."""
-    varying = plan[VARYING] == 1
-    if record[FACTORED] == a and not varying:
-        return True
-    if plan[KIND] == MULTIGRID:
-        arrays = own.view(np.float32)
-        table = plan[plan[TABLE] :]
-        if record[TAKEN_IN] == 0.0 or varying:
-            unit = 0.0
-            for c in range(plan[NX] * plan[NY] * plan[NZ]):
-                unit = max(unit, gx[c], gy[c])
-            multigrid.take_in(table, plan[LEVELS], arrays, unit if unit > 0.0 else 1.0, volume, sink, gx, gy, gz)
-            record[TAKEN_IN] = unit if unit > 0.0 else 1.0
-        # The float32 arrays are in units of the largest conductance.
-        multigrid.shift(table, plan[LEVELS], arrays, 1.0 / a)
-    elif plan[KIND] == DIRECT:
-        if not factor_direct(plan[plan[TABLE] :], plan[NX], plan[NY], plan[NZ], 1.0 / a, volume, sink, gx, gy, gz, own):
-            return False
-    elif plan[KIND] == FAST_TRANSFORM:
-        factor_transform(plan[plan[TABLE] :], plan[NX], plan[NY], 1.0 / a, own)
-    record[FACTORED] = a
-    return True
-
-
-@lean(SOLVE)
-def solve_linear(plan, a, target, floats, r, d, store):
-    """Solve M d = r until the residual's 2-norm is at most ``target``; False where that is not reached. r is spent."""
-    nx, ny, nz = plan[NX], plan[NY], plan[NZ]
-    n = nx * ny * nz
-    volume, sink = floats[plan[VOLUME] : plan[VOLUME] + n], floats[plan[SINK] : plan[SINK] + n]
-    gx, gy = floats[plan[GX] : plan[GX] + n], floats[plan[GY] : plan[GY] + n]
-    gz = floats[plan[GZ] : plan[GZ] + (n if nz > 1 else 0)]
-    p, q = store[:n], store[n : 2 * n]
-    record = store[store.size - RECORD :]
-    own = store[2 * n : store.size - RECORD]
-    history = record[HISTORY:]
-    scale = 1.0 / a
-    if not prepare(plan, a, volume, sink, gx, gy, gz, own, record):
-        return False
-    for k in range(history.size):
-        history[k] = -1.0
-    kind, most = plan[KIND], plan[MOST]
-    if kind == MULTIGRID:
-        table = plan[plan[TABLE] :]
-        count = multigrid.solve(
-            nx, ny, nz, scale, volume, sink, gx, gy, gz, table, plan[LEVELS], own.view(np.float32),
-            r, d, p, q, target, most, history,
-        )  # fmt: skip
-    elif kind == CONJUGATE_GRADIENT:
-        count = relaxation.conjugate_gradient(
-            nx, ny, nz, scale, volume, sink, gx, gy, gz, r, d, own, p, q, target, most, history
-        )
-    elif kind == FAST_TRANSFORM:
-        solve_transform(plan[plan[TABLE] :], nx, ny, r, d, own)
-        count = 1
-    elif kind == DIRECT:
-        solve_direct(plan[plan[TABLE] :], r, d, own)
-        count = 1
-    else:
-        count = relaxation.relaxation(
-            nx, ny, nz, scale, volume, sink, gx, gy, gz, r, d, p, q, kind == SOR, target, most, history
-        )
-    record[SOLVES] += 1.0
-    record[ITERATIONS] += abs(count)
-    return count >= 0
 
 
 @lean_inlined
@@ -144,18 +75,18 @@ def stiffest(plan, floats):
 
 
 @lean_inlined
-def solve_stage(rate, t, a, base, y, slope, r, d, store, plan, settings, floats, ints):
+def solve_stage(rate, solve, t, a, base, y, slope, r, d, store, plan, settings, floats, ints):
     """y = base + a f(t, y) from a guess, and slope = f(t, y) of what was found; False where it was not."""
     at = plan[AT]
     n = plan[NX] * plan[NY] * plan[NZ]
     volume = floats[plan[VOLUME] : plan[VOLUME] + n]
     x, r, d = y[at : at + n], r[:n], d[:n]
-    if plan[KIND] >= DIRECT and plan[FED] >= 0:
+    if plan[EXACT] == 1 and plan[FED] >= 0:
         # Linear and solved to rounding: once is enough.
         fed = floats[plan[FED] : plan[FED] + n]
         for c in range(n):
             r[c] = volume[c] * base[at + c] / a + fed[c]
-        if not solve_linear(plan, a, 0.0, floats, r, d, store):
+        if not solve(plan, a, 0.0, floats, r, d, store):
             return False
         for c in range(n):
             x[c] = d[c]
@@ -181,7 +112,7 @@ def solve_stage(rate, t, a, base, y, slope, r, d, store, plan, settings, floats,
         before = size
         # Where all was 0 the size of what is to come is not known yet, but that of the residual is.
         target = max(target, rounding, settings[RELATIVE] * size)
-        if not solve_linear(plan, a, 0.5 * target, floats, r, d, store):
+        if not solve(plan, a, 0.5 * target, floats, r, d, store):
             return False
         for c in range(n):
             x[c] += d[c]
@@ -211,6 +142,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     change = work[(2 + stages) * n : (3 + stages) * n]
     store = work[(3 + stages) * n :]
     plan = numbers[HEAD:]
+    solve = solver_at(plan[SOLVER])
     b = TABLEAU + stages
     e, row = b + stages, b + 2 * stages
     a = h * settings[DIAGONAL]
@@ -224,7 +156,9 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         add_slopes(settings, row, i, h, y0, work, base)
         row += i
         t_stage = t + settings[TABLEAU + i] * h
-        if not solve_stage(rate, t_stage, a, base, y1, slope, scratch, change, store, plan, settings, floats, ints):
+        if not solve_stage(
+            rate, solve, t_stage, a, base, y1, slope, scratch, change, store, plan, settings, floats, ints
+        ):
             y1[plan[AT]] = math.nan
             work[0] = 0.25 * h
             return math.inf
@@ -244,7 +178,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     for c in range(cells):
         scratch[c] = floats[plan[VOLUME] + c] / a * base[at + c]
         size += scratch[c] * scratch[c]
-    if size > 0.0 and not solve_linear(plan, a, 1e-2 * math.sqrt(size), floats, scratch, change, store):
+    if size > 0.0 and not solve(plan, a, 1e-2 * math.sqrt(size), floats, scratch, change, store):
         work[0] = 0.25 * h
         return math.inf
     error = 0.0

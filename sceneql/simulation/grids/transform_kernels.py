@@ -8,7 +8,18 @@
 
 import numpy as np
 
-from sceneql.kernels import lean_inlined
+from sceneql.kernels import lean, lean_inlined
+from sceneql.simulation.grids.linear_kernels import (
+    FACTORED,
+    NX,
+    NY,
+    PLAN,
+    SOLVE,
+    divided,
+    forget,
+    noted,
+    to_prepare,
+)
 
 
 @lean_inlined
@@ -72,3 +83,16 @@ def solve_transform(table, nx, ny, r, d, own):
                 c = j * nx + m
                 w[c] += factors[c] * w[c + nx]
         combine(w[j * nx : (j + 1) * nx], modes, d[j * nx : (j + 1) * nx])
+
+
+@lean(SOLVE)
+def solve(plan, a, target, floats, r, d, store):
+    """The linear solver (linear_kernels)."""
+    nx, ny, table = plan[NX], plan[NY], plan[PLAN:]
+    _, _, own, record = divided(plan, store)
+    forget(record)
+    if to_prepare(plan, a, record):
+        factor_transform(table, nx, ny, 1.0 / a, own)
+        record[FACTORED] = a
+    solve_transform(table, nx, ny, r, d, own)
+    return noted(record, 1)
