@@ -92,6 +92,9 @@ def test_a_unit_is_printed_with_raised_numbers():
     assert shown_unit("m^2*s^-1") == "m²·s⁻¹"
     assert shown_unit("mg/L") == "mg/L"
     assert shown_unit("degC") == "°C"
+    letters = Letterer(np.zeros((100, 100, 3), dtype=np.uint8), 0.2).font
+    missing = bytes(letters.getmask("\ue000"))
+    assert all(bytes(letters.getmask(sign)) != missing for sign in "³⁻¹·°\u2212µäñλ√ж")
 
 
 def test_a_point_is_where_the_camera_sees_it():

@@ -22,7 +22,18 @@ from sceneql.quantities.span import Source
 __all__ = ["FAMILIES", "SETTINGS", "VERSION", "Entry", "Given", "Scope", "Script", "read_script"]
 
 VERSION: Final = "1"
-FAMILIES: Final = ("objects", "models", "forces", "contacts", "solvers", "cameras", "lights", "materials", "outputs")
+FAMILIES: Final = (
+    "objects",
+    "models",
+    "forces",
+    "contacts",
+    "solvers",
+    "cameras",
+    "lights",
+    "materials",
+    "overlays",
+    "outputs",
+)
 SETTINGS: Final = ("sceneql", "about", "clock", "gallery", "background", "expect", "define", "variants")
 _REWRITTEN: Final = ("include", "templates", "parts", "defaults")
 

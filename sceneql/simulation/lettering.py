@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -55,10 +56,16 @@ class Letterer:
 
 @cache
 def font(size: int) -> Any:
-    """Pillow's own letters, so that a picture is the same on every machine."""
+    """DejaVu Sans, which comes with matplotlib: the same letters on every machine, of most languages."""
+    from importlib.util import find_spec
+
     from PIL import ImageFont
 
-    return ImageFont.load_default(size)
+    found = find_spec("matplotlib")
+    if found is None or found.origin is None:
+        raise LookupError("the letters for pictures come with matplotlib, which is missing")
+    path = Path(found.origin).parent / "mpl-data" / "fonts" / "ttf" / "DejaVuSans.ttf"
+    return ImageFont.truetype(str(path), size, layout_engine=ImageFont.Layout.BASIC)
 
 
 def shown_unit(text: str) -> str:
