@@ -22,7 +22,7 @@ CELLS = 96
 """Along the longest side of its box, where a solid is measured."""
 MEASURES: Mapping[str, Gives] = {
     "pieces": Gives(Type(), f"Of how many closed surfaces it is, by marching cubes with {CELLS} cells along it."),
-    "volume": Gives(quantity_type(dim.VOLUME), "What they hold, likewise."),
+    "volume": Gives(quantity_type(dim.VOLUME), "What they hold, likewise, but curved between the vertices."),
 }
 
 
@@ -88,13 +88,15 @@ def measure(solid: Object, output: str, moment: Moment) -> Any:
     """
     import numpy as np
 
-    from sceneql.mesh.measures import pieces, volume
+    from sceneql.mesh.measures import curved_volume, pieces
     from sceneql.mesh.polygonise import polygonise
 
     for shape in traced(solid, "it", np.eye(3, 4), moment):
         cell = max(high - low for low, high in zip(shape.low, shape.high, strict=True)) / CELLS
         mesh = polygonise(shape.tape, shape.low, shape.high, cell)
-        return pieces(mesh.triangles) if output == "pieces" else volume(mesh.vertices, mesh.triangles)
+        if output == "pieces":
+            return pieces(mesh.triangles)
+        return curved_volume(mesh.vertices, mesh.triangles, mesh.normals)
     return 0.0
 
 

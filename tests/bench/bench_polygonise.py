@@ -22,7 +22,7 @@ import numpy as np
 from sceneql.field.builder import TapeBuilder
 from sceneql.field.skeleton import Skeleton
 from sceneql.field.solid import field_gradients
-from sceneql.mesh.measures import edge_counts, euler_characteristic, volume
+from sceneql.mesh.measures import curved_volume, edge_counts, euler_characteristic, volume
 from sceneql.mesh.polygonise import polygonise
 from sceneql.mesh.refine import refined
 from sceneql.quantities.bind import bind
@@ -211,17 +211,19 @@ def converge() -> None:
         build = TapeBuilder()
         tape = build.finish(register(build, text, {}))
         for how, made in (("plain", polygonise), ("refined", lambda *box: refined(*box)[0])):
-            errors = []
+            errors, curved = [], []
             for cells in (64, 128, 256):
                 start = time.perf_counter()
                 found = made(tape, (-half,) * 3, (half,) * 3, 2 * half / cells)
                 spent = time.perf_counter() - start
                 errors.append(1 - volume(found.vertices, found.triangles) / exact)
+                curved.append(1 - curved_volume(found.vertices, found.triangles, found.normals) / exact)
             orders = [np.log2(errors[k] / errors[k + 1]) for k in (0, 1)]
-            rest = abs(4 * errors[2] - errors[1]) / 3
+            rest, finest = (abs(4 * off[2] - off[1]) / 3 for off in (errors, curved))
             print(
                 f"{name:8} {how:8} volume off by {errors[2]:.2e} at 256, orders {orders[0]:.3f} {orders[1]:.3f},"
-                f" extrapolated {rest:.1e} ({rest * exact:.1e} m^3);"
+                f" extrapolated {rest:.1e} ({rest * exact:.1e} m^3),"
+                f" curved {abs(curved[2]):.1e}, extrapolated {finest:.1e};"
                 f" Euler {euler_characteristic(found.triangles)}, {flaws(tape, found.vertices, found.triangles)};"
                 f" {len(found.triangles)} triangles in {spent:.2f} s",
                 flush=True,
