@@ -2,7 +2,7 @@
 """Gradients of a tape at many points by forward differentiation, after ``batch_kernels.evaluate`` at the same."""
 
 from sceneql.field.batch_kernels import BATCH
-from sceneql.field.density_kernels import density_gradient
+from sceneql.field.density_kernels import offset
 from sceneql.field.sine_kernels import wave_lanes
 from sceneql.field.skeleton_kernels import skeleton_gradient
 from sceneql.field.tape_kernels import slopes
@@ -35,15 +35,46 @@ def point_slopes(parts, start, stop, x, y, z, gx, gy, gz, n):
 
 
 @inlined
-def density_slopes(code, k, parts, registers, slope, n):
+def density_lanes(parts, start, stop, x, y, z, out, n):
+    """``density_gradient`` at n points into out (3, LANES)."""
+    for axis in range(3):
+        for i in range(n):
+            out[axis, i] = 0.0
+    for part in range(start, stop):
+        square = parts[part, 6] * parts[part, 6]
+        factor = -6.0 * parts[part, 7]
+        point = (
+            parts[part, 0] == parts[part, 3] and parts[part, 1] == parts[part, 4] and parts[part, 2] == parts[part, 5]
+        )
+        for i in range(n):
+            wx = x[i] - parts[part, 0]
+            wy = y[i] - parts[part, 1]
+            wz = z[i] - parts[part, 2]
+            if not point:
+                wx, wy, wz = offset(parts, part, x[i], y[i], z[i])
+            u = 1.0 - (wx * wx + wy * wy + wz * wz) / square
+            slope = factor * u * u / square
+            out[0, i] += slope * wx if u > 0.0 else 0.0
+            out[1, i] += slope * wy if u > 0.0 else 0.0
+            out[2, i] += slope * wz if u > 0.0 else 0.0
+
+
+@inlined
+def of_parts(code, k, parts, registers, slope, n):
     """Gradient of the density of row k through that of its point."""
     p = code[k, 3]
+    if code[k, 0] == DENSITY:
+        density_lanes(
+            parts, code[k, 1], code[k, 2], registers[p], registers[p + 1], registers[p + 2], slope[k], n
+        )  # fmt: skip
+    else:
+        for i in range(n):
+            x, y, z = registers[p, i], registers[p + 1, i], registers[p + 2, i]
+            slope[k, 0, i], slope[k, 1, i], slope[k, 2, i] = skeleton_gradient(
+                parts, code[k, 1], code[k, 2], x, y, z
+            )  # fmt: skip
     for i in range(n):
-        x, y, z = registers[p, i], registers[p + 1, i], registers[p + 2, i]
-        if code[k, 0] == DENSITY:
-            u, v, w = density_gradient(parts, code[k, 1], code[k, 2], x, y, z)
-        else:
-            u, v, w = skeleton_gradient(parts, code[k, 1], code[k, 2], x, y, z)
+        u, v, w = slope[k, 0, i], slope[k, 1, i], slope[k, 2, i]
         for axis in range(3):
             slope[k, axis, i] = u * slope[p, axis, i] + v * slope[p + 1, axis, i] + w * slope[p + 2, axis, i]
 
@@ -96,7 +127,7 @@ def differentiate(code, constants, parts, registers, slope, n):
             ):  # fmt: skip
                 continue
         if op == DENSITY or op == SKELETON:
-            density_slopes(code, k, parts, registers, slope, n)
+            of_parts(code, k, parts, registers, slope, n)
             continue
         a = registers[left]
         b = registers[right]

@@ -7,7 +7,9 @@ In the box the shorter tape has the same bits of value as the whole one, so that
 import numpy as np
 
 from sceneql.field.density_kernels import offset
+from sceneql.field.falloff_kernels import WYVILL
 from sceneql.field.skeleton_bounds_kernels import skeleton_near
+from sceneql.field.skeleton_kernels import GROUP, KERNEL, RADIUS, RADIUS_B, SEGMENT, SHAPE, STRIDE
 from sceneql.field.tape_ops import CONSTANT, COS, DENSITY, MAX, MIN, SIN, SKELETON, X, Y, Z
 from sceneql.kernels import inlined, lean
 
@@ -64,6 +66,27 @@ def mark(code, last, scratch):
             scratch[int(scratch[code[k, 2], ALIAS]), LIVE] = 1.0
 
 
+@inlined
+def plain_parts(near, first, found):
+    """Bring the parts of a skeleton in rows first..found-1 of near into the form of DENSITY, if all have one; the row
+    behind, or 0.
+
+    They have it as points or segments of one radius, alone in their groups, with Wyvill's kernel.
+    """
+    group = -1.0
+    for i in range(first, found, STRIDE):
+        flat = near[i + 1, SHAPE] == SEGMENT and near[i + 1, KERNEL] == WYVILL
+        if not flat or near[i + 1, RADIUS_B] != near[i, RADIUS] or near[i + 1, GROUP] == group:
+            return 0
+        group = near[i + 1, GROUP]
+    rows = first
+    for i in range(first, found, STRIDE):
+        for j in range(8):
+            near[rows, j] = near[i, j]
+        rows += 1
+    return rows
+
+
 @lean(
     "UniTuple(int64, 2)(int32[:, ::1], float64[:, ::1], float64[:, ::1], boolean, int32[:, ::1], float64[:, ::1])",
 )
@@ -91,6 +114,10 @@ def simplify(code, parts, scratch, whole, short, near):
         if op == SKELETON and whole:
             short[rows, 1] = found
             found = skeleton_near(parts, code[k, 1], code[k, 2], scratch, code[k, 3], near, found)
+            behind = plain_parts(near, short[rows, 1], found)
+            if behind > 0:
+                short[rows, 0] = DENSITY
+                found = behind
             short[rows, 2] = found
             short[rows, 3] = int(scratch[code[k, 3], PLACE])
         elif op == DENSITY or op == SKELETON:
