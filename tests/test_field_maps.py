@@ -328,3 +328,46 @@ def test_a_field_that_nothing_shows_is_shown_in_colors(tmp_path):
     np.testing.assert_allclose(mesh.vertices.max(axis=0), [2.0, 1.0, 0.0], atol=1e-12)
     path.write_text(ALONE + "objects: {map: {field_map: {of: plate.concentration, hidden: yes}}}\n", encoding="utf-8")
     assert load(path).drawn["film"] == ()
+
+
+def test_a_field_is_seen_on_an_object_that_stands_in_it(tmp_path):
+    path = tmp_path / "scene.yaml"
+    room = ROOM.format(n=12, fields="at: 0.4")
+    room += "cameras: {plan: {orthographic: {height: 1 m}}}\n"
+    for solid in ("ball: {sphere: {radius: 0.2 m, position: 0.1 0 0 m}}", "ball: {box: {size: 0.3 0.3 0.3 m}}"):
+        shown = "map: {field_map: {of: room.concentration, on: ball, range: 0 1}}"
+        path.write_text(room.replace("objects:", f"objects:\n  {solid}\n  {shown}"), encoding="utf-8")
+        graph = load(path)
+        assert "ball" not in graph.drawn["film"]
+        (moment,) = Run(graph).moments([0.0])
+        np.testing.assert_array_equal(moment.place("ball"), np.eye(3, 4))  # what holds it has no place of its own
+        (mesh,) = moment.lower(["map"])
+        exact = {"sphere": 4 / 3 * np.pi * 0.2**3, "box": 0.3**3}["sphere" if "sphere" in solid else "box"]
+        assert volume(mesh.vertices, mesh.triangles) == pytest.approx(exact, rel=5e-3)
+        radii = np.linalg.norm(mesh.vertices, axis=1)
+        wrong = abs(mesh.colors - colored(radii, (0.0, 1.0), "viridis")).max(axis=1)
+        assert wrong[radii > 0.1].max() < 0.03
+        np.testing.assert_allclose(np.linalg.norm(mesh.normals, axis=1), 1.0, atol=1e-6)
+
+
+SPECIES = """
+clock: {end: 1 s, fps: 10}
+models:
+  dish:
+    reaction_diffusion:
+      size: 1 1 m
+      cell: 0.1 m
+      species: {u: {coefficient: 1e-3, initial: "x"}, v: {coefficient: 1e-3, initial: "2*y"}}
+objects: {map: {field_map: {of: dish.v - dish.u, range: -1 2}}}
+solvers: {main: {rk4: {step: 0.1 s}}}
+"""
+
+
+def test_species_of_a_reaction_are_fields_as_well_and_so_is_their_difference(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text(SPECIES, encoding="utf-8")
+    graph = load(path)
+    (moment,) = Run(graph).moments([0.0])
+    (mesh,) = moment.lower(["map"])
+    x, y, _ = mesh.vertices.T
+    np.testing.assert_allclose(mesh.colors, colored(2 * y - x, (-1.0, 2.0), "viridis"), atol=1e-9)

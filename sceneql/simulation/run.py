@@ -231,7 +231,8 @@ class Instant:
         holder = self.run.holders.get(name)
         if holder is None:
             return IDENTITY
-        return compose(self.place(holder), cast(Placed, self.run.graph.tasks[holder].kind).local(self))
+        kind = self.run.graph.tasks[holder].kind
+        return compose(self.place(holder), kind.local(self)) if isinstance(kind, Placed) else self.place(holder)
 
     def lower(self, names: Iterable[str]) -> list[Drawn]:
         """The shapes of the named objects and models."""

@@ -10,10 +10,11 @@ import numpy as np
 from sceneql.simulation.maps.kept import Kept
 from sceneql.simulation.maps.seen import level_of
 from sceneql.simulation.maps.sheets import Sheet, Side, flat_normals, joined, kept, lattice
+from sceneql.simulation.solid import triple
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.kinds import Moment
+    from sceneql.kinds import Moment, Ref
     from sceneql.simulation.grids.medium import FieldLayout
     from sceneql.simulation.maps.seen import Seen
 
@@ -93,25 +94,39 @@ def section(layout: FieldLayout, level: Any, plane: Plane) -> Sheet:
 
 
 def outside(layout: FieldLayout, level: Any) -> Sheet:
-    """The surface of a deep domain, facing outwards, with edges kept sharp where it is an object's own field."""
+    """The surface of a deep domain, facing outwards."""
     if level is None:
         return _box(layout)
-    low, extent = np.array(layout.low), sides(layout)
-    cell = min(layout.spacing) / min(2.0, FINEST)
-    if not hasattr(level, "tape"):
-        from sceneql.simulation.maps.iso import iso_sheet
-        from sceneql.simulation.models.spring_look import vertex_normals
+    low = np.array(layout.low)
+    return around(level, low, low + sides(layout), 0.5 * min(layout.spacing))
 
-        axes = [np.linspace(a, a + side, round(side / cell) + 1) for a, side in zip(low, extent, strict=True)]
-        z, y, x = np.meshgrid(axes[2], axes[1], axes[0], indexing="ij")
-        values = level.values(np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)).reshape(x.shape)
-        rough = iso_sheet((axes[0], axes[1], axes[2]), values)
-        return creased(Sheet(rough.vertices, rough.triangles, vertex_normals(rough.vertices, rough.triangles)))
-    from sceneql.mesh.sharp import polygonise_sharp
 
-    a, b = (tuple(float(c) for c in corner) for corner in (low, low + extent))
-    found = polygonise_sharp(level.tape, a, b, cell)  # type: ignore[arg-type]
-    return creased(Sheet(found.vertices, found.triangles, found.normals))
+def around(level: Any, low: Floats, high: Floats, cell: float) -> Sheet:
+    """The surface of what lies inside a level set in a box, with edges kept sharp where it is an object's own field."""
+    if hasattr(level, "tape"):
+        from sceneql.mesh.sharp import polygonise_sharp
+
+        found = polygonise_sharp(level.tape, triple(low), triple(high), cell)
+        return creased(Sheet(found.vertices, found.triangles, found.normals))
+    from sceneql.simulation.maps.iso import iso_sheet
+    from sceneql.simulation.models.spring_look import vertex_normals
+
+    axes = [np.linspace(a, b, int(np.ceil((b - a) / cell)) + 1) for a, b in zip(low, high, strict=True)]
+    z, y, x = np.meshgrid(axes[2], axes[1], axes[0], indexing="ij")
+    values = level.values(np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)).reshape(x.shape)
+    rough = iso_sheet((axes[0], axes[1], axes[2]), values)
+    return creased(Sheet(rough.vertices, rough.triangles, vertex_normals(rough.vertices, rough.triangles)))
+
+
+def skin(ref: Ref, layout: FieldLayout, moment: Moment) -> Sheet:
+    """The surface of an object now. Raises TypeError or ValueError for one without an inside."""
+    from sceneql.simulation.grids.domain import inside
+
+    level, low, high, flat = inside(ref, False, moment)
+    if flat:
+        raise ValueError(f"'{ref.name}' is flat: it has no surface")
+    cell = 0.5 * min(*layout.spacing, float((high - low).max()) / 24)
+    return around(level, low - 0.5 * cell, high + 0.5 * cell, cell)
 
 
 def creased(sheet: Sheet) -> Sheet:

@@ -5,7 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Annotated
 
-from sceneql.kinds import Color, FixedLength, FixedPosition, Moment, Object, Problem, Quantity, Record, Value, field
+from sceneql.kinds import (
+    Color,
+    FixedLength,
+    FixedPosition,
+    Moment,
+    Object,
+    ObjectRef,
+    Problem,
+    Quantity,
+    Record,
+    Ref,
+    Value,
+    field,
+)
 from sceneql.kinds.types import Axis
 from sceneql.quantities.dimension import LENGTH, PLAIN
 from sceneql.simulation.color import linear
@@ -54,6 +67,7 @@ class FieldMap(Object):
     )
     cut: tuple[Section, ...] = field("A deep domain is cut open: what lies before all these planes is away.", ())
     surface: bool = field("Of a deep domain; without it the field is seen on the planes of `cut` alone, whole.", True)
+    on: ObjectRef | None = field("An object in a deep domain, drawn by this one, on whose surface it is seen.", None)
     contours: Levels | None = field("Values whose lines are drawn, one or several.", None)
     contour_color: Color = field("Color of these lines.", "0.05 0.05 0.06")
     contour_radius: FixedLength | None = field("Radius of these lines; by default a thin one.", None, above=0)
@@ -65,8 +79,14 @@ class FieldMap(Object):
         has = None if self.height is None else self.height.expr.type.dimension
         if own is not None and has is not None and has not in (LENGTH / own, LENGTH):
             yield Problem("a height is a length for a unit of the field: `30 m*L/mg`", ("height",))
+        if self.on is not None and (self.cut or not self.surface):
+            yield Problem("it is the domain that is cut open, not what the field is seen `on`", ("on",), at_key=True)
         if not self.surface and not self.cut:
             yield Problem("without its surface a field is seen on the planes of `cut`, of which there are none")
+
+    def members(self) -> tuple[Ref, ...]:
+        """What it is seen on."""
+        return () if self.on is None else (self.on,)
 
     def remembers(self) -> Iterable[tuple[Value, float, float]]:
         """The field at the start, where that gives the range."""
@@ -133,12 +153,14 @@ class FieldMap(Object):
 
     def _sheet(self, field: Seen, moment: Moment) -> Sheet:
         """What the field is seen on, made once for all frames."""
-        from sceneql.simulation.maps.domains import sheet_of
+        from sceneql.simulation.maps.domains import sheet_of, skin
 
-        if field.layout.shape[2] == 1 and self.cut:
-            raise ValueError("a flat field has no inside to be cut open")
+        if field.layout.shape[2] == 1 and (self.cut or self.on is not None):
+            raise ValueError("a flat field has no inside to be cut open, or to hold an object")
         if field.layout.shape[2] > 1 and self.height is not None:
             raise ValueError("a deep field is not lifted: `height` is for flat ones")
 
+        if self.on is not None:
+            return skin(self.on, field.layout, moment)
         planes = tuple((one.through, one.normal) for one in self.cut)
         return sheet_of(field, moment, planes, self.surface)
