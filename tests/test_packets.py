@@ -14,6 +14,7 @@ from sceneql.field.skeleton import Skeleton
 from sceneql.field.solid import cast, field_values
 from sceneql.field.tape_ops import DENSITY, HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
 from sceneql.frame import Frame, Implicit, Surface, View
+from test_certified import tape_of
 from test_field import NAMES, PARTS, implicit, kernels, of_one, rays, tapes
 
 
@@ -140,6 +141,40 @@ def test_densities_of_points_are_met_where_the_certified_routine_meets_them(coun
     assert (np.isin(blocked, [HIT, INSIDE]) == truly)[told].all()
 
 
+POLYNOMIALS = {
+    "x^2*y^2 + y^2*z^2 + z^2*x^2 - x*y*z": 4,
+    "(x^2 + y^2 + z^2 - 1)^2*5 - 4*(3*x^2 - y^2)*(3*y^2 - z^2)*(3*z^2 - x^2)": 6,
+    "x*y - z^3 + 0.1": 3,
+    "1000*(x^2 - 0.25) + x*y*z": 3,
+    "x^8 + y^8 + z^8 - 0.5": 8,
+}
+
+
+@pytest.mark.parametrize("text", POLYNOMIALS)
+@settings(max_examples=8, deadline=None)
+@given(seed=st.integers(0, 999), clip=st.sampled_from([0.0, 0.6, 1.1]), spread=st.sampled_from([0.02, 1.0]))
+def test_polynomials_are_met_where_the_certified_routine_meets_them(text, seed, clip, spread):
+    tape = tape_of(f"max({text}, sqrt(x^2 + y^2 + z^2) - {clip})" if clip else text)
+    plan = plan_of(tape)
+    assert plan[3] >= 0
+    assert plan[4 + plan[3]] == POLYNOMIALS[text]
+    generator = np.random.default_rng(seed)
+    aim = generator.uniform(-0.5, 0.5, 3)
+    way = generator.normal(size=3)
+    origins, directions = bundle(aim - way, way, generator, 150, spread)
+    t0, t1 = np.full(150, 0.1), np.full(150, 2.0)
+    status, t = cast_together(tape, origins, directions, t0, t1)
+    exact, places = cast(tape, origins, directions, t0, t1)
+    told = (status != UNDECIDED) & (exact != UNDECIDED)
+    assert told.mean() > 0.9
+    met, truly = np.isin(status, [HIT, INSIDE]), np.isin(exact, [HIT, INSIDE])
+    assert (met == truly)[told].all()
+    assert t[met & told] == pytest.approx(places[met & told], abs=1e-5)
+    blocked, _ = cast_together(tape, origins, directions, t0, t1, anywhere=True)
+    told &= blocked != UNDECIDED
+    assert (np.isin(blocked, [HIT, INSIDE]) == truly)[told].all()
+
+
 def test_other_fields_than_densities_of_points_have_no_plan():
     segment, point = PARTS[:1].copy(), PARTS[:1].copy()
     segment[0, 3:6] = segment[0, :3] + [0.1, 0.0, 0.0]
@@ -151,6 +186,8 @@ def test_other_fields_than_densities_of_points_have_no_plan():
     assert plan_of(minus(point))[0] >= 0
     assert plan_of(minus(segment))[0] < 0
     assert plan_of(minus(point, 2.0))[0] < 0
+    assert (plan_of(tape_of("sin(x) + y^2"))[[0, 3]] < 0).all()
+    assert plan_of(tape_of("x^9 + y"))[3] < 0
     assert plan_of(implicit(lambda b, op, c: op("sub", b.density(point, b.x, b.y, b.z), c(0.3))))[0] < 0
     corners = np.zeros((1, 3, 3))
     for kernel, groups in ((1, [0]), (0, [0, 0])):

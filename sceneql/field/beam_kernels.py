@@ -10,9 +10,9 @@ import numpy as np
 from sceneql.field.skeleton_kernels import NODE, RADIUS, SHAPE, STRIDE
 from sceneql.kernels import inlined
 
-PX, PY, PZ, DX, DY, DZ, FAR, SPEED, BEHIND, ALONG, OFF = range(11)
-"""Rows of rays; the last: how far the ray begins along the axis of its beam, the cosine between the two, and how far
-it begins off the axis (3 rows)."""
+PX, PY, PZ, DX, DY, DZ, FAR, SPEED, BEHIND, STRETCH, OFF = range(11)
+"""Rows of rays; the last: how far the ray begins along the axis of its beam, its length for a unit along that, and how
+far it begins off the axis (3 rows)."""
 WIDE = 13
 ORIGIN, WAY, RADIUS_OF, LOW, HIGH, SPREAD = 0, 3, 6, 7, 8, 9
 BEAM = 10
@@ -62,7 +62,8 @@ def largest(row, n):
 
 @inlined
 def beam_around(wide, first, stop, beam, folds):
-    """The beam around rays first..stop-1; their BEHIND and ALONG are set. Returns the least ALONG.
+    """The beam around rays first..stop-1; their BEHIND and STRETCH are set. Returns the least cosine between
+    a ray and the axis.
 
     ``folds`` (6, n) is working memory.
     """
@@ -78,7 +79,7 @@ def beam_around(wide, first, stop, beam, folds):
     n = stop - first
     px, py, pz = wide[PX, first:stop], wide[PY, first:stop], wide[PZ, first:stop]
     vx, vy, vz = wide[DX, first:stop], wide[DY, first:stop], wide[DZ, first:stop]
-    fars, behinds, alongs = wide[FAR, first:stop], wide[BEHIND, first:stop], wide[ALONG, first:stop]
+    fars, behinds, stretches = wide[FAR, first:stop], wide[BEHIND, first:stop], wide[STRETCH, first:stop]
     off_x, off_y, off_z = wide[OFF, first:stop], wide[OFF + 1, first:stop], wide[OFF + 2, first:stop]
     off2, spread2, longest, lows, highs, against = folds[0], folds[1], folds[2], folds[3], folds[4], folds[5]
     for i in range(n):
@@ -86,17 +87,17 @@ def beam_around(wide, first, stop, beam, folds):
         behind = ex * ax + ey * ay + ez * az
         along = vx[i] * ax + vy[i] * ay + vz[i] * az
         behinds[i] = behind
-        alongs[i] = along
+        against[i] = -along
         ex, ey, ez = ex - behind * ax, ey - behind * ay, ez - behind * az
         off_x[i], off_y[i], off_z[i] = ex, ey, ez
         off2[i] = ex * ex + ey * ey + ez * ez
     for i in range(n):
-        along, behind, far = alongs[i], behinds[i], fars[i]
+        along, behind, far = -against[i], behinds[i], fars[i]
         dx, dy, dz = vx[i] - along * ax, vy[i] - along * ay, vz[i] - along * az
         end = behind + along * far
         spread2[i] = dx * dx + dy * dy + dz * dz
         longest[i] = far
-        against[i] = -along
+        stretches[i] = 1.0 / along
         lows[i] = -(behind if behind < end else end)
         highs[i] = behind if behind > end else end
     spread = np.sqrt(largest(spread2, n)) * largest(longest, n)

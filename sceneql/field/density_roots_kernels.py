@@ -9,7 +9,6 @@ field is outside whatever g is; at the root its value tells.
 import numpy as np
 
 from sceneql.field.beam_kernels import (
-    ALONG,
     BEAM,
     BEHIND,
     DX,
@@ -19,6 +18,7 @@ from sceneql.field.beam_kernels import (
     PX,
     RADIUS_OF,
     SPEED,
+    STRETCH,
     WIDE,
     beam_around,
     beam_within,
@@ -56,7 +56,7 @@ from sceneql.kernels import inlined
 
 MOST_PARTS = 512
 """Rows of ``table``; where more parts reach into a slice, its rays are left to the certified routine."""
-DEEP = 0.5
+DEEP = 1.0
 """Depth of a slice, relative to what a part takes of the beam on average."""
 SPOT, SPANS, BEAM_ROW, OWN_ROW, FOLDS, ROOM = WIDE, WIDE + 7, WIDE + 9, WIDE + 10, WIDE + 11, WIDE + 17
 BASE = 6
@@ -109,12 +109,11 @@ def next_slice(spans, m, begin):
 @inlined
 def place_lanes(room, live, state, n, begin, end, lowest):
     """Set the lanes' rays at the begin of a slice, and where on them it ends."""
-    bases, far, behind, along = room[SPOT + BASE], room[FAR], room[BEHIND], room[ALONG]
+    bases, far, behind, stretch = room[SPOT + BASE], room[FAR], room[BEHIND], room[STRETCH]
     for i in range(n):
         j = live[i]
         stop = far[j]
-        inverse = 1.0 / along[j]
-        base, last = (begin - behind[j]) * inverse, (end - behind[j]) * inverse
+        base, last = (begin - behind[j]) * stretch[j], (end - behind[j]) * stretch[j]
         base = base if base > 0.0 else 0.0
         base = base if base < stop else stop
         last = last if last > base else base

@@ -112,7 +112,8 @@ def advance(lanes, last, status, n, anywhere):
         rejected = (F(HIT) if lanes[HELD * LANES + i] > ZERO else F(MISS)) if done else LIVE
         lanes[STATE * LANES + i] = rejected if outside else state
         lanes[A * LANES + i] = after if outside else (a if inside else start)
-        lanes[B * LANES + i] = then if outside else (a if inside else now)
+        met = b if anywhere & (c1 < ZERO) else a
+        lanes[B * LANES + i] = then if outside else (met if inside else now)
         lanes[ROOT * LANES + i] = x
         lanes[SLOPE * LANES + i] = c1 / half
         lanes[END * LANES + i] = end if outside else last_end
@@ -130,7 +131,7 @@ def hunt(code, constants, parts, registers, point, status, lanes, ids, rays, ask
     """Settle the first ``count`` rays of the ``queue``; returns the enclosures spent.
 
     ``rays`` (RAY, n), ``asked`` (3, n) and ``found`` (5, n) are by ray. A HIT has a bracket low..high with all before
-    it outside and the inside at its end, with ``anywhere`` (shadow rays) any place inside; MISS: all is outside.
+    it outside and the inside at its end; with ``anywhere`` (shadow rays) high is any place inside. MISS: all outside.
     """
     last = registers[code.shape[0] - 1]
     upcoming = 0

@@ -26,6 +26,8 @@ from sceneql.field.hunt_kernels import (
 from sceneql.field.isolation_kernels import isolate
 from sceneql.field.packet_density_kernels import keep_near
 from sceneql.field.packet_kernels import C1, LANES, PACKET, E, enclose, load_constants, place
+from sceneql.field.polynomial_hunt_kernels import hunt_polynomials
+from sceneql.field.polynomial_kernels import POLYNOMIAL
 from sceneql.field.tape_ops import DENSITY, HIT, MISS, NOWHERE, SKELETON, UNDECIDED
 from sceneql.kernels import inlined, lean
 
@@ -218,7 +220,7 @@ def certify(code, constants, parts, scratch, rays, count, anywhere, found):
 @inlined
 def packet_roots(
     code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, count, groups, anywhere, found,
-    parts, beams, short, near_singles, near_parts,
+    parts, beams, short, near_singles, near_parts, plan, room,
 ):  # fmt: skip
     """Settle a bundle by enclosures: (enclosures, rays that may be met, in ``queue``, whether ``short`` was made)."""
     load_constants(code, constants, registers)
@@ -272,21 +274,26 @@ def packet_roots(
                     queue[queued] = j
                     queued += 1
         waiting = 0
-    spent += hunt(
-        code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, queued, anywhere, found
-    )
+    if plan[POLYNOMIAL] >= 0:
+        spent += hunt_polynomials(
+            code, constants, plan, last, status, lanes, ids, rays, asked, queue, queued, anywhere, found, room
+        )
+    else:
+        spent += hunt(
+            code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, queued, anywhere, found
+        )
     return spent, queued, shortened
 
 
 @inlined
-def check_inside(code, constants, parts, registers, points, rays, queue, count, found):
-    """Leave rays undecided whose found place is not inside."""
+def check_inside(code, constants, parts, registers, points, rays, queue, count, row, late, found):
+    """Leave rays undecided that are not inside ``late`` times their length behind the place in a row of ``found``."""
     width = points.shape[1]
     for start in range(0, count, width):
         n = min(width, count - start)
         for i in range(n):
             j = queue[start + i]
-            t = rays[6, j] + found[FOUND_HIGH, j]
+            t = rays[6, j] + found[row, j] + late * (rays[7, j] - rays[6, j])
             for axis in range(3):
                 points[axis, i] = rays[axis, j] + t * rays[3 + axis, j]
         evaluate(code, constants, parts, registers, points, n)
@@ -348,14 +355,12 @@ def first_roots(
             short, near_parts,
         )  # fmt: skip
         code, parts = short, near_parts
-        if anywhere and plan[CLIPPED]:
-            check_inside(code, constants, parts, doubles, points, rays, queue, queued, found)
     elif has(code, SKELETON):
         return 0, certify(code, constants, parts, scratch, rays, count, anywhere, found)
     else:
         spent, queued, shortened = packet_roots(
             code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, count, groups,
-            anywhere, found, parts, beams, short, near_singles, near_parts,
+            anywhere, found, parts, beams, short, near_singles, near_parts, plan, room,
         )  # fmt: skip
         if shortened:
             code, parts = short, near_parts
@@ -366,6 +371,9 @@ def first_roots(
                 queue[hits], queue[k] = queue[k], queue[hits]
                 hits += 1
         polish(code, constants, parts, doubles, points, rays, queue, hits, found)
+    if plan[CLIPPED]:
+        row, late = (FOUND_HIGH, 0.0) if anywhere else (FOUND_ROOT, SETTLED)
+        check_inside(code, constants, parts, doubles, points, rays, queue, queued, row, late, found)
     certified = 0
     for k in range(queued):
         j = queue[k]

@@ -19,9 +19,25 @@ from sceneql.field import (
 )
 from sceneql.field.packet_kernels import LANES, WIDTH
 from sceneql.field.packet_roots_kernels import BEAM, GROUP
+from sceneql.field.polynomial_hunt_kernels import MOST_DEGREE, WORK
+from sceneql.field.polynomial_kernels import DEGREES, POLYNOMIAL
 from sceneql.field.skeleton import plain_points
 from sceneql.field.solid import scratch
-from sceneql.field.tape_ops import CONSTANT, COPY, DENSITY, MAX, OF_PARTS, SUB, X, Y, Z
+from sceneql.field.tape_ops import (
+    ADD,
+    CONSTANT,
+    COPY,
+    DENSITY,
+    MAX,
+    MUL,
+    NEG,
+    OF_PARTS,
+    SQUARE,
+    SUB,
+    X,
+    Y,
+    Z,
+)
 
 if TYPE_CHECKING:
     from numpy import float32, int64
@@ -53,23 +69,66 @@ def enclosures(tape: Tape, origins: Floats, directions: Floats, t0: Floats, t1: 
     return out
 
 
-def plan_of(tape: Tape) -> NDArray[int64]:
-    """(row of the density D, index of the constant c, whether there is a g) of a tape c - D or max(c - D, g).
+def density_of(tape: Tape, row: int) -> tuple[int, int] | None:
+    """(row of the density D, index of the constant c) where a row is c - D, D of lone points with Wyvill's kernel."""
+    op, left, right, _ = tape.code[row]
+    if op != SUB or tape.code[left, 0] != CONSTANT or tape.code[right, 0] not in OF_PARTS:
+        return None
+    kind, start, stop, at = tape.code[right]
+    place = [tape.code[row[1], 0] if row[0] == COPY else row[0] for row in tape.code[at : at + 3]]
+    parts = tape.parts[start:stop] if kind == DENSITY else plain_points(tape.parts[start:stop])
+    if place != [X, Y, Z] or parts is None or not (parts[:, :3] == parts[:, 3:6]).all():
+        return None
+    return int(right), int(tape.code[left, 1])
 
-    -1 for the row of any other; the parts must be points with Wyvill's kernel, alone in their groups.
+
+def degrees_of(tape: Tape, row: int) -> list[int] | None:
+    """Degrees of the rows up to one that is a polynomial of the place, -1 of those it does not need; else None."""
+    degrees = [-1] * (row + 1)
+    needed = {row}
+    for k in range(row, -1, -1):
+        op, left, right, _ = map(int, tape.code[k])
+        if k in needed and op not in (CONSTANT, X, Y, Z):
+            if op not in (COPY, ADD, SUB, MUL, NEG, SQUARE):
+                return None
+            needed |= {left, right}
+    for k in sorted(needed):
+        op, left, right, _ = map(int, tape.code[k])
+        if op in (CONSTANT, X, Y, Z):
+            degrees[k] = 0 if op == CONSTANT else 1
+        elif op in (MUL, SQUARE):
+            degrees[k] = degrees[left] + degrees[right]
+        else:
+            degrees[k] = max(degrees[left], degrees[right])
+    return degrees if 1 < degrees[row] <= MOST_DEGREE else None
+
+
+def plan_of(tape: Tape) -> NDArray[int64]:
+    """How packets look for roots of a tape f or max(f, g), as its kernels read it.
+
+    (row of D, index of c, whether there is a g, row of p), -1 for the rows where f has not the form; then of a
+    polynomial p the degrees of the rows up to it and where their coefficients begin.
     """
     last = len(tape.code) - 1
     rows = [last] if tape.code[last, 0] != MAX else [int(row) for row in tape.code[last, 1:3]]
+    clipped = len(rows) > 1
     for row in rows:
-        op, left, right, _ = tape.code[row]
-        if op != SUB or tape.code[left, 0] != CONSTANT or tape.code[right, 0] not in OF_PARTS:
-            continue
-        kind, start, stop, at = tape.code[right]
-        place = [tape.code[row[1], 0] if row[0] == COPY else row[0] for row in tape.code[at : at + 3]]
-        parts = tape.parts[start:stop] if kind == DENSITY else plain_points(tape.parts[start:stop])
-        if place == [X, Y, Z] and parts is not None and (parts[:, :3] == parts[:, 3:6]).all():
-            return np.array([right, tape.code[left, 1], len(rows) > 1], dtype=np.int64)
-    return np.array([-1, 0, 0], dtype=np.int64)
+        if (found := density_of(tape, row)) is not None:
+            return np.array([*found, clipped, -1], dtype=np.int64)
+    for row in rows:
+        if (degrees := degrees_of(tape, row)) is not None:
+            starts = np.concatenate([[0], np.cumsum(np.array(degrees) + 1)])
+            return np.array([-1, 0, clipped, row, *degrees, *starts[:-1]], dtype=np.int64)
+    return np.array([-1, 0, False, -1], dtype=np.int64)
+
+
+def room_for(tape: Tape, plan: NDArray[int64], count: int) -> Floats:
+    """What a plan works in: see density_roots_kernels and polynomial_hunt_kernels."""
+    rows = density_roots_kernels.ROOM
+    if plan[POLYNOMIAL] >= 0:
+        coefficients = int((plan[DEGREES : DEGREES + plan[POLYNOMIAL] + 1] + 1).sum())
+        rows = max(rows, WORK + max(coefficients, len(tape.code), MOST_DEGREE + 4))
+    return np.zeros((rows, max(count, LANES, len(tape.parts))))
 
 
 class Memory:
@@ -92,11 +151,11 @@ class Memory:
         self.singles = single_parts(tape)
         beams, doubles = np.zeros((BEAM, -(-count // GROUP) + 1)), np.zeros((rows, LANES))
         near = np.zeros_like(tape.code), np.zeros_like(self.singles), np.zeros_like(tape.parts)
-        wide = max(count, LANES, len(tape.parts))
+        plan = plan_of(tape)
         march = (
-            plan_of(tape),
+            plan,
             np.zeros(2 * LANES + count + len(tape.parts), dtype=np.int64),
-            np.zeros((density_roots_kernels.ROOM, wide)),
+            room_for(tape, plan, count),
             np.zeros((density_roots_kernels.MOST_PARTS, density_march_kernels.COLUMNS), dtype=single),
         )
         self.rest = tape.parts, scratch(tape), beams, doubles, np.zeros((3, LANES)), *near, *march

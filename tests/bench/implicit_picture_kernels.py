@@ -103,7 +103,11 @@ def draw_row(
     depth[top : top + TILE] = -1.0
     for tile in range((width + TILE - 1) // TILE):
         left = tile * TILE
-        aim(rays, n, pixels, size * (left + 0.5 - 0.5 * width), size * (0.5 * height - top - 0.5), view)
+        x, y = size * (left + 0.5 - 0.5 * width), size * (0.5 * height - top - 0.5)
+        across, down = x + 0.5 * size * (TILE - 1), y - 0.5 * size * (TILE - 1)
+        if across * across + down * down > (radius + size * TILE) ** 2:
+            continue
+        aim(rays, n, pixels, x, y, view)
         cut(rays, n, radius, 0.0)
         if left + TILE > width or top + TILE > height:
             for j in range(n):
