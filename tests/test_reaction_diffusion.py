@@ -143,6 +143,11 @@ def test_a_reaction_keeps_the_sum_that_it_keeps(tmp_path, where, solver):
     assert abs(came[1]) > 0.01
 
 
+def test_starts_may_use_what_where_says(tmp_path):
+    field = Fields(tmp_path, "{u: {initial: 1 - hill}}", "heun", 1, where="{hill: top*x, top: 3}", cell="1/4 m").at(0)
+    assert field.read("u") == pytest.approx(1 - 3 * field.read("centers")[:, 0])
+
+
 def test_each_species_may_have_its_own_boundary(tmp_path):
     species = (
         "{a: {coefficient: 1, initial: x, boundary: {left: {value: 0}, right: {value: 1}}},"
@@ -194,6 +199,8 @@ def wrong(folder, species, more=""):
         ("{c: {rate: 1}}", "", "stands for each species"),
         ("{u: {rate: w}}", ", where: {w: v, v: w}", "defined by itself"),
         ("{u: {rate: u*vv}}", "", "nothing is called 'vv'"),
+        ("{u: {initial: 1 + v}, v: {rate: 1}}", "", "'v' has no value before the start"),
+        ("{u: {initial: w}}", ", where: {w: t*x}", "'time' has no value before the start"),
         ("{u: {rate: '[u, 1, 2]'}}", "", "must be one number"),
         ("{u: {rate: 1}}", ", where: {u: 2}", "already"),
         ("{u: {rate: 1, boundary: {top: {flux: 1}, front: {flux: 1}}}}", "", "no side 'front'"),

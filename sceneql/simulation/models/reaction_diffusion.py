@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -11,9 +12,9 @@ from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import Link, Number, Type
+from sceneql.quantities.expression import Call, Expr, Link, Number, Symbol, Type, walk
 from sceneql.simulation.formula_rows import TIMES, Rows
-from sceneql.simulation.grids.medium import ANYTHING, PLACE, Boundary, FieldLayout, Medium, gives_of, layout_of
+from sceneql.simulation.grids.medium import ANYTHING, Boundary, FieldLayout, Medium, gives_of, layout_of
 
 if TYPE_CHECKING:
     from sceneql.simulation.grids.assembly import Ground
@@ -29,7 +30,7 @@ class Species(Record):
     coefficient: ANYTHING | None = field(
         "The coefficient D [m^2/s] of its spread; by default it stays in place, whatever drifts.", None
     )
-    initial: PLACE | None = field("The field at the start; by default 0.", None)
+    initial: Formula | None = field("The field at the start, by place; by default 0.", None)
     rate: Formula | None = field("What the reactions make of it a second, by place, time and all species.", None)
     source: ANYTHING | None = field("What comes in besides, a second and cubic meter.", None)
     boundary: Boundary | None = field("What holds on the boundary for it; by default the model's.", None)
@@ -50,7 +51,7 @@ class ReactionDiffusion(Medium):
     """
 
     species: dict[str, Species] = field("The fields by name: `{u: {coefficient: 2e-5, initial: 1, rate: -u*v^2}}`.")
-    where: dict[str, Formula] = field("Quantities that the rates use, each evaluated once a cell.", {})
+    where: dict[str, Formula] = field("Quantities that rates and starts use, each evaluated once a cell.", {})
     boundary: Boundary = field("What holds on the boundary, as for `diffusion`, for species without their own.", {})
 
     @classmethod
@@ -93,11 +94,25 @@ class ReactionDiffusion(Medium):
                     why = "is a coordinate" if name in PLACES else "cannot be a name in formulas"
                     why = "stands for each species in its own coefficient" if name == OWN else why
                     yield Problem(f"'{name}' {why}: take another name", (field_name, name), at_key=True)
+        told = False
         for problem in self.rows.problems():
+            told = True
             row, *rest = problem.path
             path = problem.path if row == "where" else ("species", *rest)
             path = (*path, "rate") if row == "rate" and rest else path
             yield Problem(problem.text, path, problem.at_key, problem.code)
+        for start, formula in () if told else self._starts().items():
+            links = [f"{node.task}.{node.output}" for node in walk(formula.expr) if isinstance(node, Link)]
+            symbols = [node.name for node in walk(formula.expr) if isinstance(node, Symbol)]
+            for unknown in (*links, *(name for name in symbols if name not in PLACES)):
+                yield Problem(f"'{unknown}' has no value before the start", ("species", start, "initial"))
+                break
+
+    def _starts(self) -> dict[str, Formula]:
+        """The fields at the start, with what `where` says written out."""
+        given = {name: one.initial for name, one in self.species.items() if one.initial is not None}
+        meanings = {name: formula.expr for name, formula in self.where.items()}
+        return {name: Formula(_written_out(one.expr, meanings), one.span) for name, one in given.items()}
 
     def boundaries(self) -> Iterable[Boundary]:
         """Those of its species."""
@@ -117,9 +132,12 @@ class ReactionDiffusion(Medium):
 
         ground = Ground(cells_of(self, assembly), assembly)
         fields = []
-        for one, boundary in zip(self.species.values(), self.boundaries(), strict=True):
+        starts = self._starts()
+        for (name, one), boundary in zip(self.species.items(), self.boundaries(), strict=True):
             drift = None if one.coefficient is None else self.drift
-            fields.append(add_field(one, boundary, drift, ground, assembly).at)
+            fields.append(
+                add_field(one.model_copy(update={"initial": starts.get(name)}), boundary, drift, ground, assembly).at
+            )
         rows = self.rows
         self._must_be_finite(ground, fields, assembly)
         if any(one.rate is not None for one in self.species.values()):
@@ -163,6 +181,15 @@ class ReactionDiffusion(Medium):
             return self.measure(output, self.layout(state, next(iter(self.species))), state)
         name, _, what = output.partition(".")
         return self.measure(what or "field", self.layout(state, name), state)
+
+
+def _written_out(expr: Expr, meanings: Mapping[str, Expr]) -> Expr:
+    """A formula with symbols replaced by what they stand for."""
+    if isinstance(expr, Symbol) and expr.name in meanings:
+        return _written_out(meanings[expr.name], meanings)
+    if isinstance(expr, Call):
+        return replace(expr, args=tuple(_written_out(arg, meanings) for arg in expr.args))
+    return expr
 
 
 def _names(written: Mapping[str, Any], field_name: str) -> tuple[str, ...]:
