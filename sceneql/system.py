@@ -135,6 +135,10 @@ class Grid:
     """What is fed, where it does not vary; else -1."""
     outside: Any
     """(cells,) bool: not part of the domain."""
+    insides_at: int
+    """Volumes, 0 outside."""
+    box_at: int
+    """Low corner and sides of a cell, six numbers [m]."""
 
 
 class Assembly(Protocol):
@@ -194,6 +198,12 @@ class Assembly(Protocol):
 
         What else a model has in the state (tallies) must depend on the field alone, and nothing on it.
         """
+
+    def offer(self, output: str, grid: Grid) -> None:
+        """Say where a field of the model that is being assembled lies: its inflow follows its cells in the state."""
+
+    def field_of(self, link: Link) -> Grid | None:
+        """Where the field lies that a link is of; None where it is of none of this island."""
 
     def object(self, ref: Ref) -> Object:
         """The kind of an object of the script."""

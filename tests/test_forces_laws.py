@@ -18,6 +18,8 @@ from sceneql.simulation.solvers.rk4 import Rk4
 SCENE = """
 clock: {{end: 0.6 s}}
 models:
+  cloud:
+    diffusion: {{size: 2 2 2 m, corner: -1 -1 -1 m, cell: 0.5 m, of: number, coefficient: 0.1, initial: x + x*y}}
   gas:
     particles:
       positions:
@@ -43,6 +45,8 @@ FORCES = {
     "electric potential": '{electric: {charge: 0.3 C, potential: "x^2 + y^2 - 2*z^2 + sin(x*y)"}}',
     "electric formula": '{electric: {charge: 0.3 C, formula: ["-y", "x*t", "1"]}}',
     "electrostatic": "{electrostatic: {charge: 0.3 C, constant: 1}}",
+    "emission": "{emission: {into: cloud.concentration, rate: 3 m^3/s}}",
+    "field_gradient": "{field_gradient: {of: cloud.concentration, factor: 2 J}}",
     "force": '{force: {components: ["-vx*abs(vx)*m", "sin(3*t)", "x*y"]}}',
     "force potential": '{force: {potential: "m*exp(-x^2)*y"}}',
     "gravity": "gravity",
@@ -71,7 +75,7 @@ def test_energy_is_conserved_once_the_work_is_counted(tmp_path, name):
     assert sum(last) == pytest.approx(sum(first), abs=2e-8)
 
 
-@each_force
+@pytest.mark.parametrize("name", [name for name in FORCES if name != "emission"])  # which moves no mass
 def test_it_is_told_apart_from_no_force(tmp_path, name):
     acting, free = (
         watch(tmp_path, SCENE.format(force=force), [0.6], "gas.velocities", "net.bob.velocity")[0]
@@ -256,8 +260,9 @@ solvers: {main: {rk4: {step: 0.1 s}}}
 
 
 def slopes_known(name: str) -> bool:
-    """Whether a force gives its derivatives; between all masses and in eddies the island takes differences."""
-    return not name.startswith(("mutual_gravity", "electrostatic", "repulsion", "turbulence"))
+    """Whether a force gives its derivatives; between all masses, in eddies and in fields differences are taken."""
+    unknown = ("mutual_gravity", "electrostatic", "repulsion", "turbulence", "field_gradient", "emission")
+    return not name.startswith(unknown)
 
 
 @pytest.mark.parametrize("name", [*filter(slopes_known, FORCES)])

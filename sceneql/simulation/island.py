@@ -136,6 +136,7 @@ class IslandAssembly:
     _varying: list[tuple[int, Value]] = field(default_factory=list)
     _largest_step: float = float("inf")
     _grids: list[Grid] = field(default_factory=list)
+    _fields: dict[tuple[str, str], Grid] = field(default_factory=dict)
     _apart: bool = True
     _word: tuple[str, Span | None, str | None] = ("island", None, None)
     _remembered: dict[tuple[str, str | None], tuple[int, ...]] = field(default_factory=dict)
@@ -231,6 +232,14 @@ class IslandAssembly:
     def grid(self, grid: Grid) -> None:
         """Say that part of the state is a field (system.Assembly)."""
         self._grids.append(grid)
+
+    def offer(self, output: str, grid: Grid) -> None:
+        """Say where a field lies (system.Assembly)."""
+        self._fields[self._word[0], output] = grid
+
+    def field_of(self, link: Link) -> Grid | None:
+        """Where the field of a link lies (system.Assembly)."""
+        return self._fields.get((link.task, link.output))
 
     @property
     def only_field(self) -> Grid | None:

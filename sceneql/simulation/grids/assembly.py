@@ -136,6 +136,8 @@ class _Builder:
             varying=varying or reaction > 0,
             fed_at=-1 if varying or self.feeding or self.drift is not None else fed,
             outside=~self.inside,
+            insides_at=self.ground.volumes_at,
+            box_at=self.ground.box_at,
         )
 
     def _drifts(self, drift: Drift, flow: Flow, given: list[Condition], periodic: tuple[bool, ...]) -> None:

@@ -64,6 +64,7 @@ class Diffusion(Medium):
         ground = Ground(cells_of(self, assembly), assembly)
         grid = add_field(self, self.boundary, self.drift, ground, assembly)
         assembly.grid(grid)
+        assembly.offer("concentration", grid)
         assembly.remember(grid.at, *ground.memory)
 
     def layout(self, state: ModelState, output: str = "concentration") -> FieldLayout:

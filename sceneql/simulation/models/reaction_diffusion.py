@@ -135,9 +135,10 @@ class ReactionDiffusion(Medium):
         starts = self._starts()
         for (name, one), boundary in zip(self.species.items(), self.boundaries(), strict=True):
             drift = None if one.coefficient is None else self.drift
-            fields.append(
-                add_field(one.model_copy(update={"initial": starts.get(name)}), boundary, drift, ground, assembly).at
-            )
+            own = one.model_copy(update={"initial": starts.get(name)})
+            grid = add_field(own, boundary, drift, ground, assembly)
+            assembly.offer(name, grid)
+            fields.append(grid.at)
         rows = self.rows
         self._must_be_finite(ground, fields, assembly)
         if any(one.rate is not None for one in self.species.values()):

@@ -1,0 +1,35 @@
+"""What ties masses to a field on a grid."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from sceneql.kinds import Problem, Value
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.expression import Link
+
+if TYPE_CHECKING:
+    from sceneql.quantities.dimension import Dimension
+    from sceneql.system import Assembly
+
+
+def unfit(of: Value, name: str) -> Iterator[Problem]:
+    """What is wrong with a value that should be a field itself; ``name`` of the word's own field."""
+    if not isinstance(of.expr, Link):
+        yield Problem("this is the field of a model itself: `lake.concentration`", (name,))
+
+
+def dimension(of: Value) -> Dimension | None:
+    """Of the field."""
+    return of.expr.type.dimension
+
+
+def numbers(of: Value, assembly: Assembly) -> tuple[int, ...]:
+    """The integers of cell_weights_kernels. Raises ScriptError where a value is no field on a grid."""
+    assert isinstance(of.expr, Link)
+    grid = assembly.field_of(of.expr)
+    if grid is None:
+        text = f"'{of.expr.task}.{of.expr.output}' is no field on a grid"
+        raise ScriptError([Diagnostic("no-field", text, of.span, "name one of a `diffusion` or `reaction_diffusion`")])
+    return (grid.at, *grid.shape, grid.insides_at, grid.box_at, *map(int, grid.periodic))
