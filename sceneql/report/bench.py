@@ -17,6 +17,7 @@ from sceneql.failure import LimitRefused, RunFailure, Unsuitable
 from sceneql.files import whole
 from sceneql.graph import SimulationGraph
 from sceneql.quantities.diagnostic import ScriptError
+from sceneql.report.bench_grids import GridSection, grid_section
 from sceneql.report.bench_surfaces import Section, surface_section
 from sceneql.report.drift import Drift, drift
 from sceneql.report.order import observed_order
@@ -44,10 +45,11 @@ def bench(
     """Run every island by every solver that applies, and look at implicit surfaces by rays and meshes; as text.
 
     ``output`` is a folder, or the files' path without extension: CSV and JSON with all runs, SVGs of the error against
-    run time and step and of the drift of energy, HTML with all of it; what is of implicit surfaces, those of the first
-    picture at its start, has files of its own (``rays``, ``meshes``, ``surfaces``). ``words`` is a
-    folder of the user's own words; ``asked`` the relative error for which the cheapest solver is named. Raises
-    Unsuitable for a scene without either, RunFailure where no reference reaches the end.
+    run time and step and of the drift of energy, HTML with all of it. Fields are run on several grids (``grids``) and
+    their systems solved by every linear solver (``linear``); what is of implicit surfaces, those of the first picture
+    at its start, has files of its own (``rays``, ``meshes``, ``surfaces``). ``words`` is a folder of the user's own
+    words; ``asked`` the relative error for which the cheapest solver is named. Raises Unsuitable for a scene without
+    either, RunFailure where no reference reaches the end.
     """
     frame = pictured(graph)
     if not graph.islands and frame is None:
@@ -91,7 +93,11 @@ def bench(
     if section is not None:
         lines += section.lines
         summary.append(section.lines[0])
-    made = _write(stem, graph, rows, orders, drifts, [graph.settings.about, *summary], section)
+    on_grids = grid_section(graph, stem)
+    if on_grids is not None:
+        lines += on_grids.lines
+        summary += [line for line in on_grids.lines if not line.startswith(" ")]
+    made = _write(stem, graph, rows, orders, drifts, [graph.settings.about, *summary], section, on_grids)
     return "\n".join([*lines, *_drift_lines(drifts), f"wrote {', '.join(map(str, made))}"])
 
 
@@ -159,6 +165,7 @@ def _write(
     drifts: Sequence[Drift],
     summary: Sequence[str],
     section: Section | None,
+    on_grids: GridSection | None,
 ) -> list[Path]:
     """Write all files of the report."""
     table, data, time, step, moved, page = (
@@ -174,7 +181,10 @@ def _write(
         plots += [("Error against run time", time), ("Error against step", step)]
         tables.append(_table(rows))
         files.append(table)
-    _write_json(data, graph, rows, orders, drifts, section)
+    _write_json(data, graph, rows, orders, drifts, section, on_grids)
+    if on_grids is not None:
+        tables += on_grids.tables
+        files += on_grids.files
     if drifts:
         drift_against_time(moved, graph.name, drifts)
         plots.append(("Drift of energy", moved))
@@ -222,6 +232,7 @@ def _write_json(
     orders: Orders,
     drifts: Sequence[Drift],
     section: Section | None,
+    on_grids: GridSection | None,
 ) -> None:
     found: dict[str, Any] = {
         "scene": graph.name,
@@ -233,6 +244,8 @@ def _write_json(
     }
     if section is not None:
         found["surfaces"] = section.data
+    if on_grids is not None:
+        found["fields"] = on_grids.data
     write_json(path, found)
 
 

@@ -1,0 +1,75 @@
+"""The bench of fields on grids: errors against exact solutions, observed orders in space, linear solvers."""
+
+from __future__ import annotations
+
+import csv
+import math
+
+import pytest
+
+from sceneql.pipeline import load
+from sceneql.report.bench_grids import grid_section, linear_runs, on_grids
+
+PLATE = "size: 1 1 m, cell: 1/16 m, initial: sin(pi*x)*sin(pi*y), boundary: {rest: {value: 0}}"
+
+
+def field(folder, fields, solver="tr_bdf2", objects="", end=0.05):
+    path = folder / "scene.yaml"
+    model = f"{{diffusion: {{of: number, coefficient: 1, {fields}}}}}"
+    path.write_text(
+        f"clock: {{end: {end} s, fps: 20}}\n{objects}models: {{plate: {model}}}\nsolvers: {{main: {solver}}}\n"
+        "outputs: {table: {record: {of: [plate.mass]}}}\n",
+        encoding="utf-8",
+    )
+    graph = load(path)
+    return graph, graph.islands[0]
+
+
+def test_the_error_of_a_grid_is_that_of_the_exact_solution(tmp_path):
+    runs, order, how = on_grids(*field(tmp_path, PLATE))
+    assert how == "exact"
+    assert order == pytest.approx(2, abs=0.05)
+    for run in runs:
+        n = round(1 / run.cell)
+        assert run.cells == n * n
+        # The first mode of n cells decays by 8 n^2 sin^2(pi/2n); its root mean square is half of its largest value.
+        wrong = math.expm1((2 * math.pi**2 - 8 * n * n * math.sin(math.pi / 2 / n) ** 2) * 0.05)
+        assert run.error == pytest.approx(0.5 * wrong, rel=0.12)
+
+
+@pytest.mark.parametrize(("edges", "low", "high"), [("cut_cell", 1.8, 2.4), ("staircase", 0.4, 1.5)])
+def test_the_order_in_space_is_that_of_the_boundary(tmp_path, edges, low, high):
+    start = f"domain: ball, flat: yes, edges: {edges}, cell: 1/8 m, initial: x*x"
+    _, order, how = on_grids(*field(tmp_path, start, objects="objects: {ball: {sphere: {radius: 1 m}}}\n", end=0.02))
+    assert "tr_bdf2" in how
+    assert low < order < high
+
+
+def test_every_linear_solver_tells_its_residuals(tmp_path):
+    found = {run.linear: run for run in linear_runs(*field(tmp_path, PLATE, "{implicit_euler: {step: 5 ms}}"))}
+    assert set(found) == {"direct", "multigrid", "conjugate_gradient", "gauss_seidel", "sor", "fast_transform"}
+    assert found["multigrid"].iterations < found["conjugate_gradient"].iterations < found["gauss_seidel"].iterations
+    for name in ("multigrid", "conjugate_gradient"):
+        shares = found[name].residuals
+        assert len(shares) == found[name].iterations + 1
+        assert shares[0] == 1
+        assert shares[-1] < 1e-6
+
+
+def test_the_section_is_written(tmp_path):
+    graph, _ = field(tmp_path, PLATE, "{implicit_euler: {step: 5 ms}}")
+    section = grid_section(graph, tmp_path / "out")
+    assert section.lines[0].startswith("plate on grids, exact in time: observed order 2.0")
+    rows = list(csv.DictReader(section.files[0].read_text().splitlines()))
+    assert [float(row["cell"]) for row in rows] == sorted((float(row["cell"]) for row in rows), reverse=True)
+    assert {row["linear"] for row in csv.DictReader(section.files[1].read_text().splitlines())} >= {"multigrid", "sor"}
+
+
+def test_a_scene_without_fields_has_no_section(tmp_path):
+    path = tmp_path / "ball.yaml"
+    path.write_text(
+        "models: {ball: {particles: {positions: [0 0 0 m], mass: 1 kg}}}\nforces: [gravity]\n"
+        "outputs: {table: {record: {of: [ball.positions]}}}\n",
+        encoding="utf-8",
+    )
+    assert grid_section(load(path), tmp_path / "out") is None
