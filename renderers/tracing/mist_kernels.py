@@ -13,15 +13,11 @@ GAUSS = 0.5 / math.sqrt(3.0)
 
 
 @lean_inlined
-def within(field, i, j, k, x, y, z):
-    """The interpolant at a place inside cell (i, j, k) of nodes."""
-    x, y, z = x - i, y - j, z - k
-    low = (1.0 - x) * field[k, j, i] + x * field[k, j, i + 1]
-    up = (1.0 - x) * field[k, j + 1, i] + x * field[k, j + 1, i + 1]
-    front = (1.0 - y) * low + y * up
-    low = (1.0 - x) * field[k + 1, j, i] + x * field[k + 1, j, i + 1]
-    up = (1.0 - x) * field[k + 1, j + 1, i] + x * field[k + 1, j + 1, i + 1]
-    return (1.0 - z) * front + z * ((1.0 - y) * low + y * up)
+def within(a, b, c, d, e, f, g, h, x, y, z):
+    """The interpolant of a cell's corner values, x fastest, at a place from 0 to 1."""
+    front = (1.0 - y) * (a + x * (b - a)) + y * (c + x * (d - c))
+    back = (1.0 - y) * (e + x * (f - e)) + y * (g + x * (h - g))
+    return front + z * (back - front)
 
 
 @lean(types.void(_rows, _rows, _reals, types.float64[:, :, ::1], _reals, _reals, _reals))
@@ -31,6 +27,8 @@ def depths(starts, ways, ends, field, low, high, out):
     All in coordinates in which node (k, j, i) of the field stands at (i, j, k). Between nodes the interpolant along a
     ray is a cubic of t, which Gauss's rule of two points integrates exactly.
     """
+    nz, ny, nx = field.shape
+    values = field.reshape(nx * ny * nz)
     for n in range(starts.shape[0]):
         first = 0.0
         last = ends[n]
@@ -49,9 +47,9 @@ def depths(starts, ways, ends, field, low, high, out):
             continue
         ox, oy, oz = starts[n, 0], starts[n, 1], starts[n, 2]
         dx, dy, dz = ways[n, 0], ways[n, 1], ways[n, 2]
-        i = min(max(math.floor(ox + first * dx), 0), field.shape[2] - 2)
-        j = min(max(math.floor(oy + first * dy), 0), field.shape[1] - 2)
-        k = min(max(math.floor(oz + first * dz), 0), field.shape[0] - 2)
+        i = min(max(math.floor(ox + first * dx), 0), nx - 2)
+        j = min(max(math.floor(oy + first * dy), 0), ny - 2)
+        k = min(max(math.floor(oz + first * dz), 0), nz - 2)
         t = first
         while t < last:
             tx = (i + (1.0 if dx > 0.0 else 0.0) - ox) / dx if dx != 0.0 else math.inf
@@ -61,9 +59,14 @@ def depths(starts, ways, ends, field, low, high, out):
             if end > t:
                 middle, half = 0.5 * (t + end), GAUSS * (end - t)
                 a, b = middle - half, middle + half
-                sum2 = within(field, i, j, k, ox + a * dx, oy + a * dy, oz + a * dz)
-                sum2 += within(field, i, j, k, ox + b * dx, oy + b * dy, oz + b * dz)
-                total += 0.5 * (end - t) * sum2
+                at = (k * ny + j) * nx + i
+                up = at + nx
+                c0, c1, c2, c3 = values[at], values[at + 1], values[up], values[up + 1]
+                at, up = at + nx * ny, up + nx * ny
+                c4, c5, c6, c7 = values[at], values[at + 1], values[up], values[up + 1]
+                both = within(c0, c1, c2, c3, c4, c5, c6, c7, ox + a * dx - i, oy + a * dy - j, oz + a * dz - k)
+                both += within(c0, c1, c2, c3, c4, c5, c6, c7, ox + b * dx - i, oy + b * dy - j, oz + b * dz - k)
+                total += 0.5 * (end - t) * both
                 t = end
             if end >= last:
                 break
@@ -73,6 +76,6 @@ def depths(starts, ways, ends, field, low, high, out):
                 j += 1 if dy > 0.0 else -1
             else:
                 k += 1 if dz > 0.0 else -1
-            if i < 0 or j < 0 or k < 0 or i > field.shape[2] - 2 or j > field.shape[1] - 2 or k > field.shape[0] - 2:
+            if i < 0 or j < 0 or k < 0 or i > nx - 2 or j > ny - 2 or k > nz - 2:
                 break
         out[n] = total
