@@ -87,6 +87,36 @@ def test_masses_climb_what_they_give(tmp_path):
     assert last[1][0] - last[0][0] < first[1][0] - first[0][0] - 0.01
 
 
+def test_a_field_drives_a_spring_and_what_is_drawn(tmp_path):
+    script = """
+clock: {end: 1 s}
+models:
+  plate:
+    diffusion:
+      {size: 1 1 m, cell: 0.25 m, of: number, coefficient: 0, initial: x, source: "2", probes: {here: 0.6 0.3 m}}
+  swing:
+    mass_spring:
+      masses: {bob: {position: 1 0 0 m, mass: 1 kg}, wall: {position: 0 0 0 m, fixed: yes}}
+      springs: []
+forces: {pull: {spring: {from: swing.bob.position, to: 0 0 0 m, stiffness: 4 N/m*plate.here, rest: 0 m}}}
+objects: {ball: {sphere: {radius: 0.1 m*plate.here}}}
+solvers: {main: {dop853: {tolerance: 1e-10}}}
+"""
+    ((here, x),) = watch(tmp_path, script, [1], "plate.here", "swing.bob.position")
+    assert here == pytest.approx(0.625 + 2)  # the center of its cell is at 0.625 m
+    from scipy.integrate import solve_ivp
+
+    exact = solve_ivp(lambda t, y: [y[1], -4 * (0.625 + 2 * t) * y[0]], [0, 1], [1, 0], rtol=1e-11, atol=1e-12)
+    assert x[0] == pytest.approx(exact.y[0, -1], abs=1e-7)
+
+
+def test_a_probe_outside_is_told(tmp_path):
+    from sceneql.quantities.diagnostic import ScriptError
+
+    with pytest.raises(ScriptError, match="the probe 'far' stands outside"):
+        watch(tmp_path, pond(more="probes: {far: 9 9 m}"), [0], "pond.mass")
+
+
 @pytest.mark.parametrize(
     ("force", "said"),
     [

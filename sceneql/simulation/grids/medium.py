@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -25,6 +26,7 @@ from sceneql.kinds import (
 )
 from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Link, Symbol, walk
@@ -33,10 +35,11 @@ from sceneql.simulation.grids.drift import Drift
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.system import ModelState
+    from sceneql.system import Assembly, ModelState
 
 PLACE = Annotated[Formula, Symbols(("x", "y", "z"))]
 ANYTHING = Annotated[Formula, Symbols(("x", "y", "z", "t", "c"))]
+MEASURES = ("field", "concentration", "centers", "mass", "inflow", "max", "min", "mean")
 SIZES = Annotated[tuple[float, ...], Quantity(dim.LENGTH, (None,))]
 
 
@@ -57,6 +60,13 @@ class FieldLayout:
     def count(self) -> int:
         """Cells, also those outside."""
         return self.shape[0] * self.shape[1] * self.shape[2]
+
+    def cell(self, place: tuple[float, ...]) -> int:
+        """The number of the cell at a place [m]; -1 beyond the grid."""
+        index = [math.floor((x - low) / side) for x, low, side in zip(place, self.low, self.spacing, strict=False)]
+        i, j, k = (*index, 0)[:3]
+        nx, ny, nz = self.shape
+        return i + nx * (j + ny * k) if 0 <= i < nx and 0 <= j < ny and 0 <= k < nz else -1
 
     def centers(self) -> Floats:
         """(cells, 3) [m]."""
@@ -126,6 +136,11 @@ class Medium(Model):
     depth: FixedLength = field("How thick a flat domain is.", "1 m", above=0)
     cell: FixedLength = field("Largest side of a cell.", above=0)
     drift: Drift | None = field("A given flow that carries what spreads.", None)
+    probes: dict[str, SIZES] = field(
+        "Places by name: the value of the cell there is an output of that name, which other parts may read while all "
+        "is solved together.",
+        {},
+    )
 
     def boundaries(self) -> Iterable[Boundary]:
         """What holds on the boundary, of every field."""
@@ -135,6 +150,11 @@ class Medium(Model):
     def _fits(self) -> Medium:
         if (self.size is None) == (self.domain is None):
             raise ValueError("it spreads in one of `domain` and `size`")
+        for name, place in self.probes.items():
+            if name in MEASURES or not name.isidentifier():
+                raise ValueError(f"a probe cannot be called '{name}'")
+            if len(place) not in (2, 3):
+                raise ValueError("a probe stands at two or three numbers, `0.5 0.2 m`")
         if self.size is None:
             return self
         if self.drift is not None:
@@ -181,8 +201,18 @@ class Medium(Model):
             return None
         return Oscillation(0.0, rate + carried, f"the {ways} over cells of {self.cell:g} m", ("cell",))
 
+    def must_hold_probes(self, layout: FieldLayout, assembly: Assembly) -> None:
+        """Raises ScriptError where a probe stands in no cell of the domain."""
+        volumes = assembly.numbers()[layout.volumes_at : layout.volumes_at + layout.count]
+        for name, place in self.probes.items():
+            cell = layout.cell(place)
+            if cell < 0 or not volumes[cell] > 0.0:
+                raise ScriptError(
+                    [Diagnostic("no-cell", f"the probe '{name}' stands outside the domain", assembly.line())]
+                )
+
     def measure(self, what: str, layout: FieldLayout, state: ModelState) -> Any:
-        """Of a field: `field` (cells of the domain,), `centers` (cells, 3), mass, inflow, max, min, mean (floats)."""
+        """Of a field: `field` (cells of the domain,), `centers` (cells, 3), or a float: another measure, a probe."""
         import numpy as np
 
         field = state.y[layout.at : layout.at + layout.count]
@@ -203,11 +233,12 @@ class Medium(Model):
                 return float(field[inside].min())
             case "mean":
                 return float(np.average(field, weights=volumes))
-        raise KeyError(what)
+        return float(field[layout.cell(self.probes[what])])
 
 
-def gives_of(field: str, unit: Dimension) -> Mapping[str, Gives]:
+def gives_of(field: str, unit: Dimension, written: Mapping[str, Any]) -> Mapping[str, Gives]:
     """The outputs of `measure`, in the unit of a field; ``field``: its line of the manual."""
+    probes = written.get("probes")
     one, amount = quantity_type(unit), quantity_type(unit * dim.VOLUME)
     return {
         "field": Gives(quantity_type(unit, (None,)), field),
@@ -217,6 +248,10 @@ def gives_of(field: str, unit: Dimension) -> Mapping[str, Gives]:
         "max": Gives(one, "Largest value."),
         "min": Gives(one, "Least value."),
         "mean": Gives(one, "Mean over the volume."),
+        **{
+            name: Gives(one, "The value of the cell there.")
+            for name in map(str, probes if isinstance(probes, Mapping) else ())
+        },
     }
 
 

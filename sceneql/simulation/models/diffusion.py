@@ -44,7 +44,7 @@ class Diffusion(Medium):
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
         """In the unit of what spreads."""
         unit = UNITS.get(str(written.get("of", "concentration")), dim.PLAIN)
-        found = dict(gives_of("The field in every cell of the domain.", unit))
+        found = dict(gives_of("The field in every cell of the domain.", unit, written))
         return {"concentration": found.pop("field"), **found}
 
     def boundaries(self) -> Iterable[Boundary]:
@@ -66,6 +66,7 @@ class Diffusion(Medium):
         assembly.grid(grid)
         assembly.offer("concentration", grid)
         assembly.remember(grid.at, *ground.memory)
+        self.must_hold_probes(layout_of(grid.at, ground.memory, assembly.numbers()), assembly)
 
     def layout(self, state: ModelState, output: str = "concentration") -> FieldLayout:
         """Where its field lies, for pictures."""

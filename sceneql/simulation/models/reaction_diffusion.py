@@ -64,7 +64,7 @@ class ReactionDiffusion(Medium):
         """Those of every species."""
         found: dict[str, Gives] = {}
         for name in _names(written, "species"):
-            of_one = dict(gives_of(f"The field {name} in every cell of the domain.", dim.PLAIN))
+            of_one = dict(gives_of(f"The field {name} in every cell of the domain.", dim.PLAIN, written))
             found["centers"] = of_one.pop("centers")
             found[name] = of_one.pop("field")
             found |= {f"{name}.{what}": gives for what, gives in of_one.items()}
@@ -145,6 +145,7 @@ class ReactionDiffusion(Medium):
             system = RateSystem(tuple(rows.states), tuple(rows.rates()), rows.where)
             add_reaction(system, ground, fields, assembly)
         assembly.remember(*ground.memory, *fields)
+        self.must_hold_probes(layout_of(fields[0], ground.memory, assembly.numbers()), assembly)
 
     def _must_be_finite(self, ground: Ground, fields: list[int], assembly: Assembly) -> None:
         """Raises ScriptError where a rate has no finite value in a cell at the start."""
