@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from sceneql.kinds.stable_step import Oscillation
@@ -141,10 +141,10 @@ class Solver(Kind):
         """Its compiled step and control."""
         raise NotImplementedError
 
-    def on_grid(self, grid: Grid, floats: Floats) -> Solver:
+    def on_grid(self, grid: Grid, floats: Callable[[], Floats]) -> Solver:
         """What marches in its place where an island is one field on a grid: itself, unless it chooses by itself.
 
-        ``floats``: those of the island, which the grid's offsets are into.
+        ``floats`` gives those of the island, which the grid's offsets are into.
         """
         return self
 

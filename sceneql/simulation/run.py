@@ -89,7 +89,7 @@ class IslandRun:
         made.act()
         made.found.raise_errors()
         if assembly.only_field is not None:
-            self.solver = self.solver.on_grid(assembly.only_field, assembly.numbers())
+            self.solver = self.solver.on_grid(assembly.only_field, assembly.numbers)
         stepper, end = self.solver.stepper(), graph.settings.clock.end
         if assembly.only_field is not None and stepper.on_grid is not None:
             stepper = stepper.on_grid

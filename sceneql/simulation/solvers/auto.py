@@ -11,6 +11,8 @@ from sceneql.simulation.solvers.tr_bdf2 import TrBdf2
 from sceneql.simulation.tableau import DORMAND_PRINCE
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from sceneql.frame import Floats
     from sceneql.system import Grid, Stepper
 
@@ -47,11 +49,11 @@ class Auto(Solver):
             stiff=replace(Radau(tolerance=self.tolerance).stepper(), name="radau"),
         )
 
-    def on_grid(self, grid: Grid, floats: Floats) -> Solver:
+    def on_grid(self, grid: Grid, floats: Callable[[], Floats]) -> Solver:
         """exact where it applies, else tr_bdf2."""
         from sceneql.simulation.grids.separable import axes_of
 
-        if axes_of(grid, floats) is not None:
+        if axes_of(grid, floats()) is not None:
             return Exact()
         return TrBdf2(tolerance=min(100.0 * self.tolerance, 0.1))
 
