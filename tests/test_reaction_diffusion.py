@@ -208,3 +208,13 @@ def wrong(folder, species, more=""):
 )
 def test_what_is_wrong_is_told(tmp_path, species, more, said):
     assert said in wrong(tmp_path, species, more)
+
+
+def test_what_marches_one_field_alone_is_not_measured_on_several(tmp_path):
+    from sceneql.compiler.catalogue import Catalogue
+    from sceneql.report.work_precision import solvers
+
+    graph = Fields(tmp_path, GRAY_SCOTT, "heun", 1, where="{uvv: u*v^2}", cell="1/4 m").run.graph
+    found = solvers(graph, graph.islands[0], Catalogue())
+    assert not {"adi", "exact"} & set(found)
+    assert {"tr_bdf2", "rk4"} <= set(found)

@@ -24,7 +24,9 @@ class Model(Kind):
     family: ClassVar[str] = "models"
     kinematic: ClassVar[bool] = False
     is_field: ClassVar[bool] = False
-    """Whether it is a field on a grid (system.Grid)."""
+    """Whether it is made of fields on a grid."""
+    is_one_field: ClassVar[bool] = False
+    """Whether it is a single one (system.Grid), for solvers that are for those alone."""
     has_bodies: ClassVar[bool] = True
     """Whether forces that name no model act on it."""
 

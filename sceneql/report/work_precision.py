@@ -80,7 +80,7 @@ def solvers(graph: SimulationGraph, island: Island, catalogue: Catalogue) -> dic
     step, tolerance = settings(graph, island)
     given = {"step": step, "tolerance": tolerance}
     own = graph.tasks[island.solver]
-    field = all(cast(Model, graph.tasks[name].kind).is_field for name in island.models)
+    field = all(cast(Model, graph.tasks[name].kind).is_one_field for name in island.models)
     found: dict[str, Solver] = {own.word: cast(Solver, own.kind)}
     for word in catalogue.words("solvers"):
         cls = cast("type[Solver] | None", catalogue.load("solvers", word))

@@ -27,6 +27,8 @@ class Diffusion(Medium):
     (1980), 4.2; Crank, The Mathematics of Diffusion (1975).
     """
 
+    is_one_field = True
+
     of: Literal["concentration", "temperature", "number"] = field(
         "What spreads, which gives its unit.", "concentration"
     )
