@@ -52,6 +52,16 @@ def test_it_is_the_exponential_of_the_rate(tmp_path_factory, ends, periodic, dee
     np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-12 * max(1.0, np.abs(wanted).max()))
 
 
+def test_it_does_not_know_the_frame_rate(tmp_path):
+    ends = []
+    for frames in (3, 7):
+        march = Field(tmp_path, "exact", 1.0, size="1 0.6 m", cell="0.1 m", initial="x").run.march
+        for frame in range(1, frames + 1):
+            state, _ = march.advance(frame / frames)
+        ends.append((state.tobytes(), march.statistics.steps))
+    assert ends[0] == ends[1]
+
+
 @pytest.mark.parametrize("n", [16, 33])
 def test_a_mode_decays_as_it_should(tmp_path, n):
     """sin(pi x) cos(2 pi y) on cells decays by the eigenvalues 4 n^2 sin^2(pi/2n) and 4 n^2 sin^2(pi/n)."""

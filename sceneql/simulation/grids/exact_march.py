@@ -70,6 +70,7 @@ class ExactMarch(March):
         cells = slice(grid.at, grid.at + n)
         volume = float(self.floats[grid.volumes_at])
         if self._modes is None:
+            self.statistics.steps = 1  # one to any instant
             self._modes = (
                 self._weights(self._y1[cells]),
                 self._weights(self.floats[grid.fed_at : grid.fed_at + n] / volume),
@@ -84,6 +85,5 @@ class ExactMarch(March):
             y[cells] = field.real.ravel()
             # Fluxes inside cancel: what there is more of has come in.
             y[grid.at + n] += volume * float((y[cells] - self._y1[cells]).sum())
-        self.statistics.steps += 1
         self.statistics.seconds += time.perf_counter() - started
         return y, False
