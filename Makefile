@@ -17,6 +17,7 @@ test: $(VENV)/installed-test
 
 test-long: $(VENV)/installed-test
 	SCENEQL_FUZZ=1000000 $(BIN)/python -m pytest tests -k "fuzz"
+	SCENEQL_LONG=1 $(BIN)/python -m pytest tests/test_same_bytes.py
 
 gallery: $(VENV)/installed
 	$(BIN)/sceneql gallery update

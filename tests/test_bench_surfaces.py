@@ -20,7 +20,7 @@ NUMBERS = st.floats(-2.0, 2.0).map(lambda number: round(number, 3))
 POINTS = st.tuples(NUMBERS, NUMBERS, NUMBERS).map(np.array)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(POINTS, POINTS, POINTS, POINTS)
 def test_the_distance_to_a_triangle_is_the_least_of_all_its_points(point, a, b, c):
     found = to_triangles(point, np.stack([a, b, c]))

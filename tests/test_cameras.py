@@ -48,7 +48,7 @@ def box_moment(center, sides, **more):
     return FakeMoment(box=(low, high), **more), low, high
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(POINT, SIDES, POINT, SIZES, st.floats(0.2, 1.4))  # wider, the nearest corner may touch the camera first
 def test_perspective_fit_frames_the_box_and_touches_the_margin(center, sides, direction, size, angle):
     assume(np.linalg.norm(direction) > 0.1)
@@ -60,7 +60,7 @@ def test_perspective_fit_frames_the_box_and_touches_the_margin(center, sides, di
     np.testing.assert_allclose(view.axes[2], np.divide(direction, np.linalg.norm(direction)), atol=1e-9)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(POINT, SIDES, POINT, POINT, SIZES)
 def test_perspective_fit_with_a_target_keeps_it_in_the_middle(center, sides, target, direction, size):
     assume(np.linalg.norm(direction) > 0.1)
@@ -71,7 +71,7 @@ def test_perspective_fit_with_a_target_keeps_it_in_the_middle(center, sides, tar
     np.testing.assert_allclose(seen(view, [target])[0], 0, atol=1e-6)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(POINT, SIDES, SIZES)
 def test_fit_is_the_nearest_place(center, sides, size):
     """Opposite edges of the picture are both touched, so nearer and sideways a corner is lost."""
@@ -82,7 +82,7 @@ def test_fit_is_the_nearest_place(center, sides, size):
     assert touched.any()
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(POINT, POINT, POINT, SIZES)
 def test_perspective_looks_from_its_position_at_its_target(position, target, up, size):
     assume(np.linalg.norm(np.subtract(position, target)) > 1e-3)
@@ -127,7 +127,7 @@ def test_following_and_standing_exclude_each_other():
         Perspective(follow=Ref("ball"), position=const([0, 0, 5]))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(POINT, SIDES, SIZES, st.sampled_from(["x", "-x", "y", "-y", "z", "-z"]))
 def test_orthographic_fit_frames_the_box_in_front_of_its_window(center, sides, size, along):
     moment, low, high = box_moment(center, sides)
@@ -155,7 +155,7 @@ def test_orthographic_looks_along_any_direction_and_follows():
     assert depth[0] > 0
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(POINT, SIDES, SIZES, st.floats(-1, 1.2), st.floats(0, 20))
 def test_turntable_keeps_its_distance_and_the_box_in_the_picture_all_the_way(center, sides, size, tilt, time):
     camera = Turntable(around=Ref("a"), tilt=const(tilt), seconds=5.0, start=const(0.4))
@@ -180,7 +180,7 @@ def test_turntable_at_a_given_distance():
     assert view.origin == pytest.approx((0, 0, 4))
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(POINT, SIDES, SIZES, st.floats(0, 8))
 def test_turntable_follows_at_the_distance_that_its_box_asks_for(place, sides, size, time):
     ball = Sphere(position=link("fall", "position", (3,)))

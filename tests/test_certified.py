@@ -248,7 +248,7 @@ def test_a_ray_that_begins_on_a_surface_does_not_meet_it_there():
         assert t[0] == pytest.approx(1.4, abs=1e-9)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(tape=tapes(), ray=some_rays())
 def test_bounds_on_a_ray_contain_values_and_slopes(tape, ray):
     origin, direction, t0, t1 = ray
@@ -270,7 +270,7 @@ def test_bounds_on_a_ray_contain_values_and_slopes(tape, ray):
         assert (change <= most * np.diff(t) + blur).all()
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(tape=tapes(names=SMOOTH), ray=some_rays())
 def test_no_root_of_a_surface_is_missed(tape, ray):
     origin, direction, t0, t1 = ray

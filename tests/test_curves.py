@@ -53,7 +53,7 @@ def test_the_curves_are_those_of_the_tree() -> None:
 
 
 @given(many, scalars | vectors | turns, curves, instants, st.none() | st.floats(0.5, 9))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 def test_evaluators_agree(spacing: Any, values: Any, curve: str, times: list[float], cycle: float | None) -> None:
     keys = keys_of(spacing, values, curve, cycle)
     together = evaluate(keys, {TIME: np.array(times)}, arrays=True)
@@ -67,7 +67,7 @@ def test_evaluators_agree(spacing: Any, values: Any, curve: str, times: list[flo
 
 
 @given(many, scalars, curves)
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 def test_it_goes_through_its_keys_and_holds_outside(spacing: list[float], values: list[float], curve: str) -> None:
     keys = keys_of(spacing, values, curve)
     for key in keys.keys:
@@ -78,7 +78,7 @@ def test_it_goes_through_its_keys_and_holds_outside(spacing: list[float], values
 
 
 @given(many, scalars, st.lists(st.tuples(numbers, numbers), min_size=1, max_size=5))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_a_cubic_has_the_slopes_that_are_given(spacing: Any, values: Any, slopes: Any) -> None:
     count = min(len(spacing), len(slopes))
     keys = keys_of(spacing, values, "cubic", slopes=slopes[:count])
@@ -92,7 +92,7 @@ def test_a_cubic_has_the_slopes_that_are_given(spacing: Any, values: Any, slopes
 
 
 @given(st.lists(gaps, min_size=3, max_size=5), st.tuples(numbers, numbers))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_a_cubic_without_slopes_keeps_a_straight_line(spacing: list[float], line: tuple[float, float]) -> None:
     times = np.cumsum(spacing) - 2.0
     keys = keys_of(spacing, [float(line[0] + line[1] * t) for t in times], "cubic")
@@ -101,7 +101,7 @@ def test_a_cubic_without_slopes_keeps_a_straight_line(spacing: list[float], line
 
 
 @given(many, scalars)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_smooth_rests_at_its_keys_and_never_overshoots(spacing: list[float], values: list[float]) -> None:
     keys = keys_of(spacing, values, "smooth")
     slope = differentiate(keys, TIME)
@@ -114,7 +114,7 @@ def test_smooth_rests_at_its_keys_and_never_overshoots(spacing: list[float], val
 
 
 @given(many, scalars, curves, st.floats(0.5, 9), st.floats(0, 1), st.integers(-5, 5))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_a_cycle_repeats(spacing: Any, values: Any, curve: str, cycle: float, part: float, count: int) -> None:
     keys = keys_of(spacing, values, curve, cycle)
     first = evaluate(keys.keys[0].time, {})

@@ -43,7 +43,7 @@ def octahedron(folder):
     st.floats(3, 357),
     st.booleans(),
 )
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 def test_an_arc_lies_on_its_ellipse(ellipse, first, turned, positive):
     """An arc made from its center, told by its ends and flags as SVG does, is found again."""
     rx, ry, tilt = ellipse
@@ -203,7 +203,7 @@ def test_a_mesh_is_a_domain(tmp_path):
 
 
 @given(st.integers(3, 80), st.integers(0, 1000))
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 def test_a_polygon_knows_its_nearest_side(count, seed):
     draw = np.random.Generator(np.random.Philox(seed))
     angle = 2 * np.pi * np.arange(count) / count

@@ -23,7 +23,7 @@ def tape_of(text, bounds=None):
     return shape.tape, shape.low, shape.high
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(LEVEL, st.floats(0.3, 3.0), st.floats(0.3, 3.0), st.booleans())
 def test_what_is_proved_empty_has_no_point_inside(level, a, b, pole):
     text = f"sin({a}*x)*cos({b}*y) + z^2/2 + {level}" + (f" + sqrt(x + {a} - 1)" if pole else "")
@@ -36,7 +36,7 @@ def test_what_is_proved_empty_has_no_point_inside(level, a, b, pole):
         assert np.isnan(values).all()
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.tuples(*[st.floats(-0.5, 0.5)] * 3), st.floats(0.01, 0.4))
 def test_a_small_ball_anywhere_is_not_empty(center, radius):
     x, y, z = center

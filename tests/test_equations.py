@@ -193,7 +193,7 @@ SMOOTH = st.sampled_from([*PLAIN, *OTHERS])
 FORMULAS = st.recursive(LEAVES, lambda inner: st.builds(str.format, SMOOTH, inner, inner), max_leaves=8)
 
 
-@settings(max_examples=4, deadline=None)
+@settings(max_examples=4)
 @given(st.lists(FORMULAS, min_size=3, max_size=3), FORMULAS, st.lists(st.floats(-1, 1), min_size=3, max_size=3))
 def test_the_jacobian_is_the_derivative_of_the_rate(rows, helper, y):
     where = {"u": "p*q - r", "w": helper.replace("w", "u")}

@@ -35,7 +35,7 @@ def by_exponential(march, t):
 
 @given(st.lists(st.sampled_from(range(4)), min_size=6, max_size=6), st.lists(st.booleans(), min_size=3, max_size=3),
        st.booleans(), st.floats(1e-3, 3))  # fmt: skip
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_it_is_the_exponential_of_the_rate(tmp_path_factory, ends, periodic, deep, t):
     sides = {}
     for axis in range(3 if deep else 2):

@@ -54,7 +54,7 @@ def same(a: Any, b: Any) -> None:
 
 @pytest.mark.parametrize("name", ORDINARY)
 @given(data=st.data())
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_python_and_numpy_agree(name: str, data: st.DataObject) -> None:
     reduces = name in ("sum", "mean", "norm", "count")
     for prefix in ((),) if reduces else ((), (None,)):
@@ -202,7 +202,7 @@ NOT_NEAR_ZERO = ("div", "mod", "normalize", "length", "about", "norm", "hypot", 
 
 @pytest.mark.parametrize("name", [*DERIVED, "component"])
 @given(seed=st.integers(0, 2**32 - 1))
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 def test_derivatives_are_central_differences(name: str, seed: int) -> None:
     call, symbols = call_of(name)
     low, high = INSIDE.get(name, (-2.0, 2.0))
@@ -234,7 +234,7 @@ def test_derivatives_are_central_differences(name: str, seed: int) -> None:
 
 
 @given(trees, st.floats(0.3, 2))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_derivatives_of_random_expressions(tree: Expr, at: float) -> None:
     x = Symbol("x")
     text = show(tree)
@@ -281,7 +281,7 @@ def test_what_has_no_derivative_says_so() -> None:
 
 @pytest.mark.parametrize("name", [n for n in ORDINARY if n not in ("random",)])
 @given(data=st.data())
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 def test_components_have_the_values_of_the_whole(name: str, data: st.DataObject) -> None:
     call, symbols = call_of(name)
     env = {symbol: value_of(symbol.type.shape, data.draw) for symbol in symbols}

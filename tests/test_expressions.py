@@ -35,7 +35,7 @@ def code_of(text: str) -> str:
 
 
 @given(trees)
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=400)
 def test_what_is_shown_parses_to_the_same_tree(tree: Expr) -> None:
     text = show(tree)
     assume(len(text) <= 10_000)
@@ -302,7 +302,7 @@ def both(tree: Any) -> tuple[Expr, pint.Quantity]:
 
 
 @given(nested)
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 def test_dimensions_and_values_are_what_pint_says(tree: Any) -> None:
     try:
         ours, theirs = both(tree)

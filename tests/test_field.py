@@ -114,34 +114,34 @@ def check_box(tape, low, high):
 
 
 @pytest.mark.parametrize("name", NAMES)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(ray=rays())
 def test_enclosure_of_every_operation_contains_its_values(name, ray):
     check_segment(of_one(name), *ray)
 
 
-@settings(max_examples=500, deadline=None)
+@settings(max_examples=500)
 @given(tape=tapes(), ray=rays())
 def test_enclosure_of_any_tape_contains_its_values(tape, ray):
     check_segment(tape, *ray)
 
 
 @pytest.mark.parametrize("name", NAMES)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(ray=rays())
 def test_interval_of_every_operation_contains_its_values(name, ray):
     low, size, _, width = ray
     check_box(of_one(name), low, low + np.abs(size) * abs(width))
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(tape=tapes(), ray=rays())
 def test_interval_of_any_tape_contains_its_values(tape, ray):
     low, size, _, width = ray
     check_box(tape, low, low + np.abs(size) * abs(width))
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(tape=tapes(most=5), point=st.tuples(COORDINATES, COORDINATES, COORDINATES))
 def test_gradient_agrees_with_differences(tape, point):
     h = 1e-5
@@ -188,7 +188,7 @@ def test_gradient_of_every_operation(name):
 SMOOTH = ("add", "sub", "mul", "square", "sin", "cos", "density", "min", "max", "abs", "neg")
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(tape=tapes(), ray=rays())
 def test_no_crossing_is_missed_and_none_invented(tape, ray):
     origin, direction, t0, t1 = ray
@@ -213,7 +213,7 @@ def test_no_crossing_is_missed_and_none_invented(tape, ray):
         assert blocked != MISS
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(tape=tapes(names=SMOOTH), ray=rays())
 def test_the_way_out_is_the_way_into_the_negated_field(tape, ray):
     origin, direction, t0, t1 = ray
@@ -408,7 +408,7 @@ def _of_numbers(name, operation):
 
 
 @pytest.mark.parametrize("name", [name for name, operation in OPERATIONS.items() if _of_numbers(name, operation)])
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(numbers=st.tuples(COORDINATES, COORDINATES, COORDINATES))
 def test_tapes_agree_with_the_expressions_of_scripts(name, numbers):
     symbols = ("x", "y", "z")[: ARGUMENTS[name]]
@@ -441,7 +441,7 @@ def test_expressions_become_tapes():
         builder.expression(Vector((x, x)), {"x": builder.x})
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(numbers=st.lists(NUMBERS, min_size=12, max_size=12), point=st.tuples(COORDINATES, COORDINATES, COORDINATES))
 def test_densities_move_with_affine_maps(numbers, point):
     matrix = np.array(numbers).reshape(3, 4)

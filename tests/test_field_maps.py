@@ -69,7 +69,7 @@ def test_linear_fields_are_themselves_up_to_a_curved_shore():
 
 
 @given(st.lists(st.sampled_from([0.0, 1.0]), min_size=FLAT.count, max_size=FLAT.count))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_no_value_is_made_that_a_field_of_steps_does_not_have(values):
     inside = inside_of(FLAT, Ball((0.4, 1.4, 0.0), 0.9))
     between = Interpolation(FLAT, inside)
@@ -153,7 +153,7 @@ def test_the_surface_of_a_ball_is_of_second_order_and_faces_outwards():
 
 
 @given(st.integers(0, 2**32 - 1))
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_surfaces_of_any_values_are_closed(seed):
     axes, *_ = nodes(6)
     values = np.pad(np.random.default_rng(seed).standard_normal((4, 4, 4)), 1, constant_values=1.0)

@@ -89,7 +89,7 @@ def precise():
 def test_one_argument(op):
     lowest, highest, value = UNARY[op]
 
-    @settings(max_examples=400, deadline=None)
+    @settings(max_examples=400)
     @given(a=forms(lowest, highest), **PLACES)
     @example(a=(2e154, 0.0, 1e154), tau=0.0, sides=(-1.0, 0.0))
     def holds(a, tau, sides):
@@ -102,7 +102,7 @@ def test_one_argument(op):
 def test_two_arguments(op):
     lowest, highest, value = BINARY[op]
 
-    @settings(max_examples=400, deadline=None)
+    @settings(max_examples=400)
     @given(a=forms(lowest, highest), b=forms(lowest, highest), **PLACES)
     def holds(a, b, tau, sides):
         check(op, value, a, b, tau, sides)

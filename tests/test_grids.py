@@ -157,7 +157,7 @@ def test_the_explicit_limit_holds_on_a_lake(tmp_path, edges):
 
 @given(st.lists(st.floats(-1, 1), min_size=3, max_size=3), st.floats(-1.5, 1.5))
 @example([0.0, 0.0, 2.225073858507e-311], 0.0)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_what_lies_below_a_plane_is_what_is_counted_there(slopes, phi):
     points = (np.stack(np.meshgrid(*[np.arange(40)] * 3), axis=-1).reshape(-1, 3) + 0.5) / 40 - 0.5
     counted = np.mean(phi + points @ slopes < 0)
@@ -175,7 +175,7 @@ def test_a_cell_is_closed_by_its_boundary():
 
 
 @given(st.permutations(range(6)))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_a_polygon_crosses_itself_where_two_of_its_sides_meet(order):
     circle = [(math.cos(k), math.sin(k)) for k in range(6)]
     ring = tuple(circle[k] for k in order)

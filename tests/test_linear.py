@@ -17,7 +17,7 @@ from sceneql.simulation.linear import krylov_kernels as krylov
 UNIT = 2.3e-16
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(n=st.integers(1, 40), seed=st.integers(0, 2**32))
 def test_dense_factors_solve_to_rounding(n, seed):
     draw = np.random.default_rng(seed)
@@ -29,7 +29,7 @@ def test_dense_factors_solve_to_rounding(n, seed):
     assert residual <= 100 * n * UNIT * (np.abs(matrix).sum(axis=1).max() * np.abs(x).max() + 1)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(n=st.integers(1, 40), seed=st.integers(0, 2**32))
 def test_complex_factors_solve_to_rounding(n, seed):
     draw = np.random.default_rng(seed)
@@ -77,7 +77,7 @@ def net(columns, rows, seed):
     return matrix
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     columns=st.integers(1, 24),
     rows=st.integers(1, 14),

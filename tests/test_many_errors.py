@@ -194,7 +194,7 @@ def told(chosen: set[tuple[str, str, str]]) -> list[tuple[str, str, str]]:
     return [(old, new, code) for old, new, code in chosen if new not in hidden]
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.sets(st.sampled_from(MISTAKES), min_size=2, max_size=12))
 def test_many_mistakes_give_each_its_error(folder, chosen):
     expected = sorted((code, line_of(old)) for old, _, code in told(chosen))
@@ -212,7 +212,7 @@ BREAKS = [
 """Lines behind which nothing can be read."""
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.sets(st.sampled_from(MISTAKES), min_size=1, max_size=8), st.sampled_from(BREAKS), st.randoms())
 def test_what_stands_before_a_break_is_read(folder, chosen, line, rng):
     """Nothing is said of names that might stand behind it, and all else before it is."""

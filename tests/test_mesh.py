@@ -244,7 +244,7 @@ def test_undefined_places_are_outside():
     assert volume(found.vertices, found.triangles) == pytest.approx(2 * math.pi / 3, rel=0.02)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(tape=tapes(), cell=st.sampled_from([0.13, 0.25, 0.4]))
 def test_any_field_whatever_gives_a_closed_manifold_of_finite_vertices(tape, cell):
     found = polygonise(tape, (-1.5,) * 3, (1.5,) * 3, cell)
@@ -324,7 +324,7 @@ def test_sheets_that_meet_in_one_face_are_parted():
         assert_closed_manifold(cut_sharp(" + ".join(waves), 1.0, 10))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(tape=tapes(), cell=st.sampled_from([0.13, 0.25, 0.4]))
 def test_any_field_whatever_gives_a_closed_sharp_manifold_of_finite_vertices(tape, cell):
     found = polygonise_sharp(tape, (-1.5,) * 3, (1.5,) * 3, cell)
@@ -360,7 +360,7 @@ def boxes(draw):
     return low, low + draw(st.sampled_from([1e-3, 0.1, 0.5, 2.0]))
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(tape=tapes(), place=boxes(), seed=st.integers(0, 9))
 def test_evaluators_of_many_points_agree_to_the_bit_also_when_simplified(tape, place, seed):
     low, high = place
@@ -382,7 +382,7 @@ def test_evaluators_of_many_points_agree_to_the_bit_also_when_simplified(tape, p
         assert np.array_equal(slope[-1, :, :40].T, slopes, equal_nan=True)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(tape=tapes(), place=boxes(), seed=st.integers(0, 9))
 def test_steepness_bounds_how_fast_any_tape_changes(tape, place, seed):
     low, high = place
@@ -439,7 +439,7 @@ def test_refined_cells_meet_the_others_without_gaps(text, half, cells):
     assert (np.abs(field_values(tape_of(text), found.vertices))[steep] / slopes[steep]).max() < 1e-6
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(tape=tapes(), cell=st.sampled_from([0.3, 0.5]))
 def test_any_field_whatever_gives_a_closed_manifold_when_refined(tape, cell):
     found, left = refined(tape, (-1.5,) * 3, (1.5,) * 3, cell)

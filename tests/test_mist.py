@@ -41,7 +41,7 @@ def ray(rng):
 
 
 @given(st.integers(0, 2**32 - 1))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 def test_an_even_field_absorbs_by_the_length_of_the_way(seed):
     start, way = ray(np.random.default_rng(seed))
     first, last = chord(start, way, np.zeros(3), [5.0, 4.0, 3.0])
@@ -49,7 +49,7 @@ def test_an_even_field_absorbs_by_the_length_of_the_way(seed):
 
 
 @given(st.integers(0, 2**32 - 1))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 def test_the_integral_of_a_product_of_places_is_exact(seed):
     k, j, i = np.meshgrid(np.arange(4.0), np.arange(5.0), np.arange(6.0), indexing="ij")
     start, way = ray(np.random.default_rng(seed))
@@ -62,7 +62,7 @@ def test_the_integral_of_a_product_of_places_is_exact(seed):
 
 
 @given(st.integers(0, 2**32 - 1), st.floats(0.0, 1.0))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_parts_of_a_way_add_up_and_the_way_back_is_as_deep(seed, share):
     rng = np.random.default_rng(seed)
     field = rng.random((4, 5, 6))

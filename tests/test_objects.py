@@ -261,7 +261,7 @@ def test_two_blobs_merge_at_the_known_distance():
     assert middle(1.3691905863 - 1e-9) < 0 < middle(1.3691905863 + 1e-9)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     st.lists(st.tuples(*[st.floats(-1, 1)] * 3, st.floats(0.1, 0.8), st.floats(-1, 2)), min_size=1, max_size=7),
     st.floats(0.02, 0.98),
@@ -312,7 +312,7 @@ def test_a_size_that_varies_below_zero_fails_at_its_time():
         list(Sphere(radius=link("m", "r")).lower("ball", IDENTITY, FakeMoment(time=2.0, given={("m", "r"): -0.1})))
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(st.tuples(*[st.floats(-1, 1)] * 4), st.tuples(*[st.floats(-3, 3)] * 3))
 def test_rotations_keep_lengths_and_boxes_hold_their_corners(turn, point):
     assume(np.linalg.norm(turn) > 1e-3)

@@ -41,19 +41,19 @@ def check_enclosures(tape, origin, direction, t0, t1):
 
 
 @pytest.mark.parametrize("name", NAMES)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(ray=rays())
 def test_enclosures_of_every_operation_contain_its_values(name, ray):
     check_enclosures(of_one(name), *ray)
 
 
-@settings(max_examples=500, deadline=None)
+@settings(max_examples=500)
 @given(tape=tapes(), ray=rays())
 def test_enclosures_of_any_tape_contain_its_values(tape, ray):
     check_enclosures(tape, *ray)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(tape=tapes(), ray=rays(), size=st.sampled_from([1e-20, 1e-6, 1e3, 1e8, 1e20, 1e30, 1e300]))
 def test_enclosures_far_from_one_claim_nothing_wrong(tape, ray, size):
     origin, direction, t0, t1 = ray
@@ -67,7 +67,7 @@ def bundle(origin, direction, generator, count, spread):
     )
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(tape=tapes(), ray=rays(), spread=st.sampled_from([0.0, 1e-3, 0.5]), seed=st.integers(0, 99))
 def test_no_crossing_of_any_tape_is_missed_in_packets(tape, ray, spread, seed):
     origin, direction, t0, t1 = ray
@@ -106,7 +106,7 @@ def test_blobs_in_packets_have_the_certified_roots(centers, radius):
     assert ((cast_together(tape, origins, directions, near, far, anywhere=True)[0] == HIT) == hit).all()
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     count=st.sampled_from([1, 3, 20, 200]),
     seed=st.integers(0, 999),
@@ -151,7 +151,7 @@ POLYNOMIALS = {
 
 
 @pytest.mark.parametrize("text", POLYNOMIALS)
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(seed=st.integers(0, 999), clip=st.sampled_from([0.0, 0.6, 1.1]), spread=st.sampled_from([0.02, 1.0]))
 def test_polynomials_are_met_where_the_certified_routine_meets_them(text, seed, clip, spread):
     tape = tape_of(f"max({text}, sqrt(x^2 + y^2 + z^2) - {clip})" if clip else text)

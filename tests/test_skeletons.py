@@ -152,7 +152,7 @@ def check_box(tape, low, high):
 
 
 @pytest.mark.parametrize(("kernel", "kind"), CASES)
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(
     origin=POINTS,
     direction=POINTS,
@@ -168,7 +168,7 @@ def test_enclosures_contain_every_value(kernel, kind, origin, direction, size, r
 
 
 @pytest.mark.parametrize("kernel", KERNELS)
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(origin=POINTS, direction=POINTS, size=st.sampled_from([1e-4, 0.05, 0.5, 4.0]))
 def test_enclosures_of_a_crowd_contain_every_value(kernel, origin, direction, size):
     tape = tape_of(crowd(kernel))

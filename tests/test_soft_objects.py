@@ -210,7 +210,7 @@ def test_a_polygon_is_filled_once():
         assert (radii * np.cos((angles + math.pi) % (2 * math.pi / 5) - math.pi / 5) < 0.99).all()
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.lists(st.tuples(*[st.floats(-2, 2)] * 3), min_size=3, max_size=6, unique=True), st.booleans())
 def test_a_spline_runs_through_its_points(points, closed):
     points = np.array(points)

@@ -53,7 +53,7 @@ factors = st.tuples(st.sampled_from(list(UNITS)), st.integers(-3, 3).filter(bool
 
 
 @given(st.lists(factors, min_size=1, max_size=4), st.booleans())
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 def test_a_product_of_units_is_what_pint_says(parts: list[tuple[str, int, str]], spaced: bool) -> None:
     gap = " " if spaced else ""
     text, theirs = "", "1"

@@ -15,7 +15,7 @@ from sceneql.simulation.placement import affine, apply
 TURN = (0.8, 0.3, -0.4, 0.33)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(
     st.tuples(*[st.floats(-2, 2)] * 3),
     st.tuples(*[st.floats(-2, 2)] * 3),
