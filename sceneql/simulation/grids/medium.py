@@ -7,10 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import model_validator
-
 from sceneql.kinds import (
-    Exceeds,
     File,
     FixedLength,
     FixedScalar,
@@ -18,6 +15,7 @@ from sceneql.kinds import (
     Gives,
     Model,
     ObjectRef,
+    Problem,
     Quantity,
     Record,
     Symbols,
@@ -100,14 +98,13 @@ class Part(Record):
     near: SIZES | None = field("Only around this place, of two or three numbers.", None)
     within: FixedLength | None = field("How far around it.", None, above=0)
 
-    @model_validator(mode="after")
-    def _one(self) -> Part:
+    def problems(self) -> Iterable[Problem]:
+        """More than one thing that holds, or none; a place without its size."""
         given = [self.value is not None, self.flux is not None, self.robin is not None, self.periodic, self.open]
         if sum(given) != 1:
-            raise ValueError("a part of the boundary has one of `value`, `flux`, `robin`, `periodic` and `open`")
+            yield Problem("a part of the boundary has one of `value`, `flux`, `robin`, `periodic` and `open`")
         if (self.near is None) != (self.within is None) or (self.near is not None and len(self.near) not in (2, 3)):
-            raise ValueError("`near` is a place of two or three numbers, and goes with `within`")
-        return self
+            yield Problem("`near` is a place of two or three numbers, and goes with `within`")
 
     @property
     def chosen(self) -> bool:
@@ -146,40 +143,41 @@ class Medium(Model):
         """What holds on the boundary, of every field."""
         raise NotImplementedError
 
-    @model_validator(mode="after")
-    def _fits(self) -> Medium:
+    def problems(self) -> Iterable[Problem]:
+        """Two places or none, sides that do not fit together, too many cells, boundaries of no side."""
         if (self.size is None) == (self.domain is None):
-            raise ValueError("it spreads in one of `domain` and `size`")
+            yield Problem("it spreads in one of `domain` and `size`")
         for name, place in self.probes.items():
             if name in MEASURES or not name.isidentifier():
-                raise ValueError(f"a probe cannot be called '{name}'")
+                yield Problem(f"a probe cannot be called '{name}'", ("probes", name), at_key=True)
             if len(place) not in (2, 3):
-                raise ValueError("a probe stands at two or three numbers, `0.5 0.2 m`")
+                yield Problem("a probe stands at two or three numbers, `0.5 0.2 m`", ("probes", name))
         if self.size is None:
-            return self
+            return
         if self.drift is not None:
-            self._drifts(len(self.size))
+            yield from self._misled(self.drift, len(self.size))
         if len(self.size) not in (2, 3) or (self.corner is not None and len(self.corner) != len(self.size)):
-            raise ValueError("a domain has two or three sides, and its corner as many numbers")
+            yield Problem("a domain has two or three sides, and its corner as many numbers")
+            return
         shape = counts(self.size, self.cell)
         cells = shape[0] * shape[1] * shape[2]
         if cells > MOST_CELLS:
-            raise Exceeds(f"{cells:.3g} cells: at most {MOST_CELLS:,} are possible; take a larger `cell`")
+            text = f"{cells:.3g} cells: at most {MOST_CELLS:,} are possible; take a larger `cell`"
+            yield Problem(text, code="limit-refused")
         known = (*SIDES[: 2 * len(self.size)], "rest")
-        for name, part in (item for boundary in self.boundaries() for item in boundary.items()):
-            if name not in known and not part.chosen:
-                raise ValueError(
-                    f"the boundary has no side '{name}': it has {', '.join(known)}; or say `where` or `near`"
-                )
-        return self
+        for name in dict.fromkeys(
+            name
+            for boundary in self.boundaries()
+            for name, part in boundary.items()
+            if name not in known and not part.chosen
+        ):
+            yield Problem(f"the boundary has no side '{name}': it has {', '.join(known)}; or say `where` or `near`")
 
-    def _drifts(self, sides: int) -> None:
-        assert self.drift is not None
-        velocity = self.drift.velocity
-        if velocity is not None and velocity.expr.type.shape != (sides,):
-            raise ValueError(f"the velocity of a drift needs {sides} components, one for each side")
-        if velocity is None and sides == 3:
-            raise ValueError("a deep drift has a velocity, not a stream function")
+    def _misled(self, drift: Drift, sides: int) -> Iterable[Problem]:
+        if drift.velocity is not None and drift.velocity.expr.type.shape != (sides,):
+            yield Problem(f"the velocity of a drift needs {sides} components, one for each side", ("drift",))
+        if drift.velocity is None and sides == 3:
+            yield Problem("a deep drift has a velocity, not a stream function", ("drift",))
 
     def spreading(self, coefficient: Formula | None) -> Oscillation | None:
         """What limits the explicit step of a field of constant D: the decay of the checkerboard, and the drift.

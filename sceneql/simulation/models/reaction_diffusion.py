@@ -88,6 +88,7 @@ class ReactionDiffusion(Medium):
         if not self.species:
             yield Problem("there is nothing to spread: name a species", ("species",))
             return
+        yield from super().problems()
         for field_name, names in (("species", self.species), ("where", self.where)):
             for name in names:
                 if name in (*PLACES, OWN) or not name.isidentifier():
