@@ -23,7 +23,7 @@ class Trace(Renderer):
     )
     samples: Literal[1, 2, 4, 8, 16, 32, 64] = field("Rays in a pixel in which things meet.", 8)
     packets: bool = field(
-        "The camera's rays meet implicit solids in packets: up to a third faster, but twice as much to compile once.",
+        "Camera rays meet implicit solids in packets: up to a third faster, but more to compile once.",
         False,
     )
 
@@ -31,7 +31,10 @@ class Trace(Renderer):
         """Of the tracer."""
         from renderers.tracing import certified
 
-        return certified("renderers.tracing.draw") if traced else ("renderers.tracing.draw",)
+        if not traced:
+            return ("renderers.tracing.draw",)
+        bundles = ("renderers.tracing.bundles_kernels",) if self.packets else ()
+        return (*bundles, *certified("renderers.tracing.draw"))
 
     def draw(self, frame: Any) -> Any:
         """The Picture of a frame: linear (h, w, 3) and the number of undecided pixels."""

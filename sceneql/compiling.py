@@ -106,13 +106,13 @@ def call_by_name(kernel):
 
     The name is the function's own: what numba makes of it differs from process to process, and callers are cached.
     """
-    for made in kernel.overloads.values():
-        called = copy(made.fndesc)
-        called.mangled_name = f"{made.fndesc.modname}.{made.fndesc.qualname}"
-        binding.add_symbol(called.mangled_name, made.library.get_pointer_to_function(made.fndesc.mangled_name))
-        context = made.target_context
-        context.remove_user_function(made.entry_point)
-        context.insert_user_function(made.entry_point, called, [])
+    (made,) = kernel.overloads.values()  # of one signature: a name stands for one function
+    called = copy(made.fndesc)
+    called.mangled_name = f"{made.fndesc.modname}.{made.fndesc.qualname}"
+    binding.add_symbol(called.mangled_name, made.library.get_pointer_to_function(made.fndesc.mangled_name))
+    context = made.target_context
+    context.remove_user_function(made.entry_point)
+    context.insert_user_function(made.entry_point, called, [])
 
 
 @contextmanager

@@ -141,8 +141,8 @@ def kernel(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any
 
     def compile(function: Callable[..., Any]) -> Any:
         folder = cache_folder(function.__module__)
-        numba.config.CACHE_DIR = str(folder)
         with alone(folder / function.__name__), collecting_later():
+            numba.config.CACHE_DIR = str(folder)
             made = numba.njit(signature, cache=True, pipeline_class=KernelCompiler, **COMMON, **options)(function)
         if not numba.config.DISABLE_JIT:
             call_by_name(made)
@@ -181,8 +181,8 @@ def address(function: Any, kind: Any) -> Any:
 def function_at(kind: Any) -> Any:
     """What makes of an ``address`` a function that kernels can call.
 
-    numba can take functions as arguments, but asks Python for their addresses at every call (50 us each); and a kernel
-    that another one names is compiled into it once more.
+    numba can take functions as arguments, but asks Python for their addresses at every call (50 us each). Kernels call
+    by name what is always the same one (compiling.call_by_name).
     """
     if numba.config.DISABLE_JIT:
         return lambda function: function

@@ -139,6 +139,8 @@ def render(
     except BaseException as error:
         error.kept = [*report.files, *_kept(sinks, error)]  # type: ignore[attr-defined]
         raise
+    finally:
+        gc.unfreeze()
     report.warnings = (*missing(report.present, graph.tasks), *watch.warnings())
     report.conserved = watch.account()
     seconds, count = _compiled()

@@ -271,3 +271,11 @@ def test_the_explicit_limit_is_sharp_and_its_failure_is_located(tmp_path):
     assert failure.value.part == "plate"
     assert failure.value.span is not None
     assert "unstable" in failure.value.message
+
+
+def test_an_exchange_of_no_size_is_a_closed_side_also_where_nothing_spreads(tmp_path):
+    sides = "{left: {robin: {coefficient: 0 m/s}}}"
+    for coefficient in ("0", "x"):
+        field = Field(tmp_path, "{tr_bdf2: {step: 0.1 s}}", 1.0, coefficient=coefficient, initial="x", boundary=sides)
+        before = field.at(0.0).read("mass")
+        assert field.at(1.0).read("mass") == pytest.approx(before, rel=1e-13)

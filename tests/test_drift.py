@@ -122,6 +122,18 @@ def test_strength_varies_in_time(tmp_path):
     assert np.corrcoef(field.values, exact)[0, 1] > 0.9999
 
 
+def test_a_wind_that_turns_is_the_wind_from_the_other_side(tmp_path):
+    ends = []
+    for velocity, strength in (("[1, 0]", "-1"), ("[-1, 0]", "1")):
+        field = drifted(
+            tmp_path, f"{{velocity: '{velocity}', strength: {strength}}}", "{tr_bdf2: {step: 10 ms}}", 1, initial="0",
+            boundary="{left: {value: 2}, right: {value: t + 3}}", cell="1/32 m",
+        )  # fmt: skip
+        ends.append(field.at(0.6).values.copy())
+    np.testing.assert_allclose(ends[0], ends[1], rtol=0, atol=1e-12)
+    assert ends[0].max() > 3
+
+
 def test_three_dimensions(tmp_path):
     sides = "{left: {periodic: yes}, bottom: {periodic: yes}, back: {periodic: yes}}"
     field = drifted(

@@ -62,9 +62,12 @@ def test_a_product_of_units_is_what_pint_says(parts: list[tuple[str, int, str]],
         text += f"{gap}{joint}{gap}{name}" + ("" if power == 1 else f"^{power}")
         theirs += f"{'/' if joint == '/' else '*'}{of_pint(name)}**{power}"
     wanted = PINT.Quantity(1.0, theirs)
+    scale = wanted.to_base_units().magnitude
+    if not 1e-300 < scale < 1e300:  # no double may hold it, or a step to it
+        return
     unit = parse_unit(text)
     assert unit.dimension == dimension_in_pint(wanted)
-    assert unit.scale == pytest.approx(wanted.to_base_units().magnitude, rel=1e-9)
+    assert unit.scale == pytest.approx(scale, rel=1e-9)
 
 
 @given(st.floats(-1000, 1000))

@@ -112,8 +112,10 @@ def plan_of(tape: Tape) -> NDArray[int64]:
     last = len(tape.code) - 1
     rows = [last] if tape.code[last, 0] != MAX else [int(row) for row in tape.code[last, 1:3]]
     clipped = len(rows) > 1
+    # Its parts are gathered for each bundle: those of another row are not.
+    alone = sum(int(op) in OF_PARTS for op in tape.code[:, 0]) == 1
     for row in rows:
-        if (found := density_of(tape, row)) is not None:
+        if alone and (found := density_of(tape, row)) is not None:
             return np.array([*found, clipped, -1], dtype=np.int64)
     for row in rows:
         if (degrees := degrees_of(tape, row)) is not None:

@@ -1,7 +1,7 @@
 # mypy: ignore-errors
 """Kernels that others find by an integer, which may stand among the integers that they are given.
 
-A kernel that another one names is compiled into it once more; by its number it is only called.
+By its number a kernel calls what only the run knows.
 """
 
 from typing import Any

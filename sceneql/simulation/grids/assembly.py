@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -144,10 +145,15 @@ class _Builder:
         """What goes through the boundary with the drift, and the drift itself."""
         from sceneql.simulation.grids.carrying import add_drift
 
+        forth, back = self._exchange(flow.through, given), self._exchange([-out for out in flow.through], given)
+        add_drift(drift, flow, self.at, self.ground, periodic, (*forth, *back), self.assembly)
+
+    def _exchange(self, through: Sequence[Floats], given: list[Condition]) -> tuple[int, int]:
+        """Offsets of what a flow out through the boundary brings in a second, and of its part that leaves."""
         assembly, n = self.assembly, self.count
         leaving, coming = np.zeros(n), np.zeros(n)
         later: list[tuple[Condition, Floats]] = []
-        for one, out in zip(given, flow.through, strict=True):
+        for one, out in zip(given, through, strict=True):
             np.add.at(leaving, one.cells, np.maximum(out, 0.0))
             into = np.maximum(-out, 0.0)
             if one.formula is not None and into.any():
@@ -161,7 +167,7 @@ class _Builder:
             assembly.term("internal", f"{KERNELS}:begin", (n, base, brought), self._dummy(f"{KERNELS}:begin"))
         for one, into in later:
             self._faces_kernel(one, brought, assembly.floats(into))
-        add_drift(drift, flow, self.at, self.ground, periodic, brought, leaving, assembly)
+        return brought, assembly.floats(leaving)
 
     def _start(self) -> Floats:
         initial = self.field.initial

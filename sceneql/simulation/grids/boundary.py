@@ -90,7 +90,8 @@ def conditions(boundary: Boundary, cells: Cells, line: Span | None) -> tuple[lis
             periodic[axis] = True
         else:
             found.append(_condition(part, cells, np.flatnonzero(mine)))
-    return [one for one in found if len(one.cells)], (periodic[0], periodic[1], periodic[2])
+    alive = [one for one in found if len(one.cells) and (one.open or one.resistance < float("inf"))]
+    return alive, (periodic[0], periodic[1], periodic[2])
 
 
 HELP = "give each face to one part: say `where` or `near`, or name other sides"

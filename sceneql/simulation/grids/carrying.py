@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from numpy import int64
     from numpy.typing import NDArray
 
-    from sceneql.frame import Floats
     from sceneql.simulation.grids.assembly import Ground
     from sceneql.simulation.grids.drift import Drift
     from sceneql.simulation.grids.flow import Flow
@@ -25,19 +24,20 @@ LIMITERS = {"none": UPWIND, "van_leer": VAN_LEER, "koren": KOREN}
 
 
 def add_drift(
-    drift: Drift, flow: Flow, at: int, ground: Ground, periodic: tuple[bool, ...], brought: int, leaving: Floats,
+    drift: Drift, flow: Flow, at: int, ground: Ground, periodic: tuple[bool, ...], exchange: tuple[int, ...],
     assembly: Assembly,
 ) -> None:  # fmt: skip
     """Add the drift of the field at ``at`` in y.
 
-    ``brought``: offset of what comes in through the boundary a second (cells,); ``leaving``: flow out through it.
+    ``exchange``: offsets of what comes in through the boundary a second (cells,) and of the flow out through it
+    (cells,), and of both where the flow runs backwards.
     """
     axes = [assembly.floats(one) for one in flow.axes]
     strength = assembly.value(drift.strength)
     cells = ground.cells
     ints = (
         at, *cells.shape, ground.divisors_at, ground.volumes_at, *(*axes, axes[0])[:3], *map(int, periodic),
-        LIMITERS[drift.limiter], strength, brought, assembly.floats(leaving), at + ground.count,
+        LIMITERS[drift.limiter], strength, *exchange, at + ground.count,
     )  # fmt: skip
     assembly.term("close", KERNELS, ints, lambda: Slopes(SLOPES, *_places(at, cells.shape, len(axes), periodic)))
 

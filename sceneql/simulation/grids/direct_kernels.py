@@ -17,7 +17,7 @@ from sceneql.simulation.grids.linear_kernels import (
     noted,
     to_prepare,
 )
-from sceneql.simulation.linear import fronts_kernels as fronts
+from sceneql.simulation.linear.fronts_kernels import factor_system, solve_system
 
 VALUES, FACTORS, SCRATCH, ENTRIES = range(4)
 
@@ -52,7 +52,7 @@ def factor_direct(plan, nx, ny, nz, scale, volume, sink, gx, gy, gz, own):
             value -= gz[front]
         own[e] = value
     factors = own[count:]
-    return fronts.factor_system(plan[ENTRIES + 2 * count :], own, factors, factors[plan[FACTORS] :], True)
+    return factor_system(plan[ENTRIES + 2 * count :], own, factors, factors[plan[FACTORS] :], True)
 
 
 @lean_inlined
@@ -62,7 +62,7 @@ def solve_direct(plan, r, d, own):
     for c in range(r.size if r.size < d.size else d.size):
         d[c] = r[c]
     factors = own[count:]
-    fronts.solve_system(plan[ENTRIES + 2 * count :], own, factors, d, factors[plan[FACTORS] :], True)
+    solve_system(plan[ENTRIES + 2 * count :], own, factors, d, factors[plan[FACTORS] :], True)
 
 
 @lean(SOLVE)

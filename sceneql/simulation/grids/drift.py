@@ -16,7 +16,7 @@ SAMPLES = {2: 24, 3: 8}
 """Places along each side at which a flow is looked at before the run."""
 LIMITED = 4.0
 """No step h lets new extrema arise up to h sum |v|/spacing = 1/2 (Sweby 1984, with limiters up to 2), for the method
-that bounds h times this sum and factor by 2: the explicit Euler method."""
+that bounds h times this sum and factor by 2: the explicit Euler method. Without a limiter up to twice that."""
 
 
 class Drift(Record):
@@ -74,4 +74,4 @@ class Drift(Record):
             known = dict(zip(map(Symbol, "xyz"), (*place, 0.0), strict=False))
             speeds = [abs(float(evaluate(part, known))) for part in velocity]
             most = max(most, sum(speed / side for speed, side in zip(speeds, spacing, strict=True)))
-        return LIMITED * abs(float(self.strength.number())) * most
+        return (2.0 if self.limiter == "none" else LIMITED) * abs(float(self.strength.number())) * most

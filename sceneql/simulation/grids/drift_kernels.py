@@ -7,7 +7,7 @@ is the upstream cell's and half a limited slope (Sweby 1984, SIAM J. Numer. Anal
 smooth; where the cell behind it is missing, or none is asked for, the upstream cell's alone.
 
 ints: at, nx, ny, nz, divisors, volumes (0 outside), flows along x, y, z, 1 where periodic along x, y, z, limiter,
-strength (in floats), brought, leaving, entry of the inflow.
+strength (in floats), brought, leaving, both for a strength below 0, entry of the inflow.
 """
 
 from sceneql.kernels import lean, lean_inlined
@@ -74,9 +74,10 @@ def carry(t, y, rate, floats, ints):
                     rate[at + before] -= flow * value / floats[divisors + before]
                     rate[at + cell] += flow * value / floats[divisors + cell]
     inflow = 0.0
+    brought, leaving = (ints[14], ints[15]) if strength >= 0.0 else (ints[16], ints[17])
     for cell in range(n):
-        through = strength * (floats[ints[14] + cell] - floats[ints[15] + cell] * c[cell])
+        through = abs(strength) * (floats[brought + cell] - floats[leaving + cell] * c[cell])
         if through != 0.0:
             rate[at + cell] += through / floats[divisors + cell]
             inflow += through
-    rate[ints[16]] += inflow
+    rate[ints[18]] += inflow

@@ -32,8 +32,9 @@ def carry(t, y, entries, floats, ints):
     strength = floats[ints[13]]
     n = nx * ny * nz
     c = y[at : at + n]
+    leaving = ints[15] if strength >= 0.0 else ints[17]
     for cell in range(n):
-        entries[cell] -= strength * floats[ints[15] + cell] / floats[divisors + cell]
+        entries[cell] -= abs(strength) * floats[leaving + cell] / floats[divisors + cell]
     first = n
     for axis in range(3 if nz > 1 else 2):
         flows, periodic = ints[6 + axis], ints[9 + axis] == 1

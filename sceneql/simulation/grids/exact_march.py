@@ -31,10 +31,11 @@ class ExactMarch(March):
             raise ScriptError([Diagnostic("no-grid", message, spans[0], "let auto march it")])
         axes = axes_of(grid, self.floats)
         if axes is None:
+            _, _, _, spans = self.system.ranges[0]
             raise LimitRefused(
                 "an exact solution needs a box of two cells or more along each side, whose coefficient, boundary and "
                 "sources do not vary (a source may, with the place)",
-                None,
+                spans[0],
                 "let auto march it",
             )
         self._grid, self._axes = grid, axes

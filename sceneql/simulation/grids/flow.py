@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sceneql.failure import LimitRefused
 from sceneql.quantities.derivative import components
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.evaluate import evaluate
@@ -165,8 +166,12 @@ def _projected(
         scaled = csr_array((1.0 / np.maximum(matrix.diagonal(), 1e-300), (np.arange(n),) * 2))
 
         def solve(target: Floats) -> Floats:
-            found: Floats = cg(matrix, target, rtol=1e-12, maxiter=20_000, M=scaled)[0]
-            return found
+            potential: Floats
+            potential, missed = cg(matrix, target, rtol=1e-12, maxiter=20_000, M=scaled)
+            if missed:
+                text = "the drift could not be made free of divergence on so many cells"
+                raise LimitRefused(text, formula.span, "take larger cells, or the drift as it is: `incompressible: no`")
+            return potential
 
     found = given
     for _ in range(ROUNDS):

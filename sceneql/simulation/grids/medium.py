@@ -103,6 +103,8 @@ class Part(Record):
         given = [self.value is not None, self.flux is not None, self.robin is not None, self.periodic, self.open]
         if sum(given) != 1:
             yield Problem("a part of the boundary has one of `value`, `flux`, `robin`, `periodic` and `open`")
+        if self.periodic and self.chosen:
+            yield Problem("`periodic` holds on whole sides, without `where` or `near`")
         if (self.near is None) != (self.within is None) or (self.near is not None and len(self.near) not in (2, 3)):
             yield Problem("`near` is a place of two or three numbers, and goes with `within`")
 

@@ -129,11 +129,11 @@ def _transform(text: str) -> Matrix:
         match (match[1] if match else "", numbers):
             case "matrix", [a, b, c, d, e, f]:
                 step: Matrix = (complex(a, b), complex(c, d), complex(e, f))
-            case "translate", [x, *y]:
+            case "translate", [x, *y] if len(y) < 2:
                 step = (1, 1j, complex(x, *y))
             case "scale", [x, *y]:
                 step = (x, 1j * (y[0] if y else x), 0)
-            case "rotate", [angle, *center]:
+            case "rotate", [angle, *center] if len(center) in (0, 2):
                 turn, about = cmath.rect(1.0, math.radians(angle)), complex(*center)
                 step = (turn, 1j * turn, about - turn * about)
             case "skewX", [angle]:

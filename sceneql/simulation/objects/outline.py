@@ -109,6 +109,8 @@ class Outline(Object):
         shore = rings["shore"]
         low_x, high_x = min(x for x, _ in shore), max(x for x, _ in shore)
         low_y = min(y for _, y in shore)
+        if not high_x > low_x:
+            raise ValueError("its largest path has no width")
         scale, (x0, y0) = (self.width or 1.0) / (high_x - low_x), self.corner
         return {
             name: tuple((x0 + scale * (x - low_x), y0 + scale * (y - low_y)) for x, y in ring)
