@@ -6,6 +6,7 @@ Imports numba; only ``*_kernels.py`` files and those that run them import this m
 
 from __future__ import annotations
 
+import atexit
 import hashlib
 import os
 import re
@@ -212,7 +213,10 @@ def compile_ahead(modules: tuple[str, ...]) -> Callable[[], None]:
     marks = [cache_folder(module) / "all.compiled" for module in modules]
     if all(mark.exists() for mark in marks) or numba.config.DISABLE_JIT:
         return lambda: None
-    process = subprocess.Popen([sys.executable, "-c", f"import {', '.join(modules)}"], stdin=subprocess.DEVNULL)
+    # Ctrl-C is for the process that says what was kept; it takes this one with it.
+    code = f"import signal; signal.signal(signal.SIGINT, signal.SIG_IGN); import {', '.join(modules)}"
+    process = subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.DEVNULL)
+    atexit.register(process.terminate)
 
     def wait() -> None:
         with compiled.whole_block():

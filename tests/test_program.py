@@ -140,6 +140,28 @@ def test_an_interrupted_film_keeps_its_frames(tmp_path):
     assert not (tmp_path / "f.mp4").exists()
 
 
+def test_an_interrupt_while_all_is_compiled_is_quiet_and_leaves_no_process(tmp_path):
+    film = "film: {video: {size: 64 36}}"
+    (tmp_path / "f.yaml").write_text(SPRING.format(step="1 ms", end="1 s", solver="rk4", output=film))
+    process = subprocess.Popen(
+        [sys.executable, "-m", "sceneql", "render", "f.yaml"], cwd=tmp_path, stderr=subprocess.PIPE, text=True,
+        env={**os.environ, "SCENEQL_CACHE": str(tmp_path / "cache")}, start_new_session=True,
+    )  # fmt: skip
+    while not list(tmp_path.glob("cache/**/*.nbi")) and process.poll() is None:
+        time.sleep(0.05)
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all of them
+    said = process.communicate(timeout=60)[1]
+    assert process.returncode == 130, said
+    assert "Traceback" not in said
+    for _ in range(100):
+        try:
+            os.killpg(process.pid, 0)
+        except ProcessLookupError:
+            return
+        time.sleep(0.1)
+    raise AssertionError("a process goes on")
+
+
 def test_new_writes_a_script_that_checks(tmp_path):
     sceneql(tmp_path, "new", "mine")
     assert "mine.yaml: ok" in sceneql(tmp_path, "check", "mine.yaml")
