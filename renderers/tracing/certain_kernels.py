@@ -16,14 +16,8 @@ ROOTS = 1000
 @kernel(CROSSING.signature, _nrt=False)
 def certain(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """First place where a ray from outside enters implicit object k or meets it, a sheet; none where undecided."""
-    c0, c1, k0, k1, p0, p1 = tape_of(scene, k)
-    code = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
-    constants = scene.reals[k0:k1]
-    parts = scene.reals[p0:p1].reshape((p1 - p0) // 8, 8)
-    c0, c1, k0, k1, p0, p1 = tape_of(scene, k, WITHIN)
-    code_within = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
-    constants_within = scene.reals[k0:k1]
-    parts_within = scene.reals[p0:p1].reshape((p1 - p0) // 8, 8)
+    code, constants, parts = tape_of(scene, k)
+    code_within, constants_within, parts_within = tape_of(scene, k, WITHIN)
     thin = is_sheet(scene, k)
     start, stop = box_part(scene, k, ox, oy, oz, dx, dy, dz, near, far)
     finest = scene.reals[TOLERANCE] * (stop - start)

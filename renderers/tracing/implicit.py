@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from renderers.tracing.pack import scratch
 from renderers.tracing.scene_kernels import CELLS, CROSSING, SKIN
 from renderers.tracing.skin_kernels import skin
-from sceneql.field.tape_ops import SCRATCH_COLUMNS
 from sceneql.kernels import address, over_tiles
 
 if TYPE_CHECKING:
@@ -39,6 +37,6 @@ def prepared(scene: Scene, rows: int, places: list[int], *, sheets: bool, march:
     slabs = CELLS // BLOCK
     over_tiles(
         len(places) * slabs,
-        lambda tile: occupy(scene, np.zeros((rows, SCRATCH_COLUMNS)), places[tile // slabs], tile % slabs),
+        lambda tile: occupy(scene, scratch(rows), places[tile // slabs], tile % slabs),
     )
     return scene

@@ -105,10 +105,7 @@ def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
             return NONE
         if full and anywhere:
             return begin
-        c0, c1, k0, k1, p0, p1 = tape_of(scene, k)
-        code = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
-        constants = scene.reals[k0:k1]
-        parts = scene.reals[p0:p1].reshape((p1 - p0) // 8, 8)
+        code, constants, parts = tape_of(scene, k)
         end = max(end, begin + past)
         status, root = isolate(
             code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, begin, end, tolerance, 1.0, anywhere

@@ -17,14 +17,8 @@ def sampled(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
 
     What comes and goes between two of them is not seen, and nothing is undecided.
     """
-    c0, c1, k0, k1, p0, p1 = tape_of(scene, k)
-    code = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
-    constants = scene.reals[k0:k1]
-    parts = scene.reals[p0:p1].reshape((p1 - p0) // 8, 8)
-    c0, c1, k0, k1, p0, p1 = tape_of(scene, k, WITHIN)
-    code_within = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
-    constants_within = scene.reals[k0:k1]
-    parts_within = scene.reals[p0:p1].reshape((p1 - p0) // 8, 8)
+    code, constants, parts = tape_of(scene, k)
+    code_within, constants_within, parts_within = tape_of(scene, k, WITHIN)
     thin = is_sheet(scene, k)
     enter, stop = box_part(scene, k, ox, oy, oz, dx, dy, dz, near, far)
     if not enter < stop:

@@ -18,10 +18,7 @@ BLOCK = 4
 def bounds(scene, scratch, k, first, i, j, l, side):
     """(low, high, status) of a tape of implicit object k in the cells (i..i+side, ...)."""
     b = scene.reals
-    c0, c1, k0, k1, p0, p1 = tape_of(scene, k, first)
-    code = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
-    constants = scene.reals[k0:k1]
-    parts = scene.reals[p0:p1].reshape((p1 - p0) // 8, 8)
+    code, constants, parts = tape_of(scene, k, first)
     h = ((b[k + 3] - b[k]) / CELLS, (b[k + 4] - b[k + 1]) / CELLS, (b[k + 5] - b[k + 2]) / CELLS)
     return box(
         code,

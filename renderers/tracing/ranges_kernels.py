@@ -7,14 +7,18 @@ from renderers.tracing.solids_kernels import box_span, inverse
 
 @part
 def tape_of(scene, k, first=0):
-    """Where the tape of the implicit object whose reals begin at k lies: begin and end of code, constants and parts.
+    """(code, constants, parts) of the implicit object whose reals begin at k.
 
     Its own are the ranges from the ``first`` on, those of others from PAINT and from WITHIN on.
     """
     n = scene.ints
     r = int(scene.reals[k + 6]) + first
     code, constants, parts = int(n[r]), int(n[r + 2]), int(n[r + 4])
-    return code, code + 4 * n[r + 1], constants, constants + n[r + 3], parts, parts + 8 * n[r + 5]
+    return (
+        n[code : code + 4 * n[r + 1]].reshape(n[r + 1], 4),
+        scene.reals[constants : constants + n[r + 3]],
+        scene.reals[parts : parts + 8 * n[r + 5]].reshape(n[r + 5], 8),
+    )
 
 
 @part

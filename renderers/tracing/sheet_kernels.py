@@ -16,14 +16,8 @@ from sceneql.kernels import kernel
 @kernel(CROSSING.signature, _nrt=False)
 def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """Crossing of the sheet of implicit object k behind ``near``: its first root inside what it lies within."""
-    c0, c1, k0, k1, p0, p1 = tape_of(scene, k)
-    code = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
-    constants = scene.reals[k0:k1]
-    parts = scene.reals[p0:p1].reshape((p1 - p0) // 8, 8)
-    c0, c1, k0, k1, p0, p1 = tape_of(scene, k, WITHIN)
-    code_within = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
-    constants_within = scene.reals[k0:k1]
-    parts_within = scene.reals[p0:p1].reshape((p1 - p0) // 8, 8)
+    code, constants, parts = tape_of(scene, k)
+    code_within, constants_within, parts_within = tape_of(scene, k, WITHIN)
     b = scene.reals
     side = min(b[k + 3] - b[k], b[k + 4] - b[k + 1], b[k + 5] - b[k + 2]) / CELLS
     t, stop = box_part(scene, k, ox, oy, oz, dx, dy, dz, near, far)

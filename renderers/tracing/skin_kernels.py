@@ -24,10 +24,7 @@ def normal(scene, scratch, k, x, y, z):
             return (-1.0 if axis == 0 else 0.0), (-1.0 if axis == 1 else 0.0), (-1.0 if axis == 2 else 0.0)
         if abs(p[axis] - b[k + 3 + axis]) < near:
             return (1.0 if axis == 0 else 0.0), (1.0 if axis == 1 else 0.0), (1.0 if axis == 2 else 0.0)
-    c0, c1, k0, k1, p0, p1 = tape_of(scene, k)
-    code = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
-    constants = scene.reals[k0:k1]
-    parts = scene.reals[p0:p1].reshape((p1 - p0) // 8, 8)
+    code, constants, parts = tape_of(scene, k)
     _, gx, gy, gz = gradient(code, constants, parts, scratch, x, y, z)
     if not is_sheet(scene, k):
         return unit(gx, gy, gz)
@@ -51,12 +48,11 @@ def normal(scene, scratch, k, x, y, z):
 @part
 def painted(scene, scratch, k, x, y, z):
     """Color (3) of implicit object k at a point by its paint; NaN where it has none, or that says nothing."""
-    c0, c1, k0, k1, p0, p1 = tape_of(scene, k, PAINT)
-    if c0 == c1:
+    code, constants, parts = tape_of(scene, k, PAINT)
+    last = code.shape[0] - 1
+    if last < 0:
         return np.nan, np.nan, np.nan
-    code = scene.ints[c0:c1].reshape((c1 - c0) // 4, 4)
-    gradient(code, scene.reals[k0:k1], scene.reals[p0:p1].reshape((p1 - p0) // 8, 8), scratch, x, y, z)
-    last = (c1 - c0) // 4 - 1
+    gradient(code, constants, parts, scratch, x, y, z)
     return scratch[last - 2, 0], scratch[last - 1, 0], scratch[last, 0]
 
 

@@ -91,8 +91,9 @@ class ReactionDiffusion(Medium):
         yield from super().problems()
         for field_name, names in (("species", self.species), ("where", self.where)):
             for name in names:
-                if name in (*PLACES, OWN) or not name.isidentifier():
+                if name in (*PLACES, OWN, "centers") or not name.isidentifier():
                     why = "is a coordinate" if name in PLACES else "cannot be a name in formulas"
+                    why = "stands for the places of the cells" if name == "centers" else why
                     why = "stands for each species in its own coefficient" if name == OWN else why
                     yield Problem(f"'{name}' {why}: take another name", (field_name, name), at_key=True)
         told = False
