@@ -162,7 +162,28 @@ class Mist:
     high: tuple[float, float, float]
 
 
-Shape = Mesh | Quadric | Implicit | Points | Segments | Mist
+@dataclass(frozen=True, slots=True, eq=False)
+class Grid:
+    """The surface on which numbers on a grid, trilinear between its nodes, change their sign; seen from both sides.
+
+    It stands in the box low..high of coordinates in which values[k, j, i] is that of the point (i, j, k), open where it
+    is cut. Its front is where the values are positive; it is shaded by their central differences at the nodes.
+    """
+
+    name: str
+    surface: Surface
+    to_nodes: Floats
+    """(3, 4) affine map from the world to these coordinates."""
+    values: Floats
+    """(nz, ny, nx), two or more along each axis."""
+    low: tuple[float, float, float]
+    high: tuple[float, float, float]
+    """Within 0 and (nx, ny, nz) - 1."""
+    bounds: Floats | None = None
+    """(nz, ny, nx): with these, the surface is only where their interpolant is negative."""
+
+
+Shape = Mesh | Quadric | Implicit | Points | Segments | Mist | Grid
 
 
 @dataclass(frozen=True, slots=True)

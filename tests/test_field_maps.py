@@ -18,6 +18,7 @@ from sceneql.simulation.maps.colors import CONTROLS, colored, from_oklab, oklab,
 from sceneql.simulation.maps.domains import cut_open, flat, outside, section
 from sceneql.simulation.maps.interpolation import Interpolation
 from sceneql.simulation.maps.iso import iso_sheet
+from sceneql.simulation.maps.iso_mesh import meshed
 from sceneql.simulation.maps.sheets import Sheet, contour, kept, lattice
 from sceneql.simulation.run import Run
 
@@ -293,10 +294,14 @@ def skins(folder, n, fields):
     return moment.lower(["skin"])
 
 
+def meshes(folder, n, fields):
+    return [meshed(shape) for shape in skins(folder, n, fields)]
+
+
 def test_a_surface_of_a_value_is_the_ball_it_should_be_of_second_order(tmp_path):
     errors = []
     for n in (10, 20, 40):
-        (mesh,) = skins(tmp_path, n, "at: 0.4")
+        (mesh,) = meshes(tmp_path, n, "at: 0.4")
         radii = np.linalg.norm(mesh.vertices, axis=1)
         inward = -(mesh.normals * mesh.vertices).sum(axis=1) / radii  # the front faces lower values
         errors.append(abs(radii - 0.4).max())
@@ -306,7 +311,7 @@ def test_a_surface_of_a_value_is_the_ball_it_should_be_of_second_order(tmp_path)
 
 
 def test_surfaces_of_values_end_on_the_walls_and_have_the_colors_of_a_map(tmp_path):
-    inner, outer = skins(tmp_path, 16, "at: 0.3 0.6, colors: inferno")
+    inner, outer = meshes(tmp_path, 16, "at: 0.3 0.6, colors: inferno")
     assert abs(outer.vertices).max() == pytest.approx(0.5, abs=1e-12)
     assert abs(inner.vertices).max() < 0.31
     np.testing.assert_allclose([inner.surface.color, outer.surface.color], table("inferno")[[0, -1]], atol=1e-12)

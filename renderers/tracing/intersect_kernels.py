@@ -4,6 +4,7 @@
 from numba import types
 
 from renderers.tracing.scene_kernels import (
+    GRID,
     HALF_SPACE,
     ITEMS,
     KIND,
@@ -43,6 +44,8 @@ def meet(scene, scratch, item, ox, oy, oz, dx, dy, dz, near, far, anywhere):
         return round_solid(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
     if kind == QUADRIC:
         return quadric(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
+    if kind == GRID:
+        return crossing_at(scene.grid)(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere)
     last = scratch.shape[0] - 1
     if scratch[last, TOLD] != 0.0:
         t = scratch[last - 1 - scene.ints[ITEMS + 4 * item + SHAPE], 0]

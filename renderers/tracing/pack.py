@@ -12,6 +12,7 @@ from renderers.tracing.scene_kernels import (
     CAMERA,
     CELLS,
     CELLS_AT,
+    GRID,
     HALF_SPACE,
     IMPLICIT,
     ITEMS,
@@ -37,7 +38,7 @@ from renderers.tracing.scene_kernels import (
 )
 from renderers.tracing.scene_kernels import TOLERANCE as ROOT_TOLERANCE
 from sceneql.field.tape_ops import SCRATCH_COLUMNS, scratch_rows
-from sceneql.frame import Frame, Implicit, Mesh, Mist, Points, Quadric, Segments, Sky, Sun, Surface, View
+from sceneql.frame import Frame, Grid, Implicit, Mesh, Mist, Points, Quadric, Segments, Sky, Sun, Surface, View
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -91,7 +92,11 @@ def pack(frame: Frame, tolerance: float = TOLERANCE, samples: int = 0, certain: 
         ranges[[0, CELLS_AT, PAINT, WITHIN]] += ranges_at + sum(map(len, tables.ranges))
         ranges[[2, 4, PAINT + 2, PAINT + 4, WITHIN + 2, WITHIN + 4]] += reals_at
         reals[reals_at + tables.implicits[k] + 6] = place
-    scene = Scene(reals, ints, 0, 0, 0)
+    scene = Scene(reals, ints, 0, 0, 0, 0, 0)
+    if any(isinstance(shape, Grid) for shape in frame.shapes):
+        from renderers.tracing.grids import found_by_cells
+
+        scene = found_by_cells(scene)
     rows = tables.rows + len(frame.shapes) + 1
     if tables.implicits:
         from renderers.tracing.implicit import prepared
@@ -135,6 +140,8 @@ class Rows:
                 self._items(index, HALF_SPACE, UNBOUNDED[None, :], plane)
         elif isinstance(shape, Implicit):
             self._implicit(index, shape)
+        elif isinstance(shape, Grid):
+            self._grid(index, shape)
         elif isinstance(shape, Mist) or (isinstance(shape, Points) and shape.soft is not None):
             pass  # drawn over the picture (sprites.py)
         elif isinstance(shape, Points):
@@ -188,6 +195,11 @@ class Rows:
         for other in (shape.paint, shape.within):
             ranges += [0] * (WITHIN - PAINT) if other is None else self._tape(other)
         self.ranges.append(np.array(ranges))
+
+    def _grid(self, index: int, shape: Grid) -> None:
+        from renderers.tracing.grids import box, row
+
+        self._items(index, GRID, box(shape), row(shape))
 
     def _tape(self, tape: Tape) -> list[int]:
         """Append a tape; its ranges."""

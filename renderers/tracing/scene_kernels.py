@@ -28,6 +28,10 @@ class Scene(NamedTuple):
     """Of what finds a sheet's: sheet_kernels.crossing or what stands for it; 0 without sheets."""
     skin: int
     """Of skin_kernels.skin; 0 without implicit objects."""
+    grid: int
+    """Of grid_kernels.crossing; 0 without grids."""
+    grid_skin: int
+    """Of grid_kernels.skin; 0 without grids."""
 
 
 _f, _i = types.float64, types.int64
@@ -38,7 +42,7 @@ SCRATCH = types.float64[:, ::1]
 whose first entry counts the undecided. Where its entry TOLD is set, the rows of implicit shapes begin with their first
 crossing on the ray at hand, or with NaN."""
 TOLD = 1
-SCENE = types.NamedTuple((types.float64[::1], types.int32[::1], _i, _i, _i), Scene)
+SCENE = types.NamedTuple((types.float64[::1], types.int32[::1], _i, _i, _i, _i, _i), Scene)
 RAY = (_f,) * 8
 """Types of origin, direction, near and far."""
 CROSSING = types.FunctionType(_f(SCENE, SCRATCH, _i, *RAY, types.boolean))
@@ -52,12 +56,13 @@ NODE_COUNT, ITEM_COUNT, ENDLESS_COUNT, LIGHT_COUNT, NODES_AT, LINKS_AT, SHAPE_CO
 ITEMS = 8
 """First of the items, by leaf: kind, place of its reals, place of its surface, index of its shape."""
 KIND, REALS_AT, SURFACE_AT, SHAPE = range(4)
-TRIANGLE, ROUND, QUADRIC, HALF_SPACE, IMPLICIT, SHEET = range(6)
+TRIANGLE, ROUND, QUADRIC, HALF_SPACE, IMPLICIT, SHEET, GRID = range(7)
 """Kinds. Their reals:
 TRIANGLE: corner, edge, edge; normals at the corners, colors at the corners (a NaN first: there are none): 27.
 ROUND (sphere or capsule): end, axis to the other end, radius, color (NaN: the surface's): 10.
 QUADRIC: map to local (3, 4), squares, linear, constant, low, high: 25.
 HALF_SPACE (a quadric that is nothing else): unit normal, height of its face along that: 4.
+GRID: as grid_kernels says.
 IMPLICIT and SHEET: low, high, place of its ranges: 7. The ranges, in ints: place of the code, its rows, place of the
 constants, their number, place of the parts, their rows; place of the cells; the same six of its paint and of what a
 sheet lies within (no rows: it has none)."""

@@ -8,6 +8,7 @@ from renderers.tracing.scene_kernels import (
     CHECKER,
     CHECKER_COLOR,
     COLOR,
+    GRID,
     HALF_SPACE,
     ITEMS,
     KIND,
@@ -143,6 +144,8 @@ def normal_at(scene, scratch, item, x, y, z):
         nx, ny, nz = quadric_normal(scene.reals, k, x, y, z)
     elif kind == HALF_SPACE:
         nx, ny, nz = scene.reals[k], scene.reals[k + 1], scene.reals[k + 2]
+    elif kind == GRID:
+        nx, ny, nz, r, g, b = skin_at(scene.grid_skin)(scene, scratch, k, x, y, z)
     else:
         nx, ny, nz, r, g, b = skin_at(scene.skin)(scene, scratch, k, x, y, z)
     return nx, ny, nz, nx, ny, nz, 0.0, r, g, b

@@ -13,7 +13,7 @@ from sceneql.quantities.diagnostic import suggestion
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from sceneql.frame import Implicit, Tape
+    from sceneql.frame import Grid, Implicit, Tape
     from sceneql.graph import SimulationGraph, Task
     from sceneql.mesh.bounded import Corner
     from sceneql.mesh.polygons import Polygons
@@ -68,24 +68,41 @@ def mesh(
 ) -> Account:  # fmt: skip
     """Polygonise an object at an instant [s] by cells [m], or by cells that keep within a distance [m] of the surface.
 
-    With ``sharp``, its edges and corners are kept. Raises OSError, Unsuitable for what is no object or file, and
-    RunFailure for what has no inside, is empty or unbounded, or needs too many cells.
+    With ``sharp``, its edges and corners are kept. A surface on a field's grid has cells of its own. Raises OSError,
+    Unsuitable for what is no object or file, and RunFailure for what has no inside, is empty or unbounded, or needs too
+    many cells.
     """
     from sceneql.mesh.files import format_of, write
-    from sceneql.mesh.grid import grid_around
-    from sceneql.mesh.measures import area, edge_counts, euler_characteristic, volume
 
     format_of(output)
     if not 0.0 <= time <= graph.settings.clock.end:
         raise Unsuitable(f"the scene ends at {graph.settings.clock.end:g} s, so there is nothing at {time:g} s")
     task = _object(graph, name)
     moment = next(pipeline.simulate(graph, [time]))
-    solid = _solid(task, name, moment)
+    if grids := _on_grids(task, name, moment):
+        if cell is not None or tolerance is not None or sharp:
+            raise Unsuitable(f"'{name}' is meshed between the cells of its field, so nothing can be said of cells here")
+        from sceneql.simulation.maps.iso_mesh import polygons_of
+
+        polygons, cell = polygons_of(grids)
+        hidden = None
+    else:
+        polygons, cell, hidden = _of_solid(_solid(task, name, moment), task, name, moment.time, cell, tolerance, sharp)
+    write(output, polygons)
+    return _account(output, polygons, cell, hidden)
+
+
+def _of_solid(
+    solid: Implicit, task: Task, name: str, time: float, cell: float | None, tolerance: float | None, sharp: bool
+) -> tuple[Polygons, float, Unresolved]:
+    """Polygons of a solid, the cells [m] that they are of, and what they do not resolve."""
+    from sceneql.mesh.grid import grid_around
+
     box = solid.tape, solid.low, solid.high
     size = max(high - low for low, high in zip(solid.low, solid.high, strict=True))
     if cell is None:
         cell = size / CELLS
-    with failing_as(name, moment.time, task.span):
+    with failing_as(name, time, task.span):
         grid_around(solid.low, solid.high, cell)
         method = _kept_sharp if sharp else _refined
         if tolerance is not None:
@@ -95,7 +112,28 @@ def mesh(
         polygons, hidden = method(*box, cell)
         if not len(polygons.triangles):
             raise ValueError(_why_empty(*box, cell))
-    write(output, polygons)
+    return polygons, cell, hidden
+
+
+def _on_grids(task: Task, name: str, moment: Instant) -> list[Grid]:
+    """The surfaces on grids that an object without an inside is drawn as. Raises RunFailure for an empty one."""
+    from sceneql.frame import Grid
+
+    kind = task.kind
+    assert isinstance(kind, Object)
+    if type(kind).implicit is not Object.implicit:
+        return []
+    with failing_as(name, moment.time, task.span):
+        shapes = list(kind.lower(name, moment.place(name), moment))
+        if not shapes:
+            raise ValueError("it is empty")
+    return [shape for shape in shapes if isinstance(shape, Grid)]
+
+
+def _account(output: Path, polygons: Polygons, cell: float, hidden: Unresolved | None) -> Account:
+    """What was written."""
+    from sceneql.mesh.measures import area, edge_counts, euler_characteristic, volume
+
     vertices, triangles = polygons.vertices, polygons.triangles
     return Account(
         file=output,
@@ -106,8 +144,8 @@ def mesh(
         volume=volume(vertices, triangles),
         area=area(vertices, triangles),
         boundary_edges=edge_counts(triangles)[1],
-        unresolved=hidden.cells,
-        unresolved_volume=hidden.volume,
+        unresolved=0 if hidden is None else hidden.cells,
+        unresolved_volume=0.0 if hidden is None else hidden.volume,
     )
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sceneql.frame import Implicit, Mesh, Mist, Points, Quadric, Segments, Shape
+from sceneql.frame import Grid, Implicit, Mesh, Mist, Points, Quadric, Segments, Shape
 from sceneql.simulation.placement import inverse, mapped_box
 
 if TYPE_CHECKING:
@@ -25,6 +25,8 @@ def box_of(shape: Shape) -> tuple[Floats, Floats]:
             return _around(ends.reshape(-1, 3), np.repeat(radii, 2)[:, None])
         case Implicit(low=low, high=high):
             return np.array(low), np.array(high)
+        case Grid(to_nodes=to_nodes, low=low, high=high):
+            return mapped_box(inverse(to_nodes), low, high)
         case Mist(to_cells=to_cells, low=low, high=high):
             return mapped_box(inverse(to_cells), low, high)
         case Quadric():

@@ -67,44 +67,28 @@ class Interpolation:
     def at(self, field: Floats, points: Floats) -> Floats:
         """The interpolant of a filled field (or of any array of its shape) at points (k, 3): (k,)."""
         layout = self.layout
-        index, part = [], []
-        for axis in range(3):
-            size = self.shape[2 - axis]
-            if size == 1:
-                index.append(np.zeros(len(points), dtype=np.int64))
-                part.append(np.zeros(len(points)))
-                continue
-            place = (points[:, axis] - layout.low[axis]) / layout.spacing[axis] + 0.5
-            first = np.clip(np.floor(place), 0, size - 2).astype(np.int64)
-            index.append(first)
-            part.append(np.clip(place - first, 0.0, 1.0))
-        steps = [0 if size == 1 else 1 for size in self.shape]
-        total = np.zeros(len(points))
-        for corner in range(8):
-            dx, dy, dz = corner & 1, corner >> 1 & 1, corner >> 2
-            if dz > steps[0]:
-                continue
-            weight = (part[0] if dx else 1.0 - part[0]) * (part[1] if dy else 1.0 - part[1])
-            weight = weight * (part[2] if dz else 1.0 - part[2])
-            total += weight * field[index[2] + dz, index[1] + dy, index[0] + dx]
-        return total
+        places = (points - layout.low) / layout.spacing + 0.5
+        return trilinear(field, places)
 
-    def nodes(self, field: Floats) -> tuple[tuple[Floats, Floats, Floats], Floats]:
-        """Places along x, y, z of the centers of cells and of the walls, and a filled field there (nz, ny, nx)."""
-        low, spacing = self.layout.low, self.layout.spacing
-        axes = []
-        for axis, count in enumerate(self.layout.shape):
-            centers = (np.arange(count) + 0.5) * spacing[axis]
-            axes.append(low[axis] + np.concatenate([[0.0], centers, [count * spacing[axis]]]))
-            rows = np.moveaxis(field, 2 - axis, 0)
-            field = np.concatenate([0.5 * (rows[:1] + rows[1:2]), rows[1:-1], 0.5 * (rows[-2:-1] + rows[-1:])])
-            field = np.moveaxis(field, 0, 2 - axis)
-        return (axes[0], axes[1], axes[2]), np.ascontiguousarray(field)
 
-    def gradient(self, field: Floats, points: Floats) -> Floats:
-        """The gradient (k, 3) [1/m] of a deep filled field: its central differences, interpolated."""
-        slopes = np.gradient(field, *self.layout.spacing[::-1])
-        return np.stack([self.at(slope, points) for slope in reversed(slopes)], axis=1)
+def trilinear(values: Floats, places: Floats) -> Floats:
+    """The interpolant (k,) of values (nz, ny, nx) at places (k, 3) in nodes; along an axis of one node it is even.
+
+    Places beyond the nodes have the values of the sides.
+    """
+    index, part = [], []
+    for axis in range(3):
+        last = values.shape[2 - axis] - 1
+        first = np.clip(np.floor(places[:, axis]), 0, max(last - 1, 0)).astype(np.int64)
+        index.append(first)
+        part.append(np.clip(places[:, axis] - first, 0.0, 1.0) if last else np.zeros(len(places)))
+    total = np.zeros(len(places))
+    for corner in range(8 if values.shape[0] > 1 else 4):
+        dx, dy, dz = corner & 1, corner >> 1 & 1, corner >> 2
+        weight = (part[0] if dx else 1.0 - part[0]) * (part[1] if dy else 1.0 - part[1])
+        weight = weight * (part[2] if dz else 1.0 - part[2])
+        total += weight * values[index[2] + dz, index[1] + dy, index[0] + dx]
+    return total
 
 
 def _layer(known: NDArray[np.bool_]) -> tuple[Any, list[Source]] | None:

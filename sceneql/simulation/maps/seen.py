@@ -11,6 +11,8 @@ from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Link, Symbol
 from sceneql.quantities.units import describe
 from sceneql.simulation.maps.kept import Kept
+from sceneql.simulation.placement import compose, inverse
+from sceneql.simulation.solid import triple
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -23,6 +25,7 @@ Field = Annotated[Value, Quantity(None, (None,))]
 Levels = Annotated[Value, Quantity(None, None)]
 """A value or several."""
 Bounds = Annotated[Value, Quantity(None, (2,))]
+Corner = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,6 +42,32 @@ class Seen:
     def at(self, points: Floats) -> Floats:
         """The field at points (k, 3) [m] in its model's own coordinates: (k,)."""
         return self.interpolation.at(self.filled, points)
+
+    def nodes(self, place: Floats) -> tuple[Floats, Corner, Corner]:
+        """(3, 4) map from the world to the nodes of ``filled``, and the corners of the grid's box there.
+
+        ``place`` (3, 4): from the model's coordinates to the world. Of a deep field.
+        """
+        import numpy as np
+
+        spacing = np.array(self.layout.spacing)
+        grid = np.column_stack([np.diag(spacing), np.array(self.layout.low) - 0.5 * spacing])
+        high = triple(np.array(self.layout.shape) + 0.5)
+        return inverse(compose(place, grid)), (0.5, 0.5, 0.5), high
+
+    def bounds(self, moment: Moment) -> Floats | None:
+        """The level set of the domain at these nodes, negative inside; None where the grid's box is the domain."""
+        level = level_of(self, moment)
+        return None if level is None else _bounds.get(self.model, self.layout.shape, lambda: self._at_nodes(level))
+
+    def _at_nodes(self, level: Any) -> Floats:
+        import numpy as np
+
+        shape = self.filled.shape
+        k, j, i = (index.ravel() for index in np.indices(shape))
+        places = np.array(self.layout.low) + (np.stack([i, j, k], axis=1) - 0.5) * self.layout.spacing
+        found: Floats = level.values(places).reshape(shape)
+        return found
 
 
 def seen(of: Value, moment: Moment) -> Seen:
@@ -98,6 +127,7 @@ def level_of(field: Seen, moment: Moment) -> Any:
 
 
 _levels: Kept[Any] = Kept()
+_bounds: Kept[Any] = Kept()
 
 
 def unfit(of: Value, others: dict[str, Value | None]) -> Iterator[Problem]:

@@ -8,20 +8,19 @@ from typing import TYPE_CHECKING
 
 from sceneql.kinds import Moment, Object, Problem, field
 from sceneql.simulation.maps.names import ColorMap
-from sceneql.simulation.maps.seen import Field, Levels, level_of, seen, unfit
-from sceneql.simulation.placement import apply
+from sceneql.simulation.maps.seen import Field, Levels, seen, unfit
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Shape
-    from sceneql.simulation.maps.seen import Seen
-    from sceneql.simulation.maps.sheets import Sheet
 
 
 class IsoSurface(Object):
-    """The surface on which a field that fills a space has a value, by marching cubes between the centers of its cells.
+    """The surface on which a field that fills a space has a value: of the interpolant between the centers of its cells.
 
-    Its front faces lower values (Lorensen & Cline 1987; of the topology that the trilinear interpolant has in each
-    cube, Chernyaev 1995), its normals are those of the interpolated gradient. It ends where the domain does.
+    Rays find its roots exactly, cell by cell; as `polygonised` it is drawn, and by `sceneql mesh` written, as what
+    marching cubes make of it (Lorensen & Cline 1987; of the topology that the trilinear interpolant has in each cube,
+    Chernyaev 1995). Its front faces lower values, its normals are those of the interpolated gradient. It ends where the
+    domain does.
     """
 
     of: Field = field("The field: `room.concentration`.")
@@ -33,39 +32,25 @@ class IsoSurface(Object):
         yield from unfit(self.of, {"at": self.at})
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
-        """A smooth mesh a value. Raises ValueError for a flat field."""
+        """A surface on the field's grid for each value that it has. Raises ValueError for a flat field."""
         import numpy as np
 
-        from sceneql.frame import Mesh
+        from sceneql.frame import Grid
         from sceneql.simulation.maps.colors import colored
 
         surface = moment.surface(name, self.material, self.color)
         whole = seen(self.of, moment)
         if whole.layout.shape[2] == 1:
             raise ValueError("a flat field has no surfaces of a value: a `field_map` draws its contours")
+        to_nodes, low, high = whole.nodes(place)
+        bounds = whole.bounds(moment)
         values = np.ravel(moment.at(self.at))
         for value in values:
-            sheet = self._sheet(whole, float(value), moment)
-            if not len(sheet.triangles) or sheet.normals is None:
+            beyond = float(value) - whole.filled
+            if not beyond.min() < 0.0 <= beyond.max():
                 continue
             if self.colors is not None and np.ptp(values) > 0:
                 scale = float(values.min()), float(values.max())
                 r, g, b = colored(np.array([value]), scale, self.colors)[0]
                 surface = replace(surface, color=(float(r), float(g), float(b)))
-            normals = sheet.normals @ np.linalg.inv(place[:, :3])
-            normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
-            triangles = sheet.triangles if np.linalg.det(place[:, :3]) > 0 else sheet.triangles[:, ::-1].copy()
-            yield Mesh(name, surface, apply(place, sheet.vertices), triangles, normals)
-
-    def _sheet(self, field: Seen, value: float, moment: Moment) -> Sheet:
-        import numpy as np
-
-        from sceneql.simulation.maps.iso import iso_sheet
-        from sceneql.simulation.maps.sheets import Sheet, kept
-
-        found = iso_sheet(*field.interpolation.nodes(value - field.filled))
-        slopes = field.interpolation.gradient(field.filled, found.vertices)
-        size = np.linalg.norm(slopes, axis=1, keepdims=True)
-        sheet = Sheet(found.vertices, found.triangles, -slopes / np.maximum(size, 1e-300))
-        level = level_of(field, moment)
-        return sheet if level is None else kept(sheet, level.values)
+            yield Grid(name, surface, to_nodes, beyond, low, high, bounds)

@@ -9,8 +9,7 @@ from sceneql.kinds import Color, Moment, Object, Problem, Quantity, Value, field
 from sceneql.quantities.dimension import LENGTH, PLAIN
 from sceneql.simulation.color import linear
 from sceneql.simulation.maps.seen import Field, level_of, seen, unfit
-from sceneql.simulation.placement import compose, inverse, uniform_scale
-from sceneql.simulation.solid import triple
+from sceneql.simulation.placement import uniform_scale
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Shape
@@ -44,16 +43,13 @@ class Mist(Object):
         from sceneql import frame
 
         whole = seen(self.of, moment)
-        layout = whole.layout
-        if layout.shape[2] == 1:
+        if whole.layout.shape[2] == 1:
             raise ValueError("a flat field is no mist: a `field_map` draws it")
         cells = whole.filled
         if level_of(whole, moment) is not None:  # nothing outside the domain; the walls of a box cut it sharply
             cells = np.where(whole.interpolation.known, cells, 0.0)
         strength = float(moment.at(self.absorption)) / uniform_scale(place)
-        spacing = np.array(layout.spacing)
-        grid = np.column_stack([np.diag(spacing), np.array(layout.low) - 0.5 * spacing])
         look = frame.Surface(color=linear(moment.at(self.color)))
         absorption = strength * np.maximum(cells, 0.0)
-        high = triple(np.array(layout.shape) + 0.5)
-        yield frame.Mist(name, look, inverse(compose(place, grid)), absorption, (0.5, 0.5, 0.5), high)
+        to_cells, low, high = whole.nodes(place)
+        yield frame.Mist(name, look, to_cells, absorption, low, high)

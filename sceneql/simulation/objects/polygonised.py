@@ -25,7 +25,7 @@ class Polygonised(Object):
     """
 
     of: ObjectRef = field("The object, which is drawn by this one.")
-    cell: FixedLength = field("Side of the cubes.", "50 mm", above=0)
+    cell: FixedLength = field("Side of the cubes; an `iso_surface` has those of its field.", "50 mm", above=0)
     edges: bool = field("The edges of the triangles are drawn too.", True)
     smooth: bool = field("The triangles are shaded as the surface that they stand for.", False)
     edge_radius: FixedLength | None = field(
@@ -52,12 +52,17 @@ class Polygonised(Object):
 
         child = self._object(moment)
         shapes = list(child.lower(name, place, moment))
-        solids = [shape for shape in shapes if isinstance(shape, frame.Implicit)]
-        if len(solids) < len(shapes):
-            solids = list(traced(child, name, place, moment))
+        if not all(isinstance(shape, frame.Implicit | frame.Grid) for shape in shapes):
+            shapes = list(traced(child, name, place, moment))
         radius = THICKNESS * self.cell if self.edge_radius is None else self.edge_radius
-        for solid in solids:
-            mesh = faceted(solid, self.cell, self.smooth)
+        for shape in shapes:
+            if isinstance(shape, frame.Grid):
+                from sceneql.simulation.maps.iso_mesh import meshed
+
+                mesh = meshed(shape)
+                mesh = mesh if self.smooth else replace(mesh, normals=None)
+            elif isinstance(shape, frame.Implicit):
+                mesh = faceted(shape, self.cell, self.smooth)
             if not len(mesh.triangles):
                 continue
             yield mesh
