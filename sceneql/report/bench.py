@@ -16,6 +16,7 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.failure import LimitRefused, RunFailure, Unsuitable
 from sceneql.files import whole
 from sceneql.graph import SimulationGraph
+from sceneql.kinds import Solver
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.report.bench_grids import GridSection, grid_section
 from sceneql.report.bench_surfaces import Section, surface_section
@@ -45,11 +46,11 @@ def bench(
     """Run every island by every solver that applies, and look at implicit surfaces by rays and meshes; as text.
 
     ``output`` is a folder, or the files' path without extension: CSV and JSON with all runs, SVGs of the error against
-    run time and step and of the drift of energy, HTML with all of it. Fields are run on several grids (``grids``) and
-    their systems solved by every linear solver (``linear``); what is of implicit surfaces, those of the first picture
-    at its start, has files of its own (``rays``, ``meshes``, ``surfaces``). ``words`` is a folder of the user's own
-    words; ``asked`` the relative error for which the cheapest solver is named. Raises Unsuitable for a scene without
-    either, RunFailure where no reference reaches the end.
+    run time and step and of the drift of energy, HTML with all of it. Fields are run on several grids (``grids``), on
+    these by all schemes (``schemes``), their systems solved by every linear solver (``linear``); what is of implicit
+    surfaces, those of the first picture at its start, has files of its own (``rays``, ``meshes``, ``surfaces``).
+    ``words`` is a folder of the user's own words; ``asked`` the relative error for which the cheapest solver is named.
+    Raises Unsuitable for a scene without either, RunFailure where no reference reaches the end.
     """
     frame = pictured(graph)
     if not graph.islands and frame is None:
@@ -60,6 +61,7 @@ def bench(
     rows: list[Measurement] = []
     drifts: list[Drift] = []
     orders: Orders = {}
+    schemes: dict[str, dict[str, Solver]] = {}
     lines: list[str] = []
     summary: list[str] = []
     compile_seconds = 0.0
@@ -68,7 +70,7 @@ def bench(
         truth = reference(graph, island, catalogue)
         lines.append(f"{title}: errors against {truth.because} (itself good to {truth.uncertainty:.0e})")
         summary.append(lines[-1])
-        applying = solvers(graph, island, catalogue)
+        applying = schemes[title] = solvers(graph, island, catalogue)
         for done, (word, solver) in enumerate(applying.items()):
             progress(done, len(applying))
             try:
@@ -93,7 +95,7 @@ def bench(
     if section is not None:
         lines += section.lines
         summary.append(section.lines[0])
-    on_grids = grid_section(graph, stem)
+    on_grids = grid_section(graph, stem, schemes)
     if on_grids is not None:
         lines += on_grids.lines
         summary += [line for line in on_grids.lines if not line.startswith(" ")]
@@ -183,6 +185,7 @@ def _write(
         files.append(table)
     _write_json(data, graph, rows, orders, drifts, section, on_grids)
     if on_grids is not None:
+        plots += on_grids.plots
         tables += on_grids.tables
         files += on_grids.files
     if drifts:

@@ -6,35 +6,21 @@ import csv
 import io
 import math
 import statistics
-from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, fields, replace
-from itertools import pairwise, product
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, fields
+from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast, get_args
+from typing import Any, cast, get_args
 
 from sceneql.failure import LimitRefused, RunFailure
 from sceneql.files import whole
 from sceneql.graph import Island, SimulationGraph
 from sceneql.kinds import Model, Solver
-from sceneql.quantities.diagnostic import ScriptError
+from sceneql.report.bench_schemes import SchemeRun, scheme_runs, told
+from sceneql.report.grid_ends import REPEATS, End, difference, ends_on_grids, island_by
 from sceneql.report.page import Table, beside
-from sceneql.report.work_precision import ENOUGH_SECONDS, LONGEST, run, settings
-
-if TYPE_CHECKING:
-    from sceneql.frame import Floats
-    from sceneql.simulation.grids.medium import FieldLayout, Medium
-    from sceneql.simulation.run import IslandRun
-
-MOST_CELLS = 100_000
-"""Of the finest grid, or the script's own where that has more."""
-GRIDS = 6
-FINER = 2
-"""Halvings of the script's cell at most."""
-FEWEST = 200
-"""Cells that a grid has for a coarser one to be tried."""
-REPEATS = 3
-TOLERANCE = 1e-6
-"""In time, where no exact solution is known."""
+from sceneql.report.plots_grids import error_against_cell, residuals, schemes_against_time
+from sceneql.report.work_precision import settings
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,28 +51,12 @@ class LinearRun:
     """After each look at it, in parts of the first; empty where it is solved at once."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _End:
-    """A field at the end on one grid."""
-
-    cell: float
-    seconds: float
-    layout: FieldLayout
-    inside: Any
-    """(cells,) bool."""
-    values: Floats
-
-    @property
-    def cells(self) -> int:
-        """Those of the domain."""
-        return int(self.inside.sum())
-
-
 @dataclass(frozen=True, slots=True)
 class GridSection:
     """What `bench` says of fields on grids."""
 
     lines: Sequence[str]
+    plots: Sequence[tuple[str, Path]]
     tables: Sequence[Table]
     files: Sequence[Path]
     data: dict[str, Any]
@@ -98,65 +68,93 @@ def is_field(graph: SimulationGraph, island: Island) -> bool:
     return len(kinds) == 1 and cast(Model, kinds[0]).is_field
 
 
-def grid_section(graph: SimulationGraph, stem: Path) -> GridSection | None:
-    """Measure the fields of a scene, beside ``stem``; None where it has none."""
+def grid_section(graph: SimulationGraph, stem: Path, schemes: Mapping[str, Mapping[str, Solver]]) -> GridSection | None:
+    """Measure the fields of a scene, beside ``stem``; None where it has none.
+
+    ``schemes``: of each island, by its title, the solvers that march it.
+    """
     islands = [island for island in graph.islands if is_field(graph, island)]
     if not islands:
         return None
     lines: list[str] = []
     runs: list[GridRun] = []
+    by_schemes: list[SchemeRun] = []
     linear: list[LinearRun] = []
+    orders: dict[str, float | None] = {}
     for island in islands:
-        found, order, how = on_grids(graph, island)
+        title = ", ".join(island.models)
+        ends, how = ends_on_grids(graph, island)
+        found, orders[title] = on_grids(title, ends)
         runs += found
-        told = "no order seen" if order is None else f"observed order {order:.2f} in the cell"
-        lines.append(f"{island.models[0]} on grids, {how} in time: {told}")
+        order = orders[title]
+        seen = "no order seen" if order is None else f"observed order {order:.2f} in the cell"
+        lines.append(f"{title} on grids, {how} in time: {seen}")
         lines += [
             f"    cell {one.cell:<14.4g} m error {one.error:8.2e}  {one.seconds * 1e3:9.3f} ms  {one.cells:8d} cells"
             for one in found
         ]
+        own = list(scheme_runs(graph, island, schemes.get(title, {}), ends))
+        by_schemes += own
+        if own:
+            lines.append(f"{title} by schemes, grids and steps: {len(own)} runs, errors of space and time together")
+            lines += told(own)
         mine = list(linear_runs(graph, island))
         linear += mine
         if mine:
-            lines.append(f"{island.models[0]}, one step of {mine[0].step:.3g} s of implicit_euler by linear solver:")
+            lines.append(f"{title}, one step of {mine[0].step:.3g} s of implicit_euler by linear solver:")
         for one in mine:
             last = f"residual {one.residuals[-1]:.1e} of the first" if one.residuals else "solved at once"
             lines.append(f"    {one.linear:<20} {one.iterations:6d} iterations  {one.seconds * 1e3:9.3f} ms  {last}")
-    files = [beside(stem, "grids.csv"), beside(stem, "linear.csv")]
-    for path, kind, rows in ((files[0], GridRun, runs), (files[1], LinearRun, linear)):
+    return _written(graph.name, stem, lines, runs, orders, by_schemes, linear)
+
+
+def _written(
+    name: str,
+    stem: Path,
+    lines: Sequence[str],
+    runs: Sequence[GridRun],
+    orders: Mapping[str, float | None],
+    by_schemes: Sequence[SchemeRun],
+    linear: Sequence[LinearRun],
+) -> GridSection:
+    """The section with its files."""
+    parts: list[tuple[str, str, type, Sequence[Any]]] = [
+        ("grids", "Grids", GridRun, runs),
+        ("schemes", "Schemes, grids and steps", SchemeRun, by_schemes),
+        ("linear", "Linear solvers", LinearRun, linear),
+    ]
+    tables, files, plots = [], [], []
+    for key, caption, kind, rows in parts:
+        path = beside(stem, f"{key}.csv")
         _write_csv(path, kind, rows)
-    tables = [_table("Grids", GridRun, runs), _table("Linear solvers", LinearRun, linear)]
-    return GridSection(
-        lines, tables, files, {"grids": [asdict(r) for r in runs], "linear": [asdict(r) for r in linear]}
-    )
+        files.append(path)
+        tables.append(_table(caption, kind, rows))
+    if by_schemes:
+        plots.append(("Error of space and time against run time", beside(stem, "schemes.svg")))
+        schemes_against_time(plots[-1][1], name, by_schemes)
+    if runs:
+        plots.append(("Error of space against cell", beside(stem, "grids.svg")))
+        error_against_cell(plots[-1][1], name, runs, orders)
+    if any(run.residuals for run in linear):
+        plots.append(("Residuals of linear solvers", beside(stem, "linear.svg")))
+        residuals(plots[-1][1], name, linear)
+    data = {key: [asdict(row) for row in rows] for key, _, _, rows in parts}
+    return GridSection(lines, plots, tables, files, data)
 
 
-def on_grids(graph: SimulationGraph, island: Island) -> tuple[list[GridRun], float | None, str]:
-    """Runs on grids from coarse to fine, the observed order in the cell, and how time was solved."""
-    solver, how = _in_time(graph, island)
-    kind = cast("Medium", graph.tasks[island.models[0]].kind)
-    ends = [_end(graph, island, solver, kind.cell)]
-    shape = ends[0].layout.shape
-    finer = math.floor(math.log2(max(1.0, MOST_CELLS / math.prod(shape))) / (3 if shape[2] > 1 else 2))
-    try:
-        for number in range(1, min(FINER, finer) + 1):
-            if ends[0].seconds > ENOUGH_SECONDS:
-                break
-            ends.insert(0, _end(graph, island, solver, kind.cell * 0.5**number))
-        while len(ends) < GRIDS and ends[-1].cells >= FEWEST:
-            ends.append(_end(graph, island, solver, 2.0 * ends[-1].cell))
-    except (ScriptError, LimitRefused, RunFailure):
-        pass  # no grid as fine or as coarse as that
-    title, rows = ", ".join(island.models), []
+def on_grids(title: str, ends: Sequence[End]) -> tuple[list[GridRun], float | None]:
+    """What is wrong on each but the finest of some grids, from coarse to fine, and the observed order in the cell."""
     pairs = list(pairwise(ends))
-    differences = [_difference(coarse, fine) for fine, coarse in pairs]
+    differences = [difference(coarse, fine) for fine, coarse in pairs]
     order = None
     if len(differences) > 1 and min(differences) > 0.0:
         order = math.log2(differences[-1] / differences[0]) / (len(differences) - 1)
     share = 1.0 - 2.0 ** -min(4.0, max(0.5, order or 2.0))
-    for (_, coarse), difference in zip(pairs, differences, strict=True):
-        rows.append(GridRun(title, coarse.cell, coarse.cells, difference / share, coarse.seconds))
-    return rows[::-1], order, how
+    rows = [
+        GridRun(title, coarse.cell, coarse.cells, apart / share, coarse.seconds)
+        for (_, coarse), apart in zip(pairs, differences, strict=True)
+    ]
+    return rows[::-1], order
 
 
 def linear_runs(graph: SimulationGraph, island: Island) -> Iterator[LinearRun]:
@@ -172,7 +170,7 @@ def linear_runs(graph: SimulationGraph, island: Island) -> Iterator[LinearRun]:
         times: list[float] = []
         try:
             while len(times) < REPEATS:
-                march = _island(graph, island, ImplicitEuler(step=step, linear=name)).march
+                march = island_by(graph, island, ImplicitEuler(step=step, linear=name)).march
                 if march.system.grid is None:
                     return  # several fields
                 march.advance(step)
@@ -183,80 +181,6 @@ def linear_runs(graph: SimulationGraph, island: Island) -> Iterator[LinearRun]:
         first = done.residuals[0] if done.residuals and done.residuals[0] > 0.0 else 1.0
         shares = tuple(size / first for size in done.residuals)
         yield LinearRun(", ".join(island.models), name, step, done.iterations, statistics.median(times), shares)
-
-
-def _in_time(graph: SimulationGraph, island: Island) -> tuple[Solver, str]:
-    """What solves an island in time without an error to speak of."""
-    from sceneql.simulation.solvers.exact import Exact
-    from sceneql.simulation.solvers.tr_bdf2 import TrBdf2
-
-    try:
-        _island(graph, island, Exact())
-    except (LimitRefused, ScriptError):
-        return TrBdf2(tolerance=TOLERANCE), f"by tr_bdf2 at tolerance {TOLERANCE:g}"
-    return Exact(), "exact"
-
-
-def _island(graph: SimulationGraph, island: Island, solver: Solver) -> IslandRun:
-    from sceneql.simulation.run import IslandRun
-
-    task = replace(graph.tasks[island.solver], kind=solver)
-    return IslandRun(replace(graph, tasks={**graph.tasks, island.solver: task}, islands=(island,)), island)
-
-
-def _end(graph: SimulationGraph, island: Island, solver: Solver, cell: float) -> _End:
-    """The model's first field at the end on a grid of that cell. Raises RunFailure, LimitRefused, ScriptError."""
-    name = island.models[0]
-    kind = cast("Medium", graph.tasks[name].kind).model_copy(update={"cell": cell})
-    patched = replace(graph, tasks={**graph.tasks, name: replace(graph.tasks[name], kind=kind)})
-    times = []
-    for _ in range(REPEATS):
-        _, march = run(patched, island, solver, LONGEST)
-        times.append(march.march.statistics.seconds)
-        if sum(times) > ENOUGH_SECONDS:
-            break
-    state = march.state(name)
-    shown = kind.shows(name)
-    assert shown is not None
-    layout: FieldLayout = cast("Any", kind).layout(state, shown.links[0].output)
-    volumes = state.floats[layout.volumes_at : layout.volumes_at + layout.count]
-    values = state.y[layout.at : layout.at + layout.count]
-    return _End(cell, statistics.median(times), layout, volumes > 0.0, values.copy())
-
-
-def _difference(coarse: _End, fine: _End) -> float:
-    """Root mean square difference at the coarse cells' centers that the finer grid knows, by the largest value."""
-    import numpy as np
-
-    cubic, known = _interpolated(fine, coarse.layout.centers(), 4)
-    straight, inside = _interpolated(fine, coarse.layout.centers(), 2)
-    wrong = (coarse.values - np.where(known, cubic, straight))[coarse.inside & (known | inside)]
-    largest = float(np.abs(fine.values).max()) or 1.0
-    return float(np.sqrt(np.mean(wrong**2))) / largest if len(wrong) else 0.0
-
-
-def _interpolated(end: _End, places: Floats, count: int) -> tuple[Floats, Any]:
-    """Lagrange interpolation by ``count`` cells along each axis at places (k, 3): values, if all are inside."""
-    import numpy as np
-
-    shape, values, inside = end.layout.shape, np.zeros(len(places)), np.ones(len(places), dtype=bool)
-    axes = [k for k in range(3) if shape[k] > 1]
-    firsts, weights = [], []
-    for k in axes:
-        at = (places[:, k] - end.layout.low[k]) / end.layout.spacing[k] - 0.5
-        first = np.clip(np.floor(at + 1e-9).astype(int) - (count // 2 - 1), 0, max(0, shape[k] - count))
-        part = at - first
-        nodes = range(count)
-        firsts.append(first)
-        weights.append([math.prod((part - m) / (n - m) for m in nodes if m != n) for n in nodes])
-    if any(shape[k] < count for k in axes):
-        return values, ~inside
-    strides = (1, shape[0], shape[0] * shape[1])
-    for corner in product(range(count), repeat=len(axes)):
-        index = sum((first + n) * strides[k] for first, n, k in zip(firsts, corner, axes, strict=True))
-        values += math.prod(weight[n] for weight, n in zip(weights, corner, strict=True)) * end.values[index]
-        inside &= end.inside[index]
-    return values, inside
 
 
 def _table(caption: str, kind: type, runs: Sequence[Any]) -> Table:

@@ -25,7 +25,7 @@ SMALLEST = 1e-17
 
 
 @contextmanager
-def _figure(path: Path, size: tuple[float, float]) -> Iterator[Any]:
+def figure_at(path: Path, size: tuple[float, float]) -> Iterator[Any]:
     """A figure that is written as SVG when the block ends."""
     from matplotlib import rc_context
     from matplotlib.figure import Figure
@@ -64,9 +64,9 @@ def _errors(
     place: Callable[[Measurement], float],
 ) -> None:
     islands = list(dict.fromkeys(row.island for row in rows))
-    with _figure(path, (9.0, 4.8 * len(islands))) as figure:
+    with figure_at(path, (9.0, 4.8 * len(islands))) as figure:
         for k, island in enumerate(islands):
-            axes = _panel(figure, len(islands), k)
+            axes = panel(figure, len(islands), k)
             axes.set(xscale="log", yscale="log", xlabel=label, ylabel="relative error at the end")
             axes.set_title(f"{title}: {island}")
             axes.grid(True, which="major", alpha=0.3)
@@ -76,13 +76,13 @@ def _errors(
                 done = [row for row in runs if row.ok and row.error > 0.0]
                 text = legend(solver, orders[island, solver], sum(not row.ok for row in runs))
                 axes.plot([place(row) for row in done], [row.error for row in done], marker=mark, ms=4, label=text)
-            _explain(axes)
+            explain(axes)
 
 
 def surface_errors(path: Path, title: str, rays: Sequence[RayRun], meshes: Sequence[MeshRun]) -> None:
     """Write an SVG: wrong pixels and depth error of rays over run time [s], errors of each mesh over its cells [m]."""
     named = list(dict.fromkeys(mesh.name for mesh in meshes))
-    with _figure(path, (9.0, 4.2 * (2 + len(named)))) as figure:
+    with figure_at(path, (9.0, 4.2 * (2 + len(named)))) as figure:
         for k, label in enumerate(("share of wrong pixels (none: a tenth of one)", "mean error of depth [m]")):
             axes = figure.add_subplot(2 + len(named), 1, k + 1)
             axes.set(xscale="log", yscale="log", xlabel="run time [s]", ylabel=label, title=title)
@@ -92,7 +92,7 @@ def surface_errors(path: Path, title: str, rays: Sequence[RayRun], meshes: Seque
                 wrong = [max(run.wrong, 0.1) / max(run.pixels, 1) for run in mine]
                 errors = [wrong, [max(run.depth_error, SMALLEST) for run in mine]][k]
                 axes.plot([run.seconds for run in mine], errors, marker=mark, ms=4, label=renderer)
-            _explain(axes)
+            explain(axes)
         for k, name in enumerate(named):
             axes = figure.add_subplot(2 + len(named), 1, 3 + k)
             axes.set(xscale="log", yscale="log", xlabel="cell [m]", ylabel="error", title=f"{title}: mesh of {name}")
@@ -102,10 +102,10 @@ def surface_errors(path: Path, title: str, rays: Sequence[RayRun], meshes: Seque
             axes.plot(cells, [mesh.hausdorff for mesh in own], marker="o", ms=4, label="Hausdorff distance [m]")
             axes.plot(cells, [mesh.volume_error for mesh in own], marker="s", ms=4, label="volume, relative")
             axes.plot(cells, [mesh.area_error for mesh in own], marker="D", ms=4, label="area, relative")
-            _explain(axes)
+            explain(axes)
 
 
-def _panel(figure: Any, count: int, k: int) -> Any:
+def panel(figure: Any, count: int, k: int) -> Any:
     """Axes with as many colors as there are solvers."""
     from matplotlib import colormaps
 
@@ -114,7 +114,7 @@ def _panel(figure: Any, count: int, k: int) -> Any:
     return axes
 
 
-def _explain(axes: Any) -> None:
+def explain(axes: Any) -> None:
     """The legend, beside the panel: there may be many solvers."""
     axes.legend(fontsize="small", loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False)
 
@@ -128,9 +128,9 @@ def legend(solver: str, order: float | None, failed: int) -> str:
 def drift_against_time(path: Path, title: str, drifts: Sequence[Drift]) -> None:
     """Write an SVG with a panel an island: relative change of energy over simulation time [s], a line a solver."""
     islands = list(dict.fromkeys(drift.island for drift in drifts))
-    with _figure(path, (9.0, 4.8 * len(islands))) as figure:
+    with figure_at(path, (9.0, 4.8 * len(islands))) as figure:
         for k, island in enumerate(islands):
-            axes = _panel(figure, len(islands), k)
+            axes = panel(figure, len(islands), k)
             axes.set(yscale="log", xlabel="time [s]", ylabel="relative change of energy")
             axes.set_title(f"{title}: {island}")
             axes.grid(True, which="major", alpha=0.3)
@@ -138,7 +138,7 @@ def drift_against_time(path: Path, title: str, drifts: Sequence[Drift]) -> None:
                 if drift.island == island:
                     changes = [max(abs(change), SMALLEST) for change in drift.changes[1:]]
                     axes.plot(drift.times[1:], changes, lw=1, label=f"{drift.solver}, {drift.setting:.3g}")
-            _explain(axes)
+            explain(axes)
 
 
 def stability_map(path: Path, title: str, label: str, cells: Sequence[Cell]) -> None:
@@ -151,7 +151,7 @@ def stability_map(path: Path, title: str, label: str, cells: Sequence[Cell]) -> 
     islands = list(dict.fromkeys(cell.island for cell in cells))
     values = sorted({cell.value for cell in cells})
     most = max(len({cell.solver for cell in cells if cell.island == island}) for island in islands)
-    with _figure(path, (2.2 + 0.55 * len(values), len(islands) * (1.6 + 0.36 * most))) as figure:
+    with figure_at(path, (2.2 + 0.55 * len(values), len(islands) * (1.6 + 0.36 * most))) as figure:
         for k, island in enumerate(islands):
             mine = [cell for cell in cells if cell.island == island]
             words = list(dict.fromkeys(cell.solver for cell in mine))
