@@ -38,6 +38,15 @@ def _widest(typing):
     return types.none(), code
 
 
+@intrinsic
+def _always_inlined(typing):
+    def code(context, builder, signature, arguments):
+        builder.function.attributes.add("alwaysinline")
+        return context.get_dummy_value()
+
+    return types.none(), code
+
+
 def _fma_in_python(a, b, c):
     return type(a)(np.longdouble(a) * np.longdouble(b) + np.longdouble(c))
 
@@ -50,6 +59,8 @@ from_bits = (lambda n: float(np.int64(n).view(np.float64))) if PLAIN else _from_
 """The float64 of 64 bits."""
 widest = (lambda: None) if PLAIN else _widest
 """Ask for the widest vectors in the calling kernel, where the compiler would be shy of them. The bits do not change."""
+always_inlined = (lambda: None) if PLAIN else _always_inlined
+"""Put the calling helper into its callers, however large it is: loops with calls in them make no vectors."""
 
 
 @inlined

@@ -264,6 +264,9 @@ class March:
                 clock,
                 counts,
             )
+            if counts[kernels.SWAPPED]:
+                self._y0, self._rate0, self._y1, self._rate1 = self._y1, self._rate1, self._y0, self._rate0
+                counts[kernels.SWAPPED] = 0
             if status == kernels.PAUSED:
                 self._look()
             elif status != kernels.STEP_TOO_SMALL or not self._give_up():

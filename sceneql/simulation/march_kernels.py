@@ -2,9 +2,9 @@
 """The one loop that marches an island in time: fixed grid or error control, exact events, local contacts, the watch.
 
 All state of a march lies in arrays of the caller, so that it can stop anywhere and go on: the last accepted step
-(y0, rate0 at clock[T0]; y1, rate1 at clock[T1]; ``work`` as its solver left it, for dense output), ``clock`` and
-``counts`` with the entries named below. An impact is applied when the step after it begins, so that frames up to the
-impact read the state before it.
+(y0, rate0 at clock[T0]; y1, rate1 at clock[T1]; where counts[SWAPPED] is 1 they have changed places; ``work`` as its
+solver left it, for dense output), ``clock`` and ``counts`` with the entries named below. An impact is applied when the
+step after it begins, so that frames up to the impact read the state before it.
 """
 
 import math
@@ -34,8 +34,9 @@ STEPS, REJECTED, EVENTS, REPEATS, LEFT, INDEX, GRID, PENDING = range(8)
 """Tallies; impacts since time moved; steps left in this call; the entry that a failure names; grid points passed; the
 pair whose impact is due (-1: none)."""
 
-ADAPTIVE, ORDER, LOCAL, LAST_STAGE, CONTROLS, HELD, COUNTS = range(8, 15)
-"""What solver and island are (system.Stepper); whether a local contact holds something (CHANGED_AT)."""
+ADAPTIVE, ORDER, LOCAL, LAST_STAGE, CONTROLS, HELD, SWAPPED, COUNTS = range(8, 16)
+"""What solver and island are (system.Stepper); whether a local contact holds something (CHANGED_AT); whether the arrays
+of a step's start and end have changed places, for the end of a step is the next one's start."""
 
 REACHED, PAUSED, NOT_FINITE, GROWTH, STEP_TOO_SMALL, STUCK = range(6)
 
@@ -188,8 +189,9 @@ def march(
             return PAUSED
         counts[LEFT] -= 1
         t0 = clock[T1]
-        copy(y1, y0)
-        copy(rate1, rate0)
+        y0, y1 = y1, y0
+        rate0, rate1 = rate1, rate0
+        counts[SWAPPED] = 1 - counts[SWAPPED]
         if counts[PENDING] >= 0:
             apply_impact(rate, impact, t0, y0, rate0, floats, ints, leaving, counts)
         if counts[ADAPTIVE] > 0:

@@ -5,7 +5,7 @@ The velocity is the curl of a smooth vector potential, so its divergence is exac
 2007, Curl-noise for procedural fluid flow). In a cell of the lattice psi = sum over corners of w(f) (g x d + a h), with
 quintic weights w (Perlin 2002), d from the corner, and random vectors g and h of each corner:
 
-    u = curl psi = sum of g (2 w + grad w . d) - d (grad w . g) + grad w x a h
+    u = curl psi = sum of 2 w g + grad w x (g x d + a h)
 
 At a corner u = 2 g; a makes its square nearly as large everywhere. In time g and h turn into one another.
 """
@@ -15,7 +15,7 @@ import math
 import numpy as np
 
 from sceneql.kernels import inlined, kernel
-from sceneql.simulation.arithmetic_kernels import fma, widest
+from sceneql.simulation.arithmetic_kernels import always_inlined, bits, fma, widest
 from sceneql.simulation.threads_kernels import TILE, over_threads
 from sceneql.system_kernels import TERM
 
@@ -29,10 +29,12 @@ ROUGHNESS = 2.0 ** (-1.0 / 3.0)
 """Speed of eddies of half the size (Kolmogorov 1941)."""
 EVEN = np.float32(0.75)
 """a."""
+WHOLE = 1.5 * 2.0**52
+"""Numbers of this size are integers."""
 SPREAD = 1.8538
 """Root mean square of the curl of one octave, measured."""
-FX, FY, FZ, SX, SY, SZ, TX, TY, TZ, UX, UY, UZ, ROWS = range(13)
-"""Rows of scratch: place in the cell, weight and slope of its upper corner, the velocity so far."""
+FX, FY, FZ, UX, UY, UZ, ROWS = range(7)
+"""Rows of scratch: place in the cell, the velocity of an octave."""
 
 
 @inlined
@@ -59,56 +61,89 @@ def next_word(h):
 
 
 @inlined
-def corner(cx, cy, cz, seed, cosine, sine, work, cells):
-    """Add one corner's part of the curl to rows UX, UY, UZ, for all lanes. The numbers turn by an angle in time."""
+def corner(h, dx, dy, dz, cosine, sine, along, against):
+    """One corner's g x d + a h and g, from its hash; d from the corner. The numbers turn by an angle in time."""
+    always_inlined()
+    p = mixed(h)
+    q = next_word(p)
+    ex, ey, ez = number(p, 0), number(p, 11), number(p, 22)
+    fx, fy, fz = number(q, 0), number(q, 11), number(q, 22)
+    gx, gy, gz = fma(sine, fx, cosine * ex), fma(sine, fy, cosine * ey), fma(sine, fz, cosine * ez)
+    hx, hy, hz = fma(against, ex, along * fx), fma(against, ey, along * fy), fma(against, ez, along * fz)
+    return fma(gy, dz, fma(-gz, dy, hx)), fma(gz, dx, fma(-gx, dz, hy)), fma(gx, dy, fma(-gy, dx, hz)), gx, gy, gz
+
+
+@inlined
+def edge(x, right, yz, fx, dy, dz, sx, cosine, sine, along, against):
+    """Between two corners along x: psi (3), its change from one to the other (y, z), g (3)."""
+    always_inlined()
+    px, py, pz, gx, gy, gz = corner(np.uint32(x ^ yz), fx, dy, dz, cosine, sine, along, against)
+    back = fx - np.float32(1.0)
+    qx, qy, qz, hx, hy, hz = corner(np.uint32(right ^ yz), back, dy, dz, cosine, sine, along, against)
+    qx, qy, qz = qx - px, qy - py, qz - pz
+    hx, hy, hz = fma(sx, hx - gx, gx), fma(sx, hy - gy, gy), fma(sx, hz - gz, gz)
+    return fma(sx, qx, px), fma(sx, qy, py), fma(sx, qz, pz), qy, qz, hx, hy, hz
+
+
+@inlined
+def face(x, right, y, up, z, fx, fy, dz, sx, sy, cosine, sine, along, against):
+    """Between two edges along y: psi (x, y), its change along x (y, z) and along y (x, z), g (3)."""
+    always_inlined()
+    low, high = np.uint32(y ^ z), np.uint32(up ^ z)
+    px, py, pz, ay, az, gx, gy, gz = edge(x, right, low, fx, fy, dz, sx, cosine, sine, along, against)
+    back = fy - np.float32(1.0)
+    qx, qy, qz, by, bz, hx, hy, hz = edge(x, right, high, fx, back, dz, sx, cosine, sine, along, against)
+    ay, az = fma(sy, by - ay, ay), fma(sy, bz - az, az)
+    gx, gy, gz = fma(sy, hx - gx, gx), fma(sy, hy - gy, gy), fma(sy, hz - gz, gz)
+    return fma(sy, qx - px, px), fma(sy, qy - py, py), ay, az, qx - px, qz - pz, gx, gy, gz
+
+
+@inlined
+def weight(f):
+    """Quintic weight of the upper corner, and its slope."""
+    square = f * f
+    back = f - np.float32(1.0)
+    return (
+        square * f * fma(f, fma(np.float32(6.0), f, np.float32(-15.0)), np.float32(10.0)),
+        np.float32(30.0) * square * (back * back),
+    )
+
+
+@inlined
+def cell(seed, cosine, sine, work, cells):
+    """Write the curl of one octave to rows UX, UY, UZ, for all lanes: corners to edges to faces, like psi itself."""
     widest()
-    ox, oy, oz = np.float32(cx), np.float32(cy), np.float32(cz)
-    ax, ay, az = np.float32(1 - cx), np.float32(1 - cy), np.float32(1 - cz)
-    bx, by, bz = np.float32(2 * cx - 1), np.float32(2 * cy - 1), np.float32(2 * cz - 1)
-    px = np.uint32(cx) * np.uint32(0x8DA6B343)
-    py = np.uint32(cy) * np.uint32(0xD8163841)
-    pz = np.uint32(cz) * np.uint32(0xCB1AB31F)
-    two, along, against = np.float32(2.0), EVEN * cosine, -EVEN * sine
+    nx, ny, nz = np.uint32(0x8DA6B343), np.uint32(0xD8163841), np.uint32(0xCB1AB31F)
+    one, two, along, against = np.float32(1.0), np.float32(2.0), EVEN * cosine, -EVEN * sine
     for k in range(LANES):
-        h = np.uint32(
-            np.uint32(cells[k] + px) ^ np.uint32(cells[LANES + k] + py) ^ np.uint32(cells[2 * LANES + k] + pz)
+        x, y, z = np.uint32(cells[k] ^ seed), cells[LANES + k], cells[2 * LANES + k]
+        right, up, out = np.uint32(np.uint32(cells[k] + nx) ^ seed), np.uint32(y + ny), np.uint32(z + nz)
+        fx, fy, fz = work[FX * LANES + k], work[FY * LANES + k], work[FZ * LANES + k]
+        (sx, tx), (sy, ty), (sz, tz) = weight(fx), weight(fy), weight(fz)
+        px, py, ay, az, bx, bz, gx, gy, gz = face(x, right, y, up, z, fx, fy, fz, sx, sy, cosine, sine, along, against)
+        qx, qy, cy, cz, dx, dz, hx, hy, hz = face(
+            x, right, y, up, out, fx, fy, fz - one, sx, sy, cosine, sine, along, against
         )
-        p = mixed(np.uint32(h ^ seed))
-        q = next_word(p)
-        ex, ey, ez = number(p, 0), number(p, 11), number(p, 22)
-        fx, fy, fz = number(q, 0), number(q, 11), number(q, 22)
-        gx, gy, gz = fma(sine, fx, cosine * ex), fma(sine, fy, cosine * ey), fma(sine, fz, cosine * ez)
-        hx, hy, hz = fma(against, ex, along * fx), fma(against, ey, along * fy), fma(against, ez, along * fz)
-        dx, dy, dz = work[FX * LANES + k] - ox, work[FY * LANES + k] - oy, work[FZ * LANES + k] - oz
-        wx = fma(bx, work[SX * LANES + k], ax)
-        wy = fma(by, work[SY * LANES + k], ay)
-        wz = fma(bz, work[SZ * LANES + k], az)
-        yz, xz, xy = wy * wz, wx * wz, wx * wy
-        sx = bx * work[TX * LANES + k] * yz
-        sy = by * work[TY * LANES + k] * xz
-        sz = bz * work[TZ * LANES + k] * xy
-        forth = fma(two, wx * yz, fma(sx, dx, fma(sy, dy, sz * dz)))
-        back = fma(sx, gx, fma(sy, gy, sz * gz))
-        work[UX * LANES + k] += fma(gx, forth, fma(-dx, back, fma(sy, hz, -sz * hy)))
-        work[UY * LANES + k] += fma(gy, forth, fma(-dy, back, fma(sz, hx, -sx * hz)))
-        work[UZ * LANES + k] += fma(gz, forth, fma(-dz, back, fma(sx, hy, -sy * hx)))
+        # Slopes of psi: y and z by x, x and z by y, x and y by z.
+        ay, az = tx * fma(sz, cy - ay, ay), tx * fma(sz, cz - az, az)
+        bx, bz = ty * fma(sz, dx - bx, bx), ty * fma(sz, dz - bz, bz)
+        gx, gy, gz = fma(sz, hx - gx, gx), fma(sz, hy - gy, gy), fma(sz, hz - gz, gz)
+        work[UX * LANES + k] = fma(two, gx, fma(-tz, qy - py, bz))
+        work[UY * LANES + k] = fma(two, gy, fma(tz, qx - px, -az))
+        work[UZ * LANES + k] = fma(two, gz, ay - bx)
 
 
 @inlined
 def locate(axis, scale, shift, places, work, cells):
-    """For all lanes: lattice cell of a coordinate, place in it, quintic weight and its slope."""
+    """For all lanes: lattice cell of a coordinate, and the place in it."""
     widest()
     prime = np.uint32(0x8DA6B343 if axis == 0 else (0xD8163841 if axis == 1 else 0xCB1AB31F))
     for k in range(LANES):
         place = fma(scale, places[axis * LANES + k], shift)
-        below = math.floor(place)
-        f = np.float32(place - below)
-        square = f * f
-        back = f - np.float32(1.0)
-        work[(FX + axis) * LANES + k] = f
-        work[(SX + axis) * LANES + k] = square * f * (f * (np.float32(6.0) * f - np.float32(15.0)) + np.float32(10.0))
-        work[(TX + axis) * LANES + k] = np.float32(30.0) * square * (back * back)
-        cells[axis * LANES + k] = np.uint32(np.uint32(np.int64(below)) * prime)
+        # Rounding by a large number leaves the integer in the last bits.
+        rounded = (place - 0.5) + WHOLE
+        work[(FX + axis) * LANES + k] = np.float32(place - (rounded - WHOLE))
+        cells[axis * LANES + k] = np.uint32(np.uint32(bits(rounded) & 0xFFFFFFFF) * prime)
 
 
 @inlined
@@ -121,11 +156,7 @@ def curl(places, seed, angle, octaves, work, cells, total):
         cosine, sine = np.float32(math.cos(angle)), np.float32(math.sin(angle))
         for axis in range(3):
             locate(axis, scale, 17.31 * octave, places, work, cells)
-        for k in range(UX * LANES, ROWS * LANES):
-            work[k] = np.float32(0.0)
-        stirred = mixed(np.uint32(seed + 0x632BE5AB * octave))
-        for at in range(8):
-            corner(at & 1, (at >> 1) & 1, at >> 2, stirred, cosine, sine, work, cells)
+        cell(mixed(np.uint32(seed + 0x632BE5AB * octave)), cosine, sine, work, cells)
         weight = np.float32(part)
         for k in range(3 * LANES):
             total[k] += weight * work[UX * LANES + k]
