@@ -278,10 +278,19 @@ class March:
         done.evaluations = int(self.floats[0])
         done.seconds += time.perf_counter() - started
         if status != kernels.REACHED:
-            at = int(counts[kernels.INDEX])
-            why = "the equations run away" if self.stepper.adaptive else "the step is unstable"
-            unsolved = self.stepper.unsolved if status == kernels.NOT_FINITE else ""
-            self._fail(-1 if status == kernels.STUCK else at, unsolved or MESSAGES[status].format(why))
+            self.fail(status)
+
+    @property
+    def time(self) -> float:
+        """End of the last step [s]."""
+        return float(self._clock[kernels.T1])
+
+    def fail(self, status: int) -> None:
+        """Raise the RunFailure of the compiled march's status."""
+        at = int(self._counts[kernels.INDEX])
+        why = "the equations run away" if self.stepper.adaptive else "the step is unstable"
+        unsolved = self.stepper.unsolved if status == kernels.NOT_FINITE else ""
+        self._fail(-1 if status == kernels.STUCK else at, unsolved or MESSAGES[status].format(why))
 
     def _look(self) -> None:
         """Let the other method take over where it is time to see which is the better one."""

@@ -23,6 +23,8 @@ LANES = 256
 """Particles that are worked on together, in single precision; the cell and the place in it are found in double."""
 PART = 8 * LANES
 """Particles of a tile."""
+MANY = 8
+"""Tiles that are worth threads; a block of an island (march_blocks.py) has fewer, and threads of its own."""
 FASTER = 2.0 ** (2.0 / 3.0)
 """How much sooner they change."""
 ROUGHNESS = 2.0 ** (-1.0 / 3.0)
@@ -240,6 +242,6 @@ def turbulence(t, y, rate, floats, ints):
     angular frequency), power_at, octaves, seed, threads' entry and number, address of the tile function.
     """
     tiles = (ints[2] + PART - 1) // PART
-    over_threads(ints[12], ints[13], ints[14], tiles, t, y, rate, floats, ints)
+    over_threads(ints[12], ints[13] if tiles >= MANY else 1, ints[14], tiles, t, y, rate, floats, ints)
     for tile in range(tiles):
         rate[ints[3]] += floats[ints[9] + tile]
