@@ -41,7 +41,8 @@ def aim(reals, rays, j, px, py, box):
 @lean(types.void(SCENE, *ARGUMENTS, types.float64[:, ::1], types.int64[::1], types.int64, types.float64[::1]))
 def meet_tiles(
     scene, code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, found, parts, scratch,
-    beams, doubles, points, short, near_singles, near_parts, plan, order, room, table, box, window, start, answers,
+    beams, doubles, points, short, near_singles, near_parts, plan, order, room, table, flat, other, box, window, start,
+    answers,
 ):  # fmt: skip
     """Where the camera's rays through rows start.. of a picture first meet {f < 0} in ``box``, into ``answers`` (n,).
 
@@ -62,7 +63,7 @@ def meet_tiles(
             first_roots(
                 code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, TILE * TILE, False,
                 found, parts, scratch, beams, doubles, points, short, near_singles, near_parts,
-                plan, order, room, table,
+                plan, order, room, table, flat, other,
             )  # fmt: skip
             for j in range(TILE * TILE):
                 x, y = pixel_of(j)

@@ -62,8 +62,8 @@ SPOT, SPANS, BEAM_ROW, OWN_ROW, FOLDS, ROOM = WIDE, WIDE + 7, WIDE + 9, WIDE + 1
 BASE = 6
 """Rows of ``room`` (ROOM, n): rays, lanes (place, direction, where the slice begins on the ray), where parts are
 entered and left along the axis of a beam, the bundle's beam and a packet's, and working memory of theirs."""
-ROW_OF, THRESHOLD, CLIPPED = range(3)
-"""Of a plan: the row of the density, -1 where a field has another form; of c; whether there is a g."""
+ROW_OF, THRESHOLD, OTHER = range(3)
+"""Of a plan: the row of the density, -1 where a field has another form; of c; of g, -1 where there is none."""
 NARROW, HAIR = F(2.0e-5), F(1.0e-6)
 """Width of a bracket, and what is searched beyond the parts, relative to the ray's piece."""
 QUARTER, INFINITE = F(0.25), F(np.inf)

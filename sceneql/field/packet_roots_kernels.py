@@ -9,9 +9,8 @@ routine.
 import numpy as np
 from numba.core.sigutils import normalize_signature
 
-from sceneql.field.affine_kernels import GROW, HALF, PAD, F
 from sceneql.field.batch_kernels import evaluate
-from sceneql.field.density_roots_kernels import CLIPPED, ROW_OF, density_roots
+from sceneql.field.density_roots_kernels import ROW_OF, density_roots
 from sceneql.field.hunt_kernels import (
     FAR,
     FOUND_HIGH,
@@ -25,117 +24,17 @@ from sceneql.field.hunt_kernels import (
 )
 from sceneql.field.isolation_kernels import isolate
 from sceneql.field.packet_density_kernels import keep_near
-from sceneql.field.packet_kernels import C1, LANES, PACKET, E, enclose, load_constants, place
-from sceneql.field.polynomial_hunt_kernels import hunt_polynomials
+from sceneql.field.packet_kernels import LANES, PACKET, enclose, load_constants
+from sceneql.field.polynomial_hunt_kernels import SETTLED, polynomial_roots
 from sceneql.field.polynomial_kernels import POLYNOMIAL
-from sceneql.field.tape_ops import DENSITY, HIT, MISS, NOWHERE, SKELETON, UNDECIDED
+from sceneql.field.slab_kernels import BEGIN, STOP, bundle, join, left_of_slabs, place_slabs
+from sceneql.field.tape_ops import DENSITY, HIT, MISS, SKELETON, UNDECIDED
 from sceneql.kernels import inlined, lean
 
 GROUP, SLABS = 16, 8
 BEAMS = LANES // SLABS
-PLACE, WAY, PLACE_OFF, WAY_OFF, BEGIN, STOP = 0, 3, 6, 9, 12, 13
-BEAM = 14
-"""Rows of beams: middle of the places of its rays at its begin, and of their directions; how far they are off both;
-begin and end."""
 TOLERANCE = 1e-9
 """Of the certified routine, relative to the searched piece of the ray."""
-SETTLED = 1e-6
-"""Change of a root, relative to the length of its search, at the last step of its polish, beyond which it is sought
-anew by the certified routine."""
-
-
-@inlined
-def bundle(rays, count, groups, beams):
-    """Enclose the rays of each group in a beam; the begin of the earliest ray, where all beams are taken to begin.
-
-    A group of rays without any length ends before it begins. Groups are lanes here: ray j belongs to j % groups.
-    """
-    for g in range(groups):
-        beams[BEGIN, g] = np.inf
-        beams[STOP, g] = -np.inf
-    for first in range(0, count, groups):
-        for g in range(min(groups, count - first)):
-            t0, t1 = rays[6, first + g], rays[7, first + g]
-            low, high = beams[BEGIN, g], beams[STOP, g]
-            beams[BEGIN, g] = t0 if (t0 < t1) & (t0 < low) else low
-            beams[STOP, g] = t1 if (t0 < t1) & (t1 > high) else high
-    begin = np.inf
-    for g in range(groups):
-        begin = min(begin, beams[BEGIN, g])
-    if begin == np.inf:
-        return begin
-    for axis in range(3):
-        for g in range(groups):
-            beams[PLACE + axis, g] = beams[WAY + axis, g] = np.inf
-            beams[PLACE_OFF + axis, g] = beams[WAY_OFF + axis, g] = -np.inf
-        for first in range(0, count, groups):
-            for g in range(min(groups, count - first)):
-                d = rays[3 + axis, first + g]
-                p = rays[axis, first + g] + begin * d
-                alive = rays[6, first + g] < rays[7, first + g]
-                low, high = beams[PLACE + axis, g], beams[PLACE_OFF + axis, g]
-                d_low, d_high = beams[WAY + axis, g], beams[WAY_OFF + axis, g]
-                beams[PLACE + axis, g] = p if alive & (p < low) else low
-                beams[PLACE_OFF + axis, g] = p if alive & (p > high) else high
-                beams[WAY + axis, g] = d if alive & (d < d_low) else d_low
-                beams[WAY_OFF + axis, g] = d if alive & (d > d_high) else d_high
-    return begin
-
-
-@inlined
-def join(beams, groups, whole):
-    """The beam around all beams into column ``whole``, then each as middle and how far off."""
-    beams[BEGIN, whole] = beams[STOP, whole] = -np.inf
-    for g in range(groups):
-        beams[STOP, whole] = max(beams[STOP, whole], beams[STOP, g])
-    for axis in range(6):
-        row = axis if axis < 3 else axis + WAY - 3
-        low = np.inf
-        high = -np.inf
-        for g in range(groups):
-            low = min(low, beams[row, g])
-            high = max(high, beams[row + PLACE_OFF, g])
-        beams[row, whole] = low
-        beams[row + PLACE_OFF, whole] = high
-        for g in range(whole + 1):
-            low, high = beams[row, g], beams[row + PLACE_OFF, g]
-            beams[row, g] = 0.5 * (low + high)
-            beams[row + PLACE_OFF, g] = 0.5 * (high - low)
-
-
-@inlined
-def place_slabs(beams, g, base, begin, end, point, lane, slabs):
-    """Enclose so many slabs, from begin to end, of a beam whose places are those at ``base``, from a lane on."""
-    depth = F((end - begin) / slabs)
-    late = begin - base
-    for axis in range(3):
-        row = point[axis]
-        d = F(beams[WAY + axis, g])
-        o = F(beams[PLACE + axis, g] + late * beams[WAY + axis, g])
-        off = F(beams[PLACE_OFF + axis, g] + (end - base) * beams[WAY_OFF + axis, g]) * GROW
-        for k in range(slabs):
-            place(row, lane + k, o, d, (F(k) + HALF) * depth, HALF * depth * GROW)
-        for k in range(slabs):
-            row[E + lane + k] += off
-
-
-@inlined
-def left_of_slabs(last, status, lane, slabs):
-    """(first, last, end of the first run) of the slabs that are not proved outside; first = slabs: none."""
-    first = slabs
-    final = -1
-    run = slabs
-    for k in range(slabs):
-        i = lane + k
-        m = abs(last[C1 + i])
-        e = last[E + i] * GROW + PAD * (abs(last[i]) + m)
-        if status[i] == F(NOWHERE) or last[i] - m > e:
-            if first < slabs and run == slabs:
-                run = k
-            continue
-        first = min(first, k)
-        final = k
-    return first, final, run
 
 
 @inlined
@@ -220,7 +119,7 @@ def certify(code, constants, parts, scratch, rays, count, anywhere, found):
 @inlined
 def packet_roots(
     code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, count, groups, anywhere, found,
-    parts, beams, short, near_singles, near_parts, plan, room,
+    parts, beams, short, near_singles, near_parts,
 ):  # fmt: skip
     """Settle a bundle by enclosures: (enclosures, rays that may be met, in ``queue``, whether ``short`` was made)."""
     load_constants(code, constants, registers)
@@ -274,14 +173,9 @@ def packet_roots(
                     queue[queued] = j
                     queued += 1
         waiting = 0
-    if plan[POLYNOMIAL] >= 0:
-        spent += hunt_polynomials(
-            code, constants, plan, last, status, lanes, ids, rays, asked, queue, queued, anywhere, found, room
-        )
-    else:
-        spent += hunt(
-            code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, queued, anywhere, found
-        )
+    spent += hunt(
+        code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, queued, anywhere, found
+    )
     return spent, queued, shortened
 
 
@@ -306,7 +200,7 @@ def check_inside(code, constants, parts, registers, points, rays, queue, count, 
 
 BUNDLE = f"{PACKET}, float32[::1], float32[::1], int64[::1], float64[:, ::1], float32[:, ::1], int64[::1]"
 FOUND = "float64[:, ::1]," * 6 + "int32[:, ::1], float32[:, ::1], float64[:, ::1],"
-FOUND += "int64[::1], int64[::1], float64[:, ::1], float32[:, ::1]"
+FOUND += "int64[::1], int64[::1], float64[:, ::1], float32[:, ::1], float64[::1], int32[:, ::1]"
 ARGUMENTS = normalize_signature(f"void({BUNDLE}, {FOUND})")[0]
 """Types of the arrays that ``first_roots`` takes before and behind its two numbers."""
 
@@ -339,6 +233,8 @@ def first_roots(
     order,
     room,
     table,
+    flat,
+    other,
 ):
     """Settle the first ``count`` rays: outcomes and places [t] into rows FOUND_STATUS and FOUND_ROOT of ``found``.
 
@@ -355,25 +251,30 @@ def first_roots(
             short, near_parts,
         )  # fmt: skip
         code, parts = short, near_parts
+    elif plan[POLYNOMIAL] >= 0:
+        spent, queued = polynomial_roots(
+            code, constants, singles, registers, point, status, rays, count, anywhere, found, queue, plan, order,
+            room, flat,
+        )  # fmt: skip
     elif has(code, SKELETON):
         return 0, certify(code, constants, parts, scratch, rays, count, anywhere, found)
     else:
         spent, queued, shortened = packet_roots(
             code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, count, groups,
-            anywhere, found, parts, beams, short, near_singles, near_parts, plan, room,
+            anywhere, found, parts, beams, short, near_singles, near_parts,
         )  # fmt: skip
         if shortened:
             code, parts = short, near_parts
-    if not anywhere:
+    if not anywhere and plan[POLYNOMIAL] < 0:
         hits = 0
         for k in range(queued):  # hits to the front of the queue
             if found[FOUND_STATUS, queue[k]] == HIT:
                 queue[hits], queue[k] = queue[k], queue[hits]
                 hits += 1
         polish(code, constants, parts, doubles, points, rays, queue, hits, found)
-    if plan[CLIPPED]:
+    if other.shape[0] > 0:
         row, late = (FOUND_HIGH, 0.0) if anywhere else (FOUND_ROOT, SETTLED)
-        check_inside(code, constants, parts, doubles, points, rays, queue, queued, row, late, found)
+        check_inside(other, constants, parts, doubles, points, rays, queue, queued, row, late, found)
     certified = 0
     for k in range(queued):
         j = queue[k]

@@ -18,10 +18,12 @@ from sceneql.field import (
     packet_roots_kernels,
 )
 from sceneql.field.packet_kernels import LANES, WIDTH
-from sceneql.field.packet_roots_kernels import BEAM, GROUP
-from sceneql.field.polynomial_hunt_kernels import MOST_DEGREE, WORK
+from sceneql.field.packet_roots_kernels import GROUP
+from sceneql.field.polynomial_hunt_kernels import MOST_DEGREE
 from sceneql.field.polynomial_kernels import DEGREES, POLYNOMIAL
+from sceneql.field.polynomial_steps_kernels import ROWS, C
 from sceneql.field.skeleton import plain_points
+from sceneql.field.slab_kernels import BEAM
 from sceneql.field.solid import scratch
 from sceneql.field.tape_ops import (
     ADD,
@@ -40,7 +42,7 @@ from sceneql.field.tape_ops import (
 )
 
 if TYPE_CHECKING:
-    from numpy import float32, int64
+    from numpy import float32, int32, int64
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats, Tape
@@ -106,31 +108,48 @@ def degrees_of(tape: Tape, row: int) -> list[int] | None:
 def plan_of(tape: Tape) -> NDArray[int64]:
     """How packets look for roots of a tape f or max(f, g), as its kernels read it.
 
-    (row of D, index of c, whether there is a g, row of p), -1 for the rows where f has not the form; then of a
-    polynomial p the degrees of the rows up to it and where their coefficients begin.
+    (row of D, index of c, row of g, row of p), -1 for the rows where f has not the form; then of a polynomial p the
+    degrees of the rows up to it and where their coefficients begin.
     """
     last = len(tape.code) - 1
     rows = [last] if tape.code[last, 0] != MAX else [int(row) for row in tape.code[last, 1:3]]
-    clipped = len(rows) > 1
     # Its parts are gathered for each bundle: those of another row are not.
     alone = sum(int(op) in OF_PARTS for op in tape.code[:, 0]) == 1
-    for row in rows:
+    turns = list(zip(rows, [*rows[1:], *rows[:1]] if len(rows) > 1 else [-1], strict=True))
+    for row, other in turns:
         if alone and (found := density_of(tape, row)) is not None:
-            return np.array([*found, clipped, -1], dtype=np.int64)
-    for row in rows:
+            return np.array([*found, other, -1], dtype=np.int64)
+    for row, other in turns:
         if (degrees := degrees_of(tape, row)) is not None:
-            starts = np.concatenate([[0], np.cumsum(np.array(degrees) + 1)])
-            return np.array([-1, 0, clipped, row, *degrees, *starts[:-1]], dtype=np.int64)
-    return np.array([-1, 0, False, -1], dtype=np.int64)
+            starts = ROWS // LANES + np.concatenate([[0], np.cumsum(np.array(degrees) + 1)])
+            return np.array([-1, 0, other, row, *degrees, *starts[: len(degrees) - 1], C // LANES], dtype=np.int64)
+    return np.array([-1, 0, -1, -1], dtype=np.int64)
 
 
-def room_for(tape: Tape, plan: NDArray[int64], count: int) -> Floats:
-    """What a plan works in: see density_roots_kernels and polynomial_hunt_kernels."""
-    rows = density_roots_kernels.ROOM
-    if plan[POLYNOMIAL] >= 0:
-        coefficients = int((plan[DEGREES : DEGREES + plan[POLYNOMIAL] + 1] + 1).sum())
-        rows = max(rows, WORK + max(coefficients, len(tape.code), MOST_DEGREE + 4))
-    return np.zeros((rows, max(count, LANES, len(tape.parts))))
+def tape_up_to(tape: Tape, row: int) -> NDArray[int32]:
+    """Code (k, 4) of a row and what it needs of the tape alone; empty for row -1."""
+    needed = {row} if row >= 0 else set()
+    for k in range(row, -1, -1):
+        op, left, right, point = map(int, tape.code[k])
+        if k in needed and op in OF_PARTS:
+            needed |= {point, point + 1, point + 2}
+        elif k in needed and op not in (CONSTANT, X, Y, Z):
+            needed |= {left, right}
+    place = {k: i for i, k in enumerate(sorted(needed))}
+    code = [[int(n) for n in tape.code[k]] for k in place]
+    for line in code:
+        if line[0] in OF_PARTS:
+            line[3] = place[line[3]]
+        elif line[0] not in (CONSTANT, X, Y, Z):
+            line[1:] = place[line[1]], place[line[2]], place.get(line[3], 0)
+    return np.array(code, dtype=np.int32).reshape(-1, 4)
+
+
+def room_for(plan: NDArray[int64]) -> Floats:
+    """What polynomials of a plan work in: see polynomial_steps_kernels."""
+    rows = int(plan[POLYNOMIAL]) + 1
+    numbers = int((plan[DEGREES : DEGREES + rows] + 1).sum()) * LANES
+    return np.zeros(ROWS + max(numbers, 2 * rows))
 
 
 class Memory:
@@ -157,8 +176,10 @@ class Memory:
         march = (
             plan,
             np.zeros(2 * LANES + count + len(tape.parts), dtype=np.int64),
-            room_for(tape, plan, count),
+            np.zeros((density_roots_kernels.ROOM, max(count, LANES, len(tape.parts)))),
             np.zeros((density_roots_kernels.MOST_PARTS, density_march_kernels.COLUMNS), dtype=single),
+            room_for(plan),
+            tape_up_to(tape, int(plan[density_roots_kernels.OTHER])),
         )
         self.rest = tape.parts, scratch(tape), beams, doubles, np.zeros((3, LANES)), *near, *march
 

@@ -1,132 +1,200 @@
 # mypy: ignore-errors
-"""First roots of polynomials along many rays at once: hunt_kernels.hunt with enclosures of their coefficients."""
+"""First roots of polynomials along a bundle of rays: what ``hunt_kernels`` does, from exact coefficients.
 
-from sceneql.field.affine_kernels import ZERO
-from sceneql.field.hunt_kernels import (
-    CUT_FROM,
-    CUT_TO,
+The rays that have a length are packed; slabs of the beam around them all that an enclosure of the tape proves to be
+outside are left out at both ends.
+"""
+
+from sceneql.field.affine_kernels import GROW, HALF, F
+from sceneql.field.extent_kernels import extent
+from sceneql.field.hunt_kernels import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS
+from sceneql.field.packet_kernels import LANES, E, enclose, load_constants, place
+from sceneql.field.polynomial_kernels import DEGREES, POLYNOMIAL, coefficients, rounding
+from sceneql.field.polynomial_steps_kernels import (
+    CHANGE,
     END,
-    FAR,
-    FOUND_HIGH,
-    FOUND_LOW,
-    FOUND_ROOT,
-    FOUND_SLOPE,
-    FOUND_STATUS,
-    HELD,
-    LENGTH,
+    HALF_WAY,
     LIVE,
-    NEAR,
+    MIDDLE,
+    RAY,
     ROOT,
-    ROWS,
-    RUN,
-    SLOPE,
     STATE,
     TRIES,
     A,
     B,
-    advance,
+    C,
+    polish,
+    step,
 )
-from sceneql.field.packet_kernels import LANES
-from sceneql.field.polynomial_kernels import (
-    COEFFICIENTS,
-    DEGREES,
-    HALF_WAY,
-    MIDDLE,
-    POLYNOMIAL,
-    coefficients,
-    enclose_polynomials,
-    rounding,
-)
+from sceneql.field.slab_kernels import left_of_slabs
+from sceneql.field.tape_ops import HIT, MISS, UNDECIDED
 from sceneql.kernels import inlined
 
 MOST_DEGREE = 8
-PIECES = 6
-WORK = PIECES + COEFFICIENTS + MOST_DEGREE + 1
-"""Rows of ``room``: places and directions of the lanes' rays, their polynomials, and working memory."""
+SETTLED = 1e-6
+"""Change of a root, relative to the length of its search, at the last step of its polish, beyond which it is sought
+anew by the certified routine."""
+SHORTEST = -0.98
+"""Where the first segment ends at least."""
+T0, T1, SPOT = 6, 7, 8
+"""Rows of packed rays, of which the first are those of rays; the last is working memory."""
 
 
 @inlined
-def sizes_of(rays, queue, count, axis):
-    """The largest |o| + |t d| of an axis on the queued rays."""
-    size = 0.0
-    for i in range(count):
-        j = queue[i]
-        size = max(size, abs(rays[axis, j]) + max(abs(rays[6, j]), abs(rays[7, j])) * abs(rays[3 + axis, j]))
-    return size
-
-
-@inlined
-def take(rays, asked, queue, first, n, lanes, ids, pieces, table):
-    """Put rays queue[first..first+n-1] into lanes."""
-    middle, half = table[MIDDLE], table[HALF_WAY]
-    for i in range(n):
-        j = queue[first + i]
-        ids[i] = j
-        low, high = asked[NEAR, j], asked[FAR, j]
-        middle[i] = 0.5 * (float(low) + float(high))
-        half[i] = 0.5 * (float(high) - float(low))
-        lanes[A * LANES + i] = low
-        lanes[B * LANES + i] = asked[RUN, j]
-        lanes[END * LANES + i] = lanes[CUT_FROM * LANES + i] = lanes[CUT_TO * LANES + i] = high
-        lanes[LENGTH * LANES + i] = rays[7, j] - rays[6, j]
-        lanes[HELD * LANES + i] = lanes[TRIES * LANES + i] = ZERO
-        lanes[STATE * LANES + i] = LIVE
-    for axis in range(3):
-        place, way, own, own_way = rays[axis], rays[3 + axis], pieces[axis], pieces[3 + axis]
-        begin = rays[6]
-        for i in range(n):
-            j = ids[i]
-            own_way[i] = way[j]
-            own[i] = place[j] + begin[j] * way[j]
-
-
-@inlined
-def close_gaps(lanes, ids, table, rows, width):
-    """Move lanes that are looking for a root together; their number."""
+def pack(rays, count, ids, wide):
+    """Put the rays that have a length into ``wide``; how many there are."""
     n = 0
-    for j in range(width):
-        if ids[j] < 0:
-            continue
-        if n < j:
-            ids[n] = ids[j]
-            for row in range(ROWS):
-                lanes[row * LANES + n] = lanes[row * LANES + j]
-            for row in range(rows):
-                table[row, n] = table[row, j]
-        n += 1
+    t0, t1 = rays[T0], rays[T1]
+    for j in range(count):
+        ids[n] = j
+        n += 1 if t0[j] < t1[j] else 0
+    for row in range(8):
+        source, target = rays[row], wide[row]
+        if n == count:
+            for i in range(n):
+                target[i] = source[i]
+        else:
+            for i in range(n):
+                target[i] = source[ids[i]]
     return n
 
 
 @inlined
-def hunt_polynomials(
-    code, constants, plan, last, status, lanes, ids, rays, asked, queue, count, anywhere, found, room
+def place_beam(wide, n, begin, end, axis, point):
+    """Enclose a coordinate in the slabs of the beam around n rays; (bound of it, of its error in units of that)."""
+    o, d, spot = wide[axis], wide[3 + axis], wide[SPOT]
+    for i in range(n):
+        spot[i] = o[i] + begin * d[i]
+    low, high = extent(spot, n)
+    d_low, d_high = extent(d, n)
+    way, way_off = 0.5 * (d_low + d_high), 0.5 * (d_high - d_low)
+    depth = F((end - begin) / LANES)
+    off = F(0.5 * (high - low) + (end - begin) * way_off) * GROW
+    middle, along = F(0.5 * (low + high)), F(way)
+    for k in range(LANES):
+        place(point, k, middle, along, (F(k) + HALF) * depth, HALF * depth * GROW)
+    for k in range(LANES):
+        point[E + k] += off
+    speed = max(abs(d_low), abs(d_high))
+    size = max(abs(low), abs(high)) + (end - begin) * speed
+    return size, 8.0 + 8.0 * max(abs(begin), abs(end)) * speed / max(size, 1e-300)
+
+
+@inlined
+def take(wide, first, width, n, begin, run, end, lanes):
+    """Put packed rays into lanes; those beyond ``width``, or nowhere within begin..end, have nothing to look for."""
+    t0, t1 = wide[T0, first:], wide[T1, first:]
+    for i in range(n):
+        low = t0[i] if t0[i] > begin else begin
+        high = t1[i] if t1[i] < end else end
+        some = (low < high) & (i < width)
+        middle = 0.5 * (low + high)
+        half = 0.5 * (high - low) if some else 1.0
+        stop = (run - middle) / half
+        stop = stop if stop > SHORTEST else SHORTEST
+        lanes[MIDDLE + i] = middle
+        lanes[HALF_WAY + i] = half
+        lanes[RAY + i] = float(first + i)
+        lanes[A + i] = -1.0
+        lanes[B + i] = stop if stop < 1.0 else 1.0
+        lanes[END + i] = 1.0
+        lanes[TRIES + i] = 0.0
+        lanes[STATE + i] = LIVE if some else float(MISS)
+
+
+@inlined
+def live_lanes(lanes, n):
+    """How many of n lanes have no outcome."""
+    live = 0
+    for i in range(n):
+        live += 1 if lanes[STATE + i] == LIVE else 0
+    return live
+
+
+@inlined
+def note(lanes, i, j, rays, anywhere, found):
+    """What became of lane i, which is ray j and no MISS."""
+    outcome = lanes[STATE + i]
+    t0, t1 = rays[T0, j], rays[T1, j]
+    middle, half = lanes[MIDDLE + i] - t0, lanes[HALF_WAY + i]
+    if outcome == HIT and not anywhere:
+        root = middle + half * lanes[ROOT + i]
+        if not (half * lanes[CHANGE + i] <= SETTLED * (t1 - t0) and t0 + root < t1):
+            outcome = float(UNDECIDED)
+        found[FOUND_ROOT, j] = root
+    found[FOUND_STATUS, j] = outcome
+    found[FOUND_LOW, j] = middle + half * lanes[A + i]
+    found[FOUND_HIGH, j] = middle + half * lanes[B + i]
+
+
+@inlined
+def settle_lanes(lanes, kept, ids, width, rays, anywhere, found, queue, queued):
+    """Note the outcomes of lanes, and put those without one together; (how many, rays noted in the queue)."""
+    live = 0
+    for i in range(width):
+        outcome = lanes[STATE + i]
+        if outcome == LIVE:
+            if live < i:
+                for start in range(0, kept, LANES):
+                    lanes[start + live] = lanes[start + i]
+            live += 1
+        elif outcome != MISS:
+            j = ids[int(lanes[RAY + i])]
+            note(lanes, i, j, rays, anywhere, found)
+            queue[queued] = j
+            queued += 1
+    for i in range(live, width):
+        lanes[STATE + i] = float(MISS)
+    return live, queued
+
+
+@inlined
+def polynomial_roots(
+    code, constants, singles, registers, point, status, rays, count, anywhere, found, queue, plan, order, room, lanes
 ):  # fmt: skip
-    """Settle the first ``count`` rays of the ``queue``; returns the enclosures spent."""
-    pieces, table, work = room[:PIECES], room[PIECES:WORK], room[WORK:]
-    degree = plan[DEGREES + plan[POLYNOMIAL]]
-    sizes = sizes_of(rays, queue, count, 0), sizes_of(rays, queue, count, 1), sizes_of(rays, queue, count, 2)
-    off = rounding(code, constants, plan, sizes, work)
-    spent = 0
-    for first in range(0, count, LANES):
-        looking = width = min(LANES, count - first)
-        take(rays, asked, queue, first, width, lanes, ids, pieces, table)
-        coefficients(code, constants, plan, pieces, width, work, table)
-        while looking > 0:
-            if 2 * looking <= width:
-                width = close_gaps(lanes, ids, table, COEFFICIENTS + degree + 1, width)
-            n = (width + 7) // 8 * 8
-            enclose_polynomials(table, degree, lanes, off, work, last, status, n)
-            advance(lanes, last, status, n, anywhere)
-            spent += looking
-            for i in range(width):
-                if lanes[STATE * LANES + i] == LIVE or ids[i] < 0:
-                    continue
-                j = ids[i]
-                found[FOUND_STATUS, j] = lanes[STATE * LANES + i]
-                found[FOUND_LOW, j] = lanes[A * LANES + i]
-                found[FOUND_HIGH, j] = lanes[B * LANES + i]
-                found[FOUND_ROOT, j] = lanes[ROOT * LANES + i]
-                found[FOUND_SLOPE, j] = lanes[SLOPE * LANES + i]
-                ids[i] = -1
-                looking -= 1
-    return spent
+    """Settle a bundle as ``packet_roots_kernels.first_roots`` does.
+
+    Returns (enclosures, rays that may be met, in ``queue``).
+    """
+    n = pack(rays, count, order, room)
+    if n == 0:
+        return 0, 0
+    base, _ = extent(room[T0], n)
+    _, stop = extent(room[T1], n)
+    x = place_beam(room, n, base, stop, 0, point[0])
+    y = place_beam(room, n, base, stop, 1, point[1])
+    z = place_beam(room, n, base, stop, 2, point[2])
+    load_constants(code, constants, registers)
+    enclose(code, constants, singles, registers, point, status, LANES)
+    first, final, run = left_of_slabs(registers[code.shape[0] - 1], status, 0, LANES)
+    if first == LANES:
+        return LANES, 0
+    depth = (stop - base) / LANES
+    begin, end, run_end = base + (first - 1e-6) * depth, base + (final + 1 + 1e-6) * depth, base + run * depth
+    off = rounding(code, constants, plan, (x[0], y[0], z[0], x[1], y[1], z[1]), lanes)
+    rows = plan[POLYNOMIAL] + 1
+    degree = plan[DEGREES + rows - 1]
+    kept = C + (max(degree + degree % 2, 4) + 1) * LANES  # coefficients up to the next even degree from 4 on
+    spent = LANES
+    queued = 0
+    for first in range(0, n, LANES):
+        width = min(LANES, n - first)
+        m = (width + 15) // 16 * 16
+        take(room, first, width, m, begin, run_end, end, lanes)
+        coefficients(code, constants, plan, room, first, lanes[MIDDLE:], lanes[HALF_WAY:], m, lanes)
+        for i in range(C + (degree + 1) * LANES, kept):
+            lanes[i] = 0.0
+        live = live_lanes(lanes, m)
+        while width > 0:
+            while 2 * live > width:
+                step(lanes, degree, m, off, anywhere)
+                spent += live
+                live = live_lanes(lanes, m)
+            if not anywhere:
+                polish(lanes, degree, m)
+            width, queued = settle_lanes(
+                lanes, kept, order, width, rays, anywhere, found, queue, queued
+            )  # fmt: skip
+            live = width
+            m = (width + 15) // 16 * 16
+    return spent, queued

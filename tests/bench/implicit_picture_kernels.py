@@ -48,7 +48,7 @@ def aim(rays, n, pixels, x, y, view):
     f"UniTuple(int64, 3)({PACKET}, float32[::1], float32[::1], int64[::1], float64[:, ::1], float32[:, ::1],"
     " int64[::1], float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1],"
     " float64[:, ::1], int32[:, ::1], float32[:, ::1], float64[:, ::1], int64[::1], int64[::1], float64[:, ::1],"
-    " float32[:, ::1], float64[:, :, ::1], float64[:, ::1], float64[:, ::1], float64,"
+    " float32[:, ::1], float64[::1], int32[:, ::1], float64[:, :, ::1], float64[:, ::1], float64[:, ::1], float64,"
     " int64, float32[:, ::1], float64[:, ::1])",
 )
 def draw_row(
@@ -76,6 +76,8 @@ def draw_row(
     order,
     room,
     table,
+    flat,
+    other,
     slopes,
     pixels,
     view,
@@ -115,7 +117,8 @@ def draw_row(
                     rays[7, j] = rays[6, j]
         a, b = first_roots(
             code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, n, False, found,
-            parts, scratch, beams, doubles, points, short, near_singles, near_parts, plan, order, room, table,
+            parts, scratch, beams, doubles, points, short, near_singles, near_parts, plan, order, room, table, flat,
+            other,
         )  # fmt: skip
         spent += a
         certified += b
@@ -172,7 +175,8 @@ def draw_row(
                 rays[7, j] = rays[6, j]
         a, b = first_roots(
             code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, n, True, found,
-            parts, scratch, beams, doubles, points, short, near_singles, near_parts, plan, order, room, table,
+            parts, scratch, beams, doubles, points, short, near_singles, near_parts, plan, order, room, table, flat,
+            other,
         )  # fmt: skip
         spent += a
         certified += b
