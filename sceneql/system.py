@@ -139,6 +139,8 @@ class Grid:
     """Volumes, 0 outside."""
     box_at: int
     """Low corner and sides of a cell, six numbers [m]."""
+    carried: bool
+    """Whether a drift acts on it."""
 
 
 class Assembly(Protocol):
@@ -311,6 +313,8 @@ class Stepper:
     it, so the step does that itself (see `prepare`)."""
     on_grid: Stepper | None = None
     """What takes its place on an island that is one field on a grid (System.grid)."""
+    otherwise: Stepper | None = None
+    """What takes its place from the first step of a given length on that it finds no solution of."""
     by_scale: bool = False
     """Whether on a grid the absolute tolerance counts in units of the largest value at the start."""
     march: str | None = None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from sceneql.failure import RunFailure
 from sceneql.quantities.diagnostic import ScriptError
 from test_diffusion import Field
 
@@ -156,6 +157,34 @@ def test_every_kind_of_solver_carries(tmp_path, solver):
     field = in_disk(tmp_path, drift, solver, 0.5, **fields).at(0.5)
     assert np.abs(field.values - exact.values).max() < 2e-3
     assert field.read("mass") == pytest.approx(exact.read("mass"), abs=1e-12)
+
+
+@pytest.mark.parametrize("limiter", ["koren", "van_leer"])
+@pytest.mark.parametrize("cells", [0.2, 1.5, 4, 10])
+def test_implicit_steps_may_pass_many_cells(tmp_path, limiter, cells):
+    # 1 m/s at the rim, cells of 0.1 m: a step of 0.1 s passes one.
+    step = 0.1 * cells
+    drift, start = f"{{stream_function: '-(x^2 + y^2)/2', limiter: {limiter}}}", "where(x > 0.1, 1, 0)"
+    field = in_disk(tmp_path, drift, f"{{implicit_euler: {{step: {step} s}}}}", 3 * step, initial=start)
+    mass = field.at(2 * step).read("mass")
+    before = field.run._now[1].copy()
+    after = field.at(3 * step).run._now[1].copy()
+    assert after - before == pytest.approx(step * field.run.march.rate(3 * step, after), abs=1e-8)
+    assert field.read("mass") == pytest.approx(mass, abs=1e-12)
+    assert field.values.min() > -1e-9
+    assert field.values.max() < 1 + 1e-9
+
+
+@pytest.mark.parametrize("solver", ["crank_nicolson", "tr_bdf2"])
+def test_methods_of_second_order_pass_many_cells_too(tmp_path, solver):
+    drift = "{stream_function: '-(x^2 + y^2)/2'}"
+    field = in_disk(tmp_path, drift, f"{{{solver}: {{step: 1 s}}}}", 5, initial="1 + x")
+    mass = field.at(0.0).read("mass")
+    assert np.isfinite(field.at(5.0).values).all()
+    assert field.read("mass") == pytest.approx(mass, abs=1e-11)
+    named = in_disk(tmp_path, drift, f"{{{solver}: {{step: 1 s, linear: conjugate_gradient}}}}", 5, initial="x > 0")
+    with pytest.raises(RunFailure, match="with a drift `linear: auto`"):
+        named.at(5.0)
 
 
 @pytest.mark.parametrize("limiter", ["koren", "van_leer", "none"])

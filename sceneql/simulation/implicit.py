@@ -18,6 +18,7 @@ ON_GRIDS = "sceneql.simulation.grids.stage_kernels"
 NEWTON = 1e-10
 """Relative and absolute tolerance of Newton's method where steps are fixed."""
 UNSOLVED = "Newton's method finds no solution of this step: take a shorter one"
+UNSOLVED_ON_GRID = f"{UNSOLVED}, or with a drift `linear: auto`"
 SHARE = 0.02
 """Part of the tolerance that Newton's method may leave as its own error."""
 
@@ -136,6 +137,7 @@ class ImplicitTableau:
             dense=None if adaptive else f"{ON_GRIDS}:linear",
             jacobian=False,
             prepare="sceneql.simulation.grids.implicit:prepare",
+            unsolved=UNSOLVED if linear == "auto" else UNSOLVED_ON_GRID,
         )
         return replace(whole, on_grid=on_grid)
 
@@ -144,17 +146,23 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     """What implicit_runge_kutta_kernels.step works with on an island."""
     import numpy as np
 
+    from sceneql.simulation.linear.newton_kernels import ABSOLUTE
     from sceneql.simulation.linear.stage import stage_plan
 
     plan = stage_plan(system)
     assert system.pattern is not None
     stages = stepper.numbers[0]
     room = system.pattern.room
+    settings, text = np.array(stepper.settings), plan.text
+    if system.grid is not None:  # a field that drifts: grids.suited
+        text += ", chosen since a drift may pass many cells in a step"
+        if stepper.by_scale:
+            settings[ABSOLUTE] *= float(np.abs(system.y).max(initial=0.0)) or 1.0
     return Prepared(
-        settings=np.concatenate([stepper.settings, plan.scales]),
+        settings=np.concatenate([settings, plan.scales]),
         numbers=np.concatenate([stepper.numbers, [len(stepper.settings), room], plan.numbers]),
         work=(4 + stages) * len(system.y) + room + plan.store,
-        text=plan.text,
+        text=text,
     )
 
 

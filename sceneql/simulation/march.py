@@ -269,7 +269,7 @@ class March:
                 counts[kernels.SWAPPED] = 0
             if status == kernels.PAUSED:
                 self._look()
-            elif status != kernels.STEP_TOO_SMALL or not self._give_up():
+            elif not self._goes_on(status):
                 break
         done = self.statistics
         done.steps, done.rejected, done.events = (
@@ -304,6 +304,14 @@ class March:
             self._change(switch, t)
             clock[kernels.STEP] = switch.stable(self, t, self._y1, step)
             clock[kernels.ERROR] = 1e-4
+
+    def _goes_on(self, status: int) -> bool:
+        """Whether another method goes on where one finds no step."""
+        if status == kernels.NOT_FINITE and self.stepper.otherwise is not None:
+            self.stepper = self.stepper.otherwise
+            self._engage(self.stepper)
+            return True
+        return status == kernels.STEP_TOO_SMALL and self._give_up()
 
     def _give_up(self) -> bool:
         """Whether the explicit method goes on where the stiff one finds no step short enough."""

@@ -92,7 +92,9 @@ class IslandRun:
             self.solver = self.solver.on_grid(assembly.only_field, assembly.numbers)
         stepper, end = self.solver.stepper(), graph.settings.clock.end
         if assembly.only_field is not None and stepper.on_grid is not None:
-            stepper = stepper.on_grid
+            from sceneql.simulation.grids.suited import suited
+
+            stepper = suited(stepper, assembly.only_field)
         system = assembly.finish(stepper.jacobian)
         blocks = blocks_of(made, system, stepper)
         self.march: March

@@ -139,6 +139,7 @@ class _Builder:
             outside=~self.inside,
             insides_at=self.ground.volumes_at,
             box_at=self.ground.box_at,
+            carried=self.drift is not None,
         )
 
     def _drifts(self, drift: Drift, flow: Flow, given: list[Condition], periodic: tuple[bool, ...]) -> None:

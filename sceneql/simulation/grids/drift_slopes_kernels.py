@@ -5,6 +5,9 @@ from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.grids.drift_kernels import UPWIND, VAN_LEER, beyond
 from sceneql.system_kernels import TERM
 
+DEFINITE_AT = 2
+"""Of floats: whether slopes are to be definite."""
+
 
 @lean_inlined
 def bends(kind, behind, ahead):
@@ -25,7 +28,8 @@ def bends(kind, behind, ahead):
 def carry(t, y, entries, floats, ints):
     """Of drift_kernels.carry: a cell's own entries, then of every axis eight a face.
 
-    Rows before and cell, each by the columns before the one before, before, cell, after the cell.
+    Rows before and cell, each by the columns before the one before, before, cell, after the cell. Where slopes are to
+    be definite (system.Slopes), those without a limiter: with them steps are found where its bends are in the way.
     """
     at, nx, ny, nz = ints[0], ints[1], ints[2], ints[3]
     divisors, volumes, kind = ints[4], ints[5], ints[12]
@@ -55,7 +59,7 @@ def carry(t, y, entries, floats, ints):
                 up, down, up_column, down_column, behind_column = cell, before, 2, 1, 3
                 behind = beyond(cell, place, count, stride, 1, periodic, floats, volumes)
             by_behind = by_ahead = 0.0
-            if behind >= 0:
+            if behind >= 0 and floats[DEFINITE_AT] == 0.0:
                 by_behind, by_ahead = bends(kind, c[up] - c[behind], c[down] - c[up])
             for row in range(2):
                 weight = -flow / floats[divisors + before] if row == 0 else flow / floats[divisors + cell]

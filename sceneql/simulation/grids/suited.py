@@ -1,0 +1,30 @@
+"""Which way an implicit method marches a field: by its grid, or as any other system."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import prod
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sceneql.system import Grid, Stepper
+
+MOST_CARRIED = {2: 300_000, 3: 30_000}
+"""Cells of a flat or deep grid up to which systems with all that a drift ties are made."""
+
+
+def suited(stepper: Stepper, grid: Grid) -> Stepper:
+    """What a stepper hands over for grids; where a drift acts, itself if need be.
+
+    The systems of grids know the spread and go over what drifts again and again, which is quick but converges up to
+    about a cell a step. Newton's method on all slopes, the limiter's among them, has no such bound: it takes over where
+    a step of a given length is not solved, and makes those that a tolerance chooses.
+    """
+    if stepper.on_grid is None:
+        return stepper
+    many = prod(grid.shape) > MOST_CARRIED[3 if grid.shape[2] > 1 else 2]
+    if not grid.carried or many or stepper.linear != "auto":
+        return stepper.on_grid
+    if stepper.adaptive:
+        return stepper
+    return replace(stepper.on_grid, otherwise=replace(stepper, dense=stepper.on_grid.dense))
