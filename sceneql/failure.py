@@ -37,6 +37,11 @@ class LimitRefused(Exception):
         self.diagnostic = Diagnostic("limit-refused", message, span, help)
         super().__init__(str(self.diagnostic))
 
+    def at(self, span: Span | None) -> LimitRefused:
+        """The same with its place in the script, unless it has one."""
+        told = self.diagnostic
+        return self if told.span is not None else LimitRefused(told.message, span, told.help)
+
 
 class Unsuitable(ValueError):
     """What is asked for does not suit the scene: one file for several outputs, a benchmark without physics."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sceneql.failure import RunFailure
+from sceneql.failure import LimitRefused, RunFailure
 from sceneql.pipeline import load
 from sceneql.simulation.grids.implicit import report
 from sceneql.simulation.march import March
@@ -279,3 +279,22 @@ def test_an_exchange_of_no_size_is_a_closed_side_also_where_nothing_spreads(tmp_
         field = Field(tmp_path, "{tr_bdf2: {step: 0.1 s}}", 1.0, coefficient=coefficient, initial="x", boundary=sides)
         before = field.at(0.0).read("mass")
         assert field.at(1.0).read("mass") == pytest.approx(before, rel=1e-13)
+
+
+# --- what cannot be solved so ---
+
+
+@pytest.mark.parametrize(
+    ("solver", "fields", "said"),
+    [
+        ("{tr_bdf2: {linear: direct}}", {"cell": "1/800 m"}, "factors of 640000 cells would not fit"),
+        ("{tr_bdf2: {linear: fast_transform}}", {"coefficient": "1 + x"}, "a fast transform needs a flat box"),
+        ("radau", {"cell": "1/32 m"}, "radau factors full matrices"),
+    ],
+)
+def test_a_solver_that_does_not_take_a_grid_is_told_with_its_line(tmp_path, solver, fields, said):
+    with pytest.raises(LimitRefused, match=said) as found:
+        Field(tmp_path, solver, **fields)
+    span = found.value.diagnostic.span
+    assert span is not None
+    assert "main: " in (tmp_path / "scene.yaml").read_text().splitlines()[span.line - 1]

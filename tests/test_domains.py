@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from sceneql.quantities.diagnostic import ScriptError
 from sceneql.simulation.grids import svg
 from sceneql.simulation.grids.mesh import MeshLevel
 from sceneql.simulation.grids.polygon import Polygon
@@ -142,6 +143,18 @@ def test_a_lake_of_an_svg_has_its_area_islands_and_place(tmp_path):
     np.testing.assert_allclose(center, (2, 4), atol=1e-3)
     # The rock has a shore of 1.6 m; a circle of 0.3 m holds 4 asin(0.15) m of the lake's.
     assert basin.read("inflow") == pytest.approx(0.1 * (1.6 + 2 * 4 * math.asin(0.15)), rel=0.03)
+
+
+def test_an_island_has_a_name_of_its_own(tmp_path):
+    drawn(tmp_path, '<circle id="big" cx="50" cy="40" r="10"/><path id="rock" d="M48 38h4v4h-4z"/>', "lake.svg")
+    corner = "[[1 m, 1 m], [2 m, 1 m], [1 m, 2 m]]"
+    for source, name, said in (
+        ("file: lake.svg, width: 2 m", "rock", "an island is named rock, which the file has, too"),
+        ("points: [[0 m, 0 m], [4 m, 0 m], [0 m, 4 m]]", "shore", "named shore, which is the outline itself"),
+    ):
+        shore = f"shore: {{outline: {{{source}, islands: {{{name}: {corner}}}}}}}"
+        with pytest.raises(ScriptError, match=said):
+            Basin(tmp_path, shore, "auto", cell="0.1 m")
 
 
 # --- pictures ---

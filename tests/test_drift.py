@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sceneql.failure import RunFailure
+from sceneql.failure import LimitRefused, RunFailure
 from sceneql.quantities.diagnostic import ScriptError
+from sceneql.simulation.grids import flow
 from test_diffusion import Field
 
 AROUND = "{left: {periodic: yes}, bottom: {periodic: yes}}"
@@ -206,6 +207,19 @@ def test_the_jacobian_is_the_derivative_of_the_rate(tmp_path, limiter):
     rows = np.repeat(np.arange(len(found)), np.diff(pattern.starts))
     found[rows, pattern.columns] = values[: len(pattern.columns)]
     assert found[:-1, :-1] == pytest.approx(by_differences(march)[:-1, :-1], abs=1e-6)
+
+
+def test_a_flow_made_free_of_divergence_is_the_same_by_factors_and_by_iterations(tmp_path, monkeypatch):
+    wind, sides = "{velocity: '[y - 0.3*x^2, sin(3*x) + 0.2]'}", "{left: {open: yes}, top: {open: yes}}"
+    flows = []
+    for most in (300_000, 0):
+        monkeypatch.setattr(flow, "LARGEST_FACTORED", {2: most, 3: most})
+        field = drifted(tmp_path, wind, "{heun: {step: 1 ms}}", 0.1, initial="x", boundary=sides).at(0.1)
+        flows.append(field.values)
+    assert np.abs(flows[0] - flows[1]).max() < 1e-10
+    monkeypatch.setattr("scipy.sparse.linalg.cg", lambda matrix, target, **rest: (target, 1))
+    with pytest.raises(LimitRefused, match="on so many cells"):
+        drifted(tmp_path, wind, "heun", 0.1, boundary=sides)
 
 
 def test_species_that_stay_in_place_are_not_carried(tmp_path):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from sceneql.failure import RunFailure, failing_as
+from sceneql.failure import LimitRefused, RunFailure, failing_as
 from sceneql.graph import Island, SimulationGraph
 from sceneql.kinds import Contact, Force, Material, Model, Object, Ref, Solver, Value
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
@@ -98,12 +98,15 @@ class IslandRun:
         system = assembly.finish(stepper.jacobian)
         blocks = blocks_of(made, system, stepper)
         self.march: March
-        if stepper.march is not None:
-            self.march = function(stepper.march)(system, stepper, end)
-        elif blocks:
-            self.march = BlockMarch(system, stepper, end, blocks)
-        else:
-            self.march = March(system, stepper, end, lambda: assembly.finish(jacobian=True))
+        try:
+            if stepper.march is not None:
+                self.march = function(stepper.march)(system, stepper, end)
+            elif blocks:
+                self.march = BlockMarch(system, stepper, end, blocks)
+            else:
+                self.march = March(system, stepper, end, lambda: assembly.finish(jacobian=True))
+        except LimitRefused as refused:
+            raise refused.at(graph.tasks[island.solver].span) from None
         self.members = {*island.models, *(contact for contact, _, _ in island.contacts)}
         self._now: tuple[float, Floats, Floats] | None = None
 

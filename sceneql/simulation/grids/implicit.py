@@ -136,7 +136,8 @@ def _choice(grid: Grid, asked: str, separable: bool) -> tuple[str, str]:
 def _multigrid(grid: Grid) -> _Plan:
     shapes = [grid.shape]
     while any(n > COARSEST for n in shapes[-1]):
-        shapes.append(tuple((n + 1) // 2 if n > COARSEST else n for n in shapes[-1]))  # type: ignore[arg-type]
+        nx, ny, nz = ((n + 1) // 2 if n > COARSEST else n for n in shapes[-1])
+        shapes.append((nx, ny, nz))
     sizes = [nx * ny * nz * (8 if nz > 1 else 7) for nx, ny, nz in shapes]
     starts = list(accumulate(sizes, initial=0))
     table = [number for shape, start in zip(shapes, starts, strict=False) for number in (*shape, start)]

@@ -32,7 +32,7 @@ def add_reaction(system: RateSystem, ground: Ground, fields: Sequence[int], asse
     rates = [printer.name(row) for row in rows]
     kernel = _kernel("reaction", system, printer, rates, [f"f{k} + cell" for k in range(len(rates))], tally=True)
     ints = _ints(constants, ground, fields, assembly)
-    assembly.term("internal", kernel, ints, _slopes(system, ground, fields, assembly))
+    assembly.term("internal", kernel, ints, lambda: _slopes(system, ground, fields, assembly))
 
 
 def _slopes(system: RateSystem, ground: Ground, fields: Sequence[int], assembly: Assembly) -> Slopes | None:

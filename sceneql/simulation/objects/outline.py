@@ -62,10 +62,14 @@ class Outline(Object):
             return
         at = ("points" if self.file is None else "file",)
         try:
-            rings = self._corners()
+            own = self._own()
         except ValueError as error:
             yield Problem(str(error), at)
             return
+        if twice := self._named_twice(own):
+            yield Problem(twice, ("islands",), at_key=True)
+            return
+        rings: dict[str, Any] = {**own, **self.islands}
         few = [(name, ring) for name, ring in rings.items() if len(ring) < 3]
         for name, ring in few:
             where = ("islands", name) if name in self.islands else at
@@ -87,8 +91,8 @@ class Outline(Object):
                 text = f"the piece {name} runs from one corner to another, of 0 to {last}"
                 yield Problem(text, ("pieces", name))
 
-    def _corners(self) -> Mapping[str, Corners]:
-        """The polygons that are known without numpy; the outline itself is `shore`. Raises ValueError."""
+    def _own(self) -> dict[str, Corners]:
+        """The polygons without the script's islands, as far as they are known without numpy. Raises ValueError."""
         found: dict[str, Corners] = {}
         if self.points is not None:
             found["shore"] = self.points
@@ -98,7 +102,15 @@ class Outline(Object):
             for number, (name, ring) in enumerate(svg.rings(self.file).items()):
                 found["shore" if number == 0 else f"{name}_" if name == "shore" else name] = ring
             found = self._scaled(found)
-        return {**found, **self.islands}
+        return found
+
+    def _named_twice(self, own: Mapping[str, Any]) -> str | None:
+        """What is wrong where an island has the name of another polygon."""
+        for name in self.islands:
+            if name == "shore" or name in own:
+                what = "which is the outline itself" if name == "shore" else "which the file has, too"
+                return f"an island is named {name}, {what}: give it another name"
+        return None
 
     @property
     def _is_svg(self) -> bool:
@@ -121,11 +133,15 @@ class Outline(Object):
         """The polygons by name, each (corners, 2) [m]; the outline itself is `shore`. Raises ValueError."""
         import numpy as np
 
-        found = self._corners()
         if self.file is not None and not self._is_svg:
             from sceneql.simulation.grids.picture import contours
 
-            found = {**self._scaled(contours(self.file, self.threshold, self.inside == "bright")), **found}
+            own = self._scaled(contours(self.file, self.threshold, self.inside == "bright"))
+        else:
+            own = self._own()
+        if twice := self._named_twice(own):
+            raise ValueError(twice)
+        found = {**own, **self.islands}
         return {name: np.array(ring, dtype=float) for name, ring in found.items()}
 
     def domain(self) -> Any:
