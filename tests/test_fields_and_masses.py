@@ -56,6 +56,17 @@ def test_all_that_masses_give_comes_in_where_they_are(tmp_path):
     assert right[1] == pytest.approx(0.05, abs=1e-9)  # beside the shore all goes to the row of cells there
 
 
+def test_what_particles_give_ends_with_their_lives(tmp_path):
+    script = pond("{emission: {into: pond.concentration, rate: 0.5 m^3/s}}", coefficient="0.01")
+    a, b = script.index("      list:"), script.index("forces:")
+    emit = "{rate: 10 Hz, from: 1 1 0 m, velocity: 1 0.5 0 m/s, lifetime: 0.35 s}"
+    script = f"{script[:a]}      emit: {emit}\n      mass: 1 g\n{script[b:]}"
+    ((mass, inflow),) = watch(tmp_path, script, [1], "pond.mass", "pond.inflow")
+    lives = [min(0.35, 1 - j / 10) for j in range(10)]
+    assert mass == pytest.approx(0.5 * sum(lives), rel=2e-2)  # by steps of 10 ms, in which they are born and die
+    assert inflow == pytest.approx(mass, abs=1e-12)
+
+
 def test_a_linear_field_pulls_evenly(tmp_path):
     script = pond("{field_gradient: {of: pond.concentration, factor: 3 J}}", coefficient="0", initial="2*x - y")
     script = script.replace("2.93 0.04", "1.5 2")
@@ -99,10 +110,13 @@ models:
       masses: {bob: {position: 1 0 0 m, mass: 1 kg}, wall: {position: 0 0 0 m, fixed: yes}}
       springs: []
 forces: {pull: {spring: {from: swing.bob.position, to: 0 0 0 m, stiffness: 4 N/m*plate.here, rest: 0 m}}}
-objects: {ball: {sphere: {radius: 0.1 m*plate.here}}}
+objects:
+  ball: {sphere: {radius: 0.1 m*plate.here}}
+  blob: {blobby: {points: swing.positions, radius: 0.1 m*plate.here, threshold: 0.2}}
 solvers: {main: {dop853: {tolerance: 1e-10}}}
 """
-    ((here, x),) = watch(tmp_path, script, [1], "plate.here", "swing.bob.position")
+    ((here, x, volume),) = watch(tmp_path, script, [1], "plate.here", "swing.bob.position", "blob.volume")
+    assert volume == pytest.approx(2 * 4 / 3 * np.pi * (0.1 * here) ** 3 * (1 - 0.2 ** (1 / 3)) ** 1.5, rel=2e-3)
     assert here == pytest.approx(0.625 + 2)  # the center of its cell is at 0.625 m
     from scipy.integrate import solve_ivp
 
