@@ -128,6 +128,16 @@ def strips(one, other, j, soft, sums):
             sums[6 * STRIP + l], sums[7 * STRIP + l], sums[8 * STRIP + l] = cx, cy, cz
 
 
+@lean_inlined
+def folded(sums):
+    """The sum of STRIP numbers, half by half, as vectors do it."""
+    for l in range(8):
+        sums[l] += sums[8 + l]
+    for l in range(4):
+        sums[l] += sums[4 + l]
+    return (sums[0] + sums[2]) + (sums[1] + sums[3])
+
+
 @lean(types.void(A, A, A, F))
 def attract(one, other, sums, soft):
     """Add the forces between the bodies of two tiles; sums (3 SOURCES STRIP,): scratch."""
@@ -137,20 +147,20 @@ def attract(one, other, sums, soft):
         strips(one, other, j, soft, sums)
         for source in range(SOURCES):
             for c in range(3):
-                total = 0.0
-                for l in range(STRIP):
-                    total += sums[(3 * source + c) * STRIP + l]
-                other[(FX + c) * LANES + j + source] -= total
+                other[(FX + c) * LANES + j + source] -= folded(sums[(3 * source + c) * STRIP :])
 
 
 @lean(types.void(A, I, A, N))
 def take(floats, ints, tile, first):
     """Places and weights of the LANES bodies from ``first`` on, and no forces."""
-    for k in range(LANES):
-        for c in range(3):
-            tile[c * LANES + k] = floats[ints[POINTS] + c * ints[ROOM] + first + k]
+    for c in range(3):
+        places = floats[ints[POINTS] + c * ints[ROOM] + first : ints[POINTS] + c * ints[ROOM] + first + LANES]
+        for k in range(LANES):
+            tile[c * LANES + k] = places[k]
             tile[(FX + c) * LANES + k] = 0.0
-        tile[W * LANES + k] = floats[ints[WEIGHTS] + first + k]
+    own = floats[ints[WEIGHTS] + first : ints[WEIGHTS] + first + LANES]
+    for k in range(LANES):
+        tile[W * LANES + k] = own[k]
 
 
 @lean(types.void(A, A, N, N))

@@ -32,6 +32,8 @@ class Pairs:
     """Angle of the tree; 0: every pair is summed."""
     weights: Sequence[tuple[int, int]]
     """For every model offset and step of its weights in the floats."""
+    fast: bool = False
+    """Whether sums over every pair are in single precision."""
 
     def add(self, assembly: Assembly, everyone: Sequence[Bodies], span: Span | None) -> None:
         """Add the term, and remember what `potential` needs.
@@ -50,11 +52,17 @@ class Pairs:
     def _direct(self, assembly: Assembly, n: int) -> tuple[str, tuple[int, ...]]:
         """Kernel and integers up to the bodies (direct_kernels)."""
         from sceneql.simulation.nbody.direct_kernels import LANES, direct_tile, parts_of
+        from sceneql.simulation.nbody.fast_kernels import fast_tile
         from sceneql.simulation.threads_kernels import threads, tile_address
 
         room = -(-n // LANES) * LANES
         sums = (_scratch(assembly, 3 * room * parts_of(room)), parts_of(room))
-        ints = (*self._numbers(assembly, room), *sums, *threads(), tile_address(direct_tile))
+        ints = (
+            *self._numbers(assembly, room),
+            *sums,
+            *threads(),
+            tile_address(fast_tile if self.fast else direct_tile),
+        )
         return "direct_kernels:direct", ints
 
     def _tree(self, assembly: Assembly, n: int) -> tuple[str, tuple[int, ...]]:
@@ -103,20 +111,26 @@ def apart(assembly: Assembly, everyone: Sequence[Bodies], span: Span | None) -> 
 
 
 def sampled_error(state: ModelState) -> tuple[float, float]:
-    """Relative errors of a tree's forces at a state: root mean square and largest of SAMPLES bodies, evenly chosen."""
+    """Relative errors of the forces at a state: root mean square and largest of SAMPLES bodies, evenly chosen."""
     import numpy as np
 
     from sceneql.simulation.nbody import weights_kernels as kernels
-    from sceneql.simulation.nbody.tree_kernels import BODIES, tree
 
     ints = np.array(state.ints[1:], dtype=np.int64)
     rate = np.zeros_like(state.y)
-    tree(state.t, state.y, rate, state.floats, ints)
-    n, models = int(ints[BODIES]), ints[BODIES + 1]
-    rows = ints[BODIES + 2 :][: MODEL * models].reshape(-1, MODEL)
+    if state.ints[0]:
+        from sceneql.simulation.nbody.tree_kernels import BODIES as BODIES_AT
+        from sceneql.simulation.nbody.tree_kernels import tree as term
+    else:
+        from sceneql.simulation.nbody.direct_kernels import BODIES as BODIES_AT
+        from sceneql.simulation.nbody.direct_kernels import direct as term
+    term(state.t, state.y, rate, state.floats, ints)
+    n, models = int(ints[BODIES_AT]), ints[BODIES_AT + 1]
+    rows = ints[BODIES_AT + 2 :][: MODEL * models].reshape(-1, MODEL)
     found = np.concatenate([rate[at : at + 3 * count].reshape(-1, 3) for at, count in rows[:, 1:3]])
-    points, weights = int(ints[kernels.POINTS]), int(ints[kernels.WEIGHTS])
-    places, weight = state.floats[points : points + 3 * n].reshape(3, n), state.floats[weights : weights + n]
+    weights = int(ints[kernels.WEIGHTS])
+    places = np.concatenate([state.y[at : at + 3 * count].reshape(-1, 3) for at, count in rows[:, ::2][:, :2]]).T
+    weight = state.floats[weights : weights + n]
     softening = float(state.floats[ints[kernels.SOFTENING]])
     wrong = []
     for k in np.linspace(0, n - 1, SAMPLES).astype(int):
