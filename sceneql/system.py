@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from sceneql.quantities.span import Span
 
 Stage = Literal["internal", "force", "close", "constrain"]
+Mode = Literal["exact", "local"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,7 +185,7 @@ class Assembly(Protocol):
 
     def contact(
         self,
-        mode: Literal["exact", "local"],
+        mode: Mode,
         kernels: Sequence[str],
         ints: Sequence[int],
         pairs: int,
@@ -209,6 +210,9 @@ class Assembly(Protocol):
 
     def object(self, ref: Ref) -> Object:
         """The kind of an object of the script."""
+
+    def changing(self, at: int, count: int) -> None:
+        """Say that bodies come and go, and that floats[at:] change as they do, alike in every block of bodies."""
 
     def remember(self, *ints: int) -> None:
         """Keep integers for the word's own reading: ModelState.ints (a force: for each model; a contact: of all)."""

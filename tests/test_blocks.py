@@ -7,6 +7,7 @@ from runs import watch
 from sceneql.failure import RunFailure
 from sceneql.pipeline import load
 from sceneql.simulation import assembled
+from sceneql.simulation.contacts import collision
 from sceneql.simulation.march_blocks import BlockMarch
 from sceneql.simulation.run import Run
 
@@ -96,3 +97,42 @@ solvers: {main: {euler: {step: 10 ms}}}
         watch(tmp_path, script, [30], "dust.positions")
     assert failure.value.part == "dust"
     assert 5 < failure.value.time < 15
+
+
+SHOWER = """
+clock: {{end: 2 s}}
+objects: {{ring: {{torus: {{radius: 0.5 m, tube: 5 cm, position: 0 1 0 m, hidden: yes}}}}, floor: plane}}
+models:
+  spray:
+    particles:
+      emit: {{rate: 300 Hz, from: [0 m, "0.1 m * time/1 s", 0 m], within: ring, spread: 20 deg, variation: 0.2,
+        lifetime: 0.7 s{more}}}
+      mass: 1 g
+forces: [gravity, {{drag: {{linear: 0.5 g/s}}}}]
+contacts: {{bounce: {{collision: {{between: [spray, floor], restitution: 0.5, mode: local}}}}}}
+solvers: {{main: {{{solver}: {{step: 7 ms}}}}}}
+"""
+OF_THE_SHOWER = (
+    *("spray.positions", "spray.velocities", "spray.ages", "spray.radii", "spray.count"),
+    *("spray.energy", "bounce.hits.count"),
+)
+
+
+@pytest.mark.parametrize("more", ["", ", most: 100", ", count: 250", ", start: 0.1 s, until: 0.5 s"])
+@pytest.mark.parametrize("solver", ["rk4", "semi_implicit_euler"])
+def test_births_and_deaths_in_blocks_are_those_of_the_whole(tmp_path, monkeypatch, solver, more):
+    """As if they were so many that no step is cut at an impact."""
+    monkeypatch.setattr(collision, "MOST_CUT", 0)
+    script = SHOWER.format(solver=solver, more=more)
+
+    def moments(block):
+        monkeypatch.setattr(assembled, "BLOCK", block)
+        return watch(tmp_path, script, [0.1, 0.301, 0.9, 1.2], *OF_THE_SHOWER)
+
+    assert kind_of_march(tmp_path, monkeypatch, script) is BlockMarch
+    for one, other in zip(moments(10**6), moments(30), strict=True):
+        for name, a, b in zip(OF_THE_SHOWER, one, other, strict=True):
+            if name.endswith("energy"):
+                np.testing.assert_allclose(a, b, rtol=1e-9)
+            else:
+                np.testing.assert_array_equal(a, b)

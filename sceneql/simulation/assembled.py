@@ -113,6 +113,8 @@ class Block:
     sums: tuple[tuple[int, int], ...]
     """(in the island's state, in the block's): entries that are sums over the bodies."""
     assembly: IslandAssembly
+    changes: tuple[tuple[int, int, int], ...]
+    """As ``places``, of the floats that change where bodies come and go."""
 
 
 def blocks_of(whole: Assembled, system: System, stepper: Stepper) -> list[Block]:
@@ -129,7 +131,7 @@ def _block(whole: Assembled, system: System, number: int, count: int) -> Block |
     """Block ``number`` of ``count``: an equal part of every model; None where one cannot be divided."""
     graph, island = whole.graph, whole.island
     made = Assembled(graph, island, IslandAssembly(whole.assembly.setting, whole.assembly.body_count()))
-    places, sums = [], []
+    places, sums, changes = [], [], []
     for name, bodies in whole.bodies.items():
         if bodies is None:
             return None
@@ -143,6 +145,15 @@ def _block(whole: Assembled, system: System, number: int, count: int) -> Block |
         for there, here in ((bodies.position_at, part.position_at), (bodies.velocity_at, part.velocity_at)):
             places.append((there + 3 * first, here, 3 * (last - first)))
         sums.append((bodies.work_at, part.work_at))
+        for there, here in zip(_numbers_of(bodies), _numbers_of(part), strict=True):
+            changes.append((there + first, here, last - first))
     made.act()
     made.found.raise_errors()
-    return Block(made.assembly.finish(), tuple(places), tuple(sums), made.assembly)
+    for (there, n), (here, _) in zip(whole.assembly.changes, made.assembly.changes, strict=True):
+        changes.append((there, here, n))
+    changing = tuple(changes) if whole.assembly.changes else ()
+    return Block(made.assembly.finish(), tuple(places), tuple(sums), made.assembly, changing)
+
+
+def _numbers_of(bodies: Bodies) -> tuple[int, int, int]:
+    return bodies.mass_at, bodies.inverse_at, bodies.radius_at

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import accumulate
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from sceneql.frame import Floats
     from sceneql.quantities.span import Span
-    from sceneql.system import Grid, Pattern, Slopes, Stage
+    from sceneql.system import Grid, Mode, Pattern, Slopes, Stage
 
 STAGES: tuple[Stage, ...] = ("internal", "force", "close", "constrain")
 LARGEST_MEMORY = 8 * 2**30
@@ -122,6 +122,8 @@ class IslandAssembly:
     whole: int = 0
     """Of a block: the bodies of the whole island."""
     places: Callable[[Link], NDArray[int64] | None] = lambda link: None
+    changes: list[tuple[int, int]] = field(default_factory=list)
+    """Floats that change as bodies come and go; none where none do."""
     _starts: list[Floats] = field(default_factory=list)
     _size: int = 0
     _bodies: int = 0
@@ -217,14 +219,7 @@ class IslandAssembly:
         """Say which rows of the Jacobian inverse masses multiply (system.Assembly)."""
         self._masses.append((velocity_at, inverse_at, count))
 
-    def contact(
-        self,
-        mode: Literal["exact", "local"],
-        kernels: Sequence[str],
-        ints: Sequence[int],
-        pairs: int,
-        apart: bool = False,
-    ) -> None:
+    def contact(self, mode: Mode, kernels: Sequence[str], ints: Sequence[int], pairs: int, apart: bool = False) -> None:
         """Add contacts."""
         self._apart = self._apart and apart and mode == "local"
         (self._exact if mode == "exact" else self._local).append(_Block(tuple(kernels), tuple(ints), pairs))
@@ -266,6 +261,10 @@ class IslandAssembly:
     def body_count(self) -> int:
         """Number of bodies of the island so far; in a block that of the whole."""
         return max(self._bodies, self.whole)
+
+    def changing(self, at: int, count: int) -> None:
+        """Say that floats change as bodies come and go (system.Assembly)."""
+        self.changes.append((at, count))
 
     def remember(self, *ints: int) -> None:
         """Keep integers for the word's own reading (ModelState.ints)."""

@@ -109,6 +109,10 @@ class BlockMarch(March):
 
             ints = self.system.ints
             refresh(t, y, self.floats, ints[ints[ints[2]] : ints[ints[2] + 1]])
+        if self._floats_time != t:
+            for part, at in zip(self._parts, self._table[:, kernels.FLOATS], strict=True):
+                for there, here, count in part.changes:
+                    self.floats[there : there + count] = self._arena[at + here : at + here + count]
         self._floats_time = t
         return self.floats
 

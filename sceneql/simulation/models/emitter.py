@@ -155,6 +155,34 @@ class Emit(Record):
             link for value in (self.from_, self.velocity) for link in value.links if assembly.formula(link) is None
         ]
         before = [-1.0] * 7 if solved else [0.0, *assembly.initial(self.from_), *assembly.initial(self.velocity)]
+        self._act(name, assembly, bodies, [*spec, mass, radius], pool, before, 0, bodies.count)
+
+    def assemble_part(self, name: str, assembly: Assembly, bodies: Bodies, start: ModelState, first: int) -> None:
+        """The same for a block, whose bodies are the room for those from ``first`` on of all: ``start``."""
+        from sceneql.simulation.models.emitter_kernels import BEFORE, MEMORY, MEMORY_AT, POOL, POOL_AT, SPEC, SPEC_AT
+
+        assert start.bodies is not None
+        ints, floats = start.ints, start.floats
+        spec = floats[ints[SPEC_AT] : ints[SPEC_AT] + SPEC]
+        pool = floats[ints[POOL_AT] : ints[POOL_AT] + 3 * ints[POOL]].reshape(-1, 3)
+        before = floats[ints[MEMORY_AT] + BEFORE : ints[MEMORY_AT] + MEMORY]
+        self._act(name, assembly, bodies, spec, pool, before, first, start.bodies.count)
+
+    def _act(
+        self,
+        name: str,
+        assembly: Assembly,
+        bodies: Bodies,
+        spec: Any,
+        pool: Floats,
+        before: Any,
+        first: int,
+        slots: int,
+    ) -> None:
+        """Add the kernel of births and deaths (emitter_kernels)."""
+        import numpy as np
+
+        memory_at = assembly.floats([0.0, 0.0, *before])
         ints = (
             bodies.position_at,
             bodies.velocity_at,
@@ -162,17 +190,20 @@ class Emit(Record):
             bodies.mass_at,
             bodies.inverse_at,
             bodies.radius_at,
-            assembly.floats([*spec, mass, radius]),
+            assembly.floats(spec),
             assembly.value(self.from_),
             assembly.value(self.velocity),
             assembly.floats(pool),
             len(pool),
-            assembly.floats([0.0, 0.0, *before]),
+            memory_at,
             assembly.floats(np.full(bodies.count, np.inf)),
             chance_key(name, self.seed),
+            first,
+            slots,
         )
         assembly.step_at_most(self.lifetime / STEPS)
-        assembly.contact("local", ("sceneql.simulation.models.emitter_kernels:emit",), ints, 0)
+        assembly.contact("local", ("sceneql.simulation.models.emitter_kernels:emit",), ints, 0, apart=True)
+        assembly.changing(memory_at, 2 + len(before))
         assembly.remember(*ints)
 
     def living(self, bodies: Bodies, state: ModelState) -> tuple[Bodies, ModelState, Floats]:

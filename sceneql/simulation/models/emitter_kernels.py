@@ -20,7 +20,7 @@ FIRST, BORN, BEFORE, MEMORY = 0, 1, 2, 9
 """Memory: births before the last step, births so far; time of the last settling (below 0: none
 is known), place and velocity (3 each) then."""
 
-SPEC_AT, FROM_AT, MEAN_AT, POOL_AT, POOL, MEMORY_AT, DEATH_AT, KEY = range(6, 14)
+SPEC_AT, FROM_AT, MEAN_AT, POOL_AT, POOL, MEMORY_AT, DEATH_AT, KEY, FIRST_SLOT, SLOTS = range(6, 16)
 """Places in the kernel's integers, behind those of the bodies."""
 
 AZIMUTH, POLAR, SPEED, AGE, PLACE = range(5)
@@ -45,6 +45,26 @@ def draw(birth, number, key):
 def birth_time(floats, spec, birth):
     """When a birth happens."""
     return floats[spec + START] + birth / floats[spec + RATE]
+
+
+@inlined
+def born_until(floats, spec, t):
+    """How many are born up to t."""
+    birth = max(0, int(min((t - floats[spec + START]) * floats[spec + RATE], floats[spec + TOTAL])))
+    while birth > 0 and birth_time(floats, spec, birth - 1) > t:
+        birth -= 1
+    while birth < floats[spec + TOTAL] and birth_time(floats, spec, birth) <= t:
+        birth += 1
+    return birth
+
+
+@inlined
+def own_from(birth, ints):
+    """The first birth from that one on whose slot is one of this block's."""
+    slot, first = birth % ints[SLOTS], ints[FIRST_SLOT]
+    if slot < first:
+        return birth + first - slot
+    return birth if slot < first + ints[2] else birth + ints[SLOTS] - slot + first
 
 
 @inlined
@@ -79,13 +99,12 @@ def thrown(floats, spec, birth, key, vx, vy, vz):
 @inlined
 def catch_up(t0, t1, y0, rate0, y1, floats, ints):
     """What the last step's births owe: the acceleration, known only now, acts from their birth on."""
-    position_at, velocity_at, count, spec, memory = ints[0], ints[1], ints[2], ints[SPEC_AT], ints[MEMORY_AT]
+    position_at, velocity_at, spec, memory = ints[0], ints[1], ints[SPEC_AT], ints[MEMORY_AT]
     born = int(floats[memory + BORN])
-    for birth in range(max(int(floats[memory + FIRST]), born - count), born):
-        slot = birth % count
-        if floats[ints[4] + slot] == 0.0:
-            continue
-        s = t0 - birth_time(floats, spec, birth)
+    birth = own_from(max(int(floats[memory + FIRST]), born - ints[SLOTS]), ints)
+    while birth < born:
+        slot = birth % ints[SLOTS] - ints[FIRST_SLOT]
+        s = t0 - birth_time(floats, spec, birth) if floats[ints[4] + slot] > 0.0 else 0.0
         for c in range(3 * slot, 3 * slot + 3):
             more = rate0[velocity_at + c] * s
             y0[position_at + c] += 0.5 * more * s
@@ -93,6 +112,7 @@ def catch_up(t0, t1, y0, rate0, y1, floats, ints):
             y0[velocity_at + c] += more
             y1[velocity_at + c] += more
             rate0[position_at + c] += more
+        birth = own_from(birth + 1, ints)
 
 
 @kernel(SETTLE)
@@ -100,7 +120,8 @@ def emit(t0, t1, y0, rate0, y1, floats, ints):
     """Births and deaths of a step.
 
     ints: position_at, velocity_at, count, mass_at, inverse_at, radius_at, spec_at, from_at, mean_at (a velocity),
-    pool_at, pool size, memory_at, death_at, key. Birth j takes slot j mod count. A particle that is born inside the
+    pool_at, pool size, memory_at, death_at, key, number of the first slot, slots of all blocks. Birth j takes slot j
+    mod slots, and is the matter of the block that has it. A particle that is born inside the
     step has flown straight since, and gets the acceleration that it finds at the step's end in the next step, for the
     whole time: exact under a uniform force, else of third order. One that died in the step before is taken out.
     """
@@ -120,15 +141,14 @@ def emit(t0, t1, y0, rate0, y1, floats, ints):
             for c in range(3):
                 y1[position_at + 3 * slot + c] = floats[place + c]
                 y1[velocity_at + 3 * slot + c] = 0.0
-    birth = int(floats[memory + BORN])
-    floats[memory + FIRST] = birth
+    floats[memory + FIRST] = floats[memory + BORN]
+    floats[memory + BORN] = born_until(floats, spec, t1)
     before = floats[memory + BEFORE]
-    while birth < floats[spec + TOTAL]:
+    birth = own_from(int(floats[memory + FIRST]), ints)
+    while birth < floats[memory + BORN]:
         t = birth_time(floats, spec, birth)
-        if t > t1:
-            break
         w = (t - before) / (t1 - before) if before >= 0.0 else 1.0
-        slot = birth % count
+        slot = birth % ints[SLOTS] - ints[FIRST_SLOT]
         vx, vy, vz = thrown(
             floats, spec, birth, key,
             (1.0 - w) * floats[memory + 6] + w * floats[mean],
@@ -150,8 +170,7 @@ def emit(t0, t1, y0, rate0, y1, floats, ints):
         floats[inverse_at + slot] = 1.0 / floats[spec + MASS]
         floats[radius_at + slot] = floats[spec + RADIUS]
         floats[death + slot] = t + lifetime(floats, spec, birth, key)
-        birth += 1
-    floats[memory + BORN] = birth
+        birth = own_from(birth + 1, ints)
     floats[memory + BEFORE] = t1
     for c in range(3):
         floats[memory + 3 + c] = floats[place + c]

@@ -155,8 +155,11 @@ class Particles(Model):
     def assemble_part(
         self, name: str, assembly: Assembly, bodies: Bodies, start: ModelState, first: int, last: int
     ) -> Bodies | None:
-        """Any part of them, but for those that are born and die."""
-        return None if self.emit is not None else masses.reserve_part(assembly, bodies, start, first, last)
+        """Any part of them; of those that are born and die any part of the room for them."""
+        part = masses.reserve_part(assembly, bodies, start, first, last)
+        if self.emit is not None:
+            self.emit.assemble_part(name, assembly, part, start, first)
+        return part
 
     def _bound(self, count: float) -> None:
         """Raise LimitRefused for more particles than can be held."""
