@@ -6,7 +6,24 @@ from sceneql.field.density_kernels import offset
 from sceneql.field.sine_kernels import wave_lanes
 from sceneql.field.skeleton_kernels import skeleton_gradient
 from sceneql.field.tape_kernels import slopes
-from sceneql.field.tape_ops import ADD, CONSTANT, COPY, COS, DENSITY, MUL, NEG, SIN, SKELETON, SQUARE, SUB, X, Y, Z
+from sceneql.field.tape_ops import (
+    ADD,
+    CONSTANT,
+    COPY,
+    COS,
+    DENSITY,
+    MAX,
+    MIN,
+    MUL,
+    NEG,
+    SIN,
+    SKELETON,
+    SQUARE,
+    SUB,
+    X,
+    Y,
+    Z,
+)
 from sceneql.kernels import inlined, lean
 
 
@@ -82,6 +99,13 @@ def of_parts(code, k, parts, registers, slope, n):
 @inlined
 def any_slopes(op, value, a, b, slope_a, slope_b, slope, n):
     """Gradient of an operation of one or two arguments by its two derivatives."""
+    if op == MAX or op == MIN:
+        for axis in range(3):
+            ga, gb, g = slope_a[axis], slope_b[axis], slope[axis]
+            for i in range(n):
+                first = a[i] > b[i] if op == MAX else a[i] < b[i]
+                g[i] = ga[i] if first else gb[i]
+        return
     for i in range(n):
         u, v = slopes(op, value[i], a[i], b[i])
         for axis in range(3):

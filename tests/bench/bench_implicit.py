@@ -81,7 +81,10 @@ class Picture:
         self.picture = np.zeros((HEIGHT, WIDTH), dtype=np.float32)
         self.depth = np.zeros((HEIGHT, WIDTH))
         self.pixels = tile_pixels()
-        self.spare: list[tuple[Memory, Any]] = []
+        x, y = self.pixels.astype(np.int64)
+        turns = np.arange(256).reshape(16, 16).T.ravel()
+        self.numbers = np.array([y * WIDTH + x, turns, turns, turns])
+        self.spare: list[tuple[Memory, Any, Any, Any]] = []
 
     def draw(self) -> Any:
         """(enclosures, certified, undecided) of all rays."""
@@ -91,12 +94,13 @@ class Picture:
         spare = self.spare
 
         def work(row: int) -> None:
-            memory, slopes = spare.pop() if spare else (
-                Memory(self.tape, 256), np.zeros((len(self.tape.code), 3, 64))
+            memory, slopes, numbers, starts = spare.pop() if spare else (
+                Memory(self.tape, 256), np.zeros((len(self.tape.code), 3, 64)), self.numbers.copy(), np.zeros((3, 256))
             )  # fmt: skip
-            rest = slopes, self.pixels, self.view, self.clip, row, self.picture, self.depth
-            counts[row] = draw_row(*memory.bundle, memory.found, *memory.rest, *rest)
-            spare.append((memory, slopes))
+            rest = slopes, self.pixels, numbers, starts, self.view, self.clip, row, WIDTH
+            arrays = self.picture.reshape(-1), self.depth.reshape(-1)
+            counts[row] = draw_row(*memory.bundle, memory.found, *memory.rest, *rest, *arrays)
+            spare.append((memory, slopes, numbers, starts))
 
         over_tiles(len(counts), work)
         return counts.sum(axis=0)

@@ -44,12 +44,25 @@ def aim(rays, n, pixels, x, y, view):
             way[j] = forward
 
 
+@inlined
+def shade(code, constants, parts, doubles, points, slopes, view, n):
+    """Lambert's law at n points into the first row of the last of ``slopes``: below 0, the light is not faced."""
+    evaluate(code, constants, parts, doubles, points, n)
+    differentiate(code, constants, parts, doubles, slopes, n)
+    last = code.shape[0] - 1
+    lx, ly, lz = view[3, 0], view[3, 1], view[3, 2]
+    gx, gy, gz = slopes[last, 0], slopes[last, 1], slopes[last, 2]
+    for i in range(n):
+        x, y, z = gx[i], gy[i], gz[i]
+        gx[i] = (x * lx + y * ly + z * lz) / np.sqrt(x * x + y * y + z * z + 1e-300)
+
+
 @lean(
     f"UniTuple(int64, 3)({PACKET}, float32[::1], float32[::1], int64[::1], float64[:, ::1], float32[:, ::1],"
     " int64[::1], float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1],"
     " float64[:, ::1], int32[:, ::1], float32[:, ::1], float64[:, ::1], int64[::1], int64[::1], float64[:, ::1],"
-    " float32[:, ::1], float64[::1], int32[:, ::1], float64[:, :, ::1], float64[:, ::1], float64[:, ::1], float64,"
-    " int64, float32[:, ::1], float64[:, ::1])",
+    " float32[:, ::1], float64[::1], int32[:, ::1], float64[:, :, ::1], float64[:, ::1], int64[:, ::1],"
+    " float64[:, ::1], float64[:, ::1], float64, int64, int64, float32[::1], float64[::1])",
 )
 def draw_row(
     code,
@@ -80,29 +93,39 @@ def draw_row(
     other,
     slopes,
     pixels,
+    numbers,
+    starts,
     view,
     radius,
     row,
+    width,
     picture,
     depth,
 ):
-    """Draw a row of tiles into ``picture`` (h, w), the places [t] of its hits into ``depth``, -1 for none.
+    """Draw a row of tiles into ``picture`` (h w,), the places [t] of its hits into ``depth``, -1 for none.
 
-    ``pixels`` (2, n): those of a tile, in the order of its rays, those of a column of 16 close together.
+    ``pixels`` (2, n): those of a tile, in the order of its rays, those of a column of 16 close together; ``numbers``
+    (4, n): where these are in the picture, the rays column by column, and working memory, as is ``starts`` (3, n).
     ``view`` (5, 3): right, up and the way of the rays, the light, (pixel size, distance of the eye's plane, 0).
     Returns (enclosures, certified rays, undecided rays).
     """
-    height, width = picture.shape
+    height = len(picture) // width
     size = view[4, 0]
-    last = code.shape[0] - 1
     n = TILE * TILE
     spent = 0
     certified = 0
     undecided = 0
-    lx, ly, lz = view[3, 0], view[3, 1], view[3, 2]
     top = row * TILE
-    picture[top : top + TILE] = 0.0
-    depth[top : top + TILE] = -1.0
+    light = slopes[code.shape[0] - 1, 0]
+    offsets, turns, hits, faced = numbers[0], numbers[1], numbers[2], numbers[3]
+    # Of a density field, a bundle that hits something has left the parts that matter to it.
+    near, near_of = code, parts
+    for k in range(code.shape[0]):
+        if code[k, 0] == DENSITY or plan[0] >= 0:
+            near, near_of = short, near_parts
+    rows = slice(top * width, (top + TILE) * width)
+    picture[rows] = 0.0
+    depth[rows] = -1.0
     for tile in range((width + TILE - 1) // TILE):
         left = tile * TILE
         x, y = size * (left + 0.5 - 0.5 * width), size * (0.5 * height - top - 0.5)
@@ -122,66 +145,55 @@ def draw_row(
         )  # fmt: skip
         spent += a
         certified += b
+        base = top * width + left
         met = 0
-        for j in range(n):
-            undecided += found[FOUND_STATUS, j] == UNDECIDED
-            if found[FOUND_STATUS, j] == HIT:
-                depth[top + int(pixels[1, j]), left + int(pixels[0, j])] = found[FOUND_ROOT, j]
-                queue[met] = j
-                met += 1
-        if met == 0:
-            continue
-        # Of a density field, a bundle that hits something has left the parts that matter to it.
-        near, near_of = code, parts
-        for k in range(last + 1):
-            if code[k, 0] == DENSITY or plan[0] >= 0:
-                near, near_of = short, near_parts
-        for j in range(n):
-            rays[7, j] = rays[6, j] = 0.0
+        outcomes, roots = found[FOUND_STATUS], found[FOUND_ROOT]
+        for k in range(n):
+            j = turns[k]
+            hits[met] = j
+            met += 1 if outcomes[j] == HIT else 0
+            undecided += 1 if outcomes[j] == UNDECIDED else 0
         facing = 0
         for start in range(0, met, LANES):
-            hits = min(LANES, met - start)
-            for i in range(hits):
-                j = queue[start + i]
-                t = found[FOUND_ROOT, j]
-                for axis in range(3):
-                    points[axis, i] = rays[axis, j] + t * rays[3 + axis, j]
-            evaluate(near, constants, near_of, doubles, points, hits)
-            differentiate(near, constants, near_of, doubles, slopes, hits)
-            gx, gy, gz = slopes[last, 0], slopes[last, 1], slopes[last, 2]
-            for i in range(hits):
-                nx, ny, nz = gx[i], gy[i], gz[i]
-                gx[i] = (nx * lx + ny * ly + nz * lz) / np.sqrt(nx * nx + ny * ny + nz * nz + 1e-300)
-            for i in range(hits):
-                j = queue[start + i]
-                shade = AMBIENT
-                if gx[i] > 0.0:
-                    shade += (1.0 - AMBIENT) * gx[i]
-                    for axis in range(3):
-                        rays[axis, j] = points[axis, i]
-                        rays[3 + axis, j] = view[3, axis]
-                    queue[facing] = j
-                    facing += 1
-                picture[top + int(pixels[1, j]), left + int(pixels[0, j])] = shade
+            some = min(LANES, met - start)
+            own = hits[start:]
+            for axis in range(3):
+                o, d, p = rays[axis], rays[3 + axis], points[axis]
+                for i in range(some):
+                    j = own[i]
+                    p[i] = o[j] + roots[j] * d[j]
+            shade(near, constants, near_of, doubles, points, slopes, view, some)
+            for i in range(some):
+                at = base + offsets[own[i]]
+                depth[at] = roots[own[i]]
+                picture[at] = AMBIENT + (1.0 - AMBIENT) * max(light[i], 0.0)
+                faced[facing] = at
+                starts[0, facing], starts[1, facing], starts[2, facing] = points[0, i], points[1, i], points[2, i]
+                facing += 1 if light[i] > 0.0 else 0
         if facing == 0:
             continue
-        for j in range(n):
-            asked[0, j] = 0.0
-        for i in range(facing):
-            asked[0, queue[i]] = 1.0
-        cut(rays, n, radius, LIFT * radius)
-        for j in range(n):
-            if asked[0, j] == 0.0:
-                rays[7, j] = rays[6, j]
+        # The rays to the light stand in columns again.
+        groups = (facing + TILE - 1) // TILE
+        k = 0
+        for g in range(groups):
+            for j in range(g, facing, groups):
+                hits[j] = faced[k]
+                rays[0, j], rays[1, j], rays[2, j] = starts[0, k], starts[1, k], starts[2, k]
+                k += 1
+        for axis in range(3):
+            way, along = rays[3 + axis], view[3, axis]
+            for j in range(facing):
+                way[j] = along
+        cut(rays, facing, radius, LIFT * radius)
         a, b = first_roots(
-            code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, n, True, found,
+            code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, facing, True, found,
             parts, scratch, beams, doubles, points, short, near_singles, near_parts, plan, order, room, table, flat,
             other,
         )  # fmt: skip
         spent += a
         certified += b
-        for j in range(n):
-            undecided += found[FOUND_STATUS, j] == UNDECIDED
-            if found[FOUND_STATUS, j] == HIT:
-                picture[top + int(pixels[1, j]), left + int(pixels[0, j])] = AMBIENT
+        for j in range(facing):
+            undecided += 1 if outcomes[j] == UNDECIDED else 0
+            if outcomes[j] == HIT:
+                picture[hits[j]] = AMBIENT
     return spent, certified, undecided
