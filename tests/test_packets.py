@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from moment import IDENTITY, FakeMoment, const, formula
 from renderers.tracing.bundles import camera_roots
 from renderers.tracing.pack import pack
 from sceneql.field.packets import cast_together, enclosures, plan_of
@@ -14,6 +15,10 @@ from sceneql.field.skeleton import Skeleton
 from sceneql.field.solid import cast, field_values
 from sceneql.field.tape_ops import DENSITY, HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
 from sceneql.frame import Frame, Implicit, Surface, View
+from sceneql.simulation.objects.blobby import Blobby
+from sceneql.simulation.objects.implicit import Implicit as Formula
+from sceneql.simulation.objects.implicit import Within
+from sceneql.simulation.solid import traced
 from test_certified import tape_of
 from test_field import NAMES, PARTS, implicit, kernels, of_one, rays, tapes
 
@@ -171,6 +176,26 @@ def test_polynomials_are_met_where_the_certified_routine_meets_them(text, seed, 
     agree_with_the_certified(tape, origins, directions, t0, t1, within=1e-5)
 
 
+LOWERED = {
+    "blobby": Blobby(
+        points=const(np.array([[-0.5, 0, 0], [0.4, 0.1, 0], [0.5, 0.6, 0.1]])), radius=const(0.6), threshold=0.2
+    ),
+    "formula": Formula(field=formula("x^2*y^2 + y^2*z^2 + z^2*x^2 - x*y*z"), unit=0.7, bounds=Within(ball=0.9)),
+}
+
+
+@pytest.mark.parametrize(("word", "row"), [("blobby", 0), ("formula", 3)])
+@settings(max_examples=8)
+@given(seed=st.integers(0, 999))
+def test_multiples_of_what_has_a_plan_have_one(word, row, seed):
+    (shape,) = traced(LOWERED[word], word, IDENTITY, FakeMoment())
+    assert plan_of(shape.tape)[row] >= 0
+    generator = np.random.default_rng(seed)
+    way = generator.normal(size=3)
+    origins, directions = bundle(generator.uniform(-0.3, 0.3, 3) - way, way, generator, 150, 0.3)
+    agree_with_the_certified(shape.tape, origins, directions, np.full(150, 0.1), np.full(150, 2.0), within=1e-5)
+
+
 def test_other_fields_than_densities_of_points_have_no_plan():
     segment, point = PARTS[:1].copy(), PARTS[:1].copy()
     segment[0, 3:6] = segment[0, :3] + [0.1, 0.0, 0.0]
@@ -182,6 +207,10 @@ def test_other_fields_than_densities_of_points_have_no_plan():
     assert plan_of(minus(point))[0] >= 0
     assert plan_of(minus(segment))[0] < 0
     assert plan_of(minus(point, 2.0))[0] < 0
+    turned = implicit(
+        lambda b, op, c: op("mul", op("sub", c(0.3), b.density(point, b.x, b.y, b.z)), c(-2.0)),
+    )
+    assert plan_of(turned)[0] < 0
     assert (plan_of(tape_of("sin(x) + y^2"))[[0, 3]] < 0).all()
     assert plan_of(tape_of("x^9 + y"))[3] < 0
     assert plan_of(implicit(lambda b, op, c: op("sub", b.density(point, b.x, b.y, b.z), c(0.3))))[0] < 0

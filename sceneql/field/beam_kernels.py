@@ -7,6 +7,7 @@ direction, how far it goes [m], how long its direction was [m per unit of t], an
 
 import numpy as np
 
+from sceneql.field.extent_kernels import extent
 from sceneql.field.skeleton_kernels import NODE, RADIUS, SHAPE, STRIDE
 from sceneql.kernels import inlined
 
@@ -25,11 +26,11 @@ HAIR = 1.0e-9
 def gather(rays, count, groups, wide, ids):
     """Put the rays that have a length into ``wide``, those of a column of ``rays`` together; how many there are."""
     n = 0
+    begin, end = rays[6], rays[7]
     for g in range(groups):
         for j in range(g, count, groups):
-            if rays[6, j] < rays[7, j]:
-                ids[n] = j
-                n += 1
+            ids[n] = j
+            n += 1 if begin[j] < end[j] else 0
     for row in range(8):
         source, target = rays[row], wide[row]
         for i in range(n):
@@ -50,22 +51,11 @@ def gather(rays, count, groups, wide, ids):
 
 
 @inlined
-def largest(row, n):
-    """The largest of the first n numbers of a row, which is used up: halves are folded, as vectors can do."""
-    while n > 1:
-        half = (n + 1) // 2
-        for i in range(n - half):
-            row[i] = row[i] if row[i] > row[half + i] else row[half + i]
-        n = half
-    return row[0]
-
-
-@inlined
-def beam_around(wide, first, stop, beam, folds):
+def beam_around(wide, first, stop, beam, spare):
     """The beam around rays first..stop-1; their BEHIND and STRETCH are set. Returns the least cosine between
     a ray and the axis.
 
-    ``folds`` (6, n) is working memory.
+    ``spare`` (5, n) is working memory.
     """
     last = stop - 1
     for axis in range(3):
@@ -81,42 +71,46 @@ def beam_around(wide, first, stop, beam, folds):
     vx, vy, vz = wide[DX, first:stop], wide[DY, first:stop], wide[DZ, first:stop]
     fars, behinds, stretches = wide[FAR, first:stop], wide[BEHIND, first:stop], wide[STRETCH, first:stop]
     off_x, off_y, off_z = wide[OFF, first:stop], wide[OFF + 1, first:stop], wide[OFF + 2, first:stop]
-    off2, spread2, longest, lows, highs, against = folds[0], folds[1], folds[2], folds[3], folds[4], folds[5]
+    off2, spread2, lows, highs, cosines = spare[0], spare[1], spare[2], spare[3], spare[4]
     for i in range(n):
         ex, ey, ez = px[i] - ox, py[i] - oy, pz[i] - oz
         behind = ex * ax + ey * ay + ez * az
         along = vx[i] * ax + vy[i] * ay + vz[i] * az
         behinds[i] = behind
-        against[i] = -along
+        cosines[i] = along
         ex, ey, ez = ex - behind * ax, ey - behind * ay, ez - behind * az
         off_x[i], off_y[i], off_z[i] = ex, ey, ez
         off2[i] = ex * ex + ey * ey + ez * ez
     for i in range(n):
-        along, behind, far = -against[i], behinds[i], fars[i]
+        along, behind, far = cosines[i], behinds[i], fars[i]
         dx, dy, dz = vx[i] - along * ax, vy[i] - along * ay, vz[i] - along * az
         end = behind + along * far
         spread2[i] = dx * dx + dy * dy + dz * dz
-        longest[i] = far
         stretches[i] = 1.0 / along
-        lows[i] = -(behind if behind < end else end)
+        lows[i] = behind if behind < end else end
         highs[i] = behind if behind > end else end
-    spread = np.sqrt(largest(spread2, n)) * largest(longest, n)
-    low, high = -largest(lows, n), largest(highs, n)
+    _, most = extent(spread2, n)
+    _, far = extent(fars, n)
+    low, _ = extent(lows, n)
+    _, high = extent(highs, n)
+    _, off = extent(off2, n)
+    least, _ = extent(cosines, n)
+    spread = np.sqrt(most) * far
     hair = HAIR * (abs(ox) + abs(oy) + abs(oz) + abs(low) + abs(high))
     beam[SPREAD] = spread + hair
-    beam[RADIUS_OF] = np.sqrt(largest(off2, n)) + beam[SPREAD]
+    beam[RADIUS_OF] = np.sqrt(off) + beam[SPREAD]
     beam[LOW] = low - hair
     beam[HIGH] = high + hair
-    return -largest(against, n)
+    return least
 
 
 @inlined
-def beam_within(wide, first, stop, beam, folds, own):
+def beam_within(wide, first, stop, beam, spare, own):
     """The beam around rays first..stop-1 of a beam, with an axis parallel to its, into ``own``."""
     off_x, off_y, off_z = wide[OFF, first:stop], wide[OFF + 1, first:stop], wide[OFF + 2, first:stop]
     last = stop - first - 1
     cx, cy, cz = 0.5 * (off_x[0] + off_x[last]), 0.5 * (off_y[0] + off_y[last]), 0.5 * (off_z[0] + off_z[last])
-    off2 = folds[0]
+    off2 = spare[0]
     for i in range(stop - first):
         ex, ey, ez = off_x[i] - cx, off_y[i] - cy, off_z[i] - cz
         off2[i] = ex * ex + ey * ey + ez * ez
@@ -125,7 +119,8 @@ def beam_within(wide, first, stop, beam, folds, own):
     own[0] += cx
     own[1] += cy
     own[2] += cz
-    own[RADIUS_OF] = np.sqrt(largest(off2, stop - first)) + beam[SPREAD]
+    _, off = extent(off2, stop - first)
+    own[RADIUS_OF] = np.sqrt(off) + beam[SPREAD]
 
 
 @inlined

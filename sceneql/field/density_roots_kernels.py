@@ -50,15 +50,16 @@ from sceneql.field.density_march_kernels import (
     advance,
     sum_up,
 )
+from sceneql.field.density_polish_kernels import polish
 from sceneql.field.hunt_kernels import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_SLOPE, FOUND_STATUS
-from sceneql.field.tape_ops import DENSITY, MISS, UNDECIDED
+from sceneql.field.tape_ops import DENSITY, HIT, MISS, UNDECIDED
 from sceneql.kernels import inlined
 
 MOST_PARTS = 512
 """Rows of ``table``; where more parts reach into a slice, its rays are left to the certified routine."""
 DEEP = 1.0
 """Depth of a slice, relative to what a part takes of the beam on average."""
-SPOT, SPANS, BEAM_ROW, OWN_ROW, FOLDS, ROOM = WIDE, WIDE + 7, WIDE + 9, WIDE + 10, WIDE + 11, WIDE + 17
+SPOT, SPANS, BEAM_ROW, OWN_ROW, SPARE, ROOM = WIDE, WIDE + 7, WIDE + 9, WIDE + 10, WIDE + 11, WIDE + 17
 BASE = 6
 """Rows of ``room`` (ROOM, n): rays, lanes (place, direction, where the slice begins on the ray), where parts are
 entered and left along the axis of a beam, the bundle's beam and a packet's, and working memory of theirs."""
@@ -109,26 +110,33 @@ def next_slice(spans, m, begin):
 @inlined
 def place_lanes(room, live, state, n, begin, end, lowest):
     """Set the lanes' rays at the begin of a slice, and where on them it ends."""
-    bases, far, behind, stretch = room[SPOT + BASE], room[FAR], room[BEHIND], room[STRETCH]
+    bases = room[SPOT + BASE]
+    for row in range(3):
+        source, target = room[(FAR, BEHIND, STRETCH)[row]], room[SPARE + row]
+        for i in range(n):
+            target[i] = source[live[i]]
+    far, behind, stretch = room[SPARE], room[SPARE + 1], room[SPARE + 2]
+    sliced = lowest > 0.5
     for i in range(n):
-        j = live[i]
-        stop = far[j]
-        base, last = (begin - behind[j]) * stretch[j], (end - behind[j]) * stretch[j]
+        stop = far[i]
+        base, last = (begin - behind[i]) * stretch[i], (end - behind[i]) * stretch[i]
         base = base if base > 0.0 else 0.0
         base = base if base < stop else stop
         last = last if last > base else base
         last = last if last < stop else stop
-        base = base if lowest > 0.5 else 0.0
+        base = base if sliced else 0.0
         bases[i] = base
-        state[END + i] = F((last if lowest > 0.5 else stop) - base)
+        state[END + i] = F((last if sliced else stop) - base)
         state[AT_A + i] = INFINITE
         state[AT_B + i] = -INFINITE
     for axis in range(3):
         place, way, spot, spot_way = room[PX + axis], room[DX + axis], room[SPOT + axis], room[SPOT + 3 + axis]
         for i in range(n):
             j = live[i]
-            spot[i] = place[j] + bases[i] * way[j]
             spot_way[i] = way[j]
+            spot[i] = place[j]
+        for i in range(n):
+            spot[i] += bases[i] * spot_way[i]
 
 
 @inlined
@@ -238,41 +246,40 @@ def live_lanes(state, n):
 
 
 @inlined
+def settle_lanes(table, kept, state, room, live, width, left, rays, found):
+    """Note the outcomes of lanes, and put those without one together; (how many, rays left for the next slice)."""
+    n = 0
+    for i in range(width):
+        outcome = state[STATE + i]
+        if outcome == LIVE:
+            if n < i:
+                move_lane(table, kept, state, live, room, n, i)
+            n += 1
+        elif outcome == F(MISS):
+            live[LANES + left] = live[i]
+            left += 1
+        else:
+            note(room, state, i, live[i], rays[live[i]], found)
+    for i in range(n, width):
+        state[STATE + i] = F(MISS)
+    return n, left
+
+
+@inlined
 def search_slice(table, kept, state, room, live, n, threshold, off, off_slope, anywhere, rays, found):
     """March all lanes; (how many are still looking at the end of the slice, put first into ``live``, segments)."""
     spent = 0
     left = 0
-    looking = width = n
-    while looking > 0:
-        if 2 * looking <= width:  # close the gaps between lanes
-            i = 0
-            for j in range(width):
-                if live[j] >= 0:
-                    if i < j:
-                        move_lane(table, kept, state, live, room, i, j)
-                    i += 1
-            for i in range(looking, width):
-                state[STATE + i] = F(MISS)
-            width = looking
-        for i in range(width):
-            outcome = state[STATE + i]
-            if outcome == LIVE or live[i] < 0:
-                continue
-            if outcome == F(MISS):
-                live[LANES + left] = live[i]
-                left += 1
-            else:
-                note(room, state, i, live[i], rays[live[i]], found)
-            live[i] = -1
-            looking -= 1
-        if looking > 0:
-            whole = (width + 7) // 8 * 8
-            before = ended = live_lanes(state, whole)
-            while before == ended:
-                sum_up(table, kept, state, whole)
-                advance(state, whole, threshold, off, off_slope, anywhere)
-                spent += looking
-                ended = live_lanes(state, whole)
+    width = n
+    while width > 0:
+        whole = (width + 7) // 8 * 8
+        looking = live_lanes(state, whole)
+        while 2 * looking > width:
+            sum_up(table, kept, state, whole)
+            advance(state, whole, threshold, off, off_slope, anywhere)
+            spent += looking
+            looking = live_lanes(state, whole)
+        width, left = settle_lanes(table, kept, state, room, live, width, left, rays, found)
     for i in range(left):
         live[i] = live[LANES + i]
     return left, spent
@@ -293,7 +300,7 @@ def search_packet(
 ):
     """Settle rays first..stop-1 of a gathered bundle; segments looked at."""
     own = room[OWN_ROW, :BEAM]
-    beam_within(room, first, stop, beam, room[FOLDS:], own)
+    beam_within(room, first, stop, beam, room[SPARE:], own)
     spans = room[SPANS:]
     m = list_parts(near, kept, own, spans, order)
     n = stop - first
@@ -329,6 +336,18 @@ def search_packet(
 
 
 @inlined
+def first_hits(found, ids, n, queue):
+    """The rays that may be met into the ``queue``, hits first; how many."""
+    queued = 0
+    for outcome in (HIT, UNDECIDED):
+        for i in range(n):
+            if found[FOUND_STATUS, ids[i]] == outcome:
+                queue[queued] = ids[i]
+                queued += 1
+    return queued
+
+
+@inlined
 def density_roots(
     code, constants, parts, plan, rays, count, groups, anywhere, found, queue, order, room, table, state, short, near
 ):  # fmt: skip
@@ -346,7 +365,7 @@ def density_roots(
     if n == 0:
         return 0, 0
     beam = room[BEAM_ROW, :BEAM]
-    lowest = beam_around(room, 0, n, beam, room[FOLDS:])
+    lowest = beam_around(room, 0, n, beam, room[SPARE:])
     if code[k, 0] == DENSITY:
         kept = keep_reaching(parts, code[k, 1], code[k, 2], beam, near)
     else:
@@ -359,9 +378,10 @@ def density_roots(
                 room, first, min(first + LANES, n), near, kept, constants[plan[THRESHOLD]], anywhere, table, state,
                 order, listed, ids, beam, lowest, found,
             )  # fmt: skip
-    queued = 0
-    for i in range(n):
-        if found[FOUND_STATUS, ids[i]] != MISS:
-            queue[queued] = ids[i]
-            queued += 1
+    queued = first_hits(found, ids, n, queue)
+    if not anywhere:
+        hits = 0
+        while hits < queued and found[FOUND_STATUS, queue[hits]] == HIT:
+            hits += 1
+        polish(near, kept, constants[plan[THRESHOLD]], rays, queue, hits, room, found)
     return spent, queued

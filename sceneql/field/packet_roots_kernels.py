@@ -265,7 +265,7 @@ def first_roots(
         )  # fmt: skip
         if shortened:
             code, parts = short, near_parts
-    if not anywhere and plan[POLYNOMIAL] < 0:
+    if not anywhere and plan[POLYNOMIAL] < 0 and plan[ROW_OF] < 0:
         hits = 0
         for k in range(queued):  # hits to the front of the queue
             if found[FOUND_STATUS, queue[k]] == HIT:

@@ -30,6 +30,7 @@ from sceneql.field.tape_ops import (
     CONSTANT,
     COPY,
     DENSITY,
+    DIV,
     MAX,
     MUL,
     NEG,
@@ -71,6 +72,16 @@ def enclosures(tape: Tape, origins: Floats, directions: Floats, t0: Floats, t1: 
     return out
 
 
+def without_factor(tape: Tape, row: int) -> int:
+    """The row of which a row is a positive multiple: their roots are the same."""
+    op, left, right, _ = map(int, tape.code[row])
+    factors = {MUL: ((left, right), (right, left)), DIV: ((right, left),)}.get(op, ())
+    for factor, rest in factors:
+        if tape.code[factor, 0] == CONSTANT and tape.constants[tape.code[factor, 1]] > 0.0:
+            return without_factor(tape, rest)
+    return row
+
+
 def density_of(tape: Tape, row: int) -> tuple[int, int] | None:
     """(row of the density D, index of the constant c) where a row is c - D, D of lone points with Wyvill's kernel."""
     op, left, right, _ = tape.code[row]
@@ -106,13 +117,15 @@ def degrees_of(tape: Tape, row: int) -> list[int] | None:
 
 
 def plan_of(tape: Tape) -> NDArray[int64]:
-    """How packets look for roots of a tape f or max(f, g), as its kernels read it.
+    """How packets look for roots of a tape f or max(f, g), or a positive multiple, as its kernels read it.
 
     (row of D, index of c, row of g, row of p), -1 for the rows where f has not the form; then of a polynomial p the
     degrees of the rows up to it and where their coefficients begin.
     """
-    last = len(tape.code) - 1
-    rows = [last] if tape.code[last, 0] != MAX else [int(row) for row in tape.code[last, 1:3]]
+    last = without_factor(tape, len(tape.code) - 1)
+    rows = [last]
+    if tape.code[last, 0] == MAX:
+        rows = [without_factor(tape, int(row)) for row in tape.code[last, 1:3]]
     # Its parts are gathered for each bundle: those of another row are not.
     alone = sum(int(op) in OF_PARTS for op in tape.code[:, 0]) == 1
     turns = list(zip(rows, [*rows[1:], *rows[:1]] if len(rows) > 1 else [-1], strict=True))
