@@ -1,15 +1,12 @@
 # mypy: ignore-errors
 """Roots of c - D along rays in float64, D the density of points with Wyvill's kernel: Newton's method in lanes."""
 
-from sceneql.field.hunt_kernels import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS
+from sceneql.field.hunt_kernels import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS, SETTLED
 from sceneql.field.tape_ops import UNDECIDED
 from sceneql.kernels import inlined
 
 X, DX, ROOT, DENSITY, SLOPE = 0, 3, 6, 7, 8
 """Rows of ``room``: places, directions, places along the rays from their own starts, D and its slope there."""
-SETTLED = 1e-6
-"""Change of a root, relative to the length of its search, at the last step of its polish, beyond which it is sought
-anew by the certified routine."""
 
 
 @inlined

@@ -22,6 +22,9 @@ FINE, ROUGH, LEAST = F(2.0e-5), F(1.0e-4), F(2.0e-6)
 """Widths relative to the search: of a bracket good enough; of one that float32 cannot narrow; too small to cut."""
 MOST = F(48.0)
 """Enclosures after which a ray is left to the certified routine."""
+SETTLED = 1e-6
+"""Change of a root, relative to the length of its search, at the last step of its polish, beyond which it is sought
+anew by the certified routine."""
 RAY = 8
 """Rows of rays: origin, direction, begin and end."""
 FOUND_STATUS, FOUND_LOW, FOUND_HIGH, FOUND_ROOT, FOUND_SLOPE = range(5)

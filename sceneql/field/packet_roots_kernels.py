@@ -20,12 +20,13 @@ from sceneql.field.hunt_kernels import (
     FOUND_STATUS,
     NEAR,
     RUN,
+    SETTLED,
     hunt,
 )
 from sceneql.field.isolation_kernels import isolate
 from sceneql.field.packet_density_kernels import keep_near
 from sceneql.field.packet_kernels import LANES, PACKET, enclose, load_constants
-from sceneql.field.polynomial_hunt_kernels import SETTLED, polynomial_roots
+from sceneql.field.polynomial_hunt_kernels import polynomial_roots
 from sceneql.field.polynomial_kernels import POLYNOMIAL
 from sceneql.field.slab_kernels import BEGIN, STOP, bundle, join, left_of_slabs, place_slabs
 from sceneql.field.tape_ops import DENSITY, HIT, MISS, SKELETON, UNDECIDED

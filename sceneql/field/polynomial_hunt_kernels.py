@@ -7,7 +7,7 @@ outside are left out at both ends.
 
 from sceneql.field.affine_kernels import GROW, HALF, F
 from sceneql.field.extent_kernels import extent
-from sceneql.field.hunt_kernels import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS
+from sceneql.field.hunt_kernels import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS, SETTLED
 from sceneql.field.packet_kernels import LANES, E, enclose, load_constants, place
 from sceneql.field.polynomial_kernels import DEGREES, POLYNOMIAL, coefficients, rounding
 from sceneql.field.polynomial_steps_kernels import (
@@ -31,9 +31,6 @@ from sceneql.field.tape_ops import HIT, MISS, UNDECIDED
 from sceneql.kernels import inlined
 
 MOST_DEGREE = 8
-SETTLED = 1e-6
-"""Change of a root, relative to the length of its search, at the last step of its polish, beyond which it is sought
-anew by the certified routine."""
 SHORTEST = -0.98
 """Where the first segment ends at least."""
 T0, T1, SPOT = 6, 7, 8
