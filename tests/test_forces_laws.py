@@ -260,8 +260,8 @@ solvers: {main: {rk4: {step: 0.1 s}}}
 
 
 def slopes_known(name: str) -> bool:
-    """Whether a force gives its derivatives; between all masses, in eddies and in fields differences are taken."""
-    unknown = ("mutual_gravity", "electrostatic", "repulsion", "turbulence", "field_gradient", "emission")
+    """Whether a force gives its derivatives; of trees, of repulsion and of fields differences are taken."""
+    unknown = ("mutual_gravity tree", "repulsion", "field_gradient", "emission")
     return not name.startswith(unknown)
 
 
@@ -281,12 +281,13 @@ def test_the_derivatives_are_those_of_the_rate(tmp_path, name):
         found = np.zeros((len(y), len(y)))
         rows = np.repeat(np.arange(len(y)), np.diff(pattern.starts))
         found[rows, pattern.columns] = values[: len(rows)]
-        h = 1e-5
+        # Noise in single precision has no slope over so short a way.
+        h, good = (3e-3, 1e-3) if name.startswith("turbulence") else (1e-5, 1e-6)
         expected = np.column_stack(
             [(march.rate(0.3, y + h * d) - march.rate(0.3, y - h * d)) / (2 * h) for d in np.eye(len(y))]
         )
         expected[[bodies.work_at for bodies in run.bodies.values() if bodies is not None]] = 0.0
-        np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-6)
+        np.testing.assert_allclose(found, expected, rtol=good, atol=good)
 
 
 def test_what_is_not_yet_born_does_nothing(tmp_path):

@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sceneql.failure import RunFailure
+from sceneql.failure import LimitRefused, RunFailure
 from sceneql.pipeline import load
 from sceneql.simulation.driver import jacobian
 from sceneql.simulation.march import March
-from sceneql.simulation.run import IslandRun
+from sceneql.simulation.run import IslandRun, Run
 from sceneql.simulation.solvers.rk4 import Rk4
 
 TRIANGLE = """
@@ -223,3 +223,17 @@ contacts: {{bounce: {{collision: {{between: [m, floor], mode: local}}}}}}
     _, march = marched(tmp_path, script, "auto: {}", 0.01)
     assert march.choices() == []
     assert march.statistics.steps > 50
+
+
+def test_a_refusal_names_the_force_without_slopes(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text(
+        "clock: {end: 1 s}\n"
+        "objects: {ball: {sphere: {radius: 1 m, hidden: yes}}}\n"
+        "models: {dust: {particles: {fill: {object: ball, count: 100}}}}\n"
+        "forces: {shy: {repulsion: {range: 1 cm}}}\n"
+        "solvers: {main: {bdf2: {step: 10 ms}}}\n"
+    )
+    with pytest.raises(LimitRefused, match="shy gives no slopes") as refused:
+        Run(load(path, pruned=False)).islands[0].advance(0.1)
+    assert "`auto`" in refused.value.diagnostic.help

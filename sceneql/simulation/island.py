@@ -94,6 +94,8 @@ class System:
     """Of its Jacobian; None: not asked for, or too large to be found by differences."""
     grid: Grid | None = None
     """Of an island that is one field on a grid."""
+    unsloped: str = ""
+    """The part that gives no slopes, where one gives none."""
 
     def origin(self, index: int) -> Origin:
         """Part and line of an entry of y."""
@@ -109,6 +111,7 @@ class _Block:
     ints: tuple[int, ...]
     pairs: int = 0
     slopes: Slopes | Callable[[], Slopes | None] | None = None
+    part: str = ""
 
 
 @dataclass
@@ -140,6 +143,7 @@ class IslandAssembly:
     _grids: list[Grid] = field(default_factory=list)
     _fields: dict[tuple[str, str], Grid] = field(default_factory=dict)
     _apart: bool = True
+    _unsloped: str = "a value that reads the state"
     _word: tuple[str, Span | None, str | None] = ("island", None, None)
     _remembered: dict[tuple[str, str | None], tuple[int, ...]] = field(default_factory=dict)
 
@@ -213,7 +217,7 @@ class IslandAssembly:
     ) -> None:
         """Add a term to the rate."""
         self._apart = self._apart and apart
-        self._terms[stage].append(_Block((kernel,), tuple(ints), slopes=jacobian))
+        self._terms[stage].append(_Block((kernel,), tuple(ints), 0, jacobian, self._word[0]))
 
     def inertia(self, velocity_at: int, inverse_at: int, count: int) -> None:
         """Say which rows of the Jacobian inverse masses multiply (system.Assembly)."""
@@ -326,6 +330,7 @@ class IslandAssembly:
             largest_step=self._largest_step,
             pattern=found,
             grid=self.only_field,
+            unsloped=self._unsloped,
         )
 
     def start(self) -> Floats:
@@ -354,6 +359,7 @@ class IslandAssembly:
         for block in (block for stage in STAGES for block in self._terms[stage]):
             slopes = block.slopes() if callable(block.slopes) else block.slopes
             if slopes is None:
+                self._unsloped = block.part
                 return None
             found.append((slopes, block.ints if slopes.ints is None else slopes.ints))
         inputs = self._inputs()
@@ -379,12 +385,10 @@ def _lay_out(
     triples: list[tuple[int, int, int]], blocks: list[_Block], first_blocks: list[int], pairs: list[int]
 ) -> NDArray[int64]:
     """The one array of integers: see driver.py."""
-    head = GROUPS_AT + len(first_blocks)
-    triples_at = head
+    triples_at = GROUPS_AT + len(first_blocks)
     table_at = triples_at + 3 * len(triples)
     ranges_at = table_at + len(blocks) + 1
-    data_at = ranges_at + len(pairs) + 1
-    table = list(accumulate((len(block.ints) for block in blocks), initial=data_at))
+    table = list(accumulate((len(block.ints) for block in blocks), initial=ranges_at + len(pairs) + 1))
     parts = [
         [triples_at, len(triples), table_at, ranges_at, table[-1]],
         [table_at + block for block in first_blocks],

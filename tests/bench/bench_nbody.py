@@ -42,7 +42,7 @@ class Scratch:
         self.size += len(self.parts[-1])
         return at
 
-    def term(self, stage: str, kernel: str, ints: Any) -> None:
+    def term(self, stage: str, kernel: str, ints: Any, slopes: Any = None) -> None:
         """Keep the term."""
         self.kernel, self.ints = kernel, np.array(ints, dtype=np.int64)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from sceneql.kinds import Damping, FixedLength, FixedTime, FixedVelocity, Force, Speed, field
+from sceneql.simulation import bodies as masses
 
 if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies
@@ -32,6 +33,7 @@ class Turbulence(Force):
 
         from sceneql.simulation.forces.turbulence_kernels import PART, turbulence_tile
         from sceneql.simulation.threads_kernels import threads, tile_address
+        from sceneql.system import Slopes
 
         omega = 0.0 if self.lifetime is None else 1.0 / self.lifetime
         ints = (
@@ -41,4 +43,11 @@ class Turbulence(Force):
             assembly.floats(np.zeros(bodies.count // PART + 1)),
             *(self.octaves, self.seed, *threads(), tile_address(turbulence_tile)),
         )
-        assembly.term("force", "sceneql.simulation.forces.turbulence_kernels:turbulence", ints, apart=True)
+
+        def slopes() -> Slopes:
+            by_place = masses.own_blocks(bodies, bodies.position_at)
+            along = bodies.velocity_at + np.arange(3 * bodies.count)
+            rows, columns = (np.concatenate([places, along]) for places in by_place)
+            return Slopes("sceneql.simulation.forces.turbulence_slopes_kernels:turbulence", rows, columns)
+
+        assembly.term("force", "sceneql.simulation.forces.turbulence_kernels:turbulence", ints, slopes, apart=True)

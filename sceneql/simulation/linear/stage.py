@@ -70,10 +70,10 @@ def stage_plan(system: System) -> StagePlan:
 
     if system.pattern is None:
         raise LimitRefused(
-            f"an implicit solver needs the Jacobian of {len(system.y)} entries: a term gives no slopes, and those are "
-            "too many for differences",
+            f"an implicit solver needs the Jacobian of {len(system.y)} entries: {system.unsloped} gives no slopes, "
+            "and those are too many for differences",
             None,
-            "take an explicit solver, or fewer masses",
+            "take `auto`, `verlet` or `dop853`, which need none, or fewer masses",
         )
     inverse = _inverse_masses(system)
     reduced = _reduce(system, inverse)

@@ -12,11 +12,13 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from sceneql.quantities.span import Span
-    from sceneql.system import Assembly, Bodies, ModelState
+    from sceneql.system import Assembly, Bodies, ModelState, Slopes
 
 
 SAMPLES = 64
 """Bodies that tell the error of a tree."""
+MOST_SLOPES = 400
+"""Up to so many bodies the derivatives are known: all of them depend on all."""
 MOST_DIRECT = 4000
 """Up to so many bodies the sum over all pairs is quicker than a tree."""
 
@@ -46,7 +48,10 @@ class Pairs:
         weights = tuple(number for weight in self.weights for number in weight)
         kernel, numbers = self._tree(assembly, bodies[0]) if self.opening > 0 else self._direct(assembly, bodies[0])
         ints = (*numbers, *bodies, *weights)
-        assembly.term("force", f"sceneql.simulation.nbody.{kernel}", ints)
+        count = bodies[0]
+        few = self.opening == 0 and count <= MOST_SLOPES
+        slopes = (lambda: blocks(everyone)) if few else None
+        assembly.term("force", f"sceneql.simulation.nbody.{kernel}", ints, slopes)
         assembly.remember(int(self.opening > 0), *ints)
 
     def _direct(self, assembly: Assembly, n: int) -> tuple[str, tuple[int, ...]]:
@@ -83,6 +88,23 @@ class Pairs:
         """What both kernels have first."""
         softening = assembly.floats([self.softening])
         return self.constant_at, self.sign, softening, _scratch(assembly, 3 * room), _scratch(assembly, room), room
+
+
+def blocks(everyone: Sequence[Bodies]) -> Slopes:
+    """The derivatives of all forces: 3x3 for every two bodies."""
+    import numpy as np
+
+    from sceneql.system import Slopes
+
+    rows, columns = (
+        np.concatenate([at + np.arange(3 * bodies.count) for at, bodies in zip(offsets, everyone, strict=True)])
+        for offsets in ([b.velocity_at for b in everyone], [b.position_at for b in everyone])
+    )
+    n = len(rows) // 3
+    shape = (n, n, 3, 3)
+    by_row = np.broadcast_to(rows.reshape(n, 1, 3, 1), shape).ravel()
+    by_column = np.broadcast_to(columns.reshape(1, n, 1, 3), shape).ravel()
+    return Slopes("sceneql.simulation.nbody.slopes_kernels:direct", by_row, by_column)
 
 
 def _scratch(assembly: Assembly, count: int) -> int:

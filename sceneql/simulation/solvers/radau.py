@@ -81,8 +81,8 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
 
     n, pattern = len(system.y), system.pattern
     if pattern is None:
-        message = f"radau needs a Jacobian, and one of the terms of these {n} numbers does not know its own"
-        raise LimitRefused(message, None, "use an explicit solver, or fewer masses")
+        message = f"radau needs the Jacobian of {n} entries: {system.unsloped} gives no slopes"
+        raise LimitRefused(message, None, "take `auto`, `verlet` or `dop853`, which need none, or fewer masses")
     if isinstance(stepper.absolute, tuple) and len(stepper.absolute) != n:
         message = f"`absolute` has {len(stepper.absolute)} numbers, one for each of the state's {n} is needed"
         raise RunFailure(message, part="radau", time=0.0, span=None)
