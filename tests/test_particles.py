@@ -161,3 +161,17 @@ def test_wrong_particles_are_told_with_their_place(tmp_path, entry):
     said = complaint(tmp_path, f"objects: {{b: sphere}}\nmodels:\n  bad: {entry}\n")
     assert WRONG[entry] in said
     assert "scene.yaml:3:" in said
+
+
+def test_a_drop_that_takes_the_place_of_one_that_lay_bounces_as_that_did(tmp_path):
+    script = """
+clock: {end: 3 s}
+objects: {floor: plane}
+models: {rain: {particles: {emit: {rate: 1 Hz, lifetime: 0.9 s, from: 0 0.1 0 m, velocity: 0 0 0 m/s}, radius: 1 mm}}}
+forces: [gravity]
+contacts: {splash: {collision: {between: [rain, floor], restitution: 0.3, friction: 0.2, mode: local}}}
+solvers: {main: {semi_implicit_euler: {step: 10 ms}}}
+"""
+    (one,), (two,), (three,) = watch(tmp_path, script, [0.95, 1.95, 2.95], "splash.hits.count")
+    assert one >= 2
+    assert (two, three) == (2 * one, 3 * one)

@@ -79,7 +79,8 @@ def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, 
     numbers = [number_of(getattr(shape, name), signature) for name, signature in signatures.items()]
     numbers.append(number_of(getattr(shape, "near", one_by_one.near), NEAR_TYPE))
     places = (here.position_at, here.rotation_at, here.size_at, here.depth_at)
-    return (*numbers, *places, *poses), here.data
+    flat = int(here.shape == "plane" and not is_moving(kind))
+    return (*numbers, *places, *poses, flat), here.data
 
 
 def _has_own(kind: Object) -> bool:

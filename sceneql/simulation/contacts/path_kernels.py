@@ -10,7 +10,7 @@ from numba import types
 
 from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.contacts.impulse_kernels import STILL
-from sceneql.simulation.contacts.shape_kernels import DEPTH, clear, surface
+from sceneql.simulation.contacts.shape_kernels import DEPTH, FLAT, clear, facing, surface
 from sceneql.system_kernels import A, F, I, N
 
 PATH = 13
@@ -99,6 +99,18 @@ def clear_piece(path, length, s, ds, floats, ints, at, reach):
     return clear(floats, ints, at, x, y, z, 0.5 * ds * length + reach)
 
 
+@lean_inlined
+def stays_above(path, floats, ints, at, reach):
+    """Whether a path does not come down to a plane, or not below where it starts to leave it: by its control points."""
+    third = path[12] / 3.0
+    start, nx, ny, nz = facing(floats, ints, at, path[0], path[1], path[2])
+    end = facing(floats, ints, at, path[6], path[7], path[8])[0]
+    leaves = start + third * (path[3] * nx + path[4] * ny + path[5] * nz)
+    comes = end - third * (path[9] * nx + path[10] * ny + path[11] * nz)
+    lowest = min(end, min(leaves, comes))
+    return lowest >= start if start <= reach else lowest > reach
+
+
 @lean(types.float64(A, A, I, N, F))
 def first_contact(path, floats, ints, at, reach):
     """Where on the path (0 <= s <= 1) a body of that reach first enters the object at ints[at:]; NEVER if nowhere.
@@ -107,6 +119,8 @@ def first_contact(path, floats, ints, at, reach):
     than half the object's depth, which cannot jump over it: there the gap is looked at. A body that touches at the
     start and approaches has s = 0; one that leaves is followed until it comes back.
     """
+    if ints[at + FLAT] != 0 and stays_above(path, floats, ints, at, reach):
+        return NEVER
     length = length_bound(path)
     if clear_piece(path, length, 0.0, 1.0, floats, ints, at, reach):
         return NEVER

@@ -34,7 +34,7 @@ from sceneql.simulation.contacts.impulse_kernels import (
     WORK,
     scale_of,
 )
-from sceneql.simulation.contacts.shape_kernels import FOUR, OBJECT, acceleration, bend, surface, velocity
+from sceneql.simulation.contacts.shape_kernels import FLAT, FOUR, OBJECT, acceleration, bend, facing, surface, velocity
 from sceneql.system_kernels import A, F, I, N
 
 PRESS, LOAD, PULL, ALONG, EARLIER = 1, 2, 3, 4, 7
@@ -182,6 +182,38 @@ def bear(k, memory, nx, ny, nz, rate, floats, ints):
 
 
 @lean_inlined
+def is_smooth_plane(floats, ints):
+    """Whether a plane that never moves, without friction, is all that bodies can meet: then resting costs little."""
+    return ints[OBJECTS] == 1 and ints[HEAD + FLAT] != 0 and floats[ints[FRICTION]] == 0.0
+
+
+@lean_inlined
+def lies(k, level, nx, ny, nz, y, floats, ints):
+    """Whether body k lies on a smooth plane, n . x + level = 0, as it should: `keep` would change nothing."""
+    memory = ints[PAIRS] + PAIR * k
+    if floats[memory] != SLIDES or floats[memory + PRESS] >= 0.0:
+        return False
+    px, py, pz, vx, vy, vz = body_of(ints, k, y)
+    d = level + (px * nx + py * ny + pz * nz) - floats[ints[RADIUS] + k] - floats[ints[THICKNESS]]
+    small = 1e-12 * scale_of(px, py, pz)
+    return abs(d) <= small and abs(vx * nx + vy * ny + vz * nz) <= small
+
+
+@lean_inlined
+def bear_lying(rate, floats, ints):
+    """What `support` does, on a smooth plane."""
+    _, nx, ny, nz = facing(floats, ints, HEAD, 0.0, 0.0, 0.0)
+    resting_at = ints[LAST] + LIST
+    for i in range(int(floats[ints[LAST] + RESTING])):
+        k = int(floats[resting_at + i])
+        memory, to = ints[PAIRS] + PAIR * k, ints[VELOCITY] + 3 * k
+        if floats[memory] == FREE or floats[ints[INVERSE] + k] == 0.0:
+            continue
+        floats[memory + PRESS] = rate[to] * nx + rate[to + 1] * ny + rate[to + 2] * nz
+        bear(k, memory, nx, ny, nz, rate, floats, ints)
+
+
+@lean_inlined
 def carry(k, y, rate, floats, ints):
     """Normal forces, none negative, that leave no resting pair pressing: projected Gauss-Seidel over the pairs."""
     to = ints[VELOCITY] + 3 * k
@@ -251,6 +283,9 @@ def support(near, y, rate, floats, ints):
 
     With ``near`` it is also noted how free pairs would press.
     """
+    if not near and is_smooth_plane(floats, ints):
+        bear_lying(rate, floats, ints)
+        return
     resting_at = ints[LAST] + LIST
     count = ints[BODIES] if near else int(floats[ints[LAST] + RESTING])
     for i in range(count):

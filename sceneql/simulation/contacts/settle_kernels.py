@@ -41,7 +41,9 @@ from sceneql.simulation.contacts.resting_kernels import (
     RESTING,
     SLIDES,
     come_to_rest,
+    is_smooth_plane,
     keep,
+    lies,
     support,
 )
 from sceneql.simulation.contacts.shape_kernels import MOVING, NEAR, OBJECT, clear, near_at, surface, velocity
@@ -207,6 +209,8 @@ def find_near(h, y0, y1, found, floats, ints):
     for k in range(n):
         if floats[ints[INVERSE] + k] == 0.0:
             found[k] = 0.0
+            for j in range(ints[OBJECTS]):
+                floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)] = FREE
 
 
 @lean_inlined
@@ -255,8 +259,14 @@ def settle_found(t0, t1, y0, y1, found, path, mean, floats, ints):
     """Settle the bodies with found[k] = 1, and note which ones rest."""
     h = t1 - t0
     resting = 0
+    smooth = is_smooth_plane(floats, ints)
+    level, nx, ny, nz = surface(floats, ints, HEAD, 0.0, 0.0, 0.0)
     for k in range(ints[BODIES]):
         if found[k] == 0.0:
+            continue
+        if smooth and lies(k, level, nx, ny, nz, y1, floats, ints):
+            floats[ints[LAST] + LIST + resting] = k
+            resting += 1
             continue
         reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
         for j in range(ints[OBJECTS]):

@@ -1,36 +1,8 @@
 # mypy: ignore-errors
 """The half-space below a plane; size: its normal (3), of any length."""
 
-import math
-
-from sceneql.kernels import lean, lean_inlined
-from sceneql.simulation.contacts.shape_kernels import (
-    BEND_TYPE,
-    CLEAR_TYPE,
-    NEAR_TYPE,
-    PLACE,
-    ROTATION,
-    SIZE,
-    SURFACE_TYPE,
-    turn,
-)
-
-UNIT = 4e-16
-"""How far from 1 the square of a normal may be that counts as of unit length: an ulp or two."""
-
-
-@lean_inlined
-def facing(floats, ints, at, x, y, z):
-    """Signed distance and normal."""
-    place, size = ints[at + PLACE], ints[at + SIZE]
-    a, b, c = floats[size], floats[size + 1], floats[size + 2]
-    if floats[ints[at + ROTATION]] != 1.0:
-        a, b, c = turn(floats, ints[at + ROTATION], a, b, c)
-    square = a * a + b * b + c * c
-    if abs(square - 1.0) > UNIT:
-        scale = 1.0 / math.sqrt(square)
-        a, b, c = a * scale, b * scale, c * scale
-    return a * (x - floats[place]) + b * (y - floats[place + 1]) + c * (z - floats[place + 2]), a, b, c
+from sceneql.kernels import lean
+from sceneql.simulation.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, NEAR_TYPE, SURFACE_TYPE, facing
 
 
 @lean(SURFACE_TYPE)
