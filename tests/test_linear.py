@@ -13,6 +13,8 @@ from scipy.sparse import csr_array, kron
 from sceneql.simulation.linear import dense_kernels as dense
 from sceneql.simulation.linear import fronts, fronts_kernels
 from sceneql.simulation.linear import krylov_kernels as krylov
+from sceneql.simulation.linear.solver_kernels import PRECONDITION
+from sceneql.simulation.numbered_kernels import number_of
 
 UNIT = 2.3e-16
 
@@ -115,7 +117,8 @@ def test_iterations_converge(symmetric):
     matrix.setdiag(matrix.diagonal() + 30.0)
     n = matrix.shape[0]
     diagonal = [np.flatnonzero(matrix.indices[a:b] == i)[0] + a for i, (a, b) in enumerate(pairwise(matrix.indptr))]
-    plan = np.concatenate([[n], matrix.indptr, diagonal, matrix.indices]).astype(np.int64)
+    near = number_of(krylov.precondition, PRECONDITION)
+    plan = np.concatenate([[n], matrix.indptr, diagonal, matrix.indices, [near]]).astype(np.int64)
     right = np.random.default_rng(1).standard_normal(n)
     factors, x = np.zeros(matrix.nnz), right.copy()
     krylov.factor_system(plan, matrix.data, factors, np.zeros(0), symmetric)

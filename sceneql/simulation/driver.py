@@ -17,8 +17,9 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from sceneql.simulation.blocks_laid import GROUPS_AT
 from sceneql.simulation.generated import load, write
-from sceneql.simulation.island import GROUPS_AT, Structure, System
+from sceneql.simulation.island import Structure, System
 from sceneql.simulation.jacobian import HEAD
 
 REFRESH = "    refresh(t, y, floats, ints[ints[ints[2]] : ints[ints[2] + 1]])"

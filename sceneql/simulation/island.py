@@ -18,6 +18,7 @@ from sceneql.failure import LimitRefused
 from sceneql.kinds import Object, Ref, Value
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.expression import Expr, Link
+from sceneql.simulation.blocks_laid import Block, grouped, lay_out
 from sceneql.simulation.inputs import Inputs
 from sceneql.simulation.jacobian import full, section
 
@@ -34,8 +35,6 @@ LARGEST_MEMORY = 8 * 2**30
 """[bytes] of the state and of a solver's stages."""
 VECTORS = 12
 """Arrays of the state's size that a run keeps: ends and rates of a step, and the stages of a solver."""
-GROUPS_AT = 5
-"""Integers before those of the groups (driver.py)."""
 RESERVED_FLOATS = 3
 """floats[0] counts rate evaluations; floats[1] is set by a contact that changed the state (march_kernels); floats[2] is
 1 while slopes are to leave out what makes a system indefinite (system.Slopes)."""
@@ -96,6 +95,8 @@ class System:
     """Of an island that is one field on a grid."""
     unsloped: str = ""
     """The part that gives no slopes, where one gives none."""
+    grids: tuple[Grid, ...] = ()
+    """Of all its fields."""
 
     def origin(self, index: int) -> Origin:
         """Part and line of an entry of y."""
@@ -103,15 +104,6 @@ class System:
             if first <= index < last:
                 return Origin(part, spans[(index - first) * len(spans) // (last - first)])
         return Origin("island", None)
-
-
-@dataclass(frozen=True, slots=True)
-class _Block:
-    kernels: tuple[str, ...]
-    ints: tuple[int, ...]
-    pairs: int = 0
-    slopes: Slopes | Callable[[], Slopes | None] | None = None
-    part: str = ""
 
 
 @dataclass
@@ -135,9 +127,9 @@ class IslandAssembly:
     _masses: list[tuple[int, int, int]] = field(default_factory=list)
     _numbers: list[Floats] = field(default_factory=lambda: [np.zeros(RESERVED_FLOATS)])
     _stored: int = RESERVED_FLOATS
-    _terms: dict[Stage, list[_Block]] = field(default_factory=lambda: {stage: [] for stage in STAGES})
-    _exact: list[_Block] = field(default_factory=list)
-    _local: list[_Block] = field(default_factory=list)
+    _terms: dict[Stage, list[Block]] = field(default_factory=lambda: {stage: [] for stage in STAGES})
+    _exact: list[Block] = field(default_factory=list)
+    _local: list[Block] = field(default_factory=list)
     _varying: list[tuple[int, Value]] = field(default_factory=list)
     _largest_step: float = float("inf")
     _grids: list[Grid] = field(default_factory=list)
@@ -217,7 +209,7 @@ class IslandAssembly:
     ) -> None:
         """Add a term to the rate."""
         self._apart = self._apart and apart
-        self._terms[stage].append(_Block((kernel,), tuple(ints), 0, jacobian, self._word[0]))
+        self._terms[stage].append(Block((kernel,), tuple(ints), 0, jacobian, self._word[0]))
 
     def inertia(self, velocity_at: int, inverse_at: int, count: int) -> None:
         """Say which rows of the Jacobian inverse masses multiply (system.Assembly)."""
@@ -226,7 +218,7 @@ class IslandAssembly:
     def contact(self, mode: Mode, kernels: Sequence[str], ints: Sequence[int], pairs: int, apart: bool = False) -> None:
         """Add contacts."""
         self._apart = self._apart and apart and mode == "local"
-        (self._exact if mode == "exact" else self._local).append(_Block(tuple(kernels), tuple(ints), pairs))
+        (self._exact if mode == "exact" else self._local).append(Block(tuple(kernels), tuple(ints), pairs))
 
     def grid(self, grid: Grid) -> None:
         """Say that part of the state is a field (system.Assembly)."""
@@ -295,16 +287,16 @@ class IslandAssembly:
         y = self.start()
         slopes = self._slopes() if jacobian else None
         inputs = self._inputs()
-        blocks = [_Block((), tuple(self._program(inputs)))]
+        blocks = [Block((), tuple(self._program(inputs)))]
         groups: list[tuple[tuple[str, ...], int]] = []
         for stage in STAGES:
-            groups += _grouped(self._terms[stage], blocks)
+            groups += grouped(self._terms[stage], blocks)
         first_exact = len(blocks)
-        exact = _grouped(self._exact, blocks)
+        exact = grouped(self._exact, blocks)
         pairs = [block.pairs for block in blocks[first_exact:]]
-        local = _grouped(self._local, blocks)
+        local = grouped(self._local, blocks)
         first_blocks = list(accumulate((count for _, count in (*groups, *exact, *local)), initial=1))
-        ints = _lay_out(self._pairs, blocks, first_blocks, pairs)
+        ints = lay_out(self._pairs, blocks, first_blocks, pairs)
         found, derived = full(len(y)) if jacobian else None, None
         if slopes is not None:
             found, derived, more = section(len(ints), len(y), slopes, self._masses)
@@ -331,6 +323,7 @@ class IslandAssembly:
             pattern=found,
             grid=self.only_field,
             unsloped=self._unsloped,
+            grids=tuple(self._fields.values()),
         )
 
     def start(self) -> Floats:
@@ -369,32 +362,3 @@ class IslandAssembly:
 
     def _inputs(self) -> Inputs:
         return Inputs(self.setting.formula, self.places, self.start, self.floats)
-
-
-def _grouped(blocks: list[_Block], laid: list[_Block]) -> list[tuple[tuple[str, ...], int]]:
-    """Kernels in order of first use with their numbers of blocks; the blocks, in that order, are put on ``laid``."""
-    by_kernels: dict[tuple[str, ...], list[_Block]] = {}
-    for block in blocks:
-        by_kernels.setdefault(block.kernels, []).append(block)
-    for group in by_kernels.values():
-        laid.extend(group)
-    return [(kernels, len(group)) for kernels, group in by_kernels.items()]
-
-
-def _lay_out(
-    triples: list[tuple[int, int, int]], blocks: list[_Block], first_blocks: list[int], pairs: list[int]
-) -> NDArray[int64]:
-    """The one array of integers: see driver.py."""
-    triples_at = GROUPS_AT + len(first_blocks)
-    table_at = triples_at + 3 * len(triples)
-    ranges_at = table_at + len(blocks) + 1
-    table = list(accumulate((len(block.ints) for block in blocks), initial=ranges_at + len(pairs) + 1))
-    parts = [
-        [triples_at, len(triples), table_at, ranges_at, table[-1]],
-        [table_at + block for block in first_blocks],
-        [number for triple in triples for number in triple],
-        table,
-        list(accumulate(pairs, initial=0)),
-        *(block.ints for block in blocks),
-    ]
-    return np.concatenate([np.array(part, dtype=np.int64) for part in parts])

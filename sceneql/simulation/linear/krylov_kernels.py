@@ -1,15 +1,15 @@
 # mypy: ignore-errors
 """Sparse systems by iterations: conjugate gradients where they are symmetric, else BiCGStab, with incomplete factors.
 
-The integers: [unknowns, starts of rows (n + 1), places of the diagonal (n), columns, rising in each row]. The pattern
-is symmetric. Sources: Hestenes & Stiefel (1952); van der Vorst (1992), SIAM J. Sci. Stat. Comput. 13, 631-644;
-ILU(0): Meijerink & van der Vorst (1977), Math. Comp. 31, 148-162.
+The integers: [unknowns, starts of rows (n + 1), places of the diagonal (n), columns, rising in each row, number of the
+preconditioner], then its own. The pattern is symmetric. Sources: Hestenes & Stiefel (1952); van der Vorst (1992), SIAM
+J. Sci. Stat. Comput. 13, 631-644; ILU(0): Meijerink & van der Vorst (1977), Math. Comp. 31, 148-162.
 """
 
 import math
 
 from sceneql.kernels import lean, lean_inlined
-from sceneql.simulation.linear.solver_kernels import FACTOR_SYSTEM, SOLVE_SYSTEM
+from sceneql.simulation.linear.solver_kernels import FACTOR_SYSTEM, PRECONDITION, SOLVE_SYSTEM, precondition_at
 
 REDUCTION = 1e-11
 """Of the residual, until the iterations end."""
@@ -50,6 +50,13 @@ def factor_system(plan, values, factors, work, symmetric):
 
 
 @lean_inlined
+def own_at(plan):
+    """Where in the plan the number of the preconditioner stands."""
+    n = plan[0]
+    return 2 + 2 * n + plan[1 + n]
+
+
+@lean(PRECONDITION)
 def precondition(plan, factors, b, x):
     """x = (L U)^-1 b."""
     n = plan[0]
@@ -90,13 +97,14 @@ def inner(x, y):
 @lean_inlined
 def conjugate_gradients(plan, values, factors, b, x, r, z, p, q):
     """Solve from x = 0, r = b; the reduction of the residual that was reached."""
+    near = precondition_at(plan[own_at(plan)])
     start = math.sqrt(inner(b, b))
     left = start
     before = 1.0
     for iteration in range(MOST):
         if left <= REDUCTION * start:
             break
-        precondition(plan, factors, r, z)
+        near(plan, factors, r, z)
         now = inner(r, z)
         ratio = now / before if iteration else 0.0
         before = now
@@ -116,6 +124,7 @@ def conjugate_gradients(plan, values, factors, b, x, r, z, p, q):
 @lean_inlined
 def bicgstab(plan, values, factors, b, x, r, z, p, q, s, t):
     """Solve from x = 0, r = b; the reduction of the residual that was reached. b stays as the shadow residual."""
+    near = precondition_at(plan[own_at(plan)])
     start = math.sqrt(inner(b, b))
     left = start
     before = weight = omega = 1.0
@@ -127,13 +136,13 @@ def bicgstab(plan, values, factors, b, x, r, z, p, q, s, t):
         before = now
         for k in range(p.size):
             p[k] = r[k] + ratio * (p[k] - omega * q[k])
-        precondition(plan, factors, p, z)
+        near(plan, factors, p, z)
         multiply(plan, values, z, q)
         weight = now / inner(b, q)
         for k in range(p.size):
             x[k] += weight * z[k]
             r[k] -= weight * q[k]
-        precondition(plan, factors, r, s)
+        near(plan, factors, r, s)
         multiply(plan, values, s, t)
         size = inner(t, t)
         omega = inner(t, r) / size if size > 0.0 else 0.0

@@ -15,4 +15,7 @@ from sceneql.system_kernels import A, I
 FACTOR_SYSTEM = types.boolean(I, A, A, A, types.boolean)
 SOLVE_SYSTEM = types.boolean(I, A, A, A, A, types.boolean)
 
-factor_at, solve_at = kernel_at(FACTOR_SYSTEM), kernel_at(SOLVE_SYSTEM)
+PRECONDITION = types.void(I, A, A, A)
+"""Of an iteration, (plan, factors, b, x): x is near what solves A x = b."""
+
+factor_at, solve_at, precondition_at = map(kernel_at, (FACTOR_SYSTEM, SOLVE_SYSTEM, PRECONDITION))

@@ -12,6 +12,7 @@ from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
 from sceneql.failure import LimitRefused
+from sceneql.simulation.grids.species import one_grid
 
 if TYPE_CHECKING:
     import numpy
@@ -85,7 +86,10 @@ def stage_plan(system: System) -> StagePlan:
     order = np.repeat(np.arange(m, dtype=np.int64), np.diff(pattern.indptr)) * m + pattern.indices
     places = np.searchsorted(order, rows * m + columns)
     twins = np.searchsorted(order, pattern.indices.astype(np.int64) * m + order // m)
-    solver = _choose(pattern, _points(system, reduced.core))
+    if one_grid(system, reduced.core):
+        solver = _over_grids(system, reduced.core, pattern)
+    else:
+        solver = _choose(pattern, _points(system, reduced.core))
     f, s = len(reduced.first), len(reduced.second)
     parts = np.full((pattern.nnz, 4), -1, dtype=np.int64)
     parts[:, 0] = order // m
@@ -249,10 +253,33 @@ def _choose(pattern: Any, points: Floats | None) -> _Solver:
 
     from sceneql.simulation.linear import krylov_kernels
 
+    numbers = _iterated(pattern, krylov_kernels)
+    text = f"iterations (conjugate gradients or BiCGStab, incomplete factors) on {m} unknowns"
+    return _Solver(krylov_kernels, numbers, pattern.nnz, 8 * m, text)
+
+
+def _over_grids(system: System, core: NDArray[int64], pattern: Any) -> _Solver:
+    """The solver of species on one grid."""
+    import numpy as np
+
+    from sceneql.simulation.grids import species, species_kernels
+
+    own, floats, text = species.plan(system, core, pattern)
+    numbers = np.concatenate([_iterated(pattern, species_kernels), own])
+    return _Solver(species_kernels, numbers, floats, 8 * len(core), f"iterations (BiCGStab) with {text}")
+
+
+def _iterated(pattern: Any, kernels: Any) -> NDArray[int64]:
+    """The integers of krylov_kernels with a module's preconditioner."""
+    import numpy as np
+
+    from sceneql.simulation.linear.solver_kernels import PRECONDITION
+    from sceneql.simulation.numbered_kernels import number_of
+
+    m = pattern.shape[0]
     diagonal = np.searchsorted(
         np.repeat(np.arange(m, dtype=np.int64), np.diff(pattern.indptr)) * m + pattern.indices,
         np.arange(m, dtype=np.int64) * (m + 1),
     )
-    numbers = np.concatenate([[m], pattern.indptr, diagonal, pattern.indices])
-    text = f"iterations (conjugate gradients or BiCGStab, incomplete factors) on {m} unknowns"
-    return _Solver(krylov_kernels, numbers, pattern.nnz, 8 * m, text)
+    near = number_of(kernels.precondition, PRECONDITION)
+    return np.concatenate([[m], pattern.indptr, diagonal, pattern.indices, [near]]).astype(np.int64)

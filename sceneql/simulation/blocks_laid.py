@@ -1,0 +1,59 @@
+"""The blocks of an island, the integers of terms and contacts, and how they lie in the one array that kernels read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import accumulate
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.system import Slopes
+
+GROUPS_AT = 5
+"""Integers before those of the groups (driver.py)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """What one term or contact handed in."""
+
+    kernels: tuple[str, ...]
+    ints: tuple[int, ...]
+    pairs: int = 0
+    slopes: Slopes | Callable[[], Slopes | None] | None = None
+    part: str = ""
+
+
+def grouped(blocks: list[Block], laid: list[Block]) -> list[tuple[tuple[str, ...], int]]:
+    """Kernels in order of first use with their numbers of blocks; the blocks, in that order, are put on ``laid``."""
+    by_kernels: dict[tuple[str, ...], list[Block]] = {}
+    for block in blocks:
+        by_kernels.setdefault(block.kernels, []).append(block)
+    for group in by_kernels.values():
+        laid.extend(group)
+    return [(kernels, len(group)) for kernels, group in by_kernels.items()]
+
+
+def lay_out(
+    triples: list[tuple[int, int, int]], blocks: list[Block], first_blocks: list[int], pairs: list[int]
+) -> NDArray[int64]:
+    """The one array of integers: see driver.py."""
+    triples_at = GROUPS_AT + len(first_blocks)
+    table_at = triples_at + 3 * len(triples)
+    ranges_at = table_at + len(blocks) + 1
+    table = list(accumulate((len(block.ints) for block in blocks), initial=ranges_at + len(pairs) + 1))
+    parts = [
+        [triples_at, len(triples), table_at, ranges_at, table[-1]],
+        [table_at + block for block in first_blocks],
+        [number for triple in triples for number in triple],
+        table,
+        list(accumulate(pairs, initial=0)),
+        *(block.ints for block in blocks),
+    ]
+    return np.concatenate([np.array(part, dtype=np.int64) for part in parts])
