@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 FLOATS = ("_y0", "_rate0", "_y1", "_rate1", "_sample", "_work", "_settings", "floats", "_gaps", "_clock")
 """Arrays of a march, in the order of the kernels' columns from Y0 on."""
+FULL = ("_y1", "_settings", "floats", "_clock")
+"""Those that are not all zeros before the first step."""
 TILES = 16
 """Runs of blocks for each thread, one compiled call each."""
 
@@ -52,14 +54,16 @@ class BlockMarch(March):
             places = np.array(part.places, dtype=np.int64).ravel()
             sums = np.array([here for _, here in part.sums], dtype=np.int64)
             words += [march._numbers, march.system.ints, march._leaving, march._counts, places, sums]
-        self._arena, self._words = np.concatenate(floats), np.concatenate(words)
         starts = list(accumulate(map(len, floats), initial=0))
+        self._arena, self._words = np.zeros(starts[-1]), np.concatenate(words)
         counting = list(accumulate(map(len, words), initial=0))
         each = kernels.INTS_END - kernels.NUMBERS
         for k, (march, row) in enumerate(zip(self._blocks, self._table, strict=True)):
             ends = starts[k * len(FLOATS) : (k + 1) * len(FLOATS) + 1]
             row[: len(ends)] = ends
             for name, first, last in zip(FLOATS, ends[:-1], ends[1:], strict=True):
+                if name in FULL:
+                    self._arena[first:last] = getattr(march, name)
                 setattr(march, name, self._arena[first:last])
             row[kernels.NUMBERS : kernels.INTS_END + 1] = counting[k * each : (k + 1) * each + 1]
             march._counts = self._words[row[kernels.COUNTING] : row[kernels.PLACES]]

@@ -1,8 +1,9 @@
 """A million particles in turbulent air over a plane: particle-steps a second, and the time to draw a frame of them.
 
-Run as ``python tests/bench/bench_particles.py [COUNT [CASE...]]``. Memory and compiled code are warm; the best of
-REPEATS, in wall time and in processor time (the machine may be shared), of the march alone and of the tracer alone. In
-the last cases particles meet the plane: they bounce high, or all lie on it and are moved along by the air.
+Run as ``python tests/bench/bench_particles.py [COUNT [CASE...]]``; with cases nothing is drawn. Memory and compiled
+code are warm; the best of REPEATS, in wall time and in processor time (the machine may be shared), of the march alone
+and of the tracer alone. In the last cases particles meet the plane: they bounce high, or all lie on it and are moved
+along by the air.
 """
 
 from __future__ import annotations
@@ -80,7 +81,13 @@ def main() -> None:
         run.islands[0].advance(STEP * march.statistics.steps)
         hits = (hits_of(run, case) - hits) / (REPEATS * STEPS * count)
         print(f"{case:24s} {1e-6 / min(walls):18.1f} {1e9 * min(cpus):20.1f} {hits:12.2%}", flush=True)
-    steps = march.statistics.steps
+    if len(sys.argv) <= 2:
+        draw_one(run)
+
+
+def draw_one(run: Run) -> None:
+    """The time to draw a frame."""
+    steps = run.islands[0].march.statistics.steps
     from renderers.tracing.draw import draw
     from renderers.tracing.pack import pack
 

@@ -66,6 +66,8 @@ class Collision(Contact):
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies, others: tuple[Ref, ...]) -> None:
         """Add the contacts of one model with the objects. Raises ScriptError for one that cannot be collided with."""
+        import numpy as np
+
         from sceneql.simulation.contacts.colliders import must_be_outside, step_by_springs, surfaces
         from sceneql.simulation.contacts.impulse_kernels import HEAD, INSTANT, MOST_CUTS
         from sceneql.simulation.contacts.resting_kernels import PAIR
@@ -85,8 +87,10 @@ class Collision(Contact):
             assembly.value(self.friction),
             assembly.floats([self.thickness]),
             tally_at,
-            assembly.floats([0.0] * (pairs * PAIR)),
-            assembly.floats([nan] * (bodies.count * INSTANT) if exact else [*cuts, 0.0, *[0.0] * bodies.count]),
+            assembly.floats(np.zeros(pairs * PAIR)),
+            assembly.floats(
+                np.full(bodies.count * INSTANT, nan) if exact else np.append(cuts, np.zeros(1 + bodies.count))
+            ),
             len(others),
         )
         masses = (bodies.position_at, bodies.velocity_at, bodies.work_at, bodies.mass_at, bodies.inverse_at)
