@@ -37,6 +37,7 @@ KERNELS = {
     "direct": "direct_kernels:solve",
     "fast_transform": "transform_kernels:solve",
 }
+BEYOND = "; by Newton's method on all that its drift ties, from the first step on that this does not solve"
 COARSEST = 2
 LONGEST_ROW = 512
 """Cells of a row up to which `auto` transforms: a cell costs twice as many multiplications."""
@@ -92,7 +93,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
         settings=np.array([share * relative, share * absolute if stepper.adaptive else 0.0, *tableau]),
         numbers=np.concatenate([[stages, explicit_first, embedded, error_order], head, plan.numbers]).astype(np.int64),
         work=(3 + stages) * len(system.y) + store,
-        text=f"linear systems by {name}, {plan.text}, {why}",
+        text=f"linear systems by {name}, {plan.text}, {why}{'' if stepper.otherwise is None else BEYOND}",
     )
 
 

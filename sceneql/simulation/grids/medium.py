@@ -117,6 +117,13 @@ class Part(Record):
 Boundary = dict[str, Part]
 
 
+def number_in(formula: Formula | None) -> float | None:
+    """The number that a formula is; None where it depends on anything, or there is none."""
+    if formula is None or any(isinstance(node, Symbol | Link) for node in walk(formula.expr)):
+        return None
+    return float(evaluate(formula.expr, {}))
+
+
 class Medium(Model):
     """A domain on a grid of cells."""
 
@@ -145,10 +152,18 @@ class Medium(Model):
         """What holds on the boundary, of every field."""
         raise NotImplementedError
 
+    def coefficients(self) -> Iterable[tuple[Formula | None, tuple[str, ...]]]:
+        """How every field spreads, and where that is told."""
+        raise NotImplementedError
+
     def problems(self) -> Iterable[Problem]:
-        """Two places or none, sides that do not fit together, too many cells, boundaries of no side."""
+        """Two places or none, coefficients below 0, sides that do not fit, too many cells, boundaries of no side."""
         if (self.size is None) == (self.domain is None):
             yield Problem("it spreads in one of `domain` and `size`")
+        for coefficient, path in self.coefficients():
+            d = number_in(coefficient)
+            if d is not None and d < 0.0:
+                yield Problem(f"the coefficient must be at least 0, and is {d:g}", path, code="out-of-range")
         for name, place in self.probes.items():
             if name in MEASURES or not name.isidentifier():
                 yield Problem(f"a probe cannot be called '{name}'", ("probes", name), at_key=True)
@@ -186,9 +201,9 @@ class Medium(Model):
 
         The first is at most 4 D sum of 1/spacing^2 (von Neumann's bound); None where a coefficient varies.
         """
-        if coefficient is not None and any(isinstance(node, Symbol | Link) for node in walk(coefficient.expr)):
+        d = 0.0 if coefficient is None else number_in(coefficient)
+        if d is None:
             return None
-        d = 0.0 if coefficient is None else float(evaluate(coefficient.expr, {}))
         spacing: tuple[float, ...] = (self.cell, self.cell)  # of a flat domain; rates of a deep one are larger
         if self.size is not None:
             spacing = tuple(side / n for n, side in zip(counts(self.size, self.cell), self.size, strict=False))

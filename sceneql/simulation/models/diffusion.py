@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
-from sceneql.kinds import Gives, Value, field
+from sceneql.kinds import Formula, Gives, Value, field
 from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Link, Type
@@ -52,6 +52,10 @@ class Diffusion(Medium):
     def boundaries(self) -> Iterable[Boundary]:
         """That of its field."""
         return (self.boundary,)
+
+    def coefficients(self) -> Iterable[tuple[Formula | None, tuple[str, ...]]]:
+        """That of its field."""
+        return ((self.coefficient, ("coefficient",)),)
 
     def fastest(self, name: str) -> Iterable[Oscillation]:
         """What limits the explicit step."""

@@ -120,6 +120,10 @@ class ReactionDiffusion(Medium):
         """Those of its species."""
         return [self.boundary if one.boundary is None else one.boundary for one in self.species.values()]
 
+    def coefficients(self) -> Iterable[tuple[Formula | None, tuple[str, ...]]]:
+        """Those of its species."""
+        return [(one.coefficient, ("species", name, "coefficient")) for name, one in self.species.items()]
+
     def fastest(self, name: str) -> Iterable[Oscillation]:
         """What limits the explicit step of each species' spread; what reactions add is not known before the run."""
         found = [self.spreading(one.coefficient) for one in self.species.values()]
