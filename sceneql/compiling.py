@@ -70,11 +70,18 @@ class HelperLowering(NativeLowering):
         state.flags.no_compile = True
         state.library = HelperLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
         super().run_pass(state)
-        # numba asks for a builtin function, one of its own for each helper: this one raises KeyError in Python.
-        name = f"{{{state.func_id.func_name} is for kernels only}}".format
+        name = _kept_out(state.func_id.func_name)
         state.targetctx.insert_user_function(name, state.cr.fndesc, [state.library])
         state.cr = state.cr._replace(cfunc=name)
         return True
+
+
+def _kept_out(name):
+    """What stands for a function in Python that only kernels may call: it raises KeyError.
+
+    numba asks for a builtin function, one of its own for each.
+    """
+    return f"{{{name} is for kernels only}}".format
 
 
 def _pipeline(*passes):
@@ -101,17 +108,21 @@ class HelperCompiler(CompilerBase):
         return _pipeline(*FRONT, HelperLowering, NoPythonBackend)
 
 
-def call_by_name(kernel):
+def call_by_name(kernel, inner):
     """Let other kernels call this one by its name, where numba would put its code into each of them once more.
 
     The name is the function's own: what numba makes of it differs from process to process, and callers are cached.
+    An ``inner`` kernel has no code for calls from Python, which are kept out.
     """
-    (made,) = kernel.overloads.values()  # of one signature: a name stands for one function
+    ((types_in, made),) = kernel.overloads.items()  # of one signature: a name stands for one function
     called = copy(made.fndesc)
     called.mangled_name = f"{made.fndesc.modname}.{made.fndesc.qualname}"
     binding.add_symbol(called.mangled_name, made.library.get_pointer_to_function(made.fndesc.mangled_name))
     context = made.target_context
     context.remove_user_function(made.entry_point)
+    if inner:
+        kernel._clear()
+        kernel.overloads[types_in] = made = made._replace(entry_point=_kept_out(kernel.__name__))
     context.insert_user_function(made.entry_point, called, [])
 
 

@@ -6,19 +6,15 @@ Imports numba; only ``*_kernels.py`` files and those that run them import this m
 
 from __future__ import annotations
 
-import atexit
 import hashlib
 import os
 import re
-import subprocess
-import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import cache
-from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -134,19 +130,21 @@ def alone(path: Path) -> Iterator[None]:
         yield
 
 
-def kernel(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+def kernel(signature: Any, *, inner: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     """Compile a function for one explicit signature, cached on disk, without the GIL, NaN and inf as in numpy.
 
-    Fastmath stays off, so that the bits do not depend on the machine.
+    Fastmath stays off, so that the bits do not depend on the machine. Only kernels call an ``inner`` one, by its name
+    or its address: without the code for calls from Python it compiles sooner.
     """
+    options |= COMMON | {"no_cpython_wrapper": inner}
 
     def compile(function: Callable[..., Any]) -> Any:
         folder = cache_folder(function.__module__)
         with alone(folder / function.__name__), collecting_later():
             numba.config.CACHE_DIR = str(folder)
-            made = numba.njit(signature, cache=True, pipeline_class=KernelCompiler, **COMMON, **options)(function)
+            made = numba.njit(signature, cache=True, pipeline_class=KernelCompiler, **options)(function)
         if not numba.config.DISABLE_JIT:
-            call_by_name(made)
+            call_by_name(made, inner)
         return made
 
     return compile
@@ -204,30 +202,9 @@ def function_at(kind: Any) -> Any:
     return at
 
 
-def compile_ahead(modules: tuple[str, ...]) -> Callable[[], None]:
-    """Compile modules' kernels in a process beside this one, unless that was done before; call the result to wait.
-
-    Compiling holds the interpreter's lock, so a second core can only help from a second process; what it compiles
-    comes here from the cache. The wait is spent on the modules from the last one on, and counts as compilation.
-    """
-    marks = [cache_folder(module) / "all.compiled" for module in modules]
-    if all(mark.exists() for mark in marks) or numba.config.DISABLE_JIT:
-        return lambda: None
-    # Ctrl-C is for the process that says what was kept; it takes this one with it.
-    code = f"import signal; signal.signal(signal.SIGINT, signal.SIG_IGN); import {', '.join(modules)}"
-    process = subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.DEVNULL)
-    atexit.register(process.terminate)
-
-    def wait() -> None:
-        with compiled.whole_block():
-            for module in reversed(modules):
-                import_module(module)
-            process.wait()
-        for mark in marks:
-            mark.parent.mkdir(parents=True, exist_ok=True)
-            mark.touch()
-
-    return cache(wait)
+def compiles() -> bool:
+    """Whether kernels are compiled; NUMBA_DISABLE_JIT=1 lets Python run them as they are written."""
+    return not numba.config.DISABLE_JIT
 
 
 def thread_count() -> int:

@@ -256,7 +256,7 @@ class Tools:
 @cache
 def _compile_ahead(modules: tuple[str, ...]) -> Callable[[], None]:
     """Start compiling a renderer's kernels, once for all outputs that it draws."""
-    from sceneql.kernels import compile_ahead
+    from sceneql.ahead import compile_ahead
 
     return compile_ahead(modules)
 

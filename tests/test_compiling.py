@@ -2,6 +2,9 @@
 
 import gc
 import math
+import os
+import subprocess
+import sys
 
 import numba
 import numpy as np
@@ -10,6 +13,7 @@ from numba import types
 
 from sceneql.compiling import collecting_later
 from sceneql.kernels import HELPER, KernelCompiler
+from sceneql.simulation.forces.gravity_kernels import gravity
 
 helper = numba.njit(**HELPER)
 
@@ -40,6 +44,40 @@ def test_a_helper_refuses_to_be_called_from_python():
     assert kernel(np.ones(4)) == 2.0
     with pytest.raises(KeyError, match="norm is for kernels only"):
         norm(np.ones(4))
+
+
+@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+def test_an_inner_kernel_is_called_by_kernels_and_refuses_python():
+    with pytest.raises(TypeError):
+        gravity(0.0, *[np.zeros(3)] * 3, np.zeros(3, np.int64))
+
+
+AHEAD = """
+import sys
+from sceneql import ahead
+from sceneql.kernels import compiled
+wait = ahead.compile_ahead(sys.argv[1:])
+wait()
+print(compiled.count, ahead._beside.cache_info().currsize)
+"""
+
+
+@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+@pytest.mark.parametrize("threads", [1, 2])
+def test_what_is_compiled_ahead_is_there_and_asks_for_no_process_again(tmp_path, threads):
+    modules = [f"sceneql.simulation.forces.{word}_kernels" for word in ("gravity", "drag")]
+    environment = {**os.environ, "SCENEQL_CACHE": str(tmp_path), "SCENEQL_THREADS": str(threads)}
+
+    def run():
+        said = subprocess.run(
+            [sys.executable, "-c", AHEAD, *modules], env=environment, capture_output=True, text=True, check=True
+        ).stdout
+        return tuple(map(int, said.split()))
+
+    here, processes = run()
+    assert processes == threads - 1
+    assert here > 0 or threads > 1
+    assert run() == (0, 0)
 
 
 @pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")

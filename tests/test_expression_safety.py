@@ -128,14 +128,14 @@ def hook() -> None:
 def test_nothing_is_opened_run_or_imported(hook: None, text: str) -> None:
     global _watching
     _seen.clear()
-    start = time.perf_counter()
+    start = time.process_time()
     _watching = True
     try:
         whole_way(text)
     finally:
         _watching = False
     assert not _seen
-    assert time.perf_counter() - start < 5.0
+    assert time.process_time() - start < 5.0
 
 
 def test_the_hook_would_see_it(hook: None) -> None:

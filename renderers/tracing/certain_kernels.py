@@ -13,7 +13,7 @@ ROOTS = 1000
 """Of a sheet that are passed on one ray, before what it lies within."""
 
 
-@kernel(CROSSING.signature, _nrt=False)
+@kernel(CROSSING.signature, _nrt=False, inner=True)
 def certain(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """First place where a ray from outside enters implicit object k or meets it, a sheet; none where undecided."""
     code, constants, parts = tape_of(scene, k)

@@ -52,7 +52,7 @@ def within(r, bounds, nx, ny, i, j, l, sx, sy, sz, wx, wy, wz, t):
     return bounds == 0 or interpolant(r, bounds, nx, ny, i, j, l, sx + t * wx, sy + t * wy, sz + t * wz) < 0.0
 
 
-@kernel(CROSSING.signature, _nrt=False)
+@kernel(CROSSING.signature, _nrt=False, inner=True)
 def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """First place behind ``near`` where the interpolant of the grid whose reals begin at k changes its sign.
 
@@ -132,7 +132,7 @@ def rise(r, node, stride, index, count):
     return (r[node + (after - index) * stride] - r[node + (before - index) * stride]) / (after - before)
 
 
-@kernel(SKIN.signature, _nrt=False)
+@kernel(SKIN.signature, _nrt=False, inner=True)
 def skin(scene, scratch, k, x, y, z):
     """(normal, paint) of the grid whose reals begin at k, at a point of its surface; it has no paint (3 NaN).
 

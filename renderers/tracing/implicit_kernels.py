@@ -87,7 +87,7 @@ def occupied(scene, k, ox, oy, oz, dx, dy, dz, start, stop):
     return begin, stop, False
 
 
-@kernel(CROSSING.signature, _nrt=False)
+@kernel(CROSSING.signature, _nrt=False, inner=True)
 def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """Crossing of implicit object k behind ``near``; with ``anywhere`` of any place inside, not the first."""
     b = scene.reals

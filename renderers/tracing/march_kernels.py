@@ -11,7 +11,7 @@ HALVINGS = 60
 """Of the piece between two samples: to the last bit."""
 
 
-@kernel(CROSSING.signature, _nrt=False)
+@kernel(CROSSING.signature, _nrt=False, inner=True)
 def sampled(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """Crossing of implicit object k behind ``near``: the first change of sign between SAMPLES + 1 places on the ray.
 

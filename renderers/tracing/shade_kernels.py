@@ -75,7 +75,7 @@ def light_width(reals, k, distance, roughness):
     return min(np.sqrt(alpha * alpha + size * size + SHARPEST * SHARPEST), 1.0)
 
 
-@kernel(types.UniTuple(types.float64, 3)(SCENE, ROW, ROW), _nrt=False)
+@kernel(types.UniTuple(types.float64, 3)(SCENE, ROW, ROW), _nrt=False, inner=True)
 def shade(scene, record, visibility):
     """Radiance (3) of a record times its weight, but for what is traced further."""
     u = scene.reals

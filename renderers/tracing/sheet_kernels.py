@@ -13,7 +13,7 @@ from sceneql.field.tape_ops import HIT, MISS, UNDECIDED
 from sceneql.kernels import kernel
 
 
-@kernel(CROSSING.signature, _nrt=False)
+@kernel(CROSSING.signature, _nrt=False, inner=True)
 def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """Crossing of the sheet of implicit object k behind ``near``: its first root inside what it lies within."""
     code, constants, parts = tape_of(scene, k)

@@ -56,7 +56,7 @@ def painted(scene, scratch, k, x, y, z):
     return scratch[last - 2, 0], scratch[last - 1, 0], scratch[last, 0]
 
 
-@kernel(SKIN.signature, _nrt=False)
+@kernel(SKIN.signature, _nrt=False, inner=True)
 def skin(scene, scratch, k, x, y, z):
     """(normal, paint) of implicit object k at a point of its surface; the paint (3) is NaN where it tells no color."""
     nx, ny, nz = normal(scene, scratch, k, x, y, z)

@@ -142,7 +142,7 @@ def shadow_sample(scene, scratch, record, l, sample, jitter):
     return share, width
 
 
-@kernel(types.void(SCENE, SCRATCH, ROW, _i, _i, _i, ROW), _nrt=False)
+@kernel(types.void(SCENE, SCRATCH, ROW, _i, _i, _i, ROW), _nrt=False, inner=True)
 def look_around(scene, scratch, record, number, of_sky, of_lights, visibility):
     """Fill a row of visibility with means of nets of so many samples (powers of two), those of pixel ``number``.
 

@@ -39,7 +39,8 @@ def surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, sign):
 
 @lean(
     f"Tuple((int64, int64, float64, float64, float64))({TAPE}, float64, float64, float64, float64, float64, float64,"
-    " float64, float64, float64, float64, float64, float64)"
+    " float64, float64, float64, float64, float64, float64)",
+    inner=True,
 )
 def hidden(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, t0, t1, least, sign):
     """(kind, side at the end, place, from, to) of what cannot be told of the piece a..b, within t0..t1.

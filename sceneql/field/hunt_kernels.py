@@ -129,6 +129,7 @@ def advance(lanes, last, status, n, anywhere):
 @lean(
     f"int64({PACKET}, float32[::1], float32[::1], int64[::1], float64[:, ::1], float32[:, ::1], int64[::1], int64,"
     " boolean, float64[:, ::1])",
+    inner=True,
 )
 def hunt(code, constants, parts, registers, point, status, lanes, ids, rays, asked, queue, count, anywhere, found):
     """Settle the first ``count`` rays of the ``queue``; returns the enclosures spent.

@@ -23,6 +23,7 @@ BACK = 2.0e-3
     f"Tuple((int64, float64))({TAPE}, float64, float64, float64, float64, float64, float64,"
     " float64, float64, float64, float64, boolean)",
     _nrt=False,
+    inner=True,
 )
 def search(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, sign, anywhere):
     """(status, t) of the first entry into {sign f < 0}, or with ``anywhere`` of any place in it; never INSIDE.

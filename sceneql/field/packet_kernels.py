@@ -195,7 +195,7 @@ def place(row, i, o, d, middle, half):
     row[E + i] = PAD * (abs(o) + abs(middle * d) + abs(c1)) + TINY
 
 
-@lean(f"void({PACKET}, float32[::1], int64)")
+@lean(f"void({PACKET}, float32[::1], int64)", inner=True)
 def enclose(code, constants, parts, registers, point, status, n):
     """Enclose f in n lanes, into the last operation's register; ``status`` (LANES,) gets WHOLE, PARTIAL or NOWHERE.
 

@@ -5,7 +5,7 @@ from sceneql.kernels import lean
 from sceneql.system_kernels import TERM
 
 
-@lean(TERM)
+@lean(TERM, inner=True)
 def close(t, y, rate, floats, ints):
     """Newton's second law: newtons in ``rate`` become accelerations, and dx/dt = v.
 

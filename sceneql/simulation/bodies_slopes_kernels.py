@@ -5,7 +5,7 @@ from sceneql.kernels import lean
 from sceneql.system_kernels import TERM
 
 
-@lean(TERM)
+@lean(TERM, inner=True)
 def close(t, y, entries, floats, ints):
     """dx/dt = v of every mass that moves. ints: those of bodies_kernels.close."""
     for k in range(ints[2]):

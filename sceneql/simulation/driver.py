@@ -14,6 +14,7 @@ from __future__ import annotations
 import hashlib
 from functools import cache
 from importlib import import_module
+from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -87,6 +88,12 @@ def jacobian_text(structure: Structure) -> str:
             f"        {short}(t, y, values[ints[b + 2] : ints[b + 3]], floats, ints[ints[b] : ints[b + 1]])",
         ]
     return "\n".join([*lines, "    gather(values, floats, ints, s)"]) + "\n"
+
+
+def modules(structure: Structure, *others: str) -> tuple[str, ...]:
+    """What the kernels of an island, and other ones, are imported from; contacts, as a rule the largest, first."""
+    names = (*structure.local, *chain(*structure.exact), *others, *(structure.slopes or ()), *structure.terms)
+    return tuple(dict.fromkeys(name.partition(":")[0] for name in names))
 
 
 def text(structure: Structure) -> str:

@@ -47,7 +47,7 @@ def entered(now, start, above, slop):
     return now < reference(start, slop) - slop
 
 
-@lean(LOCATE)
+@lean(LOCATE, inner=True)
 def locate(
     functions, pair, contact, deflate, t0, low, high,
     y0, rate0, y1, work, settings, numbers, floats, ints, now,
@@ -115,7 +115,7 @@ def locate(
     return x2
 
 
-@lean(FIRST_OF)
+@lean(FIRST_OF, inner=True)
 def first_of(
     functions, pair, t0, low, high, y0, rate0, y1, rate1,
     work, settings, numbers, floats, ints, start, now, above, leaving, slop,
@@ -145,7 +145,7 @@ def first_of(
         high = length
 
 
-@lean(EVENT)
+@lean(EVENT, inner=True)
 def find_event(
     functions, t0, h, y0, rate0, y1, rate1,
     sample, work, settings, numbers, floats, ints, gaps, leaving, slop,

@@ -40,7 +40,7 @@ def floor(a):
     return a if math.isinf(a) else a - a % 1.0
 
 
-@lean(types.float64(N, F))
+@lean(types.float64(N, F), inner=True)
 def unary(code, a):
     """An operation on one number."""
     if code == NEG:
@@ -84,7 +84,7 @@ def unary(code, a):
     return math.tanh(a)
 
 
-@lean(types.float64(N, F, F))
+@lean(types.float64(N, F, F), inner=True)
 def binary(code, a, b):
     """An operation on two numbers."""
     if code == ADD:
@@ -131,7 +131,7 @@ def slerp(floats, a, b, s, out):
         floats[out + c] = u * floats[a + c] + v * floats[b + c]
 
 
-@lean(types.void(A, F, N, N, N, N, N))
+@lean(types.void(A, F, N, N, N, N, N), inner=True)
 def keyframes(floats, t, table, count, components, form, out):
     """The curve at t, as quantities.curves.value_at: ``table`` has the cycle, the times, values, slopes in and out."""
     times = table + 1

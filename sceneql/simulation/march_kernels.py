@@ -62,17 +62,17 @@ def hermite(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
         out[k] = (1.0 - theta) * y0[k] + theta * y1[k] + theta * (theta - 1.0) * bend
 
 
-@lean(GAP)
+@lean(GAP, inner=True)
 def no_gap(t, y, gaps, floats, ints):
     """Of an island without exact contacts."""
 
 
-@lean(IMPACT)
+@lean(IMPACT, inner=True)
 def no_impact(t, y, pair, floats, ints):
     """Of an island without exact contacts."""
 
 
-@lean(SETTLE)
+@lean(SETTLE, inner=True)
 def no_settle(t0, t1, y0, rate0, y1, floats, ints):
     """Of an island without local contacts."""
 

@@ -29,7 +29,7 @@ def acceleration(floats, ints, c):
     return (sides - 2.0 * floats[ints[NOW] + c]) / (apart * apart)
 
 
-@kernel(TERM)
+@kernel(TERM, inner=True)
 def toil(t, y, rate, floats, ints):
     """The power that leads the pins against their springs, taken off the work; after the springs, before all else."""
     for k in range(ints[COUNT]):
@@ -41,7 +41,7 @@ def toil(t, y, rate, floats, ints):
             rate[ints[2]] += (rate[at] - floats[ints[3] + mass] * acceleration(floats, ints, c)) * y[at]
 
 
-@kernel(TERM)
+@kernel(TERM, inner=True)
 def lead(t, y, rate, floats, ints):
     """The prescribed velocity and acceleration."""
     for k in range(ints[COUNT]):
@@ -53,7 +53,7 @@ def lead(t, y, rate, floats, ints):
             rate[ints[1] + 3 * mass + c] = acceleration(floats, ints, c)
 
 
-@kernel(SETTLE)
+@kernel(SETTLE, inner=True)
 def put(t0, t1, y0, rate0, y1, floats, ints):
     """Put the pins where they must be at the end of a step (keyframes may have kinks), and let go of them in time."""
     if floats[CHANGED_AT] > 0.0:

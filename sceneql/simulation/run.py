@@ -75,10 +75,9 @@ class IslandRun:
     """An island on its way: its assembly, its march and its latest state."""
 
     def __init__(self, graph: SimulationGraph, island: Island) -> None:
+        from sceneql.ahead import compile_ahead
         from sceneql.simulation.assembled import blocks_of, models_of
-        from sceneql.simulation.driver import function
-        from sceneql.simulation.march import March
-        from sceneql.simulation.march_blocks import BlockMarch
+        from sceneql.simulation.driver import function, modules
 
         self.graph, self.island = graph, island
         self.solver = cast(Solver, graph.tasks[island.solver].kind)
@@ -96,6 +95,12 @@ class IslandRun:
 
             stepper = suited(stepper, assembly.only_field)
         system = assembly.finish(stepper.jacobian)
+        acting = compile_ahead(modules(system.structure, stepper.step))
+        from sceneql.simulation.march import March
+        from sceneql.simulation.march_blocks import BlockMarch
+
+        acting()
+
         blocks = blocks_of(made, system, stepper)
         self.march: March
         try:

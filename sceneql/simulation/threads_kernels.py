@@ -89,7 +89,7 @@ def threads() -> tuple[int, int]:
     return (0 if count == 1 else ENTRY.address), count
 
 
-@kernel(types.void(N, N, N, N, F, A, A, A, I))
+@kernel(types.void(N, N, N, N, F, A, A, A, I), inner=True)
 def over_threads(entry, count, function, tiles, t, y, rate, floats, ints):
     """Call the tile function for tiles 0..tiles-1; ``entry``, ``count`` from `threads`, ``function`` its address."""
     count = min(count, tiles)

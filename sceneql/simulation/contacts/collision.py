@@ -68,16 +68,20 @@ class Collision(Contact):
         """Add the contacts of one model with the objects. Raises ScriptError for one that cannot be collided with."""
         import numpy as np
 
+        from sceneql.ahead import compile_ahead
         from sceneql.simulation.contacts.colliders import must_be_outside, step_by_springs, surfaces
         from sceneql.simulation.contacts.impulse_kernels import HEAD, INSTANT, MOST_CUTS
-        from sceneql.simulation.contacts.resting_kernels import PAIR
 
         if not others:
             return
+        exact = self.mode == "exact" or (self.mode == "auto" and assembly.body_count() <= MOST_EXACT)
+        found = f"sceneql.simulation.contacts.{'collision' if exact else 'settle'}_kernels"
+        compile_ahead((found,))  # the largest of the island, while what the objects are looked at with compiles here
+        from sceneql.simulation.contacts.resting_kernels import PAIR
+
         written = {ref.name: ref for ref in self.between or ()}
         touched = [written.get(ref.name, ref) for ref in others]
         objects = surfaces(touched, assembly, HEAD)
-        exact = self.mode == "exact" or (self.mode == "auto" and assembly.body_count() <= MOST_EXACT)
         nan = float("nan")
         cuts = (0.0, 0.0, 0.0) if assembly.body_count() <= MOST_CUT else (float("inf"), 0.0, MOST_CUTS)
         tally_at = assembly.floats([0.0, nan, nan, 0.0, nan])
@@ -96,15 +100,12 @@ class Collision(Contact):
         masses = (bodies.position_at, bodies.velocity_at, bodies.work_at, bodies.mass_at, bodies.inverse_at)
         ints = (*masses, bodies.radius_at, bodies.count, *numbers, *objects)
         must_be_outside(bodies.model, touched, ints, assembly)
-        folder = "sceneql.simulation.contacts"
         if exact:
-            kernels = (f"{folder}.collision_kernels:gap", f"{folder}.collision_kernels:impact")
-            assembly.contact("exact", kernels, ints, pairs)
-            assembly.term("constrain", f"{folder}.collision_kernels:constrain", ints)
+            assembly.contact("exact", (f"{found}:gap", f"{found}:impact"), ints, pairs)
         else:
             step_by_springs(bodies, assembly)
-            assembly.contact("local", (f"{folder}.settle_kernels:settle",), ints, pairs, apart=True)
-            assembly.term("constrain", f"{folder}.settle_kernels:constrain", ints, apart=True)
+            assembly.contact("local", (f"{found}:settle",), ints, pairs, apart=True)
+        assembly.term("constrain", f"{found}:constrain", ints, apart=not exact)
         assembly.remember(tally_at)
 
     def read(self, output: str, state: ModelState) -> Any:

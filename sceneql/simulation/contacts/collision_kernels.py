@@ -74,7 +74,7 @@ def swept(t, k, at, x, y, z, vx, vy, vz, distance, reach, path, floats, ints):
     return min(gap, approach * (1.0 - s) * path[12])
 
 
-@kernel(GAP)
+@kernel(GAP, inner=True)
 def gap(t, y, gaps, floats, ints):
     """Signed distances [m] of all pairs; of a sliding one its speed [m/s]; none for one that rests or is fixed."""
     objects = ints[OBJECTS]
@@ -119,7 +119,7 @@ def hold(t, y, floats, ints):
         note_instant(t, k, y, floats, ints)
 
 
-@lean(IMPACT)
+@lean(IMPACT, inner=True)
 def impact(t, y, pair, floats, ints):
     """The impulse of a pair at its impact, or the end of its sliding; pair -1: `hold`."""
     if pair < 0:
@@ -160,7 +160,7 @@ def impact(t, y, pair, floats, ints):
     note_instant(t, k, y, floats, ints)
 
 
-@lean(TERM)
+@lean(TERM, inner=True)
 def constrain(t, y, rate, floats, ints):
     """What the surfaces do to the accelerations; impacts want to know how free pairs press."""
     support(True, y, rate, floats, ints)

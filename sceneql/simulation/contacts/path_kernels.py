@@ -111,7 +111,7 @@ def stays_above(path, floats, ints, at, reach):
     return lowest >= start if start <= reach else lowest > reach
 
 
-@lean(types.float64(A, A, I, N, F))
+@lean(types.float64(A, A, I, N, F), inner=True)
 def first_contact(path, floats, ints, at, reach):
     """Where on the path (0 <= s <= 1) a body of that reach first enters the object at ints[at:]; NEVER if nowhere.
 

@@ -73,7 +73,7 @@ def set_velocity(k, x, y, z, state, floats, ints):
     state[at], state[at + 1], state[at + 2] = x, y, z
 
 
-@lean(types.void(F, N, F, F, F, F, F, F, A, I))
+@lean(types.void(F, N, F, F, F, F, F, F, A, I), inner=True)
 def come_to_rest(t, memory, vx, vy, vz, nx, ny, nz, floats, ints):
     """Note that a pair rests from t on: sliding along v (relative to the surface), or sticking."""
     if math.isnan(floats[ints[TALLY] + REST_TIME]):
@@ -90,7 +90,7 @@ def come_to_rest(t, memory, vx, vy, vz, nx, ny, nz, floats, ints):
         floats[memory + ALONG + 2] = tz / slip
 
 
-@lean(types.boolean(F, N, N, A, A, I))
+@lean(types.boolean(F, N, N, A, A, I), inner=True)
 def keep(t, k, j, y, floats, ints):
     """Hold a resting pair on its surface, or let it go when it has left: whether anything changed."""
     memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
@@ -127,7 +127,7 @@ def keep(t, k, j, y, floats, ints):
     return changed
 
 
-@lean(FOUR(N, N, A, A, A, I))
+@lean(FOUR(N, N, A, A, A, I), inner=True)
 def pressing(k, j, y, rate, floats, ints):
     """Second derivative of the gap [m/s^2] and the normal (3) there."""
     at = HEAD + OBJECT * j
@@ -277,7 +277,7 @@ def rub(k, y, rate, floats, ints):
         rate[ints[WORK]] += floats[ints[MASS] + k] * most * (dx * vx + dy * vy + dz * vz)
 
 
-@lean(types.void(types.boolean, A, A, A, I))
+@lean(types.void(types.boolean, A, A, A, I), inner=True)
 def support(near, y, rate, floats, ints):
     """Take from the acceleration of bodies that rest what pushes into the surface, and add Coulomb's friction.
 

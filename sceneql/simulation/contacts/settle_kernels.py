@@ -82,7 +82,7 @@ def shift(path, ux, uy, uz, h):
         path[11] += uz
 
 
-@lean(types.Tuple((F, N))(N, F, A, A, I))
+@lean(types.Tuple((F, N))(N, F, A, A, I), inner=True)
 def earliest(k, reach, path, floats, ints):
     """The first contact on the path with an object that the body does not rest on: (s, the object).
 
@@ -104,7 +104,7 @@ def earliest(k, reach, path, floats, ints):
     return best, first
 
 
-@lean(types.boolean(F, F, N, A, A, A, I))
+@lean(types.boolean(F, F, N, A, A, A, I), inner=True)
 def hits(s, whole, j, path, mean, floats, ints):
     """Whether the contact at s with object j is an impact, not the beginning of rest."""
     at = HEAD + OBJECT * j
@@ -186,7 +186,7 @@ def push_out(reach, path, mean, floats, ints):
     return work + 0.5 * (before - path[9] ** 2 - path[10] ** 2 - path[11] ** 2)
 
 
-@lean(types.void(F, A, A, A, A, I))
+@lean(types.void(F, A, A, A, A, I), inner=True)
 def find_near(h, y0, y1, found, floats, ints):
     """Set found[k] to 1 for the bodies that may touch something in the step, or rest: the others cost next to nothing.
 
@@ -254,7 +254,7 @@ def look(t0, t1, y0, y1, path, mean, floats, ints):
         floats[memory + CUTS] += 1.0
 
 
-@lean(types.void(F, F, A, A, A, A, A, A, I))
+@lean(types.void(F, F, A, A, A, A, A, A, I), inner=True)
 def settle_found(t0, t1, y0, y1, found, path, mean, floats, ints):
     """Settle the bodies with found[k] = 1, and note which ones rest."""
     h = t1 - t0
@@ -296,7 +296,7 @@ def settle_found(t0, t1, y0, y1, found, path, mean, floats, ints):
         floats[ASKED] = HOLDS
 
 
-@kernel(SETTLE)
+@kernel(SETTLE, inner=True)
 def settle(t0, t1, y0, rate0, y1, floats, ints):
     """Change y1 so that no body went through a surface in the step from t0 to t1; or only say when it should end."""
     path = np.empty(PATH)
@@ -309,7 +309,7 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
     settle_found(t0, t1, y0, y1, found, path, mean, floats, ints)
 
 
-@lean(TERM)
+@lean(TERM, inner=True)
 def constrain(t, y, rate, floats, ints):
     """What the surfaces do to the accelerations; free pairs cost nothing."""
     support(False, y, rate, floats, ints)

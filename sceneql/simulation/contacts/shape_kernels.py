@@ -96,7 +96,7 @@ def clear(floats, ints, at, x, y, z, radius):
     return clear_at(ints[at + CLEAR])(floats, ints, at, x, y, z, radius)
 
 
-@lean(NEAR_TYPE)
+@lean(NEAR_TYPE, inner=True)
 def near(floats, ints, at, h, x0, v0, x1, v1, radii, more, found):
     """One by one: a ball about the path's end that it does not leave."""
     clear_of = clear_at(ints[at + CLEAR])
@@ -145,7 +145,7 @@ def velocity(floats, ints, at, x, y, z):
     return moving_velocity(floats, ints, at, x, y, z)
 
 
-@lean(THREE(A, I, N, F, F, F))
+@lean(THREE(A, I, N, F, F, F), inner=True)
 def moving_velocity(floats, ints, at, x, y, z):
     """The same of one that moves."""
     apart = floats[ints[at + MOVING]]
@@ -162,7 +162,7 @@ def acceleration(floats, ints, at, x, y, z):
     return moving_acceleration(floats, ints, at, x, y, z)
 
 
-@lean(THREE(A, I, N, F, F, F))
+@lean(THREE(A, I, N, F, F, F), inner=True)
 def moving_acceleration(floats, ints, at, x, y, z):
     """The same of one that moves."""
     apart = floats[ints[at + MOVING]]

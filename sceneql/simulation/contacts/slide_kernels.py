@@ -67,7 +67,7 @@ def tangential(x, y, z, nx, ny, nz):
     return x - part * nx, y - part * ny, z - part * nz
 
 
-@lean(F(A, A, F, F, F, F, F, F, F, F))
+@lean(F(A, A, F, F, F, F, F, F, F, F), inner=True)
 def slide(path, mean, nx, ny, nz, ux, uy, uz, press, friction):
     """The rest of the path along the surface, with Coulomb's friction; its work by mass [J/kg]."""
     normal = mean[0] * nx + mean[1] * ny + mean[2] * nz
@@ -109,7 +109,7 @@ def slide(path, mean, nx, ny, nz, ux, uy, uz, press, friction):
     return lost
 
 
-@lean(types.void(F, N, N, F, A, A, A, I))
+@lean(types.void(F, N, N, F, A, A, A, I), inner=True)
 def brake(t, k, j, h, y0, y1, floats, ints):
     """Coulomb's friction of a creeping pair in the step of length h, which was made without: at most it stops the slip.
 

@@ -29,7 +29,7 @@ NO_EVENT = 1e300
 INSTANT = 7
 
 
-@kernel(F(N, N, F, A, A, I))
+@kernel(F(N, N, F, A, A, I), inner=True)
 def passed(i, j, t, y, floats, ints):
     """Minus the way that two masses have gone since they met on a straight relative path; 0 if they did not meet."""
     a, b = ints[POINTS] + INSTANT * i, ints[POINTS] + INSTANT * j
@@ -51,7 +51,7 @@ def passed(i, j, t, y, floats, ints):
     return -(1.0 - s) * math.sqrt(way2) if s < 1.0 else 0.0
 
 
-@kernel(GAP)
+@kernel(GAP, inner=True)
 def gap(t, y, gaps, floats, ints):
     """Distances [m] of the surfaces of all pairs; negative also where two went through each other."""
     pair = 0
@@ -79,7 +79,7 @@ def note(t, y, floats, ints):
             floats[at + 4 + c] = y[of(ints, k, V) + c]
 
 
-@kernel(IMPACT)
+@kernel(IMPACT, inner=True)
 def impact(t, y, pair, floats, ints):
     """The impulse of a pair that approaches; pair -1: note the instant."""
     note(t, y, floats, ints)

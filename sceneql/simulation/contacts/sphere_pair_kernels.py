@@ -34,7 +34,7 @@ def radii(i, j, floats, ints):
     return floats[of(ints, i, RADIUS)] + floats[of(ints, j, RADIUS)]
 
 
-@kernel(FOUR(N, N, A, A, A, I))
+@kernel(FOUR(N, N, A, A, A, I), inner=True)
 def impulse(i, j, r, v, floats, ints):
     """Impulse [N s] on mass i, its negative on j, at r = x_i - x_j with relative velocity v; the speed of approach.
 
@@ -81,7 +81,7 @@ def sort_cells(edge, floats, ints):
     sort_by_cell(floats, ints[COUNT], ints[POINTS], edge, *lists)
 
 
-@kernel(N(N, F, I, A, I))
+@kernel(N(N, F, I, A, I), inner=True)
 def neighbors(k, edge, found, floats, ints):
     """Masses of larger number in the cells around mass k, into ``found``; how many, at most as many as it holds."""
     n, points = ints[COUNT], ints[POINTS]

@@ -58,7 +58,7 @@ def in_touch(k, y1, floats, ints, near, u):
     return count
 
 
-@kernel(types.Tuple((types.int64[:, ::1], ROWS))(F, I, I, ROWS, A, A, I))
+@kernel(types.Tuple((types.int64[:, ::1], ROWS))(F, I, I, ROWS, A, A, I), inner=True)
 def contacts(h, first, others, pull, y1, floats, ints):
     """Pairs (c, 2) that rest, the second -1 for an object, and (c, 9): normal, velocity of the object, impulses."""
     n = ints[COUNT]
@@ -110,7 +110,7 @@ def push(i, j, px, py, pz, v, floats, ints):
         v[j, 2] -= b * pz
 
 
-@kernel(F(types.int64[:, ::1], ROWS, ROWS, A, I))
+@kernel(F(types.int64[:, ::1], ROWS, ROWS, A, I), inner=True)
 def sweep(pairs, rows, v, floats, ints):
     """One pass over the contacts; the largest change of a velocity [m/s]."""
     change = 0.0
@@ -138,7 +138,7 @@ def sweep(pairs, rows, v, floats, ints):
     return change
 
 
-@kernel(F(types.int64[:, ::1], ROWS, ROWS, A, A, I))
+@kernel(F(types.int64[:, ::1], ROWS, ROWS, A, A, I), inner=True)
 def part_them(pairs, rows, moved, y1, floats, ints):
     """Move pairs that overlap apart, ``moved`` (n, 3) in all; the largest overlap [m] met."""
     worst = 0.0
@@ -167,7 +167,7 @@ def part_them(pairs, rows, moved, y1, floats, ints):
     return worst
 
 
-@kernel(types.void(F, I, I, ROWS, A, A, I))
+@kernel(types.void(F, I, I, ROWS, A, A, I), inner=True)
 def rest(h, first, others, pull, y1, floats, ints):
     """Let what touches at the end of the step of length h approach no more; ``pull`` (n, 3): mean accelerations."""
     pairs, rows = contacts(h, first, others, pull, y1, floats, ints)

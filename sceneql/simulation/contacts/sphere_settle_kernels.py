@@ -48,7 +48,7 @@ def twice(numbers):
     return more
 
 
-@kernel(types.Tuple((I, I))(F, A, A, A, I))
+@kernel(types.Tuple((I, I))(F, A, A, A, I), inner=True)
 def candidates(h, y0, y1, floats, ints):
     """The pairs that may meet in the step: first of each mass (n + 1), and the masses of larger number.
 
@@ -100,7 +100,7 @@ def relative(i, j, left, y1, mean, pull, r, v, ints):
         v[c] = y1[of(ints, i, V) + c] - y1[of(ints, j, V) + c] - left * (pull[i, c] - pull[j, c])
 
 
-@kernel(F(N, N, F, A, ROWS, ROWS, A, A, A, A, I))
+@kernel(F(N, N, F, A, ROWS, ROWS, A, A, A, A, I), inner=True)
 def meet(i, j, h, since, mean, pull, y1, r, v, floats, ints):
     """How long before the step's end two masses meet, fast enough for an impact; -1 if they do not."""
     left = h - max(since[i], since[j])
@@ -150,7 +150,7 @@ def collide(i, j, left, t1, h, since, mean, pull, y1, r, v, floats, ints):
     y1[of(ints, j, WORK)] += 0.5 * lost
 
 
-@kernel(SETTLE)
+@kernel(SETTLE, inner=True)
 def settle(t0, t1, y0, rate0, y1, floats, ints):
     """Change y1 so that no mass went through another in the step from t0 to t1."""
     n, h = ints[COUNT], t1 - t0

@@ -7,7 +7,7 @@ from sceneql.kernels import kernel
 from sceneql.system_kernels import TERM
 
 
-@kernel(TERM)
+@kernel(TERM, inner=True)
 def attractor(t, y, rate, floats, ints):
     """Adds m strength d / rho^(p+1), d towards the point, rho^2 = |d|^2 + softening^2.
 

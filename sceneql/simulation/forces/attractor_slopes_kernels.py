@@ -7,7 +7,7 @@ from sceneql.kernels import lean
 from sceneql.system_kernels import TERM
 
 
-@lean(TERM)
+@lean(TERM, inner=True)
 def attractor(t, y, entries, floats, ints):
     """m strength ((p + 1) d d / rho^(p+3) - 1 / rho^(p+1)) of each mass, a block of 3x3 by its position.
 

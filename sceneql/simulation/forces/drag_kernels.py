@@ -7,7 +7,7 @@ from sceneql.kernels import kernel
 from sceneql.system_kernels import TERM
 
 
-@kernel(TERM)
+@kernel(TERM, inner=True)
 def drag(t, y, rate, floats, ints):
     """Adds -(a + b |v|) v, and its power to the work.
 

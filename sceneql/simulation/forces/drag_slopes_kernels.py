@@ -7,7 +7,7 @@ from sceneql.kernels import lean
 from sceneql.system_kernels import TERM
 
 
-@lean(TERM)
+@lean(TERM, inner=True)
 def drag(t, y, entries, floats, ints):
     """-(a + b |v|) - b v v/|v| of each mass, a block of 3x3 by its velocity. ints: those of drag_kernels.drag."""
     linear, quadratic = floats[ints[4]], floats[ints[5]]

@@ -5,7 +5,7 @@ from sceneql.kernels import kernel
 from sceneql.system_kernels import TERM
 
 
-@kernel(TERM)
+@kernel(TERM, inner=True)
 def electric(t, y, rate, floats, ints):
     """Adds q E. ints: velocity_at, count, charge_at, charge_step, field_at."""
     velocity_at, count, charge_at, step = ints[0], ints[1], ints[2], ints[3]

@@ -10,7 +10,7 @@ from sceneql.system_kernels import TERM
 FIELD = 4
 
 
-@kernel(TERM)
+@kernel(TERM, inner=True)
 def emission(t, y, rate, floats, ints):
     """Adds what every mass gives to the cells around it, by their weights in the interpolant, and to the inflow.
 

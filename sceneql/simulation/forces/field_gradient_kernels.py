@@ -10,7 +10,7 @@ from sceneql.system_kernels import TERM
 FIELD = 6
 
 
-@kernel(TERM)
+@kernel(TERM, inner=True)
 def field_gradient(t, y, rate, floats, ints):
     """Adds factor grad c of the place of every mass, and takes its power from the work.
 

@@ -20,7 +20,7 @@ def acceleration(floats, given, vector_at, strength_at):
     return scale * x, scale * y, scale * z
 
 
-@lean(TERM)
+@lean(TERM, inner=True)
 def gravity(t, y, rate, floats, ints):
     """Adds m g. ints: velocity_at, count, mass_at, given, vector_at, strength_at."""
     velocity_at, count, mass_at = ints[0], ints[1], ints[2]

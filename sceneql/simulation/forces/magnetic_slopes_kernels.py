@@ -5,7 +5,7 @@ from sceneql.kernels import lean
 from sceneql.system_kernels import TERM
 
 
-@lean(TERM)
+@lean(TERM, inner=True)
 def magnetic(t, y, entries, floats, ints):
     """The matrix of q v x B of each mass, a block of 3x3 by its velocity. ints: those of magnetic_kernels.magnetic."""
     bx, by, bz = floats[ints[4]], floats[ints[4] + 1], floats[ints[4] + 2]

@@ -14,7 +14,7 @@ STRENGTH, NUMBERS, ENERGIES, POINTS, SORTED, ORDER, START, SIZE, P, Q, ENTRY, TH
 PART = 1024
 
 
-@kernel(TILE)
+@kernel(TILE, inner=True)
 def repulsion_tile(tile, t, y, rate, floats, ints):
     """The masses PART tile, ... in order of cells: all forces on each, and its half of the energies."""
     n, alive = ints[BODIES], int(floats[ints[START] + ints[SIZE]])

@@ -7,7 +7,7 @@ from sceneql.kernels import kernel
 from sceneql.system_kernels import TERM
 
 
-@kernel(TERM)
+@kernel(TERM, inner=True)
 def spring(t, y, rate, floats, ints):
     """Adds the pull to both ends, and what the damping takes to the work (half to each).
 

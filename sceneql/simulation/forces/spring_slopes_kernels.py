@@ -9,7 +9,7 @@ from sceneql.kernels import kernel
 from sceneql.system_kernels import TERM
 
 
-@kernel(TERM)
+@kernel(TERM, inner=True)
 def spring(t, y, entries, floats, ints):
     """Blocks of 3x3: for each end that is a mass, its force by the places of both masses, then by their velocities.
 

@@ -204,7 +204,7 @@ def summed(powers):
     return powers[0]
 
 
-@kernel(TILE)
+@kernel(TILE, inner=True)
 def turbulence_tile(tile, t, y, rate, floats, ints):
     """The masses from PART tile on; their power goes to floats[power_at + tile]."""
     position_at, velocity_at, inverse_at = ints[0], ints[1], ints[4]

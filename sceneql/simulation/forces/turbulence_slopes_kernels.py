@@ -12,7 +12,7 @@ APART = 1e-3
 the noise is smooth over that, and single precision leaves some 1e-4 of its slope."""
 
 
-@kernel(TERM)
+@kernel(TERM, inner=True)
 def turbulence(t, y, entries, floats, ints):
     """Blocks of 3x3 of each mass, c du/dx by its position, and then -c by each component of its velocity.
 

@@ -9,7 +9,7 @@ from sceneql.system_kernels import TERM
 TAU = 2.0 * math.pi
 
 
-@kernel(TERM)
+@kernel(TERM, inner=True)
 def vortex(t, y, rate, floats, ints):
     """Adds -c (v - u), and takes its power from the work.
 

@@ -10,7 +10,7 @@ from sceneql.simulation.forces.vortex_kernels import TAU
 from sceneql.system_kernels import TERM
 
 
-@kernel(TERM)
+@kernel(TERM, inner=True)
 def vortex(t, y, entries, floats, ints):
     """Blocks of 3x3 of each mass, first all by the position, then all by the velocity.
 

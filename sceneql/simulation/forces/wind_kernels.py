@@ -21,7 +21,7 @@ def air(t, floats, ints):
     return ux, uy, uz
 
 
-@kernel(TERM)
+@kernel(TERM, inner=True)
 def wind(t, y, rate, floats, ints):
     """Adds -(a + b |w|) w, w = v - u, and takes its power from the work.
 

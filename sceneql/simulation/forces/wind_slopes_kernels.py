@@ -8,7 +8,7 @@ from sceneql.simulation.forces.wind_kernels import air
 from sceneql.system_kernels import TERM
 
 
-@lean(TERM)
+@lean(TERM, inner=True)
 def wind(t, y, entries, floats, ints):
     """-(a + b |w|) - b w w/|w| of each mass, a block of 3x3 by its velocity. ints: those of wind_kernels.wind."""
     linear, quadratic = floats[ints[4]], floats[ints[5]]

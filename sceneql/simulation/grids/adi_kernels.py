@@ -36,7 +36,7 @@ def eliminate(start, stride, count, first, last, scale, share, volume, sink, g, 
         d[c] += factors[c] * d[c + stride]
 
 
-@lean(LINE)
+@lean(LINE, inner=True)
 def solve_line(start, stride, count, scale, share, volume, sink, g, d, factors, extra):
     """d from the right side in its place, for one line; where it is closed by Sherman and Morrison's formula."""
     tie = g[start]
@@ -56,7 +56,7 @@ def solve_line(start, stride, count, scale, share, volume, sink, g, d, factors, 
         d[start + k * stride] -= weight * extra[start + k * stride]
 
 
-@lean(STEP)
+@lean(STEP, inner=True)
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 = y0 + prod (1 - h/2 A_k)^-1 h f(t + h/2, y0), A_k the operator along axis k; fixed steps."""
     rate = rate_at(functions[AT_RATE])

@@ -65,7 +65,7 @@ def solve_direct(plan, r, d, own):
     solve_system(plan[ENTRIES + 2 * count :], own, factors, d, factors[plan[FACTORS] :], True)
 
 
-@lean(SOLVE)
+@lean(SOLVE, inner=True)
 def solve(plan, a, target, floats, r, d, store):
     """The linear solver (linear_kernels)."""
     nx, ny, nz, volume, sink, gx, gy, gz = matrix(plan, floats)

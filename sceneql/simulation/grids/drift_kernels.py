@@ -40,7 +40,7 @@ def beyond(cell, place, count, stride, way, periodic, floats, volumes):
     return found if floats[volumes + found] > 0.0 else -1
 
 
-@lean(TERM)
+@lean(TERM, inner=True)
 def carry(t, y, rate, floats, ints):
     """V dc/dt = what flows in less what flows out, and what goes through the boundary, which is inflow."""
     at, nx, ny, nz = ints[0], ints[1], ints[2], ints[3]

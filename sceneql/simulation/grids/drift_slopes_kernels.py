@@ -24,7 +24,7 @@ def bends(kind, behind, ahead):
     return (0.0, 1.0) if size == b else (1.0 / 6.0, 1.0 / 3.0)
 
 
-@lean(TERM)
+@lean(TERM, inner=True)
 def carry(t, y, entries, floats, ints):
     """Of drift_kernels.carry: a cell's own entries, then of every axis eight a face.
 

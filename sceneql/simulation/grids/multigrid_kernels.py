@@ -176,7 +176,7 @@ def iterate(nx, ny, nz, scale, volume, sink, gx, gy, gz, table, levels, arrays, 
     return -most if size > target else most
 
 
-@lean(SOLVE)
+@lean(SOLVE, inner=True)
 def solve(plan, a, target, floats, r, d, store):
     """The linear solver (linear_kernels)."""
     nx, ny, nz, volume, sink, gx, gy, gz = matrix(plan, floats)

@@ -119,7 +119,7 @@ def conjugate_gradient(nx, ny, nz, scale, volume, sink, gx, gy, gz, r, d, weight
     return -most
 
 
-@lean(SOLVE)
+@lean(SOLVE, inner=True)
 def solve_gauss_seidel(plan, a, target, floats, r, d, store):
     """A linear solver (linear_kernels)."""
     nx, ny, nz, volume, sink, gx, gy, gz = matrix(plan, floats)
@@ -133,7 +133,7 @@ def solve_gauss_seidel(plan, a, target, floats, r, d, store):
     )
 
 
-@lean(SOLVE)
+@lean(SOLVE, inner=True)
 def solve_sor(plan, a, target, floats, r, d, store):
     """A linear solver (linear_kernels)."""
     nx, ny, nz, volume, sink, gx, gy, gz = matrix(plan, floats)
@@ -147,7 +147,7 @@ def solve_sor(plan, a, target, floats, r, d, store):
     )
 
 
-@lean(SOLVE)
+@lean(SOLVE, inner=True)
 def solve_conjugate_gradient(plan, a, target, floats, r, d, store):
     """A linear solver (linear_kernels)."""
     nx, ny, nz, volume, sink, gx, gy, gz = matrix(plan, floats)

@@ -34,7 +34,7 @@ def pull_row(nx, row, low, high, down, up, deep, gx, gy, gz, x, out):
             out[i] += g_back[i] * back[i] + g_front[i] * front[i]
 
 
-@lean(types.void(N, N, N, S, S, S, S, S, S, N, S))
+@lean(types.void(N, N, N, S, S, S, S, S, S, N, S), inner=True)
 def sweep(nx, ny, nz, inverse, gx, gy, gz, x, b, color, line):
     """Make the equations of the cells of one color of the checkerboard true (Young 1971); ``inverse`` diagonal of M.
 
@@ -68,7 +68,7 @@ def first_sweep(nx, ny, nz, inverse, x, b, color):
                 x[c] = 0.0
 
 
-@lean(types.void(N, N, N, S, S, S, S, S, S, N, N, N, N, S, S))
+@lean(types.void(N, N, N, S, S, S, S, S, S, N, N, N, N, S, S), inner=True)
 def restrict_residual(nx, ny, nz, inverse, gx, gy, gz, x, b, color, mx, my, mz, coarse, line):
     """Sum the residuals b - M x of the cells of one color over the coarse cells (those of the other color are 0).
 

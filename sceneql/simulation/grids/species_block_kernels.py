@@ -7,7 +7,7 @@ from sceneql.kernels import lean
 from sceneql.system_kernels import A, N
 
 
-@lean(types.boolean(N, N, A))
+@lean(types.boolean(N, N, A), inner=True)
 def invert_blocks(s, n, blocks):
     """Turn each of n matrices, (s, s, n) in all, into its inverse by Gauss and Jordan; False where a pivot is lost.
 

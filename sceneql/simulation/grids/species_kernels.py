@@ -50,7 +50,7 @@ def take_in(plan, at, values, level):
                 level[d * s * n + (m * s + q) * n + c] = volumes[c] * values[place] if place >= 0 else other
 
 
-@lean(types.void(N, N, N, N, N, A, N, N, N, A))
+@lean(types.void(N, N, N, N, N, A, N, N, N, A), inner=True)
 def coarsen(s, d, nx, ny, nz, fine, mx, my, mz, coarse):
     """A level's ties and blocks from those of the finer one."""
     n, m = nx * ny * nz, mx * my * mz
@@ -123,7 +123,7 @@ def pull_row(n, d, nx, ny, nz, j, k, ties, x, out):
             out[i] += tie[i] * beside[i]
 
 
-@lean(types.void(N, N, N, N, N, A, A, A, A, N, A))
+@lean(types.void(N, N, N, N, N, A, A, A, A, N, A), inner=True)
 def sweep(s, d, nx, ny, nz, ties, inverse, x, b, color, lines):
     """Make the equations of the cells of one color of the checkerboard true; ``lines`` (s, nx) is scratch."""
     n = nx * ny * nz
@@ -145,7 +145,7 @@ def sweep(s, d, nx, ny, nz, ties, inverse, x, b, color, lines):
                         own[i] = part[i] * line[i] + (own[i] if q > 0 else 0.0)
 
 
-@lean(types.void(N, N, N, N, N, A, A, A, N, N, N, A, A))
+@lean(types.void(N, N, N, N, N, A, A, A, N, N, N, A, A), inner=True)
 def restrict_residual(s, d, nx, ny, nz, ties, x, before, mx, my, mz, coarse, line):
     """Sum the residuals over the coarse cells: after a sweep they are what ties have changed since (``before``: x).
 

@@ -133,7 +133,7 @@ def add_slopes(settings, at, count, h, y0, work, out):
                 out[k] += weight * slope[k]
 
 
-@lean(STEP)
+@lean(STEP, inner=True)
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after a step of length h; the embedded error, filtered by the stage system (Hosea & Shampine 1996)."""
     n, stages = y0.size, numbers[STAGES]
@@ -191,7 +191,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     return error
 
 
-@lean(DENSE)
+@lean(DENSE, inner=True)
 def linear(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
     """The line between the ends, which stays between them: of order 2, as the methods of fixed steps here are."""
     for k in range(y0.size):

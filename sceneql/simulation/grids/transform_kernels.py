@@ -85,7 +85,7 @@ def solve_transform(table, nx, ny, r, d, own):
         combine(w[j * nx : (j + 1) * nx], modes, d[j * nx : (j + 1) * nx])
 
 
-@lean(SOLVE)
+@lean(SOLVE, inner=True)
 def solve(plan, a, target, floats, r, d, store):
     """The linear solver (linear_kernels)."""
     nx, ny, table = plan[NX], plan[NY], plan[PLAN:]

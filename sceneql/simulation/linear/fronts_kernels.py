@@ -29,7 +29,7 @@ BLOCK = 48
 UPDATE = types.void(A, N, N, N, N, N, types.boolean)
 
 
-@lean(UPDATE)
+@lean(UPDATE, inner=True)
 def update(front, height, begin, end, low, high, symmetric):
     """Rows low..high less L U of the rows begin..end, from column ``low`` (symmetric: from the row's own) on.
 

@@ -140,7 +140,7 @@ def go(rate, t, a, base, y, change, residual, scales, plan, floats, ints):
     return part
 
 
-@lean(NEWTON)
+@lean(NEWTON, inner=True)
 def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memory, plan, floats, ints):
     """Solve for y, which comes as a guess; True if the iteration converged. ``scratch``: (3 n,).
 

@@ -12,7 +12,7 @@ from sceneql.simulation.grids.stencil_kernels import flow
 from sceneql.system_kernels import TERM
 
 
-@lean(TERM)
+@lean(TERM, inner=True)
 def spread(t, y, rate, floats, ints):
     """V dc/dt = sum of g (neighbor - c) + fed - sink c; the last two, summed over all cells, are what comes in.
 
@@ -45,7 +45,7 @@ def spread(t, y, rate, floats, ints):
     rate[ints[10]] += inflow
 
 
-@lean(TERM)
+@lean(TERM, inner=True)
 def conduct(t, y, rate, floats, ints):
     """Conductances, boundary exchange and its weights from the coefficients of cells, which vary.
 
@@ -80,7 +80,7 @@ def conduct(t, y, rate, floats, ints):
         floats[ints[10] + cell] += weight
 
 
-@lean(TERM)
+@lean(TERM, inner=True)
 def begin(t, y, rate, floats, ints):
     """What is fed, before what varies is added: floats[ints[2] + c] = floats[ints[1] + c], c below ints[0]."""
     for c in range(ints[0]):

@@ -5,7 +5,7 @@ from sceneql.kernels import lean
 from sceneql.system_kernels import TERM
 
 
-@lean(TERM)
+@lean(TERM, inner=True)
 def spread(t, y, entries, floats, ints):
     """Of diffusion_kernels.spread: n diagonal entries, then of every axis the entries (cell, before), (before, cell).
 

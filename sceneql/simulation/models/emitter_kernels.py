@@ -115,7 +115,7 @@ def catch_up(t0, t1, y0, rate0, y1, floats, ints):
         birth = own_from(birth + 1, ints)
 
 
-@kernel(SETTLE)
+@kernel(SETTLE, inner=True)
 def emit(t0, t1, y0, rate0, y1, floats, ints):
     """Births and deaths of a step.
 

@@ -12,7 +12,7 @@ BLOCK = 5
 """Floats of a spring: rest length, stiffness, its part of the model's stiffness, damping, its part of the model's."""
 
 
-@kernel(TERM)
+@kernel(TERM, inner=True)
 def springs(t, y, rate, floats, ints):
     """Adds -(k (L - L0) + c dL/dt) along each spring, and the dampers' power c (dL/dt)^2 to the work.
 

@@ -23,7 +23,7 @@ def add_blocks(entries, at, slope):
     entries[at + 27] -= slope
 
 
-@lean(TERM)
+@lean(TERM, inner=True)
 def springs(t, y, entries, floats, ints):
     """Of the force on each end by both positions, then (where there is room for them) by both velocities.
 

@@ -11,7 +11,7 @@ CHANGED_AT = 1
 """floats[1]: above 0 in a settling that is to change nothing (march_kernels)."""
 
 
-@kernel(SETTLE)
+@kernel(SETTLE, inner=True)
 def tear(t0, t1, y0, rate0, y1, floats, ints):
     """Springs longer than they bear lose stiffness and damping; their energy is counted as dissipated.
 

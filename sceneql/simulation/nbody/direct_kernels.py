@@ -88,7 +88,7 @@ def pull(source, j, soft, px, py, pz, w):
     return inverse_cube(fma(dx, dx, fma(dy, dy, fma(dz, dz, soft))), w * source[W * LANES + j]), dx, dy, dz
 
 
-@lean(types.void(A, A, N, F, A))
+@lean(types.void(A, A, N, F, A), inner=True)
 def strips(one, other, j, soft, sums):
     """The forces between all lanes of one tile and the bodies j..j + 3 of the other, whose sums are kept by lane."""
     widest()
@@ -138,7 +138,7 @@ def folded(sums):
     return (sums[0] + sums[2]) + (sums[1] + sums[3])
 
 
-@lean(types.void(A, A, A, F))
+@lean(types.void(A, A, A, F), inner=True)
 def attract(one, other, sums, soft):
     """Add the forces between the bodies of two tiles; sums (3 SOURCES STRIP,): scratch."""
     for j in range(0, LANES, SOURCES):
@@ -150,7 +150,7 @@ def attract(one, other, sums, soft):
                 other[(FX + c) * LANES + j + source] -= folded(sums[(3 * source + c) * STRIP :])
 
 
-@lean(types.void(A, I, A, N))
+@lean(types.void(A, I, A, N), inner=True)
 def take(floats, ints, tile, first):
     """Places and weights of the LANES bodies from ``first`` on, and no forces."""
     for c in range(3):
@@ -163,7 +163,7 @@ def take(floats, ints, tile, first):
         tile[W * LANES + k] = own[k]
 
 
-@lean(types.void(A, A, N, N))
+@lean(types.void(A, A, N, N), inner=True)
 def leave(tile, floats, at, room):
     """Add the forces of a tile to the sums at floats[at:]."""
     for c in range(3):
@@ -171,7 +171,7 @@ def leave(tile, floats, at, room):
             floats[at + c * room + k] += tile[(FX + c) * LANES + k]
 
 
-@kernel(TILE)
+@kernel(TILE, inner=True)
 def direct_tile(part, t, y, rate, floats, ints):
     """The sums of one part: of its rows of tiles, dealt to and fro so that all have as much to do."""
     room, parts = ints[ROOM], ints[PARTS]

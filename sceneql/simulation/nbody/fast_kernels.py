@@ -33,7 +33,7 @@ def pull(source, j, soft, px, py, pz, qx, qy, qz, w):
     return inverse_cube_single(square, w * source[W * LANES + j]), dx, dy, dz
 
 
-@lean(types.void(S, S, N, types.float32, S))
+@lean(types.void(S, S, N, types.float32, S), inner=True)
 def strips(one, other, j, soft, sums):
     """As in direct_kernels."""
     widest()
@@ -68,7 +68,7 @@ def strips(one, other, j, soft, sums):
             sums[6 * STRIP + l], sums[7 * STRIP + l], sums[8 * STRIP + l] = cx, cy, cz
 
 
-@lean(types.void(S, S, S, types.float32))
+@lean(types.void(S, S, S, types.float32), inner=True)
 def attract(one, other, sums, soft):
     """Add the forces between the bodies of two tiles; sums (3 SOURCES STRIP,): scratch."""
     for j in range(0, LANES, SOURCES):
@@ -80,7 +80,7 @@ def attract(one, other, sums, soft):
                 other[(FX + c) * LANES + j + source] -= folded(sums[(3 * source + c) * STRIP :])
 
 
-@lean(types.void(A, I, A, S, N))
+@lean(types.void(A, I, A, S, N), inner=True)
 def take(floats, ints, unit, tile, first):
     """The LANES bodies from ``first`` on, without forces; ``unit``: middle (3), 1 / extent, 1 / largest weight."""
     for c in range(3):
@@ -97,7 +97,7 @@ def take(floats, ints, unit, tile, first):
         tile[W * LANES + k] = np.float32(weights[k] * scale)
 
 
-@lean(types.void(S, A, N, N))
+@lean(types.void(S, A, N, N), inner=True)
 def leave(tile, floats, at, room):
     """Add the forces of a tile to the sums at floats[at:], and begin anew."""
     for c in range(3):
@@ -106,7 +106,7 @@ def leave(tile, floats, at, room):
             tile[(FX + c) * LANES + k] = np.float32(0.0)
 
 
-@lean(types.void(A, I, A))
+@lean(types.void(A, I, A), inner=True)
 def units(floats, ints, unit):
     """Middle (3) of all bodies, 1 / their extent, 1 / the largest weight."""
     room, at = ints[ROOM], ints[POINTS]
@@ -124,7 +124,7 @@ def units(floats, ints, unit):
     unit[4] = 1.0 / most if most > 0.0 else 1.0
 
 
-@kernel(TILE)
+@kernel(TILE, inner=True)
 def fast_tile(part, t, y, rate, floats, ints):
     """As direct_tile: the sums of one part, of its rows of tiles."""
     room, parts = ints[ROOM], ints[PARTS]

@@ -129,7 +129,7 @@ def add_second(floats, here, m, dx, dy, dz):
     floats[here + SZZ] += 3.0 * m * dz * dz
 
 
-@kernel(types.void(A, N, N, N, N, N))
+@kernel(types.void(A, N, N, N, N, N), inner=True)
 def moments(floats, count, at, places, room, masses):
     """Moments and radii of the nodes, from the last to the first; places and masses are sorted."""
     for node in range(count - 1, -1, -1):

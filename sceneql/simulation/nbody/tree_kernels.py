@@ -127,7 +127,7 @@ def walk(floats, ints, lanes, count, box):
                 top += 1
 
 
-@kernel(TILE)
+@kernel(TILE, inner=True)
 def tree_tile(tile, t, y, rate, floats, ints):
     """The forces of all bodies on one group."""
     room = ints[ROOM]

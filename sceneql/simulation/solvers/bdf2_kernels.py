@@ -49,7 +49,7 @@ def remember(t, y0, before, start, end, settings, numbers):
         start[k] = y0[k]
 
 
-@lean(STEP)
+@lean(STEP, inner=True)
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after a step of length h; its error by Milne's device, filtered by the stage system."""
     n = y0.size

@@ -33,7 +33,7 @@ def turned(time, wx, wy, wz, x, y, z):
     return x + (dx + longer * x), y + (dy + longer * y), z + (dz + longer * z)
 
 
-@lean(STEP)
+@lean(STEP, inner=True)
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after the step; ints[1] triples (position, velocity, count) from ints[0] on, three entries a body."""
     rate = rate_at(functions[AT_RATE])

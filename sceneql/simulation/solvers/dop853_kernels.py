@@ -51,7 +51,7 @@ def extend(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints
     return 0.0
 
 
-@lean(STEP)
+@lean(STEP, inner=True)
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after a step of length h, and the error of Hairer, Norsett & Wanner (1993, II.10, eq. 10.17)."""
     rate = rate_at(functions[AT_RATE])

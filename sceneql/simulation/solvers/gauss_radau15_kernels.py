@@ -183,7 +183,7 @@ def shortest_square(n, m, p, groups, rate0, vectors, numbers):
     return best
 
 
-@lean(STEP)
+@lean(STEP, inner=True)
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after a step of length h; the error is a quarter of it against the length that fits."""
     rate = rate_at(functions[AT_RATE])

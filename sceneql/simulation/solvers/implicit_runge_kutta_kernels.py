@@ -34,7 +34,7 @@ def add_slopes(settings, at, count, h, y0, work, out):
                 out[k] += weight * slope[k]
 
 
-@lean(STEP)
+@lean(STEP, inner=True)
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after a step of length h; the embedded error, filtered by the stage system (Hosea & Shampine 1996)."""
     n, stages = y0.size, numbers[STAGES]

@@ -279,7 +279,7 @@ def control(h, error, iterations, work):
     work[NEXT] = h if work[CONTRACTION] <= CONTRACTS and h <= wanted <= 1.2 * h else wanted
 
 
-@lean(STEP)
+@lean(STEP, inner=True)
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after a step of length h and its error; NaN and a shorter length where Newton's iteration fails."""
     rate, jacobian = rate_at(functions[AT_RATE]), jacobian_at(functions[AT_JACOBIAN])

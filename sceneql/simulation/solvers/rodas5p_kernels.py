@@ -64,7 +64,7 @@ def tally(plan, base, weight, rate, y):
         y[plan[k]] = base[plan[k]] + weight * rate[plan[k]]
 
 
-@lean(STEP)
+@lean(STEP, inner=True)
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after a step of length h; the error in the norm of Hairer, Norsett & Wanner (1993, eq. II.4.11)."""
     rate, slopes = rate_at(functions[AT_RATE]), jacobian_at(functions[AT_JACOBIAN])

@@ -28,7 +28,7 @@ def add_stages(settings, row, count, h, y0, rate0, work, out):
                 out[k] += weight * work[at + k]
 
 
-@lean(STEP)
+@lean(STEP, inner=True)
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after a step of length h; the embedded error in the norm of Hairer, Norsett & Wanner (1993, eq. II.4.11)."""
     rate = rate_at(functions[AT_RATE])

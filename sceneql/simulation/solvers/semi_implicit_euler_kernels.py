@@ -5,7 +5,7 @@ from sceneql.kernels import lean
 from sceneql.system_kernels import STEP
 
 
-@lean(STEP)
+@lean(STEP, inner=True)
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """Explicit Euler on every entry, then the positions of the island's pairs advance by their velocities at the end.
 

@@ -19,7 +19,7 @@ def keep_positions(slope, ints):
             slope[k] = 0.0
 
 
-@lean(STEP)
+@lean(STEP, inner=True)
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after kicks and drifts (splitting.py); ints[1] triples (position, velocity, count) from ints[0] on."""
     rate = rate_at(functions[AT_RATE])

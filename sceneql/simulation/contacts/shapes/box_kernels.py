@@ -22,7 +22,7 @@ def beyond(x, half):
     return math.copysign(max(abs(x) - half, 0.0), x)
 
 
-@lean(SURFACE_TYPE)
+@lean(SURFACE_TYPE, inner=True)
 def surface(floats, ints, at, x, y, z):
     """Signed distance and normal; inside, those of the nearest side."""
     size = ints[at + SIZE]
@@ -41,7 +41,7 @@ def surface(floats, ints, at, x, y, z):
     return d, a, b, c
 
 
-@lean(BEND_TYPE)
+@lean(BEND_TYPE, inner=True)
 def bend(floats, ints, at, x, y, z, vx, vy, vz):
     """(v^2 - (v.n)^2) / rho over the axes past the sides, rho the distance: around edges and corners alone."""
     size = ints[at + SIZE]
@@ -56,7 +56,7 @@ def bend(floats, ints, at, x, y, z, vx, vy, vz):
     return max(0.0, vx * vx + vy * vy + vz * vz - along * along) / rho
 
 
-@lean(CLEAR_TYPE)
+@lean(CLEAR_TYPE, inner=True)
 def clear(floats, ints, at, x, y, z, radius):
     """By the distance."""
     size = ints[at + SIZE]

@@ -57,7 +57,7 @@ def tape_of(floats, ints, at):
     return code, constants, skeleton, room
 
 
-@kernel(FOUR(A, I, N, F, F, F))
+@kernel(FOUR(A, I, N, F, F, F), inner=True)
 def slope(floats, ints, at, x, y, z):
     """f and its gradient at a point of the solid's own coordinates."""
     code, constants, parts, room = tape_of(floats, ints, at)
@@ -77,7 +77,7 @@ def solve(h, a, b, c):
     return x * scale, y * scale, z * scale
 
 
-@kernel(FOUR(A, I, N, F, F, F))
+@kernel(FOUR(A, I, N, F, F, F), inner=True)
 def nearest(floats, ints, at, x, y, z):
     """Signed distance of a point and normal, in the solid's own coordinates.
 
@@ -126,7 +126,7 @@ def nearest(floats, ints, at, x, y, z):
     return first, na, nb, nc
 
 
-@kernel(SURFACE_TYPE)
+@kernel(SURFACE_TYPE, inner=True)
 def surface(floats, ints, at, x, y, z):
     """Signed distance and normal; where the field is not defined it is far away."""
     x, y, z = inward(floats, ints, at, x, y, z)
@@ -135,7 +135,7 @@ def surface(floats, ints, at, x, y, z):
     return d, x, y, z
 
 
-@kernel(BEND_TYPE)
+@kernel(BEND_TYPE, inner=True)
 def bend(floats, ints, at, x, y, z, vx, vy, vz):
     """By a difference of normals along v."""
     speed = math.sqrt(vx * vx + vy * vy + vz * vz)
@@ -148,7 +148,7 @@ def bend(floats, ints, at, x, y, z, vx, vy, vz):
     return (vx * (p - a) + vy * (q - b) + vz * (r - c)) / (2.0 * apart)
 
 
-@kernel(CLEAR_TYPE)
+@kernel(CLEAR_TYPE, inner=True)
 def clear(floats, ints, at, x, y, z, radius):
     """By the least value of f in the box around the ball."""
     x, y, z = inward(floats, ints, at, x, y, z)

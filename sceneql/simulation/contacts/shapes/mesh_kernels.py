@@ -85,7 +85,7 @@ def on_triangle(floats, t, x, y, z):
     return wb / (wa + wb + wc), wc / (wa + wb + wc), FACE
 
 
-@lean(types.Tuple((F, F, F, F, N, N))(A, I, N, F, F, F, F))
+@lean(types.Tuple((F, F, F, F, N, N))(A, I, N, F, F, F, F), inner=True)
 def nearest(floats, ints, at, x, y, z, within):
     """Vector from the nearest point of the surface to a point, its square, and offset and feature of the triangle.
 
@@ -115,7 +115,7 @@ def nearest(floats, ints, at, x, y, z, within):
     return best, bx, by, bz, found, feature
 
 
-@lean(SURFACE_TYPE)
+@lean(SURFACE_TYPE, inner=True)
 def surface(floats, ints, at, x, y, z):
     """Signed distance and normal; on the surface that of the feature."""
     x, y, z = inward(floats, ints, at, x, y, z)
@@ -131,7 +131,7 @@ def surface(floats, ints, at, x, y, z):
     return side * d, a, b, c
 
 
-@lean(BEND_TYPE)
+@lean(BEND_TYPE, inner=True)
 def bend(floats, ints, at, x, y, z, vx, vy, vz):
     """(v^2 - (v.n)^2 - (v.e)^2) / d around an edge of direction e, without e around a vertex; 0 over a face."""
     x, y, z = inward(floats, ints, at, x, y, z)
@@ -148,7 +148,7 @@ def bend(floats, ints, at, x, y, z, vx, vy, vz):
     return max(0.0, across) / math.sqrt(square)
 
 
-@lean(CLEAR_TYPE)
+@lean(CLEAR_TYPE, inner=True)
 def clear(floats, ints, at, x, y, z, radius):
     """By the distance, looking no farther than the radius."""
     x, y, z = inward(floats, ints, at, x, y, z)

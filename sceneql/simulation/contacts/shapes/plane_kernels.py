@@ -5,25 +5,25 @@ from sceneql.kernels import lean
 from sceneql.simulation.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, NEAR_TYPE, SURFACE_TYPE, facing
 
 
-@lean(SURFACE_TYPE)
+@lean(SURFACE_TYPE, inner=True)
 def surface(floats, ints, at, x, y, z):
     """Signed distance and normal."""
     return facing(floats, ints, at, x, y, z)
 
 
-@lean(BEND_TYPE)
+@lean(BEND_TYPE, inner=True)
 def bend(floats, ints, at, x, y, z, vx, vy, vz):
     """0: it is flat."""
     return 0.0
 
 
-@lean(CLEAR_TYPE)
+@lean(CLEAR_TYPE, inner=True)
 def clear(floats, ints, at, x, y, z, radius):
     """By the distance."""
     return facing(floats, ints, at, x, y, z)[0] > radius
 
 
-@lean(NEAR_TYPE)
+@lean(NEAR_TYPE, inner=True)
 def near(floats, ints, at, h, x0, v0, x1, v1, radii, more, found):
     """By the distances of the path's four control points: it does not leave their hull (Bezier)."""
     d, a, b, c = facing(floats, ints, at, 0.0, 0.0, 0.0)

@@ -7,7 +7,7 @@ from sceneql.kernels import lean
 from sceneql.simulation.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, PLACE, SIZE, SURFACE_TYPE
 
 
-@lean(SURFACE_TYPE)
+@lean(SURFACE_TYPE, inner=True)
 def surface(floats, ints, at, x, y, z):
     """Signed distance and normal; upwards at the center."""
     place, radius = ints[at + PLACE], floats[ints[at + SIZE]]
@@ -18,7 +18,7 @@ def surface(floats, ints, at, x, y, z):
     return d - radius, x / d, y / d, z / d
 
 
-@lean(BEND_TYPE)
+@lean(BEND_TYPE, inner=True)
 def bend(floats, ints, at, x, y, z, vx, vy, vz):
     """(v^2 - (v.n)^2) / rho, rho the distance from the center."""
     place = ints[at + PLACE]
@@ -30,7 +30,7 @@ def bend(floats, ints, at, x, y, z, vx, vy, vz):
     return max(0.0, vx * vx + vy * vy + vz * vz - along * along) / rho
 
 
-@lean(CLEAR_TYPE)
+@lean(CLEAR_TYPE, inner=True)
 def clear(floats, ints, at, x, y, z, radius):
     """By the distance."""
     place = ints[at + PLACE]
