@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from extremes_kernels import extremes
 from moment import IDENTITY, FakeMoment, const, formula
 from renderers.tracing.bundles import camera_roots
 from renderers.tracing.pack import pack
@@ -155,6 +156,9 @@ POLYNOMIALS = {
     "x^2*y^2 + y^2*z^2 + z^2*x^2 - x*y*z": 4,
     "(x^2 + y^2 + z^2 - 1)^2*5 - 4*(3*x^2 - y^2)*(3*y^2 - z^2)*(3*z^2 - x^2)": 6,
     "x*y - z^3 + 0.1": 3,
+    "x^2 + 2*y^2 + x*z - 0.3": 2,
+    "x^5 - y^2*z + 0.05": 5,
+    "(x^2 + y^2 - 0.3)^3*z + 0.01*x": 7,
     "1000*(x^2 - 0.25) + x*y*z": 3,
     "x^8 + y^8 + z^8 - 0.5": 8,
 }
@@ -174,6 +178,32 @@ def test_polynomials_are_met_where_the_certified_routine_meets_them(text, seed, 
     origins, directions = bundle(aim - way, way, generator, 150, spread)
     t0, t1 = np.full(150, 0.1), np.full(150, 2.0)
     agree_with_the_certified(tape, origins, directions, t0, t1, within=1e-5)
+
+
+@settings(max_examples=30)
+@given(seed=st.integers(0, 999), far=st.sampled_from([2.0, 30.0, 1e3]))
+def test_roots_of_polynomials_are_polished_to_float64(seed, far):
+    generator = np.random.default_rng(seed)
+    ways = (
+        np.array([0.0, 0.0, 1.0])
+        + generator.uniform(-0.5, 0.5, 2) @ np.eye(3)[:2]
+        + 1e-3 * generator.normal(size=(100, 3))
+    )
+    ways /= np.linalg.norm(ways, axis=1)[:, None]
+    centers = generator.uniform(-0.9, 0.9, (100, 3))
+    origins = centers - far * ways
+    along = -(centers * ways).sum(axis=1)
+    left = along**2 - (centers**2).sum(axis=1) + 1.0
+    middle = far + along
+    status, t = cast_together(tape_of("x^2 + y^2 + z^2 - 1"), origins, ways, middle - 2.0, middle + 2.0)
+    assert ((status == HIT) == (left > 0.0))[abs(left) > 1e-9].all()
+    clear = left > 0.01
+    assert t[clear] == pytest.approx((middle - np.sqrt(np.maximum(left, 0.0)))[clear], abs=1e-14 * far)
+
+
+@given(st.lists(st.floats(allow_nan=False), min_size=1, max_size=70))
+def test_least_and_largest_by_bits(numbers):
+    assert extremes(np.array(numbers)) == (min(numbers), max(numbers))
 
 
 LOWERED = {

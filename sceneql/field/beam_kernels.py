@@ -20,6 +20,8 @@ BEAM = 10
 """Of a beam: a point and the unit direction of its axis, radius, where it begins and ends along the axis,
 and how much of the radius is due to how the rays part."""
 HAIR = 1.0e-9
+DEEP = 1.0
+"""Depth of a slice, relative to what a part takes of the beam on average."""
 
 
 @inlined
@@ -30,11 +32,11 @@ def gather(rays, count, groups, wide, ids):
     for g in range(groups):
         for j in range(g, count, groups):
             ids[n] = j
-            n += 1 if begin[j] < end[j] else 0
+            n += 1 if begin[np.uint64(j)] < end[np.uint64(j)] else 0
     for row in range(8):
         source, target = rays[row], wide[row]
         for i in range(n):
-            target[i] = source[ids[i]]
+            target[i] = source[np.uint64(ids[i])]
     t0, t1, dx, dy, dz = wide[FAR], wide[SPEED], wide[DX], wide[DY], wide[DZ]
     for axis in range(3):
         place, way = wide[PX + axis], wide[DX + axis]
@@ -169,3 +171,34 @@ def keep_reaching_skeleton(parts, start, stop, beam, near):
             kept += 1
         i += STRIDE
     return kept
+
+
+@inlined
+def list_parts(near, kept, beam, spans, order):
+    """Those parts that reach into a beam into ``order``, and where they do into ``spans``; how many."""
+    m = 0
+    for k in range(kept):
+        enter, leave = reached(beam, near[k, 0], near[k, 1], near[k, 2], near[k, 6])
+        if enter <= leave:
+            spans[0, m], spans[1, m] = enter, leave
+            order[m] = k
+            m += 1
+    return m
+
+
+@inlined
+def next_slice(spans, m, begin):
+    """(first place at or behind ``begin`` where parts are, where a slice from there on ends); inf: nowhere."""
+    start = np.inf
+    last = -np.inf
+    chords = 0.0
+    left = 0
+    for i in range(m):
+        enter, leave = spans[0, i], spans[1, i]
+        if leave > begin:
+            start = min(start, max(enter, begin))
+            last = max(last, enter)
+            chords += leave - enter
+            left += 1
+    end = start + DEEP * chords / max(left, 1)
+    return start, end if last > end else np.inf

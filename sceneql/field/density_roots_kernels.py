@@ -25,7 +25,8 @@ from sceneql.field.beam_kernels import (
     gather,
     keep_reaching,
     keep_reaching_skeleton,
-    reached,
+    list_parts,
+    next_slice,
 )
 from sceneql.field.density_march_kernels import (
     AT_A,
@@ -57,8 +58,6 @@ from sceneql.kernels import inlined
 
 MOST_PARTS = 512
 """Rows of ``table``; where more parts reach into a slice, its rays are left to the certified routine."""
-DEEP = 1.0
-"""Depth of a slice, relative to what a part takes of the beam on average."""
 SPOT, SPANS, BEAM_ROW, OWN_ROW, SPARE, ROOM = WIDE, WIDE + 7, WIDE + 9, WIDE + 10, WIDE + 11, WIDE + 17
 BASE = 6
 """Rows of ``room`` (ROOM, n): rays, lanes (place, direction, where the slice begins on the ray), where parts are
@@ -77,44 +76,24 @@ UNIT = 1.2e-7
 
 
 @inlined
-def list_parts(near, kept, beam, spans, order):
-    """Those parts that reach into a beam into ``order``, and where they do into ``spans``; how many."""
-    m = 0
-    for k in range(kept):
-        enter, leave = reached(beam, near[k, 0], near[k, 1], near[k, 2], near[k, 6])
-        if enter <= leave:
-            spans[0, m], spans[1, m] = enter, leave
-            order[m] = k
-            m += 1
-    return m
+def pick(source, live, n, fresh, target):
+    """What lanes have of a row of the rays; ``fresh``: the lanes are rays that follow each other."""
+    if fresh:
+        own = source[live[0] :]
+        for i in range(n):
+            target[i] = own[i]
+    else:
+        for i in range(n):
+            target[i] = source[np.uint64(live[i])]
 
 
 @inlined
-def next_slice(spans, m, begin):
-    """(first place at or behind ``begin`` where parts are, where a slice from there on ends); inf: nowhere."""
-    start = np.inf
-    last = -np.inf
-    chords = 0.0
-    left = 0
-    for i in range(m):
-        enter, leave = spans[0, i], spans[1, i]
-        if leave > begin:
-            start = min(start, max(enter, begin))
-            last = max(last, enter)
-            chords += leave - enter
-            left += 1
-    end = start + DEEP * chords / max(left, 1)
-    return start, end if last > end else np.inf
-
-
-@inlined
-def place_lanes(room, live, state, n, begin, end, lowest):
+def place_lanes(room, live, state, n, fresh, begin, end, lowest):
     """Set the lanes' rays at the begin of a slice, and where on them it ends."""
     bases = room[SPOT + BASE]
-    for row in range(3):
-        source, target = room[(FAR, BEHIND, STRETCH)[row]], room[SPARE + row]
-        for i in range(n):
-            target[i] = source[live[i]]
+    pick(room[FAR], live, n, fresh, room[SPARE])
+    pick(room[BEHIND], live, n, fresh, room[SPARE + 1])
+    pick(room[STRETCH], live, n, fresh, room[SPARE + 2])
     far, behind, stretch = room[SPARE], room[SPARE + 1], room[SPARE + 2]
     sliced = lowest > 0.5
     for i in range(n):
@@ -130,13 +109,11 @@ def place_lanes(room, live, state, n, begin, end, lowest):
         state[AT_A + i] = INFINITE
         state[AT_B + i] = -INFINITE
     for axis in range(3):
-        place, way, spot, spot_way = room[PX + axis], room[DX + axis], room[SPOT + axis], room[SPOT + 3 + axis]
+        spot, way = room[SPOT + axis], room[SPOT + 3 + axis]
+        pick(room[PX + axis], live, n, fresh, spot)
+        pick(room[DX + axis], live, n, fresh, way)
         for i in range(n):
-            j = live[i]
-            spot_way[i] = way[j]
-            spot[i] = place[j]
-        for i in range(n):
-            spot[i] += bases[i] * spot_way[i]
+            spot[i] += bases[i] * way[i]
 
 
 @inlined
@@ -170,33 +147,27 @@ def set_part(part, room, row, state, n):
 
 
 @inlined
-def rounding(table, rows, reach, threshold):
+def rounding(rows, bulk, bend, stiff, stiffer, negative, reach, threshold):
     """How far the computed density about c, and the computed slope, may be off where places are off by UNIT reach.
 
+    ``bulk``, ``stiff`` and ``stiffer`` are the sums of |w|, |w|/R and |w|/R^2, ``bend`` is the largest 1/R.
     Of positive parts sum w u^2 <= (sum w u^3)^(2/3) (sum w)^(1/3) by Hoelder's inequality, with |du/dt| <= 2/R.
     """
     off = UNIT * reach
-    bulk = bend = stiff = 0.0
-    level = 2.0 * abs(threshold)
-    negative = False
-    for k in range(rows):
-        weight, steep = abs(table[k, WEIGHT]), np.sqrt(table[k, INVERSE])
-        negative = negative or table[k, WEIGHT] < 0.0
-        bulk += weight
-        bend = max(bend, steep)
-        stiff += weight * steep * (30.0 * off * steep + (rows + 40) * UNIT)
-    if negative:
-        level = bulk
+    level = bulk if negative else 2.0 * abs(threshold)
     squares = (level * level * bulk) ** (1.0 / 3.0)
-    return F(3.0 * squares * (2.0 * bend * off + 4.0 * UNIT) + UNIT * (rows + 12) * level), F(STEEPEST * stiff)
+    return (
+        F(3.0 * squares * (2.0 * bend * off + 4.0 * UNIT) + UNIT * (rows + 12) * level),
+        F(STEEPEST * (30.0 * off * stiffer + (rows + 40) * UNIT * stiff)),
+    )
 
 
 @inlined
-def start_lanes(room, live, state, n):
+def start_lanes(room, state, n):
     """Begin the search in each lane, between where the parts of the slice are entered and left."""
-    far = room[FAR]
+    far = room[SPARE]
     for i in range(n):
-        way = F(far[live[i]])
+        way = F(far[i])
         low = state[AT_A + i] - HAIR * way
         high = state[AT_B + i] + HAIR * way
         low = low if low > ZERO else ZERO
@@ -259,7 +230,8 @@ def settle_lanes(table, kept, state, room, live, width, left, rays, found):
             live[LANES + left] = live[i]
             left += 1
         else:
-            note(room, state, i, live[i], rays[live[i]], found)
+            j = np.uint64(live[i])
+            note(room, state, i, j, np.uint64(rays[j]), found)
     for i in range(n, width):
         state[STATE + i] = F(MISS)
     return n, left
@@ -307,6 +279,7 @@ def search_packet(
     for i in range(n):
         live[i] = first + i
     spent = 0
+    fresh = True
     begin = beam[LOW]
     while n > 0:
         start, end = next_slice(spans, m, begin)
@@ -314,17 +287,29 @@ def search_packet(
             return spent
         if lowest <= 0.5:
             end = np.inf
-        place_lanes(room, live, state, n, start, end, lowest)
+        place_lanes(room, live, state, n, fresh, start, end, lowest)
+        fresh = False
         rows = 0
+        bulk = bend = stiff = stiffer = 0.0
+        negative = False
         for i in range(m):
             if spans[0, i] < end and spans[1, i] > start:
-                rows += 1 if set_part(near[order[i]], room, table[rows], state, n) > 0 else 0
+                part = near[order[i]]
+                if set_part(part, room, table[rows], state, n) == 0:
+                    continue
+                rows += 1
+                weight, steep = abs(part[7]), 1.0 / part[6]
+                negative = negative or part[7] < 0.0
+                bulk += weight
+                bend = max(bend, steep)
+                stiff += weight * steep
+                stiffer += weight * steep * steep
                 if rows == table.shape[0]:
                     leave_undecided(room, live, n, rays, found)
                     return spent
         reach = min(end, beam[HIGH]) - start + 2.0 * own[RADIUS_OF]
-        off, off_slope = rounding(table, rows, reach, threshold)
-        start_lanes(room, live, state, n)
+        off, off_slope = rounding(rows, bulk, bend, stiff, stiffer, negative, reach, threshold)
+        start_lanes(room, state, n)
         n, more = search_slice(
             table, rows, state, room, live, n, F(threshold), off, off_slope, anywhere, rays, found
         )  # fmt: skip
@@ -338,10 +323,11 @@ def search_packet(
 @inlined
 def first_hits(found, ids, n, queue):
     """The rays that may be met into the ``queue``, hits first; how many."""
+    outcomes = found[FOUND_STATUS]
     queued = 0
     for outcome in (HIT, UNDECIDED):
         for i in range(n):
-            if found[FOUND_STATUS, ids[i]] == outcome:
+            if outcomes[np.uint64(ids[i])] == outcome:
                 queue[queued] = ids[i]
                 queued += 1
     return queued

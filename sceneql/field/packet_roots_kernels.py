@@ -66,7 +66,7 @@ def polish(code, constants, parts, registers, points, rays, queue, count, found)
         n = min(width, count - start)
         for turn in range(2):
             for i in range(n):
-                j = queue[start + i]
+                j = np.uint64(queue[start + i])
                 t = rays[6, j] + found[FOUND_ROOT, j]
                 points[0, i] = rays[0, j] + t * rays[3, j]
                 points[1, i] = rays[1, j] + t * rays[4, j]
@@ -74,7 +74,7 @@ def polish(code, constants, parts, registers, points, rays, queue, count, found)
             evaluate(code, constants, parts, registers, points, n)
             last = registers[code.shape[0] - 1]
             for i in range(n):
-                j = queue[start + i]
+                j = np.uint64(queue[start + i])
                 step = last[i] / found[FOUND_SLOPE, j]
                 root = min(max(found[FOUND_ROOT, j] - step, found[FOUND_LOW, j]), found[FOUND_HIGH, j])
                 if turn == 1 and not (
@@ -187,14 +187,14 @@ def check_inside(code, constants, parts, registers, points, rays, queue, count, 
     for start in range(0, count, width):
         n = min(width, count - start)
         for i in range(n):
-            j = queue[start + i]
+            j = np.uint64(queue[start + i])
             t = rays[6, j] + found[row, j] + late * (rays[7, j] - rays[6, j])
             for axis in range(3):
                 points[axis, i] = rays[axis, j] + t * rays[3 + axis, j]
         evaluate(code, constants, parts, registers, points, n)
         last = registers[code.shape[0] - 1]
         for i in range(n):
-            j = queue[start + i]
+            j = np.uint64(queue[start + i])
             if found[FOUND_STATUS, j] == HIT and not last[i] < 0.0:
                 found[FOUND_STATUS, j] = UNDECIDED
 
@@ -278,7 +278,7 @@ def first_roots(
         check_inside(other, constants, parts, doubles, points, rays, queue, queued, row, late, found)
     certified = 0
     for k in range(queued):
-        j = queue[k]
+        j = np.uint64(queue[k])
         if found[FOUND_STATUS, j] == UNDECIDED:
             certified += 1
             certify_ray(code, constants, parts, scratch, rays, j, anywhere, found)

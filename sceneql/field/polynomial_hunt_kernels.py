@@ -5,6 +5,8 @@ The rays that have a length are packed; slabs of the beam around them all that a
 outside are left out at both ends.
 """
 
+import numpy as np
+
 from sceneql.field.affine_kernels import GROW, HALF, F
 from sceneql.field.extent_kernels import extent
 from sceneql.field.hunt_kernels import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS, SETTLED
@@ -52,7 +54,7 @@ def pack(rays, count, ids, wide):
                 target[i] = source[i]
         else:
             for i in range(n):
-                target[i] = source[ids[i]]
+                target[i] = source[np.uint64(ids[i])]
     return n
 
 
@@ -136,9 +138,9 @@ def settle_lanes(lanes, kept, ids, width, rays, anywhere, found, queue, queued):
                     lanes[start + live] = lanes[start + i]
             live += 1
         elif outcome != MISS:
-            j = ids[int(lanes[RAY + i])]
-            note(lanes, i, j, rays, anywhere, found)
-            queue[queued] = j
+            j = ids[np.uint64(lanes[RAY + i])]
+            note(lanes, i, np.uint64(j), rays, anywhere, found)
+            queue[np.uint64(queued)] = j
             queued += 1
     for i in range(live, width):
         lanes[STATE + i] = float(MISS)

@@ -148,9 +148,9 @@ def draw_row(
         base = top * width + left
         met = 0
         outcomes, roots = found[FOUND_STATUS], found[FOUND_ROOT]
-        for k in range(n):
-            j = turns[k]
-            hits[met] = j
+        for i in range(n):
+            j = np.uint64(turns[i])
+            hits[np.uint64(met)] = turns[i]
             met += 1 if outcomes[j] == HIT else 0
             undecided += 1 if outcomes[j] == UNDECIDED else 0
         facing = 0
@@ -160,26 +160,28 @@ def draw_row(
             for axis in range(3):
                 o, d, p = rays[axis], rays[3 + axis], points[axis]
                 for i in range(some):
-                    j = own[i]
+                    j = np.uint64(own[i])
                     p[i] = o[j] + roots[j] * d[j]
             shade(near, constants, near_of, doubles, points, slopes, view, some)
             for i in range(some):
-                at = base + offsets[own[i]]
-                depth[at] = roots[own[i]]
-                picture[at] = AMBIENT + (1.0 - AMBIENT) * max(light[i], 0.0)
-                faced[facing] = at
-                starts[0, facing], starts[1, facing], starts[2, facing] = points[0, i], points[1, i], points[2, i]
+                j, k = np.uint64(own[i]), np.uint64(facing)
+                at = base + offsets[j]
+                depth[np.uint64(at)] = roots[j]
+                picture[np.uint64(at)] = AMBIENT + (1.0 - AMBIENT) * max(light[i], 0.0)
+                faced[k] = at
+                starts[0, k], starts[1, k], starts[2, k] = points[0, i], points[1, i], points[2, i]
                 facing += 1 if light[i] > 0.0 else 0
         if facing == 0:
             continue
         # The rays to the light stand in columns again.
         groups = (facing + TILE - 1) // TILE
-        k = 0
+        taken = 0
         for g in range(groups):
-            for j in range(g, facing, groups):
+            for ray in range(g, facing, groups):
+                j, k = np.uint64(ray), np.uint64(taken)
                 hits[j] = faced[k]
                 rays[0, j], rays[1, j], rays[2, j] = starts[0, k], starts[1, k], starts[2, k]
-                k += 1
+                taken += 1
         for axis in range(3):
             way, along = rays[3 + axis], view[3, axis]
             for j in range(facing):
@@ -195,5 +197,5 @@ def draw_row(
         for j in range(facing):
             undecided += 1 if outcomes[j] == UNDECIDED else 0
             if outcomes[j] == HIT:
-                picture[hits[j]] = AMBIENT
+                picture[np.uint64(hits[j])] = AMBIENT
     return spent, certified, undecided
