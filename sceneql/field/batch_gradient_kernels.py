@@ -18,6 +18,7 @@ from sceneql.field.tape_ops import (
     NEG,
     SIN,
     SKELETON,
+    SQRT,
     SQUARE,
     SUB,
     X,
@@ -105,6 +106,13 @@ def any_slopes(op, value, a, b, slope_a, slope_b, slope, n):
             for i in range(n):
                 first = a[i] > b[i] if op == MAX else a[i] < b[i]
                 g[i] = ga[i] if first else gb[i]
+        return
+    if op == SQRT:
+        for axis in range(3):
+            ga, g = slope_a[axis], slope[axis]
+            for i in range(n):
+                u = 0.5 / value[i] if value[i] > 0.0 else 0.0
+                g[i] = u * ga[i] if u != 0.0 else 0.0
         return
     for i in range(n):
         u, v = slopes(op, value[i], a[i], b[i])

@@ -134,7 +134,7 @@ def settle_lanes(lanes, kept, ids, width, rays, anywhere, found, queue, queued):
         outcome = lanes[STATE + i]
         if outcome == LIVE:
             if live < i:
-                for start in range(0, kept, LANES):
+                for start in range(A, kept, LANES):
                     lanes[start + live] = lanes[start + i]
             live += 1
         elif outcome != MISS:

@@ -15,9 +15,9 @@ from sceneql.field.single_kernels import lane
 from sceneql.field.tape_ops import HIT, MISS, UNDECIDED
 from sceneql.kernels import inlined
 
-A, B, END, TRIES, STATE, ROOT, CHANGE, MIDDLE, HALF_WAY, RAY, C = range(0, 11 * LANES, LANES)
-"""Segment, where the search ends, steps so far, outcome (LIVE until there is one), root and its change at the last step
-of the polish, middle and half length of the piece, which ray it is of, then coefficients from the lowest on."""
+ROOT, CHANGE, A, B, END, TRIES, STATE, MIDDLE, HALF_WAY, RAY, C = range(0, 11 * LANES, LANES)
+"""Root and its change at the last step of the polish, segment, where the search ends, steps so far, outcome (LIVE until
+there is one), middle and half length of the piece, which ray it is of, then coefficients from the lowest on."""
 C1, C2, C3, C4, C5, C6, C7, C8, ROWS = range(C + LANES, C + 10 * LANES, LANES)
 LIVE = -1.0
 MOST = 48.0

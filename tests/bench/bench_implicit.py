@@ -93,7 +93,11 @@ class Picture:
         counts = np.zeros((-(-HEIGHT // 16), 3), dtype=np.int64)
         spare = self.spare
 
-        def work(row: int) -> None:
+        # The middle first: what is quick fills up the time of both threads at the end.
+        rows = sorted(range(len(counts)), key=lambda row: abs(2 * row + 1 - len(counts)))
+
+        def work(tile: int) -> None:
+            row = rows[tile]
             memory, slopes, numbers, starts = spare.pop() if spare else (
                 Memory(self.tape, 256), np.zeros((len(self.tape.code), 3, 64)), self.numbers.copy(), np.zeros((3, 256))
             )  # fmt: skip
