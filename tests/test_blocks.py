@@ -136,3 +136,26 @@ def test_births_and_deaths_in_blocks_are_those_of_the_whole(tmp_path, monkeypatc
                 np.testing.assert_allclose(a, b, rtol=1e-9)
             else:
                 np.testing.assert_array_equal(a, b)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_a_plane_that_never_moves_is_the_same_as_one_that_might(tmp_path, monkeypatch, friction):
+    """Two ways through the kernels: the short one of a still plane, and that of any object."""
+    monkeypatch.setattr(collision, "MOST_CUT", 0)
+    script = f"""
+clock: {{end: 2 s}}
+objects:
+  cloud: {{box: {{size: 1 0.3 1 m, position: 0 0.2 0 m, hidden: yes}}}}
+  floor: {{plane: {{position: 0 0 0 m}}}}
+models: {{dust: {{particles: {{fill: {{object: cloud, count: 300}}, mass: 1 g, radius: 2 mm, velocity: 0.4 0 0 m/s}}}}}}
+forces: [gravity, {{wind: {{velocity: 1 0 0.5 m/s, linear: 1 g/s}}}}]
+contacts:
+  bounce: {{collision: {{between: [dust, floor], restitution: 0.4, friction: {friction}, mode: local}}}}
+solvers: {{main: {{semi_implicit_euler: {{step: 5 ms}}}}}}
+"""
+    moving = script.replace("position: 0 0 0 m}", "position: [0 m, 0 m * time / 1 s, 0 m]}")
+    assert moving != script
+    outputs = ("dust.positions", "dust.velocities", "bounce.hits.count", "dust.dissipated")
+    for one, other in zip(*(watch(tmp_path, text, [0.5, 1.1, 2], *outputs) for text in (script, moving)), strict=True):
+        for a, b in zip(one, other, strict=True):
+            np.testing.assert_allclose(a, b, rtol=1e-9, atol=1e-12)

@@ -182,38 +182,6 @@ def bear(k, memory, nx, ny, nz, rate, floats, ints):
 
 
 @lean_inlined
-def is_smooth_plane(floats, ints):
-    """Whether a plane that never moves, without friction, is all that bodies can meet: then resting costs little."""
-    return ints[OBJECTS] == 1 and ints[HEAD + FLAT] != 0 and floats[ints[FRICTION]] == 0.0
-
-
-@lean_inlined
-def lies(k, level, nx, ny, nz, y, floats, ints):
-    """Whether body k lies on a smooth plane, n . x + level = 0, as it should: `keep` would change nothing."""
-    memory = ints[PAIRS] + PAIR * k
-    if floats[memory] != SLIDES or floats[memory + PRESS] >= 0.0:
-        return False
-    px, py, pz, vx, vy, vz = body_of(ints, k, y)
-    d = level + (px * nx + py * ny + pz * nz) - floats[ints[RADIUS] + k] - floats[ints[THICKNESS]]
-    small = 1e-12 * scale_of(px, py, pz)
-    return abs(d) <= small and abs(vx * nx + vy * ny + vz * nz) <= small
-
-
-@lean_inlined
-def bear_lying(rate, floats, ints):
-    """What `support` does, on a smooth plane."""
-    _, nx, ny, nz = facing(floats, ints, HEAD, 0.0, 0.0, 0.0)
-    resting_at = ints[LAST] + LIST
-    for i in range(int(floats[ints[LAST] + RESTING])):
-        k = int(floats[resting_at + i])
-        memory, to = ints[PAIRS] + PAIR * k, ints[VELOCITY] + 3 * k
-        if floats[memory] == FREE or floats[ints[INVERSE] + k] == 0.0:
-            continue
-        floats[memory + PRESS] = rate[to] * nx + rate[to + 1] * ny + rate[to + 2] * nz
-        bear(k, memory, nx, ny, nz, rate, floats, ints)
-
-
-@lean_inlined
 def carry(k, y, rate, floats, ints):
     """Normal forces, none negative, that leave no resting pair pressing: projected Gauss-Seidel over the pairs."""
     to = ints[VELOCITY] + 3 * k
@@ -277,14 +245,56 @@ def rub(k, y, rate, floats, ints):
         rate[ints[WORK]] += floats[ints[MASS] + k] * most * (dx * vx + dy * vy + dz * vz)
 
 
+@lean_inlined
+def is_flat(ints):
+    """Whether a plane that never moves is all that the bodies can meet: then resting costs little."""
+    return ints[OBJECTS] == 1 and ints[HEAD + FLAT] != 0
+
+
+@lean_inlined
+def lies(k, level, nx, ny, nz, y, floats, ints):
+    """Whether body k lies on the plane n . x + level = 0 as it should, sticking or without friction.
+
+    Then `keep` and `brake` would change nothing.
+    """
+    memory = ints[PAIRS] + PAIR * k
+    px, py, pz, vx, vy, vz = body_of(ints, k, y)
+    if floats[memory + PRESS] >= 0.0:
+        return False
+    if floats[memory] == STICKS:
+        if vx != 0.0 or vy != 0.0 or vz != 0.0:
+            return False
+    elif floats[memory] != SLIDES or floats[ints[FRICTION]] != 0.0:
+        return False
+    d = level + (px * nx + py * ny + pz * nz) - floats[ints[RADIUS] + k] - floats[ints[THICKNESS]]
+    small = 1e-12 * scale_of(px, py, pz)
+    return abs(d) <= small and abs(vx * nx + vy * ny + vz * nz) <= small
+
+
+@lean_inlined
+def bear_lying(y, rate, floats, ints):
+    """What `support` does, on a single plane that never moves."""
+    _, nx, ny, nz = facing(floats, ints, HEAD, 0.0, 0.0, 0.0)
+    resting_at = ints[LAST] + LIST
+    for i in range(int(floats[ints[LAST] + RESTING])):
+        k = int(floats[resting_at + i])
+        memory, to = ints[PAIRS] + PAIR * k, ints[VELOCITY] + 3 * k
+        if floats[memory] == FREE or floats[ints[INVERSE] + k] == 0.0:
+            continue
+        floats[memory + PRESS] = rate[to] * nx + rate[to + 1] * ny + rate[to + 2] * nz
+        bear(k, memory, nx, ny, nz, rate, floats, ints)
+        if floats[ints[FRICTION]] > 0.0:
+            rub(k, y, rate, floats, ints)
+
+
 @lean(types.void(types.boolean, A, A, A, I), inner=True)
 def support(near, y, rate, floats, ints):
     """Take from the acceleration of bodies that rest what pushes into the surface, and add Coulomb's friction.
 
     With ``near`` it is also noted how free pairs would press.
     """
-    if not near and is_smooth_plane(floats, ints):
-        bear_lying(rate, floats, ints)
+    if not near and is_flat(ints):
+        bear_lying(y, rate, floats, ints)
         return
     resting_at = ints[LAST] + LIST
     count = ints[BODIES] if near else int(floats[ints[LAST] + RESTING])

@@ -41,7 +41,7 @@ from sceneql.simulation.contacts.resting_kernels import (
     RESTING,
     SLIDES,
     come_to_rest,
-    is_smooth_plane,
+    is_flat,
     keep,
     lies,
     support,
@@ -259,12 +259,12 @@ def settle_found(t0, t1, y0, y1, found, path, mean, floats, ints):
     """Settle the bodies with found[k] = 1, and note which ones rest."""
     h = t1 - t0
     resting = 0
-    smooth = is_smooth_plane(floats, ints)
+    flat = is_flat(ints)
     level, nx, ny, nz = surface(floats, ints, HEAD, 0.0, 0.0, 0.0)
     for k in range(ints[BODIES]):
         if found[k] == 0.0:
             continue
-        if smooth and lies(k, level, nx, ny, nz, y1, floats, ints):
+        if flat and lies(k, level, nx, ny, nz, y1, floats, ints):
             floats[ints[LAST] + LIST + resting] = k
             resting += 1
             continue
