@@ -186,10 +186,11 @@ class Memory:
         beams, doubles = np.zeros((BEAM, -(-count // GROUP) + 1)), np.zeros((rows, LANES))
         near = np.zeros_like(tape.code), np.zeros_like(self.singles), np.zeros_like(tape.parts)
         plan = plan_of(tape)
+        whole = -(-max(count, LANES, len(tape.parts)) // LANES) * LANES  # lanes beyond the rays are looked at, too
         march = (
             plan,
             np.zeros(2 * LANES + count + len(tape.parts), dtype=np.int64),
-            np.zeros((density_roots_kernels.ROOM, max(count, LANES, len(tape.parts)))),
+            np.zeros((density_roots_kernels.ROOM, whole)),
             np.zeros((density_roots_kernels.MOST_PARTS, density_march_kernels.COLUMNS), dtype=single),
             room_for(plan),
             tape_up_to(tape, int(plan[density_roots_kernels.OTHER])),
