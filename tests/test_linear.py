@@ -13,6 +13,7 @@ from scipy.sparse import csr_array, kron
 from sceneql.simulation.linear import dense_kernels as dense
 from sceneql.simulation.linear import fronts, fronts_kernels
 from sceneql.simulation.linear import krylov_kernels as krylov
+from sceneql.simulation.linear.fronts_symmetric_kernels import PIECES
 from sceneql.simulation.linear.solver_kernels import PRECONDITION
 from sceneql.simulation.numbered_kernels import number_of
 
@@ -99,6 +100,29 @@ def test_fronts_solve_to_rounding(columns, rows, seed, symmetric, dissected):
     assert fronts_kernels.factor_system(numbers, matrix.data, factors, work, symmetric)
     fronts_kernels.solve_system(numbers, matrix.data, factors, x, work, symmetric)
     assert np.abs(matrix @ x - right).max() <= 1e-12
+
+
+@pytest.mark.parametrize("dissected", [True, False])
+def test_threads_share_fronts_to_the_same_bytes(monkeypatch, dissected):
+    monkeypatch.setattr(fronts, "WORTH_THREADS", 0.0)
+    pattern = net(24, 20, 1)
+    matrix = csr_array(0.5 * (pattern + pattern.T))
+    matrix.setdiag(matrix.diagonal() + 30.0)
+    places = np.stack(np.meshgrid(np.arange(24), np.arange(20), [0], indexing="ij"), axis=-1).reshape(-1, 3)
+    made = []
+    for threads in (1, 2, 3):
+        monkeypatch.setenv("SCENEQL_THREADS", str(threads))
+        plan = fronts.plan(pattern, points=places.repeat(3, axis=0).astype(float) if dissected else None)
+        factors, work = np.zeros(plan.factors), np.zeros(plan.work)
+        numbers = plan.numbers.copy()
+        assert numbers[PIECES] >= 2
+        assert fronts_kernels.factor_system(numbers, matrix.data, factors, work, True)
+        x = np.ones(matrix.shape[0])
+        fronts_kernels.solve_system(numbers, matrix.data, factors, x, work, True)
+        assert np.abs(matrix @ x - 1.0).max() <= 1e-12
+        made.append(x.tobytes())
+        assert not fronts_kernels.factor_system(numbers, np.zeros(pattern.nnz), factors, work, True)
+    assert made[0] == made[1] == made[2]
 
 
 def test_fronts_refuse_a_singular_matrix():

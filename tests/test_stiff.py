@@ -74,6 +74,21 @@ def test_the_jacobian_is_the_derivative_of_the_rate(tmp_path, scene):
     assert np.abs(expected).max() > 0.1
 
 
+def test_definite_slopes_leave_a_spring_what_inertia_holds(tmp_path):
+    """Pressed by a tenth, k = 500 N/m pushes across with 500 * 0.1/0.9 N/m, on the lighter mass of 2 kg."""
+    masses = "{a: {position: 0 0 0 m, mass: 3 kg}, b: {position: 0.9 0 0 m, mass: 2 kg}}"
+    spring = "{between: [a, b], stiffness: 500 N/m, rest: 1 m}"
+    run = island(tmp_path, f"models: {{net: {{mass_spring: {{masses: {masses}, springs: [{spring}]}}}}}}")
+    march = March(run.assembly.finish(jacobian=True), Rk4().stepper(), 1.0)
+    bodies = run.bodies["net"]
+    row, column = bodies.velocity_at + 4, bodies.position_at + 4
+    for rate, expected in ((0.0, 500 / 9), (1e6, 500 / 9), (20.0, 40.0), (1e-300, 0.0)):
+        march.floats[2] = rate
+        found = dense(march, 0.0, march.system.y)
+        assert found[row, column] == pytest.approx(expected / 2)
+        assert found[row - 1, column - 1] == pytest.approx(-500 / 2)
+
+
 def test_a_term_that_does_not_know_its_slopes_is_differenced(tmp_path):
     run = island(tmp_path, f"models: {TRIANGLE}")
     run.assembly.term("force", "sceneql.simulation.bodies_kernels:close", (0, 9, 0, 0))

@@ -37,7 +37,7 @@ VECTORS = 12
 """Arrays of the state's size that a run keeps: ends and rates of a step, and the stages of a solver."""
 RESERVED_FLOATS = 3
 """floats[0] counts rate evaluations; floats[1] is set by a contact that changed the state (march_kernels); floats[2] is
-1 while slopes are to leave out what makes a system indefinite (system.Slopes)."""
+above 0 while slopes are to leave out what makes a system indefinite (system.Slopes)."""
 
 
 class Setting(Protocol):

@@ -161,7 +161,8 @@ class SpringModel(Model):
         blocks_at = assembly.floats(blocks.ravel())
         stiffness_at, damping_at = self.shared(assembly)
         ends = net.pairs.ravel().tolist()
-        ints = (bodies.position_at, bodies.velocity_at, bodies.work_at, blocks_at, stiffness_at, damping_at, m, *ends)
+        places = (bodies.position_at, bodies.velocity_at, bodies.work_at)
+        ints = (*places, blocks_at, stiffness_at, damping_at, m, *ends, bodies.inverse_at)
         kernel = "sceneql.simulation.models.mass_spring_kernels:springs"
         assembly.term("internal", kernel, ints, lambda: _slopes(net, bodies, self.damped(blocks)))
         torn_at = assembly.floats([0.0])
@@ -170,8 +171,8 @@ class SpringModel(Model):
             strains = (self.tear.at - 1) * (1 + self.tear.variation * (2 * luck - 1))
             strains *= 1.0 if net.toughness is None else net.toughness
             more = (assembly.floats((1 + strains) * blocks[:, 0]), torn_at)
-            places = (bodies.position_at, bodies.work_at, blocks_at, stiffness_at)
-            assembly.contact("local", ("sceneql.simulation.models.tear_kernels:tear",), (*places, *more, m, *ends), 0)
+            torn = (bodies.position_at, bodies.work_at, blocks_at, stiffness_at, *more, m, *ends)
+            assembly.contact("local", ("sceneql.simulation.models.tear_kernels:tear",), torn, 0)
         if isinstance(self.pins, dict):
             guide(self.pins, net, assembly, bodies)
         assembly.remember(blocks_at, stiffness_at, torn_at)

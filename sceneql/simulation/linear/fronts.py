@@ -23,6 +23,10 @@ if TYPE_CHECKING:
 
 MERGED = 12
 """A front and its parent become one when both together eliminate no more than this."""
+WORTH_THREADS = 1e7
+"""Multiplications of a factorization from which on it is shared by threads."""
+PIECE = 0.55
+MOST_PIECES = 16
 
 
 @dataclass(slots=True)
@@ -125,7 +129,8 @@ def _fronts(graph: Any, parents: list[int], sizes: Rows) -> list[_Front]:
 def _laid_out(pattern: Any, scalars: Rows, fronts: list[_Front], first: Rows) -> Plan:
     import numpy as np
 
-    from sceneql.simulation.linear.fronts_kernels import FIELDS, HEAD
+    from sceneql.simulation.linear.fronts_symmetric_kernels import FIELDS, HEAD, piece
+    from sceneql.simulation.threads_kernels import threads, tile_address
 
     n, count, groups = len(scalars), len(fronts), len(first) - 1
     sizes = np.diff(first)
@@ -160,36 +165,84 @@ def _laid_out(pattern: Any, scalars: Rows, fronts: list[_Front], first: Rows) ->
 
     last_child, earlier = [-1] * count, [-1] * count
     table: list[int] = []
-    factors = stack = most = 0
-    waiting = [0] * count
-    rests = (heights - widths).tolist()
+    factors = 0
+    rests = heights - widths
     parents = np.array([front.parent for front in fronts])
-    up = np.flatnonzero((parents >= 0) & (heights > widths))
+    up = np.flatnonzero((parents >= 0) & (rests > 0))
     climbing = np.concatenate(
         [np.zeros(0, np.int64), *(np.arange(row_starts[k] + widths[k], row_starts[k + 1]) for k in up)]
     )
-    maps = inside(np.repeat(parents[up], (heights - widths)[up]), expanded[climbing])
+    maps = inside(np.repeat(parents[up], rests[up]), expanded[climbing])
     map_at = 0
-    operations = 0.0
+    operations = widths * rests * heights / 2.0 + widths**3 / 6.0
+    pieces = _pieces(parents.tolist(), operations.tolist())
+    updates, room = _updates(parents.tolist(), (rests**2).tolist(), pieces)
     for k, (front, height, width, rest) in enumerate(
-        zip(fronts, heights.tolist(), widths.tolist(), rests, strict=True)
+        zip(fronts, heights.tolist(), widths.tolist(), rests.tolist(), strict=True)
     ):
         table += [int(first[front.columns[0]]), width, height, int(row_starts[k]), map_at, factors, bounds[k], 0, 0]
+        table.append(updates[k])
         if front.parent >= 0:
             earlier[k], last_child[front.parent] = last_child[front.parent], k
-            waiting[front.parent] += rest * rest
             map_at += rest
-            stack += rest * rest
-        stack -= waiting[k]
-        most = max(most, stack + waiting[k])
         factors += width * height + width * rest
-        operations += width * rest * (rest + width) / 2.0 + width**3 / 6.0
-    table += [n, 0, 0, int(row_starts[-1]), map_at, factors, bounds[-1], -1, -1]
+    table += [n, 0, 0, int(row_starts[-1]), map_at, factors, bounds[-1], -1, -1, 0]
     for k in range(count):
         table[FIELDS * k + 7 : FIELDS * k + 9] = last_child[k], earlier[k]
     largest = int(heights.max(initial=0))
-    parts: list[Any] = [table, scalars, expanded, maps, entries, np.zeros(n, dtype=np.int64)]
+    halves = [number for first_front, root in pieces for number in (first_front, root + 1, 0)]
+    parts: list[Any] = [table, scalars, expanded, maps, entries, np.zeros(n, dtype=np.int64), halves]
     starts = list(accumulate((len(part) for part in parts), initial=HEAD))
-    head = [n, count, *starts[1:6], most]
+    head = [n, count, *starts[1:6], room, starts[6], len(pieces), *threads(), tile_address(piece)]
     numbers = np.concatenate([np.array(part, dtype=np.int64) for part in (head, *parts)])
-    return Plan(numbers, factors, most + largest * largest + 2 * n, operations)
+    return Plan(numbers, factors, room + largest * largest + 2 * n, float(operations.sum()))
+
+
+def _pieces(parents: list[int], operations: list[float]) -> list[tuple[int, int]]:
+    """Subtrees that threads share, none of more than PIECE of all operations: (first front, root), rising."""
+    weights, sizes = list(operations), [1] * len(parents)
+    children: list[list[int]] = [[] for _ in parents]
+    for k, parent in enumerate(parents):
+        if parent >= 0:
+            weights[parent] += weights[k]
+            sizes[parent] += sizes[k]
+            children[parent].append(k)
+    total = sum(operations)
+    if total < WORTH_THREADS:
+        return []
+    roots = {k for k, parent in enumerate(parents) if parent < 0}
+    while roots and len(roots) < MOST_PIECES:
+        heaviest = max(roots, key=lambda k: (weights[k], k))
+        if weights[heaviest] <= PIECE * total:
+            break
+        roots.remove(heaviest)
+        roots.update(children[heaviest])
+    return sorted((k - sizes[k] + 1, k) for k in roots)
+
+
+def _updates(parents: list[int], sizes: list[int], pieces: list[tuple[int, int]]) -> tuple[list[int], int]:
+    """Where each front's update stands, and the floats for all.
+
+    Updates stand in two stacks by turns, so that a front's own never lies over its children's: those of a depth wait
+    with those of other depths of the same parity. A piece has stacks of its own, the fronts above the pieces too.
+    """
+    depth = [0] * len(parents)
+    for k in range(len(parents) - 1, -1, -1):
+        depth[k] = depth[parents[k]] + 1 if parents[k] >= 0 else 0
+    owner = [len(pieces)] * len(parents)
+    for number, (first, root) in enumerate(pieces):
+        owner[first : root + 1] = [number] * (root + 1 - first)
+    tops = [0] * (2 * len(pieces) + 2)
+    most = list(tops)
+    found = []
+    waiting = [0] * len(parents)
+    for k, parent in enumerate(parents):
+        stack = 2 * owner[k] + depth[k] % 2
+        found.append(tops[stack])
+        tops[stack] += sizes[k]
+        most[stack] = max(most[stack], tops[stack])
+        tops[2 * owner[k] + 1 - depth[k] % 2] -= waiting[k]
+        if parent >= 0 and owner[parent] == owner[k]:
+            waiting[parent] += sizes[k]
+    starts = list(accumulate(most, initial=0))
+    return [at + starts[2 * owner[k] + depth[k] % 2] for k, at in enumerate(found)], starts[-1]

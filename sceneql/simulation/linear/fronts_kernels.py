@@ -1,10 +1,12 @@
 # mypy: ignore-errors
 """Sparse factorization on a planned pattern by the multifrontal method, and solutions with the factors.
 
-The integers of a plan: [unknowns, fronts, where these start: order, rows, maps, entries, pivots; floats of the stack],
+The integers of a plan: [unknowns, fronts, where these start: order, rows, maps, entries, pivots; floats of the
+updates; where the pieces start, how many; the numbers of threads_kernels.threads, the address of a piece's kernel],
 then a table with FIELDS a front: first unknown, number eliminated, rows of the front, then where its rows, its map
-into the parent, its factors and its entries start, its last child and the child of its parent before it (-1: none);
-last a row that ends them.
+into the parent, its factors and its entries start, its last child and the child of its parent before it (-1: none),
+where its update stands in the work; last a row that ends them. A piece: its first front, the one after its last, and
+whether it was factored.
 A front keeps U (width x rows, the reciprocals of the pivots on its diagonal) and, where the matrix is not symmetric,
 L below it ((rows - width) x width). Symmetric: A = U^T D^-1 U. Pivots are sought in the same block of rows alone.
 """
@@ -15,52 +17,44 @@ from numba import types
 
 from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.arithmetic_kernels import fma, widest
+from sceneql.simulation.linear.fronts_symmetric_kernels import BLOCK, FIELDS, HEAD, TILE, factor_symmetric
 from sceneql.simulation.linear.solver_kernels import FACTOR_SYSTEM, SOLVE_SYSTEM
 from sceneql.system_kernels import A, N
 
-HEAD = 8
-FIELDS = 9
-TILE = 256
-"""Columns of a tile of the update."""
-
-BLOCK = 48
-"""Rows that are eliminated before the rest of a front is updated: their part of a tile stays in the cache."""
-
-UPDATE = types.void(A, N, N, N, N, N, types.boolean)
+UPDATE = types.void(A, N, N, N, N, N)
 
 
 @lean(UPDATE, inner=True)
-def update(front, height, begin, end, low, high, symmetric):
-    """Rows low..high less L U of the rows begin..end, from column ``low`` (symmetric: from the row's own) on.
+def update(front, height, begin, end, low, high):
+    """Rows low..high less L U of the rows begin..end, from column ``low`` on.
 
     Four rows by four at a time; L stands in its place. Products and sums are fused, which is twice as fast.
     """
     widest()
     for tile in range(low, height, TILE):
         edge = min(tile + TILE, height)
-        for i in range(low, min(high, edge) if symmetric else high, 4):
-            start = max(tile, i) if symmetric else tile
+        for i in range(low, high, 4):
             a = i * height
             if i + 4 > high:
                 for row in range(a, high * height, height):
                     for k in range(begin, end):
                         p = -front[row + k]
-                        for j in range(start, edge):
+                        for j in range(tile, edge):
                             front[row + j] = fma(p, front[k * height + j], front[row + j])
                 continue
             b, c, d = a + height, a + 2 * height, a + 3 * height
-            first, second = front[a + start : a + edge], front[b + start : b + edge]
-            third, fourth = front[c + start : c + edge], front[d + start : d + edge]
+            first, second = front[a + tile : a + edge], front[b + tile : b + edge]
+            third, fourth = front[c + tile : c + edge], front[d + tile : d + edge]
             k = begin
             while k + 4 <= end:
                 p0, p1, p2, p3 = -front[a + k], -front[a + k + 1], -front[a + k + 2], -front[a + k + 3]
                 q0, q1, q2, q3 = -front[b + k], -front[b + k + 1], -front[b + k + 2], -front[b + k + 3]
                 r0, r1, r2, r3 = -front[c + k], -front[c + k + 1], -front[c + k + 2], -front[c + k + 3]
                 s0, s1, s2, s3 = -front[d + k], -front[d + k + 1], -front[d + k + 2], -front[d + k + 3]
-                u0 = front[k * height + start : k * height + edge]
-                u1 = front[(k + 1) * height + start : (k + 1) * height + edge]
-                u2 = front[(k + 2) * height + start : (k + 2) * height + edge]
-                u3 = front[(k + 3) * height + start : (k + 3) * height + edge]
+                u0 = front[k * height + tile : k * height + edge]
+                u1 = front[(k + 1) * height + tile : (k + 1) * height + edge]
+                u2 = front[(k + 2) * height + tile : (k + 2) * height + edge]
+                u3 = front[(k + 3) * height + tile : (k + 3) * height + edge]
                 for j in range(first.size):
                     x0, x1, x2, x3 = u0[j], u1[j], u2[j], u3[j]
                     first[j] = fma(p3, x3, fma(p2, x2, fma(p1, x1, fma(p0, x0, first[j]))))
@@ -70,7 +64,7 @@ def update(front, height, begin, end, low, high, symmetric):
                 k += 4
             while k < end:
                 p0, q0, r0, s0 = -front[a + k], -front[b + k], -front[c + k], -front[d + k]
-                u0 = front[k * height + start : k * height + edge]
+                u0 = front[k * height + tile : k * height + edge]
                 for j in range(first.size):
                     x0 = u0[j]
                     first[j] = fma(p0, x0, first[j])
@@ -78,30 +72,6 @@ def update(front, height, begin, end, low, high, symmetric):
                     third[j] = fma(r0, x0, third[j])
                     fourth[j] = fma(s0, x0, fourth[j])
                 k += 1
-
-
-@lean_inlined
-def eliminate_symmetric(front, height, begin, end):
-    """Rows begin..end of U, and L below them; False where a pivot is 0 or not finite."""
-    for low in range(begin, end, 4):
-        high = min(low + 4, end)
-        for k in range(low, high):
-            row = k * height
-            pivot = front[row + k]
-            if not 0.0 < abs(pivot) < math.inf:
-                return False
-            inverse = 1.0 / pivot
-            front[row + k] = inverse
-            for i in range(k + 1, high):
-                below = i * height
-                factor = -front[row + i] * inverse
-                for j in range(i, height):
-                    front[below + j] = fma(factor, front[row + j], front[below + j])
-        for i in range(high, height):
-            for k in range(low, high):
-                front[i * height + k] = front[k * height + i] * front[k * height + k]
-        update(front, height, low, high, high, end, True)
-    return True
 
 
 @lean_inlined
@@ -134,11 +104,11 @@ def eliminate(front, height, begin, end, pivots):
 
 
 @lean_inlined
-def take_in(front, height, child, rest, places, symmetric):
+def take_in(front, height, child, rest, places):
     """Add a child's update (rest x rest) at its places in the front."""
     for i in range(rest):
         at = places[i] * height
-        for j in range(i if symmetric else 0, rest):
+        for j in range(rest):
             front[at + places[j]] += child[i * rest + j]
 
 
@@ -148,47 +118,40 @@ def factor_system(plan, values, factors, work, symmetric):
 
     ``factors`` and ``work`` of the plan's sizes; ``symmetric`` says that the values are, so that half is computed.
     """
+    if symmetric:
+        return factor_symmetric(plan, values, factors, work)
     maps, entries, pivots = plan[4], plan[5], plan[6]
     front = work[plan[7] :]
-    top = 0
     for s in range(plan[1]):
         t = HEAD + FIELDS * s
         width, height, panel = plan[t + 1], plan[t + 2], plan[t + 5]
         rest = height - width
-        for i in range(height):
-            for k in range(i * height + (i if symmetric else 0), (i + 1) * height):
-                front[k] = 0.0
+        for k in range(height * height):
+            front[k] = 0.0
         for e in range(plan[t + 6], plan[t + FIELDS + 6]):
             front[plan[entries + 2 * e + 1]] += values[plan[entries + 2 * e]]
         child = plan[t + 7]
         while child >= 0:
             c = HEAD + FIELDS * child
             below = plan[c + 2] - plan[c + 1]
-            top -= below * below
-            take_in(front, height, work[top:], below, plan[maps + plan[c + 4] :], symmetric)
+            take_in(front, height, work[plan[c + 9] :], below, plan[maps + plan[c + 4] :])
             child = plan[c + 8]
         for begin in range(0, width, BLOCK):
             end = min(begin + BLOCK, width)
-            if symmetric:
-                regular = eliminate_symmetric(front, height, begin, end)
-            else:
-                regular = eliminate(front, height, begin, end, plan[pivots + plan[t] :])
-            if not regular:
+            if not eliminate(front, height, begin, end, plan[pivots + plan[t] :]):
                 return False
-            update(front, height, begin, end, end, height, symmetric)
+            update(front, height, begin, end, end, height)
         for k in range(width * height):
             factors[panel + k] = front[k]
-        if not symmetric:
-            panel += width * height
-            for i in range(width, height):
-                for k in range(width):
-                    factors[panel + (i - width) * width + k] = front[i * height + k]
-        if rest > 0:
-            for i in range(rest):
-                at = (width + i) * height + width
-                for j in range(i if symmetric else 0, rest):
-                    work[top + i * rest + j] = front[at + j]
-            top += rest * rest
+        panel += width * height
+        for i in range(width, height):
+            for k in range(width):
+                factors[panel + (i - width) * width + k] = front[i * height + k]
+        top = plan[t + 9]
+        for i in range(rest):
+            at = (width + i) * height + width
+            for j in range(rest):
+                work[top + i * rest + j] = front[at + j]
     return True
 
 

@@ -30,7 +30,7 @@ from sceneql.system_kernels import A, F, I
 
 FACTORED, CONTRACTION, RELATIVE, ABSOLUTE, SHARE, CAREFUL, DEFINITE, MEMORY = range(8)
 DEFINITE_AT = 2
-"""floats[2]: whether slopes are to be definite (system.Slopes)."""
+"""floats[2]: whether slopes are to be definite, and how far (system.Slopes)."""
 
 MOST = 25
 """Iterations of a plain stage."""
@@ -48,9 +48,12 @@ TINY = 0.01
 """Change, in units of the tolerance, that is believed to be the last one by itself."""
 OVERSHOT = 0.9
 """Part of its work at the start that the residual may do against a change at its end."""
-NEAR = 1000.0
-"""Change, in units of the tolerance, up to which definite slopes serve once more."""
 CUTS = 8
+HOLDS = 0.1
+"""Part of what inertia holds in a stage that definite slopes may push away, by each spring: all of a mass together
+seldom push more than inertia and the other springs hold. Without it buckled cloth converges but linearly."""
+NOTHING = 1e-300
+"""In its place where they do push more."""
 
 NEWTON = types.boolean(I, F, F, A, A, A, A, A, A, A, A, I, A, I)
 
@@ -131,7 +134,8 @@ def go(rate, t, a, base, y, change, residual, scales, plan, floats, ints):
             high, high_work = part, work
         else:
             low, low_work = part, work
-        ahead = low + (high - low) * min(0.9, max(0.1, low_work / (low_work - high_work)))
+        fall = low_work - high_work
+        ahead = low + (high - low) * (min(0.9, max(0.1, low_work / fall)) if fall != 0.0 else 0.5)
         for k in range(y.size):
             y[k] += (ahead - part) * change[k]
         part = ahead
@@ -156,11 +160,12 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
     stale = memory[FACTORED] == 0.0 or definite or memory[DEFINITE] > 0.0
     before = 0.0
     patience, limit = PLAIN_AFTER, 1.0
+    holds = HOLDS / (a * a)
     iteration = since = 0
     leave(rate, t, a, base, y, residual, floats, ints)
     while iteration < MOST or (memory[CAREFUL] > 0.0 and iteration < MOST_CAREFUL):
         if stale:
-            floats[DEFINITE_AT] = 1.0 if definite else 0.0
+            floats[DEFINITE_AT] = holds if definite else 0.0
             slopes(functions, t, y, jacobian, floats, ints)
             floats[DEFINITE_AT] = 0.0
             memory[DEFINITE] = 1.0 if definite else 0.0
@@ -175,8 +180,15 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             for k in range(n):
                 change[k] = residual[k]
             regular = solve_stage(plan, a, jacobian, scales, store, change)
+        # The work on a change below the tolerance is that of rounding, which grows with the stiffness: it says nothing.
+        far = regular and definite and plan[SYMMETRIC] == 1
+        far = far and not largest(change, y0, y, memory) <= memory[SHARE]
+        if far and holds > NOTHING and work_on(change, residual, scales, plan) <= 0.0:
+            holds = NOTHING
+            iteration += 1
+            continue
         if regular:
-            if definite and plan[SYMMETRIC] == 1:
+            if far:
                 part = go(rate, t, a, base, y, change, residual, scales, plan, floats, ints)
             else:
                 for k in range(n):
@@ -207,8 +219,8 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             leave(rate, t, a, base, y, residual, floats, ints)
             since = 0
             continue
-        # Far from the solution a stretched spring hides what is left across it: only fresh slopes tell.
-        stale = (definite and size > NEAR) or (since > 1 and contraction > SLOW)
+        # A stretched spring hides what is left across it: slopes from before a change say little of the next one.
+        stale = definite or (since > 1 and contraction > SLOW)
         if stale and since > 1:
             memory[CONTRACTION] = 1.0
         if definite and since > patience and part == 1.0:

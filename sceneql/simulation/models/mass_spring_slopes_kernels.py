@@ -11,7 +11,7 @@ BLOCK = 5
 ENTRIES = 36
 """Of a spring: four blocks of 3x3."""
 DEFINITE_AT = 2
-"""floats[2]: whether slopes are to be definite (system.Slopes)."""
+"""floats[2]: whether slopes are to be definite, and how far (system.Slopes)."""
 
 
 @lean_inlined
@@ -27,14 +27,17 @@ def add_blocks(entries, at, slope):
 def springs(t, y, entries, floats, ints):
     """Of the force on each end by both positions, then (where there is room for them) by both velocities.
 
-    ints: those of mass_spring_kernels.springs. For spring s the four blocks of 3x3 entries (a by a, a by b, b by a,
-    b by b) by positions from 36 s on, by velocities from 36 (count + s) on. With u along the spring, w the relative
-    velocity and p = w . u: d(force)/dx = k u u + (k (L - L0) + c p)/L (1 - u u) + c u (w - p u)/L, d(force)/dv = c u u.
-    Definite slopes: the second part where it is not negative, without the third (Choi & Ko 2002).
+    ints: those of mass_spring_kernels.springs, the last one where inverse masses start. For spring s the four blocks of
+    3x3 entries (a by a, a by b, b by a, b by b) by positions from 36 s on, by velocities from 36 (count + s) on. With u
+    along the spring, w the relative velocity and p = w . u: d(force)/dx = k u u + (k (L - L0) + c p)/L (1 - u u)
+    + c u (w - p u)/L, d(force)/dv = c u u.
+    Definite slopes: without the third part (Choi & Ko 2002), and of what pushes across a pressed spring only so much as
+    the lighter mass holds at the rate of floats[2]: springs that buckle slowly keep their true slopes.
     """
     position_at, velocity_at, blocks_at, count = ints[0], ints[1], ints[3], ints[6]
     model_stiffness, model_damping = floats[ints[4]], floats[ints[5]]
     damped = entries.size > ENTRIES * count
+    inverse_at = ints[7 + 2 * count]
     definite = floats[DEFINITE_AT] > 0.0
     for s in range(count):
         a, b = 3 * ints[7 + 2 * s], 3 * ints[8 + 2 * s]
@@ -57,7 +60,8 @@ def springs(t, y, entries, floats, ints):
         across = (k * (length - floats[block]) + c * speed) / length
         turning = c / length
         if definite:
-            across, turning = max(0.0, across), 0.0
+            inverse = max(floats[inverse_at + ints[7 + 2 * s]], floats[inverse_at + ints[8 + 2 * s]])
+            across, turning = max(-floats[DEFINITE_AT] / inverse if inverse > 0.0 else 0.0, across), 0.0
         for i in range(3):
             for j in range(3):
                 along = u[i] * u[j]

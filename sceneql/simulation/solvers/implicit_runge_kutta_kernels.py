@@ -11,7 +11,7 @@ arrays of scratch; the Jacobian; the store of the stage plan.
 import math
 
 from sceneql.kernels import lean, lean_inlined
-from sceneql.simulation.linear.newton_kernels import MEMORY, newton, norm
+from sceneql.simulation.linear.newton_kernels import FACTORED, MEMORY, newton, norm
 from sceneql.simulation.linear.stage_kernels import solve_stage
 from sceneql.system_kernels import DENSE, STEP
 
@@ -48,8 +48,10 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     a = h * diagonal
     first = numbers[EXPLICIT_FIRST]
     slope = work[n : 2 * n]
-    for k in range(n):
-        slope[k] = rate0[k]
+    # Where stiff parts ring on, as they do unless the last stage is the end, the rate at the start is a poor guess.
+    if first == 1 or numbers[STIFFLY_ACCURATE] == 1 or settings[FACTORED] == 0.0:
+        for k in range(n):
+            slope[k] = rate0[k]
     for i in range(first, stages):
         add_slopes(settings, row, i, h, y0, work, base)
         row += i
