@@ -160,8 +160,8 @@ PROBLEMS = {
             2.849998395185769e-3,
             2.850001604814231e-3,
         ),
-        # SciPy's Radau has the digits that the bar was set by, 4.8, 8.3 and 11.9 at 1e-4, 1e-7 and 1e-10, with this; with
-        # an absolute tolerance as large as the relative one, it too has 2.9, 7.4 and 9.1
+        # SciPy's Radau has the digits that the bar was set by, 4.8, 8.3 and 11.9 at 1e-4, 1e-7 and 1e-10, with this;
+        # with an absolute tolerance as large as the relative one, it too has 2.9, 7.4 and 9.1
         absolute=1e-4,
         digits=8.0,
     ),
