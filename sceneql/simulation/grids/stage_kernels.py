@@ -191,7 +191,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     return error
 
 
-@lean(DENSE, inner=True)
+@lean(DENSE)
 def linear(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
     """The line between the ends, which stays between them: of order 2, as the methods of fixed steps here are."""
     for k in range(y0.size):
