@@ -97,16 +97,16 @@ class IslandRun:
         system = assembly.finish(stepper.jacobian)
         acting = compile_ahead(modules(system.structure, stepper.step))
         from sceneql.simulation.march import March
-        from sceneql.simulation.march_blocks import BlockMarch
 
         acting()
-
         blocks = blocks_of(made, system, stepper)
         self.march: March
         try:
             if stepper.march is not None:
                 self.march = function(stepper.march)(system, stepper, end)
             elif blocks:
+                from sceneql.simulation.march_blocks import BlockMarch
+
                 self.march = BlockMarch(system, stepper, end, blocks)
             else:
                 self.march = March(system, stepper, end, lambda: assembly.finish(jacobian=True))
