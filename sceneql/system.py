@@ -31,6 +31,7 @@ accelerations by its inverse masses and writes dx/dt = v), `constrain` (a restin
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
@@ -143,6 +144,8 @@ class Grid:
     """Low corner and sides of a cell, six numbers [m]."""
     carried: bool
     """Whether a drift acts on it."""
+    keeps: tuple[float, float] = (-math.inf, math.inf)
+    """Values that it stays between by the maximum principle."""
 
 
 class Assembly(Protocol):

@@ -117,6 +117,8 @@ class IslandAssembly:
     whole: int = 0
     """Of a block: the bodies of the whole island."""
     places: Callable[[Link], NDArray[int64] | None] = lambda link: None
+    fields: dict[tuple[str, str], Grid] = field(default_factory=dict)
+    """By model and output."""
     changes: list[tuple[int, int]] = field(default_factory=list)
     """Floats that change as bodies come and go; none where none do."""
     _starts: list[Floats] = field(default_factory=list)
@@ -133,7 +135,6 @@ class IslandAssembly:
     _varying: list[tuple[int, Value]] = field(default_factory=list)
     _largest_step: float = float("inf")
     _grids: list[Grid] = field(default_factory=list)
-    _fields: dict[tuple[str, str], Grid] = field(default_factory=dict)
     _apart: bool = True
     _unsloped: str = "a value that reads the state"
     _word: tuple[str, Span | None, str | None] = ("island", None, None)
@@ -226,11 +227,11 @@ class IslandAssembly:
 
     def offer(self, output: str, grid: Grid) -> None:
         """Say where a field lies (system.Assembly)."""
-        self._fields[self._word[0], output] = grid
+        self.fields[self._word[0], output] = grid
 
     def field_of(self, link: Link) -> Grid | None:
         """Where the field of a link lies (system.Assembly)."""
-        return self._fields.get((link.task, link.output))
+        return self.fields.get((link.task, link.output))
 
     @property
     def only_field(self) -> Grid | None:
@@ -323,7 +324,7 @@ class IslandAssembly:
             pattern=found,
             grid=self.only_field,
             unsloped=self._unsloped,
-            grids=tuple(self._fields.values()),
+            grids=tuple(self.fields.values()),
         )
 
     def start(self) -> Floats:

@@ -134,6 +134,13 @@ class IslandRun:
         y, rate = self.march.advance(time)
         self._now = (time, y, rate)
 
+    @property
+    def y(self) -> Floats:
+        """Its state at the latest instant."""
+        if self._now is None:
+            raise RuntimeError("the island has not been marched yet")
+        return self._now[1]
+
     def state(self, name: str) -> ModelState:
         """The view of a model or contact."""
         from dataclasses import replace

@@ -10,6 +10,7 @@ import numpy as np
 
 from sceneql.kinds import Force, Model
 from sceneql.quantities.diagnostic import Diagnostic
+from sceneql.simulation.grids.extremes import watched
 from sceneql.simulation.grids.ringing import ringing
 
 if TYPE_CHECKING:
@@ -79,6 +80,7 @@ class Watch:
         islands = [island for island in run.islands if always or _cheap(island)]
         self.balances = [Balance(island, models) for island in islands if (models := _telling(island))]
         self._ringing = [found for island in run.islands if (found := ringing(island)) is not None]
+        self._fields = [(island, fields) for island in run.islands if (fields := watched(island))]
         self._started, self._spent = time.perf_counter(), 0.0
 
     def look(self, moment: Instant, *, last: bool = False) -> None:
@@ -88,11 +90,17 @@ class Watch:
         for balance in self.balances:
             if free or not balance.times:
                 _note(balance, moment)
+        for island, fields in self._fields if free else ():
+            for one in fields:
+                one.look(moment.time, island.y)
         self._spent += time.perf_counter() - started
 
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """Energy that came from nowhere, springs beyond what springs can do, and fields that ring."""
+        """Energy that came from nowhere, springs beyond what springs can do, fields that ring or run over."""
         found = list(self._ringing)
+        for island, fields in self._fields:
+            for one in fields:
+                found += one.warnings(island)
         for balance in self.balances:
             tasks, title = balance.island.graph.tasks, ", ".join(balance.models)
             span = tasks[balance.models[0]].span

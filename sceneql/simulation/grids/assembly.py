@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
@@ -13,7 +14,7 @@ from sceneql.quantities.derivative import components, differentiate
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import TIME_SYMBOL, Expr, Link, Number, Symbol, walk
-from sceneql.simulation.grids.boundary import Condition, conditions
+from sceneql.simulation.grids.boundary import GIVEN_FLUX, Condition, conditions
 from sceneql.simulation.grids.cell_program import FIELD, over_cells, over_faces
 from sceneql.simulation.grids.flow import Flow, flow_of
 from sceneql.system import Grid, Slopes
@@ -44,6 +45,14 @@ class Spreading(Protocol):
     @property
     def source(self) -> Formula | None:
         """What comes in a second and cubic meter."""
+
+    @property
+    def made(self) -> bool:
+        """Whether anything inside makes or takes it."""
+
+    @property
+    def positive(self) -> bool:
+        """Whether nothing of it can be below 0."""
 
 
 class Ground:
@@ -140,7 +149,31 @@ class _Builder:
             insides_at=self.ground.volumes_at,
             box_at=self.ground.box_at,
             carried=self.drift is not None,
+            keeps=self._keeps(given),
         )
+
+    def _keeps(self, given: list[Condition]) -> tuple[float, float]:
+        """Values that the field has no reason to leave (Protter and Weinberger 1967, chapter 3); infinite where it has.
+
+        What is made inside, or let in at a rate, may have any value; but no concentration is below 0.
+        """
+        gathered = self.drift is not None and not self.drift.incompressible
+        made, positive = self.field.made or gathered, self.field.positive
+        known = [self.assembly.start()[self.at : self.at + self.count][self.inside]]
+        for one in given:
+            if varies(one.formula):
+                made, positive = True, False
+                continue
+            values = np.zeros(len(one.cells)) if one.formula is None else at_points(one.formula, one.points)
+            if one.resistance == GIVEN_FLUX:
+                made |= bool(values.any())
+            else:
+                known.append(values)
+        values = np.concatenate(known)
+        least = float(values.min(initial=math.inf))
+        if made:
+            return (0.0 if positive and least >= 0.0 else -math.inf), math.inf
+        return least, float(values.max(initial=-math.inf))
 
     def _drifts(self, drift: Drift, flow: Flow, given: list[Condition], periodic: tuple[bool, ...]) -> None:
         """What goes through the boundary with the drift, and the drift itself."""

@@ -57,6 +57,16 @@ class Diffusion(Medium):
         """That of its field."""
         return ((self.coefficient, ("coefficient",)),)
 
+    @property
+    def made(self) -> bool:
+        """Whether it has a source."""
+        return self.source is not None
+
+    @property
+    def positive(self) -> bool:
+        """Whether it is a concentration."""
+        return self.of == "concentration"
+
     def fastest(self, name: str) -> Iterable[Oscillation]:
         """What limits the explicit step."""
         found = self.spreading(self.coefficient)

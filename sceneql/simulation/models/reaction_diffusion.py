@@ -35,6 +35,16 @@ class Species(Record):
     source: ANYTHING | None = field("What comes in besides, a second and cubic meter.", None)
     boundary: Boundary | None = field("What holds on the boundary for it; by default the model's.", None)
 
+    @property
+    def made(self) -> bool:
+        """Whether it reacts or has a source."""
+        return self.rate is not None or self.source is not None
+
+    @property
+    def positive(self) -> bool:
+        """A species may stand for anything."""
+        return False
+
 
 class ReactionDiffusion(Medium):
     """Reaction and diffusion of species: dc_i/dt = div(D_i grad c_i) + f_i(c_1, c_2, ..., x, y, z, t).
