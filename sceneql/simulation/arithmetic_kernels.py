@@ -29,16 +29,6 @@ def _from_bits(typing, x):
 
 
 @intrinsic
-def _single_bits(typing, x):
-    return types.int32(types.float32), lambda context, builder, signature, a: builder.bitcast(a[0], ir.IntType(32))
-
-
-@intrinsic
-def _from_single_bits(typing, x):
-    return types.float32(types.int32), lambda context, builder, signature, a: builder.bitcast(a[0], ir.FloatType())
-
-
-@intrinsic
 def _widest(typing):
     def code(context, builder, signature, arguments):
         # llvmlite knows no attribute with a value, but writes out what is in the set.
@@ -67,10 +57,6 @@ bits = (lambda x: int(np.float64(x).view(np.int64))) if PLAIN else _bits
 """The 64 bits of a float64 as an integer."""
 from_bits = (lambda n: float(np.int64(n).view(np.float64))) if PLAIN else _from_bits
 """The float64 of 64 bits."""
-single_bits = (lambda x: np.float32(x).view(np.int32)) if PLAIN else _single_bits
-"""The 32 bits of a float32 as an int32."""
-from_single_bits = (lambda n: np.int32(n).view(np.float32)) if PLAIN else _from_single_bits
-"""The float32 of 32 bits."""
 widest = (lambda: None) if PLAIN else _widest
 """Ask for the widest vectors in the calling kernel, where the compiler would be shy of them. The bits do not change."""
 always_inlined = (lambda: None) if PLAIN else _always_inlined
@@ -78,35 +64,10 @@ always_inlined = (lambda: None) if PLAIN else _always_inlined
 
 
 @inlined
-def inverse_cube(s, w):
-    """w s^(-3/2) for s > 0, to some 1e-16: a first guess by the exponent (Lomont 2003), refined twice by polynomials.
-
-    Division and square root take three times as long as all of this; fixed operations keep the bits.
-    """
-    r = from_bits(0x5FE6AB50C7B537A9 - (bits(s) >> 1))
-    c = s * (r * r)
-    r = r * fma(fma(0.39409475, c, -1.28885265), c, 1.89474086)
-    c = r * r
-    e = fma(-s, c, 1.0)
-    return (r * c * w) * fma(fma(fma(2.1875, e, 1.875), e, 1.5), e, 1.0)
-
-
-@inlined
 def inverse_root(s):
-    """s^(-1/2) for s > 0, as `inverse_cube`."""
+    """s^(-1/2) for s > 0, to some 1e-16: a first guess by the exponent (Lomont 2003), refined twice by polynomials."""
     r = from_bits(0x5FE6AB50C7B537A9 - (bits(s) >> 1))
     c = s * (r * r)
     r = r * fma(fma(0.39409475, c, -1.28885265), c, 1.89474086)
     e = fma(-s, r * r, 1.0)
     return r * fma(fma(fma(0.3125, e, 0.375), e, 0.5), e, 1.0)
-
-
-@inlined
-def inverse_cube_single(s, w):
-    """w s^(-3/2) of float32 s > 0, to some 1e-7: as `inverse_cube`, refined once by a polynomial and once by a line."""
-    r = from_single_bits(np.int32(np.int32(0x5F375A86) - (single_bits(s) >> np.int32(1))))
-    c = s * (r * r)
-    r = r * fma(fma(np.float32(0.39409475), c, np.float32(-1.28885265)), c, np.float32(1.89474086))
-    c = r * r
-    e = fma(-s, c, np.float32(1.0))
-    return (r * c * w) * fma(np.float32(1.5), e, np.float32(1.0))

@@ -12,7 +12,8 @@ import numpy as np
 from numba import types
 
 from sceneql.kernels import inlined, kernel, lean, lean_inlined
-from sceneql.simulation.arithmetic_kernels import fma, inverse_cube, widest
+from sceneql.simulation.arithmetic_kernels import widest
+from sceneql.simulation.lanes_kernels import aligned, fma, folded, guess, load, spread, store
 from sceneql.simulation.nbody.weights_kernels import (
     CONSTANT,
     FLOOR,
@@ -34,13 +35,12 @@ FEW = 32
 LANES = 128
 """Bodies of a tile; ROOM is a multiple of it."""
 MOST_PARTS = 16
+WIDTH = 8
+"""Bodies that are worked on together."""
 ALONE = 1024
 """Up to so many bodies one thread is quicker."""
 X, Y, Z, W, FX, FY, FZ, ROWS = range(8)
 """Rows of a tile: places, weights, forces."""
-SOURCES, STRIP = 4, 16
-"""Bodies of the other tile that are worked on together, so that the sums stay in registers for four; lanes of a tile
-whose pull on such a body is summed apart."""
 
 
 @inlined
@@ -82,72 +82,49 @@ def few(y, rate, floats, ints, c):
 
 
 @lean_inlined
-def pull(source, j, soft, px, py, pz, w):
-    """The force of body j of a tile on a body at (px, py, pz) of weight w: its size by distance, and the way (3)."""
-    dx, dy, dz = source[X * LANES + j] - px, source[Y * LANES + j] - py, source[Z * LANES + j] - pz
-    return inverse_cube(fma(dx, dx, fma(dy, dy, fma(dz, dz, soft))), w * source[W * LANES + j]), dx, dy, dz
+def inverse_cube(s, w):
+    """w s^(-3/2) for s > 0, to some 1e-16: a first guess, refined twice by polynomials.
 
-
-@lean(types.void(A, A, N, F, A), inner=True)
-def strips(one, other, j, soft, sums):
-    """The forces between all lanes of one tile and the bodies j..j + 3 of the other, whose sums are kept by lane."""
-    widest()
-    for first in range(0, LANES, STRIP):
-        for l in range(STRIP):
-            k = first + l
-            px, py, pz, w = one[X * LANES + k], one[Y * LANES + k], one[Z * LANES + k], one[W * LANES + k]
-            fx, fy, fz = one[FX * LANES + k], one[FY * LANES + k], one[FZ * LANES + k]
-            f, dx, dy, dz = pull(other, j, soft, px, py, pz, w)
-            fx, fy, fz = fma(f, dx, fx), fma(f, dy, fy), fma(f, dz, fz)
-            ax, ay, az = fma(f, dx, sums[l]), fma(f, dy, sums[STRIP + l]), fma(f, dz, sums[2 * STRIP + l])
-            f, dx, dy, dz = pull(other, j + 1, soft, px, py, pz, w)
-            fx, fy, fz = fma(f, dx, fx), fma(f, dy, fy), fma(f, dz, fz)
-            bx, by, bz = (
-                fma(f, dx, sums[3 * STRIP + l]),
-                fma(f, dy, sums[4 * STRIP + l]),
-                fma(f, dz, sums[5 * STRIP + l]),
-            )
-            f, dx, dy, dz = pull(other, j + 2, soft, px, py, pz, w)
-            fx, fy, fz = fma(f, dx, fx), fma(f, dy, fy), fma(f, dz, fz)
-            cx, cy, cz = (
-                fma(f, dx, sums[6 * STRIP + l]),
-                fma(f, dy, sums[7 * STRIP + l]),
-                fma(f, dz, sums[8 * STRIP + l]),
-            )
-            f, dx, dy, dz = pull(other, j + 3, soft, px, py, pz, w)
-            one[FX * LANES + k], one[FY * LANES + k], one[FZ * LANES + k] = (
-                fma(f, dx, fx),
-                fma(f, dy, fy),
-                fma(f, dz, fz),
-            )
-            sums[9 * STRIP + l] = fma(f, dx, sums[9 * STRIP + l])
-            sums[10 * STRIP + l] = fma(f, dy, sums[10 * STRIP + l])
-            sums[11 * STRIP + l] = fma(f, dz, sums[11 * STRIP + l])
-            sums[l], sums[STRIP + l], sums[2 * STRIP + l] = ax, ay, az
-            sums[3 * STRIP + l], sums[4 * STRIP + l], sums[5 * STRIP + l] = bx, by, bz
-            sums[6 * STRIP + l], sums[7 * STRIP + l], sums[8 * STRIP + l] = cx, cy, cz
+    Division and square root take three times as long as all of this; fixed operations keep the bits.
+    """
+    r = guess(s)
+    r = r * fma(fma(0.39409475, s * (r * r), -1.28885265), s * (r * r), 1.89474086)
+    c = r * r
+    e = fma(s * -1.0, c, 1.0)
+    return (r * c * w) * fma(fma(fma(2.1875, e, 1.875), e, 1.5), e, 1.0)
 
 
 @lean_inlined
-def folded(sums):
-    """The sum of STRIP numbers, half by half, as vectors do it."""
-    for l in range(8):
-        sums[l] += sums[8 + l]
-    for l in range(4):
-        sums[l] += sums[4 + l]
-    return (sums[0] + sums[2]) + (sums[1] + sums[3])
+def pull(one, k, other, j, soft):
+    """The forces of body j of a tile on those from k on of another: their sizes by distance, and the ways (3)."""
+    dx = other[X * LANES + j] - load(one, X * LANES + k)
+    dy = other[Y * LANES + j] - load(one, Y * LANES + k)
+    dz = other[Z * LANES + j] - load(one, Z * LANES + k)
+    w = other[W * LANES + j] * load(one, W * LANES + k)
+    return inverse_cube(fma(dx, dx, fma(dy, dy, fma(dz, dz, soft))), w), dx, dy, dz
 
 
-@lean(types.void(A, A, A, F), inner=True)
-def attract(one, other, sums, soft):
-    """Add the forces between the bodies of two tiles; sums (3 SOURCES STRIP,): scratch."""
-    for j in range(0, LANES, SOURCES):
-        for k in range(3 * SOURCES * STRIP):
-            sums[k] = 0.0
-        strips(one, other, j, soft, sums)
-        for source in range(SOURCES):
-            for c in range(3):
-                other[(FX + c) * LANES + j + source] -= folded(sums[(3 * source + c) * STRIP :])
+@lean(types.void(A, A, F, A), inner=True)
+def attract(one, other, soft, sums):
+    """Add the forces between the bodies of two tiles; sums (3 LANES WIDTH,): scratch, for the pull on the other's."""
+    widest()
+    for at in range(0, 3 * LANES * WIDTH, WIDTH):
+        store(sums, at, spread(0.0))
+    for k in range(0, LANES, WIDTH):
+        fx, fy, fz = load(one, FX * LANES + k), load(one, FY * LANES + k), load(one, FZ * LANES + k)
+        for j in range(LANES):
+            f, dx, dy, dz = pull(one, k, other, j, soft)
+            fx, fy, fz = fma(f, dx, fx), fma(f, dy, fy), fma(f, dz, fz)
+            at = 3 * WIDTH * j
+            store(sums, at, fma(f, dx, load(sums, at)))
+            store(sums, at + WIDTH, fma(f, dy, load(sums, at + WIDTH)))
+            store(sums, at + 2 * WIDTH, fma(f, dz, load(sums, at + 2 * WIDTH)))
+        store(one, FX * LANES + k, fx)
+        store(one, FY * LANES + k, fy)
+        store(one, FZ * LANES + k, fz)
+    for j in range(LANES):
+        for c in range(3):
+            other[(FX + c) * LANES + j] -= folded(load(sums, (3 * j + c) * WIDTH))
 
 
 @lean(types.void(A, I, A, N), inner=True)
@@ -179,7 +156,8 @@ def direct_tile(part, t, y, rate, floats, ints):
     for k in range(3 * room):
         floats[sums + k] = 0.0
     soft = floats[ints[SOFTENING]] * floats[ints[SOFTENING]] + FLOOR
-    one, other, scratch = np.empty(ROWS * LANES), np.empty(ROWS * LANES), np.empty(3 * SOURCES * STRIP)
+    one, other = aligned(np.empty((ROWS + 1) * LANES)), aligned(np.empty((ROWS + 1) * LANES))
+    scratch = aligned(np.empty((3 * LANES + 1) * WIDTH))
     tiles = room // LANES
     for turn in range(0, tiles, parts):
         row = turn + (part if turn // parts % 2 == 0 else parts - 1 - part)
@@ -188,10 +166,10 @@ def direct_tile(part, t, y, rate, floats, ints):
         take(floats, ints, one, LANES * row)
         # A tile with itself: every pair is found twice, so only one of the two is kept.
         take(floats, ints, other, LANES * row)
-        attract(one, other, scratch, soft)
+        attract(one, other, soft, scratch)
         for column in range(row + 1, tiles):
             take(floats, ints, other, LANES * column)
-            attract(one, other, scratch, soft)
+            attract(one, other, soft, scratch)
             leave(other, floats, sums + LANES * column, room)
         leave(one, floats, sums + LANES * row, room)
 

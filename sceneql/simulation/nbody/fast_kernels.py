@@ -10,74 +10,64 @@ import numpy as np
 from numba import types
 
 from sceneql.kernels import kernel, lean, lean_inlined
-from sceneql.simulation.arithmetic_kernels import fma, inverse_cube_single, widest
-from sceneql.simulation.nbody.direct_kernels import FORCES, LANES, PARTS, SOURCES, STRIP, folded
+from sceneql.simulation.arithmetic_kernels import widest
+from sceneql.simulation.lanes_kernels import aligned, fma, folded, guess, load, spread, store
+from sceneql.simulation.nbody.direct_kernels import FORCES, FX, FY, FZ, LANES, PARTS, W, X, Y, Z
 from sceneql.simulation.nbody.weights_kernels import POINTS, ROOM, SOFTENING, WEIGHTS
 from sceneql.simulation.threads_kernels import TILE
 from sceneql.system_kernels import A, I, N
 
 S = types.float32[::1]
-X, Y, Z, XL, YL, ZL, W, FX, FY, FZ, ROWS = range(11)
-"""Rows of a tile: places, what they lack, weights, forces."""
+XL, YL, ZL, ROWS = range(7, 11)
+"""Rows of a tile after those of direct_kernels: what the places lack."""
+WIDTH = 16
+"""Bodies that are worked on together."""
 FLOOR = 1e-20
 """Added to squared distances in units of the extent."""
 
 
 @lean_inlined
-def pull(source, j, soft, px, py, pz, qx, qy, qz, w):
-    """The force of body j of a tile on a body at p + q of weight w: its size by distance, and the way (3)."""
-    dx = (source[X * LANES + j] - px) + (source[XL * LANES + j] - qx)
-    dy = (source[Y * LANES + j] - py) + (source[YL * LANES + j] - qy)
-    dz = (source[Z * LANES + j] - pz) + (source[ZL * LANES + j] - qz)
-    square = fma(dx, dx, fma(dy, dy, fma(dz, dz, soft)))
-    return inverse_cube_single(square, w * source[W * LANES + j]), dx, dy, dz
+def inverse_cube(s, w):
+    """w s^(-3/2) of float32 s > 0, to some 1e-7: as in direct_kernels, refined once by a polynomial, once by a line."""
+    r = guess(s)
+    c = s * (r * r)
+    r = r * fma(fma(0.39409475, c, -1.28885265), c, 1.89474086)
+    c = r * r
+    e = fma(s * -1.0, c, 1.0)
+    return (r * c * w) * fma(1.5, e, 1.0)
 
 
-@lean(types.void(S, S, N, types.float32, S), inner=True)
-def strips(one, other, j, soft, sums):
+@lean_inlined
+def pull(one, k, other, j, soft):
+    """As in direct_kernels, of places in two parts."""
+    dx = other[X * LANES + j] - load(one, X * LANES + k) + (other[XL * LANES + j] - load(one, XL * LANES + k))
+    dy = other[Y * LANES + j] - load(one, Y * LANES + k) + (other[YL * LANES + j] - load(one, YL * LANES + k))
+    dz = other[Z * LANES + j] - load(one, Z * LANES + k) + (other[ZL * LANES + j] - load(one, ZL * LANES + k))
+    w = other[W * LANES + j] * load(one, W * LANES + k)
+    return inverse_cube(fma(dx, dx, fma(dy, dy, fma(dz, dz, soft))), w), dx, dy, dz
+
+
+@lean(types.void(S, S, types.float32, S), inner=True)
+def attract(one, other, soft, sums):
     """As in direct_kernels."""
     widest()
-    for first in range(0, LANES, STRIP):
-        for l in range(STRIP):
-            k = first + l
-            px, py, pz, w = one[X * LANES + k], one[Y * LANES + k], one[Z * LANES + k], one[W * LANES + k]
-            qx, qy, qz = one[XL * LANES + k], one[YL * LANES + k], one[ZL * LANES + k]
-            fx, fy, fz = one[FX * LANES + k], one[FY * LANES + k], one[FZ * LANES + k]
-            f, dx, dy, dz = pull(other, j, soft, px, py, pz, qx, qy, qz, w)
+    for at in range(0, 3 * LANES * WIDTH, WIDTH):
+        store(sums, at, spread(np.float32(0.0)))
+    for k in range(0, LANES, WIDTH):
+        fx, fy, fz = load(one, FX * LANES + k), load(one, FY * LANES + k), load(one, FZ * LANES + k)
+        for j in range(LANES):
+            f, dx, dy, dz = pull(one, k, other, j, soft)
             fx, fy, fz = fma(f, dx, fx), fma(f, dy, fy), fma(f, dz, fz)
-            ax, ay, az = fma(f, dx, sums[l]), fma(f, dy, sums[STRIP + l]), fma(f, dz, sums[2 * STRIP + l])
-            f, dx, dy, dz = pull(other, j + 1, soft, px, py, pz, qx, qy, qz, w)
-            fx, fy, fz = fma(f, dx, fx), fma(f, dy, fy), fma(f, dz, fz)
-            bx = fma(f, dx, sums[3 * STRIP + l])
-            by = fma(f, dy, sums[4 * STRIP + l])
-            bz = fma(f, dz, sums[5 * STRIP + l])
-            f, dx, dy, dz = pull(other, j + 2, soft, px, py, pz, qx, qy, qz, w)
-            fx, fy, fz = fma(f, dx, fx), fma(f, dy, fy), fma(f, dz, fz)
-            cx = fma(f, dx, sums[6 * STRIP + l])
-            cy = fma(f, dy, sums[7 * STRIP + l])
-            cz = fma(f, dz, sums[8 * STRIP + l])
-            f, dx, dy, dz = pull(other, j + 3, soft, px, py, pz, qx, qy, qz, w)
-            one[FX * LANES + k] = fma(f, dx, fx)
-            one[FY * LANES + k] = fma(f, dy, fy)
-            one[FZ * LANES + k] = fma(f, dz, fz)
-            sums[9 * STRIP + l] = fma(f, dx, sums[9 * STRIP + l])
-            sums[10 * STRIP + l] = fma(f, dy, sums[10 * STRIP + l])
-            sums[11 * STRIP + l] = fma(f, dz, sums[11 * STRIP + l])
-            sums[l], sums[STRIP + l], sums[2 * STRIP + l] = ax, ay, az
-            sums[3 * STRIP + l], sums[4 * STRIP + l], sums[5 * STRIP + l] = bx, by, bz
-            sums[6 * STRIP + l], sums[7 * STRIP + l], sums[8 * STRIP + l] = cx, cy, cz
-
-
-@lean(types.void(S, S, S, types.float32), inner=True)
-def attract(one, other, sums, soft):
-    """Add the forces between the bodies of two tiles; sums (3 SOURCES STRIP,): scratch."""
-    for j in range(0, LANES, SOURCES):
-        for k in range(3 * SOURCES * STRIP):
-            sums[k] = np.float32(0.0)
-        strips(one, other, j, soft, sums)
-        for source in range(SOURCES):
-            for c in range(3):
-                other[(FX + c) * LANES + j + source] -= folded(sums[(3 * source + c) * STRIP :])
+            at = 3 * WIDTH * j
+            store(sums, at, fma(f, dx, load(sums, at)))
+            store(sums, at + WIDTH, fma(f, dy, load(sums, at + WIDTH)))
+            store(sums, at + 2 * WIDTH, fma(f, dz, load(sums, at + 2 * WIDTH)))
+        store(one, FX * LANES + k, fx)
+        store(one, FY * LANES + k, fy)
+        store(one, FZ * LANES + k, fz)
+    for j in range(LANES):
+        for c in range(3):
+            other[(FX + c) * LANES + j] -= folded(load(sums, (3 * j + c) * WIDTH))
 
 
 @lean(types.void(A, I, A, S, N), inner=True)
@@ -134,8 +124,9 @@ def fast_tile(part, t, y, rate, floats, ints):
     unit = np.empty(5)
     units(floats, ints, unit)
     soft = np.float32((floats[ints[SOFTENING]] * unit[3]) ** 2 + FLOOR)
-    one, other = np.empty(ROWS * LANES, dtype=np.float32), np.empty(ROWS * LANES, dtype=np.float32)
-    scratch = np.empty(3 * SOURCES * STRIP, dtype=np.float32)
+    one = aligned(np.empty((ROWS + 1) * LANES, dtype=np.float32))
+    other = aligned(np.empty((ROWS + 1) * LANES, dtype=np.float32))
+    scratch = aligned(np.empty((3 * LANES + 1) * WIDTH, dtype=np.float32))
     tiles = room // LANES
     for turn in range(0, tiles, parts):
         row = turn + (part if turn // parts % 2 == 0 else parts - 1 - part)
@@ -143,11 +134,11 @@ def fast_tile(part, t, y, rate, floats, ints):
             continue
         take(floats, ints, unit, one, LANES * row)
         take(floats, ints, unit, other, LANES * row)
-        attract(one, other, scratch, soft)
+        attract(one, other, soft, scratch)
         leave(one, floats, sums + LANES * row, room)
         for column in range(row + 1, tiles):
             take(floats, ints, unit, other, LANES * column)
-            attract(one, other, scratch, soft)
+            attract(one, other, soft, scratch)
             leave(other, floats, sums + LANES * column, room)
             leave(one, floats, sums + LANES * row, room)
     scale = (unit[3] / unit[4]) ** 2

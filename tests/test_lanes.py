@@ -1,0 +1,57 @@
+"""Lanes do to each number what is done to one, with the rounding of IEEE 754."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from lanes_of_numbers_kernels import doubles, singles
+
+KINDS = pytest.mark.parametrize(("kernel", "kind"), [(doubles, np.float64), (singles, np.float32)])
+
+
+def given(kind, seed=3):
+    rng = np.random.default_rng(seed)
+    count = 64 // np.dtype(kind).itemsize
+    a, b = (rng.lognormal(sigma=3, size=(2, count))).astype(kind)
+    number = kind(rng.normal())
+    out = np.zeros(8 * count, dtype=kind)
+    return a, b, number, out
+
+
+@KINDS
+def test_operations_are_those_of_single_numbers(kernel, kind):
+    a, b, number, out = given(kind)
+    kernel(a, b, number, out)
+    expected = [a + b, a - b, a * b, number - a, a * number]
+    count = len(a)
+    assert np.array_equal(out[: 5 * count], np.concatenate(expected))
+    assert (out[6 * count : 7 * count] == number).all()
+
+
+@KINDS
+def test_fma_rounds_once(kernel, kind):
+    a, b, number, out = given(kind)
+    number = kind(-a[0] * b[0])  # what the first product rounds to: only one rounding leaves its error
+    kernel(a, b, number, out)
+    found = out[5 * len(a) : 6 * len(a)]
+    exact = [Fraction(float(x)) * Fraction(float(y)) + Fraction(float(number)) for x, y in zip(a, b, strict=True)]
+    ulp = [Fraction(float(np.spacing(abs(kind(float(one)))))) for one in exact]
+    assert found[0] != 0.0
+    assert all(abs(Fraction(float(x)) - y) <= u / 2 for x, y, u in zip(found, exact, ulp, strict=True))
+
+
+@KINDS
+def test_guess_is_near_the_inverse_root(kernel, kind):
+    a, b, number, out = given(kind)
+    kernel(a, b, number, out)
+    assert np.abs(out[7 * len(a) :] * np.sqrt(a.astype(float)) - 1.0).max() < 0.04
+
+
+@KINDS
+def test_sum_goes_half_by_half(kernel, kind):
+    a, b, number, out = given(kind)
+    total = a.copy()
+    while len(total) > 1:
+        total = total[: len(total) // 2] + total[len(total) // 2 :]
+    assert kernel(a, b, number, out) == total[0]
