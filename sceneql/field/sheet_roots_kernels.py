@@ -1,15 +1,38 @@
 # mypy: ignore-errors
 """First roots of a tape along a ray with or without a change of sign: where it meets a sheet."""
 
-from sceneql.field.certified_kernels import CROSSES, TOUCHES, certify, hidden, surely
+from sceneql.field.certified_kernels import CROSSES, TOUCHES, certify, hidden, told
+from sceneql.field.enclosure_kernels import segment
 from sceneql.field.isolation_kernels import BACK, search
 from sceneql.field.slope_kernels import on_ray
 from sceneql.field.tape_kernels import TAPE
 from sceneql.field.tape_ops import HIT, MISS, UNDECIDED, WHOLE
-from sceneql.kernels import lean
+from sceneql.kernels import lean, woven
 
 POLES = 16
 """Changes of sign without a root that are passed on one ray."""
+
+
+@woven
+def side_of(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, near):
+    """(side, t) as ``told``: by the enclosure at the start, which is sooner, and only else by intervals."""
+    c0, c1, e, status = segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, start, True)
+    if status == WHOLE and abs(c0) - abs(c1) > e:
+        return (1 if c0 > 0.0 else -1), start
+    return told(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, near, 1.0)
+
+
+@woven
+def is_defined(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
+    """Whether f is a number all around the place t: no pole, no jump of its domain."""
+    _, _, _, status = segment(
+        code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t - 0.01 * near, t + 0.01 * near, True
+    )
+    if status != WHOLE:
+        _, _, _, _, status = on_ray(
+            code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t - 0.01 * near, t + 0.01 * near, 1.0
+        )
+    return status == WHOLE
 
 
 @lean(
@@ -24,17 +47,16 @@ def surface_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1
     near = tolerance * (t1 - t0)
     start = t0
     for _ in range(POLES):
-        side, _, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, 1.0)
+        side, start = side_of(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, near)
+        if side == 0:
+            return UNDECIDED, start
         side = min(side, 1)
-        status = UNDECIDED
-        t = start
-        if side != 0:
-            status, t = search(
-                code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, tolerance, float(side), False
-            )
+        status, t = search(
+            code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, tolerance, float(side), False
+        )
         if status == MISS:
             return MISS, t1
-        if status == UNDECIDED and side != 0:
+        if status == UNDECIDED:
             kind, _, place, _, _ = hidden(
                 code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t, start, t1, 0.1 * near, float(side)
             )
@@ -46,10 +68,7 @@ def surface_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1
             status, t = certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, near, 1.0, False, True)
             if status != HIT:
                 return status, t
-        _, _, _, _, known = on_ray(
-            code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t - 0.01 * near, t + 0.01 * near, 1.0
-        )
-        if known == WHOLE:
+        if is_defined(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
             return HIT, t
         start = t + near
         if not start < t1:
