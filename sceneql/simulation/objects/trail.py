@@ -32,7 +32,7 @@ class Trail(Object):
     keep: FixedTime = field("How long it stays.", "1 s", above=0)
     every: FixedTime | None = field("Time between its corners; by default a sixtieth of `keep`.", None, above=0)
     radius: Length = field("Its radius.", "10 mm", above=0)
-    fade: bool = field("It thins out towards its old end.", True)
+    fade: bool = field("It thins out towards its old end, its cross-section evenly.", True)
 
     def remembers(self) -> Iterable[tuple[Value, float, float]]:
         """The points."""
@@ -54,7 +54,7 @@ class Trail(Object):
         ends = np.stack([path[:-1], path[1:]], axis=2).reshape(-1, 2, 3)
         radius = positive(moment, self.radius, "radius") * uniform_scale(place)
         ages = (moment.time - 0.5 * (times[:-1] + times[1:])) / self.keep
-        thickness = np.maximum(1 - ages, 0.0) if self.fade else np.ones(len(ages))
+        thickness = np.sqrt(np.maximum(1 - ages, 0.0)) if self.fade else np.ones(len(ages))
         radii = np.repeat(radius * thickness, len(ways[0]))
         if len(ends):
             yield Segments(name, moment.surface(name, self.material, self.color), ends, radii)
