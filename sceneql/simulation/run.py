@@ -109,7 +109,8 @@ class IslandRun:
 
                 self.march = BlockMarch(system, stepper, end, blocks)
             else:
-                self.march = March(system, stepper, end, lambda: assembly.finish(jacobian=True))
+                later = None if stepper.jacobian else lambda: assembly.finish(jacobian=True)
+                self.march = March(system, stepper, end, later)
         except LimitRefused as refused:
             raise refused.at(graph.tasks[island.solver].span) from None
         self.members = {*island.models, *(contact for contact, _, _ in island.contacts)}

@@ -159,8 +159,10 @@ def _laid_out(pattern: Any, scalars: Rows, fronts: list[_Front], first: Rows) ->
         return places
 
     target = inside(owner, i) * heights[owner] + inside(owner, j)
-    by_owner = np.argsort(owner, kind="stable")
-    bounds = np.searchsorted(owner[by_owner], np.arange(count + 1)).tolist()
+    # The upper triangle of each front's panel first: symmetric matrices need no more.
+    kinds = 2 * owner + (i > j)
+    by_owner = np.argsort(kinds, kind="stable")
+    bounds = np.searchsorted(kinds[by_owner], np.arange(2 * count + 1)).tolist()
     entries = np.column_stack([by_owner, target[by_owner]]).ravel()
 
     last_child, earlier = [-1] * count, [-1] * count
@@ -172,7 +174,9 @@ def _laid_out(pattern: Any, scalars: Rows, fronts: list[_Front], first: Rows) ->
     climbing = np.concatenate(
         [np.zeros(0, np.int64), *(np.arange(row_starts[k] + widths[k], row_starts[k + 1]) for k in up)]
     )
-    maps = inside(np.repeat(parents[up], rests[up]), expanded[climbing])
+    maps, run_counts = _runs(inside(np.repeat(parents[up], rests[up]), expanded[climbing]), rests[up])
+    map_sizes = np.zeros(count, dtype=np.int64)
+    map_sizes[up] = 2 * run_counts
     map_at = 0
     operations = widths * rests * heights / 2.0 + widths**3 / 6.0
     pieces = _pieces(parents.tolist(), operations.tolist())
@@ -180,13 +184,13 @@ def _laid_out(pattern: Any, scalars: Rows, fronts: list[_Front], first: Rows) ->
     for k, (front, height, width, rest) in enumerate(
         zip(fronts, heights.tolist(), widths.tolist(), rests.tolist(), strict=True)
     ):
-        table += [int(first[front.columns[0]]), width, height, int(row_starts[k]), map_at, factors, bounds[k], 0, 0]
-        table.append(updates[k])
+        table += [int(first[front.columns[0]]), width, height, int(row_starts[k]), map_at, factors, bounds[2 * k], 0, 0]
+        table += [updates[k], bounds[2 * k + 1]]
         if front.parent >= 0:
             earlier[k], last_child[front.parent] = last_child[front.parent], k
-            map_at += rest
+            map_at += int(map_sizes[k])
         factors += width * height + width * rest
-    table += [n, 0, 0, int(row_starts[-1]), map_at, factors, bounds[-1], -1, -1, 0]
+    table += [n, 0, 0, int(row_starts[-1]), map_at, factors, bounds[-1], -1, -1, 0, 0]
     for k in range(count):
         table[FIELDS * k + 7 : FIELDS * k + 9] = last_child[k], earlier[k]
     largest = int(heights.max(initial=0))
@@ -196,6 +200,20 @@ def _laid_out(pattern: Any, scalars: Rows, fronts: list[_Front], first: Rows) ->
     head = [n, count, *starts[1:6], room, starts[6], len(pieces), *threads(), tile_address(piece)]
     numbers = np.concatenate([np.array(part, dtype=np.int64) for part in (head, *parts)])
     return Plan(numbers, factors, room + largest * largest + 2 * n, float(operations.sum()))
+
+
+def _runs(places: Rows, counts: Rows) -> tuple[Rows, Rows]:
+    """Maps of so many places each as runs of places in line, (end in its own map, first place), and how many each has.
+
+    A run of one map never goes on in the next.
+    """
+    import numpy as np
+
+    own = np.arange(len(places)) - np.repeat(np.cumsum(counts) - counts, counts)
+    starts = np.flatnonzero((own == 0) | (np.diff(places, prepend=-2) != 1))
+    lengths = np.diff(np.append(starts, len(places)))
+    runs = np.column_stack([own[starts] + lengths, places[starts]]).ravel()
+    return runs, np.diff(np.append(np.flatnonzero(own[starts] == 0), len(starts)))
 
 
 def _pieces(parents: list[int], operations: list[float]) -> list[tuple[int, int]]:

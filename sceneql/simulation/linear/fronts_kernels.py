@@ -5,8 +5,9 @@ The integers of a plan: [unknowns, fronts, where these start: order, rows, maps,
 updates; where the pieces start, how many; the numbers of threads_kernels.threads, the address of a piece's kernel],
 then a table with FIELDS a front: first unknown, number eliminated, rows of the front, then where its rows, its map
 into the parent, its factors and its entries start, its last child and the child of its parent before it (-1: none),
-where its update stands in the work; last a row that ends them. A piece: its first front, the one after its last, and
-whether it was factored.
+where its update stands in the work, and where its entries below the diagonal start; last a row that ends them. A map
+is in runs: where each ends in the update, and its first place in the parent. A piece: its first front, the one after
+its last, and whether it was factored.
 A front keeps U (width x rows, the reciprocals of the pivots on its diagonal) and, where the matrix is not symmetric,
 L below it ((rows - width) x width). Symmetric: A = U^T D^-1 U. Pivots are sought in the same block of rows alone.
 """
@@ -17,9 +18,14 @@ from numba import types
 
 from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.arithmetic_kernels import fma, widest
-from sceneql.simulation.linear.fronts_symmetric_kernels import BLOCK, FIELDS, HEAD, TILE, factor_symmetric
+from sceneql.simulation.linear.fronts_symmetric_kernels import FIELDS, HEAD, factor_symmetric
 from sceneql.simulation.linear.solver_kernels import FACTOR_SYSTEM, SOLVE_SYSTEM
 from sceneql.system_kernels import A, N
+
+TILE = 256
+"""Columns of a tile of the update."""
+BLOCK = 48
+"""Rows that are eliminated before the rest of a front is updated: their part of a tile stays in the cache."""
 
 UPDATE = types.void(A, N, N, N, N, N)
 
@@ -104,12 +110,24 @@ def eliminate(front, height, begin, end, pivots):
 
 
 @lean_inlined
-def take_in(front, height, child, rest, places):
-    """Add a child's update (rest x rest) at its places in the front."""
-    for i in range(rest):
-        at = places[i] * height
-        for j in range(rest):
-            front[at + places[j]] += child[i * rest + j]
+def take_in(front, height, child, rest, runs):
+    """Add a child's update (rest x rest) at its places in the front, in runs (end in the update, place)."""
+    first = run = 0
+    while first < rest:
+        end, place = runs[run], runs[run + 1]
+        for i in range(first, end):
+            low = (place + i - first) * height
+            begin = other = 0
+            while begin < rest:
+                stop = runs[other]
+                at = low + runs[other + 1]
+                into, part = front[at : at + stop - begin], child[i * rest + begin : i * rest + stop]
+                for j in range(part.size):
+                    into[j] += part[j]
+                begin = stop
+                other += 2
+        first = end
+        run += 2
 
 
 @lean(FACTOR_SYSTEM)

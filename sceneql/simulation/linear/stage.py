@@ -83,16 +83,16 @@ def stage_plan(system: System) -> StagePlan:
     rows = np.concatenate([reduced.first[:, 1], reduced.second[:, 1], np.arange(m)])
     columns = np.concatenate([reduced.first[:, 2], reduced.second[:, 2], np.arange(m)])
     pattern = _pattern(rows, columns, m)
-    order = np.repeat(np.arange(m, dtype=np.int64), np.diff(pattern.indptr)) * m + pattern.indices
-    places = np.searchsorted(order, rows * m + columns)
-    twins = np.searchsorted(order, pattern.indices.astype(np.int64) * m + order // m)
+    row_of = np.repeat(np.arange(m, dtype=np.int64), np.diff(pattern.indptr))
+    places = np.searchsorted(row_of * m + pattern.indices, rows * m + columns)
+    twins = _twins(pattern)
     if one_grid(system, reduced.core):
         solver = _over_grids(system, reduced.core, pattern)
     else:
         solver = _choose(pattern, _points(system, reduced.core))
     f, s = len(reduced.first), len(reduced.second)
     parts = np.full((pattern.nnz, 4), -1, dtype=np.int64)
-    parts[:, 0] = order // m
+    parts[:, 0] = row_of
     parts[places[:f], 1] = reduced.first[:, 0]
     parts[places[f : f + s], 2] = reduced.second[:, 0]
     parts[places[f : f + s], 3] = reduced.second[:, 3]
@@ -207,6 +207,16 @@ def _pattern(rows: Any, columns: Any, m: int) -> Any:
     pattern = csr_array((np.ones(2 * len(rows)), both), shape=(m, m))
     pattern.sum_duplicates()
     return pattern
+
+
+def _twins(pattern: Any) -> NDArray[int64]:
+    """For each entry of a symmetric pattern, indices sorted, the place of the transposed one."""
+    import numpy as np
+    from scipy.sparse import csr_array
+
+    numbered = (np.arange(pattern.nnz, dtype=np.int64), pattern.indices, pattern.indptr)
+    found: NDArray[int64] = csr_array(numbered, shape=pattern.shape).T.tocsr().data
+    return found
 
 
 def _points(system: System, core: NDArray[int64]) -> Floats | None:
