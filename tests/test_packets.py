@@ -11,10 +11,25 @@ from extremes_kernels import extremes
 from moment import IDENTITY, FakeMoment, const, formula
 from renderers.tracing.bundles import camera_roots
 from renderers.tracing.pack import pack
-from sceneql.field.packets import cast_together, enclosures, plan_of
+from sceneql.field.packets import Memory, cast_together, enclosures, plan_of
 from sceneql.field.skeleton import Skeleton
 from sceneql.field.solid import cast, field_values
-from sceneql.field.tape_ops import DENSITY, HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
+from sceneql.field.tape_ops import (
+    CONSTANT,
+    COPY,
+    DENSITY,
+    HIT,
+    INSIDE,
+    MISS,
+    NOWHERE,
+    POW,
+    SQRT,
+    SQUARE,
+    SUB,
+    UNDECIDED,
+    WHOLE,
+    X,
+)
 from sceneql.frame import Frame, Implicit, Surface, View
 from sceneql.simulation.objects.blobby import Blobby
 from sceneql.simulation.objects.implicit import Implicit as Formula
@@ -93,6 +108,21 @@ def test_no_crossing_of_any_tape_is_missed_in_packets(tape, ray, spread, seed):
     certified, _ = cast(tape, origins, directions, t0, t1)
     settled = (status != UNDECIDED) & (certified != UNDECIDED) & (t1 > t0)
     assert ((status == HIT) == ((certified == HIT) | (certified == INSIDE)))[settled].all()
+
+
+def test_parts_about_a_place_that_is_not_everywhere_a_number_are_kept():
+    # The density of (x, x, sqrt(1 - x^(2x))): the bundle's beam has places where that is enclosed by no numbers.
+    code = [[X, 0, 0, 0], [POW, 0, 0, 0], [CONSTANT, 0, 0, 0], [SQUARE, 1, 1, 0], [SUB, 2, 3, 0], [SQRT, 4, 4, 0]]
+    code += [[COPY, 0, 0, 0], [COPY, 0, 0, 0], [COPY, 5, 5, 0], [DENSITY, 0, 1, 6]]
+    part = np.array([[0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 1.5, -0.5]])
+    tape = replace(tape_of("x"), code=np.array(code, dtype=np.int32), constants=np.array([1.0]), parts=part)
+    generator = np.random.default_rng(0)
+    origins, directions = bundle(np.zeros(3), np.zeros(3), generator, 150, 0.5)
+    t0, t1 = np.zeros(150), np.full(150, 1e-9)
+    status, _ = cast_together(tape, origins, directions, t0, t1)
+    inside = field_values(tape, origins) < 0.0
+    assert inside.sum() > 30
+    assert (status[inside] != MISS).all()
 
 
 @pytest.mark.parametrize(("centers", "radius"), [(1, 1.0), (30, 0.6)])
@@ -178,6 +208,24 @@ def test_polynomials_are_met_where_the_certified_routine_meets_them(text, seed, 
     origins, directions = bundle(aim - way, way, generator, 150, spread)
     t0, t1 = np.full(150, 0.1), np.full(150, 2.0)
     agree_with_the_certified(tape, origins, directions, t0, t1, within=1e-5)
+
+
+def test_shadow_rays_that_end_on_the_ball_inside_a_polynomial_need_no_certified_routine():
+    generator = np.random.default_rng(5)
+    tape = tape_of("max(x^2*y^2 + y^2*z^2 - 0.1 - z, sqrt(x^2 + y^2 + z^2) - 1)")
+    memory = Memory(tape, 256)
+    begins = generator.uniform(-0.6, 0.6, (256, 3)) - [0.0, 0.0, 0.1]
+    ways = generator.normal(size=(256, 3)) * 0.1 + [0.3, 0.1, 1.0]
+    ways /= np.linalg.norm(ways, axis=1)[:, None]
+    along = (begins * ways).sum(axis=1)
+    ends = np.sqrt(along**2 + 1.0 - (begins**2).sum(axis=1)) - along
+    memory.rays[:3], memory.rays[3:6], memory.rays[6], memory.rays[7] = begins.T, ways.T, 0.0, ends
+    _, certified = memory.settle(256, anywhere=True)
+    assert certified == 0
+    status, _ = cast(tape, begins, ways, np.zeros(256), ends)
+    hits = (status == HIT) | (status == INSIDE)
+    assert ((memory.found[0] == HIT) == hits).all()
+    assert hits.sum() > 100
 
 
 @settings(max_examples=30)

@@ -2,7 +2,7 @@
 """Beams: capsules around pieces of neighboring rays, and the parts of a density field that reach into one.
 
 A bundle's rays stand in ``wide`` (WIDE, n), those with nothing to search left out: where each begins, its unit
-direction, how far it goes [m], how long its direction was [m per unit of t], and its share of a beam.
+direction, how far it goes [m], how much of t makes a meter, and its share of a beam.
 """
 
 import numpy as np
@@ -11,7 +11,7 @@ from sceneql.field.extent_kernels import extent
 from sceneql.field.skeleton_kernels import NODE, RADIUS, SHAPE, STRIDE
 from sceneql.kernels import inlined
 
-PX, PY, PZ, DX, DY, DZ, FAR, SPEED, BEHIND, STRETCH, OFF = range(11)
+PX, PY, PZ, DX, DY, DZ, FAR, INVERSE_SPEED, BEHIND, STRETCH, OFF = range(11)
 """Rows of rays; the last: how far the ray begins along the axis of its beam, its length for a unit along that, and how
 far it begins off the axis (3 rows)."""
 WIDE = 13
@@ -37,7 +37,7 @@ def gather(rays, count, groups, wide, ids):
         source, target = rays[row], wide[row]
         for i in range(n):
             target[i] = source[np.uint64(ids[i])]
-    t0, t1, dx, dy, dz = wide[FAR], wide[SPEED], wide[DX], wide[DY], wide[DZ]
+    t0, t1, dx, dy, dz = wide[FAR], wide[INVERSE_SPEED], wide[DX], wide[DY], wide[DZ]
     for axis in range(3):
         place, way = wide[PX + axis], wide[DX + axis]
         for i in range(n):
@@ -48,7 +48,7 @@ def gather(rays, count, groups, wide, ids):
         inverse = 1.0 / speed
         dx[i], dy[i], dz[i] = dx[i] * inverse, dy[i] * inverse, dz[i] * inverse
         t0[i] = far
-        t1[i] = speed
+        t1[i] = inverse
     return n
 
 

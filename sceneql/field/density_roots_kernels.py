@@ -14,10 +14,10 @@ from sceneql.field.beam_kernels import (
     DX,
     FAR,
     HIGH,
+    INVERSE_SPEED,
     LOW,
     PX,
     RADIUS_OF,
-    SPEED,
     STRETCH,
     WIDE,
     beam_around,
@@ -37,8 +37,6 @@ from sceneql.field.density_march_kernels import (
     LANES,
     LIVE,
     ROOT,
-    ROWS,
-    SLOPE,
     STATE,
     TRIES,
     WEIGHT,
@@ -52,7 +50,7 @@ from sceneql.field.density_march_kernels import (
     sum_up,
 )
 from sceneql.field.density_polish_kernels import polish
-from sceneql.field.hunt_kernels import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_SLOPE, FOUND_STATUS
+from sceneql.field.hunt_kernels import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS
 from sceneql.field.tape_ops import DENSITY, HIT, MISS, UNDECIDED
 from sceneql.kernels import inlined
 
@@ -183,28 +181,20 @@ def start_lanes(room, state, n):
 
 
 @inlined
-def move_lane(table, kept, state, ids, room, i, j):
-    """Put lane j into lane i."""
-    for k in range(kept):
-        row = table[k]
-        row[i] = row[j]
-        row[T + i] = row[T + j]
-        row[Q + i] = row[Q + j]
-    for k in range(0, ROWS, LANES):
-        state[k + i] = state[k + j]
-    room[SPOT + BASE, i] = room[SPOT + BASE, j]
-    ids[i] = ids[j]
-
-
-@inlined
-def note(room, state, i, j, ray, found):
-    """What became of lane i, which is ray j of the beam and ``ray`` of the bundle."""
-    base, inverse = room[SPOT + BASE, i], 1.0 / room[SPEED, j]
-    found[FOUND_STATUS, ray] = state[STATE + i]
-    found[FOUND_LOW, ray] = (base + state[A + i]) * inverse
-    found[FOUND_HIGH, ray] = (base + state[B + i]) * inverse
-    found[FOUND_ROOT, ray] = (base + max(state[A + i], state[ROOT + i])) * inverse
-    found[FOUND_SLOPE, ray] = state[SLOPE + i] * room[SPEED, j]
+def note(room, state, width, live, rays, found):
+    """What became of lanes, and where they are so far; of the live ones it is noted again."""
+    bases, inverse = room[SPOT + BASE], room[INVERSE_SPEED]
+    outcomes, lows, highs, roots = found[FOUND_STATUS], found[FOUND_LOW], found[FOUND_HIGH], found[FOUND_ROOT]
+    for i in range(width):
+        j = np.uint64(live[i])
+        ray = np.uint64(rays[j])
+        base, unit = bases[i], inverse[j]
+        low, root = state[A + i], state[ROOT + i]
+        root = root if root > low else low
+        outcomes[ray] = state[STATE + i]
+        lows[ray] = (base + low) * unit
+        highs[ray] = (base + state[B + i]) * unit
+        roots[ray] = (base + root) * unit
 
 
 @inlined
@@ -217,23 +207,34 @@ def live_lanes(state, n):
 
 
 @inlined
-def settle_lanes(table, kept, state, room, live, width, left, rays, found):
+def move_lanes(row, kept, n):
+    """Put n lanes of a row, those ``kept``, together."""
+    for i in range(n):
+        row[i] = row[np.uint64(kept[i])]
+
+
+@inlined
+def settle_lanes(table, rows, state, room, live, width, left, rays, found):
     """Note the outcomes of lanes, and put those without one together; (how many, rays left for the next slice)."""
+    note(room, state, width, live, rays, found)
+    lost, kept = live[LANES:], live[2 * LANES :]
     n = 0
     for i in range(width):
         outcome = state[STATE + i]
-        if outcome == LIVE:
-            if n < i:
-                move_lane(table, kept, state, live, room, n, i)
-            n += 1
-        elif outcome == F(MISS):
-            live[LANES + left] = live[i]
-            left += 1
-        else:
-            j = np.uint64(live[i])
-            note(room, state, i, j, np.uint64(rays[j]), found)
-    for i in range(n, width):
-        state[STATE + i] = F(MISS)
+        kept[np.uint64(n)] = i
+        n += 1 if outcome == LIVE else 0
+        lost[np.uint64(left)] = live[i]
+        left += 1 if outcome == F(MISS) else 0
+    if n < width:
+        for k in range(rows):
+            for part in (0, T, Q):
+                move_lanes(table[k, part:], kept, n)
+        for start in (A, B, END, TRIES, FINE):
+            move_lanes(state[start:], kept, n)
+        move_lanes(room[SPOT + BASE], kept, n)
+        move_lanes(live, kept, n)
+        for i in range(width):
+            state[STATE + i] = LIVE if i < n else F(MISS)
     return n, left
 
 
@@ -263,7 +264,7 @@ def leave_undecided(room, live, n, rays, found):
     for i in range(n):
         j = live[i]
         found[FOUND_STATUS, rays[j]] = UNDECIDED
-        found[FOUND_LOW, rays[j]] = room[SPOT + BASE, i] / room[SPEED, j]
+        found[FOUND_LOW, rays[j]] = room[SPOT + BASE, i] * room[INVERSE_SPEED, j]
 
 
 @inlined
@@ -345,7 +346,7 @@ def density_roots(
     for row in range(code.shape[0]):
         for j in range(4):
             short[row, j] = code[row, j]
-    ids = order[2 * LANES :]
+    ids = order[3 * LANES :]
     listed = ids[rays.shape[1] :]
     n = gather(rays, count, groups, room, ids)
     if n == 0:

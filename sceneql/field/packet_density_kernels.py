@@ -160,8 +160,9 @@ def within_reach(p, x, y, z, first, stop):
         hz = (abs(z[C1 + i]) + z[E + i]) * GROW + PAD * abs(z[i])
         # The distance changes no faster than the point moves.
         far = reach + np.sqrt(hx * hx + hy * hy + hz * hz) * GROW
-        near = wx * wx + wy * wy + wz * wz <= far * far * GROW + TINY
-        lanes += 1 if near else 0
+        # Where the place is not a number, nothing is known to be off.
+        off = wx * wx + wy * wy + wz * wz > far * far * GROW + TINY
+        lanes += 0 if off else 1
     return lanes > 0
 
 

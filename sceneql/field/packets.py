@@ -158,11 +158,24 @@ def tape_up_to(tape: Tape, row: int) -> NDArray[int32]:
     return np.array(code, dtype=np.int32).reshape(-1, 4)
 
 
-def room_for(plan: NDArray[int64]) -> Floats:
-    """What polynomials of a plan work in: see polynomial_steps_kernels."""
+def room_for(plan: NDArray[int64]) -> int:
+    """How many numbers polynomials of a plan work in: see polynomial_steps_kernels."""
     rows = int(plan[POLYNOMIAL]) + 1
     numbers = int((plan[DEGREES : DEGREES + rows] + 1).sum()) * LANES
-    return np.zeros(ROWS + max(numbers, 2 * rows))
+    return ROWS + max(numbers, 2 * rows)
+
+
+CACHE_LINE = 64
+"""Bytes: vectors that lie across two of these are read and written at half the speed."""
+
+
+def lined(shape: tuple[int, ...] | int, dtype: Any = np.float64) -> NDArray[Any]:
+    """Zeros from the begin of a cache line on."""
+    size = int(np.prod(shape)) * np.dtype(dtype).itemsize
+    raw = np.zeros(size + CACHE_LINE, dtype=np.uint8)
+    first = -raw.ctypes.data % CACHE_LINE
+    numbers: NDArray[Any] = raw[first : first + size].view(dtype).reshape(shape)
+    return numbers
 
 
 class Memory:
@@ -171,31 +184,31 @@ class Memory:
     def __init__(self, tape: Tape, count: int) -> None:
         rows = len(tape.code)
         self.tape = tape
-        self.rays = np.zeros((hunt_kernels.RAY, count))
-        self.found = np.zeros((5, count))
+        self.rays = lined((hunt_kernels.RAY, count))
+        self.found = lined((5, count))
         single = np.float32
         self.packet = (
-            np.zeros((rows, WIDTH), dtype=single),
-            np.zeros((3, WIDTH), dtype=single),
-            np.zeros(LANES, dtype=single),
-            np.zeros(hunt_kernels.ROWS * LANES, dtype=single),
-            np.zeros(LANES, dtype=np.int64),
+            lined((rows, WIDTH), single),
+            lined((3, WIDTH), single),
+            lined(LANES, single),
+            lined(hunt_kernels.ROWS * LANES, single),
+            lined(LANES, np.int64),
         )
-        self.asked, self.queue = np.zeros((3, count), dtype=single), np.zeros(count, dtype=np.int64)
+        self.asked, self.queue = lined((3, count), single), lined(count, np.int64)
         self.singles = single_parts(tape)
-        beams, doubles = np.zeros((BEAM, -(-count // GROUP) + 1)), np.zeros((rows, LANES))
-        near = np.zeros_like(tape.code), np.zeros_like(self.singles), np.zeros_like(tape.parts)
+        beams, doubles = lined((BEAM, -(-count // GROUP) + 1)), lined((rows, LANES))
+        near = np.zeros_like(tape.code), lined(self.singles.shape, single), lined(tape.parts.shape)
         plan = plan_of(tape)
         whole = -(-max(count, LANES, len(tape.parts)) // LANES) * LANES  # lanes beyond the rays are looked at, too
         march = (
             plan,
-            np.zeros(2 * LANES + count + len(tape.parts), dtype=np.int64),
-            np.zeros((density_roots_kernels.ROOM, whole)),
-            np.zeros((density_roots_kernels.MOST_PARTS, density_march_kernels.COLUMNS), dtype=single),
-            room_for(plan),
+            lined(3 * LANES + count + len(tape.parts), np.int64),
+            lined((density_roots_kernels.ROOM, whole)),
+            lined((density_roots_kernels.MOST_PARTS, density_march_kernels.COLUMNS), single),
+            lined(room_for(plan)),
             tape_up_to(tape, int(plan[density_roots_kernels.OTHER])),
         )
-        self.rest = tape.parts, scratch(tape), beams, doubles, np.zeros((3, LANES)), *near, *march
+        self.rest = tape.parts, lined(scratch(tape).shape), beams, doubles, lined((3, LANES)), *near, *march
 
     @property
     def bundle(self) -> tuple[Any, ...]:

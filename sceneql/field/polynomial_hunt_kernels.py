@@ -111,39 +111,45 @@ def live_lanes(lanes, n):
 
 
 @inlined
-def note(lanes, i, j, rays, anywhere, found):
-    """What became of lane i, which is ray j and no MISS."""
-    outcome = lanes[STATE + i]
-    t0, t1 = rays[T0, j], rays[T1, j]
-    middle, half = lanes[MIDDLE + i] - t0, lanes[HALF_WAY + i]
-    if outcome == HIT and not anywhere:
+def note(lanes, ids, width, rays, anywhere, found):
+    """What became of lanes, and where they are so far; of the live ones it is noted again."""
+    begins, ends = rays[T0], rays[T1]
+    outcomes, lows, highs, roots = found[FOUND_STATUS], found[FOUND_LOW], found[FOUND_HIGH], found[FOUND_ROOT]
+    for i in range(width):
+        j = np.uint64(ids[np.uint64(lanes[RAY + i])])
+        t0, t1 = begins[j], ends[j]
+        outcome = lanes[STATE + i]
+        middle, half = lanes[MIDDLE + i] - t0, lanes[HALF_WAY + i]
         root = middle + half * lanes[ROOT + i]
-        if not (half * lanes[CHANGE + i] <= SETTLED * (t1 - t0) and t0 + root < t1):
-            outcome = float(UNDECIDED)
-        found[FOUND_ROOT, j] = root
-    found[FOUND_STATUS, j] = outcome
-    found[FOUND_LOW, j] = middle + half * lanes[A + i]
-    found[FOUND_HIGH, j] = middle + half * lanes[B + i]
+        safe = (half * lanes[CHANGE + i] <= SETTLED * (t1 - t0)) & (t0 + root < t1)
+        lost = (outcome == HIT) & (not anywhere) & (not safe)
+        outcomes[j] = float(UNDECIDED) if lost else outcome
+        lows[j] = middle + half * lanes[A + i]
+        highs[j] = middle + half * lanes[B + i]
+        roots[j] = root
 
 
 @inlined
-def settle_lanes(lanes, kept, ids, width, rays, anywhere, found, queue, queued):
-    """Note the outcomes of lanes, and put those without one together; (how many, rays noted in the queue)."""
+def settle_lanes(lanes, rows, ids, kept, width, rays, anywhere, found, queue, queued):
+    """Note the outcomes of lanes, and put those without one together; (how many, rays noted in the queue).
+
+    ``kept`` is working memory.
+    """
+    note(lanes, ids, width, rays, anywhere, found)
     live = 0
     for i in range(width):
         outcome = lanes[STATE + i]
-        if outcome == LIVE:
-            if live < i:
-                for start in range(A, kept, LANES):
-                    lanes[start + live] = lanes[start + i]
-            live += 1
-        elif outcome != MISS:
-            j = ids[np.uint64(lanes[RAY + i])]
-            note(lanes, i, np.uint64(j), rays, anywhere, found)
-            queue[np.uint64(queued)] = j
-            queued += 1
-    for i in range(live, width):
-        lanes[STATE + i] = float(MISS)
+        kept[np.uint64(live)] = i
+        live += 1 if outcome == LIVE else 0
+        queue[np.uint64(queued)] = ids[np.uint64(lanes[RAY + i])]
+        queued += 1 if (outcome != LIVE) & (outcome != MISS) else 0
+    if live < width:
+        for start in range(A, rows, LANES):
+            row = lanes[start:]
+            for i in range(live):
+                row[i] = row[np.uint64(kept[i])]
+        for i in range(live, width):
+            lanes[STATE + i] = float(MISS)
     return live, queued
 
 
@@ -174,6 +180,7 @@ def polynomial_roots(
     rows = plan[POLYNOMIAL] + 1
     degree = plan[DEGREES + rows - 1]
     kept = C + (max(degree + degree % 2, 4) + 1) * LANES  # coefficients up to the next even degree from 4 on
+    spare = order[rays.shape[1] :]
     spent = LANES
     queued = 0
     for first in range(0, n, LANES):
@@ -192,7 +199,7 @@ def polynomial_roots(
             if not anywhere:
                 polish(lanes, degree, m)
             width, queued = settle_lanes(
-                lanes, kept, order, width, rays, anywhere, found, queue, queued
+                lanes, kept, order, spare, width, rays, anywhere, found, queue, queued
             )  # fmt: skip
             live = width
             m = (width + 15) // 16 * 16

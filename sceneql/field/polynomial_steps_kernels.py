@@ -27,8 +27,12 @@ LEAST = 1.0e-8
 BLUR, LESS = 4.0e-16, 1.0 - 1.0e-14
 SHORTER = 0.25
 """Part of a segment that is looked at next where its begin is not enough nearer to a root."""
-TURNS = 3
-"""Newton's steps."""
+BEFORE = 1.0e-5
+"""How far before the end of a segment, relative to half of it, a place inside is looked for."""
+TURNS, MOST_TURNS = 3, 9
+"""Newton's steps, and as many where they have not settled."""
+UNSETTLED = 2.0e-7
+"""Change of a root at the last step, on a piece of length 2, that asks for another one."""
 
 
 @lane
@@ -79,7 +83,10 @@ def advance(lanes, i, q0, q1, q2, e, steep, off, anywhere):
     start = a + width * (left / (down if ahead else 1.0)) * LESS - BLUR
     start = start if ahead & (start > a) else a
     start = start if start < b else b
-    inside = high + q1 + q2 < 0.0
+    # A place inside stands before the segment's end: on the end of a ray another field may vanish.
+    late = BEFORE if anywhere else 0.0
+    sigma = 1.0 - late
+    inside = high + sigma * (q1 + sigma * q2) < 0.0
     begun = high - q1 + q2 < 0.0
     hit = begun | (inside & (anywhere | (steep + off < 0.0)))
     narrow = b - start
@@ -91,7 +98,7 @@ def advance(lanes, i, q0, q1, q2, e, steep, off, anywhere):
     outcome = (MISS if b >= end else LIVE) if clear else outcome
     live = lanes[STATE + i] == LIVE
     start = a if begun else start
-    stop = (a if begun else b) if hit else cut
+    stop = (a if begun else b - 0.5 * late * width) if hit else cut
     lanes[STATE + i] = float(outcome) if live else lanes[STATE + i]
     lanes[A + i] = (b if clear else start) if live else a
     lanes[B + i] = (on if clear else stop) if live else b
@@ -186,11 +193,22 @@ def newton(lanes, i, p, s, x):
 
 
 @inlined
+def settled(lanes, n):
+    """Whether the roots of all lanes that hit changed little at the last step."""
+    moving = 0
+    for i in range(n):
+        moving += 1 if (lanes[CHANGE + i] > UNSETTLED) & (lanes[STATE + i] == HIT) else 0
+    return moving == 0
+
+
+@inlined
 def polish(lanes, degree, n):
     """Roots in A..B of n lanes, where p falls: Newton's method from A on."""
     for i in range(n):
         lanes[ROOT + i] = lanes[A + i]
-    for _ in range(TURNS):
+    for turn in range(MOST_TURNS):
+        if turn >= TURNS and settled(lanes, n):
+            break
         if degree <= 4:
             for i in range(n):
                 x = lanes[ROOT + i]

@@ -23,7 +23,7 @@ import numpy as np
 from bench_polygonise import SCENES, register, scene_tape
 
 from sceneql.field.builder import TapeBuilder
-from sceneql.field.packets import Memory
+from sceneql.field.packets import Memory, lined
 from sceneql.field.solid import cast, field_values
 from sceneql.field.tape_ops import HIT, INSIDE
 from sceneql.kernels import over_tiles
@@ -99,7 +99,7 @@ class Picture:
         def work(tile: int) -> None:
             row = rows[tile]
             memory, slopes, numbers, starts = spare.pop() if spare else (
-                Memory(self.tape, 256), np.zeros((len(self.tape.code), 3, 64)), self.numbers.copy(), np.zeros((3, 256))
+                Memory(self.tape, 256), lined((len(self.tape.code), 3, 64)), self.numbers.copy(), lined((3, 256))
             )  # fmt: skip
             rest = slopes, self.pixels, numbers, starts, self.view, self.clip, row, WIDTH
             arrays = self.picture.reshape(-1), self.depth.reshape(-1)
