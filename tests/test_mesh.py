@@ -439,6 +439,15 @@ def test_refined_cells_meet_the_others_without_gaps(text, half, cells):
     assert (np.abs(field_values(tape_of(text), found.vertices))[steep] / slopes[steep]).max() < 1e-6
 
 
+@pytest.mark.parametrize("cells", [48, 96])
+def test_no_triangle_faces_inward_where_fine_cells_meet_coarse_ones(cells):
+    found, _ = cut_finer(TANGLECUBE, 3.0, cells)
+    a, b, c = (found.vertices[found.triangles[:, k]] for k in range(3))
+    inward = (np.cross(b - a, c - a) * field_gradients(tape_of(TANGLECUBE), (a + b + c) / 3)).sum(axis=1) < 0
+    assert inward.sum() == 0
+    assert euler_characteristic(found.triangles) == -8
+
+
 @settings(max_examples=40)
 @given(tape=tapes(), cell=st.sampled_from([0.3, 0.5]))
 def test_any_field_whatever_gives_a_closed_manifold_when_refined(tape, cell):
@@ -576,6 +585,7 @@ objects:
   speck: {implicit: {field: (x - 0.31)^2 + y^2 + z^2 - 1e-6, bounds: {ball: 1}}}
   pointer: {arrow: {vector: 0 1 0 m}}
   endless: {sphere: {radius: 1e300 m}}
+  vast: {implicit: {field: "exp(exp(10 + x^2))"}}
 """
 
 
@@ -587,6 +597,7 @@ objects:
         ("speck", 6, "no surface was met by cells of 1 m; a smaller --cell finds smaller things"),
         ("pointer", 7, "Arrow has no inside"),
         ("endless", 8, "cells of 1 m are too many for a box of 2e+300 m"),
+        ("vast", 9, "its field is nowhere finite in its bounds"),
     ],
 )
 def test_what_has_no_mesh_is_told_with_its_place(tmp_path, name, line, message):

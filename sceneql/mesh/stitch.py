@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from sceneql.field.solid import field_gradients, field_values
+from sceneql.mesh.flips import faced_outward
 from sceneql.mesh.polygons import Polygons
 
 if TYPE_CHECKING:
@@ -62,7 +63,9 @@ def stitched(tape: Tape, coarse: Level, kept: NDArray[np.bool_], fine: Level, si
     places, normals = np.concatenate([places, own]), np.concatenate([normals, slopes])
     used = np.zeros(len(places), dtype=bool)
     used[triangles] = True
-    return Polygons(places[used], (np.cumsum(used) - 1)[triangles].astype(np.int32), normals[used])
+    triangles = (np.cumsum(used) - 1)[triangles].astype(np.int32)
+    seams = np.arange(plain.sum(), len(triangles) - len(fine.triangles))
+    return Polygons(places[used], faced_outward(tape, places[used], triangles, seams), normals[used])
 
 
 def _settled(tape: Tape, places: Floats) -> tuple[Floats, Floats]:

@@ -166,12 +166,14 @@ def _refined(tape: Tape, low: Corner, high: Corner, cell: float) -> tuple[Polygo
 
 def _why_empty(tape: Tape, low: Corner, high: Corner, cell: float) -> str:
     """Why there is no surface."""
-    from sceneql.field.emptiness import nowhere_defined, proved_empty
+    from sceneql.field.emptiness import nowhere_defined, nowhere_finite, proved_empty
 
     if nowhere_defined(tape, low, high):
         return "its field is nowhere defined in its bounds"
     if proved_empty(tape, low, high):
         return "its field is nowhere negative in its bounds, so it has no surface"
+    if nowhere_finite(tape, low, high):
+        return "its field is nowhere finite in its bounds"
     return f"no surface was met by cells of {cell:g} m; a smaller --cell finds smaller things"
 
 

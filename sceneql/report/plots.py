@@ -67,9 +67,8 @@ def _errors(
     with figure_at(path, (9.0, 4.8 * len(islands))) as figure:
         for k, island in enumerate(islands):
             axes = panel(figure, len(islands), k)
-            axes.set(xscale="log", yscale="log", xlabel=label, ylabel="relative error at the end")
-            axes.set_title(f"{title}: {island}")
-            axes.grid(True, which="major", alpha=0.3)
+            logarithmic(axes)
+            axes.set(xlabel=label, ylabel="relative error at the end", title=f"{title}: {island}")
             mine = [row for row in rows if row.island == island]
             for solver, mark in zip(dict.fromkeys(row.solver for row in mine), cycle(MARKS), strict=False):
                 runs = [row for row in mine if row.solver == solver]
@@ -85,8 +84,8 @@ def surface_errors(path: Path, title: str, rays: Sequence[RayRun], meshes: Seque
     with figure_at(path, (9.0, 4.2 * (2 + len(named)))) as figure:
         for k, label in enumerate(("share of wrong pixels (none: a tenth of one)", "mean error of depth [m]")):
             axes = figure.add_subplot(2 + len(named), 1, k + 1)
-            axes.set(xscale="log", yscale="log", xlabel="run time [s]", ylabel=label, title=title)
-            axes.grid(True, which="major", alpha=0.3)
+            logarithmic(axes)
+            axes.set(xlabel="run time [s]", ylabel=label, title=title)
             for renderer, mark in zip(dict.fromkeys(run.renderer for run in rays), MARKS, strict=False):
                 mine = [run for run in rays if run.renderer == renderer]
                 wrong = [max(run.wrong, 0.1) / max(run.pixels, 1) for run in mine]
@@ -95,8 +94,8 @@ def surface_errors(path: Path, title: str, rays: Sequence[RayRun], meshes: Seque
             explain(axes)
         for k, name in enumerate(named):
             axes = figure.add_subplot(2 + len(named), 1, 3 + k)
-            axes.set(xscale="log", yscale="log", xlabel="cell [m]", ylabel="error", title=f"{title}: mesh of {name}")
-            axes.grid(True, which="major", alpha=0.3)
+            logarithmic(axes)
+            axes.set(xlabel="cell [m]", ylabel="error", title=f"{title}: mesh of {name}")
             own = [mesh for mesh in meshes if mesh.name == name]
             cells = [mesh.cell for mesh in own]
             axes.plot(cells, [mesh.hausdorff for mesh in own], marker="o", ms=4, label="Hausdorff distance [m]")
@@ -112,6 +111,16 @@ def panel(figure: Any, count: int, k: int) -> Any:
     axes = figure.add_subplot(count, 1, k + 1)
     axes.set_prop_cycle(color=[colormaps["tab20"](k) for k in range(20)])
     return axes
+
+
+def logarithmic(axes: Any) -> None:
+    """Both scales; within two decades 1, 2 and 5 are written along the lower one, for which there is room."""
+    from matplotlib.ticker import LogFormatterSciNotation, LogLocator
+
+    axes.set(xscale="log", yscale="log")
+    axes.xaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
+    axes.xaxis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(2.0, 2.0)))
+    axes.grid(True, which="major", alpha=0.3)
 
 
 def explain(axes: Any) -> None:

@@ -1,7 +1,9 @@
 """Ray tracing the common implicit scenes in packets, beside POV-Ray on the same machine.
 
-Run it as ``python tests/bench/bench_implicit.py [SCENE...]``. The picture has 640 x 360 pixels, one ray each, and a
-shadow ray where the light is faced. A pixel is wrong where its center disagrees with the certified routine.
+Run it as ``python tests/bench/bench_implicit.py [--tape] [SCENE...]``. The picture has 640 x 360 pixels, one ray each,
+and a shadow ray where the light is faced. A pixel is wrong where its center disagrees with the certified routine.
+Nothing is compiled for a scene: tapes are interpreted in lanes, and where one is a polynomial or a density of points
+its exact form along each ray is used besides; with ``--tape`` the interpreter works alone, beside half of each bar.
 POV-Ray is run where it is installed; its figures from another machine are given else.
 """
 
@@ -22,6 +24,7 @@ from typing import Any
 import numpy as np
 from bench_polygonise import SCENES, register, scene_tape
 
+from sceneql.field import packets
 from sceneql.field.builder import TapeBuilder
 from sceneql.field.packets import Memory, lined
 from sceneql.field.solid import cast, field_values
@@ -219,4 +222,8 @@ def main(names: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:] or ["blob40", "blob4000", "gyroid", "barth_sextic", "kummer", "steiner", "shell"])
+    names = [name for name in sys.argv[1:] if name != "--tape"]
+    if len(names) < len(sys.argv) - 1:
+        packets.plan_of = lambda tape: np.array([-1, 0, -1, -1])
+        BARS = {name: bar / 2 for name, bar in BARS.items()}
+    main(names or ["blob40", "blob4000", "gyroid", "barth_sextic", "kummer", "steiner", "shell"])
