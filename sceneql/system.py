@@ -94,6 +94,15 @@ class Slopes:
     """(k,) int."""
     ints: Sequence[int] | None = None
     """The kernel's integers; None: those of the term."""
+    shared: Any = None
+    """(k,) int, where several places have the same entry: which one each place adds, e, or takes away, -1 - e."""
+
+    @property
+    def entries(self) -> int:
+        """Length of the kernel's slice."""
+        if self.shared is None:
+            return len(self.rows)
+        return int(max(self.shared.max(), -1 - self.shared.min(), -1)) + 1 if len(self.shared) else 0
 
 
 @dataclass(frozen=True, slots=True, eq=False)

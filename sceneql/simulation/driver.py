@@ -79,7 +79,7 @@ def jacobian_text(structure: Structure) -> str:
         *("", "", "@lean(JACOBIAN)", "def jacobian(functions, t, y, values, floats, ints):"),
         *([REFRESH] if structure.varying else []),
         "    s = ints[4]",
-        "    for k in range(ints[s] + ints[s + 1]):",
+        "    for k in range(ints[s], ints[s] + ints[s + 1]):",
         "        values[k] = 0.0",
     ]
     for group, short in enumerate(names.values(), HEAD):
@@ -87,7 +87,7 @@ def jacobian_text(structure: Structure) -> str:
             f"    for b in range(ints[s + {group}], ints[s + {group + 1}], 4):",
             f"        {short}(t, y, values[ints[b + 2] : ints[b + 3]], floats, ints[ints[b] : ints[b + 1]])",
         ]
-    return "\n".join([*lines, "    gather(values, floats, ints, s)"]) + "\n"
+    return "\n".join([*lines, "    gather(t, y, values, floats, ints)"]) + "\n"
 
 
 def modules(structure: Structure, *others: str) -> tuple[str, ...]:

@@ -3,30 +3,55 @@
 
 import math
 
-from sceneql.kernels import lean, lean_inlined
+from sceneql.kernels import kernel, lean
 from sceneql.simulation.pointers_kernels import AT_RATE, rate_at
-from sceneql.system_kernels import JACOBIAN
+from sceneql.simulation.threads_kernels import TILE, over_threads
+from sceneql.system_kernels import JACOBIAN, TERM
 
 ROUNDING = 2.2e-16
 
 
-@lean_inlined
-def gather(values, floats, ints, at):
-    """Add the entries, which stand behind the values, to their places; then multiply rows by inverse masses.
+@kernel(TILE)
+def sum_tile(number, t, y, values, floats, ints):
+    """The values of a tile as sums of their entries, which stand behind the values; see jacobian.py."""
+    at = ints[4]
+    count, tiles, starts, parts = ints[at], ints[at + 7], ints[at + 2], ints[at + 6]
+    for v in range(count * number // tiles, count * (number + 1) // tiles):
+        total = 0.0
+        for k in range(parts + ints[starts + v], parts + ints[starts + v + 1]):
+            entry = ints[k]
+            if entry >= 0:
+                total += values[count + entry]
+            else:
+                total -= values[count - 1 - entry]
+        values[v] = total
 
-    ints[at:] = (values, entries, place of the table of places, of the starts of rows, of the masses, number of those);
-    a triple for the masses of each model: (velocity_at, inverse_at, count).
-    """
-    count, places = ints[at], ints[at + 2]
-    for k in range(ints[at + 1]):
-        values[ints[places + k]] += values[count + k]
-    starts = ints[at + 3]
+
+@kernel(TILE)
+def scale_tile(number, t, y, values, floats, ints):
+    """The rows of a tile of every model's masses multiplied by the inverse masses."""
+    at = ints[4]
+    tiles, starts = ints[at + 7], ints[at + 3]
     for triple in range(ints[at + 4], ints[at + 4] + 3 * ints[at + 5], 3):
-        for k in range(ints[triple + 2]):
+        masses = ints[triple + 2]
+        for k in range(masses * number // tiles, masses * (number + 1) // tiles):
             inverse = floats[ints[triple + 1] + k]
             row = starts + ints[triple] + 3 * k
             for place in range(ints[row], ints[row + 3]):
                 values[place] *= inverse
+
+
+@lean(TERM, inner=True)
+def gather(t, y, values, floats, ints):
+    """Sum the entries to values and multiply their rows by inverse masses: any number of threads, the same bytes."""
+    at = ints[4]
+    tiles = ints[at + 7]
+    if tiles == 1:
+        sum_tile(0, t, y, values, floats, ints)
+        scale_tile(0, t, y, values, floats, ints)
+    else:
+        over_threads(ints[at + 8], ints[at + 9], ints[at + 10], tiles, t, y, values, floats, ints)
+        over_threads(ints[at + 8], ints[at + 9], ints[at + 11], tiles, t, y, values, floats, ints)
 
 
 @lean(JACOBIAN)

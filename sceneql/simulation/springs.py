@@ -34,6 +34,8 @@ if TYPE_CHECKING:
     from sceneql.simulation.models.nets import Net
     from sceneql.system import Assembly, Bodies, ModelState, Slopes
 
+SPRINGS_A_TILE = 10_000
+"""Springs whose slopes a thread finds at a time."""
 MOST_COILS = 40
 
 
@@ -164,7 +166,7 @@ class SpringModel(Model):
         places = (bodies.position_at, bodies.velocity_at, bodies.work_at)
         ints = (*places, blocks_at, stiffness_at, damping_at, m, *ends, bodies.inverse_at)
         kernel = "sceneql.simulation.models.mass_spring_kernels:springs"
-        assembly.term("internal", kernel, ints, lambda: _slopes(net, bodies, self.damped(blocks)))
+        assembly.term("internal", kernel, ints, lambda: _slopes(net, bodies, self.damped(blocks), ints[3:6]))
         torn_at = assembly.floats([0.0])
         if self.tear is not None:
             luck = draws(np.arange(m, dtype=np.uint64), 0, chance_key(name, self.tear.seed))
@@ -264,19 +266,28 @@ def _shortest_period(pairs: Any, stiffnesses: Floats, weights: Floats) -> float:
     return 2.0 * np.pi / fastest**0.5 if fastest > 0.0 else np.inf
 
 
-def _slopes(net: Net, bodies: Bodies, damped: bool) -> Slopes:
-    """Of each spring four blocks of 3x3 by positions; if damped, as many by velocities."""
+def _slopes(net: Net, bodies: Bodies, damped: bool, floats_at: Sequence[int]) -> Slopes:
+    """Of each spring a block of 3x3 by positions, in four places; if damped, as much by velocities."""
     import numpy as np
 
+    from sceneql.simulation.models.mass_spring_slopes_kernels import tile
+    from sceneql.simulation.threads_kernels import threads, tile_address
     from sceneql.system import Slopes
 
+    count = len(net.pairs)
     ends = 3 * net.pairs
     places = np.arange(3)
     rows = np.repeat(np.repeat(ends, 2, axis=1)[:, :, None] + places, 3, axis=2).ravel() + bodies.velocity_at
     columns = np.tile(np.tile(ends, 2)[:, :, None] + places, 3).ravel()
+    own = np.arange(9 * count).reshape(-1, 1, 9)
+    shared = np.concatenate([-1 - own, own, own, -1 - own], axis=1).ravel()
     by = [bodies.position_at, bodies.velocity_at] if damped else [bodies.position_at]
+    tiles = count // SPRINGS_A_TILE + 1
+    head = (bodies.position_at, bodies.velocity_at, bodies.inverse_at, count, int(damped), tiles)
     return Slopes(
         "sceneql.simulation.models.mass_spring_slopes_kernels:springs",
         np.tile(rows, len(by)),
         np.concatenate([columns + at for at in by]),
+        (*head, *threads(), tile_address(tile), *floats_at, *net.pairs.ravel().tolist()),
+        np.concatenate([np.where(shared < 0, shared - 9 * count * k, shared + 9 * count * k) for k in range(len(by))]),
     )

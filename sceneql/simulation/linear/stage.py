@@ -151,7 +151,7 @@ def _known(system: System) -> NDArray[numpy.bool_]:
     if system.pattern.exact:
         section = system.ints[4]
         at = system.ints[section + 2]
-        known[system.ints[at : at + system.ints[section + 1]]] = True
+        known = np.diff(system.ints[at : at + len(known) + 1]) > 0
     return known
 
 
