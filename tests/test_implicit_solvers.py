@@ -12,6 +12,8 @@ from islands import TETHER, assembly, balls, final, fixed, simple, springs
 from runs import watch
 from sceneql.failure import LimitRefused, RunFailure
 from sceneql.pipeline import load
+from sceneql.simulation import jacobian as layout
+from sceneql.simulation import springs as springs_module
 from sceneql.simulation.linear import stage, stage_kernels
 from sceneql.simulation.march import March
 from sceneql.simulation.modes import jacobian
@@ -206,6 +208,34 @@ def test_a_stage_system_is_solved(tmp_path, count, kind):
     assert (np.eye(n) - a * jacobian(march)) @ d == pytest.approx(right, abs=1e-5)
     if kind == "sparse":
         assert plan.numbers[stage_kernels.SYMMETRIC] == 1
+
+
+def test_threads_share_the_slopes_to_the_same_bytes(tmp_path, monkeypatch):
+    """Of cloth in any shape, damped and moving: those of one thread, and within rounding of differences."""
+    monkeypatch.setattr(layout, "TILE", 700)
+    monkeypatch.setattr(springs_module, "SPRINGS_A_TILE", 100)
+    cloth = "{mass_spring: {cloth: {size: 1 1 m, cells: 6 5}, mass: 0.1 kg, stiffness: 50 N/m, damping: 0.3 N*s/m}}"
+    path = tmp_path / "scene.yaml"
+    text = f"models: {{cloth: {cloth}}}\nforces: [gravity, {{drag: {{linear: 0.1 N*s/m}}}}]\nclock: {{end: 1 s}}\n"
+    path.write_text(f"{text}solvers: {{main: bdf2}}\n", encoding="utf-8")
+    graph = load(path, pruned=False)
+    found = []
+    for threads in (1, 2, 3):
+        monkeypatch.setenv("SCENEQL_THREADS", str(threads))
+        march = IslandRun(graph, graph.islands[0]).march
+        system = march.system
+        y = system.y + 0.05 * np.random.default_rng(7).standard_normal(len(system.y))
+        values = np.full(system.pattern.room, 7.0)
+        march._jacobian(march._functions, 0.0, y, values, march.floats, system.ints)
+        found.append(values[: len(system.pattern.columns)].copy())
+    assert found[0].tobytes() == found[1].tobytes() == found[2].tobytes()
+    rows = np.repeat(np.arange(len(y)), np.diff(system.pattern.starts))
+    whole = np.zeros((len(y), len(y)))
+    whole[rows, system.pattern.columns] = found[0]
+    moves = 1e-6 * np.eye(len(y))
+    differences = [(march.rate(0.0, y + move) - march.rate(0.0, y - move)) / 2e-6 for move in moves]
+    known = [k for k in range(len(y)) if k not in system.pattern.tallies]
+    assert whole[known] == pytest.approx(np.array(differences).T[known], abs=1e-4)
 
 
 def test_a_chain_of_springs_has_its_dispersion(tmp_path):
