@@ -42,3 +42,34 @@ def test_the_account_counts_what_is_compiled():
     before = compiled.count
     njit("float64(float64)")(lambda x: 2.0 * x)
     assert compiled.count == before + 1
+
+
+TURNING = """\
+sceneql: 1
+clock: {end: 1 s}
+models:
+  swing: {motion: {rotation: {about: z, angle: 360 deg*time/(1 s)}}}
+objects:
+  still: {implicit: {field: "x^2 + y^2 + z^2 - 0.5", bounds: {ball: 1}}}
+  growing: {sphere: {radius: 0.1 m + 2 m/s*time}}
+  inner: {sphere: {radius: 0.5 m, position: 5 0 0 m, hidden: yes}}
+  arm: {union: {of: [inner, {box: {size: 0.1 0.1 0.1 m}}], rotation: swing.rotation}}
+outputs: {still_image: {image: {size: 16 9}}}
+"""
+
+
+def test_what_holds_still_is_framed_by_one_look_and_what_moves_by_all_its_places(tmp_path, monkeypatch):
+    from sceneql.simulation.objects.implicit import Implicit
+
+    looks = []
+    lower = Implicit.lower
+    monkeypatch.setattr(Implicit, "lower", lambda *given: looks.append(given[1]) or lower(*given))
+    path = tmp_path / "scene.yaml"
+    path.write_text(TURNING)
+    moment = next(pipeline.simulate(pipeline.load(path), [0.25]))
+    assert moment.bounds(["still"])[1] == pytest.approx(1.0, abs=1e-5)
+    assert looks == ["still"]
+    assert moment.bounds(["growing"])[1] == pytest.approx(2.1, abs=1e-4)
+    low, high = moment.bounds(["arm"])
+    assert low[:2] == pytest.approx([-5.5, -5.5], abs=0.3)
+    assert high[:2] == pytest.approx([5.5, 5.5], abs=0.3)

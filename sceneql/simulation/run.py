@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from sceneql.simulation.march import March
     from sceneql.system import ModelState
 
+    Bounds = dict[str, tuple[Floats, Floats]]
+
 IDENTITY = np.eye(3, 4)
 BOUNDS_MOMENTS = 49
 
@@ -46,7 +48,7 @@ class Run:
         self.palette = _palette(graph)
         self.holders = _holders(graph)
         self.history = History(graph)
-        self._bounds: dict[str, tuple[Floats, Floats]] | None = None
+        self._bounds: Bounds | None = None
 
     def moments(self, times: Iterable[float]) -> Iterator[Instant]:
         """The instants [s] asked for, in order; times do not decrease. Raises RunFailure."""
@@ -181,14 +183,23 @@ class Instant:
     """One instant of a run (kinds.Moment)."""
 
     run: Run
-    time: float
+    now: float
+    """[s]"""
+    asked: bool = False
+    """Whether it was asked for what may be otherwise at another instant."""
     _states: dict[str, ModelState] = field(default_factory=dict)
+
+    @property
+    def time(self) -> float:
+        """[s]"""
+        self.asked = True
+        return self.now
 
     def at(self, value: Value) -> Any:
         """The value now: float or float64 array, SI. Raises RunFailure if it is not finite."""
         now = self._evaluate(value.expr)
         if not np.isfinite(now).all():
-            raise RunFailure("a value is not finite now", part="", time=self.time, span=value.span)
+            raise RunFailure("a value is not finite now", part="", time=self.now, span=value.span)
         return now
 
     def measure(self, value: Value) -> Any:
@@ -222,6 +233,7 @@ class Instant:
 
     def state(self, name: str) -> ModelState:
         """The state of a dynamic model or contact now."""
+        self.asked = True
         if name not in self._states:
             self._states[name] = self.run.island_of[name].state(name)
         return self._states[name]
@@ -257,7 +269,7 @@ class Instant:
         shapes: list[Drawn] = []
         for name in names:
             task = self.run.graph.tasks[name]
-            with failing_as(name, self.time, task.span):
+            with failing_as(name, self.now, task.span):
                 if isinstance(task.kind, Object):
                     shapes += task.kind.lower(name, IDENTITY, self)
                 elif isinstance(task.kind, Model):
@@ -289,24 +301,37 @@ def _palette(graph: SimulationGraph) -> dict[str, int]:
     return {name: k for k, name in enumerate(graph.palette)}
 
 
-def _bounds(graph: SimulationGraph) -> dict[str, tuple[Floats, Floats]]:
-    """Bounds over the run; of its start alone where the run fails, since what explodes fits into no picture."""
+def _bounds(graph: SimulationGraph) -> Bounds:
+    """Bounds over the run; of its start alone where the run fails, since what explodes fits into no picture.
+
+    A part that asks at the start for nothing that may change is looked at there alone.
+    """
     ahead = Run(graph)
     end = graph.settings.clock.end
     moments = ahead.moments(end * k / (BOUNDS_MOMENTS - 1) for k in range(BOUNDS_MOMENTS))
-    start = result = _widened({}, next(moments))
+    first = next(moments)
+    start: Bounds = {}
+    changing = []
+    for name in ahead.orders:
+        first.asked = False
+        start = _widened(start, first, [name])
+        if first.asked:
+            changing.append(name)
+    if not changing:
+        return start
+    result = start
     try:
         for moment in moments:
-            result = _widened(result, moment)
+            result = _widened(result, moment, changing)
     except RunFailure:
         return start
     return result
 
 
-def _widened(bounds: Mapping[str, tuple[Floats, Floats]], moment: Instant) -> dict[str, tuple[Floats, Floats]]:
-    """Bounds that hold what is drawn at a moment too."""
+def _widened(bounds: Bounds, moment: Instant, names: Iterable[str]) -> Bounds:
+    """Bounds that hold what some parts draw at a moment too."""
     result = dict(bounds)
-    for name in moment.run.orders:
+    for name in names:
         for shape in moment.lower([name]):
             low, high = box_of(shape)
             if np.isfinite(low).all() and np.isfinite(high).all():
