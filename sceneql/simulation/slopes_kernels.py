@@ -3,7 +3,7 @@
 
 import math
 
-from sceneql.kernels import kernel, lean
+from sceneql.kernels import lean
 from sceneql.simulation.pointers_kernels import AT_RATE, rate_at
 from sceneql.simulation.threads_kernels import TILE, over_threads
 from sceneql.system_kernels import JACOBIAN, TERM
@@ -11,7 +11,7 @@ from sceneql.system_kernels import JACOBIAN, TERM
 ROUNDING = 2.2e-16
 
 
-@kernel(TILE)
+@lean(TILE)
 def sum_tile(number, t, y, values, floats, ints):
     """The values of a tile as sums of their entries, which stand behind the values; see jacobian.py."""
     at = ints[4]
@@ -27,7 +27,7 @@ def sum_tile(number, t, y, values, floats, ints):
         values[v] = total
 
 
-@kernel(TILE)
+@lean(TILE)
 def scale_tile(number, t, y, values, floats, ints):
     """The rows of a tile of every model's masses multiplied by the inverse masses."""
     at = ints[4]

@@ -3,7 +3,7 @@
 
 import math
 
-from sceneql.kernels import kernel, lean
+from sceneql.kernels import lean
 from sceneql.simulation.threads_kernels import TILE, over_threads
 from sceneql.system_kernels import TERM
 
@@ -17,7 +17,7 @@ POSITION_AT, VELOCITY_AT, INVERSE_AT, COUNT, DAMPED, TILES, ENTRY, THREADS, TILE
 BLOCKS_AT, STIFFNESS_AT, DAMPING_AT, PAIRS_AT = range(9, 13)
 
 
-@kernel(TILE)
+@lean(TILE)
 def tile(number, t, y, entries, floats, ints):
     """The springs of a tile, see `springs`."""
     position_at, velocity_at, inverse_at = ints[POSITION_AT], ints[VELOCITY_AT], ints[INVERSE_AT]
