@@ -19,9 +19,12 @@ from sceneql.kernels import OURS, cache_folder, compiled, compiles, thread_count
 BESIDE = """
 import signal, sys
 from importlib import import_module
+from pathlib import Path
 signal.signal(signal.SIGINT, signal.SIG_IGN)
 for line in sys.stdin:
-    import_module(line.strip())
+    module, mark = line.rstrip("\\n").split(" ", 1)
+    import_module(module)
+    Path(mark).touch()
 """
 """Ctrl-C is for the process that says what was kept; it takes this one with it."""
 
@@ -36,10 +39,12 @@ def compile_ahead(modules: Iterable[str]) -> Callable[[], None]:
     due = [module for module, mark in marks.items() if not mark.exists()]
     if not due or not compiles():
         return lambda: None
+    for module in due:
+        marks[module].parent.mkdir(parents=True, exist_ok=True)
     if thread_count() > 1:
         with suppress(BrokenPipeError):  # what ended it will be said where the module is imported here
             names = _beside()
-            names.write("".join(f"{module}\n" for module in due))
+            names.write("".join(f"{module} {marks[module]}\n" for module in due))
             names.flush()
 
     def wait() -> None:
@@ -47,7 +52,6 @@ def compile_ahead(modules: Iterable[str]) -> Callable[[], None]:
             for module in reversed(due):
                 import_module(module)
         for module in due:
-            marks[module].parent.mkdir(parents=True, exist_ok=True)
             marks[module].touch()
 
     return cache(wait)

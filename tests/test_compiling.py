@@ -5,6 +5,7 @@ import math
 import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import numba
 import numpy as np
@@ -48,8 +49,21 @@ def test_a_helper_refuses_to_be_called_from_python():
 
 @pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
 def test_an_inner_kernel_is_called_by_kernels_and_refuses_python():
-    with pytest.raises(TypeError):
+    with pytest.raises(TypeError, match="gravity is for kernels only"):
         gravity(0.0, *[np.zeros(3)] * 3, np.zeros(3, np.int64))
+
+
+def test_a_late_kernel_is_there_from_its_first_call_on_and_not_before():
+    import late_kernels
+
+    assert late_kernels.half_of_positive(-3.0) == 0.0
+    assert "late_called_kernels" not in sys.modules
+    with ThreadPoolExecutor(4) as pool:
+        assert list(pool.map(late_kernels.half_of_positive, [3.0, 5.0, 7.0, 9.0])) == [1.5, 2.5, 3.5, 4.5]
+    assert "late_called_kernels" in sys.modules
+    if not numba.config.DISABLE_JIT:
+        with pytest.raises(TypeError, match="halved is for kernels only"):
+            late_kernels.halved(3.0, 2)
 
 
 AHEAD = """

@@ -7,9 +7,9 @@
 import numpy as np
 
 from sceneql.field.density_kernels import offset
+from sceneql.field.order_kernels import larger, sign_of, smaller
 from sceneql.field.sine_kernels import wave_lanes
 from sceneql.field.skeleton_kernels import skeleton_value
-from sceneql.field.tape_kernels import larger, sign_of, smaller
 from sceneql.field.tape_ops import (
     ABS,
     ADD,

@@ -10,8 +10,7 @@ import numpy as np
 
 from sceneql.field.bracket_kernels import lowest, polished
 from sceneql.field.slope_kernels import on_ray
-from sceneql.field.tape_kernels import TAPE
-from sceneql.field.tape_ops import HIT, MISS, NOWHERE, UNDECIDED, WHOLE
+from sceneql.field.tape_ops import HIT, MISS, NOWHERE, TAPE, UNDECIDED, WHOLE
 from sceneql.kernels import lean, woven
 
 EVALUATIONS = 1000

@@ -13,7 +13,6 @@ from sceneql.field.density_enclosure_kernels import density_segment
 from sceneql.field.forms_kernels import LARGE, PAD, TINY, WIDER, hull, larger_of, product, spread
 from sceneql.field.sine_kernels import sine_cosine
 from sceneql.field.skeleton_enclosure_kernels import skeleton_segment
-from sceneql.field.tape_kernels import TAPE
 from sceneql.field.tape_ops import (
     ABS,
     ADD,
@@ -38,6 +37,7 @@ from sceneql.field.tape_ops import (
     SQRT,
     SQUARE,
     SUB,
+    TAPE,
     WHOLE,
     X,
     Y,

@@ -2,11 +2,11 @@
 """Interval bounds of a tape over a box, rounded outward, to cull what a solid cannot reach."""
 
 import numpy as np
+from numba import types
 
-from sceneql.field.density_kernels import offset
+from sceneql.compiling.late import late
+from sceneql.field.order_kernels import sign_of
 from sceneql.field.sine_kernels import sine_cosine
-from sceneql.field.skeleton_bounds_kernels import skeleton_box
-from sceneql.field.tape_kernels import TAPE, sign_of
 from sceneql.field.tape_ops import (
     ABS,
     ADD,
@@ -31,6 +31,7 @@ from sceneql.field.tape_ops import (
     SQRT,
     SQUARE,
     SUB,
+    TAPE,
     WHOLE,
     X,
     Y,
@@ -43,6 +44,11 @@ ULPS = 1.2e-15
 """Five units in the last place: more than any library function is off."""
 TINY = 1.0e-300
 TURN = 2.0 * np.pi
+OF_PARTS = types.UniTuple(types.float64, 2)(
+    types.float64[:, ::1], types.int64, types.int64, types.float64[:, ::1], types.int64
+)
+density_box = late("sceneql.field.parts_box_kernels:density_box", OF_PARTS)
+skeleton_box = late("sceneql.field.parts_box_kernels:skeleton_box", OF_PARTS)
 
 
 @inlined
@@ -81,42 +87,6 @@ def wave(low, high, peak):
     if np.floor((high - peak) / TURN - 0.5 + hair) >= np.ceil((low - peak) / TURN - 0.5 - hair):
         bottom = -1.0
     return max(bottom, -1.0), min(top, 1.0)
-
-
-@inlined
-def density_box(parts, start, stop, scratch, p):
-    """Interval of a density field over the box whose sides are rows p..p+2 of scratch."""
-    low = high = bulk = 0.0
-    hx = 0.5 * (scratch[p, 1] - scratch[p, 0])
-    hy = 0.5 * (scratch[p + 1, 1] - scratch[p + 1, 0])
-    hz = 0.5 * (scratch[p + 2, 1] - scratch[p + 2, 0])
-    x = scratch[p, 0] + hx
-    y = scratch[p + 1, 0] + hy
-    z = scratch[p + 2, 0] + hz
-    diagonal = np.sqrt(hx * hx + hy * hy + hz * hz)
-    for i in range(start, stop):
-        wx, wy, wz = offset(parts, i, x, y, z)
-        radius = parts[i, 6]
-        weight = parts[i, 7]
-        # The distance changes no faster than the point moves.
-        distance = np.sqrt(wx * wx + wy * wy + wz * wz)
-        blur = ULPS * (distance + diagonal + abs(x) + abs(y) + abs(z) + abs(parts[i, 0] - parts[i, 3]))
-        blur += ULPS * (abs(parts[i, 1] - parts[i, 4]) + abs(parts[i, 2] - parts[i, 5]))
-        near = max(distance - diagonal - blur, 0.0)
-        far = distance + diagonal + blur
-        if parts[i, 0] == parts[i, 3] and parts[i, 1] == parts[i, 4] and parts[i, 2] == parts[i, 5]:
-            nx = max(abs(wx) - hx - blur, 0.0)
-            ny = max(abs(wy) - hy - blur, 0.0)
-            nz = max(abs(wz) - hz - blur, 0.0)
-            near = np.sqrt(nx * nx + ny * ny + nz * nz) - blur
-        least = 1.0 - far * far / (radius * radius)
-        most = 1.0 - near * abs(near) / (radius * radius)
-        least = least * least * least if least > 0.0 else 0.0
-        most = most * most * most if most > 0.0 else 0.0
-        low += weight * (least if weight > 0.0 else most)
-        high += weight * (most if weight > 0.0 else least)
-        bulk += abs(weight) * most
-    return low - ULPS * 8.0 * bulk, high + ULPS * 8.0 * bulk
 
 
 @inlined

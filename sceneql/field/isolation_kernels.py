@@ -9,8 +9,7 @@ that lies before a root returned is proved to be outside, up to the tolerance.
 from sceneql.field.bracket_kernels import FINE, along
 from sceneql.field.certified_kernels import certify
 from sceneql.field.enclosure_kernels import segment
-from sceneql.field.tape_kernels import TAPE
-from sceneql.field.tape_ops import HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
+from sceneql.field.tape_ops import HIT, INSIDE, MISS, NOWHERE, TAPE, UNDECIDED, WHOLE
 from sceneql.kernels import kernel, woven
 
 EVALUATIONS = 2000

@@ -5,8 +5,7 @@ from sceneql.field.certified_kernels import CROSSES, TOUCHES, certify, hidden, t
 from sceneql.field.enclosure_kernels import segment
 from sceneql.field.isolation_kernels import BACK, search
 from sceneql.field.slope_kernels import on_ray
-from sceneql.field.tape_kernels import TAPE
-from sceneql.field.tape_ops import HIT, MISS, UNDECIDED, WHOLE
+from sceneql.field.tape_ops import HIT, MISS, TAPE, UNDECIDED, WHOLE
 from sceneql.kernels import lean, woven
 
 POLES = 16

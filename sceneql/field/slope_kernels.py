@@ -10,7 +10,6 @@ import numpy as np
 from sceneql.field.density_kernels import offset
 from sceneql.field.interval_kernels import TINY, TURN, binary_box, box, outward, unary_box, wave
 from sceneql.field.skeleton_bounds_kernels import skeleton_steepness
-from sceneql.field.tape_kernels import TAPE
 from sceneql.field.tape_ops import (
     ABS,
     ADD,
@@ -33,6 +32,7 @@ from sceneql.field.tape_ops import (
     SQRT,
     SQUARE,
     SUB,
+    TAPE,
     WHOLE,
     X,
     Y,

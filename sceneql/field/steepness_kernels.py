@@ -4,7 +4,7 @@
 import numpy as np
 
 from sceneql.field.slope_kernels import differentiate
-from sceneql.field.tape_kernels import TAPE
+from sceneql.field.tape_ops import TAPE
 from sceneql.kernels import lean
 
 

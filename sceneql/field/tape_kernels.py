@@ -4,6 +4,7 @@
 import numpy as np
 
 from sceneql.field.density_kernels import density_gradient, density_value
+from sceneql.field.order_kernels import larger, sign_of, smaller
 from sceneql.field.sine_kernels import sine_cosine
 from sceneql.field.skeleton_kernels import skeleton_gradient, skeleton_value
 from sceneql.field.tape_ops import (
@@ -29,34 +30,12 @@ from sceneql.field.tape_ops import (
     SQRT,
     SQUARE,
     SUB,
+    TAPE,
     X,
     Y,
     Z,
 )
 from sceneql.kernels import inlined, kernel
-
-TAPE = "int32[:, ::1], float64[::1], float64[:, ::1], float64[:, ::1]"
-"""Types of (code, constants, parts, scratch), with which every kernel of a tape begins."""
-
-
-@inlined
-def smaller(a, b):
-    """The smaller of two; NaN if either is."""
-    return a if a < b or a != a else b
-
-
-@inlined
-def larger(a, b):
-    """The larger of two; NaN if either is."""
-    return a if a > b or a != a else b
-
-
-@inlined
-def sign_of(a):
-    """-1, 0 or 1; NaN of NaN."""
-    if a > 0.0:
-        return 1.0
-    return -1.0 if a < 0.0 else 0.0 * a
 
 
 @kernel(f"float64({TAPE}, float64, float64, float64)", _nrt=False)

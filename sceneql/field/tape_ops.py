@@ -30,6 +30,9 @@ MISS, HIT, INSIDE, UNDECIDED = range(4)
 WHOLE, PARTIAL, NOWHERE = range(3)
 """Where a tape is defined on a segment or box: everywhere, perhaps not everywhere, nowhere."""
 
+TAPE = "int32[:, ::1], float64[::1], float64[:, ::1], float64[:, ::1]"
+"""Types of (code, constants, parts, scratch), with which every kernel of a tape begins."""
+
 SCRATCH_COLUMNS = 8
 
 

@@ -3,8 +3,7 @@
 
 from sceneql.field.interval_kernels import box
 from sceneql.field.simplify_kernels import simplify
-from sceneql.field.tape_kernels import TAPE
-from sceneql.field.tape_ops import NOWHERE, WHOLE
+from sceneql.field.tape_ops import NOWHERE, TAPE, WHOLE
 from sceneql.kernels import inlined, lean
 from sceneql.mesh.grid import BLOCK
 

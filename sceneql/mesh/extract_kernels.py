@@ -3,7 +3,7 @@
 
 from sceneql.field.batch_kernels import LANES, evaluate
 from sceneql.field.simplify_kernels import simplify
-from sceneql.field.tape_kernels import TAPE
+from sceneql.field.tape_ops import TAPE
 from sceneql.kernels import inlined, lean
 from sceneql.mesh.cull_kernels import CLEAR, CUT, verdict
 from sceneql.mesh.decide_kernels import CASES, decide

@@ -4,8 +4,8 @@
 from sceneql.field.interval_kernels import box
 from sceneql.field.simplify_kernels import simplify
 from sceneql.field.steepness_kernels import steepness
-from sceneql.field.tape_kernels import TAPE, value
-from sceneql.field.tape_ops import NOWHERE, WHOLE
+from sceneql.field.tape_kernels import value
+from sceneql.field.tape_ops import NOWHERE, TAPE, WHOLE
 from sceneql.kernels import inlined, lean
 from sceneql.mesh.cull_kernels import CLEAR, CUT, verdict
 from sceneql.mesh.extract_kernels import NODES, sample

@@ -182,8 +182,8 @@ def _object(graph: SimulationGraph, name: str) -> Task:
     task = graph.tasks.get(name)
     if task is None or not isinstance(task.kind, Object):
         objects = [other for other, found in graph.tasks.items() if isinstance(found.kind, Object)]
-        hint = suggestion(name, objects) or f"the script has {', '.join(objects) or 'none'}"
-        raise Unsuitable(f"no object is named '{name}': {hint}")
+        hint = suggestion(name, objects)
+        raise Unsuitable(f"no object is named '{name}'" + (f": {hint}" if hint else ""))
     return task
 
 

@@ -78,9 +78,12 @@ class IslandRun:
 
     def __init__(self, graph: SimulationGraph, island: Island) -> None:
         from sceneql.ahead import compile_ahead
+        from sceneql.compiling import late
         from sceneql.simulation.assembled import blocks_of, models_of
         from sceneql.simulation.driver import function, modules
+        from sceneql.simulation.linear.stage import likely_kernels
 
+        compile_ahead(("sceneql.simulation.march_kernels",))  # while the models are made here
         self.graph, self.island = graph, island
         self.solver = cast(Solver, graph.tasks[island.solver].kind)
         made = models_of(graph, island)
@@ -97,10 +100,11 @@ class IslandRun:
 
             stepper = suited(stepper, assembly.only_field)
         system = assembly.finish(stepper.jacobian)
-        acting = compile_ahead(modules(system.structure, stepper.step))
+        acting = compile_ahead((*modules(system.structure, stepper.step), *likely_kernels(system)))
+        acting()
         from sceneql.simulation.march import March
 
-        acting()
+        compile_ahead(late.modules())  # nobody waits for what may never be called
         blocks = blocks_of(made, system, stepper)
         self.march: March
         try:

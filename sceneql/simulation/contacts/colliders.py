@@ -58,7 +58,6 @@ def must_be_outside(model: str, refs: Sequence[Ref], ints: Sequence[int], assemb
 
 def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """All but the last of an object's integers, and the further ones of its shape."""
-    from sceneql.simulation.contacts import shape_kernels as one_by_one
     from sceneql.simulation.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, NEAR_TYPE, SURFACE_TYPE
     from sceneql.simulation.numbered_kernels import number_of
 
@@ -77,7 +76,9 @@ def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, 
     shape = import_module(f"sceneql.simulation.contacts.shapes.{here.shape}_kernels")
     signatures = {"surface": SURFACE_TYPE, "bend": BEND_TYPE, "clear": CLEAR_TYPE}
     numbers = [number_of(getattr(shape, name), signature) for name, signature in signatures.items()]
-    numbers.append(number_of(getattr(shape, "near", one_by_one.near), NEAR_TYPE))
+    if not hasattr(shape, "near"):
+        shape = import_module("sceneql.simulation.contacts.near_kernels")
+    numbers.append(number_of(shape.near, NEAR_TYPE))
     places = (here.position_at, here.rotation_at, here.size_at, here.depth_at)
     flat = int(here.shape == "plane" and not is_moving(kind))
     return (*numbers, *places, *poses, flat), here.data

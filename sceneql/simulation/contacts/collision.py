@@ -69,6 +69,7 @@ class Collision(Contact):
         import numpy as np
 
         from sceneql.ahead import compile_ahead
+        from sceneql.compiling import late
         from sceneql.simulation.contacts.colliders import must_be_outside, step_by_springs, surfaces
         from sceneql.simulation.contacts.impulse_kernels import HEAD, INSTANT, MOST_CUTS
 
@@ -77,11 +78,13 @@ class Collision(Contact):
         exact = self.mode == "exact" or (self.mode == "auto" and assembly.body_count() <= MOST_EXACT)
         found = f"sceneql.simulation.contacts.{'collision' if exact else 'settle'}_kernels"
         compile_ahead((found,))  # the largest of the island, while what the objects are looked at with compiles here
-        from sceneql.simulation.contacts.resting_kernels import PAIR
+        from sceneql.simulation.contacts.memory_kernels import PAIR
 
         written = {ref.name: ref for ref in self.between or ()}
         touched = [written.get(ref.name, ref) for ref in others]
         objects = surfaces(touched, assembly, HEAD)
+        if exact:
+            compile_ahead(late.modules())  # every gap asks for them
         nan = float("nan")
         cuts = (0.0, 0.0, 0.0) if assembly.body_count() <= MOST_CUT else (float("inf"), 0.0, MOST_CUTS)
         tally_at = assembly.floats([0.0, nan, nan, 0.0, nan])

@@ -28,13 +28,9 @@ from sceneql.simulation.contacts.impulse_kernels import (
     count_hit,
     scale_of,
 )
-from sceneql.simulation.contacts.path_kernels import NEVER, PATH, first_contact, moving, place
+from sceneql.simulation.contacts.memory_kernels import ALONG, PAIR, PATH, PRESS, SLIDES, STICKS
+from sceneql.simulation.contacts.path_kernels import NEVER, first_contact, moving, place
 from sceneql.simulation.contacts.resting_kernels import (
-    ALONG,
-    PAIR,
-    PRESS,
-    SLIDES,
-    STICKS,
     body_of,
     come_to_rest,
     keep,

@@ -13,7 +13,6 @@ from sceneql.simulation.contacts.impulse_kernels import STILL
 from sceneql.simulation.contacts.shape_kernels import DEPTH, FLAT, clear, facing, surface
 from sceneql.system_kernels import A, F, I, N
 
-PATH = 13
 NEVER = 2.0
 TOUCH = 1e-12
 """Distance, as a part of the coordinates (or of a meter), below which a body touches."""

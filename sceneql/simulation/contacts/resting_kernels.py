@@ -1,10 +1,6 @@
 # mypy: ignore-errors
 """Resting contact: the normal force that carries a body, Coulomb's friction, and what keeps it on the surface.
 
-A pair is (body k, object j), numbered k * objects + j. Its memory in the floats: state, free normal acceleration, load
-(normal force by mass), pull along the surface (force without friction by mass), direction of sliding (3), load at the
-end of the step before (`local` mode; NaN where there was none).
-
 The direction of Coulomb's friction turns at a rate of friction / speed: infinitely stiff as the speed goes to 0. So a
 body slower than CREEP sticks: friction there goes against the pull, not against the velocity, and what velocity is
 left is taken away once the pull is too weak. Only one that slides to its end, with little pull, stops by itself.
@@ -34,13 +30,23 @@ from sceneql.simulation.contacts.impulse_kernels import (
     WORK,
     scale_of,
 )
+from sceneql.simulation.contacts.memory_kernels import (
+    ALONG,
+    CREEPS,
+    EARLIER,
+    FREE,
+    LIST,
+    LOAD,
+    PAIR,
+    PRESS,
+    PULL,
+    RESTING,
+    SLIDES,
+    STICKS,
+    SUPPORT,
+)
 from sceneql.simulation.contacts.shape_kernels import FLAT, FOUR, OBJECT, acceleration, bend, facing, surface, velocity
 from sceneql.system_kernels import A, F, I, N
-
-PRESS, LOAD, PULL, ALONG, EARLIER = 1, 2, 3, 4, 7
-PAIR = 8
-FREE, SLIDES, STICKS, CREEPS = 0.0, 1.0, 2.0, 3.0
-"""CREEPS, in `local` mode: slides, but so slowly that friction is left to the end of the step (slide_kernels)."""
 
 NEAR = 1e-9
 """Distance, as a part of the coordinates, within which a free pair's normal acceleration is worth knowing."""
@@ -49,10 +55,6 @@ CREEP = 1e-3
 """Speed along the surface [m/s] below which friction goes against the pull."""
 
 SWEEPS = 50
-
-RESTING, LIST = 3, 4
-"""In `local` mode, the places in the contact's memory (settle_kernels) of the number of resting bodies, and of their
-numbers: most bodies fly, and the others are found without looking at all."""
 
 
 @lean_inlined
@@ -287,7 +289,7 @@ def bear_lying(y, rate, floats, ints):
             rub(k, y, rate, floats, ints)
 
 
-@lean(types.void(types.boolean, A, A, A, I), inner=True)
+@lean(SUPPORT, inner=True)
 def support(near, y, rate, floats, ints):
     """Take from the acceleration of bodies that rest what pushes into the surface, and add Coulomb's friction.
 

@@ -25,7 +25,8 @@ import math
 
 from numba import types
 
-from sceneql.kernels import lean, lean_inlined
+from sceneql.compiling.late import late
+from sceneql.kernels import lean_inlined
 from sceneql.simulation.numbered_kernels import kernel_at
 from sceneql.system_kernels import A, F, I, N
 
@@ -40,11 +41,14 @@ UNIT = 4e-16
 
 FOUR = types.UniTuple(F, 4)
 THREE = types.UniTuple(F, 3)
+MOTION_TYPE = THREE(A, I, N, F, F, F)
 SURFACE_TYPE = FOUR(A, I, N, F, F, F)
 BEND_TYPE = F(A, I, N, F, F, F, F, F, F)
 CLEAR_TYPE = types.boolean(A, I, N, F, F, F, F)
 NEAR_TYPE = types.void(A, I, N, F, A, A, A, A, A, F, A)
 
+moving_velocity = late("sceneql.simulation.contacts.moving_kernels:moving_velocity", MOTION_TYPE)
+moving_acceleration = late("sceneql.simulation.contacts.moving_kernels:moving_acceleration", MOTION_TYPE)
 surface_at, bend_at, clear_at, near_at = (kernel_at(kind) for kind in (SURFACE_TYPE, BEND_TYPE, CLEAR_TYPE, NEAR_TYPE))
 
 
@@ -96,21 +100,6 @@ def clear(floats, ints, at, x, y, z, radius):
     return clear_at(ints[at + CLEAR])(floats, ints, at, x, y, z, radius)
 
 
-@lean(NEAR_TYPE, inner=True)
-def near(floats, ints, at, h, x0, v0, x1, v1, radii, more, found):
-    """One by one: a ball about the path's end that it does not leave."""
-    clear_of = clear_at(ints[at + CLEAR])
-    for k in range(radii.size):
-        way = 0.0
-        for c in range(3 * k, 3 * k + 3):
-            # The largest component of the Bezier coefficients of the path's velocity.
-            middle = 3.0 * (x1[c] - x0[c]) / h - v0[c] - v1[c]
-            way += max(abs(middle), max(abs(v0[c]), abs(v1[c])))
-        reach = h * way + radii[k] + more
-        if found[k] == 0.0 and not clear_of(floats, ints, at, x1[3 * k], x1[3 * k + 1], x1[3 * k + 2], reach):
-            found[k] = 1.0
-
-
 @lean_inlined
 def unturn(floats, at, x, y, z):
     """A vector turned back."""
@@ -129,29 +118,11 @@ def inward(floats, ints, at, x, y, z):
 
 
 @lean_inlined
-def carried(floats, ints, at, pose, x, y, z):
-    """Where a point that is fixed to the object stands in its pose BEFORE or AFTER."""
-    a, b, c = inward(floats, ints, at, x, y, z)
-    a, b, c = turn(floats, ints[at + pose + 1], a, b, c)
-    p = ints[at + pose]
-    return a + floats[p], b + floats[p + 1], c + floats[p + 2]
-
-
-@lean_inlined
 def velocity(floats, ints, at, x, y, z):
     """Velocity [m/s] of the object's own point at (x, y, z)."""
     if ints[at + MOVING] == 0:
         return 0.0, 0.0, 0.0
     return moving_velocity(floats, ints, at, x, y, z)
-
-
-@lean(THREE(A, I, N, F, F, F), inner=True)
-def moving_velocity(floats, ints, at, x, y, z):
-    """The same of one that moves."""
-    apart = floats[ints[at + MOVING]]
-    a, b, c = carried(floats, ints, at, BEFORE, x, y, z)
-    p, q, r = carried(floats, ints, at, AFTER, x, y, z)
-    return (p - a) / (2.0 * apart), (q - b) / (2.0 * apart), (r - c) / (2.0 * apart)
 
 
 @lean_inlined
@@ -160,13 +131,3 @@ def acceleration(floats, ints, at, x, y, z):
     if ints[at + MOVING] == 0:
         return 0.0, 0.0, 0.0
     return moving_acceleration(floats, ints, at, x, y, z)
-
-
-@lean(THREE(A, I, N, F, F, F), inner=True)
-def moving_acceleration(floats, ints, at, x, y, z):
-    """The same of one that moves."""
-    apart = floats[ints[at + MOVING]]
-    a, b, c = carried(floats, ints, at, BEFORE, x, y, z)
-    p, q, r = carried(floats, ints, at, AFTER, x, y, z)
-    square = apart * apart
-    return (p - 2.0 * x + a) / square, (q - 2.0 * y + b) / square, (r - 2.0 * z + c) / square

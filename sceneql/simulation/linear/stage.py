@@ -235,6 +235,14 @@ def _points(system: System, core: NDArray[int64]) -> Floats | None:
     return None if np.isnan(found).any() else found
 
 
+def likely_kernels(system: System) -> tuple[str, ...]:
+    """Modules that a plan will most likely ask for, to be compiled while the island is built."""
+    if system.pattern is None or system.grids:
+        return ()
+    few = (system.partner < 0).sum() <= SMALL
+    return tuple(f"{__package__}.{name}_kernels" for name in (("dense",) if few else ("fronts_symmetric", "fronts")))
+
+
 def _choose(pattern: Any, points: Floats | None) -> _Solver:
     """How to solve systems of a pattern, by its size and fill."""
     import numpy as np

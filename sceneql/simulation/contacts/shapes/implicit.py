@@ -30,11 +30,8 @@ def collider(kind: Object, assembly: Assembly) -> Collider:
     """
     import numpy as np
 
-    from sceneql.field import interval_kernels, tape_kernels
     from sceneql.field.builder import TapeBuilder
     from sceneql.field.tape_ops import SCRATCH_COLUMNS, scratch_rows
-    from sceneql.simulation.contacts.shapes.implicit_kernels import BOX_TYPE, GRADIENT_TYPE
-    from sceneql.simulation.numbered_kernels import number_of
 
     own = kind
     if isinstance(kind, Placed):
@@ -49,8 +46,6 @@ def collider(kind: Object, assembly: Assembly) -> Collider:
     size = float(sides[np.isfinite(sides)].max(initial=0.0)) or 1.0
     rows = scratch_rows(len(tape.code), len(tape.parts))
     data = (
-        number_of(tape_kernels.gradient, GRADIENT_TYPE),
-        number_of(interval_kernels.box, BOX_TYPE),
         assembly.floats(tape.constants),
         len(tape.constants),
         assembly.floats(tape.parts),

@@ -6,19 +6,17 @@ kernels compute nor what they may contain, but for closures, comprehensions, ``w
 """
 
 import gc
-import operator
 from contextlib import contextmanager
 from copy import copy
 
 from llvmlite import binding
 from llvmlite.binding import ffi
-from numba import config, types
-from numba.core import ir
+from numba import config
+from numba.core import cgutils
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase
-from numba.core.compiler_machinery import PassManager, register_pass
+from numba.core.compiler_machinery import PassManager, _pass_registry, register_pass
 from numba.core.typed_passes import (
-    IRLegalization,
     NativeLowering,
     NoPythonBackend,
     NopythonTypeInference,
@@ -28,25 +26,42 @@ from numba.core.untyped_passes import (
     FixupArgs,
     GenericRewrites,
     InlineInlinables,
-    IRProcessing,
     ReconstructSSA,
     TranslateByteCode,
 )
 
+from sceneql.compiling.elements import take_elements
+from sceneql.compiling.shortcuts import take_shortcuts
+from sceneql.compiling.statements import Free, KernelLower
+
 FRONT = (
     TranslateByteCode,
     FixupArgs,
-    IRProcessing,
     GenericRewrites,
     InlineInlinables,
     ReconstructSSA,
     NopythonTypeInference,
     PreLowerStripPhis,
-    IRLegalization,
+    Free,
 )
 
 
-class HelperLibrary(JITCodeLibrary):
+class KernelLibrary(JITCodeLibrary):
+    """Code of a kernel: nothing of it is looked over for LLVM's own mistakes, or made good where there is nothing."""
+
+    def add_ir_module(self, ir_module):
+        """Take LLVM's words in."""
+        module = binding.parse_assembly(cgutils.normalize_ir_text(str(ir_module)))
+        module.name = ir_module.name
+        module.data_layout = self._codegen._data_layout
+        for function in module.functions:
+            if not function.is_declaration:
+                passes, builder = self._codegen._function_pass_manager()
+                passes.run(function, builder)
+        self._final_module.link_in(module)
+
+
+class HelperLibrary(KernelLibrary):
     """Code of a helper: it goes into its callers, is made good there, and never becomes machine code of its own."""
 
     def _optimize_final_module(self):
@@ -61,8 +76,23 @@ class HelperLibrary(JITCodeLibrary):
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
+class KernelLowering(NativeLowering):
+    """Lower a kernel to a KernelLibrary."""
+
+    lowering_class = KernelLower
+
+    def run_pass(self, state):
+        """Leave the code in state.library, to be cached."""
+        state.library = KernelLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.enable_object_caching()
+        return super().run_pass(state)
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
 class HelperLowering(NativeLowering):
     """Lower a helper to a HelperLibrary."""
+
+    lowering_class = KernelLower
 
     def run_pass(self, state):
         """Leave the code in state.library, and in state.cr what callers know it by."""
@@ -84,8 +114,19 @@ def _kept_out(name):
     return f"{{{name} is for kernels only}}".format
 
 
+class Passes(PassManager):
+    """A list of passes, with nothing between them: numba would find anew after each where variables live."""
+
+    def run(self, state):
+        """Run them all on the state."""
+        for one, _ in self.passes:
+            _pass_registry.get(one).pass_inst.run_pass(state)
+            if state.func_ir is not None:
+                state.func_ir.of_kernel = True
+
+
 def _pipeline(*passes):
-    manager = PassManager("kernels")
+    manager = Passes("kernels")
     for one in passes:
         manager.add_pass(one, one.__name__)
     manager.finalize()
@@ -97,7 +138,7 @@ class KernelCompiler(CompilerBase):
 
     def define_pipelines(self):
         """The one list of passes."""
-        return _pipeline(*FRONT, NativeLowering, NoPythonBackend)
+        return _pipeline(*FRONT, KernelLowering, NoPythonBackend)
 
 
 class HelperCompiler(CompilerBase):
@@ -112,67 +153,55 @@ def call_by_name(kernel, inner):
     """Let other kernels call this one by its name, where numba would put its code into each of them once more.
 
     The name is the function's own: what numba makes of it differs from process to process, and callers are cached.
-    An ``inner`` kernel has no code for calls from Python, which are kept out.
+    An ``inner`` kernel has no code for calls from Python: they raise TypeError.
     """
-    ((types_in, made),) = kernel.overloads.items()  # of one signature: a name stands for one function
+    (made,) = kernel.overloads.values()  # of one signature: a name stands for one function
     called = copy(made.fndesc)
     called.mangled_name = f"{made.fndesc.modname}.{made.fndesc.qualname}"
     binding.add_symbol(called.mangled_name, made.library.get_pointer_to_function(made.fndesc.mangled_name))
     context = made.target_context
     context.remove_user_function(made.entry_point)
+    context.insert_user_function(made.entry_point, called, [])
     if inner:
         kernel._clear()
-        kernel.overloads[types_in] = made = made._replace(entry_point=_kept_out(kernel.__name__))
-    context.insert_user_function(made.entry_point, called, [])
+        kernel._explain_matching_error = _refusal(kernel.__name__)
+
+
+def _refusal(name):
+    """What raises TypeError for a call from Python of a function for kernels."""
+
+    def refuse(*_, **__):
+        raise TypeError(f"{name} is for kernels only")
+
+    return refuse
+
+
+MANY, VERY_MANY = 20_000, 3_000_000
+"""Objects that a compilation makes, a load from the cache does not; and how many of them memory has room for."""
+out_of_sight: list[int] = []
 
 
 @contextmanager
 def collecting_later():
-    """Leave the garbage collector off: a compilation makes millions of objects that live on, looked over in vain."""
+    """Leave the garbage collector off: a compilation makes millions of objects that live on, looked over in vain.
+
+    Afterwards they are kept out of its sight too, or it would look them over at once, until there are very many.
+    """
     was_on = gc.isenabled()
     gc.disable()
     try:
         yield
     finally:
         if was_on:
+            made = gc.get_count()[0]
+            if made > MANY:
+                out_of_sight.append(made)
+                if sum(out_of_sight) > VERY_MANY:
+                    out_of_sight.clear()
+                    gc.unfreeze()
+                    gc.collect()
+                gc.freeze()
             gc.enable()
-
-
-def remember_signatures():
-    """Let numba keep what an operation on numbers, or the picking of an element, gives.
-
-    At every ``a + b`` it tries up to twenty rules, those for strings, lists and sets among them, and that twice.
-    """
-    resolve = types.Function.get_call_type
-    known = {}
-
-    def remembering(self, typing, args, keywords):
-        plain = PLAIN_OR_PACKED if self.typing_key in (operator.getitem, operator.setitem) else PLAIN
-        if keywords or not all(isinstance(arg, plain) for arg in args):
-            return resolve(self, typing, args, keywords)
-        key = self, typing, tuple(args)
-        if key not in known:
-            known[key] = resolve(self, typing, args, keywords)
-        return known[key]
-
-    types.Function.get_call_type = remembering
-
-
-def list_quickly():
-    """Let numba list a statement's variables by looking at the types of its parts in one step, not in up to six."""
-    slowly = ir.Inst._rec_list_vars
-
-    def listed(self, value):
-        kind = type(value)
-        if kind is ir.Var:
-            return [value]
-        if kind in WITHOUT_VARIABLES:
-            return ()
-        if kind is dict or kind is list or kind is tuple:
-            return [one for part in (value.values() if kind is dict else value) for one in listed(self, part)]
-        return slowly(self, value)
-
-    ir.Inst._rec_list_vars = listed
 
 
 def widen():
@@ -183,11 +212,7 @@ def widen():
             config.CPU_FEATURES = f"{features.flatten()},-prefer-256-bit"
 
 
-WITHOUT_VARIABLES = {str, int, float, bool, type(None), ir.Loc, ir.Const, ir.Global, ir.Arg, type(operator.add)}
-PLAIN = (types.Number, types.Boolean)
-PLAIN_OR_PACKED = (*PLAIN, types.Array, types.BaseTuple)
-
-remember_signatures()
-list_quickly()
+take_elements()
+take_shortcuts()
 widen()
 ffi.lib._lock._cblist.clear()  # LLVM's calls are many, and how long it is held asks nobody here

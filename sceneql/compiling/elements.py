@@ -1,0 +1,179 @@
+# mypy: ignore-errors
+"""How elements and parts of arrays are read and written in compiled code: the same as numba does it, in fewer words.
+
+numba copies the whole array into memory at each use, with all its fields, and looks for what other libraries may have
+said of arrays. Most of what a kernel is compiled from is that; the machine code is the same without.
+"""
+
+import operator
+from functools import cache
+
+from llvmlite import ir
+from numba import config
+from numba.core import cgutils, types
+from numba.core.imputils import impl_ret_borrowed, lower_builtin, lower_getattr
+from numba.extending import intrinsic
+from numba.np import arrayobj
+from numba.np.numpy_support import as_dtype
+
+WHOLE = arrayobj.getitem_arraynd_intp, arrayobj.getitem_array_tuple, arrayobj.setitem_array, arrayobj.make_array
+"""numba's own ways."""
+
+
+def field(context, builder, kind, array, name, *more):
+    """A field of an array's value."""
+    position = context.data_model_manager[kind].get_field_position(name)
+    return builder.extract_value(array, (position, *more))
+
+
+def wrapped(context, builder, kind, index, size):
+    """An index as a word, those below 0 counted from the end."""
+    if not kind.signed:
+        return context.cast(builder, index, kind, types.uintp)
+    index = context.cast(builder, index, kind, types.intp)
+    if isinstance(index, ir.Constant) and index.constant >= 0:
+        return index
+    negative = builder.icmp_signed("<", index, index.type(0))
+    return builder.select(negative, builder.add(index, size), index)
+
+
+def pointer(context, builder, kind, array, kinds, indices):
+    """Where an element stands; None where that is not told by one integer for each dimension of an array in rows."""
+    plain = isinstance(kind, types.Array) and kind.layout == "C" and len(kinds) == kind.ndim > 0
+    if not plain or context.enable_boundscheck or not all(isinstance(one, types.Integer) for one in kinds):
+        return None
+    place = None
+    for axis, (index_kind, index) in enumerate(zip(kinds, indices, strict=True)):
+        size = field(context, builder, kind, array, "shape", axis)
+        index = wrapped(context, builder, index_kind, index, size)
+        place = index if place is None else builder.add(builder.mul(place, size), index)
+    return builder.gep(field(context, builder, kind, array, "data"), [place])
+
+
+def parts(builder, kind, index):
+    """Types and values of the integers of an index."""
+    if isinstance(kind, types.BaseTuple):
+        return tuple(kind), cgutils.unpack_tuple(builder, index, count=len(kind))
+    return (kind,), (index,)
+
+
+@lower_builtin(operator.getitem, types.Array, types.Integer)
+@lower_builtin(operator.getitem, types.Array, types.BaseTuple)
+def element(context, builder, signature, arguments):
+    """``array[i]`` and ``array[i, j]``."""
+    kind, index_kind = signature.args
+    array, index = arguments
+    at = None
+    if not isinstance(signature.return_type, types.Buffer):
+        at = pointer(context, builder, kind, array, *parts(builder, index_kind, index))
+    if at is None:
+        numba_way = WHOLE[isinstance(index_kind, types.BaseTuple)]
+        return numba_way(context, builder, signature, arguments)
+    return impl_ret_borrowed(context, builder, signature.return_type, arrayobj.load_item(context, builder, kind, at))
+
+
+@lower_builtin(operator.setitem, types.Array, types.Integer, types.Any)
+@lower_builtin(operator.setitem, types.Array, types.BaseTuple, types.Any)
+def set_element(context, builder, signature, arguments):
+    """``array[i] = value`` and ``array[i, j] = value``."""
+    kind, index_kind, value_kind = signature.args
+    array, index, value = arguments
+    at = None
+    if not isinstance(value_kind, types.Buffer):
+        at = pointer(context, builder, kind, array, *parts(builder, index_kind, index))
+    if at is None:
+        WHOLE[2](context, builder, signature, arguments)
+    else:
+        arrayobj.store_item(context, builder, kind, context.cast(builder, value, value_kind, kind.dtype), at)
+
+
+@lower_builtin(operator.getitem, types.Array, types.SliceType)
+def section(context, builder, signature, arguments):
+    """``array[i:j]``."""
+    kind, slice_kind = signature.args
+    array, section = arguments
+    if slice_kind.has_step or kind.ndim != 1 or kind.layout != "C" or signature.return_type != kind:
+        return WHOLE[0](context, builder, signature, arguments)
+    size = field(context, builder, kind, array, "shape", 0)
+    zero = size.type(0)
+
+    def bound(position):
+        place = wrapped(context, builder, types.intp, builder.extract_value(section, position), size)
+        place = builder.select(builder.icmp_signed("<", place, zero), zero, place)
+        return builder.select(builder.icmp_signed(">=", place, size), size, place)
+
+    start, stop = bound(0), bound(1)
+    length = builder.select(builder.icmp_signed("<=", stop, start), zero, builder.sub(stop, start))
+    model = context.data_model_manager[kind]
+    data = builder.gep(field(context, builder, kind, array, "data"), [start])
+    for name, value in (("nitems", length), ("data", data), ("shape", (0, length))):
+        position = model.get_field_position(name)
+        where = (position, value[0]) if isinstance(value, tuple) else position
+        array = builder.insert_value(array, value[1] if isinstance(value, tuple) else value, where)
+    return impl_ret_borrowed(context, builder, signature.return_type, array)
+
+
+@lower_getattr(types.Array, "size")
+def count(context, builder, kind, array):
+    """``array.size``."""
+    return field(context, builder, kind, array, "nitems")
+
+
+@lower_getattr(types.Array, "shape")
+def shape(context, builder, kind, array):
+    """``array.shape``."""
+    return field(context, builder, kind, array, "shape")
+
+
+@lower_builtin(len, types.Array)
+def length(context, builder, signature, arguments):
+    """``len(array)``."""
+    return field(context, builder, signature.args[0], arguments[0], "shape", 0)
+
+
+def rows_of(kind, columns):
+    """A function of an array of numbers in a row: the same memory as an array (n, columns) of numbers of ``kind``."""
+    if config.DISABLE_JIT:
+        return lambda numbers: numbers.view(as_dtype(kind)).reshape(-1, columns)
+    table = types.Array(kind, 2, "C")
+
+    @intrinsic
+    def rows(typing, numbers):
+        def code(context, builder, signature, arguments):
+            (array,) = arguments
+            words, size = context.get_value_type(types.intp), kind.bitwidth // 8
+            length = builder.mul(field(context, builder, numbers, array, "nitems"), words(numbers.dtype.bitwidth // 8))
+            count = builder.udiv(length, words(size * columns))
+            data = field(context, builder, numbers, array, "data")
+            fields = {
+                "meminfo": field(context, builder, numbers, array, "meminfo"),
+                "parent": field(context, builder, numbers, array, "parent"),
+                "nitems": builder.mul(count, words(columns)),
+                "itemsize": words(size),
+                "data": builder.bitcast(data, context.get_data_type(kind).as_pointer()),
+                "shape": cgutils.pack_array(builder, [count, words(columns)]),
+                "strides": cgutils.pack_array(builder, [words(size * columns), words(size)]),
+            }
+            made = ir.Constant(context.get_value_type(table), ir.Undefined)
+            model = context.data_model_manager[table]
+            for name, value in fields.items():
+                made = builder.insert_value(made, value, model.get_field_position(name))
+            return impl_ret_borrowed(context, builder, table, made)
+
+        return table(numbers), code
+
+    return rows
+
+
+@cache
+def make_array(kind):
+    """numba's structure of an array, without asking what other libraries may have said of it."""
+    made = WHOLE[3](kind)
+    if type(kind) is types.Array:
+        made._make_refs = cgutils._StructProxy._make_refs
+    return made
+
+
+def take_elements():
+    """Let numba take its structure of an array from here too; the rest it finds by itself."""
+    arrayobj.make_array = make_array

@@ -1,0 +1,97 @@
+# mypy: ignore-errors
+"""Kernels that others call, but that are compiled only when the first call comes: most scenes may do without.
+
+The callers are linked to a place in memory, not to code. While it is empty a call asks for the kernel's module first.
+"""
+
+import ctypes
+import threading
+import traceback
+from _thread import interrupt_main
+from importlib import import_module
+from os import _exit
+
+from llvmlite import binding, ir
+from numba import config
+from numba.core import cgutils
+from numba.core.imputils import lower_builtin
+from numba.core.typing.templates import ConcreteTemplate, infer_global
+
+places: dict[int, tuple[str, ctypes.c_void_p]] = {}
+"""By its address: the name of a kernel, and the place for the address of its code."""
+_one_by_one = threading.RLock()
+_ASK = "sceneql.compiling.late.ask"
+
+
+def late(name, signature):
+    """The kernel ``"package.module:function"``, to be called by kernels alone; ``signature`` is what it has."""
+    module, _, function = name.partition(":")
+
+    def stub(*arguments):
+        """Its stand-in, which calls it where numba is switched off."""
+        if not config.DISABLE_JIT:
+            raise TypeError(f"{function} is for kernels only")
+        return getattr(import_module(module), function)(*arguments)
+
+    if config.DISABLE_JIT:
+        return stub
+    symbol = f"sceneql.compiling.late.{name}"
+    place = ctypes.c_void_p()
+    places[ctypes.addressof(place)] = name, place
+    binding.add_symbol(symbol, ctypes.addressof(place))
+    template = type(f"Late_{function}", (ConcreteTemplate,), {"key": symbol, "cases": [signature]})
+    infer_global(stub, typing_key=symbol)(template)
+
+    @lower_builtin(symbol, *signature.args)
+    def call(context, builder, chosen, arguments):
+        words = builder.module
+        if symbol not in words.globals:
+            ir.GlobalVariable(words, cgutils.voidptr_t, symbol)
+        if _ASK not in words.globals:
+            ir.Function(words, ir.FunctionType(ir.VoidType(), [cgutils.voidptr_t.as_pointer()]), _ASK)
+        at = words.globals[symbol]
+        empty = cgutils.is_null(builder, builder.load(at))
+        with cgutils.if_unlikely(builder, empty):
+            builder.call(words.globals[_ASK], [at])
+        kind = context.call_conv.get_function_type(chosen.return_type, chosen.args).as_pointer()
+        code = builder.bitcast(builder.load(at), kind)
+        status, result = context.call_conv.call_function(builder, code, chosen.return_type, chosen.args, arguments)
+        with cgutils.if_unlikely(builder, status.is_error):
+            context.call_conv.return_status_propagate(builder, status)
+        return result
+
+    return stub
+
+
+def modules() -> list[str]:
+    """The modules of all late kernels that are named so far and have not been called."""
+    return [name.partition(":")[0] for name, place in list(places.values()) if place.value is None]
+
+
+def _fill(at):
+    """Bring the kernel of a place."""
+    name, place = places[at]
+    module, _, function = name.partition(":")
+    with _one_by_one:
+        if place.value is None:
+            ((_, made),) = getattr(import_module(module), function).overloads.items()
+            place.value = made.library.get_pointer_to_function(made.fndesc.llvm_func_name)
+
+
+@ctypes.CFUNCTYPE(None, ctypes.c_size_t)
+def _ask(at):
+    """What compiled code calls: there is no way back without the kernel. A Ctrl-C is heard when Python goes on."""
+    interrupted = False
+    while places[at][1].value is None:
+        try:
+            _fill(at)
+        except KeyboardInterrupt:
+            interrupted = True
+        except BaseException:
+            traceback.print_exc()
+            _exit(1)
+    if interrupted:
+        threading.Timer(0.05, interrupt_main).start()
+
+
+binding.add_symbol(_ASK, ctypes.cast(_ask, ctypes.c_void_p).value)

@@ -1,0 +1,18 @@
+# mypy: ignore-errors
+"""A kernel that may call one that is compiled late, for test_compiling."""
+
+from numba import types
+
+from sceneql.compiling.late import late
+from sceneql.kernels import lean
+
+F = types.float64
+halved = late("late_called_kernels:halved", types.UniTuple(F, 2)(F, types.int64))
+
+
+@lean(F(F))
+def half_of_positive(x):
+    if x <= 0.0:
+        return 0.0
+    half, rest = halved(x, 2)
+    return half + rest
