@@ -105,7 +105,9 @@ def _pattern(size: int, slopes: Sequence[Slopes]) -> tuple[Pattern, NDArray[int6
     sums = np.append(0, np.cumsum(summed))[np.append(new, len(keys))]
     starts = np.searchsorted(kept, diagonal * size)
     entries = len(rows) - size
-    tallies = np.setdiff1d(diagonal, np.concatenate([rows[:entries], columns[:entries]]))
+    alone = np.ones(size, dtype=bool)
+    alone[rows[:entries]] = alone[columns[:entries]] = False
+    tallies = np.flatnonzero(alone)
     starts = np.append(starts, len(kept)).astype(np.int64)
     found = Pattern(starts, kept % max(size, 1), len(kept) + int(first[-1]), True, tallies)
     return found, sums.astype(np.int64), np.concatenate(parts)[order[summed]]

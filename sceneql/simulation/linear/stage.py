@@ -203,10 +203,10 @@ def _pattern(rows: Any, columns: Any, m: int) -> Any:
 
     if m <= SMALL:
         return csr_array(np.ones((m, m)))
-    both = (np.concatenate([rows, columns]), np.concatenate([columns, rows]))
-    pattern = csr_array((np.ones(2 * len(rows)), both), shape=(m, m))
-    pattern.sum_duplicates()
-    return pattern
+    one_way = csr_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(m, m))
+    one_way.sum_duplicates()
+    one_way.data[:] = 1
+    return (one_way + one_way.T.tocsr()).astype(np.float64)
 
 
 def _twins(pattern: Any) -> NDArray[int64]:
