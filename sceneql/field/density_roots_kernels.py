@@ -64,7 +64,7 @@ ROW_OF, THRESHOLD, OTHER = range(3)
 """Of a plan: the row of the density, -1 where a field has another form; of c; of g, -1 where there is none."""
 NARROW, HAIR = F(2.0e-5), F(1.0e-6)
 """Width of a bracket, and what is searched beyond the parts, relative to the ray's piece."""
-QUARTER, INFINITE = F(0.25), F(np.inf)
+INFINITE = F(np.inf)
 GOLDEN = F(0.4472136)
 """1/sqrt(5)."""
 STEEPEST = 1.72
@@ -171,7 +171,7 @@ def start_lanes(room, state, n):
         low = low if low > ZERO else ZERO
         high = high if high < state[END + i] else state[END + i]
         state[A + i] = low
-        state[B + i] = low + QUARTER * (high - low)
+        state[B + i] = high
         state[END + i] = high
         state[FINE + i] = NARROW * way
         state[TRIES + i] = ZERO

@@ -181,6 +181,19 @@ def packet_roots(
 
 
 @inlined
+def leave_safe(rays, queue, count, row, late, safe, unsafe, found, doubtful):
+    """Put those queued rays into ``doubtful`` that ``check_inside`` must look at; how many."""
+    begins, ends, places = rays[6], rays[7], found[row]
+    n = 0
+    for k in range(count):
+        j = np.uint64(queue[k])
+        t = begins[j] + places[j] + late * (ends[j] - begins[j])
+        doubtful[np.uint64(n)] = queue[k]
+        n += 0 if (t > safe) & (t < unsafe) else 1
+    return n
+
+
+@inlined
 def check_inside(code, constants, parts, registers, points, rays, queue, count, row, late, found):
     """Leave rays undecided that are not inside ``late`` times their length behind the place in a row of ``found``."""
     width = points.shape[1]
@@ -246,6 +259,7 @@ def first_roots(
     for j in range(count):
         found[FOUND_STATUS, j] = MISS
     groups = (count + GROUP - 1) // GROUP
+    safe = unsafe = np.inf
     if plan[ROW_OF] >= 0:
         spent, queued = density_roots(
             code, constants, parts, plan, rays, count, groups, anywhere, found, queue, order, room, table, lanes,
@@ -253,7 +267,7 @@ def first_roots(
         )  # fmt: skip
         code, parts = short, near_parts
     elif plan[POLYNOMIAL] >= 0:
-        spent, queued = polynomial_roots(
+        spent, queued, safe, unsafe = polynomial_roots(
             code, constants, singles, registers, point, status, rays, count, anywhere, found, queue, plan, order,
             room, flat,
         )  # fmt: skip
@@ -275,7 +289,8 @@ def first_roots(
         polish(code, constants, parts, doubles, points, rays, queue, hits, found)
     if other.shape[0] > 0:
         row, late = (FOUND_HIGH, 0.0) if anywhere else (FOUND_ROOT, SETTLED)
-        check_inside(other, constants, parts, doubles, points, rays, queue, queued, row, late, found)
+        doubtful = leave_safe(rays, queue, queued, row, late, safe, unsafe, found, order)
+        check_inside(other, constants, parts, doubles, points, rays, order, doubtful, row, late, found)
     certified = 0
     for k in range(queued):
         j = np.uint64(queue[k])

@@ -7,10 +7,11 @@ outside are left out at both ends.
 
 import numpy as np
 
-from sceneql.field.affine_kernels import GROW, HALF, F
+from sceneql.field.affine_kernels import GROW, HALF, PAD, ZERO, F
+from sceneql.field.density_roots_kernels import OTHER
 from sceneql.field.extent_kernels import extent
 from sceneql.field.hunt_kernels import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS, SETTLED
-from sceneql.field.packet_kernels import LANES, E, enclose, load_constants, place
+from sceneql.field.packet_kernels import C1, LANES, E, enclose, load_constants, place
 from sceneql.field.polynomial_kernels import DEGREES, POLYNOMIAL, coefficients, rounding
 from sceneql.field.polynomial_steps_kernels import (
     CHANGE,
@@ -41,27 +42,27 @@ T0, T1, SPOT = 6, 7, 8
 
 @inlined
 def pack(rays, count, ids, wide):
-    """Put the rays that have a length into ``wide``; how many there are."""
+    """Put the rays that have a length into ``wide``, but for where all have one; how many there are."""
     n = 0
     t0, t1 = rays[T0], rays[T1]
     for j in range(count):
         ids[n] = j
         n += 1 if t0[j] < t1[j] else 0
-    for row in range(8):
-        source, target = rays[row], wide[row]
-        if n == count:
-            for i in range(n):
-                target[i] = source[i]
-        else:
+    if n < count:
+        for row in range(8):
+            source, target = rays[row], wide[row]
             for i in range(n):
                 target[i] = source[np.uint64(ids[i])]
     return n
 
 
 @inlined
-def place_beam(wide, n, begin, end, axis, point):
-    """Enclose a coordinate in the slabs of the beam around n rays; (bound of it, of its error in units of that)."""
-    o, d, spot = wide[axis], wide[3 + axis], wide[SPOT]
+def place_beam(wide, n, begin, end, axis, spot, point):
+    """Enclose a coordinate in the slabs of the beam around n rays; (bound of it, of its error in units of that).
+
+    ``spot`` (n,) is working memory.
+    """
+    o, d = wide[axis], wide[3 + axis]
     for i in range(n):
         spot[i] = o[i] + begin * d[i]
     low, high = extent(spot, n)
@@ -77,6 +78,20 @@ def place_beam(wide, n, begin, end, axis, point):
     speed = max(abs(d_low), abs(d_high))
     size = max(abs(low), abs(high)) + (end - begin) * speed
     return size, 8.0 + 8.0 * max(abs(begin), abs(end)) * speed / max(size, 1e-300)
+
+
+@inlined
+def negative_slabs(row):
+    """(first, end) of the longest run of slabs in which what a register encloses is negative."""
+    first, end, begun = 0, 0, 0
+    for k in range(LANES):
+        m = abs(row[C1 + k])
+        e = row[E + k] * GROW + PAD * (abs(row[k]) + m)
+        if not row[k] + m + e < ZERO:
+            begun = k + 1
+        elif k + 1 - begun > end - first:
+            first, end = begun, k + 1
+    return first, end
 
 
 @inlined
@@ -159,23 +174,28 @@ def polynomial_roots(
 ):  # fmt: skip
     """Settle a bundle as ``packet_roots_kernels.first_roots`` does.
 
-    Returns (enclosures, rays that may be met, in ``queue``).
+    Returns (enclosures, rays that may be met, in ``queue``, begin and end of where the other field is proved negative).
     """
     n = pack(rays, count, order, room)
     if n == 0:
-        return 0, 0
-    base, _ = extent(room[T0], n)
-    _, stop = extent(room[T1], n)
-    x = place_beam(room, n, base, stop, 0, point[0])
-    y = place_beam(room, n, base, stop, 1, point[1])
-    z = place_beam(room, n, base, stop, 2, point[2])
+        return 0, 0, np.inf, np.inf
+    wide, spot = rays if n == count else room, room[SPOT]
+    base, _ = extent(wide[T0], n)
+    _, stop = extent(wide[T1], n)
+    x = place_beam(wide, n, base, stop, 0, spot, point[0])
+    y = place_beam(wide, n, base, stop, 1, spot, point[1])
+    z = place_beam(wide, n, base, stop, 2, spot, point[2])
     load_constants(code, constants, registers)
     enclose(code, constants, singles, registers, point, status, LANES)
     first, final, run = left_of_slabs(registers[code.shape[0] - 1], status, 0, LANES)
     if first == LANES:
-        return LANES, 0
+        return LANES, 0, np.inf, np.inf
     depth = (stop - base) / LANES
     begin, end, run_end = base + (first - 1e-6) * depth, base + (final + 1 + 1e-6) * depth, base + run * depth
+    safe, unsafe = np.inf, np.inf
+    if plan[OTHER] >= 0:
+        k, m = negative_slabs(registers[plan[OTHER]])
+        safe, unsafe = base + (k + 1e-6) * depth, base + (m - 1e-6) * depth
     off = rounding(code, constants, plan, (x[0], y[0], z[0], x[1], y[1], z[1]), lanes)
     rows = plan[POLYNOMIAL] + 1
     degree = plan[DEGREES + rows - 1]
@@ -186,8 +206,8 @@ def polynomial_roots(
     for first in range(0, n, LANES):
         width = min(LANES, n - first)
         m = (width + 15) // 16 * 16
-        take(room, first, width, m, begin, run_end, end, lanes)
-        coefficients(code, constants, plan, room, first, lanes[MIDDLE:], lanes[HALF_WAY:], m, lanes)
+        take(wide, first, width, m, begin, run_end, end, lanes)
+        coefficients(code, constants, plan, wide, first, lanes[MIDDLE:], lanes[HALF_WAY:], m, lanes)
         for i in range(C + (degree + 1) * LANES, kept):
             lanes[i] = 0.0
         live = live_lanes(lanes, m)
@@ -203,4 +223,4 @@ def polynomial_roots(
             )  # fmt: skip
             live = width
             m = (width + 15) // 16 * 16
-    return spent, queued
+    return spent, queued, safe, unsafe
