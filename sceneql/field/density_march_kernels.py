@@ -114,7 +114,9 @@ def advance(state, n, threshold, off, off_slope, anywhere):
         live = state[STATE + i] == LIVE
         state[STATE + i] = outcome if live else state[STATE + i]
         state[A + i] = start if live else a
-        state[B + i] = then if live & (~hit) else b
+        # Where a ray begins inside, what is known to be inside is its begin.
+        stop = (start if begun else b) if hit else then
+        state[B + i] = stop if live else b
         state[ROOT + i] = r if live else state[ROOT + i]
         state[TRIES + i] = tries
         state[SLOPE + i] = -slope
