@@ -15,10 +15,10 @@ from exact_rays import along, blob_entry, exact, first_entry, real_roots, roots_
 from moment import IDENTITY, FakeMoment, const
 from sceneql.field.builder import TapeBuilder
 from sceneql.field.certified_kernels import certify
+from sceneql.field.gradient_kernels import gradient
 from sceneql.field.isolation_kernels import any_root, exit_root
 from sceneql.field.slope_kernels import on_ray
 from sceneql.field.solid import cast, field_values, scratch
-from sceneql.field.tape_kernels import gradient
 from sceneql.field.tape_ops import HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
 from sceneql.quantities.bind import bind
 from sceneql.quantities.diagnostic import Diagnostics

@@ -13,11 +13,12 @@ from hypothesis import strategies as st
 
 from sceneql.field.builder import TapeBuilder
 from sceneql.field.enclosure_kernels import segment
+from sceneql.field.gradient_kernels import gradient
 from sceneql.field.interval_kernels import box
 from sceneql.field.isolation_kernels import any_root, exit_root, first_root
 from sceneql.field.lowering import LOWERED
 from sceneql.field.solid import cast, field_gradients, field_values, scratch
-from sceneql.field.tape_kernels import gradient, value
+from sceneql.field.tape_kernels import value
 from sceneql.field.tape_ops import (
     BINARY,
     HIT,

@@ -6,7 +6,7 @@ import numpy as np
 from renderers.tracing.ranges_kernels import is_sheet, tape_of
 from renderers.tracing.scene_kernels import PAINT, SKIN, part
 from renderers.tracing.surface_kernels import unit
-from sceneql.field.tape_kernels import gradient
+from sceneql.field.gradient_kernels import gradient
 from sceneql.kernels import kernel
 
 BESIDE = 1e-5

@@ -3,9 +3,9 @@
 
 from sceneql.field.batch_kernels import BATCH
 from sceneql.field.density_kernels import offset
+from sceneql.field.gradient_kernels import slopes
 from sceneql.field.sine_kernels import wave_lanes
 from sceneql.field.skeleton_kernels import skeleton_gradient
-from sceneql.field.tape_kernels import slopes
 from sceneql.field.tape_ops import (
     ADD,
     CONSTANT,

@@ -1,7 +1,8 @@
 # mypy: ignore-errors
 """Roots in brackets along a ray, by point values."""
 
-from sceneql.field.tape_kernels import gradient, value
+from sceneql.field.gradient_kernels import gradient
+from sceneql.field.tape_kernels import value
 from sceneql.kernels import woven
 
 FINE = 5.0e-13

@@ -33,8 +33,10 @@ def field_values(tape: Tape, points: Floats) -> Floats:
 
 def field_gradients(tape: Tape, points: Floats) -> Floats:
     """Gradient of f at points (n, 3) [m]: (n, 3) [1/m]."""
+    from sceneql.field.gradient_kernels import gradient
+
     room = scratch(tape)
-    rows = [tape_kernels.gradient(tape.code, tape.constants, tape.parts, room, *map(float, point)) for point in points]
+    rows = [gradient(tape.code, tape.constants, tape.parts, room, *map(float, point)) for point in points]
     return np.array(rows).reshape(-1, 4)[:, 1:]
 
 

@@ -1,7 +1,7 @@
 # mypy: ignore-errors
 """Triangles of blocks: edges to vertices by the block that owns the edge, and the vertices of the cubes' own."""
 
-from sceneql.field.tape_kernels import gradient
+from sceneql.field.gradient_kernels import gradient
 from sceneql.field.tape_ops import TAPE
 from sceneql.kernels import inlined, lean
 from sceneql.mesh.grid import BLOCK

@@ -5,7 +5,7 @@ The planes are those of the surface where it crosses the cube's edges; the verte
 (Ju, Losasso, Schaefer & Warren 2002). A curve has one vertex, not a cube (Nielson 2004), so that sheets stay apart.
 """
 
-from sceneql.field.tape_kernels import gradient
+from sceneql.field.gradient_kernels import gradient
 from sceneql.field.tape_ops import TAPE
 from sceneql.kernels import inlined, lean
 from sceneql.mesh.connect_kernels import vertex

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from sceneql.field.tape_kernels import gradient
+from sceneql.field.gradient_kernels import gradient
 from sceneql.kernels import kernel, lean, lean_inlined
 from sceneql.simulation.contacts.shape_kernels import FOUR, SIZE
 from sceneql.simulation.contacts.shapes.implicit_kernels import tape_of
