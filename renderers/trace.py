@@ -23,7 +23,7 @@ class Trace(Renderer):
     )
     samples: Literal[1, 2, 4, 8, 16, 32, 64] = field("Rays in a pixel in which things meet.", 8)
     packets: bool = field(
-        "Camera rays meet implicit solids in packets: up to a third faster, but more to compile once.",
+        "Camera rays meet implicit solids in packets: up to a fifth faster, but more to compile once.",
         False,
     )
 

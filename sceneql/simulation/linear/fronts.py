@@ -26,7 +26,9 @@ MERGED = 12
 WORTH_THREADS = 1e7
 """Multiplications of a factorization from which on it is shared by threads."""
 PIECE = 0.55
+"""Part of all operations above which a subtree is taken apart: what two threads share is then nearly even."""
 MOST_PIECES = 16
+"""Subtrees that threads share."""
 
 
 @dataclass(slots=True)
