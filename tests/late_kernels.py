@@ -7,6 +7,8 @@ from sceneql.compiling.late import late
 from sceneql.kernels import lean
 
 F = types.float64
+MISTAKEN = types.UniTuple(F, 2)(F, F)
+mistaken = late("lanes_of_numbers_kernels:doubles", MISTAKEN)
 halved = late("late_called_kernels:halved", types.UniTuple(F, 2)(F, types.int64))
 
 

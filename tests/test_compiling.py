@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from numba import types
 
-from sceneql.compiling import collecting_later
+from sceneql.compiling import collecting_later, late
 from sceneql.kernels import HELPER, KernelCompiler
 from sceneql.simulation.forces.gravity_kernels import gravity
 
@@ -64,6 +64,15 @@ def test_a_late_kernel_is_there_from_its_first_call_on_and_not_before():
     if not numba.config.DISABLE_JIT:
         with pytest.raises(TypeError, match="halved is for kernels only"):
             late_kernels.halved(3.0, 2)
+
+
+@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="where numba is switched off, nothing is linked")
+def test_a_late_kernel_of_another_signature_is_refused_rather_than_called():
+    import late_kernels
+
+    (at,) = [at for at, one in late.expected.items() if one == late_kernels.MISTAKEN]
+    with pytest.raises(TypeError, match=r"doubles is called as .* but is .*Array"):
+        late._fill(at)
 
 
 AHEAD = """

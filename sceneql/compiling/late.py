@@ -19,6 +19,8 @@ from numba.core.typing.templates import ConcreteTemplate, infer_global
 
 places: dict[int, tuple[str, ctypes.c_void_p]] = {}
 """By its address: the name of a kernel, and the place for the address of its code."""
+expected = {}
+"""By the same: the signature that its callers know."""
 _one_by_one = threading.RLock()
 _ASK = "sceneql.compiling.late.ask"
 
@@ -38,6 +40,7 @@ def late(name, signature):
     symbol = f"sceneql.compiling.late.{name}"
     place = ctypes.c_void_p()
     places[ctypes.addressof(place)] = name, place
+    expected[ctypes.addressof(place)] = signature
     binding.add_symbol(symbol, ctypes.addressof(place))
     template = type(f"Late_{function}", (ConcreteTemplate,), {"key": symbol, "cases": [signature]})
     infer_global(stub, typing_key=symbol)(template)
@@ -74,7 +77,9 @@ def _fill(at):
     module, _, function = name.partition(":")
     with _one_by_one:
         if place.value is None:
-            ((_, made),) = getattr(import_module(module), function).overloads.items()
+            (made,) = getattr(import_module(module), function).overloads.values()
+            if made.signature != expected[at]:
+                raise TypeError(f"{name} is called as {expected[at]}, but is {made.signature}")
             place.value = made.library.get_pointer_to_function(made.fndesc.llvm_func_name)
 
 
