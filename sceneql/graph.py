@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from sceneql.kinds import Kind, Settings
@@ -79,3 +79,13 @@ class SimulationGraph:
     script_hash: str = ""
     variants: tuple[str, ...] = ()
     """Names of the script's variants."""
+    may_fail: bool = False
+    """Whether the script says that the run of this variant of it may fail."""
+    variant_of: Callable[[str], SimulationGraph] | None = field(default=None, compare=False)
+    """Loads a variant of the script."""
+
+    def variant(self, name: str) -> SimulationGraph:
+        """The graph of a variant of the script. Raises ScriptError."""
+        if self.variant_of is None:
+            raise LookupError("the graph does not know its script")
+        return self.variant_of(name)

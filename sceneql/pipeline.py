@@ -25,7 +25,7 @@ from sceneql.language.script import read_script
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
 
 if TYPE_CHECKING:
-    from sceneql.frame import Light
+    from sceneql.frame import Light, View
     from sceneql.simulation.run import Instant
 
 
@@ -47,7 +47,10 @@ def load(
         settings=(*Settings.model_fields, "sceneql", "define", "variants"),
         found=found,
     )
-    return compile_script(script, Catalogue(words), found, pruned=pruned)
+    return replace(
+        compile_script(script, Catalogue(words), found, pruned=pruned),
+        variant_of=cache(lambda name: load(path, variant=name, sets=sets, words=words, pruned=pruned)),
+    )
 
 
 @dataclass
@@ -221,11 +224,20 @@ class Tools:
         if picture.undecided:
             self.report.undecided.setdefault(self.name, {})[frame.index] = picture.undecided
         pixels = develop(picture.linear, exposure=output.exposure, data=renderer.data)
-        for task in () if renderer.data else self.graph.tasks.values():
+        if not renderer.data:
+            self._draw_over(pixels, frame.view, moment, partial(develop, exposure=output.exposure))
+        return pixels
+
+    def _draw_over(self, pixels: Any, view: View, moment: Any, develop: Callable[[Any], Any]) -> None:
+        """What is drawn on a developed picture: labels of objects, overlays."""
+        from sceneql.simulation.overlays.labels import draw_labels
+
+        draw_labels(pixels, view, self.graph.tasks, self.graph.drawn[self.name], moment)
+        for task in self.graph.tasks.values():
             if isinstance(task.kind, Overlay):
                 with failing_as(task.name, moment.time, task.span):
-                    task.kind.draw(pixels, frame.view, moment, partial(develop, exposure=output.exposure))
-        return pixels
+                    if task.kind.show is None or moment.at(task.kind.show) != 0:
+                        task.kind.draw(pixels, view, moment, develop)
 
     def encoder(self, word: str, **settings: Any) -> Any:
         """A writer of the encoders' folder."""

@@ -19,7 +19,7 @@ from sceneql.compiler.over_time import check_instants
 from sceneql.compiler.read import Reader, Unreadable, report_unknown
 from sceneql.compiler.values import read_expr
 from sceneql.graph import Task
-from sceneql.kinds import Gives, Kind, Object, Quantity, Ref, Refers, Settings, Value, written_name
+from sceneql.kinds import Gives, Kind, Object, Quantity, Ref, Refers, Settings, Text, Value, written_name
 from sceneql.language.scope import Entry
 from sceneql.language.script import Script
 from sceneql.language.tree import Mapping as MappingNode
@@ -281,6 +281,8 @@ def values_of(part: Any) -> list[Value]:
     """All values in time below a kind, record, list or dict."""
     if isinstance(part, Value):
         return [part]
+    if isinstance(part, Text):
+        return part.values
     if isinstance(part, BaseModel):
         return [value for name in type(part).model_fields for value in values_of(getattr(part, name))]
     if isinstance(part, dict):

@@ -54,6 +54,7 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
         warnings=found.warnings,
         script_hash=script.hash,
         variants=script.variants,
+        may_fail=script.may_fail,
     )
 
 

@@ -18,9 +18,11 @@ from sceneql.compiler import limits, paint, values
 from sceneql.compiler.formulas import read_formula
 from sceneql.compiler.names import Names
 from sceneql.compiler.paths import read_path
+from sceneql.compiler.texts import read_text
 from sceneql.kinds import (
     Exceeds,
     Formula,
+    Interpolated,
     Kind,
     Paint,
     Problem,
@@ -144,6 +146,8 @@ class Reader:
                 return self._some(paint.read_rotation(node, self.names, self.found))
             if isinstance(mark, Refers):
                 return self._some(self.refer(node, mark, self.owner))
+            if isinstance(mark, Interpolated):
+                return self._some(read_text(node, mark, what, self.names, self.found))
             if isinstance(mark, SceneFile):
                 return self._some(read_path(node, self.folder, what, self.found))
             if isinstance(mark, Symbols):
@@ -156,7 +160,7 @@ class Reader:
         if origin in (list, tuple):
             return self._list(node, origin, arms, what)
         if origin is dict:
-            return self._dict(node, arms[1], what)
+            return self._dict(node, arms, what)
         if isinstance(base, type) and issubclass(base, BaseModel):
             return self.record(node, base, node.span, what)
         if base is Formula:
@@ -259,13 +263,14 @@ class Reader:
             result.append(self.read(part, arm, what))
         return result
 
-    def _dict(self, node: Node, arm: Any, what: str) -> dict[str, Any]:
+    def _dict(self, node: Node, arms: tuple[Any, ...], what: str) -> dict[Any, Any]:
         if not isinstance(node, MappingNode):
             raise self._fail("wrong-shape", f"{what} takes names with values, `{{name: value}}`", node.span)
-        result, ok = {}, True
+        named, result, ok = _unwrap(arms[0])[1], {}, True  # names of parts are references
         for name, item in node.entries.items():
             try:
-                result[name] = replace(self, owner=f"{self.owner}.{name}").read(item, arm, f"{what}.{name}")
+                key = self.read(node.keys[name], arms[0], what) if named else name
+                result[key] = replace(self, owner=f"{self.owner}.{name}").read(item, arms[1], f"{what}.{name}")
             except Unreadable:
                 ok = False
         if not ok:

@@ -13,6 +13,7 @@ from sceneql.kinds.outputs import Output, Picture, Sink, Tools
 from sceneql.kinds.physics import Contact, Force, Model, Solver
 from sceneql.kinds.pictures import Camera, Illumination, Material, Overlay, Renderer
 from sceneql.kinds.settings import MOST_MOMENTS, Clock, Exceeds, Expect, Gallery, Settings, bounded_moments
+from sceneql.kinds.texts import Text, Told
 from sceneql.kinds.types import (
     Acceleration,
     Angle,
@@ -41,6 +42,7 @@ from sceneql.kinds.types import (
     Measured,
     ModelRef,
     ObjectRef,
+    OverlayRef,
     Points,
     Position,
     Power,
@@ -51,8 +53,10 @@ from sceneql.kinds.types import (
     Stiffness,
     Time,
     Velocity,
+    Words,
+    WordsOverTime,
 )
-from sceneql.kinds.values import Formula, Paint, Quantity, Ref, Refers, SceneFile, Symbols, Turn, Value
+from sceneql.kinds.values import Formula, Interpolated, Paint, Quantity, Ref, Refers, SceneFile, Symbols, Turn, Value
 from sceneql.kinds.word import (
     GRAMMAR,
     REQUIRED,

@@ -19,6 +19,14 @@ class Moment(Protocol):
     def time(self) -> float:
         """[s]"""
 
+    @property
+    def end(self) -> float:
+        """When the run ends [s]."""
+
+    @property
+    def variants(self) -> tuple[str, ...]:
+        """The names of the script's variants."""
+
     def at(self, value: Value) -> Any:
         """The value now: float, or float64 array of the field's shape, SI. Raises RunFailure if it is not finite."""
 
@@ -27,6 +35,12 @@ class Moment(Protocol):
 
     def past(self, value: Value) -> list[tuple[float, Any]]:
         """(time [s], value) at the instants before that an object asked for (`Object.remembers`), oldest first."""
+
+    def course(self, value: Value, variant: str | None = None, until: float = ...) -> tuple[Floats, Floats]:
+        """Times (n,) [s] of the run, whole or up to an instant, and at each a value (n, ...) of `Overlay.courses`.
+
+        With ``variant`` in that variant of the script. A run that fails has the course up to there.
+        """
 
     def read(self, task: str, output: str) -> Any:
         """An output of a part now."""

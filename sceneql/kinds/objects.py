@@ -81,6 +81,10 @@ class Object(Kind):
         """Objects that are drawn by this one, and so not by themselves."""
         return ()
 
+    def labels(self, name: str, moment: Moment) -> Iterable[tuple[Any, str]]:
+        """Points (3,) in the world [m] with words that stand over them in the picture."""
+        return ()
+
     def remembers(self) -> Iterable[tuple[Value, float, float]]:
         """Values that it needs of the past (`Moment.past`): how far back [s], and how often [s]."""
         return ()

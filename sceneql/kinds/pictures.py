@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from sceneql.kinds.word import Kind
+from sceneql.kinds.types import Scalar
+from sceneql.kinds.word import Kind, field
 
 if TYPE_CHECKING:
     from numpy import uint8
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
 
     from sceneql.frame import RGB, Light, Surface, View
     from sceneql.kinds.moment import Moment
+    from sceneql.kinds.values import Value
 
 
 class Camera(Kind):
@@ -69,6 +71,12 @@ class Overlay(Kind):
     """Something that is drawn over a finished picture: a legend, a caption."""
 
     family: ClassVar[str] = "overlays"
+
+    show: Scalar | None = field("It is there only while this is not 0, as `time > 2 s`; by default always.", None)
+
+    def courses(self) -> Iterable[Value]:
+        """Values that it needs over the whole run (`Moment.course`), for which the physics runs once ahead."""
+        return ()
 
     def draw(
         self, pixels: NDArray[uint8], view: View, moment: Moment, develop: Callable[[Any], NDArray[uint8]]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from sceneql.kinds.values import Paint, Quantity, Ref, Refers, SceneFile, Turn, Value
+from sceneql.kinds.texts import Text
+from sceneql.kinds.values import Interpolated, Paint, Quantity, Ref, Refers, SceneFile, Turn, Value
 from sceneql.quantities import dimension as dim
 
 Scalar = Annotated[Value, Quantity(dim.PLAIN)]
@@ -42,6 +43,11 @@ Measured = Annotated[Value, Quantity(None, None)]
 Expected = Annotated[Value, Quantity(None, None, over_time=True)]
 """Any expression, over the whole run too: what an expectation compares."""
 
+Words = Annotated[Text, Interpolated()]
+"""A text with values in braces."""
+WordsOverTime = Annotated[Text, Interpolated(over_time=True)]
+"""The same, where values may look over the run so far."""
+
 ObjectRef = Annotated[Ref, Refers("objects")]
 ModelRef = Annotated[Ref, Refers("models")]
 CameraRef = Annotated[Ref, Refers("cameras")]
@@ -49,5 +55,7 @@ MaterialRef = Annotated[Ref, Refers("materials")]
 RendererRef = Annotated[Ref, Refers("renderers")]
 DrawnRef = Annotated[Ref, Refers("objects", also="models")]
 """Something that can be seen."""
+
+OverlayRef = Annotated[Ref, Refers("overlays")]
 
 File = Annotated[str, SceneFile()]

@@ -87,6 +87,13 @@ class Refers:
         return f"{self.family} or {self.also}" if self.also else self.family
 
 
+@dataclass(frozen=True, slots=True)
+class Interpolated:
+    """Marks a text with values in braces (kinds.texts); ``over_time``: they may look over the run so far."""
+
+    over_time: bool = False
+
+
 class SceneFile:
     """Marks a text that is the path of a file, read as a path below the scene's folder where there is a file."""
 

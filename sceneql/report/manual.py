@@ -14,6 +14,7 @@ from sceneql.failure import Unsuitable
 from sceneql.kinds import (
     REQUIRED,
     Formula,
+    Interpolated,
     Kind,
     Object,
     Paint,
@@ -114,6 +115,8 @@ def type_text(annotation: Any) -> str:
             return "rotation"
         if isinstance(mark, Refers):
             return f"one of {mark}"
+        if isinstance(mark, Interpolated):
+            return "text, values in {braces}"
         if isinstance(mark, SceneFile):
             return "path of a file"
     origin, arms = get_origin(base), get_args(base)
@@ -129,7 +132,8 @@ def type_text(annotation: Any) -> str:
             else f"{len(arms)} times {type_text(arms[0])}"
         )
     if origin is dict:
-        return f"names with {type_text(arms[1])}"
+        keys = "names" if arms[0] is str else f"names of {get_args(arms[0])[1]}"
+        return f"{keys} with {type_text(arms[1])}"
     if isinstance(base, type) and issubclass(base, BaseModel):
         return "fields"
     names = {bool: "yes or no", int: "whole number", float: "number", str: "text", Formula: "formula", Ref: "a part"}

@@ -13,8 +13,8 @@ from sceneql.graph import Island, SimulationGraph
 from sceneql.kinds import Expect, Solver
 from sceneql.quantities.expression import Call, Expr, Link, Symbol, walk
 from sceneql.quantities.operations import OPERATIONS
-from sceneql.report.expect import measure
 from sceneql.report.work_precision import LONGEST, Reference, at, run
+from sceneql.simulation.series import measure
 
 if TYPE_CHECKING:
     from numpy import bool_

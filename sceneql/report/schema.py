@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 
 from sceneql.compiler.catalogue import Catalogue
-from sceneql.kinds import Kind, Refers, SceneFile, Settings, written_name
+from sceneql.kinds import Interpolated, Kind, Refers, SceneFile, Settings, written_name
 from sceneql.report.manual import type_text
 
 TEXT: dict[str, Any] = {"type": ["string", "number", "integer"]}
@@ -90,7 +90,7 @@ def _type(annotation: Any, catalogue: Catalogue) -> dict[str, Any]:
     if get_origin(annotation) is Annotated:
         base, *marks = get_args(annotation)
         for mark in marks:
-            if isinstance(mark, SceneFile):
+            if isinstance(mark, SceneFile | Interpolated):
                 return {"type": "string"}
             if isinstance(mark, Refers) and not mark.family:
                 return {"type": "string"}

@@ -27,5 +27,12 @@ def _decode(c: float) -> float:
 
 def default_color(index: int) -> RGB:
     """Linear RGB of the part that is drawn at this place in the order."""
-    digits = PALETTE[index % len(PALETTE)].removeprefix("#")
-    return linear(int(digits[k : k + 2], 16) / 255 for k in (0, 2, 4))
+    return linear(level / 255 for level in eight_bits(PALETTE[index % len(PALETTE)]))
+
+
+def eight_bits(color: str | Iterable[float]) -> tuple[int, int, int]:
+    """Levels from 0 to 255 of a color written ``#rrggbb``, or of its sRGB components from 0 to 1."""
+    if isinstance(color, str):
+        return int(color[1:3], 16), int(color[3:5], 16), int(color[5:7], 16)
+    r, g, b = (round(255 * min(max(float(c), 0.0), 1.0)) for c in color)
+    return r, g, b

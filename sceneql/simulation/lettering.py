@@ -12,7 +12,6 @@ if TYPE_CHECKING:
 
 PAPER = (250, 250, 250)
 INK = (28, 28, 32)
-SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
 class Letterer:
@@ -41,11 +40,33 @@ class Letterer:
         """A text at a place [pixels], anchored as Pillow names it: ``lm`` is the middle of its left end."""
         self.draw.text(place, text, ink, font=self.font, anchor=anchor)
 
+    def line(self, corner: tuple[int, int], text: str, opacity: float) -> None:
+        """A text on a panel of its own, whose left and top are the corner [pixels], or as near as it is seen whole."""
+        (wide, high), room = self.extent(text), round(0.4 * self.em)
+        left = max(min(corner[0], self.width - wide - 2 * room - 1), 0)
+        top = max(min(corner[1], self.height - high - 2 * room - 1), 0)
+        self.panel((left, top, left + wide + 2 * room, top + high + 2 * room), opacity)
+        self.text((left + room, top + room + 0.5 * high), text)
+
+    def over(self, seen: tuple[float, float], text: str, opacity: float) -> None:
+        """The same over a point [pixels]."""
+        (wide, high), room = self.extent(text), round(0.4 * self.em)
+        self.line((round(seen[0] - 0.5 * wide) - room, round(seen[1] - high) - 2 * room), text, opacity)
+
+    def under(self, seen: tuple[float, float], text: str, opacity: float) -> None:
+        """The same under a point."""
+        wide, _ = self.extent(text)
+        self.line((round(seen[0] - 0.5 * wide) - round(0.4 * self.em), round(seen[1])), text, opacity)
+
     def paste(self, block: NDArray[uint8], left: int, top: int) -> None:
         """Pixels (h, w, 3) over the picture."""
         from PIL import Image
 
         self._image.paste(Image.fromarray(block), (left, top))
+
+    def stamp(self, picture: Any, mask: Any, corner: tuple[int, int]) -> None:
+        """A picture (Pillow) through a mask, its left and top at a corner [pixels]."""
+        self._image.paste(picture, corner, mask)
 
     def done(self) -> None:
         """Write all of it into the picture."""
@@ -66,16 +87,6 @@ def font(size: int) -> Any:
         raise LookupError("the letters for pictures come with matplotlib, which is missing")
     path = Path(found.origin).parent / "mpl-data" / "fonts" / "ttf" / "DejaVuSans.ttf"
     return ImageFont.truetype(str(path), size, layout_engine=ImageFont.Layout.BASIC)
-
-
-def shown_unit(text: str) -> str:
-    """A unit as it is printed: ``kg/m^3`` with a raised 3, ``degC`` with a small ring."""
-    head, *tails = text.replace("**", "^").replace("*", "·").replace("deg", "°").split("^")
-    raised = head
-    for tail in tails:
-        digits = len(tail) - len(tail.lstrip("-0123456789"))
-        raised += tail[:digits].translate(SUPERSCRIPTS) + tail[digits:]
-    return raised
 
 
 def round_numbers(low: float, high: float, count: int) -> list[float]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, cast
@@ -15,10 +16,10 @@ from sceneql.kinds import Contact, Force, Material, Model, Object, Ref, Solver, 
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Expr, Link, Symbol
-from sceneql.simulation.bounds import box_of
 from sceneql.simulation.color import default_color, linear
 from sceneql.simulation.history import History
 from sceneql.simulation.placement import Placed, compose
+from sceneql.simulation.survey import Survey, asked, survey
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Surface
@@ -26,10 +27,7 @@ if TYPE_CHECKING:
     from sceneql.simulation.march import March
     from sceneql.system import ModelState
 
-    Bounds = dict[str, tuple[Floats, Floats]]
-
 IDENTITY = np.eye(3, 4)
-BOUNDS_MOMENTS = 49
 
 
 class Run:
@@ -48,7 +46,7 @@ class Run:
         self.palette = _palette(graph)
         self.holders = _holders(graph)
         self.history = History(graph)
-        self._bounds: Bounds | None = None
+        self._surveys: dict[str | None, Survey] = {}
 
     def moments(self, times: Iterable[float]) -> Iterator[Instant]:
         """The instants [s] asked for, in order; times do not decrease. Raises RunFailure."""
@@ -64,13 +62,29 @@ class Run:
 
     def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
         """Low and high corner (3,) of what the parts draw over the whole run, found by a run ahead of its own."""
-        if self._bounds is None:
-            self._bounds = _bounds(self.graph)
-        corners = [self._bounds[name] for name in names if name in self._bounds]
+        if None not in self._surveys or self._surveys[None].bounds is None:
+            self._surveys[None] = survey(self.graph)
+        known = self._surveys[None].bounds or {}
+        corners = [known[name] for name in names if name in known]
         if not corners:
             return np.full(3, -1.0), np.full(3, 1.0)
         lows, highs = np.array([low for low, _ in corners]), np.array([high for _, high in corners])
         return lows.min(axis=0), highs.max(axis=0)
+
+    def course(self, value: Value, variant: str | None, until: float) -> tuple[Floats, Floats]:
+        """Times (n,) [s] and an asked-for value at each (n, ...), up to an instant, in a variant of the script."""
+        ahead, mine = self._survey(variant), value
+        if variant is not None:
+            key = next(key for key, one in asked(self.graph).items() if one is value)
+            mine = asked(self.graph.variant(variant))[key]
+        return ahead.course(mine.expr, until)
+
+    def _survey(self, variant: str | None) -> Survey:
+        """What a run ahead of the script, or of a variant of it, sees."""
+        if variant not in self._surveys:
+            graph = self.graph if variant is None else self.graph.variant(variant)
+            self._surveys[variant] = survey(graph, bounded=False)
+        return self._surveys[variant]
 
 
 class IslandRun:
@@ -199,6 +213,16 @@ class Instant:
         self.asked = True
         return self.now
 
+    @property
+    def end(self) -> float:
+        """When the run ends [s]."""
+        return self.run.graph.settings.clock.end
+
+    @property
+    def variants(self) -> tuple[str, ...]:
+        """The names of the script's variants."""
+        return self.run.graph.variants
+
     def at(self, value: Value) -> Any:
         """The value now: float or float64 array, SI. Raises RunFailure if it is not finite."""
         now = self._evaluate(value.expr)
@@ -223,6 +247,10 @@ class Instant:
     def past(self, value: Value) -> list[tuple[float, Any]]:
         """(time [s], value) at the instants before that an object asked for, oldest first."""
         return self.run.history.past(value, self.time)
+
+    def course(self, value: Value, variant: str | None = None, until: float = math.inf) -> tuple[Floats, Floats]:
+        """Times (n,) [s] and a value that an overlay asked for at each of them (n, ...)."""
+        return self.run.course(value, variant, until)
 
     def read(self, task: str, output: str) -> Any:
         """An output of a part now."""
@@ -303,50 +331,3 @@ def _holders(graph: SimulationGraph) -> dict[str, str]:
 def _palette(graph: SimulationGraph) -> dict[str, int]:
     """For every object and model its place in the row of default colors, whatever is pruned: by the script's order."""
     return {name: k for k, name in enumerate(graph.palette)}
-
-
-def _bounds(graph: SimulationGraph) -> Bounds:
-    """Bounds over the run; of its start alone where the run fails, since what explodes fits into no picture.
-
-    A part that asks at the start for nothing that may change is looked at there alone.
-    """
-    ahead = Run(graph)
-    end = graph.settings.clock.end
-    moments = ahead.moments(end * k / (BOUNDS_MOMENTS - 1) for k in range(BOUNDS_MOMENTS))
-    first = next(moments)
-    start: Bounds = {}
-    changing = []
-    for name in ahead.orders:
-        first.asked = False
-        start = _widened(start, first, [name])
-        if first.asked:
-            changing.append(name)
-    if not changing:
-        return start
-    result = start
-    try:
-        for moment in moments:
-            result = _widened(result, moment, changing)
-    except RunFailure:
-        return start
-    return result
-
-
-def _widened(bounds: Bounds, moment: Instant, names: Iterable[str]) -> Bounds:
-    """Bounds that hold what some parts draw at a moment too."""
-    result = dict(bounds)
-    for name in names:
-        for shape in moment.lower([name]):
-            low, high = box_of(shape)
-            if np.isfinite(low).all() and np.isfinite(high).all():
-                for part in {name, *_around(shape.name, moment.run.holders)}:
-                    old = result.get(part, (low, high))
-                    result[part] = np.minimum(old[0], low), np.maximum(old[1], high)
-    return result
-
-
-def _around(name: str, holders: Mapping[str, str]) -> Iterator[str]:
-    """A part, and those that hold it, outwards."""
-    while name:
-        yield name
-        name = holders.get(name, "")

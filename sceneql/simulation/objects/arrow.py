@@ -5,9 +5,9 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
-from sceneql.kinds import FixedScalar, Length, Moment, Object, Position, Quantity, Value, field
+from sceneql.kinds import FixedScalar, Length, Moment, Object, Position, Quantity, Value, Words, field
 from sceneql.simulation.placement import apply
 from sceneql.simulation.present import positive
 
@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 SIDES = 24
 HEAD, WIDE = 5.0, 2.4
 """Length and radius of the head, in radii of the shaft."""
+
+BEYOND = 2.0
+"""How far beyond the tip its label stands, in radii of the shaft."""
 
 Vector = Annotated[Value, Quantity(None, (3,))]
 
@@ -33,6 +36,17 @@ class Arrow(Object):
     vector: Vector = field("What it shows.")
     scale: FixedScalar = field("Meters for a unit of the vector, in SI.", "1", above=0)
     radius: Length = field("Radius of its shaft.", "15 mm", above=0)
+    label: Words | None = field("What stands at its tip.", None)
+
+    def labels(self, name: str, moment: Moment) -> Iterable[tuple[Any, str]]:
+        """Its label, a little beyond its tip."""
+        import numpy as np
+
+        if self.label is not None:
+            along = self.scale * np.asarray(moment.at(self.vector))
+            beyond = 1.0 + BEYOND * positive(moment, self.radius, "radius") / max(float(np.linalg.norm(along)), 1e-300)
+            if np.any(along):
+                yield apply(moment.place(name), np.asarray(moment.at(self.at)) + beyond * along), self.label.at(moment)
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """A mesh of revolution: shaft, collar and head."""

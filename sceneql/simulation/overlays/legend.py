@@ -47,7 +47,8 @@ class Legend(Overlay):
         develop: Callable[[Any], NDArray[uint8]],
     ) -> None:
         """Draw the bar. Raises ValueError for what shows no field, and for a unit of another dimension."""
-        from sceneql.simulation.lettering import Letterer, round_numbers, shown_unit
+        from sceneql.kinds.texts import shown_unit
+        from sceneql.simulation.lettering import Letterer, round_numbers
 
         shows: Any = moment.object(self.of)
         if not hasattr(shows, "color_key"):

@@ -1,0 +1,86 @@
+"""Texts with values in braces, ``E = {cage.energy:.2f J}``; two braces stand for one."""
+
+from __future__ import annotations
+
+import re
+
+from sceneql.compiler.names import Names
+from sceneql.compiler.over_time import momentary
+from sceneql.compiler.values import parsed_text, scalar_expr
+from sceneql.kinds import Interpolated, Text, Told, Value
+from sceneql.kinds.texts import FORM
+from sceneql.language.tree import Node, Scalar
+from sceneql.quantities.diagnostic import Diagnostics, ScriptError
+from sceneql.quantities.span import Span
+from sceneql.quantities.units import Unit, describe, parse_unit, unit_of
+
+PIECE = re.compile(r"\{\{|\}\}|\{(?P<inside>[^{}]*)\}|(?P<odd>[{}])")
+
+
+def read_text(node: Node, mark: Interpolated, what: str, names: Names, found: Diagnostics) -> Text | None:
+    """The text of a scalar, or None after reporting what is wrong with it."""
+    if not isinstance(node, Scalar):
+        found.error("wrong-shape", f"{what} is a text", node.span)
+        return None
+    text, start = parsed_text(node), node.content.start
+    same = text == node.content.text
+    pieces: list[str | Told] = []
+    at, ok = 0, True
+    for piece in PIECE.finditer(text):
+        pieces.append(text[at : piece.start()])
+        at = piece.end()
+        if piece["odd"] is not None:
+            help = "values stand as `{time:.2f s}`, and a brace that is meant as one is written twice"
+            place = Span(node.source, start + piece.start(), start + piece.end()) if same else node.span
+            found.error("syntax", f"this '{piece[0]}' has no partner", place, help=help)
+            ok = False
+        elif piece["inside"] is None:
+            pieces.append(piece[0][0])
+        else:
+            told = _told(node, piece["inside"], start + piece.start("inside") if same else None, mark, names, found)
+            ok = ok and told is not None
+            pieces += [] if told is None else [told]
+    pieces.append(text[at:])
+    return Text(tuple(one for one in pieces if one)) if ok else None
+
+
+def _told(
+    node: Scalar, inside: str, start: int | None, mark: Interpolated, names: Names, found: Diagnostics
+) -> Told | None:
+    """What stands between two braces; ``start`` is its place in the source, None where that cannot be told."""
+    expression, _, rest = inside.partition(":")
+    begin, end = node.start, node.end
+    if start is not None:
+        begin = start + len(expression) - len(expression.lstrip())
+        end = start + len(expression.rstrip())
+    part = Scalar(expression.strip(), "text", False, node.source, begin, end)
+    expr = scalar_expr(part, names, found)
+    if expr is None:
+        return None
+    if expr.type.shape:
+        found.error("wrong-shape", "a text tells single values; take a component, such as `.x`", part.span)
+        return None
+    if not mark.over_time and not momentary(expr, part.span, found):
+        return None
+    form = FORM.match(rest)
+    assert form is not None  # it matches the empty text too
+    unit_text = rest[form.end() :].lstrip()
+    place = node.span if start is None else Span(node.source, start + len(inside) - len(unit_text), start + len(inside))
+    try:
+        unit = _unit(unit_text, expr.type.dimension, place)
+    except ScriptError as error:
+        found.extend(error.diagnostics)
+        return None
+    if unit is not None and unit.dimension != expr.type.dimension:
+        message = f"this is {describe(expr.type.dimension)}, which {unit_text.strip()} is no unit of"
+        found.error("dimension-mismatch", message, place)
+        return None
+    return Told(Value(expr, part.span), form[0], unit)
+
+
+def _unit(text: str, dimension: object, place: Span) -> Unit | None:
+    """The unit that is written, else that of SI; None for plain numbers."""
+    if text:
+        return parse_unit(text, place)
+    own = "1" if dimension is None else unit_of(dimension)  # type: ignore[arg-type]
+    return None if own == "1" else parse_unit(own)

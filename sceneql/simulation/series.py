@@ -1,0 +1,110 @@
+"""Expressions over a whole run: the values of links at all its times, and what operations on time make of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Call, Expr, Link, Symbol, Vector, children, walk
+from sceneql.quantities.operations import OPERATIONS
+
+Series = Mapping[Symbol | Link, Any]
+"""(times, ...) of `time` and of each link."""
+
+
+def plain(expr: Expr) -> bool:
+    """Whether nothing in an expression asks for more than one time."""
+    calls = (OPERATIONS[node.op] for node in walk(expr) if isinstance(node, Call))
+    return not any(operation.series or operation.reduces for operation in calls)
+
+
+def wanted(expr: Expr, when: Sequence[float], times: Sequence[float]) -> Iterator[tuple[Link, Sequence[float]]]:
+    """The links of an expression that counts at some of the times, with those at which each counts."""
+    if isinstance(expr, Link):
+        yield expr, when
+    if isinstance(expr, Call) and OPERATIONS[expr.op].series:
+        when = _SERIES[expr.op].instants(times, expr)
+    for child in children(expr):
+        yield from wanted(child, when, times)
+
+
+def measure(expr: Expr, series: Series, times: list[float]) -> Any:
+    """The value of an expression over series (times, ...); one without an operation on time is read at the end.
+
+    What is asked for after the end of the run is NaN.
+    """
+    if plain(expr):
+        return evaluate(expr, lambda node: _look_up(node, series)[-1], arrays=True)
+    return course(expr, series, times)
+
+
+def course(expr: Expr, series: Series, times: list[float]) -> Any:
+    """The value of an expression at each of the times (times, ...); what is one number for the whole run is just that.
+
+    Operations that ask for the whole run are given what there is of it.
+    """
+    known: dict[Symbol, Any] = {}
+
+    def look_up(node: Symbol | Link) -> Any:
+        if isinstance(node, Symbol) and node in known:
+            return known[node]
+        return _look_up(node, series)
+
+    def solve(node: Expr) -> Expr:
+        if isinstance(node, Vector):
+            return replace(node, items=tuple(solve(item) for item in node.items))
+        if not isinstance(node, Call):
+            return node
+        args = tuple(solve(arg) for arg in node.args)
+        node = Call(node.op, args, node.type, node.span)
+        if not OPERATIONS[node.op].series:
+            return node
+        value = evaluate(args[0], look_up, arrays=True)
+        symbol = Symbol(f"series {len(known)}", node.type)
+        known[symbol] = _SERIES[node.op].of(value, times, node)
+        return symbol
+
+    return evaluate(solve(expr), look_up, arrays=True)
+
+
+def _look_up(node: Symbol | Link, series: Series) -> Any:
+    return series[Symbol("time")] if isinstance(node, Symbol) else series[node]
+
+
+def instant_of(node: Call) -> float:
+    """The instant [s] of an `at`."""
+    return float(evaluate(node.args[1], {}))
+
+
+def _at(value: Any, times: list[float], node: Call) -> Any:
+    instant = instant_of(node)
+    return value[times.index(instant)] if instant <= times[-1] else value[-1] * math.nan
+
+
+def _drift(value: Any, times: list[float], node: Call) -> Any:
+    """Relative to the start, or, for a quantity that starts at 0, to its largest magnitude over the run."""
+    import numpy as np
+
+    scale = value[0] if np.all(value[0] != 0) else np.max(np.abs(value)) or 1.0
+    return (value - value[0]) / scale
+
+
+class _Series(NamedTuple):
+    """What an operation on time makes of a series."""
+
+    of: Callable[[Any, list[float], Call], Any]
+    """(series, its times, the call) to its value."""
+    instants: Callable[[Sequence[float], Call], Sequence[float]] = lambda times, node: times
+    """The times that count."""
+
+
+_SERIES: Mapping[str, _Series] = {
+    "final": _Series(lambda value, times, node: value[-1], lambda times, node: times[-1:]),
+    "initial": _Series(lambda value, times, node: value[0], lambda times, node: times[:1]),
+    "at": _Series(_at, lambda times, node: [instant_of(node)] if instant_of(node) <= times[-1] else times[-1:]),
+    "relative_drift": _Series(_drift),
+    "spread": _Series(lambda value, times, node: value.max(axis=0) - value.min(axis=0)),
+}
