@@ -38,7 +38,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy import int64
+    from numpy import bool_, int64
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats
@@ -92,30 +92,37 @@ class Slopes:
     """(k,) int; empty where nothing that the term adds depends on y."""
     columns: Any
     """(k,) int."""
-    ints: Sequence[int] | None = None
+    ints: Any = None
     """The kernel's integers; None: those of the term."""
     shared: Any = None
     """(k,) int, where several places have the same entry: which one each place adds, e, or takes away, -1 - e."""
 
+    blocks: bool = False
+    """Places and entries are blocks of 3x3, of which ``rows`` and ``columns`` give the first row and column; the nine
+    numbers of an entry follow one another, row by row. Thrice as quick, where masses act on masses."""
+
     @property
     def entries(self) -> int:
         """Length of the kernel's slice."""
-        if self.shared is None:
-            return len(self.rows)
-        return int(max(self.shared.max(), -1 - self.shared.min(), -1)) + 1 if len(self.shared) else 0
+        count = len(self.rows)
+        if self.shared is not None:
+            count = int(max(self.shared.max(), -1 - self.shared.min(), -1)) + 1 if len(self.shared) else 0
+        return 9 * count if self.blocks else count
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pattern:
-    """Where an island's Jacobian may differ from zero, in compressed sparse rows, all of the diagonal included.
+    """Where an island's Jacobian may differ from zero, all of the diagonal included: no place twice.
 
-    Row i has its values at starts[i] : starts[i + 1], in the order of their columns.
+    Its values are first those of the blocks, nine for each, row by row, then the others one by one.
     """
 
-    starts: NDArray[int64]
-    """(n + 1,)."""
-    columns: NDArray[int64]
-    """(count,)."""
+    blocks: NDArray[int64]
+    """(b, 2) first row and first column of the blocks of 3x3, rising: rows of velocities of masses."""
+    others: NDArray[int64]
+    """(s, 2) row and column of each value outside blocks, rising."""
+    known: NDArray[bool_]
+    """(s,) which of those come from slopes; the rest are zeros on the diagonal."""
     room: int
     """Length of the array ``values`` that the jacobian is called with: the values first, then scratch of its own."""
     exact: bool
@@ -123,6 +130,27 @@ class Pattern:
     tallies: NDArray[int64]
     """Entries of y that have no slopes at all, such as the energy taken out: nothing depends on them, and what they
     depend on is left out."""
+
+    @property
+    def count(self) -> int:
+        """Number of values."""
+        return 9 * len(self.blocks) + len(self.others)
+
+    @property
+    def rows(self) -> NDArray[int64]:
+        """(count,) of each value."""
+        import numpy as np
+
+        own = (self.blocks[:, :1] + np.array([0, 0, 0, 1, 1, 1, 2, 2, 2])).ravel()
+        return np.concatenate([own, self.others[:, 0]])
+
+    @property
+    def columns(self) -> NDArray[int64]:
+        """(count,) of each value."""
+        import numpy as np
+
+        own = (self.blocks[:, 1:] + np.array([0, 1, 2, 0, 1, 2, 0, 1, 2])).ravel()
+        return np.concatenate([own, self.others[:, 1]])
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -229,7 +229,7 @@ def test_threads_share_the_slopes_to_the_same_bytes(tmp_path, monkeypatch):
         march._jacobian(march._functions, 0.0, y, values, march.floats, system.ints)
         found.append(values[: len(system.pattern.columns)].copy())
     assert found[0].tobytes() == found[1].tobytes() == found[2].tobytes()
-    rows = np.repeat(np.arange(len(y)), np.diff(system.pattern.starts))
+    rows = system.pattern.rows
     whole = np.zeros((len(y), len(y)))
     whole[rows, system.pattern.columns] = found[0]
     moves = 1e-6 * np.eye(len(y))
@@ -251,8 +251,7 @@ def test_a_chain_of_springs_has_its_dispersion(tmp_path):
     march = Run(load(path)).islands[0].march
     values = np.zeros(march.system.pattern.room)
     march._jacobian(march._functions, 0.0, march.system.y, values, march.floats, march.system.ints)
-    starts, columns = march.system.pattern.starts, march.system.pattern.columns
-    rows = np.repeat(np.arange(len(march.system.y)), np.diff(starts))
+    rows, columns = march.system.pattern.rows, march.system.pattern.columns
     whole = np.zeros((len(march.system.y),) * 2)
     whole[rows, columns] = values[: len(columns)]
     along = np.arange(3, 3 * (count - 1), 3)

@@ -102,6 +102,25 @@ def test_fronts_solve_to_rounding(columns, rows, seed, symmetric, dissected):
     assert np.abs(matrix @ x - right).max() <= 1e-12
 
 
+@pytest.mark.parametrize("symmetric", [True, False])
+@pytest.mark.parametrize("dissected", [True, False])
+def test_fronts_of_blocks_solve_to_rounding(dissected, symmetric):
+    """Of the same matrix given by its blocks of 3x3, row by row."""
+    pattern = net(13, 11, 2)
+    matrix = csr_array(0.5 * (pattern + pattern.T)) if symmetric else pattern.copy()
+    matrix.setdiag(matrix.diagonal() + 30.0)
+    blocks = matrix.tobsr((3, 3))
+    blocks.sort_indices()
+    graph = csr_array((np.ones(len(blocks.indices)), blocks.indices, blocks.indptr))
+    places = np.stack(np.meshgrid(np.arange(13.0), np.arange(11.0), [0], indexing="ij"), axis=-1).reshape(-1, 3)
+    plan = fronts.plan(graph, points=places if dissected else None, unit=3)
+    factors, work = np.zeros(plan.factors), np.zeros(plan.work)
+    x = np.ones(matrix.shape[0])
+    assert fronts_kernels.factor_system(plan.numbers, blocks.data.ravel(), factors, work, symmetric)
+    fronts_kernels.solve_system(plan.numbers, blocks.data.ravel(), factors, x, work, symmetric)
+    assert np.abs(matrix @ x - 1.0).max() <= 1e-12
+
+
 @pytest.mark.parametrize("dissected", [True, False])
 def test_threads_share_fronts_to_the_same_bytes(monkeypatch, dissected):
     monkeypatch.setattr(fronts, "WORTH_THREADS", 0.0)

@@ -52,7 +52,7 @@ def dense(march, t, y):
     values = np.full(pattern.room, np.nan)
     jacobian(system)(march._functions, t, y, values, march.floats.copy(), system.ints)
     matrix = np.zeros((len(y), len(y)))
-    rows = np.repeat(np.arange(len(y)), np.diff(pattern.starts))
+    rows = pattern.rows
     matrix[rows, pattern.columns] = values[: len(rows)]
     return matrix
 

@@ -102,15 +102,14 @@ def reserve_part(assembly: Assembly, whole: Bodies, state: ModelState, first: in
 
 
 def own_blocks(bodies: Bodies, column_at: int) -> tuple[Any, Any]:
-    """Rows and columns (9n,) of the 3x3 blocks of each body's force, row by row, by its own entries at ``column_at``.
+    """First rows and columns (n,) of the 3x3 blocks of each body's force by its own entries at ``column_at``.
 
     For Slopes of a force that depends on each body alone; ``column_at``: position_at or velocity_at.
     """
     import numpy as np
 
-    first = 3 * np.arange(bodies.count)[:, None]
-    i, j = np.divmod(np.arange(9), 3)
-    return (bodies.velocity_at + first + i).ravel(), (column_at + first + j).ravel()
+    first = 3 * np.arange(bodies.count)
+    return bodies.velocity_at + first, column_at + first
 
 
 def positions(bodies: Bodies, state: ModelState) -> Floats:

@@ -300,7 +300,7 @@ class IslandAssembly:
         ints = lay_out(self._pairs, blocks, first_blocks, pairs)
         found, derived = full(len(y)) if jacobian else None, None
         if slopes is not None:
-            found, derived, more = section(len(ints), len(y), slopes, self._masses)
+            found, derived, more = section(len(ints), len(y), slopes, self._masses, self._pairs)
             ints = np.concatenate([ints, more])
         structure = Structure(
             tuple(kernels[0] for kernels, _ in groups),

@@ -18,11 +18,10 @@ def reduction(system: System) -> NDArray[int64]:
     pattern = system.pattern
     assert pattern is not None
     n = len(system.y)
-    rows = np.repeat(np.arange(n), np.diff(pattern.starts))
-    columns = pattern.columns
+    rows, columns = pattern.rows, pattern.columns
     place = dict(zip(zip(rows.tolist(), columns.tolist(), strict=True), range(len(rows)), strict=True))
     idle = set(pattern.tallies.tolist()) | _held(system)
-    length = np.diff(pattern.starts)
+    length = np.bincount(rows, minlength=n)
     pairs = {
         x: int(v)
         for x, v in enumerate(system.partner)

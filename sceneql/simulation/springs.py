@@ -275,19 +275,18 @@ def _slopes(net: Net, bodies: Bodies, damped: bool, floats_at: Sequence[int]) ->
     from sceneql.system import Slopes
 
     count = len(net.pairs)
-    ends = 3 * net.pairs
-    places = np.arange(3)
-    rows = np.repeat(np.repeat(ends, 2, axis=1)[:, :, None] + places, 3, axis=2).ravel() + bodies.velocity_at
-    columns = np.tile(np.tile(ends, 2)[:, :, None] + places, 3).ravel()
-    own = np.arange(9 * count).reshape(-1, 1, 9)
-    shared = np.concatenate([-1 - own, own, own, -1 - own], axis=1).ravel()
+    ends = 3 * net.pairs.astype(np.int64)
+    rows = np.repeat(ends, 2, axis=1).ravel() + bodies.velocity_at
+    columns = np.tile(ends, 2).ravel()
     by = [bodies.position_at, bodies.velocity_at] if damped else [bodies.position_at]
+    own = np.arange(count * len(by)).reshape(-1, 1)
     tiles = count // SPRINGS_A_TILE + 1
     head = (bodies.position_at, bodies.velocity_at, bodies.inverse_at, count, int(damped), tiles)
     return Slopes(
         "sceneql.simulation.models.mass_spring_slopes_kernels:springs",
         np.tile(rows, len(by)),
         np.concatenate([columns + at for at in by]),
-        (*head, *threads(), tile_address(tile), *floats_at, *net.pairs.ravel().tolist()),
-        np.concatenate([np.where(shared < 0, shared - 9 * count * k, shared + 9 * count * k) for k in range(len(by))]),
+        np.concatenate([(*head, *threads(), tile_address(tile), *floats_at), net.pairs.ravel()]),
+        np.concatenate([-1 - own, own, own, -1 - own], axis=1).ravel(),
+        blocks=True,
     )

@@ -40,7 +40,7 @@ class Attractor(Force):
             "force",
             "sceneql.simulation.forces.attractor_kernels:attractor",
             (*ints, *parameters),
-            lambda: Slopes(slopes, *masses.own_blocks(bodies, bodies.position_at)),
+            lambda: Slopes(slopes, *masses.own_blocks(bodies, bodies.position_at), blocks=True),
             apart=True,
         )
         assembly.remember(*parameters)

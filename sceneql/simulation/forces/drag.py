@@ -44,6 +44,6 @@ class Drag(Force):
             "force",
             "sceneql.simulation.forces.drag_kernels:drag",
             (*ints, *parameters),
-            lambda: Slopes(slopes, *masses.own_blocks(bodies, bodies.velocity_at)),
+            lambda: Slopes(slopes, *masses.own_blocks(bodies, bodies.velocity_at), blocks=True),
             apart=True,
         )

@@ -43,7 +43,8 @@ class Magnetic(Force):
             ints = (bodies.velocity_at, bodies.count, *charge, assembly.value(self.field_))
             slopes = "sceneql.simulation.forces.magnetic_slopes_kernels:magnetic"
             kernel = "sceneql.simulation.forces.magnetic_kernels:magnetic"
-            assembly.term("force", kernel, ints, lambda: Slopes(slopes, *masses.own_blocks(bodies, bodies.velocity_at)))
+            places = (bodies, bodies.velocity_at)
+            assembly.term("force", kernel, ints, lambda: Slopes(slopes, *masses.own_blocks(*places), blocks=True))
             return
         from sceneql.quantities.derivative import components
         from sceneql.simulation.point_program import CHARGE, add_force, scaled

@@ -45,9 +45,10 @@ class Turbulence(Force):
         )
 
         def slopes() -> Slopes:
-            by_place = masses.own_blocks(bodies, bodies.position_at)
+            tops, lefts = masses.own_blocks(bodies, bodies.position_at)
             along = bodies.velocity_at + np.arange(3 * bodies.count)
-            rows, columns = (np.concatenate([places, along]) for places in by_place)
+            i, j = np.divmod(np.arange(9), 3)
+            rows, columns = (np.append(at[:, None] + k, along) for at, k in ((tops, i), (lefts, j)))
             return Slopes("sceneql.simulation.forces.turbulence_slopes_kernels:turbulence", rows, columns)
 
         assembly.term("force", "sceneql.simulation.forces.turbulence_kernels:turbulence", ints, slopes, apart=True)

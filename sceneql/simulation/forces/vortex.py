@@ -39,7 +39,7 @@ class Vortex(Force):
         def slopes() -> Slopes:
             both = (masses.own_blocks(bodies, at) for at in (bodies.position_at, bodies.velocity_at))
             rows, columns = (np.concatenate(places) for places in zip(*both, strict=True))
-            return Slopes("sceneql.simulation.forces.vortex_slopes_kernels:vortex", rows, columns)
+            return Slopes("sceneql.simulation.forces.vortex_slopes_kernels:vortex", rows, columns, blocks=True)
 
         kernel = "sceneql.simulation.forces.vortex_kernels:vortex"
         assembly.term("force", kernel, (*ints, *parameters), slopes, apart=True)

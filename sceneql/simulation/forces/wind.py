@@ -49,4 +49,6 @@ class Wind(Force):
         kernel = "sceneql.simulation.forces.wind_kernels:wind"
         ints = (*masses_of, *parameters)
         places = (bodies, bodies.velocity_at)
-        assembly.term("force", kernel, ints, lambda: Slopes(slopes, *masses.own_blocks(*places)), apart=True)
+        assembly.term(
+            "force", kernel, ints, lambda: Slopes(slopes, *masses.own_blocks(*places), blocks=True), apart=True
+        )

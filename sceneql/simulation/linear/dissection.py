@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from sceneql.simulation.linear.ordering import postorder
+from sceneql.simulation.linear.ordering import postorder, rising
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -36,7 +36,7 @@ def dissected(graph: Any, points: Floats) -> tuple[list[NDArray[int64]], list[in
     while open_blocks.any():
         right = _halves(block, open_blocks, points)
         crossing = np.flatnonzero((right[start] == 0) & (right[ends] == 1) & (block[start] == block[ends]))
-        on_left, on_right = np.unique(start[crossing]), np.unique(ends[crossing])
+        on_left, on_right = rising(start[crossing]), rising(ends[crossing])
         some = len(parent)
         counts = [np.bincount(block[side], minlength=some) for side in (on_left, on_right)]
         lesser = counts[0] <= counts[1]

@@ -11,7 +11,7 @@ from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
 from sceneql.simulation.linear.dissection import dissected
-from sceneql.simulation.linear.ordering import Groups, elimination_order, grouped
+from sceneql.simulation.linear.ordering import Groups, elimination_order, grouped, rising
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -53,10 +53,11 @@ class Plan:
     """Multiplications of a symmetric factorization; an unsymmetric one takes twice as many."""
 
 
-def plan(pattern: Any, groups: Groups | None = None, points: Floats | None = None) -> Plan:
+def plan(pattern: Any, groups: Groups | None = None, points: Floats | None = None, unit: int = 1) -> Plan:
     """Analyze a symmetric (n, n) scipy CSR pattern that has its whole diagonal (and may be grouped already).
 
     ``points`` (n, 3): where the unknowns lie in space, for an order by nested dissection; else by minimum degree.
+    ``unit``: so many unknowns for each of the n; value k of the pattern is a block of unit x unit, row by row.
     """
     import numpy as np
 
@@ -68,11 +69,11 @@ def plan(pattern: Any, groups: Groups | None = None, points: Floats | None = Non
         blocks, parents = dissected(groups.graph, points[[members[0] for members in groups.members]])
         order = np.concatenate(blocks)
         graph = groups.graph[order][:, order]
-    sizes = np.array([len(groups.members[k]) for k in order], dtype=np.int64)
+    members = [groups.members[k] for k in order]
+    sizes = unit * np.array([len(some) for some in members], dtype=np.int64)
     fronts = _fronts(graph, parents, sizes) if points is None else _fronts_of_blocks(graph, parents, blocks)
     first = np.concatenate([[0], np.cumsum(sizes)])
-    scalars = np.concatenate([groups.members[k] for k in order])
-    return _laid_out(pattern, scalars, fronts, first)
+    return _laid_out(pattern, np.concatenate(members), fronts, first, unit)
 
 
 def _fronts_of_blocks(graph: Any, parents: list[int], blocks: list[Rows]) -> list[_Front]:
@@ -86,7 +87,7 @@ def _fronts_of_blocks(graph: Any, parents: list[int], blocks: list[Rows]) -> lis
     for k, block in enumerate(blocks):
         high = low + len(block)
         own = columns[starts[low] : starts[high]]
-        beyond = np.unique(np.concatenate([own[own >= high], *(rest[rest >= high] for rest in reached[k])]))
+        beyond = rising(np.concatenate([own[own >= high], *(rest[rest >= high] for rest in reached[k])]))
         if parents[k] >= 0:
             reached[parents[k]].append(beyond)
         mine = np.arange(low, high)
@@ -107,7 +108,7 @@ def _fronts(graph: Any, parents: list[int], sizes: Rows) -> list[_Front]:
     for j, parent in enumerate(parents):
         below = columns[starts[j] : starts[j + 1]]
         parts = [below[below >= j], *(fronts[of_column[k]].rows for k in children[j])]
-        rows = np.unique(np.concatenate(parts)) if len(parts) > 1 else np.sort(parts[0])
+        rows = rising(np.concatenate(parts)) if len(parts) > 1 else np.sort(parts[0])
         rows = rows[np.searchsorted(rows, j) :]
         of_column[j] = len(fronts)
         last = of_column[j - 1] if j and parents[j - 1] == j else -1
@@ -128,13 +129,14 @@ def _fronts(graph: Any, parents: list[int], sizes: Rows) -> list[_Front]:
     return fronts
 
 
-def _laid_out(pattern: Any, scalars: Rows, fronts: list[_Front], first: Rows) -> Plan:
+def _laid_out(pattern: Any, order: Rows, fronts: list[_Front], first: Rows, unit: int) -> Plan:
     import numpy as np
 
     from sceneql.simulation.linear.fronts_symmetric_kernels import FIELDS, HEAD, piece
     from sceneql.simulation.threads_kernels import threads, tile_address
 
-    n, count, groups = len(scalars), len(fronts), len(first) - 1
+    n, count, groups = unit * len(order), len(fronts), len(first) - 1
+    scalars = (unit * order[:, None] + np.arange(unit)).ravel()
     sizes = np.diff(first)
     group_of = np.repeat(np.arange(groups), sizes)
     lengths = np.array([len(front.rows) for front in fronts])
@@ -147,8 +149,8 @@ def _laid_out(pattern: Any, scalars: Rows, fronts: list[_Front], first: Rows) ->
     heights = np.diff(row_starts)
     expanded = np.repeat(first[rows] - before, sizes[rows]) + np.arange(row_starts[-1])
 
-    place = np.empty(n, dtype=np.int64)
-    place[scalars] = np.arange(n)
+    place = np.empty(len(order), dtype=np.int64)
+    place[order] = unit * np.arange(len(order))
     i = np.repeat(place, np.diff(pattern.indptr))
     j = place[pattern.indices]
     owner = np.repeat(np.arange(count), widths)[np.minimum(i, j)]
@@ -165,7 +167,7 @@ def _laid_out(pattern: Any, scalars: Rows, fronts: list[_Front], first: Rows) ->
     kinds = 2 * owner + (i > j)
     by_owner = np.argsort(kinds, kind="stable")
     bounds = np.searchsorted(kinds[by_owner], np.arange(2 * count + 1)).tolist()
-    entries = np.column_stack([by_owner, target[by_owner]]).ravel()
+    entries = np.column_stack([unit * unit * by_owner, target[by_owner]]).ravel()
 
     last_child, earlier = [-1] * count, [-1] * count
     table: list[int] = []
@@ -199,7 +201,7 @@ def _laid_out(pattern: Any, scalars: Rows, fronts: list[_Front], first: Rows) ->
     halves = [number for first_front, root in pieces for number in (first_front, root + 1, 0)]
     parts: list[Any] = [table, scalars, expanded, maps, entries, np.zeros(n, dtype=np.int64), halves]
     starts = list(accumulate((len(part) for part in parts), initial=HEAD))
-    head = [n, count, *starts[1:6], room, starts[6], len(pieces), *threads(), tile_address(piece)]
+    head = [n, count, *starts[1:6], room, starts[6], len(pieces), *threads(), tile_address(piece), unit]
     numbers = np.concatenate([np.array(part, dtype=np.int64) for part in (head, *parts)])
     return Plan(numbers, factors, room + largest * largest + 2 * n, float(operations.sum()))
 

@@ -2,9 +2,10 @@
 """Sparse factorization on a planned pattern by the multifrontal method, and solutions with the factors.
 
 The integers of a plan: [unknowns, fronts, where these start: order, rows, maps, entries, pivots; floats of the
-updates; where the pieces start, how many; the numbers of threads_kernels.threads, the address of a piece's kernel],
-then a table with FIELDS a front: first unknown, number eliminated, rows of the front, then where its rows, its map
-into the parent, its factors and its entries start, its last child and the child of its parent before it (-1: none),
+updates; where the pieces start, how many; the numbers of threads_kernels.threads, the address of a piece's kernel;
+unknowns of a unit, whose blocks make up the matrix], then a table with FIELDS a front: first unknown, number
+eliminated, rows of the front, then where its rows, its map into the parent, its factors and its entries (blocks: first
+value, its place in the front) start, its last child and the child of its parent before it (-1: none),
 where its update stands in the work, and where its entries below the diagonal start; last a row that ends them. A map
 is in runs: where each ends in the update, and its first place in the parent. A piece: its first front, the one after
 its last, and whether it was factored.
@@ -18,7 +19,7 @@ from numba import types
 
 from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.arithmetic_kernels import fma, widest
-from sceneql.simulation.linear.fronts_symmetric_kernels import FIELDS, HEAD, factor_symmetric
+from sceneql.simulation.linear.fronts_symmetric_kernels import FIELDS, HEAD, factor_symmetric, put
 from sceneql.simulation.linear.solver_kernels import FACTOR_SYSTEM, SOLVE_SYSTEM
 from sceneql.system_kernels import A, N
 
@@ -146,8 +147,7 @@ def factor_system(plan, values, factors, work, symmetric):
         rest = height - width
         for k in range(height * height):
             front[k] = 0.0
-        for e in range(plan[t + 6], plan[t + FIELDS + 6]):
-            front[plan[entries + 2 * e + 1]] += values[plan[entries + 2 * e]]
+        put(plan, values, front, height, entries + 2 * plan[t + 6], entries + 2 * plan[t + FIELDS + 6])
         child = plan[t + 7]
         while child >= 0:
             c = HEAD + FIELDS * child

@@ -18,7 +18,7 @@ from sceneql.simulation.threads_kernels import TILE as PIECE
 from sceneql.simulation.threads_kernels import over_threads
 from sceneql.system_kernels import A, I, N
 
-PIECES_AT, PIECES, ENTRY, THREADS, PIECE_AT, HEAD = 8, 9, 10, 11, 12, 13
+PIECES_AT, PIECES, ENTRY, THREADS, PIECE_AT, UNIT, HEAD = 8, 9, 10, 11, 12, 13, 14
 FIELDS = 11
 
 TILE = 384
@@ -78,6 +78,19 @@ def eliminate(panel, height, begin, end):
 
 
 @lean_inlined
+def put(plan, values, front, height, begin, end):
+    """Add blocks of the matrix at their places in a front."""
+    unit = plan[UNIT]
+    for e in range(begin, end, 2):
+        k, place = plan[e], plan[e + 1]
+        for _ in range(unit):
+            for j in range(unit):
+                front[place + j] += values[k + j]
+            k += unit
+            place += height
+
+
+@lean_inlined
 def take_in(panel, width, height, square, child, below, runs):
     """Add a child's update (below x below) at its places in the front: ``runs`` (end in the update, place) of them."""
     rest = height - width
@@ -117,8 +130,7 @@ def factor_fronts(plan, values, factors, work, begin, end):
         for i in range(rest):
             for k in range(i * rest + i, (i + 1) * rest):
                 square[k] = 0.0
-        for e in range(entries + 2 * plan[t + 6], entries + 2 * plan[t + 10], 2):
-            panel[plan[e + 1]] += values[plan[e]]
+        put(plan, values, panel, height, entries + 2 * plan[t + 6], entries + 2 * plan[t + 10])
         child = plan[t + 7]
         while child >= 0:
             c = HEAD + FIELDS * child

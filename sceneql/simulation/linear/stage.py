@@ -15,12 +15,12 @@ from sceneql.failure import LimitRefused
 from sceneql.simulation.grids.species import one_grid
 
 if TYPE_CHECKING:
-    import numpy
     from numpy import int64
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats
     from sceneql.simulation.island import System
+    from sceneql.simulation.linear.elimination import Kinds, Left
 
 SMALL = 96
 """Up to so many unknowns a dense factorization is as quick as a sparse one."""
@@ -30,6 +30,8 @@ MOST_OPERATIONS = 2e10
 SOLID = 16
 """Neighbors of a mass from which on a net counts as a solid, whose factors fill up."""
 SOLID_GROUPS = 3000
+TILE = 40_000
+"""Values of the matrix that a thread puts together at a time; fewer are not worth threads."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,28 +48,15 @@ class StagePlan:
     """How the systems are solved, for `explain`."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Reduced:
-    """The unknowns that are left, and where entries of the Jacobian go."""
-
-    core: NDArray[int64]
-    positions: NDArray[int64]
-    """(p, 3): position, velocity, place of the one in its row of the Jacobian."""
-    first: NDArray[int64]
-    """(., 3): place in the Jacobian, row and column of what is left: the coefficient is -a."""
-    second: NDArray[int64]
-    """(., 4): place in the Jacobian, row and column of what is left, which position: the coefficient is -a^2."""
-    tallies: NDArray[int64]
-    """Entries that depend on others by unknown slopes and that nothing depends on."""
-
-
 def stage_plan(system: System) -> StagePlan:
     """Analyze an island whose Jacobian was asked for. Raises LimitRefused where it could not be had."""
     import numpy as np
 
+    from sceneql.simulation.linear.elimination import kinds_of
     from sceneql.simulation.linear.solver_kernels import FACTOR_SYSTEM, SOLVE_SYSTEM
-    from sceneql.simulation.linear.stage_kernels import HEAD
+    from sceneql.simulation.linear.stage_kernels import HEAD, assemble_tile, compare_tile
     from sceneql.simulation.numbered_kernels import number_of
+    from sceneql.simulation.threads_kernels import threads, tile_address
 
     if system.pattern is None:
         raise LimitRefused(
@@ -77,37 +66,23 @@ def stage_plan(system: System) -> StagePlan:
             "take `auto`, `verlet` or `dop853`, which need none, or fewer masses",
         )
     inverse = _inverse_masses(system)
-    reduced = _reduce(system, inverse)
-    scales = 1.0 / inverse[reduced.core]
-    m = len(reduced.core)
-    rows = np.concatenate([reduced.first[:, 1], reduced.second[:, 1], np.arange(m)])
-    columns = np.concatenate([reduced.first[:, 2], reduced.second[:, 2], np.arange(m)])
-    pattern = _pattern(rows, columns, m)
-    row_of = np.repeat(np.arange(m, dtype=np.int64), np.diff(pattern.indptr))
-    places = np.searchsorted(row_of * m + pattern.indices, rows * m + columns)
-    twins = _twins(pattern)
-    if one_grid(system, reduced.core):
-        solver = _over_grids(system, reduced.core, pattern)
-    else:
-        solver = _choose(pattern, _points(system, reduced.core))
-    f, s = len(reduced.first), len(reduced.second)
-    parts = np.full((pattern.nnz, 4), -1, dtype=np.int64)
-    parts[:, 0] = row_of
-    parts[places[:f], 1] = reduced.first[:, 0]
-    parts[places[f : f + s], 2] = reduced.second[:, 0]
-    parts[places[f : f + s], 3] = reduced.second[:, 3]
-    lists = [reduced.core, reduced.positions.ravel(), parts.ravel(), places[f + s :], twins]
-    lists += [solver.numbers, reduced.tallies]
+    left, pattern, solver = _chosen(system, kinds_of(system, inverse))
+    square = left.unit**2
+    parts, diagonal = _parts(left, pattern)
+    lists = [left.core, left.positions.ravel(), parts.ravel(), diagonal, _twins(pattern), solver.numbers, left.tallies]
     starts = list(accumulate((len(part) for part in lists), initial=HEAD))
-    counts = [len(system.y), m, pattern.nnz, len(reduced.positions), len(reduced.tallies)]
+    counts = [len(system.y), len(left.core), square * pattern.nnz, len(left.positions), len(left.tallies)]
     kernels = (
         number_of(solver.kernels.factor_system, FACTOR_SYSTEM),
         number_of(solver.kernels.solve_system, SOLVE_SYSTEM),
     )
-    head = [*counts, *starts[:-1], solver.factors, 0, *kernels]
+    tiles = square * pattern.nnz // TILE + 1
+    shared = (tiles, *threads(), tile_address(assemble_tile), tile_address(compare_tile))
+    head = [*counts, *starts[:-1], solver.factors, 0, *kernels, left.unit, *shared]
     assert len(head) == HEAD
     numbers = np.concatenate([np.asarray(part, dtype=np.int64) for part in (head, *lists)])
-    return StagePlan(numbers, scales, pattern.nnz + solver.factors + solver.work + m, solver.text)
+    store = square * pattern.nnz + solver.factors + solver.work + 2 * tiles + len(left.core)
+    return StagePlan(numbers, 1.0 / inverse[left.core], store, solver.text)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -118,6 +93,39 @@ class _Solver:
     factors: int
     work: int
     text: str
+
+
+def _chosen(system: System, kinds: Kinds) -> tuple[Left, Any, _Solver]:
+    """What is left, its pattern and how it is solved: by masses where their factors do not fill up too much."""
+    from sceneql.simulation.linear.elimination import left_by_entries, left_by_masses
+
+    by_masses = left_by_masses(system, kinds) if kinds.core.sum() > SMALL else None
+    if by_masses is not None:
+        pattern = _pattern(by_masses)
+        solver = _factored(pattern, 3, _points(system, by_masses))
+        if solver is not None:
+            return by_masses, pattern, solver
+    left = left_by_entries(system, kinds)
+    pattern = _pattern(left)
+    if one_grid(system, left.core):
+        return left, pattern, _over_grids(system, left.core, pattern)
+    solver = None if by_masses is not None else _factored(pattern, 1, _points(system, left))
+    return left, pattern, solver or _iterations(pattern)
+
+
+def _parts(left: Left, pattern: Any) -> tuple[NDArray[int64], NDArray[int64]]:
+    """Of each block of the matrix what it is made of (stage_kernels.py), and which blocks are the diagonal."""
+    import numpy as np
+
+    units = pattern.shape[0]
+    row_of = np.repeat(np.arange(units, dtype=np.int64), np.diff(pattern.indptr))
+    keys = row_of * units + pattern.indices
+    direct, through = (np.searchsorted(keys, part[:, 1] * units + part[:, 2]) for part in (left.first, left.second))
+    parts = np.full((pattern.nnz, 4), -1, dtype=np.int64)
+    parts[:, 0] = row_of
+    parts[direct, 1] = left.first[:, 0]
+    parts[through, 2:] = left.second[:, [0, 3]]
+    return parts, np.searchsorted(keys, np.arange(units) * (units + 1))
 
 
 def _inverse_masses(system: System) -> Floats:
@@ -142,71 +150,22 @@ def _masses(system: System) -> list[list[int]]:
     return masses
 
 
-def _known(system: System) -> NDArray[numpy.bool_]:
-    """(values,) which values of the Jacobian come from slopes; the others are zeros of the diagonal."""
-    import numpy as np
-
-    assert system.pattern is not None
-    known = np.full(len(system.pattern.columns), not system.pattern.exact)
-    if system.pattern.exact:
-        section = system.ints[4]
-        at = system.ints[section + 2]
-        known = np.diff(system.ints[at : at + len(known) + 1]) > 0
-    return known
-
-
-def _reduce(system: System, inverse: Floats) -> _Reduced:
-    import numpy as np
-
-    assert system.pattern is not None
-    starts, columns = system.pattern.starts, system.pattern.columns
-    n = len(system.y)
-    rows = np.repeat(np.arange(n, dtype=np.int64), np.diff(starts))
-    places = np.arange(len(columns), dtype=np.int64)
-    known = _known(system)
-    off = (rows != columns) & known
-    partner = system.partner
-    # A position whose row has nothing but its velocity.
-    alien = np.bincount(rows[off & (columns != partner[rows])], minlength=n) > 0
-    has_one = np.bincount(rows[off & (columns == partner[rows])], minlength=n) > 0
-    position = (partner >= 0) & ~alien & has_one
-    fixed = inverse == 0.0
-    used = np.bincount(columns[known], minlength=n) + np.bincount(rows[known], minlength=n) > 0
-    tally = ~used & (partner < 0) & ~np.isin(np.arange(n), partner[partner >= 0])
-    in_core = ~position & ~fixed & ~tally
-    core = np.flatnonzero(in_core)
-    number = np.full(n, -1, dtype=np.int64)
-    number[core] = np.arange(len(core))
-
-    one = np.full(n, -1, dtype=np.int64)
-    found = off & position[rows] & (columns == partner[rows])
-    one[rows[found]] = places[found]
-    eliminated = np.flatnonzero(position)
-    rank = np.full(n, -1, dtype=np.int64)
-    rank[eliminated] = np.arange(len(eliminated))
-    direct = known & in_core[rows] & in_core[columns]
-    through = known & in_core[rows] & position[columns] & in_core[partner[columns]]
-    bare = columns[through]
-    return _Reduced(
-        core=core,
-        positions=np.column_stack([eliminated, partner[eliminated], one[eliminated]]),
-        first=np.column_stack([places[direct], number[rows[direct]], number[columns[direct]]]),
-        second=np.column_stack([places[through], number[rows[through]], number[partner[bare]], rank[bare]]),
-        tallies=np.flatnonzero(tally),
-    )
-
-
-def _pattern(rows: Any, columns: Any, m: int) -> Any:
-    """The symmetric pattern of entries as (m, m) scipy CSR, indices sorted; where it is small, the full one."""
+def _pattern(left: Left) -> Any:
+    """The symmetric pattern of units as scipy CSR, indices sorted; where it is small, the full one."""
     import numpy as np
     from scipy.sparse import csr_array
 
-    if m <= SMALL:
-        return csr_array(np.ones((m, m)))
-    one_way = csr_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(m, m))
+    units = len(left.core) // left.unit
+    if units <= SMALL and left.unit == 1:
+        return csr_array(np.ones((units, units)))
+    own = np.arange(units)
+    rows, columns = (np.concatenate([left.first[:, k], left.second[:, k], own]) for k in (1, 2))
+    one_way = csr_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(units, units))
     one_way.sum_duplicates()
     one_way.data[:] = 1
-    return (one_way + one_way.T.tocsr()).astype(np.float64)
+    found = (one_way + one_way.T.tocsr()).astype(np.float64)
+    found.sort_indices()
+    return found
 
 
 def _twins(pattern: Any) -> NDArray[int64]:
@@ -219,8 +178,8 @@ def _twins(pattern: Any) -> NDArray[int64]:
     return found
 
 
-def _points(system: System, core: NDArray[int64]) -> Floats | None:
-    """(unknowns, 3) where the masses whose velocities they are lie at the start; None where one is no velocity."""
+def _points(system: System, left: Left) -> Floats | None:
+    """(units, 3) where the masses whose velocities they are lie at the start; None where one is no velocity."""
     import numpy as np
 
     points = np.full((len(system.y), 3), np.nan)
@@ -231,7 +190,7 @@ def _points(system: System, core: NDArray[int64]) -> Floats | None:
         positions = position_of[velocity_at : velocity_at + 3 * count]
         if (positions >= 0).all():
             points[velocity_at : velocity_at + 3 * count] = system.y[positions].reshape(-1, 3).repeat(3, axis=0)
-    found = points[core]
+    found = points[left.core[:: left.unit]]
     return None if np.isnan(found).any() else found
 
 
@@ -243,34 +202,37 @@ def likely_kernels(system: System) -> tuple[str, ...]:
     return tuple(f"{__package__}.{name}_kernels" for name in (("dense",) if few else ("fronts_symmetric", "fronts")))
 
 
-def _choose(pattern: Any, points: Floats | None) -> _Solver:
-    """How to solve systems of a pattern, by its size and fill."""
+def _factored(pattern: Any, unit: int, points: Floats | None) -> _Solver | None:
+    """A factorization on a pattern of units; None where it would fill up too much."""
     import numpy as np
 
-    m = pattern.shape[0]
+    size = pattern.shape[0]
+    m = unit * size
     if m <= SMALL:
         from sceneql.simulation.linear import dense_kernels
 
         numbers = np.concatenate([[m], np.zeros(m)])
         return _Solver(dense_kernels, numbers, m * m, 0, f"dense LU factorization of {m} unknowns")
 
-    from sceneql.simulation.linear import fronts
-    from sceneql.simulation.linear.ordering import grouped
+    from sceneql.simulation.linear import fronts, fronts_kernels
+    from sceneql.simulation.linear.ordering import Groups, grouped
 
-    groups = grouped(pattern)
-    graph = groups.graph
-    size = graph.shape[0]
-    solid = graph.nnz > (SOLID + 1) * size and size > SOLID_GROUPS
-    if not solid and size <= MOST_GROUPS:
-        plan = fronts.plan(pattern, groups, points)
-        if plan.operations <= MOST_OPERATIONS:
-            from sceneql.simulation.linear import fronts_kernels
+    groups = grouped(pattern) if unit == 1 else Groups(list(np.arange(size).reshape(-1, 1)), pattern)
+    count = groups.graph.shape[0]
+    solid = groups.graph.nnz > (SOLID + 1) * count and count > SOLID_GROUPS
+    if solid or count > MOST_GROUPS:
+        return None
+    plan = fronts.plan(pattern, groups, points, unit)
+    if plan.operations > MOST_OPERATIONS:
+        return None
+    text = f"sparse factorization of {m} unknowns, {plan.factors:.3g} numbers in its factors"
+    return _Solver(fronts_kernels, plan.numbers, plan.factors, plan.work, text)
 
-            text = f"sparse factorization of {m} unknowns, {plan.factors:.3g} numbers in its factors"
-            return _Solver(fronts_kernels, plan.numbers, plan.factors, plan.work, text)
 
+def _iterations(pattern: Any) -> _Solver:
     from sceneql.simulation.linear import krylov_kernels
 
+    m = pattern.shape[0]
     numbers = _iterated(pattern, krylov_kernels)
     text = f"iterations (conjugate gradients or BiCGStab, incomplete factors) on {m} unknowns"
     return _Solver(krylov_kernels, numbers, pattern.nnz, 8 * m, text)
