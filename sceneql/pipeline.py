@@ -26,6 +26,7 @@ from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
 
 if TYPE_CHECKING:
     from sceneql.frame import Light, View
+    from sceneql.simulation.layout import Panel
     from sceneql.simulation.run import Instant
 
 
@@ -73,11 +74,14 @@ class Report:
     """For each island that tells an energy, how far it drifted; momentum where it is conserved."""
 
 
-def simulate(graph: SimulationGraph, times: Iterable[float]) -> Iterator[Instant]:
-    """The moments of a run at increasing instants [s]. Raises RunFailure."""
+def simulate(
+    graph: SimulationGraph, times: Iterable[float], outputs: Sequence[Output] | None = None
+) -> Iterator[Instant]:
+    """The moments of a run at increasing instants [s], for some outputs or for any use. Raises RunFailure."""
     from sceneql.simulation.run import Run
 
-    return Run(graph).moments(times)
+    marching = outputs is None or any(_shows_script(graph, kind) for kind in outputs)
+    return Run(graph, marching=marching).moments(times)
 
 
 def render(
@@ -124,7 +128,7 @@ def render(
         from sceneql.simulation.run import Run
         from sceneql.simulation.watch import Watch
 
-        run = Run(graph)
+        run = Run(graph, marching=any(_shows_script(graph, kind) for kind in outputs.values()))
         watch = Watch(run, always=account)
         for done, moment in enumerate(run.moments(instants)):
             progress(done, len(instants))
@@ -135,7 +139,8 @@ def render(
                 if moment.time in wanted[name]:
                     sink.take(moment)
         progress(len(instants), len(instants))
-        report.steps = sum(island.march.statistics.steps for island in run.islands)
+        runs = [run, *(panel.run for tool in tools.values() for panel in tool.panels.values())]
+        report.steps = sum(island.march.statistics.steps for one in runs for island in one.islands)
         for name in outputs:
             report.files += sinks[name].close()
             del sinks[name]
@@ -150,6 +155,13 @@ def render(
     report.compile_seconds, report.compilations = seconds - compiled[0], count - compiled[1]
     report.run_seconds = time.perf_counter() - started - report.compile_seconds
     return report
+
+
+def _shows_script(graph: SimulationGraph, output: Output) -> bool:
+    """Whether an output shows the script as it stands, and not its variants alone."""
+    if not isinstance(output, Picture) or not output.layout:
+        return True
+    return any(isinstance(graph.tasks[ref.name].kind, Camera) for ref in output.laid_out)
 
 
 def _try_folder(folder: Path) -> None:
@@ -193,6 +205,7 @@ class Tools:
     def __init__(self, graph: SimulationGraph, name: str, report: Report, target: Path, named: bool = False) -> None:
         """``named``: the user gave the target, else it is a path without extension."""
         self.graph, self.name, self.report, self.target, self.named = graph, name, report, target, named
+        self.panels: dict[str, Panel] = {}
         self._frames = 0
 
     @property
@@ -211,30 +224,73 @@ class Tools:
 
     def pixels(self, output: Picture, moment: Any) -> Any:
         """The developed picture (h, w, 3) uint8."""
+        picture = self._composed(output, moment) if output.layout else self._seen(output, moment)
+        self._frames += 1
+        self.report.frames += 1
+        return picture
+
+    def _seen(self, output: Picture, moment: Any, camera: str | None = None) -> Any:
+        """The scene from a camera, by default the output's own."""
         from renderers.develop import develop
         from sceneql.simulation.presence import look
 
-        frame = frame_of(self.graph, self.name, output.pixels, moment, self._frames)
+        frame = frame_of(self.graph, self.name, output.pixels, moment, self._frames, camera)
         renderer = self._renderer(output)
         self.prepare(output)()
         picture = renderer.draw(frame)
         look(frame.shapes, self.report.present)
-        self._frames += 1
-        self.report.frames += 1
         if picture.undecided:
-            self.report.undecided.setdefault(self.name, {})[frame.index] = picture.undecided
+            counts = self.report.undecided.setdefault(self.name, {})
+            counts[frame.index] = counts.get(frame.index, 0) + picture.undecided
         pixels = develop(picture.linear, exposure=output.exposure, data=renderer.data)
         if not renderer.data:
-            self._draw_over(pixels, frame.view, moment, partial(develop, exposure=output.exposure))
+            without = {ref.name for ref in output.laid_out}
+            self._draw_over(pixels, frame.view, moment, partial(develop, exposure=output.exposure), without)
         return pixels
 
-    def _draw_over(self, pixels: Any, view: View, moment: Any, develop: Callable[[Any], Any]) -> None:
-        """What is drawn on a developed picture: labels of objects, overlays."""
+    def _composed(self, output: Picture, moment: Any) -> Any:
+        """The panels of a layout."""
+        from sceneql.simulation.layout import boxes, page
+
+        pixels = page(output.pixels)
+        for item, (left, top, wide, high) in boxes(output.layout, self.graph.variants, output.pixels):
+            block, scale = pixels[top : top + high, left : left + wide], len(pixels) / high
+            if isinstance(item, str):
+                block[:] = self._variant(item, (wide, high), moment.time, scale)
+                continue
+            task = self.graph.tasks[item.name]
+            with failing_as(task.name, moment.time, task.span):
+                if isinstance(task.kind, Overlay):
+                    task.kind.fill(block, moment, scale)
+                else:
+                    block[:] = self._seen(output.model_copy(update={"size": (wide, high)}), moment, item.name)
+        return pixels
+
+    def _variant(self, name: str, size: tuple[int, int], time: float, scale: float) -> Any:
+        """The panel (h, w, 3) of a variant; one whose run has failed stays as it was, under the message."""
+        from sceneql.simulation.layout import Panel, label
+
+        if name not in self.panels:
+            panel = self.panels[name] = Panel(self.graph.variant(name))
+            panel.tools = Tools(panel.graph, self.name, self.report, self.target)
+        panel = self.panels[name]
+        if panel.failure is None or panel.picture is None:
+            moment = panel.at(time)
+            kind = cast(Picture, panel.graph.tasks[self.name].kind).model_copy(update={"size": size})
+            panel.picture = panel.tools._seen(kind, moment)
+            panel.tools._frames += 1
+            label(panel.picture, name, panel.failure, scale)
+        return panel.picture
+
+    def _draw_over(
+        self, pixels: Any, view: View, moment: Any, develop: Callable[[Any], Any], without: set[str]
+    ) -> None:
+        """What is drawn on a developed picture: labels of objects, and overlays but those of the layout."""
         from sceneql.simulation.overlays.labels import draw_labels
 
         draw_labels(pixels, view, self.graph.tasks, self.graph.drawn[self.name], moment)
         for task in self.graph.tasks.values():
-            if isinstance(task.kind, Overlay):
+            if isinstance(task.kind, Overlay) and task.name not in without:
                 with failing_as(task.name, moment.time, task.span):
                     if task.kind.show is None or moment.at(task.kind.show) != 0:
                         task.kind.draw(pixels, view, moment, develop)
@@ -273,15 +329,17 @@ def _compile_ahead(modules: tuple[str, ...]) -> Callable[[], None]:
     return compile_ahead(modules)
 
 
-def frame_of(graph: SimulationGraph, output: str, size: tuple[int, int], moment: Instant, index: int) -> Any:
-    """The Frame that a renderer gets for an output at a moment."""
+def frame_of(
+    graph: SimulationGraph, output: str, size: tuple[int, int], moment: Instant, index: int, camera: str | None = None
+) -> Any:
+    """The Frame that a renderer gets for an output at a moment; by default of the output's own camera."""
     from sceneql.frame import Frame, Sky
     from sceneql.simulation.color import linear
 
     shapes = tuple(moment.lower(graph.drawn[output]))  # first: what cannot be drawn is no failure of the camera's
-    camera = graph.tasks[graph.cameras[output]]
-    with failing_as(camera.name, moment.time, camera.span):
-        view = cast(Camera, camera.kind).view(size, moment)
+    eye = graph.tasks[camera or graph.cameras[output]]
+    with failing_as(eye.name, moment.time, eye.span):
+        view = cast(Camera, eye.kind).view(size, moment)
     lights: list[Light] = []
     for task in graph.tasks.values():
         if isinstance(task.kind, Illumination):

@@ -10,6 +10,7 @@ from sceneql.compiler.check import check, values_of
 from sceneql.compiler.passes.circles import report_circles
 from sceneql.compiler.passes.expand import expand
 from sceneql.compiler.passes.islands import islands
+from sceneql.compiler.passes.layouts import check_layouts
 from sceneql.compiler.passes.prune import prune
 from sceneql.compiler.passes.stable_steps import warn_of_steps
 from sceneql.graph import SimulationGraph, Task
@@ -31,6 +32,7 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
     drawn = _drawn(tasks)
     cameras = _cameras(tasks)
     clock = script.settings.get("clock")
+    check_layouts(tasks, script.variants, found)
     if checked.timed:
         _check_outputs(tasks, drawn, checked.settings.clock, None if clock is None else clock.span, found)
     found.raise_errors()

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from sceneql.kinds.moment import Moment
 from sceneql.kinds.objects import Collider, FieldBuilder, Object
-from sceneql.kinds.outputs import Output, Picture, Sink, Tools
+from sceneql.kinds.outputs import EachVariant, Output, Picture, Sink, Tools
 from sceneql.kinds.physics import Contact, Force, Model, Solver
 from sceneql.kinds.pictures import Camera, Illumination, Material, Overlay, Renderer
 from sceneql.kinds.settings import MOST_MOMENTS, Clock, Exceeds, Expect, Gallery, Settings, bounded_moments
@@ -42,7 +42,6 @@ from sceneql.kinds.types import (
     Measured,
     ModelRef,
     ObjectRef,
-    OverlayRef,
     Points,
     Position,
     Power,

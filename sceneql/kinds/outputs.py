@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
 
-from sceneql.kinds.types import CameraRef, DrawnRef, FixedScalar, RendererRef
-from sceneql.kinds.word import Kind, field
+from sceneql.kinds.types import CameraRef, DrawnRef, FixedScalar, PanelRef, RendererRef
+from sceneql.kinds.word import Kind, Record, field
 
 if TYPE_CHECKING:
     from sceneql.kinds.moment import Moment
     from sceneql.kinds.settings import Clock
+    from sceneql.kinds.values import Ref
 
 
 class Tools(Protocol):
@@ -57,6 +58,17 @@ class Output(Kind):
         raise NotImplementedError
 
 
+class EachVariant(Record):
+    """Panels of a layout: the scene in every variant of the script, under its name."""
+
+    each: Literal["variant"] = field("What there is a panel for.")
+    columns: int | None = field("Panels side by side; by default up to three, of more a square.", None, at_least=1)
+    share: FixedScalar = field("Height of a row of them, where a row of others has 1.", "1", above=0)
+
+
+Row = EachVariant | tuple[PanelRef, ...]
+
+
 class Picture(Output):
     """An output that draws frames: what every picture has."""
 
@@ -67,6 +79,16 @@ class Picture(Output):
     renderer: RendererRef | None = field("Drawn by; by default `trace`.", None)
     show: tuple[DrawnRef, ...] | None = field("Draws only these parts; by default all that is not hidden.", None)
     exposure: FixedScalar = field("Stops by which the picture is brightened.", "0", at_least=-20, at_most=20)
+    layout: tuple[Row, ...] = field(
+        "Several panels in rows: `{each: variant}`, or lists of graphs and cameras, `[energy, top]`. A variant that "
+        "`may_fail` stops in its panel under the message; graphs in a layout stand nowhere else.",
+        (),
+    )
+
+    @property
+    def laid_out(self) -> tuple[Ref, ...]:
+        """The graphs and cameras that stand in its layout."""
+        return tuple(ref for row in self.layout if not isinstance(row, EachVariant) for ref in row)
 
     @property
     def pixels(self) -> tuple[int, int]:

@@ -72,11 +72,22 @@ class Overlay(Kind):
 
     family: ClassVar[str] = "overlays"
 
+    fills: ClassVar[bool] = False
+    """Whether it can fill a panel of a layout."""
+
     show: Scalar | None = field("It is there only while this is not 0, as `time > 2 s`; by default always.", None)
 
     def courses(self) -> Iterable[Value]:
         """Values that it needs over the whole run (`Moment.course`), for which the physics runs once ahead."""
         return ()
+
+    def variants(self) -> bool:
+        """Whether it asks for the script's variants."""
+        return False
+
+    def fill(self, pixels: NDArray[uint8], moment: Moment, scale: float) -> None:
+        """Draw over all of a panel's pixels (h, w, 3); the picture around it is ``scale`` times as high."""
+        raise NotImplementedError
 
     def draw(
         self, pixels: NDArray[uint8], view: View, moment: Moment, develop: Callable[[Any], NDArray[uint8]]

@@ -56,6 +56,7 @@ RendererRef = Annotated[Ref, Refers("renderers")]
 DrawnRef = Annotated[Ref, Refers("objects", also="models")]
 """Something that can be seen."""
 
-OverlayRef = Annotated[Ref, Refers("overlays")]
+PanelRef = Annotated[Ref, Refers("overlays", also="cameras")]
+"""What may stand in a panel of a layout."""
 
 File = Annotated[str, SceneFile()]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from sceneql import pipeline
 from sceneql.failure import Unsuitable
@@ -32,10 +32,10 @@ def poster(graph: SimulationGraph) -> Any:
     if not pictures:
         raise Unsuitable(f"{graph.name} makes no picture, so there is nothing for a gallery to keep")
     name, task = pictures[0]
-    small = task.kind.model_copy(update={"size": settings.size})
+    small = cast(Picture, task.kind).model_copy(update={"size": settings.size})
     tools = pipeline.Tools(graph, name, pipeline.Report(), Path())
-    (moment,) = pipeline.simulate(graph, [min(settings.time, graph.settings.clock.end)])
-    return tools.pixels(small, moment)  # type: ignore[arg-type]
+    (moment,) = pipeline.simulate(graph, [min(settings.time, graph.settings.clock.end)], [small])
+    return tools.pixels(small, moment)
 
 
 def numbers(scene: Path) -> list[Outcome]:

@@ -40,13 +40,13 @@ class Letterer:
         """A text at a place [pixels], anchored as Pillow names it: ``lm`` is the middle of its left end."""
         self.draw.text(place, text, ink, font=self.font, anchor=anchor)
 
-    def line(self, corner: tuple[int, int], text: str, opacity: float) -> None:
+    def line(self, corner: tuple[int, int], text: str, opacity: float, ink: tuple[int, ...] = INK) -> None:
         """A text on a panel of its own, whose left and top are the corner [pixels], or as near as it is seen whole."""
         (wide, high), room = self.extent(text), round(0.4 * self.em)
         left = max(min(corner[0], self.width - wide - 2 * room - 1), 0)
         top = max(min(corner[1], self.height - high - 2 * room - 1), 0)
         self.panel((left, top, left + wide + 2 * room, top + high + 2 * room), opacity)
-        self.text((left + room, top + room + 0.5 * high), text)
+        self.text((left + room, top + room + 0.5 * high), text, ink=ink)
 
     def over(self, seen: tuple[float, float], text: str, opacity: float) -> None:
         """The same over a point [pixels]."""

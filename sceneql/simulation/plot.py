@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -79,7 +79,7 @@ class Axis:
 def draw_plot(
     pixels: NDArray[uint8],
     box: tuple[int, int, int, int],
-    curves: Iterable[Curve],
+    curves: Sequence[Curve],
     up: Axis,
     across: Axis,
     opacity: float,
@@ -88,11 +88,8 @@ def draw_plot(
 ) -> None:
     """Draw on a picture (h, w, 3) in a box (left, top, width, height) [pixels]; ``named``: with the curves' names.
 
-    ``text``: height of letters in parts of the picture's.
+    ``text``: height of letters in parts of the picture's. Without room for letters there are curves alone.
     """
-    from PIL import Image
-
-    curves = list(curves)
     letters = Letterer(pixels, text)
     em, (left, top, wide, high) = letters.em, box
     small = font(max(9, round(0.82 * em)))
@@ -100,79 +97,103 @@ def draw_plot(
     letters.panel((left, top, left + wide - 1, top + high - 1), opacity)
     y_scale, x_scale = up.scale([c.values for c in curves]), across.scale([c.across for c in curves])
     y_power, x_power = thousands(y_scale), thousands(x_scale)
-    y_told, x_told = _by(y_scale, y_power), _by(x_scale, x_power)
-
-    head = _head(letters, box, pad, up.words(y_power), curves if named else [])
+    head, words = _head(letters, wide - 2 * pad, up.words(y_power), curves if named else ())
     title = across.words(x_power)
-    apart = letters.draw.textlength(title, font=small) > SHARE * wide  # it has a line of its own
-    y0, y1 = top + head, top + high - pad - round((2.35 if apart else 1.35) * em)
-    if y1 - y0 < 2 * em or wide < 8 * em:
-        raise ValueError("the graph has no room for its letters: a larger `size`, or a smaller `text`")
-    marks = y_told.ticks(max(2, round((y1 - y0) / (2.2 * em))))
+    length = letters.draw.textlength(title, font=small)
+    apart = length > SHARE * wide  # it has a line of its own
+    y0, y1 = top + pad + round(head), top + high - pad - round((2.35 if apart else 1.35) * em)
+    bare = y1 - y0 < 2 * em or wide < 8 * em
+    if bare:
+        y0, y1 = top + pad, max(top + high - pad, top + pad + 1)
+    marks = [] if bare else _scaled(y_scale, y_power).ticks(max(2, round((y1 - y0) / (2.2 * em))))
     widest = max((letters.draw.textlength(word, font=small) for _, word in marks), default=0.0)
     x0, x1 = left + pad + round(widest + 0.5 * em), left + wide - 1 - round(1.2 * em)
+    area = _Area(x0, y0, max(x1, x0 + 1), y1, x_scale, y_scale)
+
     thin = max(1, round(em / 22))
-
-    def y_at(values: Any) -> Any:
-        return y1 - y_scale.place(values) * (y1 - y0)
-
-    def x_at(values: Any) -> Any:
-        return x0 + x_scale.place(values) * (x1 - x0)
-
-    for value in y_told.between():
-        at = float(y_at(value * 10.0**y_power))
-        letters.draw.line((x0, at, x1, at), FINE_LINES, thin)
-    for value, word in marks:
-        at = float(y_at(value * 10.0**y_power))
-        letters.draw.line((x0, at, x1, at), LINES, thin)
-        letters.draw.text((x0 - 0.45 * em, at), word, QUIET, font=small, anchor="rm")
-    below, end = y1 + round(0.95 * em), x1 + 0.5 * em
-    letters.draw.text((end, below + (round(1.05 * em) if apart else 0)), title, INK, font=small, anchor="rm")
-    room = left + wide if apart else end - letters.draw.textlength(title, font=small) - 0.8 * em
-    for value, word in x_told.ticks(max(2, round((x1 - x0) / (6 * em)))):
-        at = float(x_at(value * 10.0**x_power))
-        letters.draw.line((at, y0, at, y1), FINE_LINES, thin)
-        if at + 0.5 * letters.draw.textlength(word, font=small) < room:
-            letters.draw.text((at, below), word, QUIET, font=small, anchor="mm")
+    if not bare:
+        for x, row, curve, word in words:
+            at = (left + pad + x, top + pad + row)
+            if curve is not None:
+                letters.draw.line(
+                    (at[0] - 1.4 * em, at[1], at[0] - 0.4 * em, at[1]), curve.color, max(2, round(em / 6))
+                )
+            letters.text(at, word)
+        for value in y_scale.between():
+            letters.draw.line((x0, area.y(value), x1, area.y(value)), FINE_LINES, thin)
+        for value, word in marks:
+            y = float(area.y(value * 10.0**y_power))
+            letters.draw.line((x0, y, x1, y), LINES, thin)
+            letters.draw.text((x0 - 0.45 * em, y), word, QUIET, font=small, anchor="rm")
+        below, end = y1 + round(0.95 * em), x1 + 0.5 * em
+        letters.draw.text((end, below + (round(1.05 * em) if apart else 0)), title, INK, font=small, anchor="rm")
+        room = left + wide if apart else end - length - 0.8 * em
+        for value, word in _scaled(x_scale, x_power).ticks(max(2, round((x1 - x0) / (6 * em)))):
+            x = float(area.x(value * 10.0**x_power))
+            letters.draw.line((x, y0, x, y1), FINE_LINES, thin)
+            if x + 0.5 * letters.draw.textlength(word, font=small) < room:
+                letters.draw.text((x, below), word, QUIET, font=small, anchor="mm")
     letters.draw.line((x0, y1, x1, y1), QUIET, thin)
-
-    reach = round(0.4 * em)  # dots and thick lines go a little over the ends
-    area = (x0 - reach, y0 - reach, x1 + reach, y1 + reach)
-    size = (area[2] - area[0], area[3] - area[1])
     for curve in curves:
-        x, y = curve.drawn()
-        points = _points(x_at(across.told(x)) - area[0], y_at(up.told(y)) - area[1])
-        points[(points[:, 1] < -4 * size[1]) | (points[:, 1] > 5 * size[1])] = float("nan")
-        letters.stamp(Image.new("RGB", size, curve.color), stroke(size, points, max(1.4, em / 9)), area[:2])
-        if len(points) and 0 <= points[-1][0] <= size[0] and 0 <= points[-1][1] <= size[1]:
-            for color, width in ((PAPER, 0.62 * em), (curve.color, 0.42 * em)):
-                letters.stamp(Image.new("RGB", size, color), stroke(size, points[-1:], width), area[:2])
+        along, values = curve.drawn()
+        _draw_curve(letters, area, across.told(along), up.told(values), curve.color)
     letters.done()
 
 
-def _points(x: Any, y: Any) -> Floats:
+@dataclass(frozen=True, slots=True)
+class _Area:
+    """The rectangle between the axes [pixels], and what it shows."""
+
+    x0: int
+    y0: int
+    x1: int
+    y1: int
+    across: Scale
+    up: Scale
+
+    def x(self, values: Any) -> Any:
+        """Columns of values."""
+        return self.x0 + self.across.place(values) * (self.x1 - self.x0)
+
+    def y(self, values: Any) -> Any:
+        """Rows of values."""
+        return self.y1 - self.up.place(values) * (self.y1 - self.y0)
+
+
+def _draw_curve(letters: Letterer, area: _Area, x: Floats, y: Floats, color: Color) -> None:
+    """A line with a dot at its end."""
     import numpy as np
+    from PIL import Image
 
-    return np.stack([np.asarray(x, dtype=float), np.asarray(y, dtype=float)], axis=1)
+    reach = round(0.4 * letters.em)  # dots and thick lines go a little over the ends
+    corner = (area.x0 - reach, area.y0 - reach)
+    size = (area.x1 + reach - corner[0], area.y1 + reach - corner[1])
+    points = np.stack([area.x(x) - corner[0], area.y(y) - corner[1]], axis=1)
+    points[(points[:, 1] < -4 * size[1]) | (points[:, 1] > 5 * size[1])] = float("nan")
+    letters.stamp(Image.new("RGB", size, color), stroke(size, points, max(1.4, letters.em / 9)), corner)
+    if len(points) and 0 <= points[-1][0] <= size[0] and 0 <= points[-1][1] <= size[1]:
+        for ink, width in ((PAPER, 0.62 * letters.em), (color, 0.42 * letters.em)):
+            letters.stamp(Image.new("RGB", size, ink), stroke(size, points[-1:], width), corner)
 
 
-def _by(scale: Scale, power: int) -> Scale:
+def _scaled(scale: Scale, power: int) -> Scale:
     """The scale in units of a power of ten."""
     return scale if power == 0 else Scale(scale.low / 10.0**power, scale.high / 10.0**power)
 
 
-def _head(letters: Letterer, box: tuple[int, int, int, int], pad: int, title: str, curves: Sequence[Curve]) -> int:
-    """Title, and curves with their colors and names; the height [pixels] of it all."""
-    em, (left, top, wide, _) = letters.em, box
-    at, row = left + pad, top + pad + 0.5 * em
+def _head(
+    letters: Letterer, wide: int, title: str, curves: Sequence[Curve]
+) -> tuple[float, list[tuple[float, float, Curve | None, str]]]:
+    """Height of title and names, and where each stands: column and row of its left end, its curve, its words."""
+    em, at, row = letters.em, 0.0, 0.5 * letters.em
+    found: list[tuple[float, float, Curve | None, str]] = []
     if title:
-        letters.text((at, row), title)
-        at += letters.extent(title)[0] + round(1.4 * em)
+        found.append((at, row, None, title))
+        at += letters.extent(title)[0] + 1.4 * em
     for curve in curves:
-        length = round(1.0 * em) + round(0.4 * em) + letters.extent(curve.name)[0]
-        if at + length > left + wide - pad and at > left + pad:
-            at, row = left + pad, row + 1.3 * em
-        letters.draw.line((at, row, at + em, row), curve.color, max(2, round(em / 6)))
-        letters.text((at + 1.4 * em, row), curve.name)
-        at += length + round(1.2 * em)
-    return int(row - top + (1.15 if title or curves else 0.2) * em)
+        length = 1.4 * em + letters.extent(curve.name)[0]
+        if at + length > wide and at > 0:
+            at, row = 0.0, row + 1.3 * em
+        found.append((at + 1.4 * em, row, curve, curve.name))
+        at += length + 1.2 * em
+    return row + (1.15 if found else 0.2) * em, found

@@ -57,7 +57,7 @@ class Scale:
             return [(v, f"{v:.6g}") for v in values if self.low * (1 - 1e-9) <= v <= self.high * (1 + 1e-9)]
         every = math.ceil((last - first + 1) / count)
         powers = range(last - (last - first) // every * every, last + 1, every)
-        return [(10.0**k, "1" if k == 0 else "10" + str(k).translate(SUPERSCRIPTS)) for k in powers]
+        return [(10.0**k, "10" + str(k).translate(SUPERSCRIPTS) if k not in (0, 1) else str(10**k)) for k in powers]
 
     def between(self) -> list[float]:
         """Values of the finer lines of a logarithmic axis."""

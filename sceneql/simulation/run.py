@@ -33,13 +33,14 @@ IDENTITY = np.eye(3, 4)
 class Run:
     """One run of a graph. ``moments`` may be called once; its moments are valid until the next one is asked for.
 
-    Raises ScriptError with all that keeps its islands from being built.
+    Raises ScriptError with all that keeps its islands from being built. Without ``marching`` there are none.
     """
 
-    def __init__(self, graph: SimulationGraph) -> None:
+    def __init__(self, graph: SimulationGraph, *, marching: bool = True) -> None:
         self.graph = graph
         found = Diagnostics()
-        self.islands = [run for island in graph.islands if (run := _built(graph, island, found)) is not None]
+        islands = graph.islands if marching else ()
+        self.islands = [run for island in islands if (run := _built(graph, island, found)) is not None]
         found.raise_errors()
         self.island_of = {name: run for run in self.islands for name in run.members}
         self.orders = _orders(graph)
@@ -50,10 +51,13 @@ class Run:
 
     def moments(self, times: Iterable[float]) -> Iterator[Instant]:
         """The instants [s] asked for, in order; times do not decrease. Raises RunFailure."""
-        for time in times:
-            for before, keys in self.history.due(time):
-                self.history.see(self._moment(before), keys)
-            yield self._moment(time)
+        return map(self.at, times)
+
+    def at(self, time: float) -> Instant:
+        """The next instant [s]; times do not decrease. Raises RunFailure."""
+        for before, keys in self.history.due(time):
+            self.history.see(self._moment(before), keys)
+        return self._moment(time)
 
     def _moment(self, time: float) -> Instant:
         for island in self.islands:

@@ -32,7 +32,7 @@ class Graph(Overlay):
     the script has its curves, up to where its run fails.
     """
 
-    panel: ClassVar[bool] = True
+    fills: ClassVar[bool] = True
 
     y: Expected | dict[str, Expected] = field("What is drawn: an expression, or several by name.")
     x: Expected | None = field("What it is drawn over; by default the time.", None)
@@ -93,9 +93,12 @@ class Graph(Overlay):
         left, top = corner(self.place, (wide, high), (width, height))
         self._draw(pixels, (left, top, wide, high), moment, self.opacity)
 
-    def fill(self, pixels: NDArray[uint8], moment: Moment, text: float) -> None:
+    def fill(self, pixels: NDArray[uint8], moment: Moment, scale: float) -> None:
         """Draw it over all of the pixels."""
-        self._draw(pixels, (0, 0, pixels.shape[1], pixels.shape[0]), moment, 1.0, text)
+        from sceneql.simulation.lettering import PAPER
+
+        pixels[:] = PAPER
+        self._draw(pixels, (0, 0, pixels.shape[1], pixels.shape[0]), moment, 1.0, self.text * scale)
 
     def _draw(
         self,
@@ -116,7 +119,7 @@ class Graph(Overlay):
         draw_plot(
             pixels,
             box,
-            self._curves(moment),
+            list(self._curves(moment)),
             Axis(title, _unit(self.unit, one.expr.type.dimension), "y" in log, self.range),
             Axis(
                 "time" if self.x is None else _written(self.x),
