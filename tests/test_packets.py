@@ -338,6 +338,19 @@ def test_nothing_is_claimed_of_an_operation_without_lanes():
     assert np.isnan(enclosures(unknown, origins, origins + 1.0, 0.0 * ends, ends)[0]).all()
 
 
+def test_solids_that_packets_know_nothing_of_are_not_looked_for_in_bundles():
+    tapered = Skeleton(np.eye(3)[None], np.array([[0.5, 0.7]]), np.ones(1), np.zeros(1))
+    pointed = Skeleton(np.zeros((1, 3, 3)), np.ones((1, 2)), np.ones(1), np.zeros(1))
+    tapes = [
+        implicit(lambda b, op, c, s=skeleton: op("sub", c(0.3), b.skeleton(s, b.x, b.y, b.z)))
+        for skeleton in (tapered, pointed)
+    ]
+    shapes = tuple(Implicit("blob", Surface(), tape, (-1.0,) * 3, (1.0,) * 3) for tape in tapes)
+    view = View((0.0, 0.0, 4.0), np.eye(3), (16, 16), 0.9, False)
+    scene, _ = pack(Frame(0, 0.0, shapes, (), view))
+    assert camera_roots(shapes, view, scene, 0, 16)[0].tolist() == [1]
+
+
 @pytest.mark.parametrize("orthographic", [False, True])
 @pytest.mark.parametrize("eye", [(0.3, 0.2, 4.0), (0.9, 0.0, 1.2), (0.1, 0.0, -3.0)])
 def test_the_cameras_rays_meet_solids_where_the_certified_routine_says(eye, orthographic):

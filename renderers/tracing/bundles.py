@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from renderers.tracing.bundles_kernels import meet_tiles
-from sceneql.field.packets import Memory
+from sceneql.field.packets import Memory, in_lanes
 from sceneql.frame import Implicit
 
 if TYPE_CHECKING:
@@ -25,9 +25,13 @@ def camera_roots(
 ) -> tuple[NDArray[np.int64], Floats]:
     """(indices (k,), answers (k, n)): where rays through the pixels of rows start..stop-1 first meet implicit solids.
 
-    inf: nowhere; NaN: not told. The indices are of ``shapes``.
+    inf: nowhere; NaN: not told. The indices are of ``shapes``; what packets know nothing of is none of them.
     """
-    solid = [i for i, shape in enumerate(shapes) if isinstance(shape, Implicit) and shape.within is None]
+    solid = [
+        i
+        for i, shape in enumerate(shapes)
+        if isinstance(shape, Implicit) and shape.within is None and in_lanes(shape.tape)
+    ]
     answers = np.full((len(solid), (stop - start) * view.size[0]), np.inf)
     for row, index in zip(answers, solid, strict=True):
         shape = shapes[index]

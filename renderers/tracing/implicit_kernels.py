@@ -2,20 +2,30 @@
 """Rays against implicit objects: certified roots inside what an occupancy grid leaves of the object's box."""
 
 import numpy as np
+from numba import types
 
-from renderers.tracing.ranges_kernels import box_part, cells_at, tape_of
+from renderers.tracing.ranges_kernels import box_part, cells_at, plan_at, tape_of
 from renderers.tracing.scene_kernels import (
     CELLS,
     CROSSING,
     EMPTY,
     FULL,
+    SCRATCH,
     TOLERANCE,
     part,
 )
 from renderers.tracing.solids_kernels import NONE, inverse
+from sceneql.compiling.late import late
 from sceneql.field.isolation_kernels import exit_root, isolate
+from sceneql.field.plans import NO_FORM
 from sceneql.field.tape_ops import HIT, UNDECIDED
 from sceneql.kernels import kernel
+
+_f = types.float64
+RAY_ROOT = types.Tuple((types.int64, _f))(
+    types.int32[:, ::1], _f[::1], _f[:, ::1], SCRATCH, types.int32[::1], *[_f] * 9, types.boolean
+)
+polynomial_root = late("sceneql.field.ray_polynomial_kernels:polynomial_root", RAY_ROOT)
 
 RETRIES = 8
 """Undecided places passed on one ray before it counts as a miss."""
@@ -107,14 +117,33 @@ def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
             return begin
         code, constants, parts = tape_of(scene, k)
         end = max(end, begin + past)
-        status, root = isolate(
-            code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, begin, end, tolerance, 1.0, anywhere
-        )
+        first, last = plan_at(scene, k)
+        plan = scene.ints[first:last]
+        formed = plan[0] != NO_FORM
+        status, root = UNDECIDED, begin
+        if formed:
+            status, root = polynomial_root(
+                code, constants, parts, scratch, plan, ox, oy, oz, dx, dy, dz, begin, stop, 1.0, anywhere
+            )
+        if status == UNDECIDED:
+            status, root = isolate(
+                code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, begin, end, tolerance, 1.0, anywhere
+            )
+        else:
+            end = stop
         if status == HIT:
             if anywhere or root - begin > tolerance * (end - begin) or begin > enter or enter > near:
                 return root
             # The ray begins inside: the way out.
-            status, root = exit_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, enter, stop, tolerance)
+            status = UNDECIDED
+            if formed:
+                status, root = polynomial_root(
+                    code, constants, parts, scratch, plan, ox, oy, oz, dx, dy, dz, enter, stop, -1.0, False
+                )
+            if status == UNDECIDED:
+                status, root = exit_root(
+                    code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, enter, stop, tolerance
+                )
             return root if status == HIT else (stop if stop < far else NONE)
         if status == UNDECIDED:
             scratch[scratch.shape[0] - 1, 0] += 1.0

@@ -20,6 +20,7 @@ from renderers.tracing.scene_kernels import (
     LIGHTS,
     MIXED,
     PAINT,
+    PLAN,
     POINT,
     QUADRIC,
     RANGES,
@@ -37,6 +38,7 @@ from renderers.tracing.scene_kernels import (
     Scene,
 )
 from renderers.tracing.scene_kernels import TOLERANCE as ROOT_TOLERANCE
+from sceneql.field.plans import ray_plan
 from sceneql.field.tape_ops import SCRATCH_COLUMNS, scratch_rows
 from sceneql.frame import Frame, Grid, Implicit, Mesh, Mist, Points, Quadric, Segments, Sky, Sun, Surface, View
 
@@ -89,7 +91,7 @@ def pack(frame: Frame, tolerance: float = TOLERANCE, samples: int = 0, certain: 
     for k in range(len(tables.implicits)):
         place = ranges_at + RANGES * k
         ranges = ints[place : place + RANGES]
-        ranges[[0, CELLS_AT, PAINT, WITHIN]] += ranges_at + sum(map(len, tables.ranges))
+        ranges[[0, CELLS_AT, PAINT, WITHIN, PLAN]] += ranges_at + sum(map(len, tables.ranges))
         ranges[[2, 4, PAINT + 2, PAINT + 4, WITHIN + 2, WITHIN + 4]] += reals_at
         reals[reals_at + tables.implicits[k] + 6] = place
     scene = Scene(reals, ints, 0, 0, 0, 0, 0)
@@ -194,6 +196,8 @@ class Rows:
         ranges.append(self._code(np.full(CELLS**3, MIXED, dtype=np.int32)))
         for other in (shape.paint, shape.within):
             ranges += [0] * (WITHIN - PAINT) if other is None else self._tape(other)
+        plan = ray_plan(shape.tape)
+        ranges += [self._code(plan), len(plan)]
         self.ranges.append(np.array(ranges))
 
     def _grid(self, index: int, shape: Grid) -> None:

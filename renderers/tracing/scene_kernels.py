@@ -65,8 +65,8 @@ HALF_SPACE (a quadric that is nothing else): unit normal, height of its face alo
 GRID: as grid_kernels says.
 IMPLICIT and SHEET: low, high, place of its ranges: 7. The ranges, in ints: place of the code, its rows, place of the
 constants, their number, place of the parts, their rows; place of the cells; the same six of its paint and of what a
-sheet lies within (no rows: it has none)."""
-CELLS_AT, PAINT, WITHIN, RANGES = 6, 7, 13, 19
+sheet lies within (no rows: it has none); place of the plan for single rays (sceneql.field.plans), its length."""
+CELLS_AT, PAINT, WITHIN, PLAN, RANGES = 6, 7, 13, 19, 21
 """Columns of the ranges, and how many there are."""
 
 LINK = 3

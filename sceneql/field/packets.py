@@ -19,28 +19,12 @@ from sceneql.field import (
 )
 from sceneql.field.packet_kernels import LANES, WIDTH
 from sceneql.field.packet_roots_kernels import GROUP
-from sceneql.field.polynomial_hunt_kernels import MOST_DEGREE
+from sceneql.field.plans import degrees_of, density_of, without_factor
 from sceneql.field.polynomial_kernels import DEGREES, POLYNOMIAL
 from sceneql.field.polynomial_steps_kernels import ROWS, C
-from sceneql.field.skeleton import plain_points
 from sceneql.field.slab_kernels import BEAM
 from sceneql.field.solid import scratch
-from sceneql.field.tape_ops import (
-    ADD,
-    CONSTANT,
-    COPY,
-    DENSITY,
-    DIV,
-    MAX,
-    MUL,
-    NEG,
-    OF_PARTS,
-    SQUARE,
-    SUB,
-    X,
-    Y,
-    Z,
-)
+from sceneql.field.tape_ops import CONSTANT, MAX, OF_PARTS, SKELETON, X, Y, Z
 
 if TYPE_CHECKING:
     from numpy import float32, int32, int64
@@ -72,50 +56,6 @@ def enclosures(tape: Tape, origins: Floats, directions: Floats, t0: Floats, t1: 
     return out
 
 
-def without_factor(tape: Tape, row: int) -> int:
-    """The row of which a row is a positive multiple: their roots are the same."""
-    op, left, right, _ = map(int, tape.code[row])
-    factors = {MUL: ((left, right), (right, left)), DIV: ((right, left),)}.get(op, ())
-    for factor, rest in factors:
-        if tape.code[factor, 0] == CONSTANT and tape.constants[tape.code[factor, 1]] > 0.0:
-            return without_factor(tape, rest)
-    return row
-
-
-def density_of(tape: Tape, row: int) -> tuple[int, int] | None:
-    """(row of the density D, index of the constant c) where a row is c - D, D of lone points with Wyvill's kernel."""
-    op, left, right, _ = tape.code[row]
-    if op != SUB or tape.code[left, 0] != CONSTANT or tape.code[right, 0] not in OF_PARTS:
-        return None
-    kind, start, stop, at = tape.code[right]
-    place = [tape.code[row[1], 0] if row[0] == COPY else row[0] for row in tape.code[at : at + 3]]
-    parts = tape.parts[start:stop] if kind == DENSITY else plain_points(tape.parts[start:stop])
-    if place != [X, Y, Z] or parts is None or not (parts[:, :3] == parts[:, 3:6]).all():
-        return None
-    return int(right), int(tape.code[left, 1])
-
-
-def degrees_of(tape: Tape, row: int) -> list[int] | None:
-    """Degrees of the rows up to one that is a polynomial of the place, -1 of those it does not need; else None."""
-    degrees = [-1] * (row + 1)
-    needed = {row}
-    for k in range(row, -1, -1):
-        op, left, right, _ = map(int, tape.code[k])
-        if k in needed and op not in (CONSTANT, X, Y, Z):
-            if op not in (COPY, ADD, SUB, MUL, NEG, SQUARE):
-                return None
-            needed |= {left, right}
-    for k in sorted(needed):
-        op, left, right, _ = map(int, tape.code[k])
-        if op in (CONSTANT, X, Y, Z):
-            degrees[k] = 0 if op == CONSTANT else 1
-        elif op in (MUL, SQUARE):
-            degrees[k] = degrees[left] + degrees[right]
-        else:
-            degrees[k] = max(degrees[left], degrees[right])
-    return degrees if 1 < degrees[row] <= MOST_DEGREE else None
-
-
 def plan_of(tape: Tape) -> NDArray[int64]:
     """How packets look for roots of a tape f or max(f, g), or a positive multiple, as its kernels read it.
 
@@ -137,6 +77,13 @@ def plan_of(tape: Tape) -> NDArray[int64]:
             starts = ROWS // LANES + np.concatenate([[0], np.cumsum(np.array(degrees) + 1)])
             return np.array([-1, 0, other, row, *degrees, *starts[: len(degrees) - 1], C // LANES], dtype=np.int64)
     return np.array([-1, 0, -1, -1], dtype=np.int64)
+
+
+def in_lanes(tape: Tape) -> bool:
+    """Whether a bundle's rays go through lanes: those of other tapes are certified one by one."""
+    plan = plan_of(tape)
+    known = bool(plan[density_roots_kernels.ROW_OF] >= 0 or plan[POLYNOMIAL] >= 0)
+    return known or SKELETON not in tape.code[:, 0]
 
 
 def tape_up_to(tape: Tape, row: int) -> NDArray[int32]:

@@ -33,7 +33,6 @@ from sceneql.field.slab_kernels import left_of_slabs
 from sceneql.field.tape_ops import HIT, MISS, UNDECIDED
 from sceneql.kernels import inlined
 
-MOST_DEGREE = 8
 SHORTEST = -0.98
 """Where the first segment ends at least."""
 T0, T1, SPOT = 6, 7, 8
