@@ -13,7 +13,7 @@ from scipy.sparse import csr_array, kron
 from sceneql.simulation.linear import dense_kernels as dense
 from sceneql.simulation.linear import fronts, fronts_kernels
 from sceneql.simulation.linear import krylov_kernels as krylov
-from sceneql.simulation.linear.fronts_symmetric_kernels import PIECES
+from sceneql.simulation.linear.fronts_plan_kernels import PIECES
 from sceneql.simulation.linear.solver_kernels import PRECONDITION
 from sceneql.simulation.numbered_kernels import number_of
 

@@ -132,7 +132,9 @@ def _fronts(graph: Any, parents: list[int], sizes: Rows) -> list[_Front]:
 def _laid_out(pattern: Any, order: Rows, fronts: list[_Front], first: Rows, unit: int) -> Plan:
     import numpy as np
 
-    from sceneql.simulation.linear.fronts_symmetric_kernels import FIELDS, HEAD, piece
+    from sceneql.simulation.linear.fronts_plan_kernels import FIELDS, HEAD
+    from sceneql.simulation.linear.fronts_solve_kernels import backward_piece, forward_piece
+    from sceneql.simulation.linear.fronts_symmetric_kernels import piece
     from sceneql.simulation.threads_kernels import threads, tile_address
 
     n, count, groups = unit * len(order), len(fronts), len(first) - 1
@@ -202,8 +204,10 @@ def _laid_out(pattern: Any, order: Rows, fronts: list[_Front], first: Rows, unit
     parts: list[Any] = [table, scalars, expanded, maps, entries, np.zeros(n, dtype=np.int64), halves]
     starts = list(accumulate((len(part) for part in parts), initial=HEAD))
     head = [n, count, *starts[1:6], room, starts[6], len(pieces), *threads(), tile_address(piece), unit]
+    head += [tile_address(forward_piece), tile_address(backward_piece)]
     numbers = np.concatenate([np.array(part, dtype=np.int64) for part in (head, *parts)])
-    return Plan(numbers, factors, room + largest * largest + 2 * n, float(operations.sum()))
+    work = max(room + largest * largest, int(row_starts[-1])) + 2 * n
+    return Plan(numbers, factors, work, float(operations.sum()))
 
 
 def _runs(places: Rows, counts: Rows) -> tuple[Rows, Rows]:

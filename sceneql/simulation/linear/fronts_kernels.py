@@ -2,13 +2,13 @@
 """Sparse factorization on a planned pattern by the multifrontal method, and solutions with the factors.
 
 The integers of a plan: [unknowns, fronts, where these start: order, rows, maps, entries, pivots; floats of the
-updates; where the pieces start, how many; the numbers of threads_kernels.threads, the address of a piece's kernel;
-unknowns of a unit, whose blocks make up the matrix], then a table with FIELDS a front: first unknown, number
-eliminated, rows of the front, then where its rows, its map into the parent, its factors and its entries (blocks: first
-value, its place in the front) start, its last child and the child of its parent before it (-1: none),
-where its update stands in the work, and where its entries below the diagonal start; last a row that ends them. A map
-is in runs: where each ends in the update, and its first place in the parent. A piece: its first front, the one after
-its last, and whether it was factored.
+updates; where the pieces start, how many; the numbers of threads_kernels.threads, the address of the kernel that
+factors a piece; unknowns of a unit, whose blocks make up the matrix; the addresses of the kernels that solve in a
+piece], then a table with FIELDS a front: first unknown, number eliminated, rows of the front, then where its rows, its
+map into the parent, its factors and its entries (blocks: first value, its place in the front) start, its last child
+and the child of its parent before it (-1: none), where its update stands in the work, and where its entries below the
+diagonal start; last a row that ends them. A map is in runs: where each ends in the update, and its first place in the
+parent. A piece: its first front, the one after its last, and whether it was factored.
 A front keeps U (width x rows, the reciprocals of the pivots on its diagonal) and, where the matrix is not symmetric,
 L below it ((rows - width) x width). Symmetric: A = U^T D^-1 U. Pivots are sought in the same block of rows alone.
 """
@@ -19,7 +19,9 @@ from numba import types
 
 from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.arithmetic_kernels import fma, widest
-from sceneql.simulation.linear.fronts_symmetric_kernels import FIELDS, HEAD, factor_symmetric, put
+from sceneql.simulation.linear.fronts_plan_kernels import FIELDS, HEAD
+from sceneql.simulation.linear.fronts_solve_kernels import solve_symmetric
+from sceneql.simulation.linear.fronts_symmetric_kernels import factor_symmetric, put
 from sceneql.simulation.linear.solver_kernels import FACTOR_SYSTEM, SOLVE_SYSTEM
 from sceneql.system_kernels import A, N
 
@@ -193,6 +195,9 @@ def product(a, x, count):
 @lean(SOLVE_SYSTEM)
 def solve_system(plan, values, factors, b, work, symmetric):
     """Solve by the factors of ``factor_system``; the solution takes the place of b."""
+    if symmetric:
+        solve_symmetric(plan, factors, b, work)
+        return True
     n, fronts, order, rows, pivots = plan[0], plan[1], plan[2], plan[3], plan[6]
     x = work[:n]
     reached = work[n:]
@@ -203,27 +208,14 @@ def solve_system(plan, values, factors, b, work, symmetric):
         first, width, height, panel = plan[t], plan[t + 1], plan[t + 2], plan[t + 5]
         row = rows + plan[t + 3]
         own = x[first:]
-        if symmetric:
-            for j in range(height - width):
-                reached[j] = 0.0
-            for k in range(width):
-                u = factors[panel + k * height : panel + (k + 1) * height]
-                value = own[k] * u[k]
-                for j in range(k + 1, width):
-                    own[j] -= u[j] * value
-                for j in range(height - width):
-                    reached[j] += u[width + j] * value
-            for j in range(width, height):
-                x[plan[row + j]] -= reached[j - width]
-        else:
-            for k in range(width):
-                swap = plan[pivots + first + k]
-                own[k], own[swap] = own[swap], own[k]
-            for k in range(1, width):
-                own[k] -= product(factors[panel + k * height :], own, k)
-            below = panel + width * height
-            for i in range(width, height):
-                x[plan[row + i]] -= product(factors[below + (i - width) * width :], own, width)
+        for k in range(width):
+            swap = plan[pivots + first + k]
+            own[k], own[swap] = own[swap], own[k]
+        for k in range(1, width):
+            own[k] -= product(factors[panel + k * height :], own, k)
+        below = panel + width * height
+        for i in range(width, height):
+            x[plan[row + i]] -= product(factors[below + (i - width) * width :], own, width)
     for s in range(fronts - 1, -1, -1):
         t = HEAD + FIELDS * s
         first, width, height, panel = plan[t], plan[t + 1], plan[t + 2], plan[t + 5]

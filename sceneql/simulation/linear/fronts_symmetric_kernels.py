@@ -13,14 +13,23 @@ from numba import types
 
 from sceneql.kernels import kernel, lean, lean_inlined
 from sceneql.simulation.arithmetic_kernels import fma, widest
+from sceneql.simulation.linear.fronts_plan_kernels import (
+    ENTRY,
+    FIELDS,
+    HEAD,
+    PIECE_AT,
+    PIECES,
+    PIECES_AT,
+    THREADS,
+    UNIT,
+)
 from sceneql.simulation.linear.rank_kernels import MOST, ROWS, add_rows, coefficients
 from sceneql.simulation.threads_kernels import TILE as PIECE
 from sceneql.simulation.threads_kernels import over_threads
 from sceneql.system_kernels import A, I, N
 
-PIECES_AT, PIECES, ENTRY, THREADS, PIECE_AT, UNIT, HEAD = 8, 9, 10, 11, 12, 13, 14
-FIELDS = 11
-
+FEW = 4
+"""Rows of U that are eliminated in registers."""
 TILE = 384
 """Columns that are updated at a time: what of U belongs to them stays in the cache."""
 
@@ -45,14 +54,61 @@ def update(panel, height, begin, end, target, stride, shift, low, high):
             for k in range(begin, end):
                 row = k * height
                 v = -panel[row + k]
-                for r in range(i, i + rows):
-                    weights[at] = panel[row + r] * v
-                    at += 1
+                if rows == ROWS:
+                    for r in range(ROWS):
+                        weights[at + r] = panel[row + i + r] * v
+                else:
+                    weights[at] = panel[row + i] * v
+                at += rows
             first = max(tile, i)
             place = (i - shift) * stride + first - shift
             left = edge - first
             add_rows(target, place, stride, rows, panel, begin * height + first, height, weights, end - begin, left)
             i += rows
+
+
+@lean_inlined
+def eliminate_few(panel, height, begin, end):
+    """At most FEW rows of U, among themselves; False where a pivot is 0 or not finite."""
+    for k in range(begin, end):
+        row = k * height
+        pivot = panel[row + k]
+        if not 0.0 < abs(pivot) < math.inf:
+            return False
+        inverse = 1.0 / pivot
+        panel[row + k] = inverse
+        for i in range(k + 1, end):
+            factor = -(panel[row + i] * inverse)
+            for j in range(i, end):
+                panel[i * height + j] = fma(factor, panel[row + j], panel[i * height + j])
+    a = begin * height
+    if end - begin == FEW:
+        b, c, d = a + height, a + 2 * height, a + 3 * height
+        u, v, w = -panel[a + begin], -panel[b + begin + 1], -panel[c + begin + 2]
+        p, q, s = panel[a + begin + 1] * u, panel[a + begin + 2] * u, panel[a + begin + 3] * u
+        r, t, z = panel[b + begin + 2] * v, panel[b + begin + 3] * v, panel[c + begin + 3] * w
+        first, second = panel[a + end : b], panel[b + end : c]
+        third, fourth = panel[c + end : d], panel[d + end : d + height]
+        for j in range(first.size):
+            x = first[j]
+            y = fma(p, x, second[j])
+            o = fma(r, y, fma(q, x, third[j]))
+            second[j], third[j], fourth[j] = y, o, fma(z, o, fma(t, y, fma(s, x, fourth[j])))
+    else:
+        for k in range(begin, end):
+            spread(panel, height, k, k + 1, end, end)
+    return True
+
+
+@lean_inlined
+def spread(panel, height, k, low, high, start):
+    """Rows low..high of U less what row k takes from them, from column ``start`` on."""
+    row = panel[k * height + start : (k + 1) * height]
+    for i in range(low, high):
+        below = panel[i * height + start : (i + 1) * height]
+        factor = -(panel[k * height + i] * panel[k * height + k])
+        for j in range(row.size):
+            below[j] = fma(factor, row[j], below[j])
 
 
 @lean_inlined
@@ -62,18 +118,11 @@ def eliminate(panel, height, begin, end):
         high = min(low + ROWS, end)
         if low > begin:
             update(panel, height, begin, low, panel, height, 0, low, high)
-        for k in range(low, high):
-            row = panel[k * height : (k + 1) * height]
-            pivot = row[k]
-            if not 0.0 < abs(pivot) < math.inf:
+        for few in range(low, high, FEW):
+            if not eliminate_few(panel, height, few, min(few + FEW, high)):
                 return False
-            inverse = 1.0 / pivot
-            row[k] = inverse
-            for i in range(k + 1, high):
-                below = panel[i * height : (i + 1) * height]
-                factor = -(row[i] * inverse)
-                for j in range(i, height):
-                    below[j] = fma(factor, row[j], below[j])
+            for k in range(few, min(few + FEW, high)):
+                spread(panel, height, k, few + FEW, high, few + FEW)
     return True
 
 
