@@ -154,15 +154,18 @@ def render(
 @SCENE
 @_options
 def check(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None) -> None:
-    """Find all errors of a script, and of each of its variants, without running it."""
+    """Find all errors of a script, and of each of its variants and studies, without running it."""
     from sceneql import pipeline
+    from sceneql.compiler.studies import alone
     from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 
     graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
     found = Diagnostics()
-    for name in graph.variants if variant is None else ():
+    patched: list[tuple[str | None, Sequence[Any]]] = [(name, sets) for name in graph.variants if variant is None]
+    patched += [(variant, (*sets, *more)) for study in graph.settings.studies.values() for more in alone(study)]
+    for name, patches in patched:
         try:
-            pipeline.load(scene, variant=name, sets=sets, words=words)
+            pipeline.load(scene, variant=name, sets=patches, words=words)
         except ScriptError as error:
             found.extend(error.diagnostics)
     found.raise_errors()
@@ -246,6 +249,27 @@ def stability(
 
     with bar(scene.stem) as progress:
         report = survey(load, sweep, points, output, words, error, progress)
+    click.echo(report)
+
+
+@cli.command()
+@SCENE
+@click.argument("name", required=False)
+@_options
+@click.option("-o", "--output", callback=_path, help="Folder for the files, or their path without extension.")
+def study(
+    scene: Path, name: str | None, variant: str | None, sets: tuple[str, ...], words: Path | None, output: Path | None
+) -> None:
+    """Run a study of the script (NAME, where there are several): errors, run times and outcomes over all its values."""
+    from sceneql import pipeline
+    from sceneql.report.progress import bar
+    from sceneql.report.study_page import study as survey
+
+    def load(more: Sequence[Any]) -> SimulationGraph:
+        return pipeline.load(scene, variant=variant, sets=(*sets, *more), words=words, pruned=False)
+
+    with bar(scene.stem) as progress:
+        report = survey(load, name, output, progress)
     click.echo(report)
 
 

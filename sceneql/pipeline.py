@@ -21,6 +21,7 @@ from sceneql.compiler.compile import compile_script
 from sceneql.failure import Unsuitable, failing_as
 from sceneql.graph import SimulationGraph
 from sceneql.kinds import FAMILIES, Camera, Clock, Illumination, Object, Output, Overlay, Picture, Renderer, Settings
+from sceneql.language.patch import Patch
 from sceneql.language.script import read_script
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
 
@@ -34,11 +35,11 @@ def load(
     path: Path | str,
     *,
     variant: str | None = None,
-    sets: Sequence[str] = (),
+    sets: Sequence[str | Patch] = (),
     words: Path | None = None,
     pruned: bool = True,
 ) -> SimulationGraph:
-    """Read, check and compile a script. ``sets`` are ``path=value`` patches. Raises ScriptError with all its errors."""
+    """Read, check and compile a script; ``sets`` are patches or ``path=value``. Raises ScriptError with all errors."""
     found = Diagnostics()
     script = read_script(
         Path(path),

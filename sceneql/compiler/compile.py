@@ -13,6 +13,7 @@ from sceneql.compiler.passes.islands import islands
 from sceneql.compiler.passes.layouts import check_layouts
 from sceneql.compiler.passes.prune import prune
 from sceneql.compiler.passes.stable_steps import warn_of_steps
+from sceneql.compiler.studies import check_studies
 from sceneql.graph import SimulationGraph, Task
 from sceneql.kinds import Camera, Clock, Exceeds, Model, Object, Output, Picture
 from sceneql.language.script import Script
@@ -26,6 +27,7 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
     Raises ScriptError with all that is wrong, what is in ``found`` already included.
     """
     checked = check(script, catalogue, found)
+    check_studies(checked.settings.studies, script.root, catalogue, found)
     report_circles(checked.tasks, found)
     tasks = expand(checked.tasks, catalogue)
     groups = islands(tasks, found)

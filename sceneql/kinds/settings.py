@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import Any
 
 from sceneql.kinds.types import Color, Expected, FixedScalar, FixedTime
 from sceneql.kinds.word import Problem, Record, field
@@ -59,6 +60,31 @@ class Expect(Record):
             yield Problem("an expectation has either 'value' or 'below'")
 
 
+class Study(Record):
+    """Runs of the script with values in place of its own, compared with what they should give: `sceneql study`.
+
+    A range is `1e0 .. 1e12 N/m, 13 points`, evenly spaced in the logarithm where both ends have one sign, or with
+    `, linear`; other values are a list. Every value of one path is combined with every one of the others.
+    """
+
+    sweep: dict[str, Any] = field("By dotted path, as in variants, the values that are tried: a range, or a list.")
+    of: Expected = field("What is compared, such as `final(swing.bob.position)`.")
+    exact: Expected | None = field("What it should be, where that is known.", None)
+    reference: dict[str, Any] | None = field(
+        "Else values by path for a run to compare with, such as `{solvers.main: {radau: {tolerance: 1e-12}}}`.", None
+    )
+    accuracy: FixedScalar = field("The largest relative error that counts as accurate.", "0.1", above=0)
+    measure: dict[str, Expected] = field("What else stands in the table, by name.", {})
+    longest: FixedTime = field("Run time after which a run is given up.", "5 s", above=0)
+
+    def problems(self) -> Iterator[Problem]:
+        """Nothing to try, or nothing to compare with."""
+        if not self.sweep:
+            yield Problem("a study tries values by path, `{define.k: 1 .. 1e6 N/m}`", ("sweep",))
+        if (self.exact is None) == (self.reference is None):
+            yield Problem("a study compares with either `exact` or a `reference`")
+
+
 class Settings(Record):
     """The top-level keys of a script that are not parts."""
 
@@ -66,4 +92,5 @@ class Settings(Record):
     clock: Clock = field("Film time and simulation time.", Clock())
     gallery: Gallery = field("The gallery's version of the scene.", Gallery())
     expect: dict[str, Expect] = field("Numbers that the scene must give.", {})
+    studies: dict[str, Study] = field("Runs over ranges of values, for `sceneql study`.", {})
     background: Color | None = field("What the camera sees where nothing is; by default the sky.", None)

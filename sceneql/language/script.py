@@ -34,7 +34,7 @@ FAMILIES: Final = (
     "overlays",
     "outputs",
 )
-SETTINGS: Final = ("sceneql", "about", "clock", "gallery", "background", "expect", "define", "variants")
+SETTINGS: Final = ("sceneql", "about", "clock", "gallery", "background", "expect", "studies", "define", "variants")
 _REWRITTEN: Final = ("include", "templates", "parts", "defaults")
 
 
@@ -67,7 +67,7 @@ class Script:
 def read_script(
     script: Path | Source,
     variant: str | None = None,
-    sets: Iterable[str] = (),
+    sets: Iterable[str | Patch] = (),
     families: Sequence[str] = FAMILIES,
     settings: Sequence[str] = SETTINGS,
     read: Read | None = None,
@@ -75,8 +75,8 @@ def read_script(
 ) -> Script:
     """Read a script from a file, or from a source whose includes ``read`` finds. Raises ScriptError with all errors.
 
-    ``sets`` are patches ``path=value``; they are laid over the variant's. With ``found``, errors that leave the rest
-    of the script readable are recorded there instead of raised, and what is wrong is left out.
+    ``sets`` are patches, as such or as ``path=value``; they are laid over the variant's. With ``found``, errors that
+    leave the rest of the script readable are recorded there instead of raised, and what is wrong is left out.
     """
     raising = found is None
     found = Diagnostics() if found is None else found
@@ -132,7 +132,7 @@ def _check_version(tree: Mapping, found: Diagnostics) -> None:
 def _patches(
     root: Mapping,
     name: str | None,
-    sets: Iterable[str],
+    sets: Iterable[str | Patch],
     families: Sequence[str],
     settings: Sequence[str],
     found: Diagnostics,
@@ -149,9 +149,9 @@ def _patches(
             patches += inner
         else:
             apply_patch(root, inner, families, settings, found)
-    for text in sets:
+    for one in sets:
         try:
-            patches.append(parse_set(text))
+            patches.append(parse_set(one) if isinstance(one, str) else one)
         except ScriptError as error:
             found.extend(error.diagnostics)
     return patches

@@ -10,7 +10,7 @@ from sceneql.language.scope import Broken
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence, broken
 from sceneql.quantities.diagnostic import Diagnostics, Note, nearest, suggestion
 
-NAMED: Final = ("define", "templates", "parts", "defaults", "variants", "expect")
+NAMED: Final = ("define", "templates", "parts", "defaults", "variants", "expect", "studies")
 """Sections beside the families that hold names."""
 
 _ENTRY = "an entry is `name: word` or `name: {word: {fields}}`"

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 from sceneql import pipeline
 from sceneql.graph import SimulationGraph
-from sceneql.kinds import Expect
+from sceneql.kinds import Expect, Moment, Value
 from sceneql.quantities.expression import Call, Link, Symbol, walk
 from sceneql.simulation.series import Series, instant_of, measure, plain, wanted
 
@@ -43,26 +43,31 @@ def outcomes(graph: SimulationGraph, variant: str | None = None) -> list[Outcome
     held = {name: e for name, e in graph.settings.expect.items() if e.variant == variant}
     if not held:
         return []
+    values = [value for e in held.values() for value in (e.of, e.value, e.below) if value is not None]
+    times = moments_of(graph, values)
+    series = sample(pipeline.simulate(graph, times), times, values)
+    return [_outcome(name, expect, series, times) for name, expect in held.items()]
+
+
+def moments_of(graph: SimulationGraph, values: Iterable[Value]) -> list[float]:
+    """The instants [s] of a run at which values are looked at: the film's frames, the end, and those they name."""
     clock = graph.settings.clock
     instants = {*clock.frames(clock.fps), clock.end}
-    values = [value for e in held.values() for value in (e.of, e.value, e.below) if value is not None]
     nodes = [node for value in values for node in walk(value.expr)]
     instants |= {instant_of(node) for node in nodes if isinstance(node, Call) and node.op == "at"}
-    times = sorted(t for t in instants if t <= clock.end)
+    return sorted(t for t in instants if t <= clock.end)
+
+
+def sample(moments: Iterable[Moment], times: list[float], values: Iterable[Value]) -> Series:
+    """The links of values at the times of a run, each (times, ...): NaN when it is not wanted, for reading may cost."""
+    import numpy as np
+
     wants: dict[Link, set[float]] = {}
     for value in values:
         for link, when in wanted(value.expr, times[-1:] if plain(value.expr) else times, times):
             wants.setdefault(link, set()).update(when)
-    series = _sample(graph, times, wants)
-    return [_outcome(name, expect, series, times) for name, expect in held.items()]
-
-
-def _sample(graph: SimulationGraph, times: list[float], wants: Mapping[Link, set[float]]) -> Series:
-    """Links at the times, each (times, ...): NaN when it is not wanted, for reading may cost a mesh."""
-    import numpy as np
-
     rows: dict[Link, list[Any]] = {link: [] for link in wants}
-    for time, moment in zip(times, pipeline.simulate(graph, times), strict=True):
+    for time, moment in zip(times, moments, strict=True):
         for link, row in rows.items():
             row.append(moment.read(link.task, link.output) if time in wants[link] else None)
     return {Symbol("time"): np.array(times), **{link: _filled(row) for link, row in rows.items()}}

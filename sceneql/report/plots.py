@@ -104,6 +104,26 @@ def surface_errors(path: Path, title: str, rays: Sequence[RayRun], meshes: Seque
             explain(axes)
 
 
+def study_errors(path: Path, title: str, label: str, rows: Mapping[str, Sequence[tuple[float, float, float]]]) -> None:
+    """Write an SVG of a study: errors over run time [s], and, where a number is tried, over it.
+
+    ``rows``: by what else is tried, (number, error, seconds) of each run that reached its end; ``label``: the number's.
+    """
+    numbered = any(math.isfinite(number) for runs in rows.values() for number, _, _ in runs)
+    with figure_at(path, (9.0, 9.6 if numbered else 4.8)) as figure:
+        for k, (column, text) in enumerate([(2, "run time [s]"), (0, label)][: 2 if numbered else 1]):
+            axes = panel(figure, 2 if numbered else 1, k)
+            logarithmic(axes)
+            axes.set(xlabel=text, ylabel="relative error", title=title)
+            for (name, runs), mark in zip(rows.items(), cycle(MARKS), strict=False):
+                done = [(run[column], max(run[1], SMALLEST)) for run in runs if math.isfinite(run[1])]
+                line = "-" if column == 0 else "none"  # run times of harder problems are no line
+                axes.plot(
+                    *(zip(*done, strict=True) if done else ([], [])), linestyle=line, marker=mark, ms=4, label=name
+                )
+            explain(axes)
+
+
 def panel(figure: Any, count: int, k: int) -> Any:
     """Axes with as many colors as there are solvers."""
     from matplotlib import colormaps

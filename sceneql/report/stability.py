@@ -9,13 +9,14 @@ from dataclasses import asdict, fields
 from pathlib import Path
 
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.studies import POINTS
 from sceneql.failure import Unsuitable
 from sceneql.files import whole
 from sceneql.report.bench import write_json
 from sceneql.report.page import Table, beside, file_names, write_page
 from sceneql.report.plots import stability_map
 from sceneql.report.stability_map import Cell, Load, cells, default_sweep
-from sceneql.report.stability_sweep import POINTS, Sweep, parse_sweep
+from sceneql.report.stability_sweep import Sweep, parse_sweep
 
 LARGEST_ERROR = 0.1
 """A run with a larger relative error at its end is called inaccurate: the eye sees it."""

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import math
 import re
 from dataclasses import dataclass
 
+from sceneql.compiler.studies import MOST_POINTS, NUMBER, POINTS, spaced
 from sceneql.failure import Unsuitable
 
-NUMBER = r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?"
 SHAPE = re.compile(rf"\s*([^=\s]+)\s*=\s*({NUMBER})\s*\.\.\s*({NUMBER})\s*(.*?)\s*")
-POINTS = 13
-MOST_POINTS = 200
 FEWEST = 30
 """Steps of a run by which an instability may be seen."""
 OWN = ("step", "tolerance")
@@ -57,18 +54,6 @@ def parse_sweep(text: str, points: int = POINTS) -> Sweep:
     if not 2 <= points <= MOST_POINTS:
         raise Unsuitable(f"a sweep has 2 to {MOST_POINTS} points, not {points}")
     return Sweep(path, spaced(low, high, points), "s" if path == "step" else unit)
-
-
-def spaced(low: float, high: float, points: int) -> tuple[float, ...]:
-    """Values from one to another, the ends exactly: evenly in the logarithm where both have one sign."""
-    parts = [k / (points - 1) for k in range(points)]
-    if low * high > 0:
-        middle = [math.copysign(abs(low) ** (1 - part) * abs(high) ** part, low) for part in parts[1:-1]]
-        if high / low == 10.0 ** round(math.log10(high / low)):  # whole decades: no digits but those that are meant
-            middle = [float(f"{value:.6g}") for value in middle]
-    else:
-        middle = [low + (high - low) * part for part in parts[1:-1]]
-    return (low, *middle, high)
 
 
 def around(bound: float, end: float) -> Sweep:

@@ -1,0 +1,113 @@
+"""Studies: the values that their sweeps and references put in place of the script's."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping as Naming
+from dataclasses import dataclass
+
+from sceneql.compiler.catalogue import Catalogue
+from sceneql.kinds import Settings, Study
+from sceneql.language.patch import Patch, apply_patch
+from sceneql.language.plain import kind_of
+from sceneql.language.tree import Mapping, Node, Scalar, Sequence, unsure
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
+from sceneql.quantities.span import Source, Span
+
+NUMBER = r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?"
+RANGE = re.compile(rf"\s*({NUMBER})\s*\.\.\s*({NUMBER})\s*([^,]*?)\s*(?:,\s*(\d+) points)?\s*(?:,\s*(log|linear))?\s*")
+POINTS = 13
+MOST_POINTS = 200
+HELP = "write `1e0 .. 1e12 N/m, 13 points`, or a list of values"
+
+
+@dataclass(frozen=True, slots=True)
+class Tried:
+    """One value of a path: how it is told, its number [``unit``] where it is one of a range, and the patch."""
+
+    label: str
+    number: float
+    unit: str
+    patch: Patch
+
+
+def tried(path: str, node: Node) -> list[Tried]:
+    """The values that a sweep tries for a path. Raises ScriptError (`sweep-shape`)."""
+    if isinstance(node, Sequence) and node.items:
+        labels = [_label(item) for item in node.items]
+        several = len(set(labels)) < len(labels)
+        if several:  # the words alone would not tell them apart
+            labels = [" ".join(item.span.text.split()) for item in node.items]
+        pairs = zip(labels, node.items, strict=True)
+        return [Tried(label, math.nan, "", (path, item, item.span)) for label, item in pairs]
+    found = RANGE.fullmatch(node.text) if isinstance(node, Scalar) else None
+    if found is None:
+        raise ScriptError([Diagnostic("sweep-shape", "this is neither a range nor a list", node.span, HELP)])
+    low, high, unit, count, way = float(found[1]), float(found[2]), found[3], int(found[4] or POINTS), found[5]
+    if not 2 <= count <= MOST_POINTS:
+        message = f"a range has 2 to {MOST_POINTS} points, not {count}"
+        raise ScriptError([Diagnostic("sweep-shape", message, node.span)])
+    if way == "log" and low * high <= 0:
+        raise ScriptError([Diagnostic("sweep-shape", "a logarithmic range has no 0 within", node.span)])
+    result = []
+    for number in spaced(low, high, count, log=way != "linear"):
+        text = f"{number!r} {unit}".rstrip()
+        value = Scalar(text, kind_of(text), False, Source(f"{path} of a study", text), 0, len(text))
+        result.append(Tried(f"{number:.4g} {unit}".rstrip(), number, unit, (path, value, node.span)))
+    return result
+
+
+def _label(node: Node) -> str:
+    """A word where there is one, else the text."""
+    if isinstance(node, Mapping) and len(node.entries) == 1:
+        return next(iter(node.entries))
+    return " ".join(node.span.text.split())
+
+
+def spaced(low: float, high: float, points: int, *, log: bool = True) -> tuple[float, ...]:
+    """Values from one to another, the ends exactly: with ``log`` evenly in the logarithm where both have one sign."""
+    parts = [k / (points - 1) for k in range(points)]
+    if log and low * high > 0:
+        middle = [math.copysign(abs(low) ** (1 - part) * abs(high) ** part, low) for part in parts[1:-1]]
+        if high / low == 10.0 ** round(math.log10(high / low)):  # whole decades: no digits but those that are meant
+            middle = [float(f"{value:.6g}") for value in middle]
+    else:
+        middle = [low + (high - low) * part for part in parts[1:-1]]
+    return (low, *middle, high)
+
+
+def instead(study: Study) -> list[Patch]:
+    """The patches that make a study's reference."""
+    return [(path, node, node.span) for path, node in (study.reference or {}).items()]
+
+
+def check_studies(studies: Naming[str, Study], root: Mapping, catalogue: Catalogue, found: Diagnostics) -> None:
+    """Report ranges that are none, and paths that lead nowhere."""
+    settings = (*Settings.model_fields, "sceneql", "define", "variants")
+    for name, study in studies.items():
+        patches = instead(study)
+        for path, node in study.sweep.items():
+            if not unsure(node):
+                try:
+                    patches += [value.patch for value in tried(path, node)][:1]
+                except ScriptError as error:
+                    found.extend(error.diagnostics)
+        written = _paths(root, name)
+        placed = [(path, node, written.get(path, span)) for path, node, span in patches]
+        apply_patch(root, placed, tuple(catalogue.families), settings, found)
+
+
+def _paths(root: Mapping, name: str) -> dict[str, Span]:
+    """Where the paths of a study are written."""
+    section = root.entries.get("studies")
+    study = section.entries.get(name) if isinstance(section, Mapping) else None
+    fields = [study.entries.get(key) for key in ("sweep", "reference")] if isinstance(study, Mapping) else []
+    groups = [field for field in fields if isinstance(field, Mapping)]
+    return {path: key.span for group in groups for path, key in group.keys.items()}
+
+
+def alone(study: Study) -> list[list[Patch]]:
+    """Patches that the whole of a study is right with: each value alone, and its reference."""
+    values = [[value.patch] for path, node in study.sweep.items() for value in tried(path, node)]
+    return [*values, *([instead(study)] if study.reference else [])]

@@ -1,0 +1,152 @@
+"""`study`: the runs of a study, their errors, costs and outcomes."""
+
+from __future__ import annotations
+
+import math
+import statistics
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import TYPE_CHECKING, Any, Literal
+
+from sceneql.compiler.studies import Tried, instead, tried
+from sceneql.failure import LimitRefused, RunFailure
+from sceneql.graph import SimulationGraph
+from sceneql.kinds import Value
+from sceneql.language.patch import Patch
+from sceneql.quantities.diagnostic import ScriptError
+from sceneql.report.expect import moments_of, sample
+from sceneql.report.work_precision import FIRST_LOOK, NEXT_LOOK, TooLong
+from sceneql.simulation.series import Series, measure
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.simulation.run import Instant
+
+REPEATS = 3
+ENOUGH_SECONDS = 0.5
+"""No run is repeated that has taken so long in all."""
+LONGEST = 20.0
+"""A reference is given up after so many seconds of compiled steps."""
+
+Load = Callable[[Sequence[Patch]], SimulationGraph]
+"""The scene, nothing left out, with more patches."""
+Outcome = Literal["stable", "inaccurate", "failed", "skipped"]
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """One run of a study."""
+
+    values: tuple[Tried, ...]
+    """That of each path, in order."""
+    outcome: Outcome
+    why: str
+    """Of a failed or skipped run."""
+    error: float
+    """Relative error; NaN where there is none."""
+    seconds: float
+    """Median run time of the compiled steps, compilation left out."""
+    steps: int
+    evaluations: int
+    measured: dict[str, float]
+    """What else the study measures, SI."""
+
+
+def trials(load: Load, name: str, progress: Callable[[int, int], None] = lambda done, total: None) -> Iterator[Trial]:
+    """Run every combination of the values that a study tries. Raises ScriptError where a value is none."""
+    study = load(()).settings.studies[name]
+    rows = [tried(path, node) for path, node in study.sweep.items()]
+    replaced = {path for path, _, _ in instead(study)}
+    truths: dict[tuple[str, ...], tuple[Any, str]] = {}
+    for done, values in enumerate(product(*rows)):
+        progress(done, math.prod(map(len, rows)))
+        own = [value for value in values if value.patch[0] not in replaced]
+        key = tuple(value.label for value in own)
+        if study.reference is not None and key not in truths:
+            truths[key] = _reference(load, name, [*(value.patch for value in own), *instead(study)])
+        yield _trial(load([value.patch for value in values]), name, values, truths.get(key, (None, "")))
+
+
+def _reference(load: Load, name: str, patches: Sequence[Patch]) -> tuple[Any, str]:
+    """What a study compares with (None: nothing), and why there is none."""
+    graph = load(patches)
+    study = graph.settings.studies[name]
+    try:
+        times, series, _, _ = _run(graph, [study.of], LONGEST)
+    except (RunFailure, LimitRefused, ScriptError, ValueError, TypeError) as failure:
+        return None, f"its reference fails: {_told(failure)}"
+    return measure(study.of.expr, series, times), ""
+
+
+def _trial(graph: SimulationGraph, name: str, values: tuple[Tried, ...], truth: tuple[Any, str]) -> Trial:
+    import numpy as np
+
+    study = graph.settings.studies[name]
+    wanted = [study.of, *study.measure.values(), *([] if study.exact is None else [study.exact])]
+    seconds: list[float] = []
+    try:
+        while len(seconds) < REPEATS and sum(seconds) < ENOUGH_SECONDS:
+            times, series, moment, taken = _run(graph, wanted, study.longest)
+            seconds.append(taken)
+    except TooLong as failure:
+        return Trial(values, "skipped", failure.message, math.nan, math.nan, 0, 0, {})
+    except RunFailure as failure:
+        return Trial(values, "failed", _told(failure), math.nan, math.nan, 0, 0, {})
+    except (ScriptError, LimitRefused, ValueError, TypeError) as refused:
+        return Trial(values, "skipped", _told(refused), math.nan, math.nan, 0, 0, {})
+    right, why = truth if study.exact is None else (measure(study.exact.expr, series, times), "")
+    error = math.nan if right is None else _relative(measure(study.of.expr, series, times), right)
+    outcome: Outcome = "skipped" if right is None else "stable" if error <= study.accuracy else "inaccurate"
+    done = [island.march.statistics for island in moment.run.islands]
+    more = {each: float(np.max(measure(value.expr, series, times))) for each, value in study.measure.items()}
+    return Trial(
+        values,
+        outcome,
+        why,
+        error,
+        statistics.median(seconds[1:] or seconds),
+        sum(one.steps for one in done),
+        sum(one.evaluations for one in done),
+        more,
+    )
+
+
+def _run(graph: SimulationGraph, values: Sequence[Value], longest: float) -> tuple[list[float], Series, Instant, float]:
+    """Times, what values read at them, the last moment, and the run time [s]. Raises TooLong beyond ``longest`` [s]."""
+    from sceneql.simulation.run import Run
+
+    times, run = moments_of(graph, values), Run(graph)
+    last: list[Instant] = []
+
+    def spent() -> float:
+        return sum(island.march.statistics.seconds for island in run.islands)
+
+    def moments() -> Iterator[Instant]:
+        look = FIRST_LOOK * times[-1]
+        for time in times:
+            while look < time:
+                run.at(look)
+                look *= NEXT_LOOK
+                if spent() > longest:
+                    part = ", ".join(name for island in run.islands for name in island.island.models)
+                    raise TooLong(f"given up after {longest:g} s of run time", part=part, time=look, span=None)
+            last[:] = [run.at(time)]
+            yield last[0]
+
+    series = sample(moments(), times, values)
+    return times, series, last[0], spent()
+
+
+def _relative(found: Floats, right: Floats) -> float:
+    """The largest difference, relative to the largest number that is right; inf where a number is not finite."""
+    import numpy as np
+
+    error = float(np.max(np.abs(np.asarray(found) - right))) / (float(np.max(np.abs(right))) or 1.0)
+    return error if math.isfinite(error) else math.inf
+
+
+def _told(failure: Exception) -> str:
+    if isinstance(failure, RunFailure | LimitRefused):
+        return failure.diagnostic.message
+    return failure.diagnostics[0].message if isinstance(failure, ScriptError) else str(failure)
