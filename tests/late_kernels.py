@@ -18,3 +18,11 @@ def half_of_positive(x):
         return 0.0
     half, rest = halved(x, 2)
     return half + rest
+
+
+@lean(F(F))
+def twice_by_mistake(x):
+    if x <= 0.0:
+        return 0.0
+    once, again = mistaken(x, x)
+    return once + again

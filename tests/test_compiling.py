@@ -6,13 +6,14 @@ import os
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from itertools import product
 
 import numba
 import numpy as np
 import pytest
 from numba import types
 
-from sceneql.compiling import collecting_later, late
+from sceneql.compiling import collecting_later
 from sceneql.kernels import HELPER, KernelCompiler
 from sceneql.simulation.forces.gravity_kernels import gravity
 
@@ -67,16 +68,20 @@ def test_a_late_kernel_is_there_from_its_first_call_on_and_not_before():
 
 
 @pytest.mark.skipif(numba.config.DISABLE_JIT, reason="where numba is switched off, nothing is linked")
-def test_a_late_kernel_of_another_signature_is_refused_rather_than_called():
+def test_a_late_kernel_that_cannot_be_brought_ends_the_call_with_the_reason_each_time():
     import late_kernels
 
-    (at,) = [at for at, one in late.expected.items() if one == late_kernels.MISTAKEN]
-    with pytest.raises(TypeError, match=r"doubles is called as .* but is .*Array"):
-        late._fill(at)
+    assert late_kernels.twice_by_mistake(-1.0) == 0.0
+    for _ in range(2):
+        with pytest.raises(TypeError, match=r"doubles is called as .* but is .*Array"):
+            late_kernels.twice_by_mistake(1.0)
+    with ThreadPoolExecutor(2) as pool, pytest.raises(TypeError, match="doubles is called as"):
+        list(pool.map(late_kernels.twice_by_mistake, [1.0, 2.0]))
 
 
 AHEAD = """
-import sys
+import sys, threading
+THREAD
 from sceneql import ahead
 from sceneql.kernels import compiled
 wait = ahead.compile_ahead(sys.argv[1:])
@@ -86,14 +91,25 @@ print(compiled.count, ahead._beside.cache_info().currsize)
 
 
 @pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
-@pytest.mark.parametrize("threads", [1, 2])
-def test_what_is_compiled_ahead_is_there_and_asks_for_no_process_again(tmp_path, threads):
+@pytest.mark.parametrize(
+    ("threads", "begun"),
+    [
+        (1, ""),
+        pytest.param(2, "", id="a copy of the process"),
+        pytest.param(2, "threading.Thread(target=threading.Event().wait, daemon=True).start()", id="a new process"),
+    ],
+)
+def test_what_is_compiled_ahead_is_there_and_asks_for_no_process_again(tmp_path, threads, begun):
     modules = [f"sceneql.simulation.forces.{word}_kernels" for word in ("gravity", "drag")]
     environment = {**os.environ, "SCENEQL_CACHE": str(tmp_path), "SCENEQL_THREADS": str(threads)}
 
     def run():
         said = subprocess.run(
-            [sys.executable, "-c", AHEAD, *modules], env=environment, capture_output=True, text=True, check=True
+            [sys.executable, "-c", AHEAD.replace("THREAD", begun), *modules],
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=True,
         ).stdout
         return tuple(map(int, said.split()))
 
@@ -122,3 +138,33 @@ def test_the_collector_is_on_again_after_a_failure():
     with pytest.raises(ZeroDivisionError):
         fail()
     assert gc.isenabled()
+
+
+@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+def test_new_arrays_are_as_numpy_makes_them():
+    @numba.njit(pipeline_class=KernelCompiler)
+    def made(n, m):
+        plain, whole, table = np.zeros(n), np.zeros(m, dtype=np.int32), np.zeros((n, m), np.uint8)
+        room = np.empty((m, n, 2), dtype=np.float32)
+        room[:] = 3.0
+        return plain, whole, table, room
+
+    for one, like in zip(made(3, 5), made.py_func(3, 5), strict=True):
+        assert (one.dtype, one.shape, one.strides) == (like.dtype, like.shape, like.strides)
+        assert np.array_equal(one, like)
+    assert [one.size for one in made(0, 4)] == [0, 4, 0, 0]
+    with pytest.raises(ValueError, match="negative dimensions"):
+        made(-1, 2)
+    with pytest.raises(ValueError, match="too big"):
+        made(1, 2**62)
+
+
+@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+def test_least_and_most_are_those_of_python_of_nan_and_of_mixed_types():
+    @numba.njit(pipeline_class=KernelCompiler)
+    def found(a, b, c):
+        return min(a, b), max(a, b), min(a, b, c), max(c, b, a), min(a, 2), max(3, b)
+
+    nan = float("nan")
+    for a, b, c in product((1.0, -0.0, 0.0, nan, 7.5), (0.0, nan, -2.0), (3, -4)):
+        assert repr(found(a, b, c)) == repr(tuple(map(float, found.py_func(a, b, c))))

@@ -33,6 +33,7 @@ from numba.core.untyped_passes import (
 from sceneql.compiling.elements import take_elements
 from sceneql.compiling.shortcuts import take_shortcuts
 from sceneql.compiling.statements import Free, KernelLower
+from sceneql.compiling.words import take_words
 
 FRONT = (
     TranslateByteCode,
@@ -214,5 +215,6 @@ def widen():
 
 take_elements()
 take_shortcuts()
+take_words()
 widen()
 ffi.lib._lock._cblist.clear()  # LLVM's calls are many, and how long it is held asks nobody here

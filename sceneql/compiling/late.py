@@ -21,8 +21,17 @@ places: dict[int, tuple[str, ctypes.c_void_p]] = {}
 """By its address: the name of a kernel, and the place for the address of its code."""
 expected = {}
 """By the same: the signature that its callers know."""
+failures: dict[str, BaseException] = {}
+"""By the name of a kernel: why it could not be brought."""
 _one_by_one = threading.RLock()
 _ASK = "sceneql.compiling.late.ask"
+
+
+class NotBrought(Exception):
+    """What compiled code ends with for want of a kernel: making one raises the error that was the reason."""
+
+    def __init__(self, name):
+        raise failures[name]
 
 
 def late(name, signature):
@@ -56,6 +65,8 @@ def late(name, signature):
         empty = cgutils.is_null(builder, builder.load(at))
         with cgutils.if_unlikely(builder, empty):
             builder.call(words.globals[_ASK], [at])
+            with cgutils.if_unlikely(builder, cgutils.is_null(builder, builder.load(at))):
+                context.call_conv.return_user_exc(builder, NotBrought, (name,))
         kind = context.call_conv.get_function_type(chosen.return_type, chosen.args).as_pointer()
         code = builder.bitcast(builder.load(at), kind)
         status, result = context.call_conv.call_function(builder, code, chosen.return_type, chosen.args, arguments)
@@ -85,16 +96,22 @@ def _fill(at):
 
 @ctypes.CFUNCTYPE(None, ctypes.c_size_t)
 def _ask(at):
-    """What compiled code calls: there is no way back without the kernel. A Ctrl-C is heard when Python goes on."""
+    """What compiled code calls: where the place stays empty, it ends. A Ctrl-C is heard when Python goes on.
+
+    A thread that is not of Python has nobody to tell: there the process ends.
+    """
     interrupted = False
     while places[at][1].value is None:
         try:
             _fill(at)
         except KeyboardInterrupt:
             interrupted = True
-        except BaseException:
-            traceback.print_exc()
-            _exit(1)
+        except BaseException as error:
+            if isinstance(threading.current_thread(), threading._DummyThread):
+                traceback.print_exception(error)
+                _exit(1)
+            failures[places[at][0]] = error
+            break
     if interrupted:
         threading.Timer(0.05, interrupt_main).start()
 

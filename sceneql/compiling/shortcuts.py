@@ -12,8 +12,12 @@ from types import BuiltinFunctionType
 from llvmlite.ir._utils import DuplicatedNameError, NameScope
 from numba import types
 from numba.core import base, byteflow, cpu, errors, interpreter, ir, lowering, postproc, ssa, transforms, typeinfer
+from numba.core.rewrites.ir_print import RewritePrintCalls
 from numba.core.typing.context import BaseContext
 from numba.np import linalg
+
+from sceneql.compiling.words import RESOLVED
+from sceneql.compiling.words import resolve as resolve_ours
 
 WITHOUT_VARIABLES = {str, int, float, bool, type(None), ir.Loc, ir.Const, ir.Global, ir.Arg, type(operator.add)}
 PLAIN = (types.Number, types.Boolean)
@@ -30,6 +34,10 @@ def remember_signatures():
     known = {}
 
     def remembering(self, typing, args, keywords):
+        if self.typing_key in RESOLVED:
+            found = resolve_ours(self, typing, args, keywords)
+            if found is not None:
+                return found
         plain = PLAIN_OR_PACKED if self.typing_key in (operator.getitem, operator.setitem) else PLAIN
         if keywords or not all(isinstance(arg, plain) for arg in args):
             return resolve(self, typing, args, keywords)
@@ -172,6 +180,21 @@ def refresh_rarely():
             self.install_registry(registry)
 
     cpu.CPUContext.load_additional_registries = loading
+    for kind in (base.BaseContext, BaseContext):
+        kind.install_registry = _when_grown(kind.install_registry)
+
+
+def _when_grown(install):
+    """What is in a registry, looked through only when there is more: nothing is ever taken out."""
+    installed = {}
+
+    def installing(self, registry):
+        count = sum(len(one) for one in vars(registry).values() if type(one) is list)
+        if installed.get((id(self), id(registry))) != count:
+            install(self, registry)
+            installed[id(self), id(registry)] = count
+
+    return installing
 
 
 def look_once():
@@ -223,6 +246,22 @@ def pass_over():
     interpreter.Interpreter.post_process = processing
 
 
+def look_for_print():
+    """Calls of print are looked for where the word stands: numba writes an error for every call of a method."""
+    match = RewritePrintCalls.match
+
+    def matching(self, function, block, typemap, calltypes):
+        return "print" in function.func_id.code.co_names and match(self, function, block, typemap, calltypes)
+
+    RewritePrintCalls.match = matching
+
+
+def remember_sizes():
+    """Sizes of types in memory, for each of which numba has LLVM read a module."""
+    sizeof = cache(lambda target, kind: kind.get_abi_size(target))
+    base.BaseContext.get_abi_sizeof = lambda self, kind: sizeof(self.target_data, kind)
+
+
 def believe_in_scipy():
     """numba imports a fifth of a second of scipy to see whether it is there."""
     look = linalg.ensure_blas
@@ -255,6 +294,8 @@ def take_shortcuts():
     look_once()
     name_quickly()
     pass_over()
+    look_for_print()
+    remember_sizes()
     believe_in_scipy()
     silence()
     typeinfer.ConstraintNetwork.propagate = propagate

@@ -114,9 +114,11 @@ class IslandRun:
             self.solver = self.solver.on_grid(assembly.only_field, assembly.numbers)
         stepper, end = self.solver.stepper(), graph.settings.clock.end
         if assembly.only_field is not None and stepper.on_grid is not None:
+            from sceneql.simulation.grids import implicit as on_grid
             from sceneql.simulation.grids.suited import suited
 
             stepper = suited(stepper, assembly.only_field)
+            compile_ahead(on_grid.likely_kernels(stepper, assembly.only_field))
         system = assembly.finish(stepper.jacobian)
         acting = compile_ahead((*modules(system.structure, stepper.step), *likely_kernels(system)))
         acting()

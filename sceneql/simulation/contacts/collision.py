@@ -84,7 +84,8 @@ class Collision(Contact):
         touched = [written.get(ref.name, ref) for ref in others]
         objects = surfaces(touched, assembly, HEAD)
         if exact:
-            compile_ahead(late.modules())  # every gap asks for them
+            shapes = "sceneql.simulation.contacts.shapes."
+            compile_ahead(one for one in late.modules() if one.startswith(shapes))  # every gap asks for them
         nan = float("nan")
         cuts = (0.0, 0.0, 0.0) if assembly.body_count() <= MOST_CUT else (float("inf"), 0.0, MOST_CUTS)
         tally_at = assembly.floats([0.0, nan, nan, 0.0, nan])

@@ -7,6 +7,7 @@ body's memory in the floats: the last accepted instant, its place and velocity t
 
 import numpy as np
 
+from sceneql.compiling.late import late
 from sceneql.kernels import kernel, lean, lean_inlined
 from sceneql.simulation.contacts.impulse_kernels import (
     BODIES,
@@ -19,34 +20,23 @@ from sceneql.simulation.contacts.impulse_kernels import (
     PAIRS,
     POSITION,
     RADIUS,
-    RESTITUTION,
-    STILL,
-    TALLY,
     THICKNESS,
     VELOCITY,
-    bounce,
-    count_hit,
-    scale_of,
 )
-from sceneql.simulation.contacts.memory_kernels import ALONG, PAIR, PATH, PRESS, SLIDES, STICKS
+from sceneql.simulation.contacts.memory_kernels import ALONG, FREE, KEEP, PAIR, PATH, SLIDES, STICKS, SUPPORT
+from sceneql.simulation.contacts.pair_kernels import away, body_of
 from sceneql.simulation.contacts.path_kernels import NEVER, first_contact, moving, place
-from sceneql.simulation.contacts.resting_kernels import (
-    body_of,
-    come_to_rest,
-    keep,
-    set_velocity,
-    support,
-)
 from sceneql.simulation.contacts.shape_kernels import MOVING, OBJECT, surface, velocity
 from sceneql.system_kernels import GAP, IMPACT, TERM
+
+hit = late("sceneql.simulation.contacts.hit_kernels:hit", IMPACT)
+keep = late("sceneql.simulation.contacts.resting_kernels:keep", KEEP)
+support = late("sceneql.simulation.contacts.support_kernels:support", SUPPORT)
 
 CHANGED = 1
 """floats[1] tells the march that the state or a flag was changed."""
 
 NO_EVENT = 1e300
-
-LOWEST_FLIGHT = 4e-13
-"""Height of a bounce, as a part of the coordinates, that rounding can still resolve: below it the body rests."""
 
 
 @lean_inlined
@@ -110,7 +100,7 @@ def hold(t, y, floats, ints):
     """Keep what rests on its surface, let go what has left it, and note the accepted instant."""
     for k in range(ints[BODIES]):
         for j in range(ints[OBJECTS]):
-            if keep(t, k, j, y, floats, ints):
+            if floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)] != FREE and keep(t, k, j, y, floats, ints):
                 floats[CHANGED] = 1.0
         note_instant(t, k, y, floats, ints)
 
@@ -120,43 +110,26 @@ def impact(t, y, pair, floats, ints):
     """The impulse of a pair at its impact, or the end of its sliding; pair -1: `hold`."""
     if pair < 0:
         hold(t, y, floats, ints)
-        return
-    k, j = pair // ints[OBJECTS], pair % ints[OBJECTS]
-    at = HEAD + OBJECT * j
-    memory = ints[PAIRS] + PAIR * pair
-    px, py, pz, vx, vy, vz = body_of(ints, k, y)
-    ux, uy, uz = velocity(floats, ints, at, px, py, pz)
-    _, nx, ny, nz = surface(floats, ints, at, px, py, pz)
-    vx, vy, vz = vx - ux, vy - uy, vz - uz
-    vn = vx * nx + vy * ny + vz * nz
-    press = floats[memory + PRESS]
-    if floats[memory] == SLIDES:
-        tx, ty, tz = vx - vn * nx, vy - vn * ny, vz - vn * nz
-        if tx * tx + ty * ty + tz * tz < 1e-12:
-            set_velocity(k, ux + vn * nx, uy + vn * ny, uz + vn * nz, y, floats, ints)
-            floats[memory] = STICKS
-        else:
-            come_to_rest(t, memory, vx, vy, vz, nx, ny, nz, floats, ints)
-    elif vn < -STILL:
-        e = floats[ints[RESTITUTION]]
-        up = -e * vn
-        count_hit(floats, ints[TALLY], t, -vn)
-        vx, vy, vz = bounce(vx, vy, vz, nx, ny, nz, e, floats[ints[FRICTION]])
-        if up <= STILL or (press < 0.0 and up * up < -2.0 * press * LOWEST_FLIGHT * scale_of(px, py, pz)):
-            vx, vy, vz = vx - up * nx, vy - up * ny, vz - up * nz
-            # What is left of the bouncing is a geometric series of flights.
-            left = 2.0 * up / (-press * (1.0 - e)) if press < 0.0 and e < 1.0 else 0.0
-            come_to_rest(t + left, memory, vx, vy, vz, nx, ny, nz, floats, ints)
-        set_velocity(k, vx + ux, vy + uy, vz + uz, y, floats, ints)
-    elif vn <= STILL:
-        # Also where nothing presses yet: one that is pulled off is let go at the end of the step.
-        vx, vy, vz = vx - vn * nx, vy - vn * ny, vz - vn * nz
-        come_to_rest(t, memory, vx, vy, vz, nx, ny, nz, floats, ints)
-        set_velocity(k, vx + ux, vy + uy, vz + uz, y, floats, ints)
-    note_instant(t, k, y, floats, ints)
+    else:
+        hit(t, y, pair, floats, ints)
+        note_instant(t, pair // ints[OBJECTS], y, floats, ints)
+
+
+@lean_inlined
+def first_near(y, floats, ints):
+    """The first body that rests or is so near to an object that it matters how it would press; -1 for none."""
+    for k in range(ints[BODIES]):
+        if floats[ints[INVERSE] + k] == 0.0:
+            continue
+        for j in range(ints[OBJECTS]):
+            if floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)] != FREE or not away(k, j, y, floats, ints):
+                return k
+    return -1
 
 
 @lean(TERM, inner=True)
 def constrain(t, y, rate, floats, ints):
     """What the surfaces do to the accelerations; impacts want to know how free pairs press."""
-    support(True, y, rate, floats, ints)
+    first = first_near(y, floats, ints)
+    if first >= 0:
+        support(first, y, rate, floats, ints)

@@ -8,7 +8,7 @@ end of the step before (`local` mode; NaN where there was none).
 
 from numba import types
 
-from sceneql.system_kernels import A, F, I
+from sceneql.system_kernels import A, F, I, N
 
 PRESS, LOAD, PULL, ALONG, EARLIER = 1, 2, 3, 4, 7
 PAIR = 8
@@ -30,5 +30,7 @@ HOLDS = -1.0
 
 ANSWER = types.void(F, F, A, A, A, A, A, A, I)
 """(start and end of the step, state at both, bodies found, room for a path and its mean acceleration, floats, ints)."""
-SUPPORT = types.void(types.boolean, A, A, A, I)
-"""(whether free pairs are looked at, state, rate, floats, ints)."""
+KEEP = types.boolean(F, N, N, A, A, I)
+"""(time, body, object, state, floats, ints): whether anything changed."""
+SUPPORT = types.void(N, A, A, A, I)
+"""(first body whose free pairs are looked at; -1: those that rest alone; state, rate, floats, ints)."""

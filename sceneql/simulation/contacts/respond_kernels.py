@@ -42,8 +42,9 @@ from sceneql.simulation.contacts.memory_kernels import (
     SLIDES,
     WHOLE,
 )
+from sceneql.simulation.contacts.pair_kernels import is_flat
 from sceneql.simulation.contacts.path_kernels import NEVER, first_contact, moving, place
-from sceneql.simulation.contacts.resting_kernels import come_to_rest, is_flat, keep, lies
+from sceneql.simulation.contacts.resting_kernels import come_to_rest, keep, lies
 from sceneql.simulation.contacts.shape_kernels import OBJECT, clear, surface, velocity
 from sceneql.simulation.contacts.slide_kernels import brake, fly_on, slide, start_with
 from sceneql.system_kernels import A, F, I, N

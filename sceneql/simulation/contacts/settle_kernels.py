@@ -2,7 +2,7 @@
 """Contacts in `local` mode: every body backs off to its own impacts within the step and flies the rest of it.
 
 Here the bodies are found that may meet something; what becomes of them is in respond_kernels, and how they rest in
-resting_kernels: code that is compiled when the first body comes near enough.
+resting_kernels and support_kernels: code that is compiled when the first body comes near enough.
 """
 
 import numpy as np
@@ -41,7 +41,7 @@ from sceneql.system_kernels import SETTLE, TERM, A, F, I
 
 cut = late("sceneql.simulation.contacts.respond_kernels:cut", ANSWER)
 settle_found = late("sceneql.simulation.contacts.respond_kernels:settle_found", ANSWER)
-support = late("sceneql.simulation.contacts.resting_kernels:support", SUPPORT)
+support = late("sceneql.simulation.contacts.support_kernels:support", SUPPORT)
 
 
 @lean(types.void(F, A, A, A, A, I), inner=True)
@@ -112,4 +112,4 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
 def constrain(t, y, rate, floats, ints):
     """What the surfaces do to the accelerations; free pairs cost nothing."""
     if floats[ints[LAST] + RESTING] > 0.0:
-        support(False, y, rate, floats, ints)
+        support(-1, y, rate, floats, ints)

@@ -17,17 +17,8 @@ from sceneql.simulation.contacts.impulse_kernels import (
     VELOCITY,
     WORK,
 )
-from sceneql.simulation.contacts.resting_kernels import (
-    CREEPS,
-    EARLIER,
-    FREE,
-    LOAD,
-    PAIR,
-    SLIDES,
-    STICKS,
-    come_to_rest,
-    set_velocity,
-)
+from sceneql.simulation.contacts.memory_kernels import CREEPS, EARLIER, FREE, LOAD, PAIR, SLIDES, STICKS
+from sceneql.simulation.contacts.resting_kernels import come_to_rest, set_velocity
 from sceneql.simulation.contacts.shape_kernels import OBJECT, surface, velocity
 from sceneql.system_kernels import A, F, I, N
 

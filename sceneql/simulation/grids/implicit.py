@@ -78,8 +78,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     share = SHARE if stepper.adaptive else 1.0
     largest = float(np.abs(system.y).max(initial=0.0)) or 1.0
     absolute *= largest if stepper.by_scale else 1.0
-    wanted = stepper.linear == "fast_transform" or (stepper.linear == "auto" and grid.shape[0] <= LONGEST_ROW)
-    separated = separate(grid, system.floats) if wanted else None
+    separated = separate(grid, system.floats) if _may_separate(grid, stepper.linear) else None
     name, why = _choice(grid, stepper.linear, separated is not None)
     cells = grid.shape[0] * grid.shape[1] * grid.shape[2]
     plan = _PLANS[name](grid) if separated is None or name != "fast_transform" else _transform(grid, separated)
@@ -95,6 +94,17 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
         work=(3 + stages) * len(system.y) + store,
         text=f"linear systems by {name}, {plan.text}, {why}{'' if stepper.otherwise is None else BEYOND}",
     )
+
+
+def likely_kernels(stepper: Stepper, grid: Grid) -> tuple[str, ...]:
+    """The module of the linear solver that `prepare` will most likely ask for, to be compiled meanwhile."""
+    if stepper.prepare != f"{__name__}:{prepare.__name__}":
+        return ()
+    try:
+        name = _choice(grid, stepper.linear, _may_separate(grid, stepper.linear))[0]
+    except LimitRefused:
+        return ()
+    return (f"{__package__}.{KERNELS[name].partition(':')[0]}",)
 
 
 def report(march: March) -> LinearReport:
@@ -163,13 +173,19 @@ def _direct(grid: Grid) -> _Plan:
     return _Plan(numbers, len(entries) + plan.factors + plan.work, text)
 
 
+def _may_separate(grid: Grid, asked: str) -> bool:
+    """Whether it is worth looking for modes of rows."""
+    nx, _, nz = grid.shape
+    wanted = asked == "fast_transform" or (asked == "auto" and nx <= LONGEST_ROW)
+    deep_or_bent = nz > 1 or grid.varying or grid.periodic[1] or nx > 4 * LONGEST_ROW or grid.outside.any()
+    return wanted and not deep_or_bent
+
+
 def separate(grid: Grid, floats: Floats) -> tuple[Floats, ...] | None:
     """Modes of a row (nx, nx), transposed, eigenvalues, conductances and sinks along y, volume; None: rows differ."""
     import numpy as np
 
-    nx, ny, nz = grid.shape
-    if nz > 1 or grid.varying or grid.periodic[1] or nx > 4 * LONGEST_ROW or grid.outside.any():
-        return None
+    nx, ny, _ = grid.shape
     n = nx * ny
     offsets = (grid.volumes_at, grid.sink_at, *grid.faces_at[:2])
     volume, sink, gx, gy = (floats[at : at + n].reshape(ny, nx) for at in offsets)

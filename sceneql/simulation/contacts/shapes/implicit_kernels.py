@@ -31,7 +31,7 @@ from sceneql.simulation.contacts.shape_kernels import (
 )
 from sceneql.system_kernels import A, F, I, N
 
-nearest = late("sceneql.simulation.contacts.nearest_kernels:nearest", FOUR(A, I, N, F, F, F))
+nearest = late("sceneql.simulation.contacts.shapes.nearest_kernels:nearest", FOUR(A, I, N, F, F, F))
 
 CONSTANTS, PARTS, SCRATCH, CODE = 0, 2, 4, 6
 HEAD = CODE + 1
