@@ -92,6 +92,22 @@ def test_the_course_of_a_value_is_what_the_run_has(tmp_path):
     assert moment.course(rise, until=1.0)[0][-1] == 1.0
 
 
+def test_lists_are_reduced_at_each_instant_and_single_values_over_time(tmp_path):
+    two = "{one: {position: 0 5 0 m, mass: 1 kg}, two: {position: 0 3 0 m, velocity: 0 1 0 m/s, mass: 1 kg}}"
+    text = FALL.replace("{one: {position: 0 5 0 m, mass: 1 kg}}", two)
+    lines = "{apart: norm(drop.positions - mean(drop.positions)), least: min(drop.center.y + 0*initial(drop.center.y))}"
+    text = text.replace("{rise: drop.center.y - initial(drop.center.y), high: drop.center.y}", lines)
+    path = tmp_path / "fall.yaml"
+    path.write_text(text, encoding="utf-8")
+    graph = load(path)
+    apart, least = graph.tasks["plot"].kind.courses()
+    (moment,) = simulate(graph, [1.0])
+    times, values = moment.course(apart)
+    np.testing.assert_allclose(values, abs(2 - times) / np.sqrt(2), atol=1e-9)
+    lowest = 4 + 0.5 * 2 - 9.81 / 2 * 4
+    np.testing.assert_allclose(moment.course(least)[1], np.full(len(times), lowest), atol=1e-9)
+
+
 def test_a_run_that_fails_has_its_course_up_to_there(tmp_path):
     text = FALL.replace("gravity", "{force: {components: '[1/(1 - step(1, t)), 0, 0]', on: drop}}")
     path = tmp_path / "fall.yaml"

@@ -76,6 +76,7 @@ class Overlay(Kind):
     """Whether it can fill a panel of a layout."""
 
     show: Scalar | None = field("It is there only while this is not 0, as `time > 2 s`; by default always.", None)
+    dark: bool = field("Light letters on a dark panel.", False)
 
     def courses(self) -> Iterable[Value]:
         """Values that it needs over the whole run (`Moment.course`), for which the physics runs once ahead."""

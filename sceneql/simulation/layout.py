@@ -67,9 +67,9 @@ def page(size: tuple[int, int]) -> NDArray[uint8]:
     """An empty picture (h, w, 3) of a size (width, height)."""
     import numpy as np
 
-    from sceneql.simulation.lettering import PAPER
+    from sceneql.simulation.lettering import LIGHT
 
-    return np.full((size[1], size[0], 3), PAPER, dtype=np.uint8)
+    return np.full((size[1], size[0], 3), LIGHT.paper, dtype=np.uint8)
 
 
 def label(pixels: NDArray[uint8], name: str, failure: RunFailure | None, scale: float) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,18 +11,36 @@ if TYPE_CHECKING:
     from numpy import uint8
     from numpy.typing import NDArray
 
-PAPER = (250, 250, 250)
-INK = (28, 28, 32)
+Ink = tuple[int, int, int] | None
+"""None: the look's own."""
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """Colors (sRGB, some with opacity) of what is written and what it is written on."""
+
+    paper: tuple[int, int, int]
+    ink: tuple[int, int, int]
+    quiet: tuple[int, int, int]
+    """Ink of numbers."""
+    lines: tuple[int, int, int, int]
+    fine: tuple[int, int, int, int]
+    """Of the finer lines."""
+
+
+LIGHT = Look((250, 250, 250), (28, 28, 32), (96, 96, 104), (0, 0, 0, 38), (0, 0, 0, 16))
+DARK = Look((24, 25, 32), (238, 238, 242), (164, 166, 178), (255, 255, 255, 50), (255, 255, 255, 20))
 
 
 class Letterer:
     """Draws on a picture (h, w, 3) uint8, in place once it is done."""
 
-    def __init__(self, pixels: NDArray[uint8], text_height: float) -> None:
+    def __init__(self, pixels: NDArray[uint8], text_height: float, look: Look = LIGHT) -> None:
         """``text_height`` in parts of the picture's height; letters are never smaller than 9 pixels."""
         from PIL import Image, ImageDraw
 
         self._pixels = pixels
+        self.look = look
         self.height, self.width = pixels.shape[:2]
         self.em = max(9, round(text_height * self.height))
         self.font = font(self.em)
@@ -33,14 +52,14 @@ class Letterer:
         return int(self.draw.textlength(text, font=self.font) + 0.5), sum(self.font.getmetrics())
 
     def panel(self, box: tuple[int, int, int, int], opacity: float) -> None:
-        """A light panel with round corners: left, top, right, bottom."""
-        self.draw.rounded_rectangle(box, self.em // 3, (*PAPER, round(255 * opacity)))
+        """A panel with round corners: left, top, right, bottom."""
+        self.draw.rounded_rectangle(box, self.em // 3, (*self.look.paper, round(255 * opacity)))
 
-    def text(self, place: tuple[float, float], text: str, anchor: str = "lm", ink: tuple[int, ...] = INK) -> None:
+    def text(self, place: tuple[float, float], text: str, anchor: str = "lm", ink: Ink = None) -> None:
         """A text at a place [pixels], anchored as Pillow names it: ``lm`` is the middle of its left end."""
-        self.draw.text(place, text, ink, font=self.font, anchor=anchor)
+        self.draw.text(place, text, ink or self.look.ink, font=self.font, anchor=anchor)
 
-    def line(self, corner: tuple[int, int], text: str, opacity: float, ink: tuple[int, ...] = INK) -> None:
+    def line(self, corner: tuple[int, int], text: str, opacity: float, ink: Ink = None) -> None:
         """A text on a panel of its own, whose left and top are the corner [pixels], or as near as it is seen whole."""
         (wide, high), room = self.extent(text), round(0.4 * self.em)
         left = max(min(corner[0], self.width - wide - 2 * room - 1), 0)

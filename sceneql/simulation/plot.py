@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds.texts import SUPERSCRIPTS, shown_unit
 from sceneql.quantities.units import parse_unit
-from sceneql.simulation.lettering import INK, PAPER, Letterer, font
+from sceneql.simulation.lettering import Letterer, Look, font
 from sceneql.simulation.plotting import Scale, scale_for, stroke, thousands
 
 if TYPE_CHECKING:
@@ -19,11 +19,8 @@ if TYPE_CHECKING:
 
 Color = tuple[int, int, int]
 
-QUIET = (96, 96, 104)
-"""Ink of numbers."""
 SHARE = 0.3
 """A title below that is longer than this part of the panel has a line of its own."""
-LINES, FINE_LINES = (0, 0, 0, 38), (0, 0, 0, 16)
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,13 +81,14 @@ def draw_plot(
     across: Axis,
     opacity: float,
     text: float,
+    look: Look,
     named: bool,
 ) -> None:
     """Draw on a picture (h, w, 3) in a box (left, top, width, height) [pixels]; ``named``: with the curves' names.
 
     ``text``: height of letters in parts of the picture's. Without room for letters there are curves alone.
     """
-    letters = Letterer(pixels, text)
+    letters = Letterer(pixels, text, look)
     em, (left, top, wide, high) = letters.em, box
     small = font(max(9, round(0.82 * em)))
     pad = round(0.7 * em)
@@ -120,20 +118,20 @@ def draw_plot(
                 )
             letters.text(at, word)
         for value in y_scale.between():
-            letters.draw.line((x0, area.y(value), x1, area.y(value)), FINE_LINES, thin)
+            letters.draw.line((x0, area.y(value), x1, area.y(value)), look.fine, thin)
         for value, word in marks:
             y = float(area.y(value * 10.0**y_power))
-            letters.draw.line((x0, y, x1, y), LINES, thin)
-            letters.draw.text((x0 - 0.45 * em, y), word, QUIET, font=small, anchor="rm")
+            letters.draw.line((x0, y, x1, y), look.lines, thin)
+            letters.draw.text((x0 - 0.45 * em, y), word, look.quiet, font=small, anchor="rm")
         below, end = y1 + round(0.95 * em), x1 + 0.5 * em
-        letters.draw.text((end, below + (round(1.05 * em) if apart else 0)), title, INK, font=small, anchor="rm")
+        letters.draw.text((end, below + (round(1.05 * em) if apart else 0)), title, look.ink, font=small, anchor="rm")
         room = left + wide if apart else end - length - 0.8 * em
         for value, word in _scaled(x_scale, x_power).ticks(max(2, round((x1 - x0) / (6 * em)))):
             x = float(area.x(value * 10.0**x_power))
-            letters.draw.line((x, y0, x, y1), FINE_LINES, thin)
+            letters.draw.line((x, y0, x, y1), look.fine, thin)
             if x + 0.5 * letters.draw.textlength(word, font=small) < room:
-                letters.draw.text((x, below), word, QUIET, font=small, anchor="mm")
-    letters.draw.line((x0, y1, x1, y1), QUIET, thin)
+                letters.draw.text((x, below), word, look.quiet, font=small, anchor="mm")
+    letters.draw.line((x0, y1, x1, y1), look.quiet, thin)
     for curve in curves:
         along, values = curve.drawn()
         _draw_curve(letters, area, across.told(along), up.told(values), curve.color)
@@ -172,7 +170,7 @@ def _draw_curve(letters: Letterer, area: _Area, x: Floats, y: Floats, color: Col
     points[(points[:, 1] < -4 * size[1]) | (points[:, 1] > 5 * size[1])] = float("nan")
     letters.stamp(Image.new("RGB", size, color), stroke(size, points, max(1.4, letters.em / 9)), corner)
     if len(points) and 0 <= points[-1][0] <= size[0] and 0 <= points[-1][1] <= size[1]:
-        for ink, width in ((PAPER, 0.62 * letters.em), (color, 0.42 * letters.em)):
+        for ink, width in ((letters.look.paper, 0.62 * letters.em), (color, 0.42 * letters.em)):
             letters.stamp(Image.new("RGB", size, ink), stroke(size, points[-1:], width), corner)
 
 

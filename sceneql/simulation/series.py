@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_left
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -71,7 +72,7 @@ def course(expr: Expr, series: Series, times: list[float]) -> Any:
 
 
 def _look_up(node: Symbol | Link, series: Series) -> Any:
-    return series[Symbol("time")] if isinstance(node, Symbol) else series[node]
+    return series[Symbol("time")] if isinstance(node, Symbol) and node.name == "time" else series[node]
 
 
 def instant_of(node: Call) -> float:
@@ -80,8 +81,15 @@ def instant_of(node: Call) -> float:
 
 
 def _at(value: Any, times: list[float], node: Call) -> Any:
+    """The value at an instant, or between those that are known; NaN after the last."""
     instant = instant_of(node)
-    return value[times.index(instant)] if instant <= times[-1] else value[-1] * math.nan
+    if instant > times[-1]:
+        return value[-1] * math.nan
+    after = bisect_left(times, instant)
+    if times[after] == instant:
+        return value[after]
+    part = (instant - times[after - 1]) / (times[after] - times[after - 1])
+    return value[after - 1] + part * (value[after] - value[after - 1])
 
 
 def _drift(value: Any, times: list[float], node: Call) -> Any:

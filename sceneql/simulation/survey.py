@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,9 +11,10 @@ import numpy as np
 from sceneql.failure import RunFailure
 from sceneql.graph import SimulationGraph
 from sceneql.kinds import Camera, Overlay, Value
-from sceneql.quantities.expression import Expr, Link, Symbol, walk
+from sceneql.quantities.expression import Call, Expr, Link, Symbol, Vector, children, each_once
+from sceneql.quantities.operations import OPERATIONS
 from sceneql.simulation.bounds import box_of
-from sceneql.simulation.series import Series, course
+from sceneql.simulation.series import course
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -33,15 +34,37 @@ class Survey:
     bounds: Bounds | None
     """Low and high corner (3,) of each part over the run; None: not asked for."""
     times: list[float]
-    series: Series
+    rows: Mapping[int, Floats]
+    """(times, ...) of the pieces of what was asked for, by their identity."""
 
     def course(self, expr: Expr, until: float) -> tuple[Floats, Floats]:
-        """Times (n,) [s] up to an instant, and an expression at each (n, ...)."""
+        """Times (n,) [s] up to an instant, and an asked-for expression at each (n, ...)."""
         count = max(1, int(np.searchsorted(self.times, until, side="right")))
-        times = self.times[:count]
-        values = course(expr, {node: row[:count] for node, row in self.series.items()}, times)
+        series: dict[Symbol | Link, Any] = {}
+
+        def known(node: Expr) -> Expr:
+            if id(node) in self.rows:
+                symbol = Symbol(f"piece {id(node)}", node.type)
+                series[symbol] = self.rows[id(node)][:count]
+                return symbol
+            if isinstance(node, Call):
+                return replace(node, args=tuple(map(known, node.args)))
+            return replace(node, items=tuple(map(known, node.items))) if isinstance(node, Vector) else node
+
+        values = course(known(expr), series, self.times[:count])
         one = np.shape(values)[np.ndim(values) - len(expr.type.shape) :]
-        return np.array(times), np.broadcast_to(values, (count, *one))
+        return np.array(self.times[:count]), np.broadcast_to(values, (count, *one))
+
+
+def pieces(expr: Expr) -> Iterator[Expr]:
+    """The largest parts of an expression that have a value at each instant by themselves, numbers left out."""
+    calls = [OPERATIONS[node.op] for node in each_once(expr) if isinstance(node, Call)]
+    if not any(operation.series for operation in calls):
+        if any(isinstance(node, Symbol | Link) for node in each_once(expr)):
+            yield expr
+        return
+    for child in children(expr):
+        yield from pieces(child)
 
 
 def asked(graph: SimulationGraph) -> dict[tuple[str, int], Value]:
@@ -58,8 +81,8 @@ def survey(graph: SimulationGraph, *, bounded: bool = True) -> Survey:
     """
     from sceneql.simulation.run import Run
 
-    links = [node for value in asked(graph).values() for node in walk(value.expr) if isinstance(node, Link)]
-    rows: dict[Link, list[Any]] = {link: [] for link in links}
+    asked_for = {id(piece): Value(piece) for value in asked(graph).values() for piece in pieces(value.expr)}
+    rows: dict[int, list[Any]] = {key: [] for key in asked_for}
     every = BOUNDS_EVERY if asked(graph) else 1
     steps, end = BOUNDS_STEPS * every, graph.settings.clock.end
     bounded = bounded or any(isinstance(t.kind, Camera) and t.kind.looks_ahead() for t in graph.tasks.values())
@@ -79,8 +102,8 @@ def survey(graph: SimulationGraph, *, bounded: bool = True) -> Survey:
                 now = start
             elif bounded and k % every == 0:
                 now = _widened(now, moment, changing)
-            for link, row in rows.items():
-                row.append(moment.read(link.task, link.output))
+            for key, piece in asked_for.items():
+                rows[key].append(moment.measure(piece))
             times.append(moment.now)
             if not changing and not every > 1:
                 break
@@ -89,11 +112,7 @@ def survey(graph: SimulationGraph, *, bounded: bool = True) -> Survey:
             raise
         now = start
     count = len(times)
-    series: Mapping[Symbol | Link, Any] = {
-        Symbol("time"): np.array(times),
-        **{link: np.array(row[:count]) for link, row in rows.items()},
-    }
-    return Survey(now if bounded else None, times, series)
+    return Survey(now if bounded else None, times, {key: np.array(row[:count]) for key, row in rows.items()})
 
 
 def _widened(bounds: Bounds, moment: Instant, names: Iterable[str]) -> Bounds:

@@ -40,9 +40,9 @@ class Caption(Overlay):
         develop: Callable[[Any], NDArray[uint8]],
     ) -> None:
         """Draw the line; nothing where its point lies behind the camera."""
-        from sceneql.simulation.lettering import Letterer
+        from sceneql.simulation.lettering import DARK, LIGHT, Letterer
 
-        letters, text = Letterer(pixels, self.size), self.text.at(moment)
+        letters, text = Letterer(pixels, self.size, DARK if self.dark else LIGHT), self.text.at(moment)
         room = round(0.4 * letters.em)
         if self.at is None:
             wide, high = letters.extent(text)

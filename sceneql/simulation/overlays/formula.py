@@ -38,9 +38,9 @@ class Formula(Overlay):
         """Draw it. Raises ValueError for what mathtext cannot read."""
         from PIL import Image
 
-        from sceneql.simulation.lettering import INK, Letterer
+        from sceneql.simulation.lettering import DARK, LIGHT, Letterer
 
-        letters = Letterer(pixels, self.size)
+        letters = Letterer(pixels, self.size, DARK if self.dark else LIGHT)
         mask = Image.fromarray(printed(self.tex, letters.em))
         room = round(0.45 * letters.em)
         block = (mask.width + 2 * room, mask.height + 2 * room)
@@ -52,7 +52,7 @@ class Formula(Overlay):
                 return
             left, top = round(seen[0] - 0.5 * block[0]), round(seen[1] - block[1])
         letters.panel((left, top, left + block[0], top + block[1]), self.panel)
-        letters.stamp(Image.new("RGB", mask.size, INK), mask, (left + room, top + room))
+        letters.stamp(Image.new("RGB", mask.size, letters.look.ink), mask, (left + room, top + room))
         letters.done()
 
 

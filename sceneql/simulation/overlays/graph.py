@@ -95,9 +95,9 @@ class Graph(Overlay):
 
     def fill(self, pixels: NDArray[uint8], moment: Moment, scale: float) -> None:
         """Draw it over all of the pixels."""
-        from sceneql.simulation.lettering import PAPER
+        from sceneql.simulation.lettering import DARK, LIGHT
 
-        pixels[:] = PAPER
+        pixels[:] = (DARK if self.dark else LIGHT).paper
         self._draw(pixels, (0, 0, pixels.shape[1], pixels.shape[0]), moment, 1.0, self.text * scale)
 
     def _draw(
@@ -108,6 +108,7 @@ class Graph(Overlay):
         opacity: float,
         text: float | None = None,
     ) -> None:
+        from sceneql.simulation.lettering import DARK, LIGHT
         from sceneql.simulation.plot import Axis, draw_plot
 
         one = next(iter(self._named().values()))
@@ -129,6 +130,7 @@ class Graph(Overlay):
             ),
             opacity,
             self.text if text is None else text,
+            DARK if self.dark else LIGHT,
             named,
         )
 

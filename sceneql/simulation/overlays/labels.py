@@ -40,9 +40,9 @@ class Labels(Overlay):
         develop: Callable[[Any], NDArray[uint8]],
     ) -> None:
         """Draw those that are before the camera."""
-        from sceneql.simulation.lettering import Letterer
+        from sceneql.simulation.lettering import DARK, LIGHT, Letterer
 
-        letters = Letterer(pixels, self.size)
+        letters = Letterer(pixels, self.size, DARK if self.dark else LIGHT)
         for ref, text in self.of.items():
             seen = [place for point in _around(ref, moment) if (place := projected(point, view)) is not None]
             if seen:

@@ -48,7 +48,7 @@ class Legend(Overlay):
     ) -> None:
         """Draw the bar. Raises ValueError for what shows no field, and for a unit of another dimension."""
         from sceneql.kinds.texts import shown_unit
-        from sceneql.simulation.lettering import Letterer, round_numbers
+        from sceneql.simulation.lettering import DARK, LIGHT, Letterer, round_numbers
 
         shows: Any = moment.object(self.of)
         if not hasattr(shows, "color_key"):
@@ -63,7 +63,7 @@ class Legend(Overlay):
         ticks = [(value, (value - low) / (high - low)) for value in round_numbers(low, high, self.numbers)]
         lines = [line for line in (self.title, "" if text == "1" else shown_unit(text)) if line]
         marks = [(mark - key.low) / (key.high - key.low) for mark in key.marks]
-        letters = Letterer(pixels, self.text)
+        letters = Letterer(pixels, self.text, DARK if self.dark else LIGHT)
         self._bar(letters, key, lines, ticks, [mark for mark in marks if 0 < mark < 1], develop)
         letters.done()
 
@@ -78,8 +78,6 @@ class Legend(Overlay):
     ) -> None:
         """Draw with ticks (number, place from 0 to 1) and marks (place)."""
         import numpy as np
-
-        from sceneql.simulation.lettering import INK
 
         em = letters.em
         long, wide = round(LONG * letters.height), em
@@ -100,8 +98,8 @@ class Legend(Overlay):
         thick = max(1, em // 14)
         for word, (_, place) in zip(words, ticks, strict=True):
             y = top + (1 - place) * (long - 1)
-            letters.draw.line((left + wide, y, left + wide + 0.25 * em, y), INK, thick)
+            letters.draw.line((left + wide, y, left + wide + 0.25 * em, y), letters.look.ink, thick)
             letters.text((left + wide + 0.5 * em, y), word)
         for mark in marks:
             y = top + (1 - mark) * (long - 1)
-            letters.draw.line((left, y, left + wide, y), INK, thick)
+            letters.draw.line((left, y, left + wide, y), letters.look.ink, thick)
