@@ -17,7 +17,8 @@ from sceneql.simulation.grids.linear_kernels import (
     noted,
     to_prepare,
 )
-from sceneql.simulation.linear.fronts_kernels import factor_system, solve_system
+from sceneql.simulation.linear.fronts_solve_kernels import solve_symmetric
+from sceneql.simulation.linear.fronts_symmetric_kernels import factor_symmetric
 
 VALUES, FACTORS, SCRATCH, ENTRIES = range(4)
 
@@ -52,7 +53,7 @@ def factor_direct(plan, nx, ny, nz, scale, volume, sink, gx, gy, gz, own):
             value -= gz[front]
         own[e] = value
     factors = own[count:]
-    return factor_system(plan[ENTRIES + 2 * count :], own, factors, factors[plan[FACTORS] :], True)
+    return factor_symmetric(plan[ENTRIES + 2 * count :], own, factors, factors[plan[FACTORS] :])
 
 
 @lean_inlined
@@ -62,7 +63,7 @@ def solve_direct(plan, r, d, own):
     for c in range(r.size if r.size < d.size else d.size):
         d[c] = r[c]
     factors = own[count:]
-    solve_system(plan[ENTRIES + 2 * count :], own, factors, d, factors[plan[FACTORS] :], True)
+    solve_symmetric(plan[ENTRIES + 2 * count :], factors, d, factors[plan[FACTORS] :])
 
 
 @lean(SOLVE, inner=True)

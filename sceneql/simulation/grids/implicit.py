@@ -37,6 +37,8 @@ KERNELS = {
     "direct": "direct_kernels:solve",
     "fast_transform": "transform_kernels:solve",
 }
+FIRST = {"direct": ("sceneql.simulation.linear.fronts_symmetric_kernels",)}
+"""What of a solver's own the second process begins with, while this one begins with another part."""
 BEYOND = "; by Newton's method on all that its drift ties, from the first step on that this does not solve"
 COARSEST = 2
 LONGEST_ROW = 512
@@ -97,14 +99,14 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
 
 
 def likely_kernels(stepper: Stepper, grid: Grid) -> tuple[str, ...]:
-    """The module of the linear solver that `prepare` will most likely ask for, to be compiled meanwhile."""
+    """Modules of the linear solver that `prepare` will most likely ask for, to be compiled meanwhile."""
     if stepper.prepare != f"{__name__}:{prepare.__name__}":
         return ()
     try:
         name = _choice(grid, stepper.linear, _may_separate(grid, stepper.linear))[0]
     except LimitRefused:
         return ()
-    return (f"{__package__}.{KERNELS[name].partition(':')[0]}",)
+    return (*FIRST.get(name, ()), f"{__package__}.{KERNELS[name].partition(':')[0]}")
 
 
 def report(march: March) -> LinearReport:
