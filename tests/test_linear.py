@@ -9,11 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse import csr_array, kron
+from scipy.sparse.linalg import spsolve
 
 from sceneql.simulation.linear import dense_kernels as dense
 from sceneql.simulation.linear import fronts, fronts_kernels
 from sceneql.simulation.linear import krylov_kernels as krylov
-from sceneql.simulation.linear.fronts_plan_kernels import PIECES
+from sceneql.simulation.linear.fronts_plan_kernels import IN_SINGLE, PIECES, RESTING
 from sceneql.simulation.linear.solver_kernels import PRECONDITION
 from sceneql.simulation.numbered_kernels import number_of
 
@@ -121,9 +122,69 @@ def test_fronts_of_blocks_solve_to_rounding(dissected, symmetric):
     assert np.abs(matrix @ x - 1.0).max() <= 1e-12
 
 
+def sheet(columns, rows, stiffness, seed=4):
+    """Blocks of 1 + stiffness times a net of springs of random directions: (graph, values, whole matrix)."""
+    blocks = net(columns, rows, 0).tobsr((3, 3))
+    blocks.sort_indices()
+    draw = np.random.default_rng(seed)
+    whole = blocks.copy()
+    whole.data[:] = 0.0
+    graph = csr_array((np.arange(len(blocks.indices)), blocks.indices, blocks.indptr))
+    for i in range(columns * rows):
+        own = graph[i, i]
+        whole.data[own] += np.eye(3)
+        for at in range(blocks.indptr[i], blocks.indptr[i + 1]):
+            j = blocks.indices[at]
+            if i < j:
+                u = draw.standard_normal(3)
+                spring = stiffness * np.outer(u, u) / (u @ u)
+                for k, sign in ((own, 1), (graph[j, j], 1), (at, -1), (graph[j, i], -1)):
+                    whole.data[k] += sign * spring
+    pattern = csr_array((np.ones(len(blocks.indices)), blocks.indices, blocks.indptr))
+    return pattern, whole.data.ravel().copy(), csr_array(whole)
+
+
+@pytest.mark.parametrize("exact", [True, False])
+@pytest.mark.parametrize("stiffness", [1e-3, 1e2, 1e5])
+def test_factors_in_single_precision_solve_to_rounding_when_refined(monkeypatch, stiffness, exact):
+    monkeypatch.setattr(fronts, "WORTH_SINGLE", 0.0)
+    pattern, values, matrix = sheet(14, 11, stiffness)
+    plan = fronts.plan(pattern, unit=3, exact=exact)
+    factors, work = np.zeros(plan.factors), np.zeros(plan.work)
+    assert fronts_kernels.factor_system(plan.numbers, values, factors, work, True)
+    assert plan.numbers[IN_SINGLE] == 1
+    for size in (1.0, 1e-60, 1e60):
+        right = size * np.random.default_rng(1).standard_normal(matrix.shape[0])
+        x = right.copy()
+        fronts_kernels.solve_system(plan.numbers, values, factors, x, work, True)
+        known = spsolve(matrix.tocsc(), right)
+        wrong = np.abs(x - known).max() / np.abs(known).max()
+        assert wrong <= (1e-14 * max(1.0, stiffness) + 1e-13 if exact else 0.02)
+
+
+def test_factors_that_are_too_poor_in_single_precision_are_made_in_double(monkeypatch):
+    monkeypatch.setattr(fronts, "WORTH_SINGLE", 0.0)
+    pattern, values, matrix = sheet(14, 11, 1e11)
+    plan = fronts.plan(pattern, unit=3)
+    factors, work = np.zeros(plan.factors), np.zeros(plan.work)
+    for _ in range(3):
+        assert fronts_kernels.factor_system(plan.numbers, values, factors, work, True)
+        assert plan.numbers[IN_SINGLE] == 0
+    x = np.ones(matrix.shape[0])
+    fronts_kernels.solve_system(plan.numbers, values, factors, x, work, True)
+    assert np.abs(matrix @ x - 1.0).max() <= 1e-14 * np.abs(values).max()
+    # After some time they are tried again.
+    plan.numbers[RESTING] = 0
+    easy = sheet(14, 11, 1.0)[1]
+    assert fronts_kernels.factor_system(plan.numbers, easy, factors, work, True)
+    assert plan.numbers[IN_SINGLE] == 1
+
+
+@pytest.mark.parametrize("single", [True, False])
 @pytest.mark.parametrize("dissected", [True, False])
-def test_threads_share_fronts_to_the_same_bytes(monkeypatch, dissected):
+def test_threads_share_fronts_to_the_same_bytes(monkeypatch, dissected, single):
     monkeypatch.setattr(fronts, "WORTH_THREADS", 0.0)
+    monkeypatch.setattr(fronts, "WORTH_SINGLE", 0.0 if single else np.inf)
     pattern = net(24, 20, 1)
     matrix = csr_array(0.5 * (pattern + pattern.T))
     matrix.setdiag(matrix.diagonal() + 30.0)
@@ -140,6 +201,7 @@ def test_threads_share_fronts_to_the_same_bytes(monkeypatch, dissected):
         fronts_kernels.solve_system(numbers, matrix.data, factors, x, work, True)
         assert np.abs(matrix @ x - 1.0).max() <= 1e-12
         made.append(x.tobytes())
+        assert numbers[IN_SINGLE] == single
         assert not fronts_kernels.factor_system(numbers, np.zeros(pattern.nnz), factors, work, True)
     assert made[0] == made[1] == made[2]
 

@@ -25,6 +25,8 @@ MERGED = 12
 """A front and its parent become one when both together eliminate no more than this."""
 WORTH_THREADS = 1e7
 """Multiplications of a factorization from which on it is shared by threads."""
+WORTH_SINGLE = 1e8
+"""Those from which on it is tried in single precision first."""
 PIECE = 0.55
 """Part of all operations above which a subtree is taken apart: what two threads share is then nearly even."""
 MOST_PIECES = 16
@@ -53,11 +55,14 @@ class Plan:
     """Multiplications of a symmetric factorization; an unsymmetric one takes twice as many."""
 
 
-def plan(pattern: Any, groups: Groups | None = None, points: Floats | None = None, unit: int = 1) -> Plan:
+def plan(
+    pattern: Any, groups: Groups | None = None, points: Floats | None = None, unit: int = 1, exact: bool = True
+) -> Plan:
     """Analyze a symmetric (n, n) scipy CSR pattern that has its whole diagonal (and may be grouped already).
 
     ``points`` (n, 3): where the unknowns lie in space, for an order by nested dissection; else by minimum degree.
-    ``unit``: so many unknowns for each of the n; value k of the pattern is a block of unit x unit, row by row.
+    ``unit``: so many unknowns for each of the n; value k of the pattern is a block of unit x unit, row by row. Not
+    ``exact``: solutions may have errors of some percent, for an iteration that repairs them.
     """
     import numpy as np
 
@@ -73,7 +78,7 @@ def plan(pattern: Any, groups: Groups | None = None, points: Floats | None = Non
     sizes = unit * np.array([len(some) for some in members], dtype=np.int64)
     fronts = _fronts(graph, parents, sizes) if points is None else _fronts_of_blocks(graph, parents, blocks)
     first = np.concatenate([[0], np.cumsum(sizes)])
-    return _laid_out(pattern, np.concatenate(members), fronts, first, unit)
+    return _laid_out(pattern, np.concatenate(members), fronts, first, unit, exact)
 
 
 def _fronts_of_blocks(graph: Any, parents: list[int], blocks: list[Rows]) -> list[_Front]:
@@ -129,7 +134,7 @@ def _fronts(graph: Any, parents: list[int], sizes: Rows) -> list[_Front]:
     return fronts
 
 
-def _laid_out(pattern: Any, order: Rows, fronts: list[_Front], first: Rows, unit: int) -> Plan:
+def _laid_out(pattern: Any, order: Rows, fronts: list[_Front], first: Rows, unit: int, exact: bool) -> Plan:
     import numpy as np
 
     from sceneql.simulation.linear.fronts_plan_kernels import FIELDS, HEAD
@@ -202,12 +207,28 @@ def _laid_out(pattern: Any, order: Rows, fronts: list[_Front], first: Rows, unit
     largest = int(heights.max(initial=0))
     halves = [number for first_front, root in pieces for number in (first_front, root + 1, 0)]
     parts: list[Any] = [table, scalars, expanded, maps, entries, np.zeros(n, dtype=np.int64), halves]
+    parts += [pattern.indptr, pattern.indices]
     starts = list(accumulate((len(part) for part in parts), initial=HEAD))
     head = [n, count, *starts[1:6], room, starts[6], len(pieces), *threads(), tile_address(piece), unit]
     head += [tile_address(forward_piece), tile_address(backward_piece)]
+    head += [*_single(float(operations.sum())), 0, 0, int(exact), *starts[7:9]]
     numbers = np.concatenate([np.array(part, dtype=np.int64) for part in (head, *parts)])
     work = max(room + largest * largest, int(row_starts[-1])) + 2 * n
     return Plan(numbers, factors, work, float(operations.sum()))
+
+
+def _single(operations: float) -> list[int]:
+    """The kernels in single precision; -1 where they are not worth it."""
+    if operations < WORTH_SINGLE:
+        return [-1] * 5
+    from sceneql.simulation.linear import fronts_single_kernels as single
+    from sceneql.simulation.linear.fronts_plan_kernels import FACTOR_SINGLE, SOLVE_SINGLE
+    from sceneql.simulation.numbered_kernels import number_of
+    from sceneql.simulation.threads_kernels import tile_address
+
+    pieces = (single.single_piece, single.single_forward_piece, single.single_backward_piece)
+    numbers = [number_of(single.factor_single, FACTOR_SINGLE), number_of(single.solve_single, SOLVE_SINGLE)]
+    return numbers + [tile_address(piece) for piece in pieces]
 
 
 def _runs(places: Rows, counts: Rows) -> tuple[Rows, Rows]:

@@ -4,11 +4,13 @@
 The integers of a plan: [unknowns, fronts, where these start: order, rows, maps, entries, pivots; floats of the
 updates; where the pieces start, how many; the numbers of threads_kernels.threads, the address of the kernel that
 factors a piece; unknowns of a unit, whose blocks make up the matrix; the addresses of the kernels that solve in a
-piece], then a table with FIELDS a front: first unknown, number eliminated, rows of the front, then where its rows, its
-map into the parent, its factors and its entries (blocks: first value, its place in the front) start, its last child
-and the child of its parent before it (-1: none), where its update stands in the work, and where its entries below the
-diagonal start; last a row that ends them. A map is in runs: where each ends in the update, and its first place in the
-parent. A piece: its first front, the one after its last, and whether it was factored.
+piece; numbers and addresses of the same of fronts_single_kernels (-1: not worth it), whether the factors are in single
+precision, how many next ones are not to be, whether solutions are to be refined; where the starts of the rows of
+blocks and their columns start], then a table with FIELDS a front: first unknown, number eliminated, rows of the
+front, then where its rows, its map into the parent, its factors and its entries (blocks: first value, its place in the
+front) start, its last child and the child of its parent before it (-1: none), where its update stands in the work, and
+where its entries below the diagonal start; last a row that ends them. A map is in runs: where each ends in the update,
+and its first place in the parent. A piece: its first front, the one after its last, and whether it was factored.
 A front keeps U (width x rows, the reciprocals of the pivots on its diagonal) and, where the matrix is not symmetric,
 L below it ((rows - width) x width). Symmetric: A = U^T D^-1 U. Pivots are sought in the same block of rows alone.
 """
@@ -19,7 +21,16 @@ from numba import types
 
 from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.arithmetic_kernels import fma, widest
-from sceneql.simulation.linear.fronts_plan_kernels import FIELDS, HEAD
+from sceneql.simulation.linear.fronts_plan_kernels import (
+    FIELDS,
+    HEAD,
+    IN_SINGLE,
+    RESTING,
+    SINGLE_FACTOR,
+    SINGLE_SOLVE,
+    factor_single_at,
+    solve_single_at,
+)
 from sceneql.simulation.linear.fronts_solve_kernels import solve_symmetric
 from sceneql.simulation.linear.fronts_symmetric_kernels import factor_symmetric, put
 from sceneql.simulation.linear.solver_kernels import FACTOR_SYSTEM, SOLVE_SYSTEM
@@ -29,6 +40,8 @@ TILE = 256
 """Columns of a tile of the update."""
 BLOCK = 48
 """Rows that are eliminated before the rest of a front is updated: their part of a tile stays in the cache."""
+RESTS = 15
+"""Factorizations in double precision after one in single precision was not good enough."""
 
 UPDATE = types.void(A, N, N, N, N, N)
 
@@ -140,6 +153,13 @@ def factor_system(plan, values, factors, work, symmetric):
     ``factors`` and ``work`` of the plan's sizes; ``symmetric`` says that the values are, so that half is computed.
     """
     if symmetric:
+        plan[IN_SINGLE] = 0
+        if plan[SINGLE_FACTOR] >= 0 and plan[RESTING] == 0:
+            if factor_single_at(plan[SINGLE_FACTOR])(plan, values, factors, work):
+                plan[IN_SINGLE] = 1
+                return True
+            plan[RESTING] = RESTS + 1
+        plan[RESTING] = max(0, plan[RESTING] - 1)
         return factor_symmetric(plan, values, factors, work)
     maps, entries, pivots = plan[4], plan[5], plan[6]
     front = work[plan[7] :]
@@ -196,7 +216,10 @@ def product(a, x, count):
 def solve_system(plan, values, factors, b, work, symmetric):
     """Solve by the factors of ``factor_system``; the solution takes the place of b."""
     if symmetric:
-        solve_symmetric(plan, factors, b, work)
+        if plan[IN_SINGLE] == 1:
+            solve_single_at(plan[SINGLE_SOLVE])(plan, values, factors, b, work)
+        else:
+            solve_symmetric(plan, factors, b, work)
         return True
     n, fronts, order, rows, pivots = plan[0], plan[1], plan[2], plan[3], plan[6]
     x = work[:n]

@@ -1,5 +1,16 @@
 # mypy: ignore-errors
 """How the integers of a plan lie (fronts_kernels.py says what they are)."""
 
-PIECES_AT, PIECES, ENTRY, THREADS, PIECE_AT, UNIT, FORWARD, BACKWARD, HEAD = range(8, 17)
+from numba import types
+
+from sceneql.simulation.numbered_kernels import kernel_at
+from sceneql.system_kernels import A, I
+
+PIECES_AT, PIECES, ENTRY, THREADS, PIECE_AT, UNIT, FORWARD, BACKWARD = range(8, 16)
+SINGLE_FACTOR, SINGLE_SOLVE, SINGLE_PIECE, SINGLE_FORWARD, SINGLE_BACKWARD = range(16, 21)
+IN_SINGLE, RESTING, EXACT, STARTS_AT, COLUMNS_AT, HEAD = range(21, 27)
 FIELDS = 11
+
+FACTOR_SINGLE = types.boolean(I, A, A, A)
+SOLVE_SINGLE = types.void(I, A, A, A, A)
+factor_single_at, solve_single_at = kernel_at(FACTOR_SINGLE), kernel_at(SOLVE_SINGLE)

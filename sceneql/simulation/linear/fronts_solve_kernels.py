@@ -11,7 +11,7 @@ from numba import types
 
 from sceneql.kernels import kernel, lean, lean_inlined
 from sceneql.simulation.arithmetic_kernels import widest
-from sceneql.simulation.lanes_kernels import fma, folded, load, spread, store
+from sceneql.simulation.lanes_kernels import BYTES, fma, folded, load, spread, store
 from sceneql.simulation.linear.fronts_plan_kernels import (
     BACKWARD,
     ENTRY,
@@ -25,7 +25,7 @@ from sceneql.simulation.linear.fronts_plan_kernels import (
 from sceneql.simulation.threads_kernels import TILE, over_threads
 from sceneql.system_kernels import A, I, N
 
-ROWS, LANES = 4, 8
+ROWS = 4
 WORTH_THREADS = 500_000
 """Numbers of the factors from which on threads share the fronts."""
 
@@ -58,12 +58,13 @@ def subtract(panel, height, k, rows, own):
         b, c, d = a + height, a + 2 * height, a + 3 * height
         p, q = -own[k] * panel[a + k], -own[k + 1] * panel[b + k + 1]
         r, s = -own[k + 2] * panel[c + k + 2], -own[k + 3] * panel[d + k + 3]
-        while j + LANES <= height:
+        lanes = BYTES // own.itemsize
+        while j + lanes <= height:
             sums = fma(p, load(panel, a + j), load(own, j))
             sums = fma(q, load(panel, b + j), sums)
             sums = fma(r, load(panel, c + j), sums)
             store(own, j, fma(s, load(panel, d + j), sums))
-            j += LANES
+            j += lanes
         while j < height:
             own[j] += p * panel[a + j] + q * panel[b + j] + r * panel[c + j] + s * panel[d + j]
             j += 1
@@ -80,16 +81,16 @@ def substitute(panel, height, k, rows, own):
     if rows == ROWS:
         a = k * height
         b, c, d = a + height, a + 2 * height, a + 3 * height
-        zero = spread(0.0)
-        p = q = r = s = zero
+        lanes = BYTES // own.itemsize
+        p = q = r = s = spread(own.dtype.type(0.0))
         j = k + rows
-        while j + LANES <= height:
+        while j + lanes <= height:
             known = load(own, j)
             p = fma(load(panel, a + j), known, p)
             q = fma(load(panel, b + j), known, q)
             r = fma(load(panel, c + j), known, r)
             s = fma(load(panel, d + j), known, s)
-            j += LANES
+            j += lanes
         own[k] -= folded(p)
         own[k + 1] -= folded(q)
         own[k + 2] -= folded(r)
@@ -110,9 +111,9 @@ def substitute(panel, height, k, rows, own):
             own[j] -= panel[j * height + i] * own[i]
 
 
-@lean(PASS, inner=True)
-def forward(plan, factors, x, carried, begin, end):
-    """Fronts begin..end of U^T D^-1 y = b, in x; children come before."""
+@lean_inlined
+def forward_of(plan, factors, x, carried, begin, end):
+    """Fronts begin..end of U^T D^-1 y = b, in x; children come before. All of float64, or all of float32."""
     widest()
     maps = plan[4]
     for s in range(begin, end):
@@ -134,8 +135,8 @@ def forward(plan, factors, x, carried, begin, end):
             x[first + k] = own[k]
 
 
-@lean(PASS, inner=True)
-def backward(plan, factors, x, carried, begin, end):
+@lean_inlined
+def backward_of(plan, factors, x, carried, begin, end):
     """Fronts begin..end of U x = y, parents first."""
     widest()
     rows = plan[3]
@@ -150,6 +151,18 @@ def backward(plan, factors, x, carried, begin, end):
             substitute(panel, height, k, min(ROWS, width - k), own)
         for k in range(width):
             x[first + k] = own[k]
+
+
+@lean(PASS, inner=True)
+def forward(plan, factors, x, carried, begin, end):
+    """The first pass in double precision."""
+    forward_of(plan, factors, x, carried, begin, end)
+
+
+@lean(PASS, inner=True)
+def backward(plan, factors, x, carried, begin, end):
+    """The second."""
+    backward_of(plan, factors, x, carried, begin, end)
 
 
 @kernel(TILE)

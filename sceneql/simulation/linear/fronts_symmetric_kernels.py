@@ -1,8 +1,9 @@
 # mypy: ignore-errors
 """The multifrontal factorization of symmetric matrices: U alone, in its place, on several threads.
 
-For the plan see fronts_kernels. A front's eliminated rows (width x rows) are computed where they stay, among the
-factors, with the reciprocals of the pivots D^-1 on the diagonal; A = U^T D^-1 U. Its update is the upper half of the
+For the plan see fronts_kernels; helpers are for arrays of either precision. A front's eliminated rows (width x rows)
+are computed where they stay, among the factors, with the reciprocals of the pivots D^-1 on the diagonal;
+A = U^T D^-1 U. Its update is the upper half of the
 square of its other rows. L = U^T D^-1 is never stored: its entries are products. Large subtrees of fronts are pieces
 that threads share; the bytes do not depend on how many there are.
 """
@@ -33,18 +34,18 @@ FEW = 4
 TILE = 384
 """Columns that are updated at a time: what of U belongs to them stays in the cache."""
 
-UPDATE = types.void(A, N, N, N, A, N, N, N, N)
 FACTOR_SYMMETRIC = types.boolean(I, A, A, A)
 FACTOR_FRONTS = types.boolean(I, A, A, A, N, N)
 
 
-@lean(UPDATE, inner=True)
+@lean_inlined
 def update(panel, height, begin, end, target, stride, shift, low, high):
     """Rows low..high of the front less L U of the rows begin..end (MOST at most), from the diagonal on.
 
     Entry (i, j) of the front is target[(i - shift) stride + j - shift].
     """
-    weights = coefficients()
+    widest()
+    weights = coefficients(panel)
     for tile in range(low, height, TILE):
         edge = min(tile + TILE, height)
         i = low
@@ -70,13 +71,14 @@ def update(panel, height, begin, end, target, stride, shift, low, high):
 @lean_inlined
 def eliminate_few(panel, height, begin, end):
     """At most FEW rows of U, among themselves; False where a pivot is 0 or not finite."""
+    widest()
     for k in range(begin, end):
         row = k * height
         pivot = panel[row + k]
         if not 0.0 < abs(pivot) < math.inf:
             return False
-        inverse = 1.0 / pivot
-        panel[row + k] = inverse
+        panel[row + k] = 1.0 / pivot
+        inverse = panel[row + k]
         for i in range(k + 1, end):
             factor = -(panel[row + i] * inverse)
             for j in range(i, end):
@@ -103,6 +105,7 @@ def eliminate_few(panel, height, begin, end):
 @lean_inlined
 def spread(panel, height, k, low, high, start):
     """Rows low..high of U less what row k takes from them, from column ``start`` on."""
+    widest()
     row = panel[k * height + start : (k + 1) * height]
     for i in range(low, high):
         below = panel[i * height + start : (i + 1) * height]
@@ -163,9 +166,12 @@ def take_in(panel, width, height, square, child, below, runs):
         run += 2
 
 
-@lean(FACTOR_FRONTS, inner=True)
-def factor_fronts(plan, values, factors, work, begin, end):
-    """Fronts begin..end, whose children are factored before them; False where a pivot is 0 or not finite."""
+@lean_inlined
+def fronts_of(plan, values, factors, work, begin, end):
+    """Fronts begin..end, whose children are factored before them; False where a pivot is 0 or not finite.
+
+    ``factors`` and ``work`` of float64, or both of float32.
+    """
     widest()
     maps, entries = plan[4], plan[5]
     for s in range(begin, end):
@@ -193,6 +199,12 @@ def factor_fronts(plan, values, factors, work, begin, end):
             update(panel, height, low, high, panel, height, 0, high, width)
             update(panel, height, low, high, square, rest, width, width, height)
     return True
+
+
+@lean(FACTOR_FRONTS, inner=True)
+def factor_fronts(plan, values, factors, work, begin, end):
+    """`fronts_of` in double precision."""
+    return fronts_of(plan, values, factors, work, begin, end)
 
 
 @kernel(PIECE)

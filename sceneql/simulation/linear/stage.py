@@ -48,8 +48,11 @@ class StagePlan:
     """How the systems are solved, for `explain`."""
 
 
-def stage_plan(system: System) -> StagePlan:
-    """Analyze an island whose Jacobian was asked for. Raises LimitRefused where it could not be had."""
+def stage_plan(system: System, exact: bool = False) -> StagePlan:
+    """Analyze an island whose Jacobian was asked for. Raises LimitRefused where it could not be had.
+
+    Not ``exact``: solutions may have errors of some percent, which Newton's method repairs.
+    """
     import numpy as np
 
     from sceneql.simulation.linear.elimination import kinds_of
@@ -66,7 +69,7 @@ def stage_plan(system: System) -> StagePlan:
             "take `auto`, `verlet` or `dop853`, which need none, or fewer masses",
         )
     inverse = _inverse_masses(system)
-    left, pattern, solver = _chosen(system, kinds_of(system, inverse))
+    left, pattern, solver = _chosen(system, kinds_of(system, inverse), exact)
     square = left.unit**2
     parts, diagonal = _parts(left, pattern)
     lists = [left.core, left.positions.ravel(), parts.ravel(), diagonal, _twins(pattern), solver.numbers, left.tallies]
@@ -95,21 +98,21 @@ class _Solver:
     text: str
 
 
-def _chosen(system: System, kinds: Kinds) -> tuple[Left, Any, _Solver]:
+def _chosen(system: System, kinds: Kinds, exact: bool) -> tuple[Left, Any, _Solver]:
     """What is left, its pattern and how it is solved: by masses where their factors do not fill up too much."""
     from sceneql.simulation.linear.elimination import left_by_entries, left_by_masses
 
     by_masses = left_by_masses(system, kinds) if kinds.core.sum() > SMALL else None
     if by_masses is not None:
         pattern = _pattern(by_masses)
-        solver = _factored(pattern, 3, _points(system, by_masses))
+        solver = _factored(pattern, 3, _points(system, by_masses), exact)
         if solver is not None:
             return by_masses, pattern, solver
     left = left_by_entries(system, kinds)
     pattern = _pattern(left)
     if one_grid(system, left.core):
         return left, pattern, _over_grids(system, left.core, pattern)
-    solver = None if by_masses is not None else _factored(pattern, 1, _points(system, left))
+    solver = None if by_masses is not None else _factored(pattern, 1, _points(system, left), exact)
     return left, pattern, solver or _iterations(pattern)
 
 
@@ -202,7 +205,7 @@ def likely_kernels(system: System) -> tuple[str, ...]:
     return tuple(f"{__package__}.{name}_kernels" for name in (("dense",) if few else ("fronts_symmetric", "fronts")))
 
 
-def _factored(pattern: Any, unit: int, points: Floats | None) -> _Solver | None:
+def _factored(pattern: Any, unit: int, points: Floats | None, exact: bool) -> _Solver | None:
     """A factorization on a pattern of units; None where it would fill up too much."""
     import numpy as np
 
@@ -222,7 +225,7 @@ def _factored(pattern: Any, unit: int, points: Floats | None) -> _Solver | None:
     solid = groups.graph.nnz > (SOLID + 1) * count and count > SOLID_GROUPS
     if solid or count > MOST_GROUPS:
         return None
-    plan = fronts.plan(pattern, groups, points, unit)
+    plan = fronts.plan(pattern, groups, points, unit, exact)
     if plan.operations > MOST_OPERATIONS:
         return None
     text = f"sparse factorization of {m} unknowns, {plan.factors:.3g} numbers in its factors"

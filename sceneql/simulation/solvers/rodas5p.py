@@ -140,7 +140,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
 
     from sceneql.simulation.linear.stage import stage_plan
 
-    plan = stage_plan(system)
+    plan = stage_plan(system, exact=True)
     assert system.pattern is not None
     room, stages = system.pattern.room, len(COUPLINGS)
     return Prepared(

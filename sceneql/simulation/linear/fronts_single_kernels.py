@@ -1,0 +1,186 @@
+# mypy: ignore-errors
+"""Large symmetric systems by factors in single precision, which take half the time and half the memory.
+
+The factors of a system are tried on one right side: where its solution is not right to some digits already, they are
+given up and those in double precision made (fronts_kernels). Solutions are refined by their residuals in double
+precision until nothing changes (Wilkinson 1963; Higham, Accuracy and Stability of Numerical Algorithms, 2002, ch. 12),
+or, where the caller is an iteration that repairs what is left, not at all. See fronts_kernels for the plan; ``work``:
+x and a residual (n,), then scratch in single precision.
+"""
+
+import math
+
+import numpy as np
+from numba import types
+
+from sceneql.kernels import kernel, lean, lean_inlined
+from sceneql.simulation.linear.fronts_plan_kernels import (
+    COLUMNS_AT,
+    ENTRY,
+    EXACT,
+    FACTOR_SINGLE,
+    PIECES,
+    PIECES_AT,
+    SINGLE_BACKWARD,
+    SINGLE_FORWARD,
+    SINGLE_PIECE,
+    SOLVE_SINGLE,
+    STARTS_AT,
+    THREADS,
+    UNIT,
+)
+from sceneql.simulation.linear.fronts_solve_kernels import PASS, backward_of, forward_of
+from sceneql.simulation.linear.fronts_symmetric_kernels import FACTOR_FRONTS, fronts_of
+from sceneql.simulation.threads_kernels import TILE, over_threads
+from sceneql.system_kernels import A, I
+
+GOOD = 0.02
+"""Relative error of a solution up to which the factors are used."""
+MOST = 12
+"""Refinements of a solution."""
+REFINED = 1e-14
+"""Relative change of a solution that is the last one."""
+STALLED = 0.25
+"""Part of the change before that is rounding alone."""
+TRIED = 1140671485
+"""The multiplier by which the signs of the right side are drawn that factors are tried on."""
+
+SUBTRACT = types.void(I, A, A, A)
+
+
+@lean(FACTOR_FRONTS, inner=True)
+def factor_fronts(plan, values, factors, work, begin, end):
+    """`fronts_of` in single precision."""
+    return fronts_of(plan, values, factors.view(np.float32), work.view(np.float32), begin, end)
+
+
+@lean(PASS, inner=True)
+def forward(plan, factors, x, carried, begin, end):
+    """The first pass of a solution."""
+    forward_of(plan, factors.view(np.float32), x.view(np.float32), carried.view(np.float32), begin, end)
+
+
+@lean(PASS, inner=True)
+def backward(plan, factors, x, carried, begin, end):
+    """The second."""
+    backward_of(plan, factors.view(np.float32), x.view(np.float32), carried.view(np.float32), begin, end)
+
+
+@kernel(TILE)
+def single_piece(number, t, values, factors, work, plan):
+    """The fronts of a piece; its third integer says that all pivots were regular."""
+    at = plan[PIECES_AT] + 3 * number
+    plan[at + 2] = 1 if factor_fronts(plan, values, factors, work, plan[at], plan[at + 1]) else 0
+
+
+@kernel(TILE)
+def single_forward_piece(number, t, factors, x, carried, plan):
+    """The first pass over a piece."""
+    at = plan[PIECES_AT] + 3 * number
+    forward(plan, factors, x, carried, plan[at], plan[at + 1])
+
+
+@kernel(TILE)
+def single_backward_piece(number, t, factors, x, carried, plan):
+    """The second."""
+    at = plan[PIECES_AT] + 3 * number
+    backward(plan, factors, x, carried, plan[at], plan[at + 1])
+
+
+@lean_inlined
+def solve_roughly(plan, factors, r, room):
+    """Put the solution for a right side in its place; its size, which may be beyond single precision, is kept apart."""
+    n, order, fronts, pieces = plan[0], plan[2], plan[1], plan[PIECES]
+    half = (n + 1) // 2
+    x, carried = room[:half], room[half:]
+    size = largest(r, n)
+    if size == 0.0:
+        return
+    own = x.view(np.float32)
+    for k in range(n):
+        own[k] = r[plan[order + k]] / size
+    over_threads(plan[ENTRY], plan[THREADS], plan[SINGLE_FORWARD], pieces, 0.0, factors, x, carried, plan)
+    done = 0
+    for at in range(plan[PIECES_AT], plan[PIECES_AT] + 3 * pieces, 3):
+        forward(plan, factors, x, carried, done, plan[at])
+        done = plan[at + 1]
+    forward(plan, factors, x, carried, done, fronts)
+    last = fronts
+    for at in range(plan[PIECES_AT] + 3 * (pieces - 1), plan[PIECES_AT] - 3, -3):
+        backward(plan, factors, x, carried, plan[at + 1], last)
+        last = plan[at]
+    backward(plan, factors, x, carried, 0, last)
+    over_threads(plan[ENTRY], plan[THREADS], plan[SINGLE_BACKWARD], pieces, 0.0, factors, x, carried, plan)
+    for k in range(n):
+        r[plan[order + k]] = size * own[k]
+
+
+@lean(SUBTRACT, inner=True)
+def subtract_product(plan, values, x, r):
+    """r - A x in the place of r."""
+    unit, starts, columns = plan[UNIT], plan[STARTS_AT], plan[COLUMNS_AT]
+    square = unit * unit
+    for row in range(plan[0] // unit):
+        for place in range(plan[starts + row], plan[starts + row + 1]):
+            column, at = unit * plan[columns + place], square * place
+            for i in range(unit):
+                total = 0.0
+                for j in range(unit):
+                    total += values[at + unit * i + j] * x[column + j]
+                r[unit * row + i] -= total
+
+
+@lean_inlined
+def largest(x, count):
+    """The largest |x[k]|; NaN where one is."""
+    most = 0.0
+    for k in range(count):
+        if not abs(x[k]) <= most:
+            most = abs(x[k])
+    return most
+
+
+@lean(FACTOR_SINGLE, inner=True)
+def factor_single(plan, values, factors, work):
+    """Factor as fronts_kernels.factor_system does; False where the factors are not good enough."""
+    over_threads(plan[ENTRY], plan[THREADS], plan[SINGLE_PIECE], plan[PIECES], 0.0, values, factors, work, plan)
+    done = 0
+    for at in range(plan[PIECES_AT], plan[PIECES_AT] + 3 * plan[PIECES], 3):
+        if plan[at + 2] == 0 or not factor_fronts(plan, values, factors, work, done, plan[at]):
+            return False
+        done = plan[at + 1]
+    if not factor_fronts(plan, values, factors, work, done, plan[1]):
+        return False
+    n = plan[0]
+    x, r, room = work[:n], work[n : 2 * n], work[2 * n :]
+    for k in range(n):
+        x[k] = 1.0 if (TRIED * (k + 1) >> 16) & 1 == 0 else -1.0
+        r[k] = x[k]
+    solve_roughly(plan, factors, x, room)
+    subtract_product(plan, values, x, r)
+    solve_roughly(plan, factors, r, room)
+    wrong, whole = largest(r, n), largest(x, n)
+    return wrong <= GOOD * whole and whole < math.inf
+
+
+@lean(SOLVE_SINGLE, inner=True)
+def solve_single(plan, values, factors, b, work):
+    """Solve by the factors of ``factor_single``; the solution takes the place of b."""
+    n = plan[0]
+    x, r, room = work[:n], work[n : 2 * n], work[2 * n :]
+    for k in range(n):
+        x[k], r[k] = 0.0, b[k]
+    before = math.inf
+    for _ in range(MOST):
+        solve_roughly(plan, factors, r, room)
+        for k in range(n):
+            x[k] += r[k]
+        change = largest(r, n)
+        if plan[EXACT] == 0 or change <= REFINED * largest(x, n) or not change < STALLED * before:
+            break
+        before = change
+        for k in range(n):
+            r[k] = b[k]
+        subtract_product(plan, values, x, r)
+    for k in range(n):
+        b[k] = x[k]
