@@ -168,7 +168,8 @@ def test_factors_that_are_too_poor_in_single_precision_are_made_in_double(monkey
     plan = fronts.plan(pattern, unit=3)
     factors, work = np.zeros(plan.factors), np.zeros(plan.work)
     for _ in range(3):
-        assert fronts_kernels.factor_system(plan.numbers, values, factors, work, True)
+        with np.errstate(all="ignore"):  # where kernels are not compiled, numpy would warn of poor factors
+            assert fronts_kernels.factor_system(plan.numbers, values, factors, work, True)
         assert plan.numbers[IN_SINGLE] == 0
     x = np.ones(matrix.shape[0])
     fronts_kernels.solve_system(plan.numbers, values, factors, x, work, True)
