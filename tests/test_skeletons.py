@@ -126,8 +126,10 @@ def check_segment(tape, origin, direction, t0, t1):
     room = arguments(tape)
     c0, c1, e, status = segment(*room, *origin, *direction, t0, t1, True)
     assert status == WHOLE
-    for low, high in ((t0, t1), (t0 + 0.3 * (t1 - t0), t0 + 0.4 * (t1 - t0))):  # a piece looks at what was surveyed
-        c0, c1, e, _ = segment(*room, *origin, *direction, low, high, low == t0)
+    # A piece looks at what was surveyed, or at what the piece before it looked at where it is one of that.
+    for begin, end in ((0.0, 1.0), (0.3, 0.4), (0.32, 0.37), (0.37, 0.6), (0.33, 0.35), (0.05, 0.9), (0.8, 0.81)):
+        low, high = t0 + begin * (t1 - t0), t0 + end * (t1 - t0)
+        c0, c1, e, _ = segment(*room, *origin, *direction, low, high, end == 1.0)
         tau = np.linspace(-1.0, 1.0, 61)
         t = 0.5 * (low + high) + 0.5 * (high - low) * tau
         f = field_values(tape, origin + t[:, None] * direction)

@@ -84,6 +84,9 @@ def search(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tole
             break
         if b - a >= 0.5 * width or b - a <= 1.0e-4 * least:
             if b - a <= least:
+                if held and b == end:  # rounding leaves no narrower bracket, but one it is
+                    outcome = HIT
+                    a = min(max(root, a), b)
                 break
             b = a + 0.5 * (b - a)
     return outcome, a

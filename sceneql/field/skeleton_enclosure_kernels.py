@@ -15,6 +15,7 @@ from sceneql.field.skeleton_kernels import (
     NODE,
     RADIUS,
     RADIUS_B,
+    SEGMENT,
     SHAPE,
     STRIDE,
     WEIGHT,
@@ -23,6 +24,9 @@ from sceneql.field.skeleton_kernels import (
 )
 from sceneql.kernels import inlined
 
+LISTED, LISTED_FROM, LISTED_TO = 4, 5, 6
+"""Columns of a skeleton's row: how many rows are listed behind those of the surveyed parts, and for which piece of the
+line, from where to where along it."""
 CONDITION = 7
 """Column of a part's second row: how much more than a segment's a triangle's distance suffers from rounding."""
 
@@ -124,6 +128,24 @@ def fallen(kind, least, s0, s1, es):
 
 
 @inlined
+def passes_by(parts, i, cx, cy, cz, ux, uy, uz, speed2, blur):
+    """Whether the points c + u tau +- blur, tau in [-1, 1], surely miss the ball around segment i's reach."""
+    wx = cx - 0.5 * (parts[i, 0] + parts[i, 3])
+    wy = cy - 0.5 * (parts[i, 1] + parts[i, 4])
+    wz = cz - 0.5 * (parts[i, 2] + parts[i, 5])
+    sx = parts[i, 3] - parts[i, 0]
+    sy = parts[i, 4] - parts[i, 1]
+    sz = parts[i, 5] - parts[i, 2]
+    square = wx * wx + wy * wy + wz * wz
+    way = abs(wx * ux + wy * uy + wz * uz)
+    reach = 0.5 * np.sqrt(sx * sx + sy * sy + sz * sz) + max(parts[i, RADIUS], parts[i + 1, RADIUS_B]) + 2.0 * blur
+    least = reach * reach * (1.0 + 1.0e-9) + 1.0e-12 * (square + speed2)
+    if way < speed2:
+        return square * speed2 - way * way > least * speed2
+    return square - 2.0 * way + speed2 > least
+
+
+@inlined
 def within_reach(parts, start, stop, scratch, base, cx, cy, cz, ux, uy, uz, speed2, point_blur):
     """Copy the parts that reach to the points c + u tau +- blur to rows base.. of scratch; how many rows."""
     found = 0
@@ -132,6 +154,10 @@ def within_reach(parts, start, stop, scratch, base, cx, cy, cz, ux, uy, uz, spee
         if parts[i + 1, SHAPE] == NODE:
             clear = segment_outside(parts, i, cx, cy, cz, ux, uy, uz, point_blur)
             i += STRIDE + (int(parts[i, RADIUS]) if clear else 0)
+            continue
+        plain = parts[i + 1, SHAPE] == SEGMENT
+        if plain and passes_by(parts, i, cx, cy, cz, ux, uy, uz, speed2, point_blur):
+            i += STRIDE
             continue
         least, _, _, _ = part_segment(parts, i, cx, cy, cz, ux, uy, uz, speed2, point_blur)
         if least < 1.0:
@@ -148,7 +174,8 @@ def skeleton_segment(parts, start, stop, scratch, k, base, p, survey):
     """(c0, c1, e) of the density of the skeleton in rows start..stop-1 at the point enclosed in rows p..p+2 of scratch.
 
     A survey goes down the hierarchy and copies the parts that may count to rows base.. of scratch (their number to
-    scratch[k, 3]); later calls, on pieces of the surveyed segment, look only at those.
+    scratch[k, 3]); later calls, on pieces of the surveyed segment, look only at those. What counts of these in the
+    segment at hand is copied behind them, where there is room, for calls on pieces of that in turn.
     """
     cx = scratch[p, 0]
     cy = scratch[p + 1, 0]
@@ -160,11 +187,17 @@ def skeleton_segment(parts, start, stop, scratch, k, base, p, survey):
     speed2 = (ux * ux + uy * uy + uz * uz) * (1.0 + 4.0 * PAD) + TINY
     if survey:
         scratch[k, 3] = within_reach(parts, start, stop, scratch, base, cx, cy, cz, ux, uy, uz, speed2, point_blur)
+        scratch[k, LISTED_TO] = -np.inf
     half = np.sqrt(speed2)
+    here = (cx * ux + cy * uy + cz * uz) / half
+    i = base
     last = base + int(scratch[k, 3])
+    place = base if survey else last
+    if here - half >= scratch[k, LISTED_FROM] - point_blur and here + half <= scratch[k, LISTED_TO] + point_blur:
+        i, last = last, last + int(scratch[k, LISTED])
+    listing = survey or 2 * int(scratch[k, 3]) <= stop - start
     found = 0
     c0 = c1 = e = 0.0
-    i = base
     while i < last:
         group = scratch[i + 1, GROUP]
         weight = scratch[i, WEIGHT]
@@ -186,10 +219,10 @@ def skeleton_segment(parts, start, stop, scratch, k, base, p, survey):
                 near = nearest <= rival
             if near:
                 least, s0, s1, es = part_segment(scratch, i, cx, cy, cz, ux, uy, uz, speed2, point_blur)
-                if survey:
+                if listing:
                     for j in range(8):
-                        scratch[base + found, j] = scratch[i, j]
-                        scratch[base + found + 1, j] = scratch[i + 1, j]
+                        scratch[place + found, j] = scratch[i, j]
+                        scratch[place + found + 1, j] = scratch[i + 1, j]
                     found += STRIDE
                 if least < 1.0:
                     f0, f1, ef = fallen(scratch[i + 1, KERNEL], least, s0, s1, es)
@@ -204,4 +237,6 @@ def skeleton_segment(parts, start, stop, scratch, k, base, p, survey):
         e += abs(weight) * em + PAD * (abs(c0) + abs(c1))
     if survey:
         scratch[k, 3] = found
+    elif listing:
+        scratch[k, LISTED], scratch[k, LISTED_FROM], scratch[k, LISTED_TO] = found, here - half, here + half
     return c0, c1, e + 4.0 * PAD * (abs(c0) + abs(c1))
