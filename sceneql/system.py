@@ -81,9 +81,11 @@ class Slopes:
     (their entries are summed) and stay the same for the run; rows of the energy taken out (Bodies.work_at) are left
     out. It stands in a kernel file of its own, which explicit solvers then never load.
 
-    While floats[2] is above 0, Newton's method far from a solution asks for slopes that keep its systems positive
-    definite: a kernel that can leaves out what pushes masses away, such as the part of a spring's compression across
-    it, as far as it exceeds floats[2] [1/s^2] times the mass.
+    While floats[2] is above 0, Newton's method asks for what serves it best. The force itself, where slopes contain it,
+    is then to be that which the latest change foresaw: floats[-2n : -n] is the state whose slopes that came from,
+    floats[-n:] the state after it. Far from a solution floats[2] is finite, and systems are to be positive definite: a
+    kernel that can leaves out what pushes masses away, such as the part of a spring's compression across it, as far as
+    it exceeds floats[2] [1/s^2] times the mass.
     """
 
     kernel: str

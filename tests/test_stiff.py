@@ -76,17 +76,38 @@ def test_the_jacobian_is_the_derivative_of_the_rate(tmp_path, scene):
 
 def test_definite_slopes_leave_a_spring_what_inertia_holds(tmp_path):
     """Pressed by a tenth, k = 500 N/m pushes across with 500 * 0.1/0.9 N/m, on the lighter mass of 2 kg."""
-    masses = "{a: {position: 0 0 0 m, mass: 3 kg}, b: {position: 0.9 0 0 m, mass: 2 kg}}"
-    spring = "{between: [a, b], stiffness: 500 N/m, rest: 1 m}"
-    run = island(tmp_path, f"models: {{net: {{mass_spring: {{masses: {masses}, springs: [{spring}]}}}}}}")
-    march = March(run.assembly.finish(jacobian=True), Rk4().stepper(), 1.0)
-    bodies = run.bodies["net"]
+    march, bodies = lone_spring(tmp_path)
+    y = march.system.y
     row, column = bodies.velocity_at + 4, bodies.position_at + 4
+    march.floats[-2 * len(y) :] = np.concatenate([y, y])
     for rate, expected in ((0.0, 500 / 9), (1e6, 500 / 9), (20.0, 40.0), (1e-300, 0.0)):
         march.floats[2] = rate
-        found = dense(march, 0.0, march.system.y)
+        found = dense(march, 0.0, y)
         assert found[row, column] == pytest.approx(expected / 2)
         assert found[row - 1, column - 1] == pytest.approx(-500 / 2)
+
+
+def test_definite_slopes_take_the_force_that_the_latest_change_foresaw(tmp_path):
+    """A spring of 0.9 m that a change moves by 0.3 m along and 0.4 m across: its linear length is 1.2 m."""
+    march, bodies = lone_spring(tmp_path)
+    old, new = march.system.y, march.system.y.copy()
+    new[bodies.position_at + 3] += 0.3
+    new[bodies.position_at + 4] += 0.4
+    march.floats[-2 * len(old) :] = np.concatenate([old, new])
+    march.floats[2] = 1.0
+    found = dense(march, 0.0, new)
+    across = np.array([-0.4, 1.2, 0.0]) / np.hypot(0.4, 1.2)
+    at = bodies.position_at + 3, bodies.velocity_at + 3
+    block = found[at[1] : at[1] + 3, at[0] : at[0] + 3]
+    assert across @ block @ across == pytest.approx(-500 * (1.2 - 1.0) / np.hypot(0.4, 1.2) / 2)
+
+
+def lone_spring(folder):
+    """A spring of 500 N/m and 1 m between 3 kg and 2 kg, pressed to 0.9 m: the march and the masses."""
+    masses = "{a: {position: 0 0 0 m, mass: 3 kg}, b: {position: 0.9 0 0 m, mass: 2 kg}}"
+    spring = "{between: [a, b], stiffness: 500 N/m, rest: 1 m}"
+    run = island(folder, f"models: {{net: {{mass_spring: {{masses: {masses}, springs: [{spring}]}}}}}}")
+    return March(run.assembly.finish(jacobian=True), Rk4().stepper(), 1.0), run.bodies["net"]
 
 
 def test_a_term_that_does_not_know_its_slopes_is_differenced(tmp_path):

@@ -37,7 +37,7 @@ VECTORS = 12
 """Arrays of the state's size that a run keeps: ends and rates of a step, and the stages of a solver."""
 RESERVED_FLOATS = 3
 """floats[0] counts rate evaluations; floats[1] is set by a contact that changed the state (march_kernels); floats[2] is
-above 0 while slopes are to leave out what makes a system indefinite (system.Slopes)."""
+above 0 while slopes are to serve Newton's method (system.Slopes)."""
 
 
 class Setting(Protocol):
@@ -315,7 +315,7 @@ class IslandAssembly:
         return System(
             structure=structure,
             y=y,
-            floats=np.concatenate(self._numbers),
+            floats=np.concatenate([*self._numbers, np.zeros(0 if found is None else 2 * len(y))]),
             ints=ints,
             pairs=sum(pairs),
             partner=partner,

@@ -1,6 +1,8 @@
 # mypy: ignore-errors
 """The derivatives of what a flow carries."""
 
+import math
+
 from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.grids.drift_kernels import UPWIND, VAN_LEER, beyond
 from sceneql.system_kernels import TERM
@@ -59,7 +61,7 @@ def carry(t, y, entries, floats, ints):
                 up, down, up_column, down_column, behind_column = cell, before, 2, 1, 3
                 behind = beyond(cell, place, count, stride, 1, periodic, floats, volumes)
             by_behind = by_ahead = 0.0
-            if behind >= 0 and floats[DEFINITE_AT] == 0.0:
+            if behind >= 0 and not 0.0 < floats[DEFINITE_AT] < math.inf:
                 by_behind, by_ahead = bends(kind, c[up] - c[behind], c[down] - c[up])
             for row in range(2):
                 weight = -flow / floats[divisors + before] if row == 0 else flow / floats[divisors + cell]

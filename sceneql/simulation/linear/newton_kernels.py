@@ -1,14 +1,17 @@
 # mypy: ignore-errors
 """Newton's method for one implicit stage: y = base + a f(t, y), by the linear systems of stage_kernels.
 
+Slopes are those at the forces that the change before foresaw (system.Slopes). Those found at the new state itself would
+not do: a stiff spring that turns stretches by the square of its move, and the force of that, gone after the next
+change, hides all that is left across it (Magisano, Leonetti & Garcea 2017).
+
 The Jacobian and its factors are kept from stage to stage and step to step as long as the iteration contracts well
-(Hairer & Wanner 1996, IV.8). Where the plain iteration fails it begins again with definite slopes and a line search:
-a change that overshoots is cut where the residual does no work on it (Matthies & Strang 1979; Baraff & Witkin 1998).
-That converges from far, but slowly; so the plain iteration is tried again from there, and ends it.
+(Hairer & Wanner 1996, IV.8). Where the plain iteration fails it begins again with care: slopes are definite, and
+evaluated anew for every change. Where that slows down, the plain iteration is tried again from there.
 
 ``memory`` (MEMORY,): the a that is factored (0: none), the contraction of last time; the relative and absolute
-tolerance of the norm, and the part of it that the iteration's own error may take; 1 while stages begin with definite
-slopes (the last one ended with them), and 1 if those are factored.
+tolerance of the norm, and the part of it that the iteration's own error may take; 1 while stages begin with care (the
+last one ended with it), and 1 if definite slopes are factored.
 """
 
 import math
@@ -17,11 +20,8 @@ from numba import types
 
 from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.linear.stage_kernels import (
-    CORE_AT,
     POSITIONS,
     POSITIONS_AT,
-    SYMMETRIC,
-    UNKNOWNS,
     factor_stage,
     solve_stage,
 )
@@ -36,8 +36,10 @@ MOST = 25
 """Iterations of a plain stage."""
 MOST_CAREFUL = 100
 """Those of one with definite slopes."""
-PLAIN_AFTER = 30
-"""Careful iterations after which the plain one is tried again; twice as many after it failed there."""
+SLOWED = 0.5
+"""Contraction from which on the careful iteration is slow."""
+PLAIN_AFTER = 16
+"""Careful iterations after which the plain one is tried again if they are slow; twice as many if it failed there."""
 HELPS = 0.7
 """Contraction that the plain iteration needs there."""
 SLOW = 0.2
@@ -46,14 +48,9 @@ UNSEEN = 0.05
 """Contraction that is believed before there are two changes to tell it by."""
 TINY = 0.01
 """Change, in units of the tolerance, that is believed to be the last one by itself."""
-OVERSHOT = 0.9
-"""Part of its work at the start that the residual may do against a change at its end."""
-CUTS = 8
-HOLDS = 0.1
-"""Part of what inertia holds in a stage that definite slopes may push away, by each spring: all of a mass together
-seldom push more than inertia and the other springs hold. Without it buckled cloth converges but linearly."""
-NOTHING = 1e-300
-"""In its place where they do push more."""
+HOLDS = 0.02
+"""Part of what inertia holds in a stage that definite slopes may push away, by each spring: two dozen springs of a mass
+push no more than it holds. Without it buckled cloth converges but linearly; with more, changes grow without bound."""
 
 NEWTON = types.boolean(I, F, F, A, A, A, A, A, A, A, A, I, A, I)
 
@@ -99,14 +96,12 @@ def follow(plan, a, base, y):
 
 
 @lean_inlined
-def work_on(change, residual, scales, plan):
-    """The work of a residual on a change."""
-    core = plan[CORE_AT]
-    total = 0.0
-    for k in range(plan[UNKNOWNS]):
-        i = plan[core + k]
-        total += scales[k] * change[i] * residual[i]
-    return total
+def foresee(old, new, floats):
+    """Tell definite slopes which change the next one follows on (system.Slopes)."""
+    at = floats.size - 2 * old.size
+    for k in range(old.size):
+        floats[at + k] = old[k]
+        floats[at + old.size + k] = new[k]
 
 
 @lean_inlined
@@ -115,33 +110,6 @@ def leave(rate, t, a, base, y, residual, floats, ints):
     rate(t, y, residual, floats, ints)
     for k in range(y.size):
         residual[k] = base[k] + a * residual[k] - y[k]
-
-
-@lean_inlined
-def go(rate, t, a, base, y, change, residual, scales, plan, floats, ints):
-    """y + s change and what is left there; s <= 1 where the change by itself overshoots."""
-    before = work_on(change, residual, scales, plan)
-    for k in range(y.size):
-        y[k] += change[k]
-    leave(rate, t, a, base, y, residual, floats, ints)
-    low, high, part = 0.0, 1.0, 1.0
-    low_work, work = before, work_on(change, residual, scales, plan)
-    high_work = work
-    for _ in range(CUTS):
-        if not (work < -OVERSHOT * before or (work > OVERSHOT * before and part < 1.0)):
-            break
-        if work < 0.0:
-            high, high_work = part, work
-        else:
-            low, low_work = part, work
-        fall = low_work - high_work
-        ahead = low + (high - low) * (min(0.9, max(0.1, low_work / fall)) if fall != 0.0 else 0.5)
-        for k in range(y.size):
-            y[k] += (ahead - part) * change[k]
-        part = ahead
-        leave(rate, t, a, base, y, residual, floats, ints)
-        work = work_on(change, residual, scales, plan)
-    return part
 
 
 @lean(NEWTON, inner=True)
@@ -156,16 +124,16 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
     follow(plan, a, base, y)
     for k in range(n):
         guess[k] = y[k]
-    definite = memory[CAREFUL] > 0.0
+    foresee(y0, y0, floats)
+    careful = definite = memory[CAREFUL] > 0.0
     stale = memory[FACTORED] == 0.0 or definite or memory[DEFINITE] > 0.0
-    before = 0.0
+    before, before_mean = 0.0, 0.0
     patience, limit = PLAIN_AFTER, 1.0
-    holds = HOLDS / (a * a)
     iteration = since = 0
     leave(rate, t, a, base, y, residual, floats, ints)
-    while iteration < MOST or (memory[CAREFUL] > 0.0 and iteration < MOST_CAREFUL):
+    while iteration < MOST or (careful and iteration < MOST_CAREFUL):
         if stale:
-            floats[DEFINITE_AT] = holds if definite else 0.0
+            floats[DEFINITE_AT] = HOLDS / (a * a) if definite else math.inf
             slopes(functions, t, y, jacobian, floats, ints)
             floats[DEFINITE_AT] = 0.0
             memory[DEFINITE] = 1.0 if definite else 0.0
@@ -175,33 +143,29 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             memory[FACTORED] = a
             regular = factor_stage(plan, a, jacobian, scales, store)
         contraction = max(UNSEEN, memory[CONTRACTION])
-        part = 1.0
         if regular:
             for k in range(n):
                 change[k] = residual[k]
             regular = solve_stage(plan, a, jacobian, scales, store, change)
-        # The work on a change below the tolerance is that of rounding, which grows with the stiffness: it says nothing.
-        far = regular and definite and plan[SYMMETRIC] == 1
-        far = far and not largest(change, y0, y, memory) <= memory[SHARE]
-        if far and holds > NOTHING and work_on(change, residual, scales, plan) <= 0.0:
-            holds = NOTHING
-            iteration += 1
-            continue
         if regular:
-            if far:
-                part = go(rate, t, a, base, y, change, residual, scales, plan, floats, ints)
-            else:
-                for k in range(n):
-                    y[k] += change[k]
-                leave(rate, t, a, base, y, residual, floats, ints)
-            size = part * largest(change, y0, y, memory)
+            for k in range(n):
+                change[k] += y[k]
+            foresee(y, change, floats)
+            for k in range(n):
+                y[k], change[k] = change[k], change[k] - y[k]
+            leave(rate, t, a, base, y, residual, floats, ints)
+            size = largest(change, y0, y, memory)
+        mean = norm(change, y0, y, memory) if size < math.inf else math.inf
         if size < math.inf and since > 0:
             contraction = size / before if before > 0.0 else 0.0
             memory[CONTRACTION] = max(contraction, 1e-3)
         done = size == 0.0 or (contraction < 1.0 and size * contraction <= memory[SHARE] * (1.0 - contraction))
         # Steps of a given length have no estimate of their error beside this one: there, two changes have to tell it.
         done = done and (since > 0 or memory[SHARE] < 1.0 or size < TINY)
-        if done and part == 1.0:
+        # Where a few masses still buckle, by less than the tolerance, the largest change says nothing of the next one.
+        if careful and since > 0 and size <= memory[SHARE]:
+            done = done or mean * mean <= memory[SHARE] * (before_mean - mean)
+        if done:
             if not definite:
                 memory[CAREFUL] = 0.0
             return True
@@ -213,9 +177,10 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             if definite:
                 break
             memory[CAREFUL] = limit = 1.0
-            definite = stale = True
+            careful = definite = stale = True
             for k in range(n):
                 y[k] = guess[k]
+            foresee(y0, y0, floats)
             leave(rate, t, a, base, y, residual, floats, ints)
             since = 0
             continue
@@ -223,13 +188,13 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         stale = definite or (since > 1 and contraction > SLOW)
         if stale and since > 1:
             memory[CONTRACTION] = 1.0
-        if definite and since > patience and part == 1.0:
+        if definite and since >= patience and contraction > SLOWED:
             for k in range(n):
                 guess[k] = y[k]
             definite, stale, since = False, True, 0
             limit = HELPS
             patience *= 2
-        before = size
+        before, before_mean = size, mean
     memory[FACTORED] = 0.0
     fail(change, y)
     return False
