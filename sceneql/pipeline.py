@@ -235,7 +235,9 @@ class Tools:
         from renderers.develop import develop
         from sceneql.simulation.presence import look
 
-        frame = frame_of(self.graph, self.name, output.pixels, moment, self._frames, camera)
+        shot = output.seen_from(moment.time)
+        eye = camera if camera is not None or shot is None else shot.name
+        frame = frame_of(self.graph, self.name, output.pixels, moment, self._frames, eye)
         renderer = self._renderer(output)
         self.prepare(output)()
         picture = renderer.draw(frame)

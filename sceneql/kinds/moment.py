@@ -3,13 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, Union
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Surface
     from sceneql.kinds.objects import Object
     from sceneql.kinds.values import Ref, Value
     from sceneql.system import ModelState
+
+
+class Seen(Protocol):
+    """Something that has a value at an instant, besides the values of fields."""
+
+    def at(self, moment: Moment) -> Any:
+        """Its value."""
+
+
+Remembered = Union["Value", Seen]
 
 
 class Moment(Protocol):
@@ -33,8 +43,8 @@ class Moment(Protocol):
     def measure(self, value: Value) -> Any:
         """The value now, finite or not."""
 
-    def past(self, value: Value) -> list[tuple[float, Any]]:
-        """(time [s], value) at the instants before that an object asked for (`Object.remembers`), oldest first."""
+    def past(self, value: Remembered) -> list[tuple[float, Any]]:
+        """(time [s], value) at the instants before that a part asked for (its `remembers`), oldest first."""
 
     def course(self, value: Value, variant: str | None = None, until: float = ...) -> tuple[Floats, Floats]:
         """Times (n,) [s] of the run, whole or up to an instant, and at each a value (n, ...) of `Overlay.courses`.

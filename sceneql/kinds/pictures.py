@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sceneql.frame import RGB, Light, Surface, View
-    from sceneql.kinds.moment import Moment
+    from sceneql.kinds.moment import Moment, Remembered
     from sceneql.kinds.values import Value
 
 
@@ -25,6 +25,10 @@ class Camera(Kind):
     def looks_ahead(self) -> bool:
         """Whether it frames what is drawn over the whole film, so that the physics runs once ahead of it."""
         return True
+
+    def remembers(self) -> Iterable[tuple[Remembered, float, float]]:
+        """What it needs of the past (`Moment.past`): how far back [s], and how often [s]."""
+        return ()
 
     def view(self, size: tuple[int, int], moment: Moment) -> View:
         """The view of this instant."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
@@ -36,6 +37,10 @@ def axes_towards(back: Any, up: Any = (0.0, 1.0, 0.0)) -> Floats:
             break
     right /= np.linalg.norm(right)
     return np.array([right, np.cross(b, right), b])
+
+
+LONGEST, FINE = 12.0, 16.0
+"""How far back a follower remembers, in its lags, and how many places in one."""
 
 
 def corners(low: Any, high: Any) -> Floats:
@@ -89,6 +94,38 @@ def whereabouts(moment: Moment, ref: Ref) -> Any:
         low, high = part.extent(place, moment)
         return (low + high) / 2
     return moment.read(ref.name, "center" if "center" in part.gives else "position")
+
+
+@dataclass(frozen=True, slots=True)
+class Whereabouts:
+    """The place of a part, for what remembers it (kinds.moment.Seen)."""
+
+    ref: Ref
+
+    def at(self, moment: Moment) -> Any:
+        """(3,) now."""
+        return whereabouts(moment, self.ref)
+
+
+def behind(past: Sequence[tuple[float, Any]], now: float, place: Any, lag: float) -> Any:
+    """Where a follower is (3,) that at each time moves by (place - own)/lag a second, at the first place at the start.
+
+    The way (time [s], place) between is straight, and of that the solution is exact: the mean of the places so far
+    with the weight exp(-age/lag).
+    """
+    import numpy as np
+
+    times = np.array([*(time for time, _ in past), now])
+    places = np.array([*(where for _, where in past), place], dtype=float)
+    ages = (now - times) / lag
+    rest = np.exp(-ages)
+    lengths = np.maximum(ages[:-1] - ages[1:], 1e-300)
+    older = (rest[1:] - rest[:-1] * (1 + lengths)) / lengths
+    weights = np.zeros(len(times))
+    weights[:-1] += older
+    weights[1:] += rest[1:] - rest[:-1] - older
+    weights[0] += rest[0]
+    return weights @ places
 
 
 def seen_slopes(half_height: float, size: tuple[int, int], margin: float) -> tuple[float, float]:

@@ -7,21 +7,23 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from sceneql.kinds import Object, Value
+from sceneql.kinds import Camera, Object, Value
 
 if TYPE_CHECKING:
     from sceneql.graph import SimulationGraph
     from sceneql.kinds import Moment
+    from sceneql.kinds.moment import Remembered
 
 SLACK = 1e-9
 
 
 class History:
-    """The values that objects ask to be remembered (`Object.remembers`), as far back as they ask."""
+    """The values that objects and cameras ask to be remembered (`remembers`), as far back as they ask."""
 
     def __init__(self, graph: SimulationGraph) -> None:
-        asked = [one for task in graph.tasks.values() if isinstance(task.kind, Object) for one in task.kind.remembers()]
-        self._kept: dict[int, tuple[Value, float, float, deque[tuple[float, Any]]]] = {
+        kinds = [task.kind for task in graph.tasks.values() if isinstance(task.kind, Object | Camera)]
+        asked = [one for kind in kinds for one in kind.remembers()]
+        self._kept: dict[int, tuple[Remembered, float, float, deque[tuple[float, Any]]]] = {
             id(value): (value, keep, every, deque()) for value, keep, every in asked
         }
         self._seen = dict.fromkeys(self._kept, -1)
@@ -41,11 +43,11 @@ class History:
         """Remember the values at an instant."""
         for key in keys:
             value, keep, every, kept = self._kept[key]
-            kept.append((moment.time, moment.at(value)))
+            kept.append((moment.time, moment.at(value) if isinstance(value, Value) else value.at(moment)))
             while kept[0][0] < moment.time - keep - every:
                 kept.popleft()
 
-    def past(self, value: Value, now: float) -> list[tuple[float, Any]]:
+    def past(self, value: Remembered, now: float) -> list[tuple[float, Any]]:
         """(time [s], value) of the instants remembered up to ``now``, oldest first, for a value that was asked for."""
         _, keep, _, kept = self._kept[id(value)]
         return [(time, seen) for time, seen in kept if now - keep - SLACK <= time <= now]

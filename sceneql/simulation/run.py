@@ -24,6 +24,7 @@ from sceneql.simulation.survey import Survey, asked, survey
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Surface
     from sceneql.frame import Shape as Drawn
+    from sceneql.kinds.moment import Remembered
     from sceneql.simulation.march import March
     from sceneql.system import ModelState
 
@@ -250,8 +251,8 @@ class Instant:
             raise KeyError(node.name)
         return self.read(node.task, node.output)
 
-    def past(self, value: Value) -> list[tuple[float, Any]]:
-        """(time [s], value) at the instants before that an object asked for, oldest first."""
+    def past(self, value: Remembered) -> list[tuple[float, Any]]:
+        """(time [s], value) at the instants before that a part asked for, oldest first."""
         return self.run.history.past(value, self.time)
 
     def course(self, value: Value, variant: str | None = None, until: float = math.inf) -> tuple[Floats, Floats]:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from sceneql.kinds import Angle, Camera, Direction, DrawnRef, FixedScalar, Moment, Position, Problem, field
+from sceneql.kinds import Angle, Camera, Direction, DrawnRef, FixedScalar, FixedTime, Moment, Position, Problem, field
 from sceneql.simulation import framing
 
 if TYPE_CHECKING:
     from sceneql.frame import View
+    from sceneql.kinds.moment import Remembered
 
 
 class Perspective(Camera):
@@ -24,6 +26,7 @@ class Perspective(Camera):
     look_at: Position | None = field("The point in the middle of the picture; by default what it shows.", None)
     follow: DrawnRef | None = field("A part that it moves with, and looks at.", None)
     from_: Position = field("Its place as seen from what it follows.", "0 1 4 m")
+    lag: FixedTime = field("By how much it stays behind what it follows, softly: a time constant.", "0 s", at_least=0)
     fit: tuple[DrawnRef, ...] | None = field("The parts that must be in the picture over the whole film.", None)
     direction: Direction = field("With `fit`: from what it shows towards the camera.", "0.5 0.35 1")
     margin: FixedScalar = field("With `fit`: part of half the picture that is left free.", "0.08", at_least=0, below=1)
@@ -48,6 +51,17 @@ class Perspective(Camera):
         """Whether its place or its aim is left to what is drawn."""
         return self.follow is None and (self.fit is not None or self.position is None or self.look_at is None)
 
+    @cached_property
+    def _followed(self) -> framing.Whereabouts:
+        """What it remembers the places of."""
+        assert self.follow is not None
+        return framing.Whereabouts(self.follow)
+
+    def remembers(self) -> Iterable[tuple[Remembered, float, float]]:
+        """Where the part was that it follows."""
+        if self.follow is not None and self.lag > 0:
+            yield self._followed, framing.LONGEST * self.lag, self.lag / framing.FINE
+
     def view(self, size: tuple[int, int], moment: Moment) -> View:
         """The view of this instant. Raises ValueError where it would look at its own position."""
         half = math.tan(0.5 * float(moment.at(self.field_of_view)))
@@ -55,6 +69,8 @@ class Perspective(Camera):
         up = moment.at(self.up)
         if self.follow is not None:
             target = framing.whereabouts(moment, self.follow)
+            if self.lag > 0:
+                target = framing.behind(moment.past(self._followed), moment.time, target, self.lag)
             origin = target + moment.at(self.from_)
             axes = framing.axes_towards(origin - (target if aim is None else aim), up)
         elif self.fit is None and self.position is not None:
