@@ -19,16 +19,37 @@ ORIGIN, WAY, RADIUS_OF, LOW, HIGH, SPREAD = 0, 3, 6, 7, 8, 9
 BEAM = 10
 """Of a beam: a point and the unit direction of its axis, radius, where it begins and ends along the axis,
 and how much of the radius is due to how the rays part."""
+RUN = 4
+"""Columns that are gathered together: as many rays as follow each other in the rows."""
 HAIR = 1.0e-9
 DEEP = 1.0
 """Depth of a slice, relative to what a part takes of the beam on average."""
 
 
 @inlined
-def gather(rays, count, groups, wide, ids):
-    """Put the rays that have a length into ``wide``, those of a column of ``rays`` together; how many there are."""
-    n = 0
+def gather_whole(rays, count, groups, wide, ids):
+    """Put all rays into ``wide``, RUN columns together, each row of these by itself."""
+    for row in range(8):
+        source, target = rays[row], wide[row]
+        k = np.uint64(0)
+        for g in range(0, groups, RUN):
+            for first in range(g, count, groups):
+                for c in range(RUN):
+                    target[k + np.uint64(c)] = source[np.uint64(first + c)]
+                k += np.uint64(RUN)
+    k = 0
+    for g in range(0, groups, RUN):
+        for first in range(g, count, groups):
+            for c in range(RUN):
+                ids[np.uint64(k + c)] = first + c
+            k += RUN
+
+
+@inlined
+def gather_some(rays, count, groups, wide, ids):
+    """Put the rays that have a length into ``wide``, column by column."""
     begin, end = rays[6], rays[7]
+    n = 0
     for g in range(groups):
         for j in range(g, count, groups):
             ids[n] = j
@@ -37,6 +58,20 @@ def gather(rays, count, groups, wide, ids):
         source, target = rays[row], wide[row]
         for i in range(n):
             target[i] = source[np.uint64(ids[i])]
+
+
+@inlined
+def gather(rays, count, groups, wide, ids):
+    """Put the rays that have a length into ``wide``, those of neighboring columns of ``rays`` together; how many there
+    are."""
+    begin, end = rays[6], rays[7]
+    n = np.int32(0)
+    for j in range(count):
+        n += np.int32(1) if begin[j] < end[j] else np.int32(0)
+    if n == count and groups % RUN == 0 and count % groups == 0:
+        gather_whole(rays, count, groups, wide, ids)
+    else:
+        gather_some(rays, count, groups, wide, ids)
     t0, t1, dx, dy, dz = wide[FAR], wide[INVERSE_SPEED], wide[DX], wide[DY], wide[DZ]
     for axis in range(3):
         place, way = wide[PX + axis], wide[DX + axis]

@@ -17,16 +17,17 @@ from sceneql.field.tape_ops import HIT, MISS, UNDECIDED
 from sceneql.kernels import inlined
 
 F = np.float32
-LANES = 64
+LANES, VECTOR = 64, 16
 T, Q, WEIGHT, INVERSE = LANES, 2 * LANES, 3 * LANES, 3 * LANES + 1
 COLUMNS = 3 * LANES + 8
-A, B, END, AT_A, AT_B, SLOPE, STATE, TRIES, FINE, ROOT = range(0, 10 * LANES, LANES)
+A, B, END, AT_A, AT_B, SLOPE, STATE, TRIES, FINE, ROOT, TOP, DEEP = range(0, 12 * LANES, LANES)
 """Where in state there is: a segment, where the search ends, densities at the segment's ends, a sixth of the largest
 slope of D, then the least of f, outcome (LIVE until there is one; UNDECIDED at the first step: the ray begins inside),
-steps so far, width of a bracket that is good enough, the root."""
-ROWS = 10 * LANES
+steps so far, width of a bracket that is good enough, the root; no less than the largest density of the slice, the
+first place where one part alone has the threshold."""
+ROWS = 12 * LANES
 LIVE, MOST = F(-1.0), F(40.0)
-ZERO, HALF, ONE, TWO, SIX, TENTH = F(0.0), F(0.5), F(1.0), F(2.0), F(6.0), F(0.1)
+ZERO, HALF, ONE, TWO, SIX, SIXTEEN, TENTH = F(0.0), F(0.5), F(1.0), F(2.0), F(6.0), F(16.0), F(0.1)
 LESS, MORE = F(1.0 - 1.0e-5), F(1.0 + 1.0e-5)
 TINY, HUGE = F(1.0e-30), F(1.0e30)
 
@@ -75,8 +76,15 @@ def sum_up(table, kept, state, n):
 
 
 @inlined
-def advance(state, n, threshold, off, off_slope, anywhere):
-    """The next segment of each lane, or its outcome; ``off``, ``off_slope`` bound the rounding of D and its slope."""
+def advance(state, n, threshold, off, off_slope, bend, anywhere):
+    """The next segment of each lane, or its outcome; ``off``, ``off_slope`` bound the rounding of D and its slope,
+    ``bend`` its second derivative.
+
+    Returns how many lanes have no outcome. A bracket is good enough where D surely rises all along it, and the secant
+    is so near the root that one step of polish is enough.
+    """
+    straight = SIXTEEN * bend
+    looking = np.int32(0)
     for i in range(n):
         a, b, end = state[A + i], state[B + i], state[END + i]
         fa = threshold - state[AT_A + i]
@@ -107,12 +115,15 @@ def advance(state, n, threshold, off, off_slope, anywhere):
         then = then if then < end else end
         narrow = b - start
         tries = state[TRIES + i] + ONE
-        hit = (inside & (anywhere | (narrow <= fine * TWO)) & (~begun)) | (begun & anywhere)
+        rising = straight * width * width < fa - fb - TWO * off
+        hit = (inside & (anywhere | rising | (narrow <= fine * TWO)) & (~begun)) | (begun & anywhere)
         done = full & (b >= end)
         stuck = begun | (tries > MOST) | (~full) & (~inside) & (width <= fine * TWO) & (step < TENTH * fine)
         outcome = F(HIT) if hit else (F(MISS) if done else (F(UNDECIDED) if stuck else LIVE))
         live = state[STATE + i] == LIVE
-        state[STATE + i] = outcome if live else state[STATE + i]
+        then_state = outcome if live else state[STATE + i]
+        state[STATE + i] = then_state
+        looking += np.int32(1) if then_state == LIVE else np.int32(0)
         state[A + i] = start if live else a
         # Where a ray begins inside, what is known to be inside is its begin.
         stop = (start if begun else b) if hit else then
@@ -120,3 +131,4 @@ def advance(state, n, threshold, off, off_slope, anywhere):
         state[ROOT + i] = r if live else state[ROOT + i]
         state[TRIES + i] = tries
         state[SLOPE + i] = -slope
+    return looking

@@ -136,8 +136,8 @@ def unary_lanes(op, a, out, n, status):
 
 
 @inlined
-def binary_lanes(op, a, b, out, n, status):
-    """The operations of two arguments that are seldom."""
+def binary_lanes(op, a, b, out, n, status, positive):
+    """The operations of two arguments that are seldom; ``positive``: the first is never below 0."""
     if op == DIV:
         for i in range(n):
             b0, b1, eb = b[i], b[C1 + i], b[E + i]
@@ -159,8 +159,10 @@ def binary_lanes(op, a, b, out, n, status):
             b0, b1, eb = b[i], b[C1 + i], b[E + i]
             out[i], out[C1 + i], out[E + i] = power(a0, a1, ea, b0, b1, eb)
             reach = (abs(a1) + ea) * GROW + PAD * abs(a0)
-            broken = b1 == ZERO and eb == ZERO and b0 != below(b0)
-            worse(status, i, a0 > reach, a0 + reach < ZERO and broken)
+            constant = b1 == ZERO and eb == ZERO
+            # What is never below 0 may be raised to any positive number, whatever its enclosure says.
+            safe = a0 > reach or (positive and constant and b0 > ZERO)
+            worse(status, i, safe, a0 + reach < ZERO and constant and b0 != below(b0) and not positive)
     else:
         for i in range(n):
             out[i], out[C1 + i], out[E + i] = turned(a[i], a[C1 + i], a[E + i], b[i], b[C1 + i], b[E + i])
@@ -261,7 +263,8 @@ def enclose(code, constants, parts, registers, point, status, n):
                 turn_lanes(a, out, n)
             wave_lanes(op, a, out, twin, n)
         elif op <= ATAN2:
-            binary_lanes(op, a, b, out, n, status)
+            first = code[left, 0]
+            binary_lanes(op, a, b, out, n, status, first == ABS or first == SQUARE or first == SQRT or first == EXP)
         elif op <= SIGN:
             unary_lanes(op, a, out, n, status)
         else:  # nothing is claimed of an operation that has no lanes

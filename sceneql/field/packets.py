@@ -12,6 +12,7 @@ import numpy as np
 from sceneql.field import (
     density_march_kernels,
     density_roots_kernels,
+    density_slice_kernels,
     hunt_kernels,
     packet_density_kernels,
     packet_kernels,
@@ -138,7 +139,7 @@ class Memory:
             lined((rows, WIDTH), single),
             lined((3, WIDTH), single),
             lined(LANES, single),
-            lined(hunt_kernels.ROWS * LANES, single),
+            lined(max(hunt_kernels.ROWS * LANES, density_march_kernels.ROWS), single),
             lined(LANES, np.int64),
         )
         self.asked, self.queue = lined((3, count), single), lined(count, np.int64)
@@ -146,11 +147,13 @@ class Memory:
         beams, doubles = lined((BEAM, -(-count // GROUP) + 1)), lined((rows, LANES))
         near = np.zeros_like(tape.code), lined(self.singles.shape, single), lined(tape.parts.shape)
         plan = plan_of(tape)
-        whole = -(-max(count, LANES, len(tape.parts)) // LANES) * LANES  # lanes beyond the rays are looked at, too
+        whole = (
+            -(-max(count, density_march_kernels.LANES, len(tape.parts)) // LANES) * LANES
+        )  # lanes beyond the rays are looked at, too
         march = (
             plan,
-            lined(3 * LANES + count + len(tape.parts), np.int64),
-            lined((density_roots_kernels.ROOM, whole)),
+            lined(4 * density_march_kernels.LANES + count + len(tape.parts), np.int64),
+            lined((density_slice_kernels.ROOM, whole)),
             lined((density_roots_kernels.MOST_PARTS, density_march_kernels.COLUMNS), single),
             lined(room_for(plan)),
             tape_up_to(tape, int(plan[density_roots_kernels.OTHER])),

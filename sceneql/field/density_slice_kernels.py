@@ -1,0 +1,164 @@
+# mypy: ignore-errors
+"""A slice of a bundle of rays made ready to be searched: its lanes, its parts, and what these tell at once."""
+
+import numpy as np
+
+from sceneql.field.beam_kernels import BEHIND, DX, FAR, PX, STRETCH, WIDE
+from sceneql.field.density_march_kernels import (
+    AT_A,
+    AT_B,
+    DEEP,
+    END,
+    FINE,
+    INVERSE,
+    LANES,
+    LIVE,
+    ONE,
+    ROOT,
+    STATE,
+    TOP,
+    TRIES,
+    WEIGHT,
+    ZERO,
+    A,
+    B,
+    F,
+    Q,
+    T,
+)
+from sceneql.field.tape_ops import HIT, MISS
+from sceneql.kernels import inlined
+
+SPOT, SPANS, BEAM_ROW, OWN_ROW, SPARE, ROOM = WIDE, WIDE + 7, WIDE + 9, WIDE + 10, WIDE + 11, WIDE + 17
+BASE = 6
+"""Rows of ``room`` (ROOM, n): rays, lanes (place, direction, where the slice begins on the ray), where parts are
+entered and left along the axis of a beam, the bundle's beam and a packet's, and working memory of theirs."""
+NARROW, HAIR = F(2.0e-5), F(1.0e-6)
+"""Width of a bracket, and what is searched beyond the parts, relative to the ray's piece."""
+CLEARLY = F(1.001)
+"""Densities so many times the threshold tell the inside, where rounding is less than what is beyond it."""
+INFINITE = F(np.inf)
+GOLDEN = F(0.4472136)
+"""1/sqrt(5)."""
+
+
+@inlined
+def pick(source, live, n, target):
+    """What lanes have of a row of the rays."""
+    for i in range(n):
+        target[i] = source[np.uint64(live[i])]
+
+
+@inlined
+def place_lanes(room, live, state, n, fresh, begin, end, lowest):
+    """Set the lanes' rays at the begin of a slice, and where on them it ends."""
+    bases = room[SPOT + BASE]
+    far, behind, stretch = room[SPARE], room[SPARE + 1], room[SPARE + 2]
+    if fresh:
+        own = slice(live[0], live[0] + n)
+        far, behind, stretch = room[FAR, own], room[BEHIND, own], room[STRETCH, own]
+    else:
+        for row, target in ((FAR, far), (BEHIND, behind), (STRETCH, stretch)):
+            pick(room[row], live, n, target)
+    sliced = lowest > 0.5
+    for i in range(n):
+        stop = far[i]
+        base, last = (begin - behind[i]) * stretch[i], (end - behind[i]) * stretch[i]
+        base = base if base > 0.0 else 0.0
+        base = base if base < stop else stop
+        last = last if last > base else base
+        last = last if last < stop else stop
+        base = base if sliced else 0.0
+        bases[i] = base
+        state[END + i] = F((last if sliced else stop) - base)
+        state[FINE + i] = F(stop)
+        state[AT_A + i] = INFINITE
+        state[AT_B + i] = -INFINITE
+        state[TOP + i] = ZERO
+        state[DEEP + i] = INFINITE
+    for axis in range(3):
+        spot, way = room[SPOT + axis], room[SPOT + 3 + axis]
+        if fresh:
+            place, along = room[PX + axis, own], room[DX + axis, own]
+            for i in range(n):
+                d = along[i]
+                way[i] = d
+                spot[i] = place[i] + bases[i] * d
+        else:
+            pick(room[PX + axis], live, n, spot)
+            pick(room[DX + axis], live, n, way)
+            for i in range(n):
+                spot[i] += bases[i] * way[i]
+
+
+@inlined
+def set_part(part, room, row, state, n, level):
+    """A row of the table for a part; how many lanes come into its reach. AT_A and AT_B: where they enter and leave.
+
+    ``level``: u at which the part alone has the threshold.
+    """
+    cx, cy, cz, radius = part[0], part[1], part[2], part[6]
+    inverse = 1.0 / (radius * radius)
+    x, y, z = room[SPOT], room[SPOT + 1], room[SPOT + 2]
+    dx, dy, dz = room[SPOT + 3], room[SPOT + 4], room[SPOT + 5]
+    for i in range(n):
+        wx, wy, wz = cx - x[i], cy - y[i], cz - z[i]
+        t = wx * dx[i] + wy * dy[i] + wz * dz[i]
+        row[i] = F(1.0 - inverse * (wx * wx + wy * wy + wz * wz - t * t))
+        row[T + i] = F(t)
+    reach = F(radius)
+    weight = F(part[7])
+    most = weight if weight > ZERO else ZERO
+    lanes = np.int32(0)
+    for i in range(n):
+        p, t = row[i], row[T + i]
+        half = reach * np.sqrt(p if p > ZERO else ZERO)
+        row[Q + i] = t - GOLDEN * half
+        near = (p > ZERO) & (t + half > ZERO) & (t - half < state[END + i])
+        entry, exit = state[AT_A + i], state[AT_B + i]
+        first = entry if entry < t - half else t - half
+        last = exit if exit > t + half else t + half
+        state[AT_A + i] = first if near else entry
+        state[AT_B + i] = last if near else exit
+        lanes += np.int32(1) if near else np.int32(0)
+        state[TOP + i] += most * (p * p * p) if near else ZERO
+        lift = p - level
+        inner = t - reach * np.sqrt(lift if lift > ZERO else ZERO)
+        deep = state[DEEP + i]
+        inside = (lift > ZERO) & (inner > ZERO) & (inner < state[END + i]) & (inner < deep)
+        state[DEEP + i] = inner if inside else deep
+    row[WEIGHT] = weight
+    row[INVERSE] = F(inverse)
+    return lanes
+
+
+@inlined
+def start_lanes(state, n, threshold, off, negative, anywhere):
+    """Begin the search in each lane, between where the parts of the slice are entered and left; in how many.
+
+    Where all parts together cannot reach the threshold, nothing is met. Where no part is negative, a place is inside
+    if one part alone tells.
+    """
+    told = (not negative) & (off < (CLEARLY - ONE) * threshold)
+    looking = np.int32(0)
+    for i in range(n):
+        way = state[FINE + i]
+        low = state[AT_A + i] - HAIR * way
+        high = state[AT_B + i] + HAIR * way
+        low = low if low > ZERO else ZERO
+        high = high if high < state[END + i] else state[END + i]
+        deep = state[DEEP + i]
+        known = told & (deep < high) & (deep > low)
+        state[A + i] = low
+        state[B + i] = deep if known else high
+        state[END + i] = high
+        state[FINE + i] = NARROW * way
+        state[TRIES + i] = ZERO
+        state[ROOT + i] = low
+        live = (low < high) & (state[TOP + i] > threshold - off)
+        met = known & anywhere
+        state[STATE + i] = F(HIT) if met else (LIVE if live else F(MISS))
+        looking += np.int32(1) if live & (not met) else np.int32(0)
+    for i in range(n, LANES):
+        state[STATE + i] = F(MISS)
+    return looking
