@@ -74,6 +74,16 @@ def test_enclosures_of_any_tape_contain_its_values(tape, ray):
     check_enclosures(tape, *ray)
 
 
+@pytest.mark.parametrize("text", ["abs(x)^2.5 - 0.1", "(x^2)^0.7 - y", "exp(x)^1.5 - 3", "sqrt(x + 2)^0.3 - 1"])
+def test_powers_of_what_is_never_negative_are_defined_all_over(text):
+    """Also where the enclosure of the base goes below 0."""
+    tape, origin, direction = tape_of(text), np.array([-1.0, 0.1, 0.2]), np.array([1.0, 0.1, -0.1])
+    check_enclosures(tape, origin, direction, 0.0, 2.0)
+    halves = np.array([0.0, 0.9]), np.array([2.0, 1.2])
+    *_, status = enclosures(tape, np.tile(origin, (2, 1)), np.tile(direction, (2, 1)), *halves)
+    assert (status == WHOLE).all()
+
+
 @settings(max_examples=150)
 @given(tape=tapes(), ray=rays(), size=st.sampled_from([1e-20, 1e-6, 1e3, 1e8, 1e20, 1e30, 1e300]))
 def test_enclosures_far_from_one_claim_nothing_wrong(tape, ray, size):

@@ -212,6 +212,13 @@ def logged(a0, a1, ea):
 
 
 @lane
+def fraction(b0, b1, eb):
+    """Whether an exponent is surely a constant that is no integer."""
+    low, high = b0 - GROW * eb, b0 + GROW * eb
+    return b1 == ZERO and below(low) == below(high) and low != below(low)
+
+
+@lane
 def power(a0, a1, ea, b0, b1, eb):
     """Enclosure of a^b: exp(b log a) where a > 0; elsewhere a hull for a constant exponent > 0 that is no integer."""
     reach = (abs(a1) + ea) * GROW + PAD * abs(a0)
@@ -220,11 +227,11 @@ def power(a0, a1, ea, b0, b1, eb):
     p0, p1, ep = product(b0, b1, eb, l0, l1, el)
     c0, c1, e = grown(p0, p1, ep)
     m0, m1, em = logged(high if high > F(2.0) * LEAST else F(2.0) * LEAST, ZERO, ZERO)
-    p0, p1, ep = product(b0, ZERO, ZERO, m0, m1, em)
+    p0, p1, ep = product(b0, ZERO, eb, m0, m1, em)
     m0, m1, em = grown(p0, p1, ep)
     flat = not (a0 - reach > LEAST)
     top = m0 + em
-    top = top if b1 == ZERO and eb == ZERO and b0 > ZERO and b0 != below(b0) and high == high else INFINITE
+    top = top if fraction(b0, b1, eb) and b0 > ZERO and high == high else INFINITE
     return HALF * top if flat else c0, ZERO if flat else c1, HALF * top * GROW + TINY if flat else e
 
 

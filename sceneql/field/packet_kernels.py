@@ -16,6 +16,7 @@ from sceneql.field.affine_kernels import (
     F,
     absolute,
     floored,
+    fraction,
     grown,
     larger_of,
     logged,
@@ -29,7 +30,7 @@ from sceneql.field.affine_kernels import (
     wave,
 )
 from sceneql.field.packet_density_kernels import density_lanes
-from sceneql.field.single_kernels import below, lane, sine_cosine
+from sceneql.field.single_kernels import lane, sine_cosine
 from sceneql.field.tape_ops import (
     ABS,
     ADD,
@@ -107,8 +108,14 @@ def scale_lanes(a, b, out, n):
 
 
 @inlined
-def unary_lanes(op, a, out, n, status):
-    """The operations of one argument that are seldom."""
+def never_negative(op):
+    """Whether values of an operation are at least 0, whatever their enclosure says."""
+    return op == ABS or op == SQUARE or op == SQRT or op == EXP
+
+
+@inlined
+def unary_lanes(op, a, out, n, status, positive):
+    """The operations of one argument that are seldom; ``positive``: that is never below 0."""
     if op == ABS:
         for i in range(n):
             out[i], out[C1 + i], out[E + i] = absolute(a[i], a[C1 + i], a[E + i])
@@ -117,7 +124,7 @@ def unary_lanes(op, a, out, n, status):
             c0, c1, e = a[i], a[C1 + i], a[E + i]
             out[i], out[C1 + i], out[E + i] = square_root(c0, c1, e)
             reach = (abs(c1) + e) * GROW + PAD * abs(c0)
-            worse(status, i, c0 >= reach, c0 + reach < ZERO)
+            worse(status, i, positive or c0 >= reach, c0 + reach < ZERO and not positive)
     elif op == EXP:
         for i in range(n):
             out[i], out[C1 + i], out[E + i] = grown(a[i], a[C1 + i], a[E + i])
@@ -159,10 +166,9 @@ def binary_lanes(op, a, b, out, n, status, positive):
             b0, b1, eb = b[i], b[C1 + i], b[E + i]
             out[i], out[C1 + i], out[E + i] = power(a0, a1, ea, b0, b1, eb)
             reach = (abs(a1) + ea) * GROW + PAD * abs(a0)
-            constant = b1 == ZERO and eb == ZERO
-            # What is never below 0 may be raised to any positive number, whatever its enclosure says.
-            safe = a0 > reach or (positive and constant and b0 > ZERO)
-            worse(status, i, safe, a0 + reach < ZERO and constant and b0 != below(b0) and not positive)
+            plain = fraction(b0, b1, eb)
+            safe = a0 > reach or (positive and plain and b0 > ZERO)
+            worse(status, i, safe, a0 + reach < ZERO and plain and not positive)
     else:
         for i in range(n):
             out[i], out[C1 + i], out[E + i] = turned(a[i], a[C1 + i], a[E + i], b[i], b[C1 + i], b[E + i])
@@ -263,10 +269,9 @@ def enclose(code, constants, parts, registers, point, status, n):
                 turn_lanes(a, out, n)
             wave_lanes(op, a, out, twin, n)
         elif op <= ATAN2:
-            first = code[left, 0]
-            binary_lanes(op, a, b, out, n, status, first == ABS or first == SQUARE or first == SQRT or first == EXP)
+            binary_lanes(op, a, b, out, n, status, never_negative(code[left, 0]))
         elif op <= SIGN:
-            unary_lanes(op, a, out, n, status)
+            unary_lanes(op, a, out, n, status, never_negative(code[left, 0]))
         else:  # nothing is claimed of an operation that has no lanes
             for i in range(n):
                 out[i] = F(np.nan)
