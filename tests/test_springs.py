@@ -81,6 +81,22 @@ def test_a_pin_lets_go_in_time(tmp_path):
     assert rows[0][2] == pytest.approx(rows[1][2], rel=1e-8)
 
 
+SHEET = """
+clock: {{end: 0.5 s}}
+models: {{sheet: {{cloth: {{size: 1 1 m, cells: 4 4, center: 0 2 0 m, facing: 0 0 1, pins: {pins}}}}}}}
+forces: [gravity]
+solvers: {{main: {{rk4: {{step: 1 ms}}}}}}
+"""
+
+
+def test_pins_may_be_told_by_where_they_start(tmp_path):
+    both = "{top: {until: 0.3 s}, left: {}}", "{hem: {where: y > 2.4, until: 0.3 s}, side: {where: x < -0.4}}"
+    named, told = (watch(tmp_path, SHEET.format(pins=pins), [0.5], "sheet.positions")[0][0] for pins in both)
+    np.testing.assert_array_equal(named, told)
+    with pytest.raises(ScriptError, match="pin 'hem': no mass starts where"):
+        watch(tmp_path, SHEET.format(pins="{hem: {where: y > 3}}"), [0.5], "sheet.positions")
+
+
 SOLID = """
 clock: {{end: 0.5 s}}
 objects: {{body: {{{shape}}}}}

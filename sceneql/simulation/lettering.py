@@ -83,9 +83,9 @@ class Letterer:
 
         self._image.paste(Image.fromarray(block), (left, top))
 
-    def stamp(self, picture: Any, mask: Any, corner: tuple[int, int]) -> None:
-        """A picture (Pillow) through a mask, its left and top at a corner [pixels]."""
-        self._image.paste(picture, corner, mask)
+    def stamp(self, color: tuple[int, int, int], mask: Any, corner: tuple[int, int]) -> None:
+        """A color through a mask (Pillow, 8 bits), its left and top at a corner [pixels]."""
+        self._image.paste(color, (*corner, corner[0] + mask.width, corner[1] + mask.height), mask)
 
     def done(self) -> None:
         """Write all of it into the picture."""

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
-from sceneql.kinds import FixedTime, Position, Record, Value, field
+from sceneql.kinds import FixedTime, Formula, Position, Record, Symbols, Value, field
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
-from sceneql.quantities.expression import Expr
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Expr, Symbol
 from sceneql.simulation.shift import APART, later
 
 if TYPE_CHECKING:
@@ -17,8 +18,12 @@ if TYPE_CHECKING:
 
 
 class Pin(Record):
-    """How masses are held."""
+    """How masses are held, and which: those of its name, or all where a formula is true at the start."""
 
+    where: Annotated[Formula, Symbols(("x", "y", "z"))] | None = field(
+        "A formula of the place [m] that holds for these masses at the start, `y > 1.9`; their name is free then.",
+        None,
+    )
     shift: Position = field("How far they have been moved from where they start.", "0 0 0 m")
     until: FixedTime | None = field(
         "They are let go at the end of the solver's step that reaches this time; by default never.", None, at_least=0
@@ -34,10 +39,17 @@ def start_velocity(pin: Pin, assembly: Assembly) -> Floats:
     return velocity
 
 
-def pinned(name: str, net: Net) -> Any:
-    """(k,) indices of the masses that a pin's name means."""
+def pinned(name: str, net: Net, pin: Pin | None = None) -> Any:
+    """(k,) indices of the masses that a pin means. Raises ScriptError where its formula holds for none."""
     import numpy as np
 
+    if pin is not None and pin.where is not None:
+        known = {Symbol(axis): net.points[:, k] for k, axis in enumerate("xyz")}
+        held = np.broadcast_to(evaluate(pin.where.expr, known, arrays=True), len(net.points))
+        if not held.any():
+            message = f"pin '{name}': no mass starts where this is true"
+            raise ScriptError([Diagnostic("no-mass", message, pin.where.span)])
+        return np.flatnonzero(held)
     return np.arange(len(net.points))[net.places[name] if name in net.places else [int(name)]].ravel()
 
 
@@ -52,7 +64,7 @@ def guide(pins: Mapping[str, Pin], net: Net, assembly: Assembly, bodies: Bodies)
 
     folder = "sceneql.simulation.pins_kernels"
     for name, pin in pins.items():
-        masses = pinned(name, net)
+        masses = pinned(name, net, pin)
         if pin.shift.constant and pin.until is None and not np.any(assembly.initial(pin.shift)):
             continue
         starts = assembly.floats(net.points[masses])

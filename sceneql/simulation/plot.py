@@ -75,7 +75,6 @@ class Axis:
 
 def draw_plot(
     pixels: NDArray[uint8],
-    box: tuple[int, int, int, int],
     curves: Sequence[Curve],
     up: Axis,
     across: Axis,
@@ -84,34 +83,34 @@ def draw_plot(
     look: Look,
     named: bool,
 ) -> None:
-    """Draw on a picture (h, w, 3) in a box (left, top, width, height) [pixels]; ``named``: with the curves' names.
+    """Draw over all of a part of a picture (h, w, 3); ``named``: with the curves' names.
 
-    ``text``: height of letters in parts of the picture's. Without room for letters there are curves alone.
+    ``text``: height of letters in parts of that part's. Without room for letters there are curves alone.
     """
     letters = Letterer(pixels, text, look)
-    em, (left, top, wide, high) = letters.em, box
+    em, wide, high = letters.em, letters.width, letters.height
     small = font(max(9, round(0.82 * em)))
     pad = round(0.7 * em)
-    letters.panel((left, top, left + wide - 1, top + high - 1), opacity)
+    letters.panel((0, 0, wide - 1, high - 1), opacity)
     y_scale, x_scale = up.scale([c.values for c in curves]), across.scale([c.across for c in curves])
     y_power, x_power = thousands(y_scale), thousands(x_scale)
     head, words = _head(letters, wide - 2 * pad, up.words(y_power), curves if named else ())
     title = across.words(x_power)
     length = letters.draw.textlength(title, font=small)
     apart = length > SHARE * wide  # it has a line of its own
-    y0, y1 = top + pad + round(head), top + high - pad - round((2.35 if apart else 1.35) * em)
+    y0, y1 = pad + round(head), high - pad - round((2.35 if apart else 1.35) * em)
     bare = y1 - y0 < 2 * em or wide < 8 * em
     if bare:
-        y0, y1 = top + pad, max(top + high - pad, top + pad + 1)
+        y0, y1 = pad, max(high - pad, pad + 1)
     marks = [] if bare else _scaled(y_scale, y_power).ticks(max(2, round((y1 - y0) / (2.2 * em))))
     widest = max((letters.draw.textlength(word, font=small) for _, word in marks), default=0.0)
-    x0, x1 = left + pad + round(widest + 0.5 * em), left + wide - 1 - round(1.2 * em)
+    x0, x1 = pad + round(widest + 0.5 * em), wide - 1 - round(1.2 * em)
     area = _Area(x0, y0, max(x1, x0 + 1), y1, x_scale, y_scale)
 
     thin = max(1, round(em / 22))
     if not bare:
         for x, row, curve, word in words:
-            at = (left + pad + x, top + pad + row)
+            at = (pad + x, pad + row)
             if curve is not None:
                 letters.draw.line(
                     (at[0] - 1.4 * em, at[1], at[0] - 0.4 * em, at[1]), curve.color, max(2, round(em / 6))
@@ -125,7 +124,7 @@ def draw_plot(
             letters.draw.text((x0 - 0.45 * em, y), word, look.quiet, font=small, anchor="rm")
         below, end = y1 + round(0.95 * em), x1 + 0.5 * em
         letters.draw.text((end, below + (round(1.05 * em) if apart else 0)), title, look.ink, font=small, anchor="rm")
-        room = left + wide if apart else end - length - 0.8 * em
+        room = wide if apart else end - length - 0.8 * em
         for value, word in _scaled(x_scale, x_power).ticks(max(2, round((x1 - x0) / (6 * em)))):
             x = float(area.x(value * 10.0**x_power))
             letters.draw.line((x, y0, x, y1), look.fine, thin)
@@ -161,17 +160,20 @@ class _Area:
 def _draw_curve(letters: Letterer, area: _Area, x: Floats, y: Floats, color: Color) -> None:
     """A line with a dot at its end."""
     import numpy as np
-    from PIL import Image
 
     reach = round(0.4 * letters.em)  # dots and thick lines go a little over the ends
     corner = (area.x0 - reach, area.y0 - reach)
     size = (area.x1 + reach - corner[0], area.y1 + reach - corner[1])
     points = np.stack([area.x(x) - corner[0], area.y(y) - corner[1]], axis=1)
     points[(points[:, 1] < -4 * size[1]) | (points[:, 1] > 5 * size[1])] = float("nan")
-    letters.stamp(Image.new("RGB", size, color), stroke(size, points, max(1.4, letters.em / 9)), corner)
+    lines = [(points, max(1.4, letters.em / 9), color)]
     if len(points) and 0 <= points[-1][0] <= size[0] and 0 <= points[-1][1] <= size[1]:
-        for ink, width in ((letters.look.paper, 0.62 * letters.em), (color, 0.42 * letters.em)):
-            letters.stamp(Image.new("RGB", size, ink), stroke(size, points[-1:], width), corner)
+        lines += [(points[-1:], 0.62 * letters.em, letters.look.paper), (points[-1:], 0.42 * letters.em, color)]
+    for line, width, ink in lines:
+        drawn = stroke(size, line, width)
+        if drawn is not None:
+            mask, (left, top) = drawn
+            letters.stamp(ink, mask, (corner[0] + left, corner[1] + top))
 
 
 def _scaled(scale: Scale, power: int) -> Scale:

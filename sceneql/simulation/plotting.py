@@ -91,22 +91,33 @@ def thousands(scale: Scale) -> int:
     return 3 * math.floor(math.log10(most) / 3)
 
 
-def stroke(size: tuple[int, int], points: Floats, width: float) -> Any:
-    """A mask (Pillow, 8 bits) of this size [pixels] of a line through points (n, 2) that breaks at NaN; round ends."""
+def stroke(size: tuple[int, int], points: Floats, width: float) -> tuple[Any, tuple[int, int]] | None:
+    """A line through points (n, 2) [pixels] that breaks at NaN, with round ends, in an area of this size.
+
+    A mask (Pillow, 8 bits) and its left and top; None where nothing of it is inside.
+    """
     import numpy as np
     from PIL import Image, ImageDraw
 
-    mask = Image.new("L", (size[0] * FINE, size[1] * FINE))
+    known = np.isfinite(points).all(axis=1)
+    if not known.any():
+        return None
+    reach = 0.5 * width + 1
+    low = np.maximum(np.floor(points[known].min(axis=0) - reach), 0).astype(int)
+    high = np.minimum(np.ceil(points[known].max(axis=0) + reach), size).astype(int)
+    if (high <= low).any():
+        return None
+    left, top = (int(edge) for edge in low)
+    mask = Image.new("L", (int(high[0] - low[0]) * FINE, int(high[1] - low[1]) * FINE))
     draw = ImageDraw.Draw(mask)
     thick = max(1, round(width * FINE))
-    known = np.isfinite(points).all(axis=1)
     ends = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]]).astype(int)))
     for first, last in ends.reshape(-1, 2):
         # Far outside points are brought near, where Pillow's whole numbers hold them.
-        near = np.clip(points[first:last], -4.0 * max(size), 5.0 * max(size)) * FINE
+        near = (np.clip(points[first:last], -4.0 * max(size), 5.0 * max(size)) - low) * FINE
         places = [(float(x), float(y)) for x, y in near]
         draw.line(places, fill=255, width=thick, joint="curve")
         for x, y in (places[0], places[-1]):
             half = 0.5 * thick
             draw.ellipse((x - half, y - half, x + half, y + half), fill=255)
-    return mask.reduce(FINE)
+    return mask.reduce(FINE), (left, top)

@@ -49,9 +49,11 @@ class Tear(Record):
     seed: int = field("Another number, other weak springs.", 0, at_least=0)
 
 
-def pin_problems(pins: Iterable[str], known: Sequence[str], count: int | None) -> Iterator[Problem]:
+def pin_problems(pins: Iterable[str] | Mapping[str, Pin], known: Sequence[str], count: int | None) -> Iterator[Problem]:
     """The pins that are neither one of the names nor the number of one of ``count`` masses (None: not known yet)."""
     for pin in pins:
+        if isinstance(pins, Mapping) and pins[pin].where is not None:
+            continue
         if pin not in known and not pin.isdecimal():
             text = f"no mass is called '{pin}'; a pin is one of {', '.join(sorted(known))}, or a number"
             yield Problem(text, ("pins", pin), at_key=True)
@@ -73,7 +75,7 @@ class SpringModel(Model):
     pins: tuple[str, ...] | dict[str, Pin] = field(
         "Masses that are held: names, or `name: {shift: ..., until: ...}`. Names are those of the masses; of a lattice "
         "left, right, bottom, top, back, front; of a cloth left, right, bottom, top and corners such as top_left; of a "
-        "rope start, end; or a number, counted from 0.",
+        "rope start, end; or a number, counted from 0; or any, with `where`.",
         (),
     )
     tear: Tear | None = field("When springs break; by default never.", None)
@@ -122,7 +124,7 @@ class SpringModel(Model):
 
         fixed = np.zeros(len(net.points), dtype=bool)
         for pin in self.pins:
-            fixed[pinned(pin, net)] = True
+            fixed[pinned(pin, net, self.pins[pin] if isinstance(self.pins, dict) else None)] = True
         return fixed
 
     @property
@@ -156,7 +158,7 @@ class SpringModel(Model):
         velocities += np.cross(self.spin, net.points - np.average(net.points, axis=0, weights=weights))
         velocities[fixed] = 0.0
         for pin, how in self.pins.items() if isinstance(self.pins, dict) else ():
-            velocities[pinned(pin, net)] = start_velocity(how, assembly)
+            velocities[pinned(pin, net, how)] = start_velocity(how, assembly)
         bodies = point_masses.reserve(
             name, assembly, net.points, velocities, weights, np.full(n, self.mass_radius()), fixed
         )

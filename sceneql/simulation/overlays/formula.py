@@ -52,7 +52,7 @@ class Formula(Overlay):
                 return
             left, top = round(seen[0] - 0.5 * block[0]), round(seen[1] - block[1])
         letters.panel((left, top, left + block[0], top + block[1]), self.panel)
-        letters.stamp(Image.new("RGB", mask.size, letters.look.ink), mask, (left + room, top + room))
+        letters.stamp(letters.look.ink, mask, (left + room, top + room))
         letters.done()
 
 

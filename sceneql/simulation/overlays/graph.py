@@ -91,23 +91,16 @@ class Graph(Overlay):
         most = 2 * round(MARGIN * height)
         wide, high = min(round(self.size[0] * width), width - most), min(round(self.size[1] * height), height - most)
         left, top = corner(self.place, (wide, high), (width, height))
-        self._draw(pixels, (left, top, wide, high), moment, self.opacity)
+        self._draw(pixels[top : top + high, left : left + wide], moment, self.opacity, height / high)
 
     def fill(self, pixels: NDArray[uint8], moment: Moment, scale: float) -> None:
         """Draw it over all of the pixels."""
         from sceneql.simulation.lettering import DARK, LIGHT
 
         pixels[:] = (DARK if self.dark else LIGHT).paper
-        self._draw(pixels, (0, 0, pixels.shape[1], pixels.shape[0]), moment, 1.0, self.text * scale)
+        self._draw(pixels, moment, 1.0, scale)
 
-    def _draw(
-        self,
-        pixels: NDArray[uint8],
-        box: tuple[int, int, int, int],
-        moment: Moment,
-        opacity: float,
-        text: float | None = None,
-    ) -> None:
+    def _draw(self, pixels: NDArray[uint8], moment: Moment, opacity: float, scale: float) -> None:
         from sceneql.simulation.lettering import DARK, LIGHT
         from sceneql.simulation.plot import Axis, draw_plot
 
@@ -119,7 +112,6 @@ class Graph(Overlay):
         log = self.log or ""
         draw_plot(
             pixels,
-            box,
             list(self._curves(moment)),
             Axis(title, _unit(self.unit, one.expr.type.dimension), "y" in log, self.range),
             Axis(
@@ -129,7 +121,7 @@ class Graph(Overlay):
                 (0.0, moment.end) if self.x is None and "x" not in log else None,
             ),
             opacity,
-            self.text if text is None else text,
+            self.text * scale,
             DARK if self.dark else LIGHT,
             named,
         )
