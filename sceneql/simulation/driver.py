@@ -90,9 +90,9 @@ def jacobian_text(structure: Structure) -> str:
     return "\n".join([*lines, "    gather(t, y, values, floats, ints)"]) + "\n"
 
 
-def modules(structure: Structure, *others: str) -> tuple[str, ...]:
-    """What the kernels of an island, and other ones, are imported from; contacts, as a rule the largest, first."""
-    names = (*structure.local, *chain(*structure.exact), *others, *(structure.slopes or ()), *structure.terms)
+def modules(structure: Structure) -> tuple[str, ...]:
+    """What the kernels of an island are imported from; contacts, as a rule the largest, first."""
+    names = (*structure.local, *chain(*structure.exact), *(structure.slopes or ()), *structure.terms)
     return tuple(dict.fromkeys(name.partition(":")[0] for name in names))
 
 

@@ -99,7 +99,7 @@ class IslandRun:
         from sceneql.ahead import compile_ahead
         from sceneql.compiling import late
         from sceneql.simulation.assembled import blocks_of, models_of
-        from sceneql.simulation.driver import function, modules
+        from sceneql.simulation.driver import driver, function, jacobian, modules
         from sceneql.simulation.linear.stage import likely_kernels
 
         compile_ahead(("sceneql.simulation.march_kernels",))  # while the models are made here
@@ -109,6 +109,8 @@ class IslandRun:
         self.bodies = made.bodies
         self.assembly = assembly = made.assembly
         assembly.places = self._places
+        if not assembly.fields:  # then the solver's step is known before what acts is made
+            compile_ahead((self.solver.stepper().step.partition(":")[0],))
         made.act()
         made.found.raise_errors()
         if assembly.only_field is not None:
@@ -121,7 +123,14 @@ class IslandRun:
             stepper = suited(stepper, assembly.only_field)
             compile_ahead(on_grid.likely_kernels(stepper, assembly.only_field))
         system = assembly.finish(stepper.jacobian)
-        acting = compile_ahead((*modules(system.structure, stepper.step), *likely_kernels(system)))
+        events = ("sceneql.simulation.events_kernels",) if system.pairs else ()
+        step = stepper.step.partition(":")[0]
+        acting = compile_ahead((step, *likely_kernels(system), *modules(system.structure), *events))
+        acting(1)
+        if stepper.march is None:  # the process beside still compiles the solver's step
+            driver(system.structure)
+            if stepper.jacobian:
+                jacobian(system)
         acting()
         from sceneql.simulation.march import March
 
