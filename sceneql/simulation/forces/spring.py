@@ -54,19 +54,21 @@ class Spring(Force):
         length = float(np.linalg.norm(np.subtract(assembly.initial(self.to), assembly.initial(self.from_))))
         rest = assembly.floats([length if self.rest is None else self.rest])
         values = (assembly.value(self.stiffness), assembly.value(self.damping), rest)
-        ints = (*ends[0], *ends[1], *values)
-        assembly.term("force", "sceneql.simulation.forces.spring_kernels:spring", ints, lambda: _slopes(ends))
+        ints = (*ends[0][:3], *ends[1][:3], *values)
+        more = (*ints, ends[0][3], ends[1][3])
+        assembly.term("force", "sceneql.simulation.forces.spring_kernels:spring", ints, lambda: _slopes(ends, more))
         assembly.remember(*ints)
 
-    def _end(self, value: Value, assembly: Assembly, everyone: Sequence[Bodies]) -> tuple[int, int, int]:
-        """Offsets of position and velocity in y and of the work; or -1, the place in the floats, -1."""
+    def _end(self, value: Value, assembly: Assembly, everyone: Sequence[Bodies]) -> tuple[int, int, int, int]:
+        """Offsets of position and velocity in y, of the work, of the inverse mass; or -1, the place's, -1, -1."""
         places = assembly.places(value.expr) if isinstance(value.expr, Link) else None
         if places is not None:
             at = int(places[0])
             for bodies in everyone:
                 if bodies.position_at <= at < bodies.position_at + 3 * bodies.count:
-                    return at, at - bodies.position_at + bodies.velocity_at, bodies.work_at
-        return -1, assembly.value(value), -1
+                    moved = at - bodies.position_at
+                    return at, bodies.velocity_at + moved, bodies.work_at, bodies.inverse_at + moved // 3
+        return -1, assembly.value(value), -1, -1
 
     def potential(self, bodies: Bodies, state: ModelState) -> float:
         """Half stiffness stretch^2 [J], the part of this model's masses."""
@@ -79,7 +81,7 @@ class Spring(Force):
         return float(0.5 * state.floats[state.ints[6]] * stretch**2 * owned)
 
 
-def _slopes(ends: Sequence[tuple[int, int, int]]) -> Slopes:
+def _slopes(ends: Sequence[tuple[int, int, int, int]], ints: Sequence[int]) -> Slopes:
     """Where the blocks of the derivatives stand: see spring_slopes_kernels."""
     import numpy as np
 
@@ -89,4 +91,4 @@ def _slopes(ends: Sequence[tuple[int, int, int]]) -> Slopes:
     masses = [end for end in ends if end[0] >= 0]
     pairs = [(one[1], other[which]) for one in masses for which in (0, 1) for other in masses]
     rows, columns = (np.concatenate(places) for places in zip(*((r + i, c + j) for r, c in pairs), strict=True))
-    return Slopes("sceneql.simulation.forces.spring_slopes_kernels:spring", rows, columns)
+    return Slopes("sceneql.simulation.forces.spring_slopes_kernels:spring", rows, columns, ints)
