@@ -26,8 +26,8 @@ PLAIN = numba.config.DISABLE_JIT
 MOST = 64
 """Terms of a sum at a time: what of the source belongs to them stays in the caches."""
 WIDE = bool(binding.get_host_cpu_features().get("avx512f"))
-BYTES, ROWS, VECTORS = (64, 8, 3) if WIDE else (32, 4, 3)
-"""Bytes of a vector, rows that are updated at once, vectors of each: their sums fill 3/4 of the registers."""
+BYTES, ROWS = (64, 8) if WIDE else (32, 4)
+"""Bytes of a vector, and rows that are updated at once: the sums of three vectors of each fill 3/4 of the registers."""
 
 WORD = ir.IntType(64)
 
@@ -51,7 +51,7 @@ def _called(builder, name, result, arguments):
 
 
 def _rank(rows, vectors, whole):
-    """The intrinsic for so many rows and vectors; not ``whole``: of one vector so many columns as are left."""
+    """The intrinsic for so many rows and vectors; not ``whole``: of the last one so many columns as are left."""
 
     def code(context, builder, signature, given):
         bits = signature.args[0].dtype.bitwidth
@@ -63,18 +63,19 @@ def _rank(rows, vectors, whole):
         target, source, weights = (_data(context, builder, given[k], signature.args[k]) for k in (0, 3, 6))
         at, stride, start, height, count, left = (given[k] for k in (1, 2, 4, 5, 7, 8))
         numbers = ir.Constant(ir.VectorType(WORD, lanes), list(range(lanes)))
-        mask = None if whole else builder.icmp_signed("<", numbers, _spread(builder, left, lanes))
+        before_last = ir.Constant(WORD, lanes * (vectors - 1))
+        mask = builder.icmp_signed("<", numbers, _spread(builder, builder.sub(left, before_last), lanes))
 
-        def load(data, place):
+        def load(data, place, column):
             where = builder.bitcast(builder.gep(data, [place]), vector.as_pointer())
-            if whole:
+            if whole or column < vectors - 1:
                 return builder.load(where, align=bits // 8)
             zero = ir.Constant(vector, [0.0] * lanes)
             return _called(builder, f"llvm.masked.load.{shape}", vector, [where, align, mask, zero])
 
-        def store(value, data, place):
+        def store(value, data, place, column):
             where = builder.bitcast(builder.gep(data, [place]), vector.as_pointer())
-            if whole:
+            if whole or column < vectors - 1:
                 builder.store(value, where, align=bits // 8)
             else:
                 _called(builder, f"llvm.masked.store.{shape}", ir.VoidType(), [value, where, align, mask])
@@ -84,7 +85,7 @@ def _rank(rows, vectors, whole):
             return builder.add(shifted, ir.Constant(WORD, lanes * column))
 
         cells = [(r, c) for r in range(rows) for c in range(vectors)]
-        sums = [load(target, place(r, c)) for r, c in cells]
+        sums = [load(target, place(r, c), c) for r, c in cells]
         before = builder.block
         loop, after = builder.append_basic_block("rank.loop"), builder.append_basic_block("rank.end")
         builder.cbranch(builder.icmp_signed(">", count, ir.Constant(WORD, 0)), loop, after)
@@ -95,7 +96,7 @@ def _rank(rows, vectors, whole):
         running = [builder.phi(vector) for _ in cells]
         for phi, first in zip(running, sums, strict=True):
             phi.add_incoming(first, before)
-        read = [load(source, builder.add(row, ir.Constant(WORD, lanes * c))) for c in range(vectors)]
+        read = [load(source, builder.add(row, ir.Constant(WORD, lanes * c)), c) for c in range(vectors)]
         own = builder.mul(k, ir.Constant(WORD, rows))
         found = []
         for r in range(rows):
@@ -117,7 +118,7 @@ def _rank(rows, vectors, whole):
             last.add_incoming(value, loop)
             sums[r * vectors + c] = last
         for (r, c), value in zip(cells, sums, strict=True):
-            store(value, target, place(r, c))
+            store(value, target, place(r, c), c)
         return context.get_dummy_value()
 
     @intrinsic
@@ -127,11 +128,11 @@ def _rank(rows, vectors, whole):
     return rank
 
 
-def _in_python(rows, vectors):
+def _in_python(rows, vectors, whole):
     def rank(target, at, stride, source, start, height, coefficients, count, left):
-        lanes = BYTES // target.itemsize
+        most = vectors * (BYTES // target.itemsize)
         for r in range(rows):
-            for j in range(lanes * vectors or min(left, lanes)):
+            for j in range(most if whole else min(left, most)):
                 for k in range(count):
                     place = at + r * stride + j
                     target[place] = fma(coefficients[k * rows + r], source[start + k * height + j], target[place])
@@ -156,10 +157,9 @@ def _coefficients(typing, like):
 coefficients = (lambda like: np.empty(ROWS * MOST, like.dtype)) if PLAIN else _coefficients
 """Room for the coefficients of MOST terms, of an array's kind of numbers, on the stack of the calling kernel."""
 
-rank_strip = _in_python(ROWS, VECTORS) if PLAIN else _rank(ROWS, VECTORS, True)
-rank_strip_end = _in_python(ROWS, 0) if PLAIN else _rank(ROWS, 1, False)
-rank_row = _in_python(1, VECTORS) if PLAIN else _rank(1, VECTORS, True)
-rank_row_end = _in_python(1, 0) if PLAIN else _rank(1, 1, False)
+made = _in_python if PLAIN else _rank
+strip, strip_of_three, strip_of_two, strip_of_one = made(ROWS, 3, True), *(made(ROWS, k, False) for k in (3, 2, 1))
+row, row_of_three, row_of_two, row_of_one = made(1, 3, True), *(made(1, k, False) for k in (3, 2, 1))
 
 
 @lean_inlined
@@ -167,25 +167,27 @@ def add_rows(target, at, stride, rows, source, start, height, coefficients, coun
     """Add the product to ``rows`` rows (ROWS, or 1) and ``left`` columns of ``target``."""
     widest()
     lanes = BYTES // source.itemsize
-    if rows == ROWS:
-        while left >= lanes * VECTORS:
-            rank_strip(target, at, stride, source, start, height, coefficients, count, left)
-            at += lanes * VECTORS
-            start += lanes * VECTORS
-            left -= lanes * VECTORS
-        while left > 0:
-            rank_strip_end(target, at, stride, source, start, height, coefficients, count, left)
-            at += lanes
-            start += lanes
-            left -= lanes
-    else:
-        while left >= lanes * VECTORS:
-            rank_row(target, at, stride, source, start, height, coefficients, count, left)
-            at += lanes * VECTORS
-            start += lanes * VECTORS
-            left -= lanes * VECTORS
-        while left > 0:
-            rank_row_end(target, at, stride, source, start, height, coefficients, count, left)
-            at += lanes
-            start += lanes
-            left -= lanes
+    many = rows == ROWS
+    while left >= 3 * lanes:
+        if many:
+            strip(target, at, stride, source, start, height, coefficients, count, left)
+        else:
+            row(target, at, stride, source, start, height, coefficients, count, left)
+        at += 3 * lanes
+        start += 3 * lanes
+        left -= 3 * lanes
+    if left > 2 * lanes:
+        if many:
+            strip_of_three(target, at, stride, source, start, height, coefficients, count, left)
+        else:
+            row_of_three(target, at, stride, source, start, height, coefficients, count, left)
+    elif left > lanes:
+        if many:
+            strip_of_two(target, at, stride, source, start, height, coefficients, count, left)
+        else:
+            row_of_two(target, at, stride, source, start, height, coefficients, count, left)
+    elif left > 0:
+        if many:
+            strip_of_one(target, at, stride, source, start, height, coefficients, count, left)
+        else:
+            row_of_one(target, at, stride, source, start, height, coefficients, count, left)
