@@ -137,7 +137,7 @@ def _fronts(graph: Any, parents: list[int], sizes: Rows) -> list[_Front]:
 def _laid_out(pattern: Any, order: Rows, fronts: list[_Front], first: Rows, unit: int, exact: bool) -> Plan:
     import numpy as np
 
-    from sceneql.simulation.linear.fronts_plan_kernels import FIELDS, HEAD
+    from sceneql.simulation.linear.fronts_plan_kernels import FIELDS, HEAD, PAD
     from sceneql.simulation.linear.fronts_solve_kernels import backward_piece, forward_piece
     from sceneql.simulation.linear.fronts_symmetric_kernels import piece
     from sceneql.simulation.threads_kernels import threads, tile_address
@@ -200,7 +200,7 @@ def _laid_out(pattern: Any, order: Rows, fronts: list[_Front], first: Rows, unit
         if front.parent >= 0:
             earlier[k], last_child[front.parent] = last_child[front.parent], k
             map_at += int(map_sizes[k])
-        factors += width * height + width * rest
+        factors += width * height + width * rest + PAD
     table += [n, 0, 0, int(row_starts[-1]), map_at, factors, bounds[-1], -1, -1, 0, 0]
     for k in range(count):
         table[FIELDS * k + 7 : FIELDS * k + 9] = last_child[k], earlier[k]
@@ -213,7 +213,7 @@ def _laid_out(pattern: Any, order: Rows, fronts: list[_Front], first: Rows, unit
     head += [tile_address(forward_piece), tile_address(backward_piece)]
     head += [*_single(float(operations.sum())), 0, 0, int(exact), *starts[7:9]]
     numbers = np.concatenate([np.array(part, dtype=np.int64) for part in (head, *parts)])
-    work = max(room + largest * largest, int(row_starts[-1])) + 2 * n
+    work = max(room + largest * largest, int(row_starts[-1]) + PAD * count) + 2 * n
     return Plan(numbers, factors, work, float(operations.sum()))
 
 

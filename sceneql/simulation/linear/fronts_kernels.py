@@ -21,6 +21,7 @@ from sceneql.compiling.late import late
 from sceneql.kernels import lean
 from sceneql.simulation.linear.fronts_plan_kernels import (
     IN_SINGLE,
+    NEW,
     RESTING,
     SINGLE_FACTOR,
     SINGLE_SOLVE,
@@ -52,7 +53,7 @@ def factor_system(plan, values, factors, work, symmetric):
         plan[IN_SINGLE] = 0
         if plan[SINGLE_FACTOR] >= 0 and plan[RESTING] == 0:
             if factor_single_at(plan[SINGLE_FACTOR])(plan, values, factors, work):
-                plan[IN_SINGLE] = 1
+                plan[IN_SINGLE] = NEW
                 return True
             plan[RESTING] = RESTS + 1
         plan[RESTING] = max(0, plan[RESTING] - 1)
@@ -64,10 +65,13 @@ def factor_system(plan, values, factors, work, symmetric):
 def solve_system(plan, values, factors, b, work, symmetric):
     """Solve by the factors of ``factor_system``; the solution takes the place of b."""
     if symmetric:
-        if plan[IN_SINGLE] == 1:
-            solve_single_at(plan[SINGLE_SOLVE])(plan, values, factors, b, work)
-        else:
-            solve_symmetric(plan, factors, b, work)
+        if plan[IN_SINGLE] > 0:
+            if solve_single_at(plan[SINGLE_SOLVE])(plan, values, factors, b, work):
+                return True
+            plan[IN_SINGLE], plan[RESTING] = 0, RESTS
+            if not factor_symmetric(plan, values, factors, work):
+                return False
+        solve_symmetric(plan, factors, b, work)
         return True
     solve_general(plan, factors, b, work)
     return True

@@ -9,8 +9,12 @@ from sceneql.system_kernels import A, I
 PIECES_AT, PIECES, ENTRY, THREADS, PIECE_AT, UNIT, FORWARD, BACKWARD = range(8, 16)
 SINGLE_FACTOR, SINGLE_SOLVE, SINGLE_PIECE, SINGLE_FORWARD, SINGLE_BACKWARD = range(16, 21)
 IN_SINGLE, RESTING, EXACT, STARTS_AT, COLUMNS_AT, HEAD = range(21, 27)
+NEW, TRIED = 1, 2
+"""IN_SINGLE of factors in single precision: new, or found good; 0: they are in double precision."""
 FIELDS = 11
+PAD = 16
+"""Zeros behind the factors of each front: lanes reach that far beyond a row."""
 
 FACTOR_SINGLE = types.boolean(I, A, A, A)
-SOLVE_SINGLE = types.void(I, A, A, A, A)
+SOLVE_SINGLE = types.boolean(I, A, A, A, A)
 factor_single_at, solve_single_at = kernel_at(FACTOR_SINGLE), kernel_at(SOLVE_SINGLE)

@@ -1,11 +1,11 @@
 # mypy: ignore-errors
 """Large symmetric systems by factors in single precision, which take half the time and half the memory.
 
-The factors of a system are tried on one right side: where its solution is not right to some digits already, they are
-given up and those in double precision made (fronts_kernels). Solutions are refined by their residuals in double
-precision until nothing changes (Wilkinson 1963; Higham, Accuracy and Stability of Numerical Algorithms, 2002, ch. 12),
-or, where the caller is an iteration that repairs what is left, not at all. See fronts_kernels for the plan; ``work``:
-x and a residual (n,), then scratch in single precision.
+Solutions are refined by their residuals in double precision until nothing changes (Wilkinson 1963; Higham, Accuracy
+and Stability of Numerical Algorithms, 2002, ch. 12). Where the caller is an iteration that repairs what is left, only
+the first one with new factors is, and once: that tells how good they are. Where they are poor they are given up, and
+those in double precision made (fronts_kernels). For the plan see there; ``work``: x and a residual (n,), then scratch
+in single precision.
 """
 
 import math
@@ -19,6 +19,8 @@ from sceneql.simulation.linear.fronts_plan_kernels import (
     ENTRY,
     EXACT,
     FACTOR_SINGLE,
+    IN_SINGLE,
+    NEW,
     PIECES,
     PIECES_AT,
     SINGLE_BACKWARD,
@@ -27,6 +29,7 @@ from sceneql.simulation.linear.fronts_plan_kernels import (
     SOLVE_SINGLE,
     STARTS_AT,
     THREADS,
+    TRIED,
     UNIT,
 )
 from sceneql.simulation.linear.fronts_solve_kernels import PASS, backward_of, forward_of
@@ -35,16 +38,13 @@ from sceneql.simulation.threads_kernels import TILE, over_threads
 from sceneql.system_kernels import A, I
 
 GOOD = 0.02
-"""Relative error of a solution up to which the factors are used."""
+"""Part of a solution that its first refinement may change."""
 MOST = 12
 """Refinements of a solution."""
 REFINED = 1e-14
 """Relative change of a solution that is the last one."""
 STALLED = 0.25
 """Part of the change before that is rounding alone."""
-TRIED = 1140671485
-"""The multiplier by which the signs of the right side are drawn that factors are tried on."""
-
 SUBTRACT = types.void(I, A, A, A)
 
 
@@ -142,41 +142,36 @@ def largest(x, count):
 
 @lean(FACTOR_SINGLE, inner=True)
 def factor_single(plan, values, factors, work):
-    """Factor as fronts_kernels.factor_system does; False where the factors are not good enough."""
+    """Factor as fronts_kernels.factor_system does."""
     over_threads(plan[ENTRY], plan[THREADS], plan[SINGLE_PIECE], plan[PIECES], 0.0, values, factors, work, plan)
     done = 0
     for at in range(plan[PIECES_AT], plan[PIECES_AT] + 3 * plan[PIECES], 3):
         if plan[at + 2] == 0 or not factor_fronts(plan, values, factors, work, done, plan[at]):
             return False
         done = plan[at + 1]
-    if not factor_fronts(plan, values, factors, work, done, plan[1]):
-        return False
-    n = plan[0]
-    x, r, room = work[:n], work[n : 2 * n], work[2 * n :]
-    for k in range(n):
-        x[k] = 1.0 if (TRIED * (k + 1) >> 16) & 1 == 0 else -1.0
-        r[k] = x[k]
-    solve_roughly(plan, factors, x, room)
-    subtract_product(plan, values, x, r)
-    solve_roughly(plan, factors, r, room)
-    wrong, whole = largest(r, n), largest(x, n)
-    return wrong <= GOOD * whole and whole < math.inf
+    return factor_fronts(plan, values, factors, work, done, plan[1])
 
 
 @lean(SOLVE_SINGLE, inner=True)
 def solve_single(plan, values, factors, b, work):
-    """Solve by the factors of ``factor_single``; the solution takes the place of b."""
+    """Solve by the factors of ``factor_single``, x in the place of b; False where they are poor, and b as it was."""
     n = plan[0]
     x, r, room = work[:n], work[n : 2 * n], work[2 * n :]
     for k in range(n):
         x[k], r[k] = 0.0, b[k]
     before = math.inf
-    for _ in range(MOST):
+    for refined in range(MOST):
         solve_roughly(plan, factors, r, room)
         for k in range(n):
             x[k] += r[k]
-        change = largest(r, n)
-        if plan[EXACT] == 0 or change <= REFINED * largest(x, n) or not change < STALLED * before:
+        change, whole = largest(r, n), largest(x, n)
+        if refined == 1 and not change <= GOOD * whole:
+            return False
+        if refined > 0 and plan[IN_SINGLE] == NEW:
+            plan[IN_SINGLE] = TRIED
+        if whole == 0.0 or change <= REFINED * whole or not change < STALLED * before:
+            break
+        if plan[EXACT] == 0 and plan[IN_SINGLE] == TRIED:
             break
         before = change
         for k in range(n):
@@ -184,3 +179,4 @@ def solve_single(plan, values, factors, b, work):
         subtract_product(plan, values, x, r)
     for k in range(n):
         b[k] = x[k]
+    return largest(x, n) < math.inf

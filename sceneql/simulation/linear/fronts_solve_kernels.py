@@ -18,6 +18,7 @@ from sceneql.simulation.linear.fronts_plan_kernels import (
     FIELDS,
     FORWARD,
     HEAD,
+    PAD,
     PIECES,
     PIECES_AT,
     THREADS,
@@ -52,63 +53,58 @@ def subtract(panel, height, k, rows, own):
         value = own[i] * panel[i * height + i]
         for j in range(i + 1, k + rows):
             own[j] -= panel[i * height + j] * value
-    a = k * height
-    j = k + rows
+    lanes = BYTES // own.itemsize
     if rows == ROWS:
+        a = k * height
         b, c, d = a + height, a + 2 * height, a + 3 * height
         p, q = -own[k] * panel[a + k], -own[k + 1] * panel[b + k + 1]
         r, s = -own[k + 2] * panel[c + k + 2], -own[k + 3] * panel[d + k + 3]
-        lanes = BYTES // own.itemsize
-        while j + lanes <= height:
+        for j in range(k + rows, height, lanes):
             sums = fma(p, load(panel, a + j), load(own, j))
             sums = fma(q, load(panel, b + j), sums)
             sums = fma(r, load(panel, c + j), sums)
             store(own, j, fma(s, load(panel, d + j), sums))
-            j += lanes
-        while j < height:
-            own[j] += p * panel[a + j] + q * panel[b + j] + r * panel[c + j] + s * panel[d + j]
-            j += 1
     else:
         for i in range(k, k + rows):
-            value = own[i] * panel[i * height + i]
-            for j in range(k + rows, height):
-                own[j] -= panel[i * height + j] * value
+            value = -own[i] * panel[i * height + i]
+            for j in range(k + rows, height, lanes):
+                store(own, j, fma(value, load(panel, i * height + j), load(own, j)))
 
 
 @lean_inlined
 def substitute(panel, height, k, rows, own):
     """Solve rows k.. of U, all that comes after them in ``own`` being known."""
+    lanes = BYTES // own.itemsize
+    p = q = r = s = spread(own.dtype.type(0.0))
     if rows == ROWS:
         a = k * height
         b, c, d = a + height, a + 2 * height, a + 3 * height
-        lanes = BYTES // own.itemsize
-        p = q = r = s = spread(own.dtype.type(0.0))
-        j = k + rows
-        while j + lanes <= height:
+        for j in range(k + rows, height, lanes):
             known = load(own, j)
             p = fma(load(panel, a + j), known, p)
             q = fma(load(panel, b + j), known, q)
             r = fma(load(panel, c + j), known, r)
             s = fma(load(panel, d + j), known, s)
-            j += lanes
         own[k] -= folded(p)
         own[k + 1] -= folded(q)
         own[k + 2] -= folded(r)
         own[k + 3] -= folded(s)
-        while j < height:
-            own[k] -= panel[a + j] * own[j]
-            own[k + 1] -= panel[b + j] * own[j]
-            own[k + 2] -= panel[c + j] * own[j]
-            own[k + 3] -= panel[d + j] * own[j]
-            j += 1
     else:
         for i in range(k, k + rows):
-            for j in range(k + rows, height):
-                own[i] -= panel[i * height + j] * own[j]
+            p = spread(own.dtype.type(0.0))
+            for j in range(k + rows, height, lanes):
+                p = fma(load(panel, i * height + j), load(own, j), p)
+            own[i] -= folded(p)
     for i in range(k + rows - 1, k - 1, -1):
         own[i] *= panel[i * height + i]
         for j in range(k, i):
             own[j] -= panel[j * height + i] * own[i]
+
+
+@lean_inlined
+def at_front(plan, s):
+    """Where the numbers that are carried to a front start: behind each front's there is room for lanes beyond it."""
+    return plan[HEAD + FIELDS * s + 3] + PAD * s
 
 
 @lean_inlined
@@ -118,16 +114,17 @@ def forward_of(plan, factors, x, carried, begin, end):
     maps = plan[4]
     for s in range(begin, end):
         t = HEAD + FIELDS * s
-        first, width, height, at = plan[t], plan[t + 1], plan[t + 2], plan[t + 3]
-        panel, own = factors[plan[t + 5] : plan[t + 5] + width * height], carried[at : at + height]
+        first, width, height, at = plan[t], plan[t + 1], plan[t + 2], at_front(plan, s)
+        panel, own = factors[plan[t + 5] :], carried[at : at + height + PAD]
         for k in range(width):
             own[k] = x[first + k]
-        for k in range(width, height):
+        for k in range(width, height + PAD):
             own[k] = 0.0
         child = plan[t + 7]
         while child >= 0:
             c = HEAD + FIELDS * child
-            take_in(own, carried[plan[c + 3] + plan[c + 1] : plan[c + 3] + plan[c + 2]], plan[maps + plan[c + 4] :])
+            low = at_front(plan, child)
+            take_in(own, carried[low + plan[c + 1] : low + plan[c + 2]], plan[maps + plan[c + 4] :])
             child = plan[c + 8]
         for k in range(0, width, ROWS):
             subtract(panel, height, k, min(ROWS, width - k), own)
@@ -142,10 +139,12 @@ def backward_of(plan, factors, x, carried, begin, end):
     rows = plan[3]
     for s in range(end - 1, begin - 1, -1):
         t = HEAD + FIELDS * s
-        first, width, height, at = plan[t], plan[t + 1], plan[t + 2], plan[t + 3]
-        panel, own = factors[plan[t + 5] : plan[t + 5] + width * height], carried[at : at + height]
+        first, width, height, at = plan[t], plan[t + 1], plan[t + 2], at_front(plan, s)
+        panel, own, row = factors[plan[t + 5] :], carried[at : at + height + PAD], rows + plan[t + 3]
         for j in range(height):
-            own[j] = x[plan[rows + at + j]]
+            own[j] = x[plan[row + j]]
+        for j in range(height, height + PAD):
+            own[j] = 0.0
         last = (width - 1) // ROWS * ROWS
         for k in range(last, -1, -ROWS):
             substitute(panel, height, k, min(ROWS, width - k), own)

@@ -18,6 +18,7 @@ from sceneql.simulation.linear.fronts_plan_kernels import (
     ENTRY,
     FIELDS,
     HEAD,
+    PAD,
     PIECE_AT,
     PIECES,
     PIECES_AT,
@@ -178,7 +179,7 @@ def fronts_of(plan, values, factors, work, begin, end):
         t = HEAD + FIELDS * s
         width, height = plan[t + 1], plan[t + 2]
         rest = height - width
-        panel = factors[plan[t + 5] : plan[t + 5] + width * height]
+        panel = factors[plan[t + 5] : plan[t + 5] + width * height + PAD]
         square = work[plan[t + 9] : plan[t + 9] + rest * rest]
         for k in range(panel.size):
             panel[k] = 0.0
