@@ -208,6 +208,7 @@ class Tools:
         self.graph, self.name, self.report, self.target, self.named = graph, name, report, target, named
         self.panels: dict[str, Panel] = {}
         self._frames = 0
+        self._light: Any = None
 
     @property
     def clock(self) -> Clock:
@@ -223,15 +224,18 @@ class Tools:
             raise Unsuitable(f"'{self.name}' is written as .{extension}, which {target.name} does not end in")
         return target.with_name(f"{target.name}.{extension}")
 
-    def pixels(self, output: Picture, moment: Any) -> Any:
-        """The developed picture (h, w, 3) uint8."""
-        picture = self._composed(output, moment) if output.layout else self._seen(output, moment)
+    def pixels(self, output: Picture, moment: Any, part: int = 0, parts: int = 1) -> Any:
+        """The developed picture (h, w, 3) uint8; of several parts of an exposure after the last, else None."""
+        if output.layout:
+            picture = self._composed(output, moment)
+        else:
+            picture = self._seen(output, moment, None, part, parts)
         self._frames += 1
-        self.report.frames += 1
+        self.report.frames += part == parts - 1
         return picture
 
-    def _seen(self, output: Picture, moment: Any, camera: str | None = None) -> Any:
-        """The scene from a camera, by default the output's own."""
+    def _seen(self, output: Picture, moment: Any, camera: str | None = None, part: int = 0, parts: int = 1) -> Any:
+        """The scene from a camera, by default the output's own; None before the last part of an exposure."""
         from renderers.develop import develop
         from sceneql.simulation.presence import look
 
@@ -245,7 +249,13 @@ class Tools:
         if picture.undecided:
             counts = self.report.undecided.setdefault(self.name, {})
             counts[frame.index] = counts.get(frame.index, 0) + picture.undecided
-        pixels = develop(picture.linear, exposure=output.exposure, data=renderer.data)
+        linear = picture.linear
+        if parts > 1:
+            self._light = linear / parts if part == 0 else self._light + linear / parts
+            linear = self._light
+        if part < parts - 1:
+            return None
+        pixels = develop(linear, exposure=output.exposure, data=renderer.data)
         if not renderer.data:
             without = {ref.name for ref in output.laid_out}
             self._draw_over(pixels, frame.view, moment, partial(develop, exposure=output.exposure), without)

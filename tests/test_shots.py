@@ -39,6 +39,12 @@ def test_shots_have_their_speeds_and_their_cameras(tmp_path):
     assert {"wide", "near"} <= graph.tasks.keys()
 
 
+def test_a_film_without_shots_has_the_clocks_frames(tmp_path):
+    graph = graph_of(tmp_path, sets=["clock.speed=0.3", "clock.end=1.01 s", "clock.fps=24"])
+    clock = graph.settings.clock
+    assert graph.tasks["film"].kind.times(clock) == clock.frames(24)
+
+
 def test_a_shot_is_what_its_camera_sees(tmp_path):
     cut = graph_of(tmp_path, "[{until: 1 s}, {camera: near}]")
     plain = graph_of(tmp_path, sets=["film.camera=near"])
@@ -55,6 +61,34 @@ def test_shots_come_one_after_the_other(tmp_path):
     assert "begins at 2 s and ends no later" in told
     told = complaint(tmp_path, SCENE.format(shots="[{camera: near}, {camera: wide}]", lag="0 s", way=MOVE))
     assert "none can follow" in told
+
+
+def test_a_shutter_gathers_light_while_it_is_open(tmp_path):
+    graph = graph_of(tmp_path, way="2 m/s*time", sets=["film.shutter=180 deg", "film.exposures=4", "clock.end=0.95 s"])
+    video = graph.tasks["film"].kind
+    times = video.times(graph.settings.clock)
+    assert len(times) == 10 * 4
+    assert times == sorted(set(times))
+    np.testing.assert_allclose(times[:5], [0, 0.0125, 0.025, 0.0375, 0.1])
+    np.testing.assert_allclose(times[-4:], [0.9, 0.9125, 0.925, 0.9375])
+    tools = Tools(graph, "film", Report(), tmp_path / "it")
+    moments = simulate(graph, times[4:8])
+    *before, blurred = [tools.pixels(video, moment, k, 4) for k, moment in enumerate(moments)]
+    assert before == [None] * 3
+    alone = [Tools(graph, "film", Report(), tmp_path / "it") for _ in range(4)]
+    moments = simulate(graph, times[4:8])
+    sharp = [tool.pixels(video, moment).astype(int) for tool, moment in zip(alone, moments, strict=True)]
+    columns = [np.flatnonzero(np.ptp(one[18].astype(int), axis=1) > 12) for one in (*sharp, blurred)]
+    assert abs(columns[-1].min() - min(c.min() for c in columns[:-1])) <= 1
+    assert abs(columns[-1].max() - max(c.max() for c in columns[:-1])) <= 1
+    still = np.all([one == sharp[0] for one in sharp], axis=0)
+    assert np.abs(blurred.astype(int) - sharp[0])[still].max() <= 2
+    np.testing.assert_allclose(blurred.mean(), np.mean(sharp), atol=1)
+
+
+def test_panels_have_no_shutter(tmp_path):
+    told = complaint(tmp_path, SCENE.format(shots="[], shutter: 90 deg, layout: [[wide, near]]", lag="0 s", way=MOVE))
+    assert "has no shutter" in told
 
 
 @pytest.mark.parametrize("fps", [7, 30])

@@ -24,8 +24,11 @@ class Tools(Protocol):
     def path(self, extension: str) -> Any:
         """Path of the output's file."""
 
-    def pixels(self, output: Picture, moment: Moment) -> Any:
-        """The developed picture (h, w, 3) uint8 of this output's camera, renderer and size."""
+    def pixels(self, output: Picture, moment: Moment, part: int = 0, parts: int = 1) -> Any:
+        """The developed picture (h, w, 3) uint8 of this output's camera, renderer and size.
+
+        Of several ``parts`` of one exposure the light is added up; there is a picture after the last, else None.
+        """
 
     def encoder(self, word: str, **settings: Any) -> Any:
         """A writer with ``write``, ``close`` (whole under its final name) and ``abort`` (what was made, beside it)."""

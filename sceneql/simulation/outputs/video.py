@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 from sceneql.kinds import (
     CameraRef,
     Clock,
+    FixedAngle,
     FixedScalar,
     FixedTime,
     Moment,
@@ -43,7 +44,14 @@ class Video(Picture):
 
     fps: FixedScalar | None = field("Frames a second; by default the clock's.", None, above=0, at_most=1000)
     quality: FixedScalar = field("Constant rate factor of x264: 0 is lossless, 51 worst.", "17", at_least=0, at_most=51)
-
+    shutter: FixedAngle = field(
+        "How long the light of a frame is gathered, 360 deg being the time to the next: what moves is blurred, and "
+        "drawing takes `exposures` times as long.",
+        "0 deg",
+        at_least=0,
+        at_most=math.tau,
+    )
+    exposures: int = field("With a shutter: instants that a frame is made of.", 8, at_least=2, at_most=256)
     shots: tuple[Shot, ...] = field("Its pieces in their order: `[{camera: wide, until: 2 s}, {camera: near}]`.", ())
 
     def problems(self) -> Iterator[Problem]:
@@ -51,6 +59,8 @@ class Video(Picture):
         if any(side % 2 for side in self.pixels):
             text = f"a film's width and height must be even (yuv420p), not {self.pixels[0]} {self.pixels[1]}"
             yield Problem(text, ("size",))
+        if self.shutter > 0 and self.layout:
+            yield Problem("a film of several panels has no shutter", ("shutter",))
         for k, (one, after) in enumerate(pairwise(self.shots)):
             if one.until is None:
                 yield Problem("this shot lasts to the end, so that none can follow", ("shots", k))
@@ -59,18 +69,30 @@ class Video(Picture):
 
     def times(self, clock: Clock) -> list[float]:
         """The instants [s] that it wants."""
-        if not self.shots:
-            return clock.frames(self.rate(clock))
         times: list[float] = []
-        start = 0.0
-        for shot in self.shots:
-            end = clock.end if shot.until is None else min(shot.until, clock.end)
-            step = (clock.speed if shot.speed is None else shot.speed) / self.rate(clock)
-            count = math.ceil(round(bounded_moments(max(end - start, 0.0) / step), 9))
-            times += [start + k * step for k in range(count)]
-            start = end
+        rate = self.rate(clock)
+        for start, end, speed in self._pieces(clock):
+            frames = max(end - start, 0.0) / speed * rate
+            bounded_moments(frames * self.parts)
+            for k in range(math.ceil(round(frames, 9))):
+                frame = start + k / rate * speed
+                gathered = min(self.shutter / math.tau / rate * speed, clock.end - frame)
+                times += [frame + part * gathered / self.parts for part in range(self.parts)]
         bounded_moments(len(times))
-        return times
+        return times or [0.0]
+
+    def _pieces(self, clock: Clock) -> Iterator[tuple[float, float, float]]:
+        """Start and end of each shot [s], and its speed."""
+        start = 0.0
+        for shot in self.shots or (Shot(),):
+            end = clock.end if shot.until is None else min(shot.until, clock.end)
+            yield start, end, clock.speed if shot.speed is None else shot.speed
+            start = end
+
+    @property
+    def parts(self) -> int:
+        """Instants of the simulation in a frame."""
+        return self.exposures if self.shutter > 0 else 1
 
     def seen_from(self, time: float) -> Ref | None:
         """The camera of the shot at an instant [s]."""
@@ -89,9 +111,13 @@ class _Film:
     def __init__(self, video: Video, tools: Tools) -> None:
         self.video, self.tools = video, tools
         self.writer: Any = tools.encoder("mp4", size=video.pixels, rate=video.rate(tools.clock), quality=video.quality)
+        self.taken = 0
 
     def take(self, moment: Moment) -> None:
-        self.writer.write(self.tools.pixels(self.video, moment))
+        picture = self.tools.pixels(self.video, moment, self.taken % self.video.parts, self.video.parts)
+        self.taken += 1
+        if picture is not None:
+            self.writer.write(picture)
 
     def close(self) -> Iterable[Any]:
         return self.writer.close()  # type: ignore[no-any-return]
