@@ -44,10 +44,13 @@ SOLVERS = (
 
 
 def scene(model: str, solver: str, forces: str = "gravity", touched: str = "", mode: str = "local") -> str:
-    """A script of one island."""
-    objects = "".join(f"\n  o{k}: {OBJECTS[word]}" for k, word in enumerate(touched.split()))
-    names = ", ".join(["m", *(f"o{k}" for k, _ in enumerate(touched.split()))])
-    contacts = f"contacts: {{hit: {{collision: {{between: [{names}], mode: {mode}}}}}}}\n" if touched else ""
+    """A script of one island; ``touched`` may be "itself"."""
+    met = [] if touched == "itself" else touched.split()
+    objects = "".join(f"\n  o{k}: {OBJECTS[word]}" for k, word in enumerate(met))
+    names = ", ".join(["m", *(f"o{k}" for k, _ in enumerate(met))])
+    contacts = f"contacts: {{hit: {{collision: {{between: [{names}], mode: {mode}}}}}}}\n" if met else ""
+    if touched == "itself":
+        contacts = f"contacts: {{hit: {{mutual_collision: {{between: [m], restitution: 1, mode: {mode}}}}}}}\n"
     return (
         "clock: {end: 1 s, fps: 100}\nobjects:\n  room: {box: {size: 1 1 1 m, position: 0 3 0 m}}\n"
         f"  ball: {{sphere: {{radius: 1 m}}}}{objects}\n"
@@ -62,6 +65,8 @@ ISLANDS = {
     "particles in air, rk4": scene(DUST, "rk4", "gravity, {turbulence: {speed: 1 m/s, size: 1 m, linear: 1 g/s}}"),
     **{f"particles on {word}, local": scene(DUST, "rk4", touched=word) for word in OBJECTS},
     **{f"particles on {word}, exact": scene(DUST, "dopri5", touched=word, mode="exact") for word in OBJECTS},
+    "particles on one another, local": scene(DUST, "rk4", touched="itself"),
+    "particles on one another, exact": scene(DUST, "dopri5", touched="itself", mode="exact"),
     "jelly, rk4": scene(JELLY, "rk4"),
     **{f"jelly on {word}, local": scene(JELLY, "rk4", touched=word) for word in OBJECTS},
     "jelly on implicit and plane, local": scene(JELLY, "rk4", touched="implicit plane"),

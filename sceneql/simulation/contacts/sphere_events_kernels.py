@@ -6,27 +6,15 @@ floats[ints[POINTS] + 7 k:] has the last accepted instant of mass k, its place a
 
 import math
 
-import numpy as np
-
+from sceneql.compiling.late import late
 from sceneql.kernels import inlined, kernel
-from sceneql.simulation.contacts.impulse_kernels import count_hit
-from sceneql.simulation.contacts.sphere_pair_kernels import (
-    COUNT,
-    INVERSE,
-    MASS,
-    POINTS,
-    TALLY,
-    WORK,
-    V,
-    X,
-    impulse,
-    of,
-    radii,
-)
+from sceneql.simulation.contacts.sphere_pair_kernels import COUNT, INVERSE, POINTS, V, X, of, radii
 from sceneql.system_kernels import GAP, IMPACT, A, F, I, N
 
 NO_EVENT = 1e300
 INSTANT = 7
+
+hit = late("sceneql.simulation.contacts.sphere_hit_kernels:hit", IMPACT)
 
 
 @kernel(F(N, N, F, A, A, I), inner=True)
@@ -83,29 +71,5 @@ def note(t, y, floats, ints):
 def impact(t, y, pair, floats, ints):
     """The impulse of a pair that approaches; pair -1: note the instant."""
     note(t, y, floats, ints)
-    if pair < 0:
-        return
-    i = 0
-    while pair >= ints[COUNT] - 1 - i:
-        pair -= ints[COUNT] - 1 - i
-        i += 1
-    j = i + 1 + pair
-    r, v = np.empty(3), np.empty(3)
-    vn = 0.0
-    for c in range(3):
-        r[c] = y[of(ints, i, X) + c] - y[of(ints, j, X) + c]
-        v[c] = y[of(ints, i, V) + c] - y[of(ints, j, V) + c]
-        vn += r[c] * v[c]
-    if vn >= 0.0:
-        return
-    px, py, pz, speed = impulse(i, j, r, v, floats, ints)
-    count_hit(floats, ints[TALLY], t, speed)
-    for c in range(3):
-        p = px if c == 0 else (py if c == 1 else pz)
-        a, b = floats[of(ints, i, INVERSE)] * p, floats[of(ints, j, INVERSE)] * p
-        u, w = y[of(ints, i, V) + c], y[of(ints, j, V) + c]
-        lost = -floats[of(ints, i, MASS)] * a * (u + 0.5 * a) + floats[of(ints, j, MASS)] * b * (w - 0.5 * b)
-        y[of(ints, i, WORK)] += 0.5 * lost
-        y[of(ints, j, WORK)] += 0.5 * lost
-        y[of(ints, i, V) + c] = u + a
-        y[of(ints, j, V) + c] = w - b
+    if pair >= 0:
+        hit(t, y, pair, floats, ints)

@@ -18,6 +18,12 @@ COUNT, RESTITUTION, FRICTION, TALLY, POINTS, SORTED, ORDER, START, SIZE, P, Q, O
 X, V, WORK, MASS, INVERSE, RADIUS, BODY = range(7)
 
 FOUR = types.UniTuple(F, 4)
+ROWS = types.float64[:, ::1]
+MEET = types.void(F, F, I, I, A, A, A, A, I)
+"""(end of the step, its length, the pairs: first of each mass and the others, state and rate at the start, state at the
+end, floats, ints)."""
+REST = types.void(F, I, I, ROWS, A, A, I)
+"""(length of the step, the pairs, mean accelerations (n, 3), state at the end, floats, ints)."""
 TOUCHING = 1e-9
 """Distance, as a part of the radii, below which two masses touch."""
 

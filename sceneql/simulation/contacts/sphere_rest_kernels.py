@@ -22,6 +22,8 @@ from sceneql.simulation.contacts.sphere_pair_kernels import (
     MASS,
     OBJECTS,
     RADIUS,
+    REST,
+    ROWS,
     TOUCHING,
     WORK,
     V,
@@ -34,7 +36,6 @@ from sceneql.simulation.contacts.sphere_pair_kernels import (
 from sceneql.system_kernels import A, F, I
 
 SWEEPS = 200
-ROWS = types.float64[:, ::1]
 NONE = -1
 
 
@@ -167,7 +168,7 @@ def part_them(pairs, rows, moved, y1, floats, ints):
     return worst
 
 
-@kernel(types.void(F, I, I, ROWS, A, A, I), inner=True)
+@kernel(REST, inner=True)
 def rest(h, first, others, pull, y1, floats, ints):
     """Let what touches at the end of the step of length h approach no more; ``pull`` (n, 3): mean accelerations."""
     pairs, rows = contacts(h, first, others, pull, y1, floats, ints)
