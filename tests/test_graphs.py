@@ -17,7 +17,7 @@ define: {{a: 1}}
 objects: {{far: {{sphere: {{position: 0 0 -50 m}}}}}}
 cameras: {{plan: {{orthographic: {{look_along: -z, look_at: 0 0 0 m, height: 3 m}}}}}}
 background: black
-overlays: {{plot: {{graph: {{{fields}, size: 1 1, opacity: 1}}}}}}
+overlays: {{plot: {{graph: {{{fields}, size: 1 1, panel: 1}}}}}}
 variants:
   slow: {{define.a: 0.5}}
   fast: {{define.a: 2}}

@@ -11,7 +11,8 @@ from sceneql.report.new import SCRIPT
 from sceneql.report.schema import schema
 
 SCHEMA = schema(Catalogue())
-SCENES = sorted((Path(__file__).parent.parent / "scenes").glob("*.yaml"))
+HERE = Path(__file__).parent
+SCENES = sorted([*(HERE.parent / "scenes").glob("*.yaml"), *(HERE / "wishes").glob("*.yaml")])
 NOTES = {"$schema", "$defs", "title", "description", "default"}
 TYPES = {"object": dict, "array": list, "string": str, "integer": int, "number": (int, float), "boolean": bool}
 

@@ -108,6 +108,8 @@ def _type(annotation: Any, catalogue: Catalogue) -> dict[str, Any]:
         return {"type": "object", "additionalProperties": _type(arms[1], catalogue)}
     if isinstance(base, type) and issubclass(base, BaseModel):
         return _record(base, catalogue)
+    if base is Any:
+        return {}
     if base is bool:
         return {"enum": [True, False, "yes", "no", "on", "off"]}
     return TEXT

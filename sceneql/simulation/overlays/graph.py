@@ -46,7 +46,7 @@ class Graph(Overlay):
     place: Place = field("Where it stands in the picture.", "bottom left")
     size: Shares = field("Its width and height in parts of the picture's.", (0.36, 0.3), above=0, at_most=1)
     text: FixedScalar = field("Height of its letters in parts of the picture's.", "0.027", above=0, at_most=0.2)
-    opacity: FixedScalar = field("Opacity of the panel that it stands on.", "0.85", at_least=0, at_most=1)
+    panel: FixedScalar = field("Opacity of the panel that it stands on.", "0.85", at_least=0, at_most=1)
 
     def problems(self) -> Iterator[Problem]:
         """Units that there are not, or of something else; curves of different quantities; a range that is none."""
@@ -91,7 +91,7 @@ class Graph(Overlay):
         most = 2 * round(MARGIN * height)
         wide, high = min(round(self.size[0] * width), width - most), min(round(self.size[1] * height), height - most)
         left, top = corner(self.place, (wide, high), (width, height))
-        self._draw(pixels[top : top + high, left : left + wide], moment, self.opacity, height / high)
+        self._draw(pixels[top : top + high, left : left + wide], moment, self.panel, height / high)
 
     def fill(self, pixels: NDArray[uint8], moment: Moment, scale: float) -> None:
         """Draw it over all of the pixels."""
