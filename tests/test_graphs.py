@@ -128,6 +128,8 @@ def test_a_run_that_fails_has_its_course_up_to_there(tmp_path):
         ("y: time, range: 2 1", "no larger value"),
         ("y: [[1, 2, 3], [3, 4, 5]]", "a list of vectors"),
         ("y: time, x: '[1, 2, 3]'", "one number at each time"),
+        ("y: {}", "nothing to draw"),
+        ("y: []", "no curve"),
         ("y: {a: tine}", "did you mean 'time'"),
     ],
 )

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from runs import complaint
 from sceneql.failure import RunFailure
 from sceneql.kinds import EachVariant
 from sceneql.pipeline import Report, Tools, load, render, simulate
@@ -96,6 +97,12 @@ def test_a_script_that_only_its_variants_show_is_not_run(tmp_path):
     report = render(graph, folder=tmp_path)
     assert report.frames == 1
     assert 20 + 8 <= report.steps <= 20 + 10  # those of `slow`, and those of `breaks` until it does
+
+
+def test_a_row_has_panels(tmp_path):
+    told = complaint(tmp_path, SCENE.format(layout="[[front], []]", may="", first=0))
+    assert "this row has no panel" in told
+    assert "scene.yaml:15:" in told
 
 
 def test_cameras_stand_side_by_side(tmp_path):

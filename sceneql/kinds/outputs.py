@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
 
 from sceneql.kinds.types import CameraRef, DrawnRef, FixedScalar, PanelRef, RendererRef
-from sceneql.kinds.word import Kind, Record, field
+from sceneql.kinds.word import Kind, Problem, Record, field
 
 if TYPE_CHECKING:
     from sceneql.kinds.moment import Moment
@@ -87,6 +87,12 @@ class Picture(Output):
         "`may_fail` stops in its panel under the message; graphs in a layout stand nowhere else.",
         (),
     )
+
+    def problems(self) -> Iterator[Problem]:
+        """Rows of a layout without a panel."""
+        for k, row in enumerate(self.layout):
+            if row == ():
+                yield Problem("this row has no panel", ("layout", k))
 
     @property
     def laid_out(self) -> tuple[Ref, ...]:

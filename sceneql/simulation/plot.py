@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 Color = tuple[int, int, int]
 
+FEW = 12
+"""Up to so many curves end in dots."""
 SHARE = 0.3
 """A title below that is longer than this part of the panel has a line of its own."""
 
@@ -133,7 +135,7 @@ def draw_plot(
     letters.draw.line((x0, y1, x1, y1), look.quiet, thin)
     for curve in curves:
         along, values = curve.drawn()
-        _draw_curve(letters, area, across.told(along), up.told(values), curve.color)
+        _draw_curve(letters, area, across.told(along), up.told(values), curve.color, dot=len(curves) <= FEW)
     letters.done()
 
 
@@ -157,8 +159,8 @@ class _Area:
         return self.y1 - self.up.place(values) * (self.y1 - self.y0)
 
 
-def _draw_curve(letters: Letterer, area: _Area, x: Floats, y: Floats, color: Color) -> None:
-    """A line with a dot at its end."""
+def _draw_curve(letters: Letterer, area: _Area, x: Floats, y: Floats, color: Color, *, dot: bool) -> None:
+    """A line, with a dot at its end."""
     import numpy as np
 
     reach = round(0.4 * letters.em)  # dots and thick lines go a little over the ends
@@ -167,7 +169,7 @@ def _draw_curve(letters: Letterer, area: _Area, x: Floats, y: Floats, color: Col
     points = np.stack([area.x(x) - corner[0], area.y(y) - corner[1]], axis=1)
     points[(points[:, 1] < -4 * size[1]) | (points[:, 1] > 5 * size[1])] = float("nan")
     lines = [(points, max(1.4, letters.em / 9), color)]
-    if len(points) and 0 <= points[-1][0] <= size[0] and 0 <= points[-1][1] <= size[1]:
+    if dot and len(points) and 0 <= points[-1][0] <= size[0] and 0 <= points[-1][1] <= size[1]:
         lines += [(points[-1:], 0.62 * letters.em, letters.look.paper), (points[-1:], 0.42 * letters.em, color)]
     for line, width, ink in lines:
         drawn = stroke(size, line, width)

@@ -56,6 +56,7 @@ class Video(Picture):
 
     def problems(self) -> Iterator[Problem]:
         """A size that no player shows; shots that end before they begin."""
+        yield from super().problems()
         if any(side % 2 for side in self.pixels):
             text = f"a film's width and height must be even (yuv420p), not {self.pixels[0]} {self.pixels[1]}"
             yield Problem(text, ("size",))

@@ -9,6 +9,7 @@ from sceneql.kinds import Color, Expected, FixedScalar, Moment, Overlay, Problem
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.quantities.dimension import Dimension
+from sceneql.quantities.expression import Symbol
 from sceneql.quantities.units import describe, parse_unit, unit_of
 from sceneql.simulation.standing import MARGIN, Place, corner
 
@@ -21,6 +22,10 @@ if TYPE_CHECKING:
 
 Limits = Annotated[tuple[float, float], Quantity(None, (2,))]
 Shares = Annotated[tuple[float, float], Quantity(dim.PLAIN, (2,))]
+
+
+MOST_NAMED = 12
+"""More curves are a bundle without names."""
 
 
 class Graph(Overlay):
@@ -50,10 +55,14 @@ class Graph(Overlay):
 
     def problems(self) -> Iterator[Problem]:
         """Units that there are not, or of something else; curves of different quantities; a range that is none."""
+        if not self._named():
+            yield Problem("there is nothing to draw", ("y",))
         dimensions = [value.expr.type.dimension for value in self._named().values()]
         for (name, value), dimension in zip(self._named().items(), dimensions, strict=True):
             path = ("y", name) if isinstance(self.y, dict) else ("y",)
-            if len(value.expr.type.shape) > 1:
+            if 0 in value.expr.type.shape:
+                yield Problem("an empty list has no curve", path)
+            elif len(value.expr.type.shape) > 1:
                 yield Problem("a curve is a number at each time, or a vector; this is a list of vectors", path)
             elif dimension != dimensions[0]:
                 text = f"curves of one graph are of one quantity, but here is {describe(dimensions[0])}"
@@ -105,25 +114,27 @@ class Graph(Overlay):
         from sceneql.simulation.plot import Axis, draw_plot
 
         one = next(iter(self._named().values()))
+        curves = list(self._curves(moment))
         named = isinstance(self.y, dict) or self.each is not None or bool(one.expr.type.shape)
         title = self.title
         if title is None:
             title = "" if isinstance(self.y, dict) else _written(one)
         log = self.log or ""
+        over_time = self.x is None or isinstance(self.x.expr, Symbol)
         draw_plot(
             pixels,
-            list(self._curves(moment)),
+            curves,
             Axis(title, _unit(self.unit, one.expr.type.dimension), "y" in log, self.range),
             Axis(
                 "time" if self.x is None else _written(self.x),
                 _unit(self.x_unit, dim.TIME if self.x is None else self.x.expr.type.dimension),
                 "x" in log,
-                (0.0, moment.end) if self.x is None and "x" not in log else None,
+                (0.0, moment.end) if over_time and "x" not in log else None,
             ),
             opacity,
             self.text * scale,
             DARK if self.dark else LIGHT,
-            named,
+            named and len(curves) <= MOST_NAMED,
         )
 
     def _curves(self, moment: Moment) -> Iterator[Curve]:
