@@ -26,14 +26,14 @@ from sceneql.kernels import OURS, cache_folder, compiled, compiles, thread_count
 def compile_ahead(modules: Iterable[str]) -> Callable[..., None]:
     """Have modules' kernels compiled beside, in this order, unless they were before; call the result to have them all.
 
-    The call, with 1 for all but the first one, imports them from the last one on, and counts as compilation. Generated
-    modules are left out.
+    The call imports them from the last one on, less those that it names, and counts as compilation. Generated modules
+    are left out.
     """
     ours = [module for module in modules if module.partition(".")[0] in OURS[:2]]
     marks = {module: cache_folder(module) / "all.compiled" for module in ours}
     due = [module for module, mark in marks.items() if not mark.exists()]
     if not due or not compiles():
-        return lambda but=0: None
+        return lambda *but: None
     for module in due:
         marks[module].parent.mkdir(parents=True, exist_ok=True)
     if thread_count() > 1:
@@ -42,11 +42,12 @@ def compile_ahead(modules: Iterable[str]) -> Callable[..., None]:
             names.write("".join(f"{module} {marks[module]}\n" for module in due))
             names.flush()
 
-    def wait(but: int = 0) -> None:
+    def wait(*but: str) -> None:
+        wanted = [module for module in due if module not in but]
         with compiled.whole_block():
-            for module in reversed(due[but:]):
+            for module in reversed(wanted):
                 import_module(module)
-        for module in due[but:]:
+        for module in wanted:
             marks[module].touch()
 
     return cache(wait)

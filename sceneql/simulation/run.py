@@ -124,10 +124,10 @@ class IslandRun:
             compile_ahead(on_grid.likely_kernels(stepper, assembly.only_field))
         system = assembly.finish(stepper.jacobian)
         events = ("sceneql.simulation.events_kernels",) if system.pairs else ()
-        step = stepper.step.partition(":")[0]
-        acting = compile_ahead((step, *likely_kernels(system), *modules(system.structure), *events))
-        acting(1)
-        if stepper.march is None:  # the process beside still compiles the solver's step
+        solving = (stepper.step.partition(":")[0], *likely_kernels(system))
+        acting = compile_ahead((*solving, *modules(system.structure), *events))
+        acting(*solving)
+        if stepper.march is None:  # while the process beside compiles what solves
             driver(system.structure)
             if stepper.jacobian:
                 jacobian(system)

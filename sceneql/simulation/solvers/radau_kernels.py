@@ -13,10 +13,13 @@ three matrices m x m.
 
 import math
 
+from numba import types
+
+from sceneql.compiling.late import late
 from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.pointers_kernels import AT_JACOBIAN, AT_RATE, jacobian_at, rate_at
 from sceneql.simulation.solvers.reduced_kernels import factor_pair, factor_real, solve_pair, solve_real
-from sceneql.system_kernels import DENSE, STEP
+from sceneql.system_kernels import DENSE, STEP, A, F, I
 
 MEMORY = 16
 NEXT, START, LENGTH, BEFORE, GOOD_LENGTH, GOOD_ERROR, ERROR, CONVERGENCE, CONTRACTION, FACTORED = range(10)
@@ -27,6 +30,9 @@ BEGUN, FRESH, REJECTED, CEILING = range(10, 14)
 beyond which Newton's iteration failed not long ago (0: none)."""
 
 FIXED, ROOM, LEFT, TALLIES, HEAD = range(5)
+
+FINISH = types.void(I, F, F, A, A, I, A, I, A, A)
+finish_tallies = late("sceneql.simulation.solvers.radau_tallies_kernels:finish_tallies", FINISH)
 
 ITERATIONS = 7
 ENOUGH = 0.03
@@ -201,23 +207,14 @@ def iterate(
 
 
 @lean_inlined
-def finish_tallies(rate, t, h, y0, y1, numbers, floats, ints, z, f):
-    """Sums that nothing depends on, whose slopes are left out, from the rates at the final stages."""
-    n = y0.size
+def tallies_move(numbers, n, z):
+    """Whether any sum that nothing depends on changes in the step."""
     first = HEAD + 2 * numbers[LEFT]
-    some = False
     for k in range(first, first + numbers[TALLIES]):
         i = numbers[k]
-        some = some or z[i] != 0.0 or z[n + i] != 0.0 or z[2 * n + i] != 0.0
-    if not some:
-        return
-    evaluate_stages(rate, t, h, y0, y1, z, f, floats, ints)
-    for k in range(first, first + numbers[TALLIES]):
-        i = numbers[k]
-        f1, f2, f3 = h * f[i], h * f[n + i], h * f[2 * n + i]
-        z[i] = ((88.0 - 7.0 * ROOT6) * f1 + (59.2 - 33.8 * ROOT6) * f2) / 360.0 + (3.0 * ROOT6 - 2.0) / 225.0 * f3
-        z[n + i] = ((59.2 + 33.8 * ROOT6) * f1 + (88.0 + 7.0 * ROOT6) * f2) / 360.0 - (2.0 + 3.0 * ROOT6) / 225.0 * f3
-        z[2 * n + i] = ((16.0 - ROOT6) * f1 + (16.0 + ROOT6) * f2) / 36.0 + f3 / 9.0
+        if z[i] != 0.0 or z[n + i] != 0.0 or z[2 * n + i] != 0.0:
+            return True
+    return False
 
 
 @lean_inlined
@@ -333,8 +330,8 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
             for k in range(n):
                 y1[k] = math.nan
             return math.inf
-    if numbers[TALLIES] > 0:
-        finish_tallies(rate, t, h, y0, y1, numbers, floats, ints, z, f)
+    if tallies_move(numbers, n, z):
+        finish_tallies(functions, t, h, y0, y1, numbers, floats, ints, z, f)
     error = 0.0
     if numbers[FIXED] == 0:
         error = estimate(
