@@ -6,7 +6,7 @@ from numba import types
 from renderers.tracing.filter_kernels import SLACK
 from renderers.tracing.gather_kernels import gather
 from renderers.tracing.record_kernels import OWNER, TRACED, alike
-from renderers.tracing.sampling_kernels import morton
+from renderers.tracing.sampling_kernels import sample_of
 from renderers.tracing.scene_kernels import HEIGHT, SCENE, SCRATCH, WIDTH, part
 from renderers.tracing.shade_kernels import shade
 from renderers.tracing.visibility_kernels import look_around
@@ -104,7 +104,7 @@ def smooth_rows(scene, scratch, start, stop, points, records, radiance, visibili
                     picture[k, c] = radiance[k, c]
                 continue
             anew += 1
-            number = morton(x, y)
+            number = sample_of(x, y)
             red, green, blue = 0.0, 0.0, 0.0
             used = 0
             plain = True

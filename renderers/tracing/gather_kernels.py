@@ -9,7 +9,7 @@ from renderers.tracing.intersect_kernels import walk
 from renderers.tracing.light_kernels import backdrop, dielectric, sharpness, sky_radiance, smoothstep
 from renderers.tracing.path_kernels import behind, bend, describe, faded, mirrored, refracted
 from renderers.tracing.record_kernels import OWNER, TINT, TRACED, WEIGHT, copy_record, erase, start_of
-from renderers.tracing.sampling_kernels import morton
+from renderers.tracing.sampling_kernels import sample_of
 from renderers.tracing.scene_kernels import (
     INDEX,
     ITEMS,
@@ -149,7 +149,7 @@ def gather_rows(scene, scratch, start, stop, records, radiance, visibility, spar
     for y in range(start, stop):
         for x in range(width):
             k = y * width + x
-            number = morton(x, y)
+            number = sample_of(x, y)
             scratch[counter, 0] = 0.0
             for m in range(len(shapes)):
                 scratch[counter, TOLD] = 1.0

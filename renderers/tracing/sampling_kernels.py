@@ -1,9 +1,10 @@
 # mypy: ignore-errors
 """Which sample a pixel takes: one point of a net for each pixel of a block, 8 x 8 for lights, 16 x 16 for the sky.
 
-Pixel (x, y) takes the point whose index is the Morton code of its place in the block. Any window of the block's size
-then has each point once, and every aligned block of a power of two a net of its own (Ahmed and Wonka 2020), so that the
-filter leaves nothing of the pattern.
+Pixel (x, y) takes the point whose index is linear over GF(2) in the bits of its place in the block. Any window of the
+block's size then has each point once. The filter's window moves by whole rows and columns of the block, so these are
+nets as well, as nearly as their number of points lets them be, and so are aligned blocks of 2 x 2 and 4 x 4 pixels
+(Ahmed and Wonka 2020 order the points along a curve, which leaves stripes: its rows and columns lie on few lines).
 """
 
 import numpy as np
@@ -57,12 +58,16 @@ def subpixels(samples: int):
     return _net(samples)
 
 
+ACROSS, DOWN = (1, 135, 29, 64), (2, 11, 165, 128)
+"""What each bit of x and of y adds to the index, found by search; those beyond SIDE leave the lights' as it is."""
+
+
 @part
-def morton(x, y):
+def sample_of(x, y):
     """Index of the sky's sample of pixel (x, y); its remainder by COUNT is that of the lights'."""
     number = 0
     for bit in range(4):
-        number |= ((x >> bit) & 1) << (2 * bit) | ((y >> bit) & 1) << (2 * bit + 1)
+        number ^= ((x >> bit) & 1) * ACROSS[bit] ^ ((y >> bit) & 1) * DOWN[bit]
     return number
 
 
