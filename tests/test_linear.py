@@ -158,7 +158,7 @@ def test_factors_in_single_precision_solve_to_rounding_when_refined(monkeypatch,
         fronts_kernels.solve_system(plan.numbers, values, factors, x, work, True)
         known = spsolve(matrix.tocsc(), right)
         wrong = np.abs(x - known).max() / np.abs(known).max()
-        assert plan.numbers[IN_SINGLE] == TRIED
+        assert plan.numbers[IN_SINGLE] > 0
         assert wrong <= (1e-14 * max(1.0, stiffness) + 1e-13 if exact else 0.02)
 
 

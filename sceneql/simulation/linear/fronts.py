@@ -211,7 +211,7 @@ def _laid_out(pattern: Any, order: Rows, fronts: list[_Front], first: Rows, unit
     starts = list(accumulate((len(part) for part in parts), initial=HEAD))
     head = [n, count, *starts[1:6], room, starts[6], len(pieces), *threads(), tile_address(piece), unit]
     head += [tile_address(forward_piece), tile_address(backward_piece)]
-    head += [*_single(float(operations.sum())), 0, 0, int(exact), *starts[7:9]]
+    head += [*_single(float(operations.sum())), 0, 0, int(exact), 0, *starts[7:9]]
     numbers = np.concatenate([np.array(part, dtype=np.int64) for part in (head, *parts)])
     work = max(room + largest * largest, int(row_starts[-1]) + PAD * count) + 2 * n
     return Plan(numbers, factors, work, float(operations.sum()))

@@ -131,7 +131,7 @@ def factor_general(plan, values, factors, work):
         rest = height - width
         for k in range(height * height):
             front[k] = 0.0
-        put(plan, values, front, height, entries + 2 * plan[t + 6], entries + 2 * plan[t + FIELDS + 6])
+        put(plan, values, 1.0, front, height, entries + 2 * plan[t + 6], entries + 2 * plan[t + FIELDS + 6])
         child = plan[t + 7]
         while child >= 0:
             c = HEAD + FIELDS * child

@@ -5,7 +5,8 @@ The integers of a plan: [unknowns, fronts, where these start: order, rows, maps,
 updates; where the pieces start, how many; the numbers of threads_kernels.threads, the address of the kernel that
 factors a piece; unknowns of a unit, whose blocks make up the matrix; the addresses of the kernels that solve in a
 piece; numbers and addresses of the same of fronts_single_kernels (-1: not worth it), whether the factors are in single
-precision, how many next ones are not to be, whether solutions are to be refined; where the starts of the rows of
+precision, how many next ones are not to be, whether solutions are to be refined,
+the bits of what the matrix was multiplied by; where the starts of the rows of
 blocks and their columns start], then a table with FIELDS a front: first unknown, number eliminated, rows of the
 front, then where its rows, its map into the parent, its factors and its entries (blocks: first value, its place in the
 front) start, its last child and the child of its parent before it (-1: none), where its update stands in the work, and
@@ -33,7 +34,7 @@ from sceneql.simulation.linear.fronts_symmetric_kernels import factor_symmetric
 from sceneql.simulation.linear.solver_kernels import FACTOR_SYSTEM, SOLVE_SYSTEM
 from sceneql.system_kernels import A, I
 
-RESTS = 15
+RESTS = 7
 """Factorizations in double precision after one in single precision was not good enough."""
 
 FACTOR_GENERAL = types.boolean(I, A, A, A)

@@ -8,9 +8,9 @@ from sceneql.system_kernels import A, I
 
 PIECES_AT, PIECES, ENTRY, THREADS, PIECE_AT, UNIT, FORWARD, BACKWARD = range(8, 16)
 SINGLE_FACTOR, SINGLE_SOLVE, SINGLE_PIECE, SINGLE_FORWARD, SINGLE_BACKWARD = range(16, 21)
-IN_SINGLE, RESTING, EXACT, STARTS_AT, COLUMNS_AT, HEAD = range(21, 27)
-NEW, TRIED = 1, 2
-"""IN_SINGLE of factors in single precision: new, or found good; 0: they are in double precision."""
+IN_SINGLE, RESTING, EXACT, SCALE, STARTS_AT, COLUMNS_AT, HEAD = range(21, 28)
+NEW, TRIED, WEAK = 1, 2, 3
+"""IN_SINGLE of factors in single precision: new, found good, or to be refined; 0: they are in double precision."""
 FIELDS = 11
 PAD = 16
 """Zeros behind the factors of each front: lanes reach that far beyond a row."""

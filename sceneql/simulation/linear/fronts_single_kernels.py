@@ -3,8 +3,8 @@
 
 Solutions are refined by their residuals in double precision until nothing changes (Wilkinson 1963; Higham, Accuracy
 and Stability of Numerical Algorithms, 2002, ch. 12). Where the caller is an iteration that repairs what is left, only
-the first one with new factors is, and once: that tells how good they are. Where they are poor they are given up, and
-those in double precision made (fronts_kernels). For the plan see there; ``work``: x and a residual (n,), then scratch
+the first one with new factors is, and once: that tells how good they are. Where they are weak all are refined once;
+where they are poor they are given up, and those in double precision made (fronts_kernels). For the plan see there; ``work``: x and a residual (n,), then scratch
 in single precision.
 """
 
@@ -14,6 +14,7 @@ import numpy as np
 from numba import types
 
 from sceneql.kernels import kernel, lean, lean_inlined
+from sceneql.simulation.arithmetic_kernels import bits, from_bits
 from sceneql.simulation.linear.fronts_plan_kernels import (
     COLUMNS_AT,
     ENTRY,
@@ -23,6 +24,7 @@ from sceneql.simulation.linear.fronts_plan_kernels import (
     NEW,
     PIECES,
     PIECES_AT,
+    SCALE,
     SINGLE_BACKWARD,
     SINGLE_FORWARD,
     SINGLE_PIECE,
@@ -31,14 +33,15 @@ from sceneql.simulation.linear.fronts_plan_kernels import (
     THREADS,
     TRIED,
     UNIT,
+    WEAK,
 )
 from sceneql.simulation.linear.fronts_solve_kernels import PASS, backward_of, forward_of
 from sceneql.simulation.linear.fronts_symmetric_kernels import FACTOR_FRONTS, fronts_of
 from sceneql.simulation.threads_kernels import TILE, over_threads
 from sceneql.system_kernels import A, I
 
-GOOD = 0.02
-"""Part of a solution that its first refinement may change."""
+USABLE, GOOD = 0.1, 2e-3
+"""Parts of a solution that its first refinement may change: of factors that are used, that need no refinement."""
 MOST = 12
 """Refinements of a solution."""
 REFINED = 1e-14
@@ -51,7 +54,7 @@ SUBTRACT = types.void(I, A, A, A)
 @lean(FACTOR_FRONTS, inner=True)
 def factor_fronts(plan, values, factors, work, begin, end):
     """`fronts_of` in single precision."""
-    return fronts_of(plan, values, factors.view(np.float32), work.view(np.float32), begin, end)
+    return fronts_of(plan, values, from_bits(plan[SCALE]), factors.view(np.float32), work.view(np.float32), begin, end)
 
 
 @lean(PASS, inner=True)
@@ -97,6 +100,7 @@ def solve_roughly(plan, factors, r, room):
     if size == 0.0:
         return
     own = x.view(np.float32)
+    back = size * from_bits(plan[SCALE])
     for k in range(n):
         own[k] = r[plan[order + k]] / size
     over_threads(plan[ENTRY], plan[THREADS], plan[SINGLE_FORWARD], pieces, 0.0, factors, x, carried, plan)
@@ -112,7 +116,7 @@ def solve_roughly(plan, factors, r, room):
     backward(plan, factors, x, carried, 0, last)
     over_threads(plan[ENTRY], plan[THREADS], plan[SINGLE_BACKWARD], pieces, 0.0, factors, x, carried, plan)
     for k in range(n):
-        r[plan[order + k]] = size * own[k]
+        r[plan[order + k]] = back * own[k]
 
 
 @lean(SUBTRACT, inner=True)
@@ -143,6 +147,10 @@ def largest(x, count):
 @lean(FACTOR_SINGLE, inner=True)
 def factor_single(plan, values, factors, work):
     """Factor as fronts_kernels.factor_system does."""
+    most = largest(values, plan[UNIT] ** 2 * plan[plan[STARTS_AT] + plan[0] // plan[UNIT]])
+    if not 0.0 < most < math.inf:
+        return False
+    plan[SCALE] = bits(1.0 / most)
     over_threads(plan[ENTRY], plan[THREADS], plan[SINGLE_PIECE], plan[PIECES], 0.0, values, factors, work, plan)
     done = 0
     for at in range(plan[PIECES_AT], plan[PIECES_AT] + 3 * plan[PIECES], 3):
@@ -165,13 +173,13 @@ def solve_single(plan, values, factors, b, work):
         for k in range(n):
             x[k] += r[k]
         change, whole = largest(r, n), largest(x, n)
-        if refined == 1 and not change <= GOOD * whole:
+        if refined == 1 and not change <= USABLE * whole:
             return False
         if refined > 0 and plan[IN_SINGLE] == NEW:
-            plan[IN_SINGLE] = TRIED
+            plan[IN_SINGLE] = TRIED if change <= GOOD * whole else WEAK
         if whole == 0.0 or change <= REFINED * whole or not change < STALLED * before:
             break
-        if plan[EXACT] == 0 and plan[IN_SINGLE] == TRIED:
+        if plan[EXACT] == 0 and (plan[IN_SINGLE] == TRIED or refined > 0):
             break
         before = change
         for k in range(n):

@@ -32,6 +32,8 @@ from sceneql.system_kernels import A, I, N
 
 FEW = 4
 """Rows of U that are eliminated in registers."""
+TINY = 1e-18
+"""In single precision and a matrix whose largest number is about 1: what is less is made 0."""
 TILE = 384
 """Columns that are updated at a time: what of U belongs to them stays in the cache."""
 
@@ -127,18 +129,29 @@ def eliminate(panel, height, begin, end):
                 return False
             for k in range(few, min(few + FEW, high)):
                 spread(panel, height, k, few + FEW, high, few + FEW)
+        if panel.itemsize == 4:
+            flush(panel, low * height, high * height)
     return True
 
 
 @lean_inlined
-def put(plan, values, front, height, begin, end):
-    """Add blocks of the matrix at their places in a front."""
+def flush(panel, begin, end):
+    """Make 0 of numbers so small that products of two would be subnormal, with which processors take long."""
+    widest()
+    tiny, zero = panel.dtype.type(TINY), panel.dtype.type(0.0)
+    for k in range(begin, end):
+        panel[k] = zero if abs(panel[k]) <= tiny else panel[k]
+
+
+@lean_inlined
+def put(plan, values, scale, front, height, begin, end):
+    """Add blocks of the matrix, times ``scale``, at their places in a front."""
     unit = plan[UNIT]
     for e in range(begin, end, 2):
         k, place = plan[e], plan[e + 1]
         for _ in range(unit):
             for j in range(unit):
-                front[place + j] += values[k + j]
+                front[place + j] += scale * values[k + j]
             k += unit
             place += height
 
@@ -168,10 +181,10 @@ def take_in(panel, width, height, square, child, below, runs):
 
 
 @lean_inlined
-def fronts_of(plan, values, factors, work, begin, end):
+def fronts_of(plan, values, scale, factors, work, begin, end):
     """Fronts begin..end, whose children are factored before them; False where a pivot is 0 or not finite.
 
-    ``factors`` and ``work`` of float64, or both of float32.
+    ``factors`` and ``work`` of float64, or both of float32; they are those of the matrix times ``scale``.
     """
     widest()
     maps, entries = plan[4], plan[5]
@@ -186,7 +199,7 @@ def fronts_of(plan, values, factors, work, begin, end):
         for i in range(rest):
             for k in range(i * rest + i, (i + 1) * rest):
                 square[k] = 0.0
-        put(plan, values, panel, height, entries + 2 * plan[t + 6], entries + 2 * plan[t + 10])
+        put(plan, values, scale, panel, height, entries + 2 * plan[t + 6], entries + 2 * plan[t + 10])
         child = plan[t + 7]
         while child >= 0:
             c = HEAD + FIELDS * child
@@ -205,7 +218,7 @@ def fronts_of(plan, values, factors, work, begin, end):
 @lean(FACTOR_FRONTS, inner=True)
 def factor_fronts(plan, values, factors, work, begin, end):
     """`fronts_of` in double precision."""
-    return fronts_of(plan, values, factors, work, begin, end)
+    return fronts_of(plan, values, 1.0, factors, work, begin, end)
 
 
 @kernel(PIECE)
