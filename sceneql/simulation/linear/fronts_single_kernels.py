@@ -4,8 +4,8 @@
 Solutions are refined by their residuals in double precision until nothing changes (Wilkinson 1963; Higham, Accuracy
 and Stability of Numerical Algorithms, 2002, ch. 12). Where the caller is an iteration that repairs what is left, only
 the first one with new factors is, and once: that tells how good they are. Where they are weak all are refined once;
-where they are poor they are given up, and those in double precision made (fronts_kernels). For the plan see there; ``work``: x and a residual (n,), then scratch
-in single precision.
+where they are poor they are given up, and those in double precision made (fronts_kernels, which also says how plans
+lie). ``work``: x and a residual (n,), then scratch in single precision.
 """
 
 import math
