@@ -20,12 +20,12 @@ F = np.float32
 LANES, VECTOR = 64, 16
 T, Q, WEIGHT, INVERSE = LANES, 2 * LANES, 3 * LANES, 3 * LANES + 1
 COLUMNS = 3 * LANES + 8
-A, B, END, AT_A, AT_B, SLOPE, STATE, TRIES, FINE, ROOT, TOP, DEEP = range(0, 12 * LANES, LANES)
+A, B, END, AT_A, AT_B, SLOPE, STATE, TRIES, FINE, ROOT, TOP, DEEP, HOLLOW = range(0, 13 * LANES, LANES)
 """Where in state there is: a segment, where the search ends, densities at the segment's ends, a sixth of the largest
 slope of D, then the least of f, outcome (LIVE until there is one; UNDECIDED at the first step: the ray begins inside),
 steps so far, width of a bracket that is good enough, the root; no less than the largest density of the slice, the
-first place where one part alone has the threshold."""
-ROWS = 12 * LANES
+first place where one part alone has the threshold; of how many parts D's share is perhaps not convex."""
+ROWS = 13 * LANES
 LIVE, MOST = F(-1.0), F(40.0)
 ZERO, HALF, ONE, TWO, SIX, SIXTEEN, TENTH = F(0.0), F(0.5), F(1.0), F(2.0), F(6.0), F(16.0), F(0.1)
 LESS, MORE = F(1.0 - 1.0e-5), F(1.0 + 1.0e-5)
@@ -34,7 +34,7 @@ TINY, HUGE = F(1.0e-30), F(1.0e30)
 
 @lane
 def risen(p, t, q, a, b, inverse):
-    """(u^3 at a, u^3 at b, largest u^2 (t - .) in [a, b]) of a point."""
+    """(u^3 at a, at b, largest u^2 (t - .) in [a, b], 1 where u^3 is not surely convex there, else 0) of a point."""
     sa = t - a
     sb = t - b
     c = q if q > a else a
@@ -48,31 +48,34 @@ def risen(p, t, q, a, b, inverse):
     uc = uc if uc > ZERO else ZERO
     gb = ub * ub * sb
     gc = uc * uc * sc
-    return ua * ua * ua, ub * ub * ub, gc if gc > gb else gb
+    hollow = ONE if (uc > ZERO) & (q * LESS < b) else ZERO
+    return ua * ua * ua, ub * ub * ub, gc if gc > gb else gb, hollow
 
 
 @inlined
 def sum_up(table, kept, state, n):
-    """Densities at both ends of n lanes' segments, and a sixth of the largest slope between."""
+    """Densities at both ends of n lanes' segments, a sixth of the largest slope between, and whether D is convex."""
     for i in range(n):
-        state[AT_A + i] = state[AT_B + i] = state[SLOPE + i] = ZERO
+        state[AT_A + i] = state[AT_B + i] = state[SLOPE + i] = state[HOLLOW + i] = ZERO
     for k in range(kept):
         row = table[k]
         weight, inverse = row[WEIGHT], row[INVERSE]
         steep = weight * inverse
         if weight > ZERO:
             for i in range(n):
-                da, db, g = risen(row[i], row[T + i], row[Q + i], state[A + i], state[B + i], inverse)
+                da, db, g, hollow = risen(row[i], row[T + i], row[Q + i], state[A + i], state[B + i], inverse)
                 state[AT_A + i] += weight * da
                 state[AT_B + i] += weight * db
                 state[SLOPE + i] += steep * g
+                state[HOLLOW + i] += hollow
         else:  # the slope of a negative part is that of a positive one met from behind
             for i in range(n):
                 t = row[T + i]
-                db, da, g = risen(row[i], t, row[Q + i], t + t - state[B + i], t + t - state[A + i], inverse)
+                db, da, g, _ = risen(row[i], t, row[Q + i], t + t - state[B + i], t + t - state[A + i], inverse)
                 state[AT_A + i] += weight * da
                 state[AT_B + i] += weight * db
                 state[SLOPE + i] -= steep * g
+                state[HOLLOW + i] = ONE
 
 
 @inlined
@@ -97,13 +100,18 @@ def advance(state, n, threshold, off, off_slope, bend, anywhere):
         width = b - a
         full = (clear > ZERO) & (slope * width * MORE < clear)
         start = b if full else a + step
-        start = start if start < b else b
         inside = fb + off < ZERO
+        # Where D is convex, it lies below its chord; from behind, Newton's step stays behind the root.
+        convex = inside & (clear > ZERO) & (state[HOLLOW + i] == ZERO)
+        chord = a + width * (clear * LESS / (fa - fb if fa > fb else ONE))
+        start = chord if convex & (chord > start) else start
+        start = start if start < b else b
         begun = fa + off < ZERO
         fine = state[FINE + i]
         # Where the root may be: by the secant, or Newton's way on.
         r = a + width * (fa / (fa - fb if fa > fb else ONE))
         past = r + HALF * (r - start if r > start else ZERO) + HALF * fine
+        past = b + fb / slope + HALF * fine if convex else past
         past = past if past > start else start + HALF * (b - start)
         past = past if past < b else b
         on = start + F(2.5) * step
