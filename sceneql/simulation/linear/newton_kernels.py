@@ -105,11 +105,15 @@ def foresee(old, new, floats):
 
 
 @lean_inlined
-def leave(rate, t, a, base, y, residual, floats, ints):
-    """What is left of the stage's equations at y."""
+def leave(rate, t, a, base, y, residual, plan, floats, ints):
+    """What is left of the stage's equations at y; positions, which `follow`, leave nothing but rounding."""
+    follow(plan, a, base, y)
     rate(t, y, residual, floats, ints)
     for k in range(y.size):
         residual[k] = base[k] + a * residual[k] - y[k]
+    at = plan[POSITIONS_AT]
+    for k in range(at, at + 3 * plan[POSITIONS], 3):
+        residual[plan[k]] = 0.0
 
 
 @lean(NEWTON, inner=True)
@@ -121,7 +125,6 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
     rate, slopes = rate_at(functions[AT_RATE]), jacobian_at(functions[AT_JACOBIAN])
     n = y.size
     change, residual, guess = scratch[:n], scratch[n : 2 * n], scratch[2 * n : 3 * n]
-    follow(plan, a, base, y)
     for k in range(n):
         guess[k] = y[k]
     foresee(y0, y0, floats)
@@ -130,7 +133,7 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
     before, before_mean = 0.0, 0.0
     patience, limit = PLAIN_AFTER, 1.0
     iteration = since = 0
-    leave(rate, t, a, base, y, residual, floats, ints)
+    leave(rate, t, a, base, y, residual, plan, floats, ints)
     while iteration < MOST or (careful and iteration < MOST_CAREFUL):
         if stale:
             floats[DEFINITE_AT] = HOLDS / (a * a) if definite else math.inf
@@ -153,7 +156,7 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             foresee(y, change, floats)
             for k in range(n):
                 y[k], change[k] = change[k], change[k] - y[k]
-            leave(rate, t, a, base, y, residual, floats, ints)
+            leave(rate, t, a, base, y, residual, plan, floats, ints)
             size = largest(change, y0, y, memory)
         mean = norm(change, y0, y, memory) if size < math.inf else math.inf
         if size < math.inf and since > 0:
@@ -181,7 +184,7 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             for k in range(n):
                 y[k] = guess[k]
             foresee(y0, y0, floats)
-            leave(rate, t, a, base, y, residual, floats, ints)
+            leave(rate, t, a, base, y, residual, plan, floats, ints)
             since = 0
             continue
         # A stretched spring hides what is left across it: slopes from before a change say little of the next one.
