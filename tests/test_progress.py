@@ -18,3 +18,19 @@ def test_a_swallowed_interrupt_is_raised_at_the_next_frame():
         with pytest.raises(KeyboardInterrupt):
             progress(1, 2)
     assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_what_fails_after_a_swallowed_interrupt_is_the_interrupt():
+    def broken():
+        with bar("film"):
+            with suppress(KeyboardInterrupt):
+                os.kill(os.getpid(), signal.SIGINT)
+            raise RuntimeError("no compiled object yet")
+
+    with pytest.raises(KeyboardInterrupt):
+        broken()
+
+
+def test_what_fails_without_one_stays_what_it_is():
+    with pytest.raises(RuntimeError), bar("film"):
+        raise RuntimeError("a bug")

@@ -14,7 +14,7 @@ def bar(title: str) -> Iterator[Callable[[int, int], None]]:
     """A function of (done, total) that draws a bar on standard error while the block runs.
 
     It raises KeyboardInterrupt after a Ctrl-C that was lost: one that falls into a callback of a library in C (of the
-    compiler, say) is printed there and forgotten.
+    compiler, say) is forgotten there. What fails for want of that callback's work is the interrupt, too.
     """
     with _remembered() as lost, _drawn(title) as draw:
 
@@ -23,23 +23,35 @@ def bar(title: str) -> Iterator[Callable[[int, int], None]]:
                 raise KeyboardInterrupt
             draw(done, total)
 
-        yield step
+        try:
+            yield step
+        except Exception as error:
+            if lost():
+                raise KeyboardInterrupt from error
+            raise
 
 
 @contextmanager
 def _remembered() -> Iterator[Callable[[], bool]]:
-    """Whether Ctrl-C was pressed inside the block."""
+    """Whether Ctrl-C was pressed inside the block; that one was lost is not printed."""
     pressed = False
+    tell = sys.unraisablehook
 
     def press(number: int, frame: Any) -> None:
         nonlocal pressed
         pressed = True
         raise KeyboardInterrupt
 
+    def forgotten(what: sys.UnraisableHookArgs) -> None:
+        if what.exc_type is not KeyboardInterrupt:
+            tell(what)
+
     before = signal.signal(signal.SIGINT, press)
+    sys.unraisablehook = forgotten
     try:
         yield lambda: pressed
     finally:
+        sys.unraisablehook = tell
         signal.signal(signal.SIGINT, before)
 
 
