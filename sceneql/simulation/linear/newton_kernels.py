@@ -19,12 +19,7 @@ import math
 from numba import types
 
 from sceneql.kernels import lean, lean_inlined
-from sceneql.simulation.linear.stage_kernels import (
-    POSITIONS,
-    POSITIONS_AT,
-    factor_stage,
-    solve_stage,
-)
+from sceneql.simulation.linear.stage_kernels import POSITIONS, POSITIONS_AT, factor_stage, solve_stage
 from sceneql.simulation.pointers_kernels import AT_JACOBIAN, AT_RATE, jacobian_at, rate_at
 from sceneql.system_kernels import A, F, I
 
