@@ -100,6 +100,7 @@ def test_it_takes_the_first_script_of_a_user():
         "objects: {a: {tube: {radius: 1 m}}}",
         "outputs: {a: {record: {of: [a.b], format: txt}}}",
         "objects: {a: {repeat: {as: k}, sphere: }}",
+        "objects: {a: sphere, b: {use: {a: 1 m}}}",
         "sceneql: 2",
     ],
 )
@@ -115,6 +116,7 @@ def test_it_refuses_what_is_misspelt(script):
         "objects: {a: {sphere: {radius: {keys: {0 s: 1 m, 1 s: 2 m}}}}}",
         "objects: {a: {sphere: }}",
         "objects: {a: {repeat: {count: 3, as: k}, sphere: {position: [k, 0, 0]}}}",
+        "objects: {a: sphere, b: {use: a, radius: 1 m, repeat: {count: 3}}}",
         "objects: [sphere, {box: {size: 1 1 1 m}}]",
         "forces: {c: {collision: {between: [a, b]}}}",
         "outputs: {film: {video: {size: 360p, camera: {turntable: {}}}}}",

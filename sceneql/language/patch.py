@@ -7,6 +7,7 @@ from typing import Final, cast
 
 from sceneql.language.compose import compose_node
 from sceneql.language.plain import kind_of
+from sceneql.language.reuse import USE
 from sceneql.language.sections import empty
 from sceneql.language.syntax import unprintable
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence, broken, unsure
@@ -153,7 +154,7 @@ class _Path:
         if isinstance(node, Scalar) and node.kind == "text":
             fields = _nothing(node.span)
             node = Mapping({node.text: fields}, {node.text: node}, True, node.source, node.start, node.end)
-        if isinstance(node, Mapping) and self.steps[at] not in node.entries:
+        if isinstance(node, Mapping) and self.steps[at] not in node.entries and USE not in node.entries:
             words = [key for key in node.entries if key != "repeat"]
             if len(words) == 1:
                 inner = node.entries[words[0]]

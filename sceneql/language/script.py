@@ -12,6 +12,7 @@ from sceneql.language.compose import compose
 from sceneql.language.include import OutsideError, Read, folder_reader, read_included, read_source
 from sceneql.language.nesting import unnested
 from sceneql.language.patch import VARIANT_OPTIONS, Patch, apply_patch, parse_set, variant, variant_names
+from sceneql.language.reuse import reused
 from sceneql.language.scope import Broken, Entry, Expanded, Given, Scope
 from sceneql.language.sections import NAMED, join, with_known_keys
 from sceneql.language.templates import expand
@@ -93,7 +94,8 @@ def read_script(
     lost.any = root.partial
     patches = _patches(root, variant, sets, families, settings, found)
     patched = apply_patch(root, patches, families, settings, found)
-    expanded = expand(unnested(patched, families, found), families, lost, found)
+    whole = reused(unnested(patched, families, found), (*families, "parts"), found)
+    expanded = expand(whole, families, lost, found)
     if raising:
         found.raise_errors()
     defaults = patched.entries.get("defaults")

@@ -20,6 +20,12 @@ REPEAT: dict[str, Any] = {
     "additionalProperties": False,
     "description": "Copies of the entry, numbered from 0 by the name given as `as`.",
 }
+USE: dict[str, Any] = {
+    "type": "object",
+    "properties": {"use": {"type": "string"}, "repeat": REPEAT},
+    "required": ["use"],
+    "description": "Another part of the section, with the fields that stand here in place of its own.",
+}
 
 
 def schema(catalogue: Catalogue) -> dict[str, Any]:
@@ -50,6 +56,7 @@ def schema(catalogue: Catalogue) -> dict[str, Any]:
                     "properties": {"repeat": REPEAT, **{word: _kind(cls, catalogue) for word, cls in kinds.items()}},
                     "additionalProperties": False,
                 },
+                USE,
             ]
         }
         entry = {"$ref": f"#/$defs/{family}"}
