@@ -45,13 +45,19 @@ def pack(rays, count, ids, wide):
     n = 0
     t0, t1 = rays[T0], rays[T1]
     for j in range(count):
+        n += 1 if t0[j] < t1[j] else 0
+    if n == count:
+        for j in range(count):
+            ids[j] = j
+        return n
+    n = 0
+    for j in range(count):
         ids[n] = j
         n += 1 if t0[j] < t1[j] else 0
-    if n < count:
-        for row in range(8):
-            source, target = rays[row], wide[row]
-            for i in range(n):
-                target[i] = source[np.uint64(ids[i])]
+    for row in range(8):
+        source, target = rays[row], wide[row]
+        for i in range(n):
+            target[i] = source[np.uint64(ids[i])]
     return n
 
 
@@ -116,21 +122,23 @@ def take(wide, first, width, n, begin, run, end, lanes):
 
 
 @inlined
-def live_lanes(lanes, n):
-    """How many of n lanes have no outcome."""
-    live = 0
+def count_lanes(lanes, n, outcome):
+    """How many of n lanes have an outcome."""
+    number = 0
     for i in range(n):
-        live += 1 if lanes[STATE + i] == LIVE else 0
-    return live
+        number += 1 if lanes[STATE + i] == outcome else 0
+    return number
 
 
 @inlined
-def note(lanes, ids, width, rays, anywhere, found):
-    """What became of lanes, and where they are so far; of the live ones it is noted again."""
+def note(lanes, ids, ended, count, rays, anywhere, found, queue, queued):
+    """Note the outcomes of ``ended`` lanes and where they are, and queue their rays; how many are in the queue then."""
     begins, ends = rays[T0], rays[T1]
     outcomes, lows, highs, roots = found[FOUND_STATUS], found[FOUND_LOW], found[FOUND_HIGH], found[FOUND_ROOT]
-    for i in range(width):
-        j = np.uint64(ids[np.uint64(lanes[RAY + i])])
+    for k in range(count):
+        i = np.uint64(ended[np.uint64(k)])
+        ray = ids[np.uint64(lanes[RAY + i])]
+        j = np.uint64(ray)
         t0, t1 = begins[j], ends[j]
         outcome = lanes[STATE + i]
         middle, half = lanes[MIDDLE + i] - t0, lanes[HALF_WAY + i]
@@ -141,30 +149,37 @@ def note(lanes, ids, width, rays, anywhere, found):
         lows[j] = middle + half * lanes[A + i]
         highs[j] = middle + half * lanes[B + i]
         roots[j] = root
+        queue[np.uint64(queued + k)] = ray
+    return queued + count
 
 
 @inlined
-def settle_lanes(lanes, rows, ids, kept, width, rays, anywhere, found, queue, queued):
-    """Note the outcomes of lanes, and put those without one together; (how many, rays noted in the queue).
+def settle_lanes(lanes, rows, degree, ids, kept, width, live, rays, anywhere, found, queue, queued):
+    """Note what became of lanes, and put those that are ``live`` together; how many rays are in the queue.
 
-    ``kept`` is working memory.
+    ``kept`` is working memory. A ray whose lane misses is a MISS already.
     """
-    note(lanes, ids, width, rays, anywhere, found)
-    live = 0
-    for i in range(width):
-        outcome = lanes[STATE + i]
-        kept[np.uint64(live)] = i
-        live += 1 if outcome == LIVE else 0
-        queue[np.uint64(queued)] = ids[np.uint64(lanes[RAY + i])]
-        queued += 1 if (outcome != LIVE) & (outcome != MISS) else 0
-    if live < width:
+    if live + count_lanes(lanes, width, MISS) < width:
+        if not anywhere:
+            polish(lanes, degree, (width + 15) // 16 * 16)
+        settled = 0
+        for i in range(width):
+            outcome = lanes[STATE + i]
+            kept[np.uint64(settled)] = i
+            settled += 1 if (outcome != LIVE) & (outcome != MISS) else 0
+        queued = note(lanes, ids, kept, settled, rays, anywhere, found, queue, queued)
+    if 0 < live < width:
+        n = 0
+        for i in range(width):
+            kept[np.uint64(n)] = i
+            n += 1 if lanes[STATE + i] == LIVE else 0
         for start in range(A, rows, LANES):
             row = lanes[start:]
             for i in range(live):
                 row[i] = row[np.uint64(kept[i])]
         for i in range(live, width):
             lanes[STATE + i] = float(MISS)
-    return live, queued
+    return queued
 
 
 @inlined
@@ -209,17 +224,15 @@ def polynomial_roots(
         coefficients(code, constants, plan, wide, first, lanes[MIDDLE:], lanes[HALF_WAY:], m, lanes)
         for i in range(C + (degree + 1) * LANES, kept):
             lanes[i] = 0.0
-        live = live_lanes(lanes, m)
+        live = count_lanes(lanes, m, LIVE)
         while width > 0:
             while 2 * live > width:
                 step(lanes, degree, m, off, anywhere)
                 spent += live
-                live = live_lanes(lanes, m)
-            if not anywhere:
-                polish(lanes, degree, m)
-            width, queued = settle_lanes(
-                lanes, kept, order, spare, width, rays, anywhere, found, queue, queued
+                live = count_lanes(lanes, m, LIVE)
+            queued = settle_lanes(
+                lanes, kept, degree, order, spare, width, live, rays, anywhere, found, queue, queued
             )  # fmt: skip
-            live = width
+            width = live
             m = (width + 15) // 16 * 16
     return spent, queued, safe, unsafe

@@ -86,7 +86,7 @@ class Picture:
         self.pixels = tile_pixels()
         x, y = self.pixels.astype(np.int64)
         turns = np.arange(256).reshape(16, 16).T.ravel()
-        self.numbers = np.array([y * WIDTH + x, turns, turns, turns])
+        self.numbers = np.array([y * WIDTH + x, turns, turns, turns, turns])
         self.spare: list[tuple[Memory, Any, Any, Any]] = []
 
     def draw(self) -> Any:

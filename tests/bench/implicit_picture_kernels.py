@@ -46,7 +46,7 @@ def aim(rays, n, pixels, x, y, view):
 
 @inlined
 def shade(code, constants, parts, doubles, points, slopes, view, n):
-    """Lambert's law at n points into the first row of the last of ``slopes``: below 0, the light is not faced."""
+    """Lambert's law at n points into the first row of the last of ``slopes``: 0, where the light is not faced."""
     evaluate(code, constants, parts, doubles, points, n)
     differentiate(code, constants, parts, doubles, slopes, n)
     last = code.shape[0] - 1
@@ -54,7 +54,8 @@ def shade(code, constants, parts, doubles, points, slopes, view, n):
     gx, gy, gz = slopes[last, 0], slopes[last, 1], slopes[last, 2]
     for i in range(n):
         x, y, z = gx[i], gy[i], gz[i]
-        gx[i] = (x * lx + y * ly + z * lz) / np.sqrt(x * x + y * y + z * z + 1e-300)
+        faces = (x * lx + y * ly + z * lz) / np.sqrt(x * x + y * y + z * z + 1e-300)
+        gx[i] = faces if faces > 0.0 else 0.0
 
 
 @lean(
@@ -105,7 +106,7 @@ def draw_row(
     """Draw a row of tiles into ``picture`` (h w,), the places [t] of its hits into ``depth``, -1 for none.
 
     ``pixels`` (2, n): those of a tile, in the order of its rays, those of a column of 16 close together; ``numbers``
-    (4, n): where these are in the picture, the rays column by column, and working memory, as is ``starts`` (3, n).
+    (5, n): where these are in the picture, the rays column by column, and working memory, as is ``starts`` (3, n).
     ``view`` (5, 3): right, up and the way of the rays, the light, (pixel size, distance of the eye's plane, 0).
     Returns (enclosures, certified rays, undecided rays).
     """
@@ -117,7 +118,7 @@ def draw_row(
     undecided = 0
     top = row * TILE
     light = slopes[code.shape[0] - 1, 0]
-    offsets, turns, hits, faced = numbers[0], numbers[1], numbers[2], numbers[3]
+    offsets, turns, hits, faced, spots = numbers[0], numbers[1], numbers[2], numbers[3], numbers[4]
     # Of a density field, a bundle that hits something has left the parts that matter to it.
     near, near_of = code, parts
     for k in range(code.shape[0]):
@@ -153,35 +154,51 @@ def draw_row(
             hits[np.uint64(met)] = turns[i]
             met += 1 if outcomes[j] == HIT else 0
             undecided += 1 if outcomes[j] == UNDECIDED else 0
+        if met == n:  # as they stand
+            for i in range(n):
+                hits[i] = i
         facing = 0
         for start in range(0, met, LANES):
             some = min(LANES, met - start)
             own = hits[start:]
             for axis in range(3):
-                o, d, p = rays[axis], rays[3 + axis], points[axis]
-                for i in range(some):
-                    j = np.uint64(own[i])
-                    p[i] = o[j] + roots[j] * d[j]
+                p, place = points[axis], starts[axis, start:]
+                if met == n:
+                    o, d, t = rays[axis, start:], rays[3 + axis, start:], roots[start:]
+                    for i in range(some):
+                        p[i] = place[i] = o[i] + t[i] * d[i]
+                else:
+                    o, d = rays[axis], rays[3 + axis]
+                    for i in range(some):
+                        j = np.uint64(own[i])
+                        p[i] = place[i] = o[j] + roots[j] * d[j]
             shade(near, constants, near_of, doubles, points, slopes, view, some)
             for i in range(some):
-                j, k = np.uint64(own[i]), np.uint64(facing)
-                at = base + offsets[j]
-                depth[np.uint64(at)] = roots[j]
-                picture[np.uint64(at)] = AMBIENT + (1.0 - AMBIENT) * max(light[i], 0.0)
-                faced[k] = at
-                starts[0, k], starts[1, k], starts[2, k] = points[0, i], points[1, i], points[2, i]
+                j = np.uint64(own[i])
+                at = np.uint64(base + offsets[j])
+                depth[at] = roots[j]
+                picture[at] = AMBIENT + (1.0 - AMBIENT) * light[i]
+                faced[np.uint64(facing)] = start + i
                 facing += 1 if light[i] > 0.0 else 0
         if facing == 0:
             continue
-        # The rays to the light stand in columns again.
-        groups = (facing + TILE - 1) // TILE
-        taken = 0
-        for g in range(groups):
-            for ray in range(g, facing, groups):
-                j, k = np.uint64(ray), np.uint64(taken)
-                hits[j] = faced[k]
-                rays[0, j], rays[1, j], rays[2, j] = starts[0, k], starts[1, k], starts[2, k]
-                taken += 1
+        if facing == n:
+            for j in range(n):
+                spots[j] = base + offsets[j]
+            for axis in range(3):
+                o, place = rays[axis], starts[axis]
+                for j in range(n):
+                    o[j] = place[j]
+        else:
+            # The rays to the light stand in columns again.
+            groups = (facing + TILE - 1) // TILE
+            taken = 0
+            for g in range(groups):
+                for ray in range(g, facing, groups):
+                    j, k = np.uint64(ray), np.uint64(faced[np.uint64(taken)])
+                    spots[j] = base + offsets[np.uint64(hits[k])]
+                    rays[0, j], rays[1, j], rays[2, j] = starts[0, k], starts[1, k], starts[2, k]
+                    taken += 1
         for axis in range(3):
             way, along = rays[3 + axis], view[3, axis]
             for j in range(facing):
@@ -197,5 +214,5 @@ def draw_row(
         for j in range(facing):
             undecided += 1 if outcomes[j] == UNDECIDED else 0
             if outcomes[j] == HIT:
-                picture[np.uint64(hits[j])] = AMBIENT
+                picture[np.uint64(spots[j])] = AMBIENT
     return spent, certified, undecided
