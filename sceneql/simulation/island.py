@@ -97,6 +97,8 @@ class System:
     """The part that gives no slopes, where one gives none."""
     grids: tuple[Grid, ...] = ()
     """Of all its fields."""
+    masses: tuple[tuple[int, int, int], ...] = ()
+    """Of each model of masses: where in y their velocities start, where in floats their inverse masses, how many."""
 
     def origin(self, index: int) -> Origin:
         """Part and line of an entry of y."""
@@ -325,6 +327,7 @@ class IslandAssembly:
             grid=self.only_field,
             unsloped=self._unsloped,
             grids=tuple(self.fields.values()),
+            masses=tuple(self._masses),
         )
 
     def start(self) -> Floats:

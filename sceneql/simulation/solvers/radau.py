@@ -23,16 +23,18 @@ class Radau(Solver):
     """Radau IIA of order 5: stiffly accurate and L-stable, so that stiffness never limits its steps.
 
     Three implicit stages a step, solved by Newton's iteration on the island's Jacobian, which serves as long as the
-    iteration contracts well. The error of a step is held below ``absolute + tolerance |y|`` in the root mean square of
-    all entries. Local contacts act at the ends of its steps, which may be long: give a ``largest_step`` with
-    them where springs are stiff.
+    iteration contracts well. The error of a step, in the root mean square of all entries, is held below ``tolerance``
+    times how large an entry has been: of late, for a state of equations, whatever its unit; for a position of a mass
+    the largest that any of its model has had, at most 1 m unless its own is more, and for velocities likewise. An
+    ``absolute`` that is given holds instead: the error is then below ``absolute + tolerance |y|``. Local contacts act
+    at the ends of its steps, which may be long: give a ``largest_step`` with them where springs are stiff.
     Source: Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.8.
     """
 
     tolerance: FixedScalar = field("Relative error of a step.", "1e-6", at_least=1e-14, below=1)
     absolute: FixedScalar | tuple[FixedScalar, ...] | None = field(
-        "Absolute error of a step, in SI units, or one for each number of the state in turn; by default the number of "
-        "the relative.",
+        "Absolute error of a step, in SI units, or one for each number of the state in turn; by default none: errors "
+        "are relative to how large entries have been.",
         None,
     )
     first_step: FixedTime | None = field("Length of the first step; by default it is chosen.", None, above=0)
@@ -57,6 +59,7 @@ class Radau(Solver):
             adaptive=True,
             tolerance=self.tolerance,
             absolute=self.tolerance if self.absolute is None else self.absolute,
+            by_scale=self.absolute is None,
             largest_step=self.largest_step or float("inf"),
             jacobian=True,
             prepare=f"{__name__}:prepare",
@@ -76,6 +79,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     import numpy as np
 
     from sceneql.simulation.reduced import reduction
+    from sceneql.simulation.scales import scales_of
     from sceneql.simulation.solvers.radau_kernels import MEMORY
     from sceneql.system import Prepared
 
@@ -89,7 +93,9 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     rtol = stepper.tolerance if stepper.adaptive else 1e-12
     rounding = float(np.finfo(float).eps)
     newton = max(10 * rounding / rtol, min(3e-3, 0.1 * rtol**0.5))
-    absolute = np.broadcast_to(np.asarray(stepper.absolute if stepper.adaptive else rtol), n)
+    scaled, scales = np.zeros(0, np.int64), np.broadcast_to(stepper.absolute if stepper.adaptive else rtol, n)
+    if stepper.adaptive and stepper.by_scale:
+        scaled, scales = scales_of(system)
     plan = reduction(system)
     left = int(plan[0])
     if left > LARGEST:
@@ -99,10 +105,11 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
             "use tr_bdf2, or fewer masses",
         )
     numbers = [
-        np.array([not stepper.adaptive, pattern.room, left, len(pattern.tallies)]),
+        np.array([not stepper.adaptive, pattern.room, left, len(pattern.tallies), len(scaled)]),
         np.zeros(2 * left),
         pattern.tallies,
+        scaled,
         plan,
     ]
     work = MEMORY + 18 * n + pattern.room + 3 * left * left
-    return Prepared(np.concatenate([[rtol, newton], absolute]), np.concatenate(numbers), work)
+    return Prepared(np.concatenate([[rtol, newton], scales]), np.concatenate(numbers), work)

@@ -5,10 +5,11 @@ The stages z_i = Y_i - y0 solve z = h A F(z). With T diagonalizing the inverse o
 needs one real and one complex system of the size of y: (g/h - J) and ((a + i b)/h - J). Source: Hairer & Wanner,
 Solving Ordinary Differential Equations II (1996), IV.8; predictive control by Gustafsson (1994).
 
-``settings`` = (relative tolerance, tolerance of Newton's iteration relative to that of the step, absolute tolerance of
-each entry). ``numbers`` = (1 if steps are fixed, length of ``values``, entries m left in the linear systems, tallies,
-then m + m pivots, the tallies, the plan of reduced_kernels.py). ``work``: MEMORY scalars, 18 vectors, the values, and
-three matrices m x m.
+``settings`` = (relative tolerance, tolerance of Newton's iteration relative to that of the step, then the absolute
+tolerance of each entry or the scales of scales_kernels.py). ``numbers`` = (1 if steps are fixed, length of ``values``,
+entries m left in the linear systems, tallies, length of the plan of scales_kernels.py, which is 0 where absolute
+tolerances are given; then m + m pivots, the tallies, that plan, the plan of reduced_kernels.py). ``work``: MEMORY
+scalars, 18 vectors, the values, and three matrices m x m.
 """
 
 import math
@@ -19,6 +20,7 @@ from sceneql.compiling.late import late
 from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.pointers_kernels import AT_JACOBIAN, AT_RATE, jacobian_at, rate_at
 from sceneql.simulation.solvers.reduced_kernels import factor_pair, factor_real, solve_pair, solve_real
+from sceneql.simulation.solvers.scales_kernels import weigh
 from sceneql.system_kernels import DENSE, STEP, A, F, I
 
 MEMORY = 16
@@ -29,7 +31,7 @@ BEGUN, FRESH, REJECTED, CEILING = range(10, 14)
 """Whether there was a try; whether the Jacobian is that of the start; whether a try from here was rejected; length
 beyond which Newton's iteration failed not long ago (0: none)."""
 
-FIXED, ROOM, LEFT, TALLIES, HEAD = range(5)
+FIXED, ROOM, LEFT, TALLIES, SCALED, HEAD = range(6)
 
 FINISH = types.void(I, F, F, A, A, I, A, I, A, A)
 finish_tallies = late("sceneql.simulation.solvers.radau_tallies_kernels:finish_tallies", FINISH)
@@ -64,7 +66,7 @@ I31, I32, I33 = -0.50287263494578687595, 2.5719269498556054292, -0.5960392048282
 
 @lean_inlined
 def begin(t, y0, work, start, z, before):
-    """Take note of what became of the try before: whether its stages can be extrapolated."""
+    """Take note of what became of the try before: whether its stages can be extrapolated. True: y0 is a new start."""
     n = y0.size
     same = work[BEGUN] > 0.0 and t == work[START]
     follows = work[BEGUN] > 0.0 and not same
@@ -72,7 +74,7 @@ def begin(t, y0, work, start, z, before):
         same = same and y0[k] == start[k]
         follows = follows and y0[k] == start[k] + z[2 * n + k]
     if same:
-        return
+        return False
     work[REJECTED] = 0.0
     work[FRESH] = 0.0
     if follows:
@@ -90,6 +92,7 @@ def begin(t, y0, work, start, z, before):
         start[k] = y0[k]
     work[BEGUN] = 1.0
     work[START] = t
+    return True
 
 
 @lean_inlined
@@ -291,14 +294,19 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     values = work[at : at + numbers[ROOM]]
     at += numbers[ROOM]
     real, re, im = work[at : at + m * m], work[at + m * m : at + 2 * m * m], work[at + 2 * m * m : at + 3 * m * m]
-    begin(t, y0, work, start, z, before)
-    plan = numbers[HEAD + 2 * m + numbers[TALLIES] :]
+    new = begin(t, y0, work, start, z, before)
     pivots = numbers[HEAD : HEAD + 2 * m]
-    for k in range(n):
-        weights[k] = 1.0 / (settings[2 + k] + settings[0] * abs(y0[k]))
-        newton[k] = weights[k]
     first = HEAD + 2 * m
-    for k in range(first, first + numbers[TALLIES]):
+    last = first + numbers[TALLIES]
+    plan = numbers[last + numbers[SCALED] :]
+    if numbers[SCALED] > 0:
+        weigh(new, settings[0], h, y0, rate0, settings[2:], numbers[last:], weights)
+    else:
+        for k in range(n):
+            weights[k] = 1.0 / (settings[2 + k] + settings[0] * abs(y0[k]))
+    for k in range(n):
+        newton[k] = weights[k]
+    for k in range(first, last):
         newton[numbers[k]] = 0.0
     work[LENGTH] = h
     known = work[BEFORE] > 0.0
