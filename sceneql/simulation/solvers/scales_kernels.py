@@ -5,9 +5,9 @@ An entry that stands for itself counts by its largest magnitude of late, half of
 what has decayed by many decades may still matter (in chemical kinetics it does), and an entry that passes through zero
 does not count for nothing there. Entries that belong together, such as the positions of a model's masses, all count
 by the largest that any of them has ever been, or by 1 in SI units where that is less, or by its own size where it is
-more: one mass that flies off must not blur the others. Velocities count at least by what crosses their model's positions in a
-second: what comes to rest must not be followed through the last of its vibrations. Before an entry has any size, what
-its rate will make of it tells. No error is asked for below the rounding of the largest entry.
+more: one mass that flies off must not blur the others. Velocities count at least by what crosses their model's
+positions in a second: what comes to rest must not be followed through the last of its vibrations. Before an entry has
+any size, what its rate will make of it tells. No error is asked for below the rounding of the largest entry.
 
 ``scales``: [the largest magnitude of all so far, the size of each group, its rate]. ``plan`` (simulation/scales.py):
 [groups, how many of the first have several entries, how many of these are of masses (positions and velocities by
