@@ -244,7 +244,9 @@ class Tools:
         frame = frame_of(self.graph, self.name, output.pixels, moment, self._frames, eye)
         renderer = self._renderer(output)
         self.prepare(output)()
-        picture = renderer.draw(frame)
+        drawn_by = self.graph.tasks[self.name if output.renderer is None else output.renderer.name]
+        with failing_as(drawn_by.name, moment.time, drawn_by.span):
+            picture = renderer.draw(frame)
         look(frame.shapes, self.report.present)
         if picture.undecided:
             counts = self.report.undecided.setdefault(self.name, {})

@@ -1,0 +1,169 @@
+"""A frame as pyrender's scene, and its picture."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from renderers.rastering.offscreen import canvas, library
+from renderers.rastering.surfaces import primitive
+from renderers.rastering.triangles import boundless, triangles
+from renderers.tracing.picture import Picture
+from sceneql.frame import PointLight, Sky, Sun
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy import bool_
+    from numpy.typing import NDArray
+
+    from renderers.rastering.triangles import Triangles
+    from sceneql.frame import RGB, Floats, Frame, Light, View
+
+GAMMA = 2.2
+"""What pyrender's shader takes the root of, so that 8 bits reach further down."""
+NEAR, REACH = 1e-3, 50.0
+"""Where seeing begins, and how far planes go: in units of the way to the far end of all that is bounded."""
+
+
+def draw(frame: Frame, cells: int, samples: int, shadows: bool, brightest: float) -> Picture:
+    """The Picture of a frame: linear (h, w, 3). Raises ValueError for what cannot be drawn.
+
+    ``samples`` in a pixel, a square number; light above ``brightest`` is not told apart.
+    """
+    gl = library()
+    made = [part for shape in frame.shapes if not boundless(shape) for part in triangles(shape, cells)]
+    low, high = _bounds(made)
+    middle, size = (low + high) / 2, float(np.linalg.norm(high - low))
+    far = float(np.linalg.norm(np.array(frame.view.origin) - middle)) + size / 2
+    made += [part for shape in frame.shapes if boundless(shape) for part in triangles(shape, cells, REACH * far)]
+    scene = gl.Scene(bg_color=(0.0, 0.0, 0.0, 0.0), ambient_light=_ambient(frame.lights) / brightest)
+    for part in made:
+        scene.add(gl.Mesh([primitive(gl, part, brightest)]))
+    for light in frame.lights:
+        _add_light(gl, scene, light, brightest)
+    _add_camera(gl, scene, frame.view, far)
+    # What throws shadows is as large as what is bounded: a map of all of a plane would be too coarse for them.
+    scene._bounds = np.array([low, high])
+    fine = math.isqrt(samples)
+    width, height = (fine * side for side in frame.view.size)
+    coded, depth = canvas(width, height).render(scene)
+    suns = [light for light in frame.lights if isinstance(light, Sun)]
+    if shadows and suns and size > 0:
+        shaded, _ = canvas(width, height).render(scene, flags=gl.RenderFlags.SHADOWS_DIRECTIONAL)
+        known = _mapped(_places(frame.view, depth, far), suns, middle, size)
+        coded = np.where(known[..., None], shaded, coded)
+    linear = brightest * (coded[..., :3].astype(np.float32) / 255) ** GAMMA
+    linear = np.where(depth[..., None] > 0, linear, _backdrop(frame.view, frame.lights, width, height))
+    folded = linear.reshape(height // fine, fine, width // fine, fine, 3).mean(axis=(1, 3))
+    return Picture(np.ascontiguousarray(folded, dtype=np.float32))
+
+
+def _bounds(made: Iterable[Triangles]) -> tuple[Floats, Floats]:
+    ends = [end for part in made for end in (part.vertices.min(axis=0), part.vertices.max(axis=0))]
+    if not ends:
+        return np.full(3, -0.5), np.full(3, 0.5)
+    return np.min(ends, axis=0), np.max(ends, axis=0)
+
+
+def _pose(axes: Floats, origin: Any) -> Floats:
+    """(4, 4) of what looks along -z: columns right, up, back and its place."""
+    pose = np.eye(4)
+    pose[:3, :3], pose[:3, 3] = axes, origin
+    return pose
+
+
+def _add_camera(gl: Any, scene: Any, view: View, far: float) -> None:
+    origin, aspect = np.array(view.origin), view.size[0] / view.size[1]
+    if view.orthographic:  # its window lies in the plane of the origin; what stands before it is seen as well
+        camera = gl.OrthographicCamera(
+            aspect * view.half_height, view.half_height, znear=NEAR * far, zfar=2 * REACH * far
+        )
+        origin = origin + REACH * far * view.axes[2]
+    else:
+        angle = 2 * math.atan(view.half_height)
+        camera = gl.PerspectiveCamera(angle, znear=NEAR * far, zfar=2 * REACH * far, aspectRatio=aspect)
+    scene.add(camera, pose=_pose(view.axes.T, origin))
+
+
+def _add_light(gl: Any, scene: Any, light: Light, brightest: float) -> None:
+    if isinstance(light, Sun):
+        pose = _pose(_turned(light), np.zeros(3))
+        scene.add(gl.DirectionalLight(*_parted(light.irradiance, brightest)), pose=pose)
+    elif isinstance(light, PointLight):
+        scene.add(gl.PointLight(*_parted(light.intensity, brightest)), pose=_pose(np.eye(3), light.position))
+
+
+def _turned(sun: Sun) -> Floats:
+    """(3, 3) columns right, up, back of what shines along -z."""
+    back = np.array(sun.direction)
+    right = np.cross(np.eye(3)[int(np.argmin(np.abs(back)))], back)
+    right /= np.linalg.norm(right)
+    return np.stack([right, np.cross(back, right), back], axis=1)
+
+
+def _mapped(places: Floats, suns: Iterable[Sun], middle: Floats, size: float) -> NDArray[bool_]:
+    """Which places (h, w, 3) lie in the shadow maps of all suns: squares of 2 ``size`` about the middle."""
+    known = np.ones(places.shape[:2], dtype=bool)
+    for sun in suns:
+        known &= (np.abs((places - middle) @ _turned(sun)[:, :2]) < 0.99 * size).all(axis=-1)
+    return known
+
+
+def _parted(light: RGB, brightest: float) -> tuple[Floats, float]:
+    """A color whose largest part is 1, and what it is multiplied by."""
+    most = max(*light, 1e-300)
+    return np.array(light) / most, most / brightest
+
+
+def _ambient(lights: Iterable[Light]) -> Floats:
+    """(3,) mean radiance of all skies: each is linear in the height of a direction, above and below."""
+    means = [np.mean([s.horizon, s.horizon, s.zenith, s.ground], axis=0) for s in lights if isinstance(s, Sky)]
+    total: Floats = np.sum([np.zeros(3), *means], axis=0)
+    return total
+
+
+def _window(view: View, width: int, height: int) -> tuple[Floats, Floats]:
+    """Places (1, width) and (height, 1) of the pixels' centers in the view's window, to the right and up."""
+    u = ((2 * np.arange(width) + 1 - width) / height * view.half_height)[None, :]
+    v = ((height - 1 - 2 * np.arange(height)) / height * view.half_height)[:, None]
+    return u, v
+
+
+def _places(view: View, depth: Floats, far: float) -> Floats:
+    """(h, w, 3) [m] what is seen, of pyrender's depth (h, w), which it reckons as a perspective camera has it."""
+    u, v = _window(view, *depth.shape[::-1])
+    right, up, back = view.axes
+    origin: Floats = np.array(view.origin)
+    if view.orthographic:
+        first, last = NEAR * far, 2 * REACH * far
+        share = (1 - first / np.maximum(depth, first)) / (1 - first / last)
+        away = first + share * (last - first) - REACH * far
+        origin = origin + u[..., None] * right + v[..., None] * up
+        ways = -np.broadcast_to(back, (*depth.shape, 3))
+    else:
+        away, ways = depth, u[..., None] * right + v[..., None] * up - back
+    places: Floats = origin + away[..., None] * ways
+    return places
+
+
+def _backdrop(view: View, lights: Iterable[Light], width: int, height: int) -> Floats:
+    """(height, width, 3) radiance that is seen where nothing is."""
+    skies = [light for light in lights if isinstance(light, Sky)]
+    seen = [sky.visible for sky in skies if sky.visible is not None]
+    if seen or not skies:
+        return np.broadcast_to(np.array(seen[-1] if seen else (0.0, 0.0, 0.0)), (height, width, 3))
+    right, up, back = view.axes
+    if view.orthographic:
+        level = np.full((height, width), -back[1])
+    else:
+        u, v = _window(view, width, height)
+        level = (u * right[1] + v * up[1] - back[1]) / np.sqrt(1 + u**2 + v**2)
+    horizon, zenith, ground = (
+        np.sum([getattr(s, end) for s in skies], axis=0) for end in ("horizon", "zenith", "ground")
+    )
+    share = np.abs(level)[..., None]
+    found: Floats = horizon + share * (np.where(level[..., None] >= 0, zenith, ground) - horizon)
+    return found

@@ -1,0 +1,86 @@
+"""Triangles with their surface as a primitive of pyrender."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy import uint8
+    from numpy.typing import NDArray
+
+    from renderers.rastering.triangles import Triangles
+    from sceneql.frame import RGB, Floats
+
+FILM = 0.8
+"""How much of what is behind a clear surface is seen through it."""
+TEXELS = 64
+"""Texels along a square of a checker."""
+
+
+def primitive(gl: Any, part: Triangles, brightest: float) -> Any:
+    """What pyrender draws; light is in units of ``brightest``."""
+    surface, colors, places = part.surface, part.colors, None
+    base: RGB = surface.color
+    texture = None
+    if surface.checker_size > 0:
+        if part.flat:
+            base, texture = (1.0, 1.0, 1.0), _checks(gl, surface.color, surface.checker_color)
+            places = _places(part.vertices, part.normals, surface.checker_size)
+        else:
+            own = np.array(surface.color) if colors is None else colors
+            odd = np.floor(part.vertices / surface.checker_size).sum(axis=1) % 2 == 1
+            colors = np.where(odd[:, None], np.array(surface.checker_color), own)
+    if colors is not None:
+        base = (1.0, 1.0, 1.0)
+        colors = np.column_stack([colors, np.ones(len(colors))])
+    clear = surface.transmission
+    material = gl.MetallicRoughnessMaterial(
+        baseColorFactor=[*base, 1.0 - FILM * clear],
+        metallicFactor=surface.metallic,
+        roughnessFactor=surface.roughness,
+        emissiveFactor=np.sqrt(np.clip(np.array(surface.emission) / brightest, 0.0, 1.0)),  # the shader squares it
+        baseColorTexture=texture,
+        alphaMode="BLEND" if clear > 0 else "OPAQUE",
+        doubleSided=True,
+    )
+    return gl.Primitive(
+        positions=part.vertices.astype(np.float32),
+        normals=part.normals.astype(np.float32),
+        indices=part.triangles.astype(np.uint32),
+        color_0=None if colors is None else colors.astype(np.float32),
+        texcoord_0=None if places is None else places.astype(np.float32),
+        material=material,
+        mode=gl.GLTF.TRIANGLES,
+    )
+
+
+def _places(vertices: Floats, normals: Floats, size: float) -> Floats:
+    """(n, 2) places in the texture, two squares a side, by the two axes that a face lies along most."""
+    axis = np.argmax(np.abs(normals), axis=1)
+    axis[np.abs(normals[:, 1]) > 0.9] = 1
+    squares = vertices / size
+    rows = np.arange(len(vertices))
+    u, v = squares[rows, np.where(axis == 0, 1, 0)], squares[rows, np.where(axis == 2, 1, 2)]
+    behind = np.where(axis == 1, 0.0, np.floor(squares[rows, axis] + 1e-9) % 2)
+    return np.column_stack([0.5 * (u + behind), 0.5 * v])
+
+
+def _checks(gl: Any, even: RGB, odd: RGB) -> Any:
+    """A texture of two by two squares."""
+    k = np.arange(2 * TEXELS) // TEXELS
+    # The first row of a picture is its top, and so at the high end of the second axis.
+    board = np.where((k[::-1, None] + k[None, :])[..., None] % 2 == 0, np.array(even), np.array(odd))
+    gltf = gl.GLTF
+    sampler = gl.Sampler(
+        magFilter=gltf.NEAREST, minFilter=gltf.LINEAR_MIPMAP_LINEAR, wrapS=gltf.REPEAT, wrapT=gltf.REPEAT
+    )
+    return gl.Texture(source=_srgb(board), source_channels="RGB", sampler=sampler)
+
+
+def _srgb(linear: Floats) -> NDArray[uint8]:
+    """8 bits of linear light by the sRGB curve (IEC 61966-2-1)."""
+    coded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 0.0031308) ** (1 / 2.4) - 0.055)
+    found: NDArray[uint8] = np.rint(255 * np.clip(coded, 0.0, 1.0)).astype(np.uint8)
+    return found
