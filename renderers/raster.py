@@ -18,7 +18,12 @@ class Raster(Renderer):
     The bytes are those of that library.
     """
 
-    cells: int = field("Cells of marching cubes along the longest side of an implicit object.", 64, at_least=4)
+    cells: int = field(
+        "Cells along the longest side of an implicit object; finer where that is needed.", 64, at_least=4
+    )
+    sharp: bool = field(
+        "Implicit objects keep their edges (Ju et al. 2002); what is thinner than a cell may go.", False
+    )
     samples: Literal[1, 4, 16] = field("Samples in a pixel.", 4)
     shadows: bool = field("Suns throw shadows.", True)
     brightest: FixedScalar = field(
@@ -29,4 +34,4 @@ class Raster(Renderer):
         """The Picture of a frame: linear (h, w, 3). Raises ValueError for what it cannot draw, or cannot draw with."""
         from renderers.rastering.draw import draw
 
-        return draw(frame, self.cells, self.samples, self.shadows, self.brightest)
+        return draw(frame, self.cells, self.sharp, self.samples, self.shadows, self.brightest)

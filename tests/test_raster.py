@@ -45,8 +45,8 @@ def window(origin=(0.0, 0.0, 3.0), half=1.5, size=(120, 120), toward=(0.0, 0.0, 
     return View(tuple(origin), np.array([right, np.cross(back, right), back]), size, half, orthographic=flat)
 
 
-def linear(*shapes, samples=4, shadows=True, **options):
-    return draw(framed(*shapes, **options), 64, samples, shadows, 2.0).linear
+def linear(*shapes, sharp=False, samples=4, shadows=True, **options):
+    return draw(framed(*shapes, **options), 64, sharp, samples, shadows, 2.0).linear
 
 
 @pytest.mark.parametrize(
@@ -68,6 +68,28 @@ def test_silhouettes_have_their_exact_area(shape, exact):
     picture = linear(shape, samples=16)
     # Its triangles are inscribed, and 8 bits tell light within 0.3 %.
     assert picture[..., 0].sum(dtype=float) * (3.0 / 120) ** 2 == pytest.approx(exact, rel=1e-2)
+
+
+def test_what_is_thinner_than_a_cell_is_there():
+    picture = linear(stage.torus(GLOW, 1.0, 0.012), samples=16)
+    exact = math.pi * (1.012**2 - 0.988**2)
+    assert picture[..., 0].sum(dtype=float) * (3.0 / 120) ** 2 == pytest.approx(
+        exact, rel=0.15
+    )  # of a polygon with few sides
+
+
+def test_edges_are_kept_where_that_is_asked_for():
+    # A block that is the greatest of three slabs, seen from aside: two of its faces meet at an edge upright.
+    b = stage.TapeBuilder()
+    slabs = [b.op("sub", b.op("abs", axis), b.constant(0.52)) for axis in (b.x, b.y, b.z)]
+    tape = b.finish(b.op("max", b.op("max", *slabs[:2]), slabs[2]))
+    block = stage.Implicit("block", WHITE, tape, (-0.7,) * 3, (0.7,) * 3)
+    seen = window((2.0, 0.0, 3.0), 0.9)
+    lights = [Sun((1.0, 0.0, 0.0), (math.pi,) * 3)]
+    exact = linear(stage.box(WHITE, (0, 0, 0), (1.04,) * 3), lights=lights, seen=seen, shadows=False)
+    picture = linear(block, sharp=True, lights=lights, seen=seen, shadows=False)
+    assert exact.mean() > 0.1
+    assert np.abs(picture - exact).mean() < 0.01 * exact.mean()
 
 
 @pytest.mark.parametrize("flat", [True, False])

@@ -28,17 +28,17 @@ NEAR, REACH = 1e-3, 50.0
 """Where seeing begins, and how far planes go: in units of the way to the far end of all that is bounded."""
 
 
-def draw(frame: Frame, cells: int, samples: int, shadows: bool, brightest: float) -> Picture:
+def draw(frame: Frame, cells: int, sharp: bool, samples: int, shadows: bool, brightest: float) -> Picture:
     """The Picture of a frame: linear (h, w, 3). Raises ValueError for what cannot be drawn.
 
     ``samples`` in a pixel, a square number; light above ``brightest`` is not told apart.
     """
     gl = library()
-    made = [part for shape in frame.shapes if not boundless(shape) for part in triangles(shape, cells)]
+    made = [part for shape in frame.shapes if not boundless(shape) for part in triangles(shape, cells, sharp)]
     low, high = _bounds(made)
     middle, size = (low + high) / 2, float(np.linalg.norm(high - low))
     far = float(np.linalg.norm(np.array(frame.view.origin) - middle)) + size / 2
-    made += [part for shape in frame.shapes if boundless(shape) for part in triangles(shape, cells, REACH * far)]
+    made += [part for shape in frame.shapes if boundless(shape) for part in triangles(shape, cells, sharp, REACH * far)]
     scene = gl.Scene(bg_color=(0.0, 0.0, 0.0, 0.0), ambient_light=_ambient(frame.lights) / brightest)
     for part in made:
         scene.add(gl.Mesh([primitive(gl, part, brightest)]))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from renderers.rastering.skins import skin
 from renderers.rastering.solids import capsule_sides, ellipsoid, faces, round_column, unit_ball
 from sceneql.frame import Implicit, Mesh, Points, Quadric, Segments
 
@@ -40,19 +41,17 @@ def boundless(shape: Shape) -> bool:
     return any(shape.linear) or not np.isfinite([shape.low, shape.high]).all()
 
 
-def triangles(shape: Shape, cells: int, reach: float = 0.0) -> Iterator[Triangles]:
-    """A shape as triangles; implicit ones of so many ``cells`` along their longest side, boundless ones as far as
-    ``reach`` [m]. Raises ValueError for what has none.
+def triangles(shape: Shape, cells: int, sharp: bool = False, reach: float = 0.0) -> Iterator[Triangles]:
+    """A shape as triangles; implicit ones as ``skin`` makes them, boundless ones as far as ``reach`` [m].
+
+    Raises ValueError for what has none.
     """
     if isinstance(shape, Mesh):
         yield _of_mesh(shape)
     elif isinstance(shape, Implicit):
-        from sceneql.mesh.facets import faceted
-
         if shape.within is not None:
             raise ValueError(f"raster draws solids alone, and '{shape.name}' is a sheet; draw it by `trace`")
-        cell = max(high - low for low, high in zip(shape.low, shape.high, strict=True)) / cells
-        made = faceted(shape, cell, True)
+        made = skin(shape, cells, sharp)
         if len(made.triangles):
             yield _of_mesh(made)
     elif isinstance(shape, Quadric):
