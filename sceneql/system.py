@@ -341,6 +341,9 @@ class Stepper:
     prepare: str | None = None
     """``"package.module:function"``, called with (System, Stepper) -> Prepared in place of settings, numbers and work:
     for what depends on the island, such as the ordering of a factorization."""
+    likely: str | None = None
+    """``"package.module:function"``, called with the System: modules of kernels that `prepare` will ask for, to be
+    compiled early; None: those of simulation/linear/stage.py."""
     controls: bool = False
     """Whether an adaptive step leaves in work[0] the length [s] to try next, after acceptance or rejection; else
     the march controls by the error."""

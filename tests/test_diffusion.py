@@ -289,7 +289,6 @@ def test_an_exchange_of_no_size_is_a_closed_side_also_where_nothing_spreads(tmp_
     [
         ("{tr_bdf2: {linear: direct}}", {"cell": "1/800 m"}, "factors of 640000 cells would not fit"),
         ("{tr_bdf2: {linear: fast_transform}}", {"coefficient": "1 + x"}, "a fast transform needs a flat box"),
-        ("radau", {"cell": "1/32 m"}, "radau factors full matrices"),
     ],
 )
 def test_a_solver_that_does_not_take_a_grid_is_told_with_its_line(tmp_path, solver, fields, said):

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from scipy.sparse import csr_array, kron
 from scipy.sparse.linalg import spsolve
 
+from sceneql.simulation.linear import dense_complex_kernels as dense_complex
 from sceneql.simulation.linear import dense_kernels as dense
 from sceneql.simulation.linear import fronts, fronts_kernels
 from sceneql.simulation.linear import krylov_kernels as krylov
@@ -41,8 +42,8 @@ def test_complex_factors_solve_to_rounding(n, seed):
     right = draw.standard_normal(n) + 1j * draw.standard_normal(n)
     a, b, pivots = matrix.real.ravel().copy(), matrix.imag.ravel().copy(), np.zeros(n, dtype=np.int64)
     x, y = right.real.copy(), right.imag.copy()
-    assert dense.factor_complex(a, b, n, pivots)
-    dense.solve_complex(a, b, n, pivots, x, y)
+    assert dense_complex.factor_complex(a, b, n, pivots)
+    dense_complex.solve_complex(a, b, n, pivots, x, y)
     z = x + 1j * y
     residual = np.abs(matrix @ z - right).max()
     assert residual <= 100 * n * UNIT * (np.abs(matrix).sum(axis=1).max() * np.abs(z).max() + 1)
@@ -52,7 +53,7 @@ def test_complex_factors_solve_to_rounding(n, seed):
 def test_a_singular_matrix_is_refused(matrix):
     pivots = np.zeros(2, dtype=np.int64)
     assert not dense.factor(matrix.ravel().copy(), 2, pivots)
-    assert not dense.factor_complex(matrix.ravel().copy(), np.zeros(4), 2, pivots)
+    assert not dense_complex.factor_complex(matrix.ravel().copy(), np.zeros(4), 2, pivots)
 
 
 def test_pivots_are_sought():

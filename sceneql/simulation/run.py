@@ -124,7 +124,8 @@ class IslandRun:
             compile_ahead(on_grid.likely_kernels(stepper, assembly.only_field))
         system = assembly.finish(stepper.jacobian)
         events = ("sceneql.simulation.events_kernels",) if system.pairs else ()
-        solving = (stepper.step.partition(":")[0], *likely_kernels(system))
+        likely = likely_kernels if stepper.likely is None else function(stepper.likely)
+        solving = (stepper.step.partition(":")[0], *likely(system))
         acting = compile_ahead((*solving, *modules(system.structure), *events))
         acting(*solving)
         if stepper.march is None:  # while the process beside compiles what solves

@@ -202,7 +202,9 @@ def likely_kernels(system: System) -> tuple[str, ...]:
     if system.pattern is None or system.grids:
         return ()
     few = (system.partner < 0).sum() <= SMALL
-    return tuple(f"{__package__}.{name}_kernels" for name in (("dense",) if few else ("fronts_symmetric", "fronts")))
+    return tuple(
+        f"{__package__}.{name}_kernels" for name in (("dense_systems",) if few else ("fronts_symmetric", "fronts"))
+    )
 
 
 def _factored(pattern: Any, unit: int, points: Floats | None, exact: bool) -> _Solver | None:
@@ -212,10 +214,10 @@ def _factored(pattern: Any, unit: int, points: Floats | None, exact: bool) -> _S
     size = pattern.shape[0]
     m = unit * size
     if m <= SMALL:
-        from sceneql.simulation.linear import dense_kernels
+        from sceneql.simulation.linear import dense_systems_kernels
 
         numbers = np.concatenate([[m], np.zeros(m)])
-        return _Solver(dense_kernels, numbers, m * m, 0, f"dense LU factorization of {m} unknowns")
+        return _Solver(dense_systems_kernels, numbers, m * m, 0, f"dense LU factorization of {m} unknowns")
 
     from sceneql.simulation.linear import fronts, fronts_kernels
     from sceneql.simulation.linear.ordering import Groups, grouped

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from sceneql.simulation.island import System
     from sceneql.system import Prepared, Stepper
 
-LARGEST = 400
-"""Unknowns of the linear systems."""
 KERNELS = "sceneql.simulation.solvers.radau_kernels"
 
 
@@ -23,12 +21,15 @@ class Radau(Solver):
     """Radau IIA of order 5: stiffly accurate and L-stable, so that stiffness never limits its steps.
 
     Three implicit stages a step, solved by Newton's iteration on the island's Jacobian, which serves as long as the
-    iteration contracts well. The error of a step, in the root mean square of all entries, is held below ``tolerance``
-    times how large an entry has been: of late, for a state of equations, whatever its unit; for a position of a mass
-    the largest that any of its model has had, at most 1 m unless its own is more, and for velocities likewise. An
-    ``absolute`` that is given holds instead: the error is then below ``absolute + tolerance |y|``. Local contacts act
-    at the ends of its steps, which may be long: give a ``largest_step`` with them where springs are stiff.
-    Source: Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.8.
+    iteration contracts well; its linear systems by full matrices where they are small, else by sparse factors of the
+    real one, which iterations on the complex one share. The error of a step, in the root mean square of all entries,
+    is held below ``tolerance`` times how large an entry has been: of late, for a state of equations, whatever its
+    unit; for a position of a mass the largest that any of its model has had, at most 1 m unless its own is more, and
+    for velocities likewise. An ``absolute`` that is given holds instead: the error is then below
+    ``absolute + tolerance |y|``. Local contacts act at the ends of its steps, which may be long: give a
+    ``largest_step`` with them where springs are stiff.
+    Sources: Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.8; Cooper & Butcher (1983), IMA J.
+    Numer. Anal. 3, 127-140.
     """
 
     tolerance: FixedScalar = field("Relative error of a step.", "1e-6", at_least=1e-14, below=1)
@@ -63,6 +64,7 @@ class Radau(Solver):
             largest_step=self.largest_step or float("inf"),
             jacobian=True,
             prepare=f"{__name__}:prepare",
+            likely="sceneql.simulation.radau_systems:likely_kernels",
             controls=True,
         )
 
@@ -75,12 +77,12 @@ class Radau(Solver):
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
-    """What the step works with: see radau_kernels.py."""
+    """What the step works with: see radau_stages_kernels.py."""
     import numpy as np
 
-    from sceneql.simulation.reduced import reduction
+    from sceneql.simulation.radau_systems import radau_systems
     from sceneql.simulation.scales import scales_of
-    from sceneql.simulation.solvers.radau_kernels import MEMORY
+    from sceneql.simulation.solvers.radau_stages_kernels import MEMORY, VECTORS
     from sceneql.system import Prepared
 
     n, pattern = len(system.y), system.pattern
@@ -96,20 +98,12 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     scaled, scales = np.zeros(0, np.int64), np.broadcast_to(stepper.absolute if stepper.adaptive else rtol, n)
     if stepper.adaptive and stepper.by_scale:
         scaled, scales = scales_of(system)
-    plan = reduction(system)
-    left = int(plan[0])
-    if left > LARGEST:
-        raise LimitRefused(
-            f"radau factors full matrices: {left} unknowns are more than the {LARGEST} it is good for",
-            None,
-            "use tr_bdf2, or fewer masses",
-        )
-    numbers = [
-        np.array([not stepper.adaptive, pattern.room, left, len(pattern.tallies), len(scaled)]),
-        np.zeros(2 * left),
-        pattern.tallies,
-        scaled,
-        plan,
-    ]
-    work = MEMORY + 18 * n + pattern.room + 3 * left * left
-    return Prepared(np.concatenate([[rtol, newton], scales]), np.concatenate(numbers), work)
+    systems = radau_systems(system)
+    settings = np.concatenate([[rtol, newton, systems.contraction], scales, systems.rows])
+    head = [not stepper.adaptive, pattern.room, len(pattern.tallies), len(scaled), len(settings) - len(systems.rows)]
+    return Prepared(
+        settings=settings,
+        numbers=np.concatenate([head, systems.kernels, pattern.tallies, scaled, systems.plan]).astype(np.int64),
+        work=MEMORY + VECTORS * n + pattern.room + systems.store,
+        text=systems.text,
+    )

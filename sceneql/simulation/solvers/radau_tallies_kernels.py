@@ -3,7 +3,8 @@
 
 from sceneql.kernels import lean
 from sceneql.simulation.pointers_kernels import AT_RATE, rate_at
-from sceneql.simulation.solvers.radau_kernels import FINISH, HEAD, LEFT, ROOT6, TALLIES, evaluate_stages
+from sceneql.simulation.solvers.radau_kernels import FINISH
+from sceneql.simulation.solvers.radau_stages_kernels import HEAD, ROOT6, TALLIES, evaluate_stages
 
 
 @lean(FINISH, inner=True)
@@ -11,9 +12,8 @@ def finish_tallies(functions, t, h, y0, y1, numbers, floats, ints, z, f):
     """Their stages z from the rates at the final stages, their slopes having been left out; f and y1 are scratch."""
     rate = rate_at(functions[AT_RATE])
     n = y0.size
-    first = HEAD + 2 * numbers[LEFT]
     evaluate_stages(rate, t, h, y0, y1, z, f, floats, ints)
-    for k in range(first, first + numbers[TALLIES]):
+    for k in range(HEAD, HEAD + numbers[TALLIES]):
         i = numbers[k]
         f1, f2, f3 = h * f[i], h * f[n + i], h * f[2 * n + i]
         z[i] = ((88.0 - 7.0 * ROOT6) * f1 + (59.2 - 33.8 * ROOT6) * f2) / 360.0 + (3.0 * ROOT6 - 2.0) / 225.0 * f3

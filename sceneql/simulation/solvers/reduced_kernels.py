@@ -10,7 +10,8 @@ each direct value; (place of the value, row, pair) of each value in a column x.
 """
 
 from sceneql.kernels import lean_inlined
-from sceneql.simulation.linear.dense_kernels import factor, factor_complex, solve, solve_complex
+from sceneql.simulation.linear.dense_complex_kernels import factor_complex, solve_complex
+from sceneql.simulation.linear.dense_kernels import factor, solve
 
 LEFT, PAIRS, IDLE, DIRECT, THROUGH, HEAD = range(6)
 

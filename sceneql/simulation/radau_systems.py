@@ -1,0 +1,95 @@
+"""What solves radau's linear systems on an island: full factors where it is small, else sparse ones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats
+    from sceneql.simulation.island import System
+
+FULL = 150
+"""Unknowns up to which full matrices are factored."""
+_SOLVERS = "sceneql.simulation.solvers"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Systems:
+    """A solver as radau_systems_kernels.py calls it."""
+
+    kernels: tuple[int, int, int]
+    """The numbers of its kernels: factor, solve, filter."""
+    plan: NDArray[int64]
+    rows: Floats
+    store: int
+    contraction: float
+    """Contraction of Newton's iteration that solutions as exact as its own allow: below, a Jacobian is kept."""
+    text: str
+
+
+def radau_systems(system: System) -> Systems:
+    """Analyze an island whose Jacobian was asked for, and has a pattern."""
+    from sceneql.simulation.reduced import reduction
+
+    few = _unknowns(system) <= FULL
+    return _full(reduction(system)) if few else _sparse(system)
+
+
+def likely_kernels(system: System) -> tuple[str, ...]:
+    """Modules that will be asked for, to be compiled while the island is built."""
+    from sceneql.simulation.linear.stage import likely_kernels as likely
+
+    if system.pattern is None:
+        return ()
+    if _unknowns(system) <= FULL:
+        return (f"{_SOLVERS}.radau_full_kernels",)
+    return (f"{_SOLVERS}.radau_sparse_kernels", *likely(system))
+
+
+def _unknowns(system: System) -> int:
+    """Entries that are neither positions of masses nor like them: these are eliminated."""
+    return int((system.partner < 0).sum())
+
+
+def _full(plan: NDArray[int64]) -> Systems:
+    from sceneql.simulation.solvers import radau_full_kernels
+
+    left = int(plan[0])
+    return Systems(
+        kernels=_numbers(radau_full_kernels),
+        plan=np.concatenate([plan, np.zeros(2 * left, dtype=np.int64)]),
+        rows=np.zeros(0),
+        store=3 * left * left + 2 * left,
+        contraction=1e-3,
+        text=f"dense LU factorizations, a real and a complex one, of {left} unknowns",
+    )
+
+
+def _sparse(system: System) -> Systems:
+    from sceneql.simulation.linear.stage import stage_plan
+    from sceneql.simulation.solvers import radau_sparse_kernels
+
+    plan = stage_plan(system, exact=True)
+    return Systems(
+        kernels=_numbers(radau_sparse_kernels),
+        plan=plan.numbers,
+        rows=plan.scales,
+        store=4 * len(system.y) + plan.store,
+        contraction=0.03,
+        text=f"{plan.text}; the complex system of the stages by iterations with the same factors",
+    )
+
+
+def _numbers(module: object) -> tuple[int, int, int]:
+    from sceneql.simulation.numbered_kernels import number_of
+    from sceneql.simulation.solvers.radau_systems_kernels import FACTOR_STAGES, FILTER, SOLVE_STAGES
+
+    names = (("factor", FACTOR_STAGES), ("solve", SOLVE_STAGES), ("solve_one", FILTER))
+    first, second, third = (number_of(getattr(module, name), signature) for name, signature in names)
+    return first, second, third
