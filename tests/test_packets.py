@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 
 from extremes_kernels import extremes
 from moment import IDENTITY, FakeMoment, const, formula
-from renderers.tracing.bundles import camera_roots
-from renderers.tracing.pack import pack
+from renderers.tracing.bundles import solids_in_lanes
 from sceneql.field.packets import Memory, cast_together, enclosures, plan_of
 from sceneql.field.skeleton import Skeleton
 from sceneql.field.solid import cast, field_values
@@ -30,7 +29,7 @@ from sceneql.field.tape_ops import (
     WHOLE,
     X,
 )
-from sceneql.frame import Frame, Implicit, Surface, View
+from sceneql.frame import Implicit, Surface
 from sceneql.simulation.objects.blobby import Blobby
 from sceneql.simulation.objects.implicit import Implicit as Formula
 from sceneql.simulation.objects.implicit import Within
@@ -356,37 +355,4 @@ def test_solids_that_packets_know_nothing_of_are_not_looked_for_in_bundles():
         for skeleton in (tapered, pointed)
     ]
     shapes = tuple(Implicit("blob", Surface(), tape, (-1.0,) * 3, (1.0,) * 3) for tape in tapes)
-    view = View((0.0, 0.0, 4.0), np.eye(3), (16, 16), 0.9, False)
-    scene, _ = pack(Frame(0, 0.0, shapes, (), view))
-    assert camera_roots(shapes, view, scene, 0, 16)[0].tolist() == [1]
-
-
-@pytest.mark.parametrize("orthographic", [False, True])
-@pytest.mark.parametrize("eye", [(0.3, 0.2, 4.0), (0.9, 0.0, 1.2), (0.1, 0.0, -3.0)])
-def test_the_cameras_rays_meet_solids_where_the_certified_routine_says(eye, orthographic):
-    tape = kernels(np.random.default_rng(3).uniform(-1, 1, (12, 3)), 0.3, 0.7)
-    box = np.array([[-1.3, -0.9, -1.3], [1.3, 1.3, 1.0]])
-    solid = Implicit("blobs", Surface(), tape, tuple(box[0]), tuple(box[1]))
-    view = View(eye, np.eye(3), (50, 37), 0.9, orthographic)
-    scene, _ = pack(Frame(0, 0.0, (solid,), (), view))
-    shapes, roots = camera_roots((solid,), view, scene, 16, 37)
-    assert shapes.tolist() == [0]
-    x, y = np.meshgrid(np.arange(50) + 0.5, np.arange(16, 37) + 0.5)
-    u, v = (2 * x - 50).ravel() / 37 * 0.9, (1 - 2 * y / 37).ravel() * 0.9
-    window = np.column_stack([u, v, np.zeros(u.size)])
-    origins = eye + (np.add(window, [0, 0, 1e4]) if orthographic else 0.0 * window)
-    ways = np.tile([0.0, 0, -1], (u.size, 1)) if orthographic else window - [0, 0, 1]
-    ways = ways / np.linalg.norm(ways, axis=1)[:, None]
-    with np.errstate(divide="ignore"):
-        ends = (box[:, None] - origins) / ways
-    enter, leave = np.maximum(np.nanmax(ends.min(axis=0), axis=1), 0.0), np.nanmin(ends.max(axis=0), axis=1)
-    seen = enter < leave
-    status, t = cast(tape, origins[seen], ways[seen], enter[seen], leave[seen])
-    assert np.isinf(roots[0, ~seen]).all()
-    told = ~np.isnan(roots[0, seen])
-    begins_inside = (status != MISS) & (t <= 1e-9)
-    assert (told | begins_inside | (status == UNDECIDED)).all()
-    assert not (told & begins_inside).any()
-    assert (np.isfinite(roots[0, seen]) == ((status == HIT) | (status == INSIDE)))[told].all()
-    hit = told & (status != MISS)
-    assert roots[0, seen][hit] == pytest.approx(t[hit], abs=1e-6)
+    assert solids_in_lanes(shapes) == [1]

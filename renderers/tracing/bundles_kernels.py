@@ -1,74 +1,95 @@
 # mypy: ignore-errors
-"""First roots of an implicit object along the camera's rays, in bundles of 16 x 16 pixels (sceneql.field)."""
+"""Rays of every kind against one implicit solid, in bundles of 256 (sceneql.field)."""
 
 import numpy as np
 from numba import types
 
-from renderers.tracing.camera_kernels import camera_ray
-from renderers.tracing.scene_kernels import SCENE, WIDTH, part
+from renderers.tracing.scene_kernels import ANYWHERE, ASKED, FAR, FIRST, NEXT, WANT, part
 from renderers.tracing.solids_kernels import box_span, inverse
-from sceneql.field.hunt_kernels import FOUND_ROOT, FOUND_STATUS
-from sceneql.field.packet_roots_kernels import ARGUMENTS, first_roots
+from sceneql.field.hunt_kernels import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS
+from sceneql.field.packet_roots_kernels import ARGUMENTS, GROUP, first_roots
 from sceneql.field.tape_ops import HIT, MISS
 from sceneql.kernels import lean
 
-TILE, BLOCK = 16, 4
+RAYS = 256
+"""Of a bundle."""
+FINE = 1.0e-9
+"""Way to a root, relative to the searched piece of the ray, below which the ray is taken to begin inside."""
 
 
 @part
-def pixel_of(j):
-    """(x, y) in its tile of the pixel of ray j: a column of rays is a block of pixels, four make a larger one."""
-    g, r = j % TILE, j // TILE
-    x, y = g & 1 | (g >> 1) & 2, (g >> 1) & 1 | (g >> 2) & 2
-    return x * BLOCK + r % BLOCK, y * BLOCK + r // BLOCK
-
-
-@part
-def aim(reals, rays, j, px, py, box):
-    """Ray j through a picture's point, cut to what lies in a box (2, 3)."""
-    ox, oy, oz, dx, dy, dz, _, _ = camera_ray(reals, px, py)
-    rays[0, j], rays[1, j], rays[2, j] = ox, oy, oz
-    rays[3, j], rays[4, j], rays[5, j] = dx, dy, dz
-    enter, leave = 0.0, np.inf
+def in_box(asked, row, box):
+    """(from, to) of an asked ray inside a box (2, 3)."""
+    enter, leave = 0.0, asked[row, FAR]
     for axis in range(3):
-        first, last = box_span(box[0, axis], box[1, axis], rays[axis, j], inverse(rays[3 + axis, j]))
+        first, last = box_span(box[0, axis], box[1, axis], asked[row, axis], inverse(asked[row, 3 + axis]))
         enter, leave = max(enter, first), min(leave, last)
-    rays[6, j], rays[7, j] = enter, leave
-    if not enter < leave:
-        rays[6, j] = rays[7, j] = 0.0
+    return enter, leave
 
 
-@lean(types.void(SCENE, *ARGUMENTS, types.float64[:, ::1], types.int64[::1], types.int64, types.float64[::1]))
-def meet_tiles(
-    scene, code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, found, parts, scratch,
-    beams, doubles, points, short, near_singles, near_parts, plan, order, room, table, flat, other, box, window, start,
-    answers,
-):  # fmt: skip
-    """Where the camera's rays through rows start.. of a picture first meet {f < 0} in ``box``, into ``answers`` (n,).
+@part
+def place(rays, asked, chosen, spans, n):
+    """Put n asked rays into a bundle, those that follow each other in columns of GROUP; how many there are then.
 
-    inf: nowhere; NaN: not told, ask for that ray alone. ``window`` (x0, x1, y0, y1) has all pixels that see the box;
-    what is outside of it must be inf before.
+    What fills the last column up has no length.
     """
-    width = int(scene.reals[WIDTH])
-    rows = answers.shape[0] // width
-    for top in range(start, start + rows, TILE):
-        if top + TILE <= window[2] or top > window[3]:
-            continue
-        for left in range(window[0] // TILE * TILE, min(window[1] + 1, width), TILE):
-            for j in range(TILE * TILE):
-                x, y = pixel_of(j)
-                aim(scene.reals, rays, j, left + x + 0.5, top + y + 0.5, box)
-                if left + x >= width or top + y >= start + rows:
-                    rays[7, j] = rays[6, j]
-            first_roots(
-                code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, TILE * TILE, False,
-                found, parts, scratch, beams, doubles, points, short, near_singles, near_parts,
-                plan, order, room, table, flat, other,
-            )  # fmt: skip
-            for j in range(TILE * TILE):
-                x, y = pixel_of(j)
-                if left + x < width and top + y < start + rows and found[FOUND_STATUS, j] != MISS:
-                    t = found[FOUND_ROOT, j]
-                    # A ray that begins inside leaves first; what is undecided is told by the certified routine alone.
-                    settled = found[FOUND_STATUS, j] == HIT and t > 0.0
-                    answers[(top + y - start) * width + left + x] = t if settled else np.nan
+    groups = (n + GROUP - 1) // GROUP
+    for i in range(groups * GROUP):
+        j = i % GROUP * groups + i // GROUP
+        row = chosen[min(i, n - 1)]
+        for axis in range(6):
+            rays[axis, j] = asked[row, axis]
+        rays[6, j] = spans[0, i] if i < n else 0.0
+        rays[7, j] = spans[1, i] if i < n else 0.0
+    return groups * GROUP
+
+
+@part
+def answer(rays, found, j, anywhere):
+    """Where ray j meets the solid, as it is told; NaN: that the certified routine of single rays must tell."""
+    if found[FOUND_STATUS, j] == MISS:
+        return np.inf
+    if found[FOUND_STATUS, j] != HIT:
+        return np.nan
+    t, t0, t1 = found[FOUND_ROOT, j], rays[6, j], rays[7, j]
+    if anywhere:  # what hides a light is proved to stand between these
+        low = t0 + found[FOUND_LOW, j]
+        return min(max(t, low), max(t0 + found[FOUND_HIGH, j], low))
+    # A ray that begins inside leaves first.
+    return t if t0 > 0.0 or t > t0 + FINE * (t1 - t0) else np.nan
+
+
+@lean(types.void(*ARGUMENTS, types.float64[:, ::1], ASKED, types.int64, types.int64[::1], types.float64[:, ::1]))
+def meet_asked(
+    code, constants, singles, registers, point, status, lanes, ids, rays, asked_from, queue, found, parts, scratch,
+    beams, doubles, points, short, near_singles, near_parts, plan, order, room, table, flat, other, box, asked, column,
+    chosen, spans,
+):  # fmt: skip
+    """Where all rays of ``asked`` meet {f < 0} in ``box`` (2, 3), into a column of it.
+
+    ``chosen`` (RAYS,) and ``spans`` (2, RAYS) are working memory.
+    """
+    rows = int(asked[0, NEXT])
+    for want in (FIRST, ANYWHERE):
+        anywhere = want == ANYWHERE
+        n = 0
+        for row in range(1, rows + 1):
+            if row < rows:
+                if asked[row, WANT] != want:
+                    continue
+                asked[row, column] = np.inf
+                enter, leave = in_box(asked, row, box)
+                if enter < leave:
+                    chosen[n], spans[0, n], spans[1, n] = row, enter, leave
+                    n += 1
+            if n == RAYS or (row == rows and n > 0):
+                count = place(rays, asked, chosen, spans, n)
+                first_roots(
+                    code, constants, singles, registers, point, status, lanes, ids, rays, asked_from, queue, count,
+                    anywhere, found, parts, scratch, beams, doubles, points, short, near_singles, near_parts,
+                    plan, order, room, table, flat, other,
+                )  # fmt: skip
+                groups = count // GROUP
+                for i in range(n):
+                    asked[chosen[i], column] = answer(rays, found, i % GROUP * groups + i // GROUP, anywhere)
+                n = 0

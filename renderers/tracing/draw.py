@@ -2,28 +2,28 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from renderers.tracing.edges_kernels import smooth_rows
 from renderers.tracing.filter_kernels import deepen, widen
-from renderers.tracing.gather_kernels import gather_rows
+from renderers.tracing.gather_kernels import PATH, gather_rows
 from renderers.tracing.pack import TOLERANCE, pack, scratch
 from renderers.tracing.picture import Picture, over_rows
 from renderers.tracing.record_kernels import COLUMNS
-from renderers.tracing.refine_kernels import refine_rows, shade_rows
+from renderers.tracing.refine_kernels import refine, shade_rows
 from renderers.tracing.sampling_kernels import subpixels
-from renderers.tracing.scene_kernels import LIGHT_COUNT, Scene
+from renderers.tracing.scene_kernels import ANSWERS, LIGHT_COUNT, Scene
 from renderers.tracing.sprites import over
 from renderers.tracing.visibility_kernels import FIRST_LIGHT
 from sceneql.frame import Implicit
 
 if TYPE_CHECKING:
-    from numpy import int64
-    from numpy.typing import NDArray
+    from collections.abc import Callable
 
-    from sceneql.frame import Floats, Frame, Shape, View
+    from renderers.tracing.waves import Waves
+    from sceneql.frame import Floats, Frame
 
 
 class Buffers:
@@ -54,7 +54,7 @@ def draw(
     """Ray-trace a frame; ``samples``, a power of two from 1 to 64: rays in a pixel in which things meet.
 
     ``tolerance`` is that of roots of implicit surfaces; with ``march`` they are looked for at so many places of a ray.
-    ``packets``: the camera's rays look for them in bundles, at the usual tolerance alone.
+    ``packets``: rays look for them in bundles, at the usual tolerance alone.
 
     Roots of implicit surfaces are certified (sceneql.field); shadows and the sky's light are sampled once a pixel by a
     net and averaged over the surface around it, so that the picture has no grain and repeats to the bit.
@@ -64,18 +64,27 @@ def draw(
     columns = FIRST_LIGHT + 2 * int(scene.ints[LIGHT_COUNT])
     buffers = _buffers(width * height, columns)
     undecided: list[int] = []
-    bundled = packets and not march and tolerance == TOLERANCE
+    waves = _waves(frame, scene, rows, columns) if packets and not march and tolerance == TOLERANCE else None
+    plain = np.zeros((1, ANSWERS))
 
     def gather(start: int, stop: int) -> None:
-        b, spare = buffers, np.empty(COLUMNS, np.float32)
-        told = _told(frame.shapes if bundled else (), frame.view, scene, start, stop)
-        undecided.append(
-            gather_rows(scene, scratch(rows), start, stop, b.records, b.radiance, b.visibility, spare, *told)
-        )
+        b, path, spare = buffers, np.empty(PATH), np.empty(COLUMNS, np.float32)
+        out = b.records, b.radiance, b.visibility
+        if waves is None:
+            undecided.append(gather_rows(scene, scratch(rows), plain, start, stop, *out, path, spare))
+        else:
+            undecided.append(waves(lambda w: w.gather(start, stop, *out)))
+
+    def refine_rows(start: int, stop: int, *of_layer: Floats) -> None:
+        records, visibility, fine = of_layer
+        if waves is None:
+            refine(scene, scratch(rows), plain, start, stop, records, visibility, buffers.means, fine)
+        else:
+            waves(lambda w: w.refine(start, stop, records, visibility, buffers.means, fine))
 
     over_rows(height, gather)
     for layer in range(2):
-        _filter(scene, rows, buffers, layer, width, height)
+        _filter(refine_rows, buffers, layer, width, height)
 
     def shade(start: int, stop: int) -> None:
         shade_rows(scene, start, stop, buffers.records, buffers.fine, buffers.visibility, buffers.radiance)
@@ -85,9 +94,12 @@ def draw(
     linear = np.empty((width * height, 3), dtype=np.float32)
 
     def smooth(start: int, stop: int) -> None:
-        own, found = np.empty((3, COLUMNS), np.float32), np.empty(columns, np.float32)
-        b = buffers
-        smooth_rows(scene, scratch(rows), start, stop, points, b.records, b.radiance, b.visibility, own, found, linear)
+        path, own, found = np.empty(PATH), np.empty((3, COLUMNS), np.float32), np.empty(columns, np.float32)
+        light = buffers.records, buffers.radiance, buffers.visibility
+        if waves is None:
+            smooth_rows(scene, scratch(rows), plain, start, stop, points, *light, path, own, found, linear)
+        else:
+            waves(lambda w: w.smooth(start, stop, points, *light, linear))
 
     over_rows(height, smooth)
     over(frame, buffers.records[0], buffers.radiance, linear)
@@ -95,22 +107,31 @@ def draw(
     return Picture(linear.reshape(height, width, 3), sum(undecided))
 
 
-def _told(shapes: tuple[Shape, ...], view: View, scene: Scene, start: int, stop: int) -> tuple[NDArray[int64], Floats]:
-    """What gathering need not look for: see bundles.camera_roots. Its kernels are for frames with implicit shapes."""
-    if not any(isinstance(shape, Implicit) for shape in shapes):
-        return np.zeros(0, dtype=np.int64), np.zeros((0, 0))
-    from renderers.tracing.bundles import camera_roots
-
-    return camera_roots(shapes, view, scene, start, stop)
-
-
-def _filter(scene: Scene, rows: int, buffers: Buffers, layer: int, width: int, height: int) -> None:
+def _filter(refine_rows: Callable[..., None], buffers: Buffers, layer: int, width: int, height: int) -> None:
     """The filtered visibility of a layer's records, in buffers.fine."""
     records, visibility, fine = buffers.records[layer], buffers.visibility[layer], buffers.fine[layer]
     sums, means = buffers.sums, buffers.means
     over_rows(height, lambda start, stop: widen(start, stop, width, records, visibility, sums))
     over_rows(height, lambda start, stop: deepen(start, stop, width, height, records, sums, means))
-    over_rows(
-        height,
-        lambda start, stop: refine_rows(scene, scratch(rows), start, stop, records, visibility, means, fine),
-    )
+    over_rows(height, lambda start, stop: refine_rows(start * width, stop * width, records, visibility, fine))
+
+
+def _waves(frame: Frame, scene: Scene, rows: int, columns: int) -> Callable[[Callable[[Waves], Any]], Any] | None:
+    """Does work with a thread's Waves; None where packets know no shape. Its kernels are for implicit shapes alone."""
+    if not any(isinstance(shape, Implicit) for shape in frame.shapes):
+        return None
+    from renderers.tracing.bundles import solids_in_lanes
+    from renderers.tracing.waves import Waves
+
+    solids = solids_in_lanes(frame.shapes)
+    if not solids:
+        return None
+    idle: list[Waves] = []
+
+    def lend(work: Callable[[Waves], Any]) -> Any:
+        waves = idle.pop() if idle else Waves(scene, frame.shapes, solids, rows, columns)
+        result = work(waves)
+        idle.append(waves)
+        return result
+
+    return lend

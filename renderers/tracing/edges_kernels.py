@@ -4,10 +4,10 @@
 from numba import types
 
 from renderers.tracing.filter_kernels import SLACK
-from renderers.tracing.gather_kernels import gather
+from renderers.tracing.gather_kernels import GATHERED, PLACES, gather
 from renderers.tracing.record_kernels import OWNER, TRACED, alike
 from renderers.tracing.sampling_kernels import sample_of
-from renderers.tracing.scene_kernels import HEIGHT, SCENE, SCRATCH, WIDTH, part
+from renderers.tracing.scene_kernels import ASKED, HEIGHT, ROW, SCENE, SCRATCH, WIDTH, part
 from renderers.tracing.shade_kernels import shade
 from renderers.tracing.visibility_kernels import look_around
 from sceneql.kernels import kernel
@@ -71,7 +71,7 @@ def borrow(records, visibility, record, x, y, width, height, found):
 
 
 @part
-def finished(scene, scratch, records, visibility, own, k, x, y, number, found):
+def finished(scene, scratch, asked, records, visibility, own, k, x, y, number, found):
     """Radiance (3) of the two records ``own`` (3, COLUMNS) of one ray through pixel (x, y)."""
     width, height = int(scene.reals[WIDTH]), int(scene.reals[HEIGHT])
     r, g, b = 0.0, 0.0, 0.0
@@ -79,20 +79,21 @@ def finished(scene, scratch, records, visibility, own, k, x, y, number, found):
         if own[layer, OWNER] == 0.0:
             continue
         if not borrow(records[layer], visibility[layer], own[layer], x, y, width, height, found):
-            look_around(scene, scratch, own[layer], number, ANEW, ANEW, found)
+            look_around(scene, scratch, asked, own[layer], number, ANEW, ANEW, found)
         red, green, blue = shade(scene, own[layer], found)
         r, g, b = r + red, g + green, b + blue
     return r, g, b
 
 
 @kernel(
-    types.int64(SCENE, SCRATCH, _i, _i, types.float64[:, ::1], _stack, _rows, _stack, _rows, types.float32[::1], _rows),
+    _i(SCENE, SCRATCH, ASKED, _i, _i, types.float64[:, ::1], _stack, _rows, _stack, PLACES, _rows, ROW, _rows),
     _nrt=False,
 )
-def smooth_rows(scene, scratch, start, stop, points, records, radiance, visibility, own, found, picture):
+def smooth_rows(scene, scratch, asked, start, stop, points, records, radiance, visibility, path, own, found, picture):
     """Fill rows start..stop of ``picture`` (n, 3): as ``radiance``, edges by one ray for each of ``points`` (s, 2).
 
-    ``own`` (3, COLUMNS) and ``found`` (V,) are working memory. Returns the number of pixels drawn anew.
+    ``path`` (PATH,), ``own`` (3, COLUMNS) and ``found`` (V,) are working memory. Returns the number of pixels drawn
+    anew.
     """
     width, height = int(scene.reals[WIDTH]), int(scene.reals[HEIGHT])
     anew = 0
@@ -112,8 +113,9 @@ def smooth_rows(scene, scratch, start, stop, points, records, radiance, visibili
                 if used == TRIAL and plain:
                     break
                 px, py = x + points[s, 0], y + points[s, 1]
-                r, g, b = gather(scene, scratch, px, py, own[0], own[1], own[2], found)
-                fr, fg, fb = finished(scene, scratch, records, visibility, own, k, x, y, number, found)
+                gather(scene, scratch, asked, px, py, path, own[0], own[1], own[2], found)
+                r, g, b = path[GATHERED], path[GATHERED + 1], path[GATHERED + 2]
+                fr, fg, fb = finished(scene, scratch, asked, records, visibility, own, k, x, y, number, found)
                 r, g, b = min(r + fr, BRIGHTEST), min(g + fg, BRIGHTEST), min(b + fb, BRIGHTEST)
                 red, green, blue = red + r, green + g, blue + b
                 used += 1

@@ -1,17 +1,26 @@
 # mypy: ignore-errors
-"""Rays against the whole scene: what is met first, or how much light comes through."""
+"""Rays against the whole scene: what is met first, or how much light comes through; at once, or asked and told."""
 
 from numba import types
 
 from renderers.tracing.scene_kernels import (
+    ANSWERS,
+    ANYWHERE,
+    ASKED,
+    ASKING,
+    FAR,
+    FIRST,
     GRID,
     HALF_SPACE,
     ITEMS,
     KIND,
     LINK,
     LINKS_AT,
+    MODE,
+    NEXT,
     NODE_COUNT,
     NODES_AT,
+    PLAIN,
     QUADRIC,
     RAY,
     REALS_AT,
@@ -24,6 +33,7 @@ from renderers.tracing.scene_kernels import (
     TOLD,
     TRANSMISSION,
     TRIANGLE,
+    WANT,
     crossing_at,
     part,
 )
@@ -50,7 +60,7 @@ def meet(scene, scratch, item, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     if scratch[last, TOLD] != 0.0:
         t = scratch[last - 1 - scene.ints[ITEMS + 4 * item + SHAPE], 0]
         if t == t:
-            return t if near < t < far else NONE
+            return t if near <= t < far else NONE
     crossing = scene.sheet if kind == SHEET else scene.solid
     return crossing_at(crossing)(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere)
 
@@ -71,7 +81,10 @@ def misses(nodes, k, ox, oy, oz, ix, iy, iz, near, far):
     return min(leave, max(a, b)) < max(enter, min(a, b))
 
 
-@kernel(types.Tuple((types.float64, types.int64, types.float64))(SCENE, SCRATCH, *RAY, types.boolean), _nrt=False)
+MET = types.Tuple((types.float64, types.int64, types.float64))
+
+
+@kernel(MET(SCENE, SCRATCH, *RAY, types.boolean), _nrt=False)
 def walk(scene, scratch, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """(t, item, light) of the ray inside (near, far): where it first meets an item, or (inf, -1, 1).
 
@@ -108,3 +121,38 @@ def walk(scene, scratch, ox, oy, oz, dx, dy, dz, near, far, anywhere):
                 return where, found, light
         n += 1
     return where, found, light
+
+
+@part
+def put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, anywhere):
+    """Write a ray down, to be met in packets."""
+    asked[row, 0], asked[row, 1], asked[row, 2] = ox, oy, oz
+    asked[row, 3], asked[row, 4], asked[row, 5] = dx, dy, dz
+    asked[row, FAR] = far
+    asked[row, WANT] = ANYWHERE if anywhere else FIRST
+
+
+@part
+def tell(scratch, asked, row):
+    """Let the next walk know what is told of a ray."""
+    last = scratch.shape[0] - 1
+    scratch[last, TOLD] = 1.0
+    for column in range(ANSWERS, asked.shape[1]):
+        scratch[last - 1 - int(asked[0, column]), 0] = asked[row, column]
+
+
+@kernel(MET(SCENE, SCRATCH, ASKED, *RAY[1:], types.boolean), _nrt=False, inner=True)
+def ask(scene, scratch, asked, ox, oy, oz, dx, dy, dz, far, anywhere):
+    """As ``walk`` from the ray's origin on, in the mode of ``asked``: a ray that is only asked meets nothing."""
+    mode = asked[0, MODE]
+    if mode == PLAIN:
+        return walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, far, anywhere)
+    row = int(asked[0, NEXT])
+    asked[0, NEXT] = row + 1
+    if mode == ASKING:
+        put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, anywhere)
+        return NONE, -1, 1.0
+    tell(scratch, asked, row)
+    t, item, light = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, far, anywhere)
+    scratch[scratch.shape[0] - 1, TOLD] = 0.0
+    return t, item, light

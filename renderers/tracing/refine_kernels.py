@@ -6,7 +6,7 @@ from numba import types
 from renderers.tracing.filter_kernels import REACH, SLACK
 from renderers.tracing.record_kernels import OWNER, RADIUS, alike
 from renderers.tracing.sampling_kernels import COUNT, SIDE, sample_of
-from renderers.tracing.scene_kernels import HEIGHT, LIGHT_COUNT, SCENE, SCRATCH, WIDTH, part
+from renderers.tracing.scene_kernels import ASKED, ASKING, HEIGHT, LIGHT_COUNT, MODE, NEXT, SCENE, SCRATCH, WIDTH, part
 from renderers.tracing.shade_kernels import shade
 from renderers.tracing.visibility_kernels import FIRST_LIGHT, look_around, shadow_sample
 from sceneql.kernels import kernel
@@ -76,44 +76,50 @@ def spread_sky(records, means, k, x, y, width, height, fine):
         fine[c] /= weight
 
 
-@kernel(types.void(SCENE, SCRATCH, _i, _i, _rows, _rows, _rows, _rows), _nrt=False)
-def refine_rows(scene, scratch, start, stop, records, visibility, means, fine):
-    """Rows of ``fine`` (n, V): the sky's loss; of each light its share, and whether that wants smoothing (0 or 1)."""
+@kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _rows, _rows, _rows, _rows), _nrt=False)
+def refine(scene, scratch, asked, start, stop, records, visibility, means, fine):
+    """Rows of ``fine`` (n, V): the sky's loss; of each light its share, and whether that wants smoothing (0 or 1).
+
+    Of pixels start..stop, or as many as ``asked`` has room for the rays of; returns where it ends.
+    """
     width, height = int(scene.reals[WIDTH]), int(scene.reals[HEIGHT])
-    for y in range(start, stop):
-        for x in range(width):
-            k = y * width + x
-            if records[k, OWNER] == 0.0:
+    room = asked.shape[0] - OWN * (1 + scene.ints[LIGHT_COUNT])
+    for k in range(start, stop):
+        if records[k, OWNER] == 0.0:
+            continue
+        if asked[0, MODE] == ASKING and asked[0, NEXT] > room:
+            return k
+        x, y = k % width, k // width
+        if means[k, 0] < FEW:
+            samples = OWN if means[k, 0] < 0.5 * FEW else OWN // 2
+            look_around(scene, scratch, asked, records[k], sample_of(x, y), samples, 0, fine[k])
+            for c in range(FIRST_LIGHT):
+                joined = samples * fine[k, c] + means[k, 0] * means[k, 1 + c]
+                fine[k, c] = joined / (samples + means[k, 0])
+        else:
+            spread_sky(records, means, k, x, y, width, height, fine[k])
+        for l in range(int(scene.ints[LIGHT_COUNT])):
+            column = FIRST_LIGHT + 2 * l
+            share = means[k, 1 + column]
+            fine[k, column + 1] = 0.0
+            fine[k, column] = share
+            if share > 0.9999 or share < 0.0001:
                 continue
-            if means[k, 0] < FEW:
-                samples = OWN if means[k, 0] < 0.5 * FEW else OWN // 2
-                look_around(scene, scratch, records[k], sample_of(x, y), samples, 0, fine[k])
-                for c in range(FIRST_LIGHT):
-                    joined = samples * fine[k, c] + means[k, 0] * means[k, 1 + c]
-                    fine[k, c] = joined / (samples + means[k, 0])
-            else:
-                spread_sky(records, means, k, x, y, width, height, fine[k])
-            for l in range(int(scene.ints[LIGHT_COUNT])):
-                column = FIRST_LIGHT + 2 * l
-                share = means[k, 1 + column]
-                fine[k, column + 1] = 0.0
-                fine[k, column] = share
-                if share > 0.9999 or share < 0.0001:
-                    continue
-                pixels = means[k, 2 + column] / (1.0 - share) / (2.0 * records[k, RADIUS])
-                if pixels >= SIDE:
-                    continue
-                reach = 1 if pixels < CRISP else (2 if pixels < FINE else REACH)
-                if reach < REACH and not mixed(records, visibility, k, x, y, width, height, column, reach):
-                    fine[k, column] = visibility[k, column]
-                    continue
-                samples = OWN if reach < REACH else OWN // 2
-                total = 0.0
-                first = sample_of(x, y) * samples % COUNT
-                for sample in range(first, first + samples):
-                    total += shadow_sample(scene, scratch, records[k], l, sample, 1.0)[0]
-                fine[k, column] = total / samples
-                fine[k, column + 1] = 1.0 if reach == REACH else 0.0
+            pixels = means[k, 2 + column] / (1.0 - share) / (2.0 * records[k, RADIUS])
+            if pixels >= SIDE:
+                continue
+            reach = 1 if pixels < CRISP else (2 if pixels < FINE else REACH)
+            if reach < REACH and not mixed(records, visibility, k, x, y, width, height, column, reach):
+                fine[k, column] = visibility[k, column]
+                continue
+            samples = OWN if reach < REACH else OWN // 2
+            total = 0.0
+            first = sample_of(x, y) * samples % COUNT
+            for sample in range(first, first + samples):
+                total += shadow_sample(scene, scratch, asked, records[k], l, sample, 1.0)[0]
+            fine[k, column] = total / samples
+            fine[k, column + 1] = 1.0 if reach == REACH else 0.0
+    return stop
 
 
 @part

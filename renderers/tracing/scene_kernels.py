@@ -42,6 +42,16 @@ SCRATCH = types.float64[:, ::1]
 whose first entry counts the undecided. Where its entry TOLD is set, the rows of implicit shapes begin with their first
 crossing on the ray at hand, or with NaN."""
 TOLD = 1
+ASKED = types.float64[:, ::1]
+"""Rays that are to be met in packets, a row each: origin, direction, how far, WANT, from ANSWERS on where it first
+meets the implicit solids that packets know (inf: nowhere; NaN: not told). Row 0 is the head: MODE, which row is NEXT,
+from ANSWERS on the indices of those shapes. PLAIN: rays are traced where they arise; ASKING: they are written down,
+and meet nothing; TELLING: they are traced with the answers, in the order in which they were asked."""
+FAR, WANT, ANSWERS = 6, 7, 8
+FIRST, ANYWHERE = range(2)
+"""What is wanted of a ray: what it meets first, or whether it meets anything."""
+MODE, NEXT = range(2)
+PLAIN, ASKING, TELLING = range(3)
 SCENE = types.NamedTuple((types.float64[::1], types.int32[::1], _i, _i, _i, _i, _i), Scene)
 RAY = (_f,) * 8
 """Types of origin, direction, near and far."""

@@ -4,11 +4,12 @@
 import numpy as np
 from numba import types
 
-from renderers.tracing.intersect_kernels import walk
+from renderers.tracing.intersect_kernels import ask, walk
 from renderers.tracing.light_kernels import sky_ambient, sky_radiance
 from renderers.tracing.record_kernels import NORMAL, PLACE, RADIUS, start_of
 from renderers.tracing.sampling_kernels import COUNT, DISK, JITTER, SKY_COUNT, SKY_DISK, across
 from renderers.tracing.scene_kernels import (
+    ASKED,
     EMISSION,
     HAS_SKY,
     ITEMS,
@@ -48,7 +49,7 @@ def light_at(reals, l, x, y, z):
 
 
 @part
-def seen(scene, scratch, l, x, y, z, disk_x, disk_y):
+def seen(scene, scratch, asked, l, x, y, z, disk_x, disk_y):
     """(share, distance of what hides it) of the point (disk_x, disk_y) of light l's disk from a place."""
     dx, dy, dz, far, _, _, _ = light_at(scene.reals, l, x, y, z)
     ax, ay, az, bx, by, bz = across(dx, dy, dz)
@@ -61,7 +62,7 @@ def seen(scene, scratch, l, x, y, z, disk_x, disk_y):
     if far == np.inf:
         length = np.sqrt(dx * dx + dy * dy + dz * dz)
         dx, dy, dz = dx / length, dy / length, dz / length
-    blocker, _, share = walk(scene, scratch, x, y, z, dx, dy, dz, 0.0, far, True)
+    blocker, _, share = ask(scene, scratch, asked, x, y, z, dx, dy, dz, far, True)
     return share, blocker
 
 
@@ -100,7 +101,7 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius):
 
 
 @part
-def sky_loss(scene, scratch, record, sample):
+def sky_loss(scene, scratch, asked, record, sample):
     """How much less (3) than the sky's radiance comes in along the sample's direction, cosine-distributed."""
     nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
     ax, ay, az, bx, by, bz = across(nx, ny, nz)
@@ -108,7 +109,7 @@ def sky_loss(scene, scratch, record, sample):
     w = np.sqrt(max(1.0 - u * u - v * v, 0.0))
     dx, dy, dz = u * ax + v * bx + w * nx, u * ay + v * by + w * ny, u * az + v * bz + w * nz
     x, y, z = start_of(record)
-    t, item, _ = walk(scene, scratch, x, y, z, dx, dy, dz, 0.0, np.inf, False)
+    t, item, _ = ask(scene, scratch, asked, x, y, z, dx, dy, dz, np.inf, False)
     if item < 0:
         return 0.0, 0.0, 0.0
     radius = record[RADIUS] + 0.05 * t
@@ -126,7 +127,7 @@ def facing(scene, record, l):
 
 
 @part
-def shadow_sample(scene, scratch, record, l, sample, jitter):
+def shadow_sample(scene, scratch, asked, record, l, sample, jitter):
     """(share, width of half-shadow) of light l for one sample, from a point up to ``jitter`` pixels off.
 
     A surface that faces away counts as lit, since shading takes care of that and no edge of shadow must be seen there.
@@ -137,13 +138,13 @@ def shadow_sample(scene, scratch, record, l, sample, jitter):
     ax, ay, az, bx, by, bz = across(float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2]))
     u, v = 2.0 * jitter * record[RADIUS] * JITTER[sample, 0], 2.0 * jitter * record[RADIUS] * JITTER[sample, 1]
     x, y, z = x + u * ax + v * bx, y + u * ay + v * by, z + u * az + v * bz
-    share, blocker = seen(scene, scratch, l, x, y, z, DISK[sample, 0], DISK[sample, 1])
+    share, blocker = seen(scene, scratch, asked, l, x, y, z, DISK[sample, 0], DISK[sample, 1])
     width = shadow_width(scene, l, x, y, z, blocker) if blocker < np.inf else 0.0
     return share, width
 
 
-@kernel(types.void(SCENE, SCRATCH, ROW, _i, _i, _i, ROW), _nrt=False, inner=True)
-def look_around(scene, scratch, record, number, of_sky, of_lights, visibility):
+@kernel(types.void(SCENE, SCRATCH, ASKED, ROW, _i, _i, _i, ROW), _nrt=False, inner=True)
+def look_around(scene, scratch, asked, record, number, of_sky, of_lights, visibility):
     """Fill a row of visibility with means of nets of so many samples (powers of two), those of pixel ``number``.
 
     Several samples cover the pixel's area, one stands for its center.
@@ -152,7 +153,7 @@ def look_around(scene, scratch, record, number, of_sky, of_lights, visibility):
         visibility[column] = 0.0
     if scene.reals[HAS_SKY] != 0.0:
         for k in range(of_sky):
-            r, g, b = sky_loss(scene, scratch, record, (number * of_sky + k) % SKY_COUNT)
+            r, g, b = sky_loss(scene, scratch, asked, record, (number * of_sky + k) % SKY_COUNT)
             visibility[SKY] += r / of_sky
             visibility[SKY + 1] += g / of_sky
             visibility[SKY + 2] += b / of_sky
@@ -160,6 +161,6 @@ def look_around(scene, scratch, record, number, of_sky, of_lights, visibility):
     for l in range(int(scene.ints[LIGHT_COUNT])):
         column = FIRST_LIGHT + 2 * l
         for k in range(of_lights):
-            share, width = shadow_sample(scene, scratch, record, l, (number * of_lights + k) % COUNT, jitter)
+            share, width = shadow_sample(scene, scratch, asked, record, l, (number * of_lights + k) % COUNT, jitter)
             visibility[column] += share / of_lights
             visibility[column + 1] = max(visibility[column + 1], width)

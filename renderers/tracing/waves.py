@@ -1,0 +1,110 @@
+"""The stages of a picture that trace rays, with implicit solids met in packets: all rays of a wave are asked first.
+
+Shadow rays and those to the sky of a whole band make a wave, and so does each turn of all its paths: camera, mirrored
+and refracted rays. What is lit in a mirror's mirror, and what lies behind the sky's rays, asks for no company.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from renderers.tracing.bundles import Packets
+from renderers.tracing.edge_waves_kernels import add_samples, begin_samples, list_edges, look_from_samples
+from renderers.tracing.edges_kernels import TRIAL
+from renderers.tracing.gather_kernels import PATH
+from renderers.tracing.pack import scratch
+from renderers.tracing.record_kernels import COLUMNS
+from renderers.tracing.refine_kernels import refine
+from renderers.tracing.scene_kernels import ASKING, MODE, NEXT, SHAPE_COUNT, TELLING, WIDTH
+from renderers.tracing.waves_kernels import TILE, advance_paths, ask_paths, begin_paths, end_paths, look_from
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from renderers.tracing.scene_kernels import Scene
+    from sceneql.frame import Shape
+
+    Array = NDArray[Any]
+
+ROOM = 16384
+"""Rays that are asked at a time, at the least."""
+
+
+class Waves:
+    """A thread's working memory for bands of a picture, TILE rows high at the most."""
+
+    def __init__(self, scene: Scene, shapes: tuple[Shape, ...], solids: list[int], rows: int, columns: int) -> None:
+        """``solids``: indices of the shapes that packets meet; ``rows`` of scratch and ``columns`` of visibility."""
+        self.scene, self.packets = scene, Packets(shapes, solids)
+        self.scratch = scratch(rows)
+        self.scratch[-1 - int(scene.ints[SHAPE_COUNT]) : -1, 0] = np.nan
+        pixels = -(-int(scene.reals[WIDTH]) // TILE) * TILE * TILE
+        self.asked = self.packets.asked(max(pixels, ROOM))
+        self.paths, self.at = np.zeros((pixels, PATH)), np.arange(pixels, dtype=np.int64)
+        self.edges, self.sums = np.zeros(pixels, dtype=np.int64), np.zeros((pixels, 4))
+        self.own = np.zeros((2, pixels, COLUMNS), dtype=np.float32)
+        self.found = np.zeros((2, pixels, columns), dtype=np.float32)
+        self.spare = np.empty(COLUMNS, dtype=np.float32)
+
+    def gather(self, start: int, stop: int, records: Array, radiance: Array, visibility: Array) -> int:
+        """As gather_kernels.gather_rows."""
+        scene, asked, at = self.scene, self.asked, np.empty_like(self.at)
+        count = begin_paths(scene, start, stop, records, self.paths, at)
+        self._follow(self.paths[:count], at, records, visibility)
+        self._ask(0, count, lambda i, end: look_from(scene, self.scratch, asked, i, end, at, records, visibility))
+        undecided: int = end_paths(self.paths[:count], at, radiance)
+        return undecided
+
+    def refine(self, start: int, stop: int, records: Array, visibility: Array, means: Array, fine: Array) -> None:
+        """As refine_kernels.refine."""
+        more = records, visibility, means, fine
+        self._ask(start, stop, lambda i, end: refine(self.scene, self.scratch, self.asked, i, end, *more))
+
+    def smooth(
+        self, start: int, stop: int, points: Array, records: Array, radiance: Array, visibility: Array,
+        picture: Array,
+    ) -> None:  # fmt: skip
+        """As edges_kernels.smooth_rows."""
+        count = list_edges(self.scene, start, stop, records, radiance, picture, self.edges)
+        some = len(self.paths) // TRIAL
+        for first in range(0, count, some):
+            edges = self.edges[first : min(first + some, count)]
+            self.sums[:] = [0.0, 0.0, 0.0, 1.0]
+            for used in range(0, len(points), TRIAL):
+                edges = self._sample(edges, points, used, records, radiance, visibility, picture)
+
+    def _sample(
+        self, edges: Array, points: Array, used: int, records: Array, radiance: Array, visibility: Array,
+        picture: Array,
+    ) -> Array:  # fmt: skip
+        """Some more samples of pixels; those that are to have still more."""
+        scene, some = self.scene, points[used : used + TRIAL]
+        each, count = len(some), len(some) * len(edges)
+        paths, own, found = self.paths[:count], self.own, self.found
+        begin_samples(scene, some, edges, paths, own)
+        self._follow(paths, self.at, own, found)
+        more = each, edges, records, visibility, own, found
+        self._ask(0, count, lambda i, end: look_from_samples(scene, self.scratch, self.asked, i, end, *more))
+        light = records, radiance, paths, own, found
+        left = add_samples(scene, each, used + each, len(points), edges, *light, self.sums, picture)
+        return edges[:left]
+
+    def _follow(self, paths: Array, at: Array, records: Array, visibility: Array) -> None:
+        """Let paths go to their ends."""
+        while ask_paths(paths, self.asked):
+            self.packets.meet(self.asked)
+            advance_paths(self.scene, self.scratch, self.asked, paths, at, records, visibility, self.spare)
+
+    def _ask(self, start: int, stop: int, work: Callable[[int, int], int]) -> None:
+        """Do ``work`` twice for each part of start..stop, which it ends: its rays are asked, then they are told."""
+        while start < stop:
+            self.asked[0, [MODE, NEXT]] = ASKING, 1
+            end = work(start, stop)
+            self.packets.meet(self.asked)
+            self.asked[0, [MODE, NEXT]] = TELLING, 1
+            work(start, end)
+            start = end

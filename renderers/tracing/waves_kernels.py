@@ -1,0 +1,118 @@
+# mypy: ignore-errors
+"""The stage of gathering in waves: all paths of a band ask for their next ray, and go on once packets have told.
+
+Pixels are taken in tiles of 16 x 16, blocks of 4 x 4 of them together: a packet's rays are neighbors.
+"""
+
+import numpy as np
+from numba import types
+
+from renderers.tracing.gather_kernels import DOUBTED, GATHERED, LIVE, advance, begin
+from renderers.tracing.intersect_kernels import put_ray, tell
+from renderers.tracing.record_kernels import OWNER
+from renderers.tracing.sampling_kernels import sample_of
+from renderers.tracing.scene_kernels import (
+    ASKED,
+    ASKING,
+    LIGHT_COUNT,
+    MODE,
+    NEXT,
+    PLAIN,
+    ROW,
+    SCENE,
+    SCRATCH,
+    WIDTH,
+    part,
+)
+from renderers.tracing.visibility_kernels import look_around
+from sceneql.kernels import kernel
+
+TILE, BLOCK = 16, 4
+_i = types.int64
+_rows = types.float32[:, ::1]
+_stack = types.float32[:, :, ::1]
+_paths = types.float64[:, ::1]
+_many = types.int64[::1]
+
+
+@part
+def place_of(i):
+    """(x, y) of pixel i of a band that is TILE rows high."""
+    left, i = i // (TILE * TILE) * TILE, i % (TILE * TILE)
+    g, r = i // TILE, i % TILE
+    x, y = g & 1 | (g >> 1) & 2, (g >> 1) & 1 | (g >> 2) & 2
+    return left + x * BLOCK + r % BLOCK, y * BLOCK + r // BLOCK
+
+
+@kernel(_i(SCENE, _i, _i, _stack, _paths, _many), _nrt=False)
+def begin_paths(scene, start, stop, records, paths, at):
+    """Begin the paths of rows start..stop, no more than TILE of them; how many, and ``at`` which pixel each is."""
+    width = int(scene.reals[WIDTH])
+    n = 0
+    for i in range(paths.shape[0]):
+        x, y = place_of(i)
+        if x < width and start + y < stop:
+            k = (start + y) * width + x
+            begin(scene.reals, x + 0.5, start + y + 0.5, paths[n], records[0, k], records[1, k])
+            at[n] = k
+            n += 1
+    return n
+
+
+@kernel(_i(_paths, ASKED), _nrt=False)
+def ask_paths(paths, asked):
+    """Ask for the next ray of all live paths; how many there are."""
+    row = 1
+    for i in range(paths.shape[0]):
+        if paths[i, LIVE] != 0.0:
+            path = paths[i]
+            put_ray(asked, row, path[0], path[1], path[2], path[3], path[4], path[5], np.inf, False)
+            row += 1
+    asked[0, NEXT] = row
+    return row - 1
+
+
+@kernel(types.void(SCENE, SCRATCH, ASKED, _paths, _many, _stack, _stack, ROW), _nrt=False)
+def advance_paths(scene, scratch, asked, paths, at, records, visibility, spare):
+    """Let all live paths go on by what is told of their rays; path i has the records ``at[i]``.
+
+    ``spare`` and those rows of the visibility are working memory.
+    """
+    asked[0, MODE] = PLAIN
+    row = 1
+    for i in range(paths.shape[0]):
+        if paths[i, LIVE] != 0.0:
+            k = at[i]
+            tell(scratch, asked, row)
+            row += 1
+            advance(scene, scratch, asked, paths[i], records[0, k], records[1, k], spare, visibility[0, k])
+
+
+@kernel(_i(_paths, _many, _rows), _nrt=False)
+def end_paths(paths, at, radiance):
+    """The radiance of the pixels ``at`` which paths are, but for their records; how many have an undecided root."""
+    doubted = 0
+    for i in range(paths.shape[0]):
+        doubted += paths[i, DOUBTED] > 0.0
+        for c in range(3):
+            radiance[at[i], c] = paths[i, GATHERED + c]
+    return doubted
+
+
+@kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _many, _stack, _stack), _nrt=False)
+def look_from(scene, scratch, asked, first, last, at, records, visibility):
+    """The visibility of the pixels ``at[first:last]``, one sample of each light and of the sky.
+
+    Of as many as ``asked`` has room for the rays of; returns where it ends.
+    """
+    width = int(scene.reals[WIDTH])
+    room = asked.shape[0] - 2 * (1 + scene.ints[LIGHT_COUNT])
+    for i in range(first, last):
+        if asked[0, MODE] == ASKING and asked[0, NEXT] > room:
+            return i
+        k = at[i]
+        number = sample_of(k % width, k // width)
+        for layer in range(2):
+            if records[layer, k, OWNER] > 0.0:
+                look_around(scene, scratch, asked, records[layer, k], number, 1, 1, visibility[layer, k])
+    return last
