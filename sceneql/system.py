@@ -103,6 +103,11 @@ class Slopes:
     """Places and entries are blocks of 3x3, of which ``rows`` and ``columns`` give the first row and column; the nine
     numbers of an entry follow one another, row by row. Thrice as quick, where masses act on masses."""
 
+    in_stages: bool = False
+    """They are known within stages of Newton's method alone (Stepper.newton), in which the term acts otherwise: while
+    floats[3] is above 0 it is the coefficient a [s] of y = base + a f(t, y), whose base is floats[-3n : -2n]; it is -1
+    between those, and 0 where a solver has none. floats[4] counts the stages."""
+
     @property
     def entries(self) -> int:
         """Length of the kernel's slice."""
@@ -338,6 +343,8 @@ class Stepper:
     largest_step: float = float("inf")
     jacobian: bool = False
     """Whether the step calls the island's Jacobian (System.pattern)."""
+    newton: bool = False
+    """Whether all its stages are solved by linear/newton_kernels.py (Slopes.in_stages)."""
     prepare: str | None = None
     """``"package.module:function"``, called with (System, Stepper) -> Prepared in place of settings, numbers and work:
     for what depends on the island, such as the ordering of a factorization."""

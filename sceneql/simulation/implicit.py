@@ -124,6 +124,7 @@ class ImplicitTableau:
             absolute=absolute,
             largest_step=largest_step,
             jacobian=True,
+            newton=True,
             prepare="sceneql.simulation.implicit:prepare",
             controls=adaptive,
             last_stage=self.stages if self.stiffly_accurate else -1,
@@ -136,6 +137,7 @@ class ImplicitTableau:
             step=f"{ON_GRIDS}:step",
             dense=None if adaptive else f"{ON_GRIDS}:linear",
             jacobian=False,
+            newton=False,
             prepare="sceneql.simulation.grids.implicit:prepare",
             unsolved=UNSOLVED if linear == "auto" else UNSOLVED_ON_GRID,
         )

@@ -35,9 +35,11 @@ LARGEST_MEMORY = 8 * 2**30
 """[bytes] of the state and of a solver's stages."""
 VECTORS = 12
 """Arrays of the state's size that a run keeps: ends and rates of a step, and the stages of a solver."""
-RESERVED_FLOATS = 3
+RESERVED_FLOATS = 5
 """floats[0] counts rate evaluations; floats[1] is set by a contact that changed the state (march_kernels); floats[2] is
-above 0 while slopes are to serve Newton's method (system.Slopes)."""
+above 0 while slopes are to serve Newton's method; floats[3] is not 0 where terms may act within its stages, whose
+number is floats[4] (system.Slopes)."""
+STAGE = 3
 
 
 class Setting(Protocol):
@@ -285,10 +287,13 @@ class IslandAssembly:
         modes = [mode for mode, blocks in (("exact", self._exact), ("local", self._local)) if blocks]
         return " and ".join(modes) or "none"
 
-    def finish(self, jacobian: bool = False) -> System:
-        """The island as arrays, with its Jacobian if asked for. Raises ScriptError for values without a program."""
+    def finish(self, jacobian: bool = False, newton: bool = False) -> System:
+        """The island as arrays, with its Jacobian if asked for, ``newton``: for Newton's method alone.
+
+        Raises ScriptError for values without a program.
+        """
         y = self.start()
-        slopes = self._slopes() if jacobian else None
+        slopes = self._slopes(newton) if jacobian else None
         inputs = self._inputs()
         blocks = [Block((), tuple(self._program(inputs)))]
         groups: list[tuple[tuple[str, ...], int]] = []
@@ -314,10 +319,13 @@ class IslandAssembly:
         partner = np.full(len(y), -1, dtype=np.int64)
         for position, velocity, count in self._pairs:
             partner[position : position + count] = np.arange(velocity, velocity + count)
+        floats = np.concatenate([*self._numbers, np.zeros(0 if found is None else 3 * len(y))])
+        if newton and self._local:
+            floats[STAGE] = -1.0
         return System(
             structure=structure,
             y=y,
-            floats=np.concatenate([*self._numbers, np.zeros(0 if found is None else 2 * len(y))]),
+            floats=floats,
             ints=ints,
             pairs=sum(pairs),
             partner=partner,
@@ -350,12 +358,12 @@ class IslandAssembly:
         found.raise_errors()
         return program
 
-    def _slopes(self) -> list[tuple[Slopes, Sequence[int]]] | None:
+    def _slopes(self, newton: bool) -> list[tuple[Slopes, Sequence[int]]] | None:
         """The slopes of all terms with their integers; None where those of one are not known."""
         found = []
         for block in (block for stage in STAGES for block in self._terms[stage]):
             slopes = block.slopes() if callable(block.slopes) else block.slopes
-            if slopes is None:
+            if slopes is None or (slopes.in_stages and not newton):
                 self._unsloped = block.part
                 return None
             found.append((slopes, block.ints if slopes.ints is None else slopes.ints))

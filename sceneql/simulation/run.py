@@ -100,6 +100,7 @@ class IslandRun:
         from sceneql.compiling import late
         from sceneql.simulation.assembled import blocks_of, models_of
         from sceneql.simulation.driver import driver, function, jacobian, modules
+        from sceneql.simulation.jacobian import BY_DIFFERENCES
         from sceneql.simulation.linear.stage import likely_kernels
 
         compile_ahead(("sceneql.simulation.march_kernels",))  # while the models are made here
@@ -122,7 +123,9 @@ class IslandRun:
 
             stepper = suited(stepper, assembly.only_field)
             compile_ahead(on_grid.likely_kernels(stepper, assembly.only_field))
-        system = assembly.finish(stepper.jacobian)
+        # Few masses under error control are followed from impact to impact.
+        within = stepper.newton and (not stepper.adaptive or len(assembly.start()) > BY_DIFFERENCES)
+        system = assembly.finish(stepper.jacobian, within)
         events = ("sceneql.simulation.events_kernels",) if system.pairs else ()
         likely = likely_kernels if stepper.likely is None else function(stepper.likely)
         solving = (stepper.step.partition(":")[0], *likely(system))

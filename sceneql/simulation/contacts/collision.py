@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
@@ -19,7 +20,7 @@ from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Type
 
 if TYPE_CHECKING:
-    from sceneql.system import Assembly, Bodies, ModelState
+    from sceneql.system import Assembly, Bodies, ModelState, Slopes
 
 TALLY = ("hits.count", "hits.first.time", "hits.last.time", "hits.last.speed", "rest.time")
 MOST_EXACT = 8
@@ -34,7 +35,8 @@ class Collision(Contact):
     friction across it; a resting mass feels the normal force that keeps it outside and Coulomb's friction (1785). The
     kinetic energy that is lost is counted as dissipated. Mode `exact` locates every impact to rounding and restarts
     the solver there, up to the end of infinitely many bounces; `local` backs each mass off to its own impact within
-    the step, for very many; `auto` is exact for up to 8 masses.
+    the step, for very many; `auto` is exact for up to 8 masses. Implicit Runge-Kutta methods and bdf2 have `local`
+    contacts within their stages: a mass that touches ends the step on the surface whatever its springs do.
 
     Planes, spheres, boxes and closed meshes have exact distances. Any other object with an inside is touched where its
     field is zero; a mass with a radius at that distance from it, but in front of the sharp edges of combined solids,
@@ -97,7 +99,9 @@ class Collision(Contact):
             tally_at,
             assembly.floats(np.zeros(pairs * PAIR)),
             assembly.floats(
-                np.full(bodies.count * INSTANT, nan) if exact else np.append(cuts, np.zeros(1 + bodies.count))
+                np.full(bodies.count * INSTANT, nan)
+                if exact
+                else np.concatenate([cuts, np.zeros(1 + bodies.count), [(2.0 * math.pi / bodies.period) ** 2, 0.0]])
             ),
             len(others),
         )
@@ -109,7 +113,8 @@ class Collision(Contact):
         else:
             step_by_springs(bodies, assembly)
             assembly.contact("local", (f"{found}:settle",), ints, pairs, apart=True)
-        assembly.term("constrain", f"{found}:constrain", ints, apart=not exact)
+        held = None if exact else lambda: _held(bodies)
+        assembly.term("constrain", f"{found}:constrain", ints, held, apart=not exact)
         assembly.remember(tally_at)
 
     def read(self, output: str, state: ModelState) -> Any:
@@ -126,3 +131,15 @@ class Collision(Contact):
             return 0.0 if output == "hits.last.speed" else float("nan")
         best = known[np.argmin(times[known]) if output == "hits.first.time" else np.argmax(times[known])]
         return float(column[best])
+
+
+def _held(bodies: Bodies) -> Slopes:
+    """The slopes of local contacts within a stage."""
+    import numpy as np
+
+    from sceneql.system import Slopes
+
+    tops = bodies.velocity_at + 3 * np.arange(bodies.count)
+    return Slopes(
+        "sceneql.simulation.contacts.hold_slopes_kernels:holds", rows=tops, columns=tops, blocks=True, in_stages=True
+    )

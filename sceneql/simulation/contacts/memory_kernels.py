@@ -3,15 +3,19 @@
 
 A pair is (body k, object j), numbered k * objects + j. Its memory in the floats: state, free normal acceleration, load
 (normal force by mass), pull along the surface (force without friction by mass), direction of sliding (3), load at the
-end of the step before (`local` mode; NaN where there was none).
+end of the step before (`local` mode; NaN where there was none), and within stages (hold_kernels) the evaluations since
+it was tied and last pressed (0: not tied), and how often it was let go.
 """
 
 from numba import types
 
+from sceneql.kernels import lean_inlined
+from sceneql.simulation.contacts.impulse_kernels import BODIES, LAST
 from sceneql.system_kernels import A, F, I, N
 
 PRESS, LOAD, PULL, ALONG, EARLIER = 1, 2, 3, 4, 7
-PAIR = 8
+TIED, LET_GO = 8, 9
+PAIR = 10
 FREE, SLIDES, STICKS, CREEPS = 0.0, 1.0, 2.0, 3.0
 """CREEPS, in `local` mode: slides, but so slowly that friction is left to the end of the step (slide_kernels)."""
 
@@ -20,6 +24,15 @@ END, WHOLE, CUTS = range(3)
 RESTING, LIST = 3, 4
 """In `local` mode, the places in the contact's memory of the number of resting bodies, and of their
 numbers: most bodies fly, and the others are found without looking at all."""
+
+
+STAGE = 3
+"""floats[3]: a [s] in a stage of Newton's method, y = base + a f(t, y), whose base stands at floats[-3n : -2n]; -1
+outside, where contacts act within such stages; 0 where they act between steps."""
+NUMBER = 4
+"""floats[4]: how many stages there were."""
+FIRM = 1e3
+"""How much more than inertia and springs a tie holds within a stage, as the linear systems see it."""
 
 PATH = 13
 """Floats of a path (path_kernels)."""
@@ -32,5 +45,15 @@ ANSWER = types.void(F, F, A, A, A, A, A, A, I)
 """(start and end of the step, state at both, bodies found, room for a path and its mean acceleration, floats, ints)."""
 KEEP = types.boolean(F, N, N, A, A, I)
 """(time, body, object, state, floats, ints): whether anything changed."""
+HOLD = types.void(A, A, A, I)
+"""(state, rate, floats, ints)."""
+SETTLE_HELD = types.void(F, F, A, A, A, I)
+"""(start and end of the step, state at both, floats, ints)."""
 SUPPORT = types.void(N, A, A, A, I)
 """(first body whose free pairs are looked at; -1: those that rest alone; state, rate, floats, ints)."""
+
+
+@lean_inlined
+def firmness(a, floats, ints):
+    """How firm ties are in a stage of coefficient a [1/s]; the square of the springs' frequency follows the list."""
+    return FIRM * (1.0 + a * a * floats[ints[LAST] + LIST + ints[BODIES]]) / a

@@ -28,6 +28,7 @@ from sceneql.simulation.contacts.impulse_kernels import (
     bounce,
     count_hit,
 )
+from sceneql.simulation.contacts.meet_kernels import earliest
 from sceneql.simulation.contacts.memory_kernels import (
     ANSWER,
     ASKED,
@@ -43,7 +44,7 @@ from sceneql.simulation.contacts.memory_kernels import (
     WHOLE,
 )
 from sceneql.simulation.contacts.pair_kernels import is_flat
-from sceneql.simulation.contacts.path_kernels import NEVER, first_contact, moving, place
+from sceneql.simulation.contacts.path_kernels import NEVER, moving, place
 from sceneql.simulation.contacts.resting_kernels import come_to_rest, keep, lies
 from sceneql.simulation.contacts.shape_kernels import OBJECT, clear, surface, velocity
 from sceneql.simulation.contacts.slide_kernels import brake, fly_on, slide, start_with
@@ -55,43 +56,6 @@ FEW = 8
 """Bodies with an impact in a step, above which it is not cut."""
 AFTER_IMPACT = 1e-4
 """Where a cut step ends, in parts of the step after the impact."""
-
-
-@lean_inlined
-def shift(path, ux, uy, uz, h):
-    """Add a constant velocity to the path, about its end."""
-    if ux != 0.0 or uy != 0.0 or uz != 0.0:
-        path[0] -= ux * h
-        path[1] -= uy * h
-        path[2] -= uz * h
-        path[3] += ux
-        path[4] += uy
-        path[5] += uz
-        path[9] += ux
-        path[10] += uy
-        path[11] += uz
-
-
-@lean(types.Tuple((F, N))(N, F, A, A, I), inner=True)
-def earliest(k, reach, path, floats, ints):
-    """The first contact on the path with an object that the body does not rest on: (s, the object).
-
-    The path is seen from the object as it moves.
-    """
-    best = NEVER
-    first = 0
-    h = path[12]
-    for j in range(ints[OBJECTS]):
-        if floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)] != FREE:
-            continue
-        at = HEAD + OBJECT * j
-        ux, uy, uz = velocity(floats, ints, at, path[0], path[1], path[2])
-        shift(path, -ux, -uy, -uz, h)
-        s = first_contact(path, floats, ints, at, reach)
-        shift(path, ux, uy, uz, h)
-        if s < best:
-            best, first = s, j
-    return best, first
 
 
 @lean(types.boolean(F, F, N, A, A, A, I), inner=True)

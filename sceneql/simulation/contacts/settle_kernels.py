@@ -29,10 +29,13 @@ from sceneql.simulation.contacts.memory_kernels import (
     CUTS,
     END,
     FREE,
+    HOLD,
     LIST,
     PAIR,
     PATH,
     RESTING,
+    SETTLE_HELD,
+    STAGE,
     SUPPORT,
     WHOLE,
 )
@@ -42,6 +45,8 @@ from sceneql.system_kernels import SETTLE, TERM, A, F, I
 cut = late("sceneql.simulation.contacts.respond_kernels:cut", ANSWER)
 settle_found = late("sceneql.simulation.contacts.respond_kernels:settle_found", ANSWER)
 support = late("sceneql.simulation.contacts.support_kernels:support", SUPPORT)
+hold = late("sceneql.simulation.contacts.hold_kernels:hold", HOLD)
+settle_held = late("sceneql.simulation.contacts.settle_held_kernels:settle_held", SETTLE_HELD)
 
 
 @lean(types.void(F, A, A, A, A, I), inner=True)
@@ -93,6 +98,10 @@ def some(found):
 def settle(t0, t1, y0, rate0, y1, floats, ints):
     """Change y1 so that no body went through a surface in the step from t0 to t1; or only say when it should end."""
     asked = floats[ASKED] > 0.0
+    if floats[STAGE] != 0.0:
+        if not asked:
+            settle_held(t0, t1, y0, y1, floats, ints)
+        return
     if asked and not may_be_cut(t0, t1, floats, ints):
         return
     found = np.zeros(ints[BODIES])
@@ -112,4 +121,7 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
 def constrain(t, y, rate, floats, ints):
     """What the surfaces do to the accelerations; free pairs cost nothing."""
     if floats[ints[LAST] + RESTING] > 0.0:
-        support(-1, y, rate, floats, ints)
+        if floats[STAGE] > 0.0:
+            hold(y, rate, floats, ints)
+        else:
+            support(-1, y, rate, floats, ints)

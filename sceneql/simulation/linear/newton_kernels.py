@@ -26,6 +26,8 @@ from sceneql.system_kernels import A, F, I
 FACTORED, CONTRACTION, RELATIVE, ABSOLUTE, SHARE, CAREFUL, DEFINITE, MEMORY = range(8)
 DEFINITE_AT = 2
 """floats[2]: whether slopes are to be definite, and how far (system.Slopes)."""
+STAGE_AT = 3
+"""floats[3]: a while a stage is solved, -1 outside (0: nobody wants to know it), whose base is told (system.Slopes)."""
 
 MOST = 25
 """Iterations of a plain stage."""
@@ -100,6 +102,24 @@ def foresee(old, new, floats):
 
 
 @lean_inlined
+def tell_stage(a, base, floats):
+    """Tell the terms what a stage is about."""
+    if floats[STAGE_AT] != 0.0:
+        floats[STAGE_AT] = a
+        floats[STAGE_AT + 1] += 1.0
+        at = floats.size - 3 * base.size
+        for k in range(base.size):
+            floats[at + k] = base[k]
+
+
+@lean_inlined
+def end_stage(floats):
+    """Tell the terms that the stage is over."""
+    if floats[STAGE_AT] != 0.0:
+        floats[STAGE_AT] = -1.0
+
+
+@lean_inlined
 def leave(rate, t, a, base, y, residual, plan, floats, ints):
     """What is left of the stage's equations at y; positions, which `follow`, leave nothing but rounding."""
     follow(plan, a, base, y)
@@ -123,6 +143,7 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
     for k in range(n):
         guess[k] = y[k]
     foresee(y0, y0, floats)
+    tell_stage(a, base, floats)
     careful = definite = memory[CAREFUL] > 0.0
     stale = memory[FACTORED] == 0.0 or definite or memory[DEFINITE] > 0.0
     before, before_mean = 0.0, 0.0
@@ -166,6 +187,7 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         if done:
             if not definite:
                 memory[CAREFUL] = 0.0
+            end_stage(floats)
             return True
         iteration += 1
         since += 1
@@ -194,5 +216,6 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             patience *= 2
         before, before_mean = size, mean
     memory[FACTORED] = 0.0
+    end_stage(floats)
     fail(change, y)
     return False

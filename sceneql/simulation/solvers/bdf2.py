@@ -54,6 +54,7 @@ class Bdf2(Solver):
             absolute=absolute if adaptive else 0.0,
             largest_step=self.largest_step or float("inf"),
             jacobian=True,
+            newton=True,
             prepare="sceneql.simulation.solvers.bdf2:prepare",
             controls=adaptive,
             last_stage=1,
