@@ -131,6 +131,8 @@ def render(
 
         run = Run(graph, marching=any(_shows_script(graph, kind) for kind in outputs.values()))
         watch = Watch(run, always=account)
+        if run.islands and instants and instants[0] > 0.0:
+            watch.look(run.at(0.0))  # what is gained is gained over the start
         for done, moment in enumerate(run.moments(instants)):
             progress(done, len(instants))
             if done == 1:

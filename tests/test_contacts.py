@@ -228,6 +228,7 @@ def test_masses_fall_on_a_ball_in_both_modes_alike(tmp_path):
     ("objects", "text"),
     [
         ("{ring: {torus: {tube: 0.1 m + 0.01 m/s*time}}}", "'ring': a surface that changes its shape in time"),
+        ("{ring: {implicit: {field: 'x^2 + y^2 + z^2 - t'}}}", "'ring': a surface that changes its shape in time"),
         ("{ring: {mesh: {file: open.obj}}}", "'ring': its mesh is open: 3 edges"),
         ("{ring: {mesh: {file: twice.obj}}}", "'ring': its mesh has edges with more than two triangles"),
         ("{ring: {torus: {position: 0.5 1 0 m}}}", "mass 0 of 'ball' starts inside 'ring', 0.15 m deep"),

@@ -199,9 +199,11 @@ def test_the_map_over_stiffness_tells_stable_from_inaccurate_and_failed(tmp_path
     assert {cell["value"] for cell in cells} == {1.0, 100.0, 1e4, 1e6}
     assert by["euler", 1e6]["outcome"] == "failed"
     assert by["dopri5", 1e6]["outcome"] == "stable"
-    assert by["euler", 1e4]["outcome"] in ("failed", "inaccurate")
-    assert all(cell["error"] is None for cell in cells if cell["outcome"] == "failed")
-    assert all("s, swing" in cell["why"] for cell in cells if cell["outcome"] == "failed")
+    assert by["euler", 1e4]["outcome"] == "failed"
+    for cell in cells:
+        if cell["outcome"] == "failed":
+            stopped = cell["error"] is None and "s, swing" in cell["why"]
+            assert stopped or (cell["error"] > 10 and "ran away" in cell["why"])
     for extension in ("csv", "svg", "html"):
         assert (tmp_path / f"scene.stability.{extension}").stat().st_size > 0
 
@@ -240,6 +242,12 @@ def test_energy_out_of_nothing_is_warned_of_and_a_sound_run_is_not(tmp_path):
     assert sound.warnings == ()
     (line,) = sound.conserved
     assert float(re.search(r", (\S+) at most", line)[1]) < 0.05
+
+
+def test_energy_out_of_nothing_is_warned_of_where_one_picture_is_made_at_the_end(tmp_path):
+    still = PENDULUM[: PENDULUM.index("outputs:")] + "outputs: {still: {image: {size: 32 32}}}\n"
+    wild = pipeline.render(loaded(tmp_path, still, "define.dt=3 ms"), folder=tmp_path)
+    assert [found.code for found in wild.warnings] == ["energy-gained"]
 
 
 def test_momentum_is_told_where_nothing_outside_acts(tmp_path):

@@ -54,6 +54,7 @@ def test_objects_with_an_inside_are_touched_and_decoration_is_not(tmp_path, obje
     ("other", "reason"),
     [
         ("{torus: {tube: 0.1 m + 0.01 m/s*time}}", "it changes its shape in time"),
+        ("{implicit: {field: 'x^2 + y^2 + z^2 - t'}}", "it changes its shape in time"),
         ("{sphere: {position: ball.a.position}}", "it follows 'ball', which is solved"),
         ("{group: {children: [part]}}, part: {mesh: {file: sheet.obj}}", "a part of it has no inside"),
     ],

@@ -39,6 +39,7 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
         _check_outputs(tasks, drawn, checked.settings.clock, None if clock is None else clock.span, found)
     found.raise_errors()
     warn_of_steps(script, tasks, groups, checked.settings.clock.end, found)
+    found.raise_errors()
     order, needed_by, left_out = prune(tasks, groups, drawn, cameras)
     expected = {link.task for value in values_of(checked.settings.expect) for link in value.links}
     if not pruned:

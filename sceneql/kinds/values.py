@@ -13,6 +13,9 @@ from sceneql.quantities.span import Span
 if TYPE_CHECKING:
     from pydantic_core import CoreSchema
 
+TIME = ("t", "time")
+"""What formulas call the time."""
+
 
 class Checked:
     """What the compiler has made and checked: pydantic asks only whether it is one, since looking inside takes time."""
@@ -112,6 +115,13 @@ class Formula(Checked):
 
     expr: Expr
     span: Span | None = None
+
+    @property
+    def constant(self) -> bool:
+        """Whether it depends neither on time nor on another part; places may stand in it."""
+        return not any(
+            isinstance(node, Link) or (isinstance(node, Symbol) and node.name in TIME) for node in walk(self.expr)
+        )
 
 
 @dataclass(frozen=True, slots=True)

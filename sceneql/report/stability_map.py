@@ -17,6 +17,8 @@ from sceneql.report.work_precision import Reference, TooLong, adaptive, at, prep
 
 TOLERANCES = ((1e-10, 1e-9), (1e-7, 1e-6))
 """Of the references: what is inaccurate is seen by these."""
+RAN_AWAY = 10.0
+"""A run with a larger relative error at its end has failed, also where every number of it stays finite."""
 METHODS = ("radau", "dopri5")
 """That make the references: a sweep over stiffness is why one is here."""
 LONGEST = 5.0
@@ -114,6 +116,8 @@ def _cell(
         seconds, steps = done.seconds, done.steps
         if math.isnan(error):
             why = f"it ran, but is compared with {truth.because}"
+        elif error > RAN_AWAY:
+            outcome, why = "failed", f"it ran away: its end is off by {error:.2g} times the size of what is right"
         else:
             outcome = "stable" if error <= largest_error else "inaccurate"
     except TooLong as long:

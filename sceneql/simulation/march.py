@@ -33,6 +33,8 @@ TOUCHING = 1e-13
 ENTRIES_A_CALL = 20_000_000
 """Entries of y to step over in one compiled call, so that a long run can be interrupted."""
 
+LARGEST = 1e100
+"""Of a number at the start, in SI: the square of its growth can still be told."""
 MESSAGES = {
     kernels.NOT_FINITE: "a value is no longer finite: the step is unstable, or the equations have no value there",
     kernels.GROWTH: f"the state has grown beyond {GROWTH_LIMIT:.0e} times its start: {{}}",
@@ -205,9 +207,12 @@ class March:
         if self.system.pairs:
             self.driver.impact(0.0, y, -1, self.floats, self.system.ints)
         self._rate1[:] = self.rate(0.0, y)
-        bad = np.flatnonzero(~np.isfinite(y) | ~np.isfinite(self._rate1))
+        bad = np.flatnonzero(~(np.maximum(np.abs(y), np.abs(self._rate1)) <= LARGEST))
         if len(bad):
-            self._fail(int(bad[0]), "the rate has no finite value at the start")
+            k = int(bad[0])
+            finite = math.isfinite(y[k]) and math.isfinite(self._rate1[k])
+            what = f"has a value beyond {LARGEST:.0e}" if finite else "has no finite value"
+            self._fail(k, f"the {'state' if abs(y[k]) > LARGEST else 'rate'} {what} at the start")
         moved = np.abs(self._rate1).max(initial=0.0) * self.end
         self._clock[kernels.LIMIT] = GROWTH_LIMIT * max(1.0, np.abs(y).max(initial=0.0), moved)
         positions = np.abs(y[self.system.partner >= 0]).max(initial=1.0)

@@ -1,4 +1,4 @@
-"""Warnings of fixed steps that the script's own numbers show to be unstable, before anything runs."""
+"""Fixed steps that the script's own numbers show to be unstable, or far too many, before anything runs."""
 
 from __future__ import annotations
 
@@ -17,6 +17,8 @@ from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.span import Span
 
 SLACK = 1.0 + 1e-6
+MOST_STEPS = 1e11
+"""Of a run: those of a single mass would take half an hour."""
 NOTABLE = 10.0
 """Growth over the whole run from which on a method that is stable at no step is warned of."""
 
@@ -28,7 +30,8 @@ def warn_of_steps(
     end: float,
     found: Diagnostics,
 ) -> None:
-    """Warn where an island's step exceeds the bound that its models tell by their own fields.
+    """Warn where an island's step exceeds the bound that its models tell by their own fields, and refuse one with
+    which there were more than MOST_STEPS.
 
     ``end`` [s] of the run.
     """
@@ -39,6 +42,10 @@ def warn_of_steps(
             continue
         written = script.sections.get("solvers", {}).get(island.solver)
         at = solver.span if written is None else _place(written, ("step",))
+        if step * MOST_STEPS < end:
+            message = f"{end / step:.2g} steps of {duration(step)} are more than {MOST_STEPS:.0e}"
+            found.error("limit-refused", message, at, help="take a longer step, or let auto march it")
+            continue
         damped = any(type(cast(Force, tasks[force].kind)).potential is Force.potential for force, _ in island.forces)
         for name in island.models:
             entry = script.sections.get("models", {}).get(name)

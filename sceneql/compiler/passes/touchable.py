@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from sceneql.compiler.passes.reads import reads
 from sceneql.graph import Task
-from sceneql.kinds import Model, Object, Value
+from sceneql.kinds import Formula, Model, Object, Value
 from sceneql.quantities.diagnostic import Diagnostics
 
 PLACE = ("position", "rotation")
@@ -78,7 +78,7 @@ def _changes_shape(task: Task, tasks: Mapping[str, Task]) -> bool:
     """Whether values vary by which contacts cannot follow it: those of its place alone may, and all of some objects."""
 
     def varying(one: Task) -> set[str]:
-        return {name for name, value in one.kind if isinstance(value, Value) and not value.constant}
+        return {name for name, value in one.kind if isinstance(value, Value | Formula) and not value.constant}
 
     def moves(one: Task) -> bool:
         return bool(varying(one)) or any(moves(m) for m in _members(one, tasks))

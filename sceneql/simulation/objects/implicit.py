@@ -10,8 +10,7 @@ from pydantic import field_validator
 
 from sceneql.kinds import Axis, FieldBuilder, FixedLength, FixedScalar, Formula, Moment, Problem, Record, Symbols
 from sceneql.kinds import field as described
-from sceneql.quantities.expression import Link, Symbol, walk
-from sceneql.simulation.formula import COORDINATES, in_coordinates, written_out
+from sceneql.simulation.formula import in_coordinates, written_out
 from sceneql.simulation.placement import inverse
 from sceneql.simulation.solid import Solid, block, length, less, traced
 
@@ -95,7 +94,7 @@ class Implicit(Solid):
 
         for solid in traced(self, name, place, moment):
             shape = solid if self.mode == "solid" else self._sheet(solid, place, moment)
-            if self._holds_still() and nowhere_defined(shape.tape, shape.low, shape.high):
+            if self.field.constant and nowhere_defined(shape.tape, shape.low, shape.high):
                 message = "the formula is defined nowhere in its bounds, so there is nothing to draw"
                 raise RunFailure(message, part="field", time=moment.time, span=self.field.span)
             yield shape
@@ -108,8 +107,3 @@ class Implicit(Solid):
         world = build.affine(inverse(place), build.x, build.y, build.z)
         value, limit = self._parts(build, *build.affine(inverse(self.local(moment)), *world), moment)
         return replace(solid, tape=build.finish(value), within=build.finish(limit))
-
-    def _holds_still(self) -> bool:
-        """Whether its formula depends on nothing but the place."""
-        nodes = [node for node in walk(self.field.expr) if isinstance(node, Symbol | Link)]
-        return all(isinstance(node, Symbol) and node.name in COORDINATES for node in nodes)

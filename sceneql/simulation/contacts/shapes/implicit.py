@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
-from sceneql.kinds import Collider, Moment, Object, Value
+from sceneql.kinds import Collider, Formula, Moment, Object, Value
 from sceneql.quantities.dimension import LENGTH
 from sceneql.quantities.expression import Number, Type, Vector
 from sceneql.simulation.placement import Placed
@@ -68,7 +68,7 @@ def place(kind: Object, assembly: Assembly) -> tuple[int, int]:
 
 def changes(kind: Object, assembly: Assembly) -> bool:
     """Whether any value of it or of its members varies in time."""
-    own = any(isinstance(value, Value) and not value.constant for _, value in kind)
+    own = any(isinstance(value, Value | Formula) and not value.constant for _, value in kind)
     return own or any(changes(assembly.object(ref), assembly) for ref in kind.members())
 
 
