@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any, get_args
 
-from sceneql.kinds import Quantity, Value
+from sceneql.kinds import LIMITS, Quantity, Value
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.span import Span
@@ -18,14 +18,6 @@ def finite(number: Any) -> bool:
     if isinstance(number, tuple):
         return all(finite(item) for item in number)
     return math.isfinite(number)
-
-
-_LIMITS: Mapping[str, tuple[Callable[[float, float], bool], str]] = {
-    "above": (lambda x, limit: x > limit, "above"),
-    "at_least": (lambda x, limit: x >= limit, "at least"),
-    "below": (lambda x, limit: x < limit, "below"),
-    "at_most": (lambda x, limit: x <= limit, "at most"),
-}
 
 
 def check_limits(
@@ -43,7 +35,7 @@ def check_limits(
         return
     for number in numbers(value):
         for limit, bound in limits.items():
-            holds, word = _LIMITS[limit]
+            holds, word = LIMITS[limit]
             if not holds(number, bound):
                 asked, given = (_told(one, annotation) for one in (bound, number))
                 found.error("out-of-range", f"{what} must be {word} {asked}, not {given}", span)

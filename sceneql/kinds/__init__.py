@@ -58,6 +58,7 @@ from sceneql.kinds.types import (
 from sceneql.kinds.values import Formula, Interpolated, Paint, Quantity, Ref, Refers, SceneFile, Symbols, Turn, Value
 from sceneql.kinds.word import (
     GRAMMAR,
+    LIMITS,
     REQUIRED,
     Gives,
     Kind,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
@@ -19,6 +19,13 @@ from sceneql.quantities.parser import parse_value
 from sceneql.quantities.span import Source, Span
 
 REQUIRED: Any = ...
+LIMITS: Mapping[str, tuple[Callable[[float, float], bool], str]] = {
+    "above": (lambda x, limit: x > limit, "above"),
+    "at_least": (lambda x, limit: x >= limit, "at least"),
+    "below": (lambda x, limit: x < limit, "below"),
+    "at_most": (lambda x, limit: x <= limit, "at most"),
+}
+"""Of the ends of a field's range: whether a number keeps to it, and how that is said."""
 
 
 def field(
@@ -33,7 +40,7 @@ def field(
     """A field with its line of the manual, its default *as a script would write it*, and its range in SI.
 
     A text default (``"0.5 m"``) is read by the field's own grammar; None means that the field may be left out.
-    Ranges hold for every component; a value that varies in time is checked where it is evaluated.
+    Ranges hold for every component; a value that varies in time is checked in every frame, or where it is evaluated.
     """
     limits = {"above": above, "at_least": at_least, "below": below, "at_most": at_most}
     extra: Any = {"limits": {k: v for k, v in limits.items() if v is not None}, "default": default}

@@ -60,8 +60,8 @@ def stability(
 
 LEGEND = (
     "A run is stable when it ends with a relative error of at most {:g}, inaccurate when the error is larger, failed "
-    "when it was stopped or ran away, skipped when it would take too long. A number in the map is the power of ten of the error; a "
-    "black bar stands where the step passes the bound that is known before the run."
+    "when it was stopped or ran away, skipped when it would take too long. A number in the map is the power of ten of "
+    "the error; a black bar stands where the step passes the bound that is known before the run."
 )
 
 

@@ -19,6 +19,7 @@ from sceneql.quantities.expression import Expr, Link, Symbol
 from sceneql.simulation.color import default_color, linear
 from sceneql.simulation.history import History
 from sceneql.simulation.placement import Placed, compose
+from sceneql.simulation.ranges import ranged
 from sceneql.simulation.survey import Survey, asked, survey
 
 if TYPE_CHECKING:
@@ -48,6 +49,7 @@ class Run:
         self.palette = _palette(graph)
         self.holders = _holders(graph)
         self.history = History(graph)
+        self._ranged = ranged(graph, islands)
         self._surveys: dict[str | None, Survey] = {}
 
     def moments(self, times: Iterable[float]) -> Iterator[Instant]:
@@ -63,7 +65,10 @@ class Run:
     def _moment(self, time: float) -> Instant:
         for island in self.islands:
             island.advance(time)
-        return Instant(self, time)
+        moment = Instant(self, time)
+        for one in self._ranged:
+            one.check(moment)
+        return moment
 
     def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
         """Low and high corner (3,) of what the parts draw over the whole run, found by a run ahead of its own."""
