@@ -105,6 +105,19 @@ def test_its_order_is_the_one_it_claims(word, problem):
     assert orders[-1] == pytest.approx(order, abs=0.1)
 
 
+@pytest.mark.parametrize("word", WORDS)
+def test_impacts_are_found_where_its_own_flight_has_them(word):
+    """Free fall is a parabola, which all but the methods of order 1 (and the first step of bdf2) follow exactly."""
+    ball, stepper = balls([1.0], 0.8), solver(word).stepper()
+    march = March(ball.system, stepper, 1.0)
+    heights = [march.advance(k / 60)[0][0] for k in range(61)]
+    off = 0.55 * stepper.first_step if stepper.order == 1 else stepper.tolerance if word in MULTISTEP else 1e-12
+    assert march.floats[ball.hit_at] == pytest.approx(math.sqrt(2 / 9.81), abs=off)
+    assert march.statistics.events == 1
+    assert min(heights) > -1e-12
+    assert max(heights[30:]) == pytest.approx(0.64, abs=max(20 * off, 1e-3))
+
+
 @pytest.mark.parametrize(("word", "shortest", "longest"), [("dop853", 0.3, 0.9), ("gauss_radau15", 1.8, 3.2)])
 def test_a_high_order_is_seen_in_one_long_step(word, shortest, longest):
     stepper = solver(word).stepper()

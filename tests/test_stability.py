@@ -138,6 +138,14 @@ def test_known_stable_steps():
         assert stable_step(lambda z, solver=solver: solver.oscillation(1.0, 0.0, z)) == pytest.approx(bound, abs=1e-4)
 
 
+@pytest.mark.parametrize("word", ["auto", "implicit_euler: {step: 1 ms}"])
+def test_what_rk4_would_need_is_told_of_methods_that_need_it_not(tmp_path, word):
+    graph = loaded(tmp_path, PENDULUM, f"solvers.main={{{word if ':' in word else f'{word}: {{}}'}}}")
+    (island,) = Run(graph).islands
+    told = re.search(r"rk4 would need steps of at most (\S+) s", stability(island.march, island.solver).text)
+    assert float(told[1]) == pytest.approx(2 * math.sqrt(2) / 1e3, rel=1e-3)
+
+
 @pytest.mark.parametrize("word", ["rk4", "semi_implicit_euler"])
 def test_runs_hold_below_the_bound_and_fail_above(tmp_path, word):
     """A spring without length and nothing else: linear, so that what grows at all fails."""

@@ -245,12 +245,25 @@ def test_auto_follows_a_stiff_pendulum(tmp_path):
     assert march.statistics.steps < 4000
 
 
+RIGID = [0.7935662, -0.60848393]
+"""Where the pendulum is after 2 s on a rod, from an elliptic integral."""
+
+
 @pytest.mark.parametrize("power", range(0, 13, 2))
 def test_auto_never_fails_whatever_the_stiffness(tmp_path, power):
     y, march = marched(tmp_path, pendulum(10.0**power), "auto: {tolerance: 1e-6}", 2)
     assert march.statistics.steps < 10_000
-    if power >= 4:  # O(1/k) to the rigid pendulum
-        np.testing.assert_allclose(y[3:5], [0.7935662, -0.6084839], rtol=0, atol=130 / 10.0**power + 3e-6)
+    if power >= 4:
+        np.testing.assert_allclose(y[3:5], RIGID, rtol=0, atol=130 / 10.0**power + 3e-6)
+
+
+def test_auto_comes_near_the_rigid_pendulum_as_one_over_the_stiffness(tmp_path):
+    """The stiffer by ten, the nearer by ten, down to the eighth decimal."""
+    off = []
+    for power in range(4, 9):
+        y, _ = marched(tmp_path, pendulum(10.0**power), "auto: {tolerance: 1e-11}", 2)
+        off.append((y[3:5] - RIGID) * 10.0**power)
+    np.testing.assert_allclose(off, np.broadcast_to(off[1], (5, 2)), rtol=0.012)
 
 
 def test_auto_stays_explicit_where_nothing_is_stiff(tmp_path):
