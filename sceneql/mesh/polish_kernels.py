@@ -6,12 +6,19 @@ from sceneql.field.batch_kernels import evaluate
 from sceneql.kernels import inlined
 
 CLOSE = 1.0e-7
-"""How near, in parts of an edge, two guesses end the search: the error of the last is smaller by some powers."""
+"""How near, in parts of an edge, two guesses end the search: the error of the last is smaller by some powers.
+
+Only where |f| fell from the one to the other, though: where the ends' values differ by many powers of ten, guesses are
+near each other and far from the root. Then a step of CLOSE looks for the root just beyond (after Brent 1973, ch. 4).
+"""
 MOST_TURNS = 60
 UNDEFINED = 1.0e300
 """Stands for the value where there is none."""
 A, FA, B, FB, T, SIDE, DX, DY, DZ = range(9)
-"""Rows of a search: bracket [A, B] with f(A) < 0, not f(B) < 0, and their values; guess; last side; the edge [m]."""
+"""Rows of a search: bracket [A, B] with f(A) < 0, not f(B) < 0, and their values; guess; last side; the edge [m].
+
+The side is -1 for A and 1 for B, twice that where |f| did not fall to half of what it was at that end.
+"""
 
 
 @inlined
@@ -24,9 +31,15 @@ def guess(search, points, starts, turn, n):
         b = search[B, i]
         fa = search[FA, i]
         fb = search[FB, i]
-        share = 0.5 if halve or fb >= UNDEFINED else fa / (fa - fb)
+        share = 0.5 if halve or fb >= UNDEFINED or fa <= -UNDEFINED else fa / (fa - fb)
         t = a + (b - a) * share
-        busy += 1 if abs(t - search[T, i]) > CLOSE and abs(b - a) > CLOSE else 0
+        near = abs(t - search[T, i]) <= CLOSE
+        wide = abs(b - a) > CLOSE
+        if near and wide and abs(search[SIDE, i]) == 2.0:
+            ahead = CLOSE if (search[SIDE, i] < 0.0) == (b > a) else -CLOSE
+            t = search[T, i] + ahead
+            near = False
+        busy += 1 if wide and not near else 0
         search[T, i] = t
         points[0, i] = starts[0, i] + t * search[DX, i]
         points[1, i] = starts[1, i] + t * search[DY, i]
@@ -46,15 +59,15 @@ def polish(code, constants, parts, registers, points, search, starts, n):
             f = found[i]
             side = search[SIDE, i]
             if f < 0.0:
+                search[SIDE, i] = -1.0 if f > 0.5 * search[FA, i] else -2.0
                 search[A, i] = search[T, i]
                 search[FA, i] = f
-                search[FB, i] *= 0.5 if side == -1.0 else 1.0
-                search[SIDE, i] = -1.0
+                search[FB, i] *= 0.5 if side < 0.0 else 1.0
             else:
+                search[SIDE, i] = 1.0 if f <= 0.5 * search[FB, i] else 2.0
                 search[B, i] = search[T, i]
                 search[FB, i] = f if f == f else UNDEFINED
-                search[FA, i] *= 0.5 if side == 1.0 else 1.0
-                search[SIDE, i] = 1.0
+                search[FA, i] *= 0.5 if side > 0.0 else 1.0
 
 
 @inlined

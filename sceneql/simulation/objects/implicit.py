@@ -10,6 +10,7 @@ from pydantic import field_validator
 
 from sceneql.kinds import Axis, FieldBuilder, FixedLength, FixedScalar, Formula, Moment, Problem, Record, Symbols
 from sceneql.kinds import field as described
+from sceneql.quantities.expression import Expr
 from sceneql.simulation.formula import in_coordinates, written_out
 from sceneql.simulation.placement import inverse
 from sceneql.simulation.solid import Solid, block, length, less, traced
@@ -71,16 +72,30 @@ class Implicit(Solid):
         return build.op("mul", build.op("max", *self._parts(build, x, y, z, moment)), build.constant(self.unit))
 
     def _parts(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> tuple[int, int]:
-        """Registers of the formula less the level, and of the distance to the bounds, in units."""
+        """Registers of the formula less the level, and of the distance to the bounds, in units.
+
+        A formula of a magnitude that no distance has is brought near one by a power of two, so that its bounds and
+        other objects' fields, which are distances, do not pass for it where it is as near 0 as rounding lets it be.
+        """
         per_unit = build.constant(1.0 / self.unit)
         u, v, w = (build.op("mul", register, per_unit) for register in (x, y, z))
         formula = written_out(self.field.expr, moment)
         value = less(build, build.expression(formula, {"x": u, "y": v, "z": w}), self.level)
+        value = build.op("mul", value, build.constant(self._leveling(formula)))
         if self.bounds.ball is not None:
             limit = less(build, length(build, u, v, w), self.bounds.ball)
         else:
             limit = block(build, (u, v, w), *self.bounds.corners)
         return value, limit
+
+    def _leveling(self, formula: Expr) -> float:
+        """The power of two that the formula less the level is multiplied by."""
+        from sceneql.field.builder import TapeBuilder
+        from sceneql.field.magnitude import leveling
+
+        alone = TapeBuilder()
+        value = alone.expression(formula, {"x": alone.x, "y": alone.y, "z": alone.z})
+        return leveling(alone.finish(less(alone, value, self.level)), *self.bounds.corners)
 
     def reach(self, moment: Moment) -> tuple[Any, Any]:
         """The box around its bounds."""
