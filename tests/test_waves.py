@@ -17,6 +17,8 @@ from renderers.tracing.intersect_kernels import walk
 from renderers.tracing.pack import pack, scratch
 from renderers.tracing.scene_kernels import ANSWERS, ANYWHERE, FAR, FIRST, NEXT, WANT
 from sceneql.field.builder import TapeBuilder
+from sceneql.field.clips import clips_of
+from sceneql.field.solid import field_values
 from sceneql.frame import Implicit, PointLight, Sky, Surface
 from stage import GLOW, WHITE, frame, sun, view
 
@@ -49,7 +51,48 @@ def tangle(surface):
     return Implicit("tangle", surface, b.finish(f), (-1.1,) * 3, (1.1,) * 3)
 
 
+def clipped(shape, center, radius):
+    """A solid cut by a ball, a cylinder along x + y and a slanted face: a quadric each, the ball as a distance."""
+    b = TapeBuilder()
+    u, v, w = (b.op("sub", a, b.constant(c)) for a, c in zip((b.x, b.y, b.z), center, strict=True))
+    squares = b.op("add", b.op("add", b.op("square", u), b.op("mul", v, v)), b.op("square", w))
+    ball = b.op("sub", b.op("sqrt", squares), b.constant(radius))
+    across = b.op("add", b.op("square", b.op("sub", u, v)), b.op("square", w))
+    pipe = b.op("sub", b.op("mul", b.constant(0.5), across), b.constant(0.5))
+    face = b.op("sub", b.op("add", u, b.op("mul", b.constant(0.3), w)), b.constant(0.6))
+    f = b.op("max", b.op("max", shape(b), ball), b.op("max", pipe, b.op("mul", b.constant(2.0), face)))
+    return Implicit("clipped", GLOW, b.finish(f), tuple(c - radius for c in center), tuple(c + radius for c in center))
+
+
+def saddle(b):
+    """A cubic."""
+    return b.op("sub", b.op("mul", b.op("mul", b.x, b.y), b.z), b.op("mul", b.constant(0.2), b.x))
+
+
+def waves(b):
+    return b.op("add", b.op("sin", b.op("mul", b.constant(4.0), b.x)), b.op("mul", b.y, b.op("cos", b.z)))
+
+
+def test_a_field_is_positive_outside_of_its_clips():
+    random = np.random.default_rng(4)
+    for shape in (clipped(saddle, (0.2, 0.1, 0.0), 1.1), clipped(waves, (0.0, 0.0, 0.3), 0.9)):
+        clips = clips_of(shape.tape)
+        assert clips.shape == (3, 10)
+        p = random.uniform(-1.5, 1.5, (20000, 3))
+        x, y, z = p.T
+        terms = np.stack([x * x, y * y, z * z, x * y, y * z, z * x, x, y, z, 1.0 + 0.0 * x])
+        inside = field_values(shape.tape, p) < 0.0
+        assert 500 < inside.sum() < 15000
+        assert (clips @ terms < 1e-12)[:, inside].all()
+        # Each leaves out something that no other does.
+        beyond = clips @ terms > 0.0
+        assert all((beyond[k] & ~np.delete(beyond, k, axis=0).any(axis=0)).any() for k in range(3))
+    assert len(clips_of(stage.torus(GLOW, 1.0, 0.3).tape)) == 0
+
+
 SOLIDS = {
+    "cubic": clipped(saddle, (0.2, 0.1, 0.0), 1.1),
+    "waves": clipped(waves, (0.0, 0.0, 0.3), 0.9),
     "sphere": stage.implicit_sphere(GLOW),
     "torus": stage.torus(GLOW, 0.8, 0.3),
     "blob": stage.blob(GLOW),
@@ -76,14 +119,20 @@ def one_by_one(shape, rays, far, anywhere):
 
 @pytest.mark.parametrize("name", SOLIDS)
 @settings(max_examples=15, deadline=None)
-@given(seed=st.integers(0, 2**32 - 1), spread=st.sampled_from([0.0, 0.02, 3.0]), count=st.integers(1, 400))
-def test_what_is_told_of_rays_is_what_they_find_one_by_one(name, seed, spread, count):
-    """From anywhere, the inside included, near each other or not, to lights near and far."""
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    spread=st.sampled_from([0.0, 0.02, 3.0]),
+    count=st.integers(1, 400),
+    back=st.sampled_from([0.0, 0.0, 1e4]),
+)
+def test_what_is_told_of_rays_is_what_they_find_one_by_one(name, seed, spread, count, back):
+    """From anywhere, the inside and far behind included, near each other or not, to lights near and far."""
     random, shape = np.random.default_rng(seed), SOLIDS[name]
     origins = random.uniform(-2, 2, 3) + spread * random.uniform(-0.5, 0.5, (count, 3))
     ways = random.normal(size=3) * 0.5 - origins.mean(axis=0) + random.normal(size=(count, 3)) * (0.05 + 0.3 * spread)
     rays = np.hstack([origins, ways / np.linalg.norm(ways, axis=1)[:, None]])
-    far = np.where(random.random(count) < 0.7, math.inf, random.uniform(0.1, 4.0, count))
+    rays[:, :3] -= back * rays[:, 3:]
+    far = back + np.where(random.random(count) < 0.7, math.inf, random.uniform(0.1, 4.0, count))
 
     first, single = told(shape, rays, far, FIRST), one_by_one(shape, rays, far, False)
     sure = ~np.isnan(first)

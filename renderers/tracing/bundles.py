@@ -8,6 +8,7 @@ import numpy as np
 
 from renderers.tracing.bundles_kernels import RAYS, meet_asked
 from renderers.tracing.scene_kernels import ANSWERS
+from sceneql.field.clips import clips_of
 from sceneql.field.packets import Memory, in_lanes
 from sceneql.frame import Implicit
 
@@ -21,12 +22,14 @@ class Packets:
     def __init__(self, shapes: tuple[Shape, ...], solids: list[int]) -> None:
         self.solids = solids
         self.memories: list[Memory] = []
-        self.boxes: list[Floats] = []
+        self.bounds: list[tuple[Floats, Floats, Floats]] = []
         for i in self.solids:
             shape = shapes[i]
             assert isinstance(shape, Implicit)
             self.memories.append(Memory(shape.tape, RAYS))
-            self.boxes.append(np.array([shape.low, shape.high], dtype=np.float64))
+            box, clips = np.array([shape.low, shape.high], dtype=np.float64), clips_of(shape.tape)
+            reach = float(np.abs(box).max()) ** np.array([2.0] * 6 + [1.0] * 3 + [0.0])
+            self.bounds.append((box, clips, np.abs(clips) @ reach))
         self.chosen, self.spans = np.empty(RAYS, dtype=np.int64), np.empty((2, RAYS))
 
     def asked(self, rays: int) -> Floats:
@@ -37,8 +40,8 @@ class Packets:
 
     def meet(self, asked: Floats) -> None:
         """Tell of all asked rays where they meet the solids."""
-        for k, (memory, box) in enumerate(zip(self.memories, self.boxes, strict=True)):
-            more = box, asked, ANSWERS + k, self.chosen, self.spans
+        for k, (memory, bounds) in enumerate(zip(self.memories, self.bounds, strict=True)):
+            more = *bounds, asked, ANSWERS + k, self.chosen, self.spans
             meet_asked(*memory.bundle, memory.found, *memory.rest, *more)
 
 

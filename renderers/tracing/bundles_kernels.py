@@ -11,8 +11,11 @@ from sceneql.field.packet_roots_kernels import ARGUMENTS, GROUP, first_roots
 from sceneql.field.tape_ops import HIT, MISS
 from sceneql.kernels import lean
 
+_rows = types.float64[:, ::1]
 RAYS = 256
 """Of a bundle."""
+ROUNDED = 1.0e-12
+"""How far a clip may be off, relative to its terms in the box: far more than its rounding."""
 FINE = 1.0e-9
 """Way to a root, relative to the searched piece of the ray, below which the ray is taken to begin inside."""
 
@@ -25,6 +28,47 @@ def in_box(asked, row, box):
         first, last = box_span(box[0, axis], box[1, axis], asked[row, axis], inverse(asked[row, 3 + axis]))
         enter, leave = max(enter, first), min(leave, last)
     return enter, leave
+
+
+@part
+def cut(clip, ox, oy, oz, dx, dy, dz, slack):
+    """(from, to) of a line where a quadric (10,), as field.clips has them, is below ``slack``; all where not convex."""
+    a, b, c = clip[0], clip[1], clip[2]
+    xy, yz, zx = clip[3], clip[4], clip[5]
+    g2 = a * dx * dx + b * dy * dy + c * dz * dz + xy * dx * dy + yz * dy * dz + zx * dz * dx
+    g1 = 2.0 * (a * ox * dx + b * oy * dy + c * oz * dz) + clip[6] * dx + clip[7] * dy + clip[8] * dz
+    g1 += xy * (ox * dy + oy * dx) + yz * (oy * dz + oz * dy) + zx * (oz * dx + ox * dz)
+    g0 = a * ox * ox + b * oy * oy + c * oz * oz + xy * ox * oy + yz * oy * oz + zx * oz * ox
+    g0 += clip[6] * ox + clip[7] * oy + clip[8] * oz + clip[9] - slack
+    if g2 > slack:
+        square = g1 * g1 - 4.0 * g0 * g2
+        square += 1.0e-13 * (g1 * g1 + abs(g0 * g2))
+        if square < 0.0:
+            return np.inf, -np.inf
+        root = np.sqrt(square)
+        return (-g1 - root) / (2.0 * g2), (-g1 + root) / (2.0 * g2)
+    if g2 == 0.0 and abs(g1) > slack:
+        return (-np.inf, -g0 / g1) if g1 > 0.0 else (-g0 / g1, np.inf)
+    return -np.inf, np.inf
+
+
+@part
+def in_solid(asked, row, box, clips, sizes):
+    """(from, to) of an asked ray in a box and ``clips`` (k, 10), whose values in the box are of ``sizes`` (k,)."""
+    enter, leave = in_box(asked, row, box)
+    if clips.shape[0] == 0 or not enter < leave:
+        return enter, leave
+    dx, dy, dz = asked[row, 3], asked[row, 4], asked[row, 5]
+    x, y, z = asked[row, 0] + enter * dx, asked[row, 1] + enter * dy, asked[row, 2] + enter * dz
+    reach = 0.0
+    for axis in range(3):
+        reach = max(reach, max(abs(box[0, axis]), abs(box[1, axis])))
+    off = ROUNDED * (1.0 + 1.0e-2 * (abs(asked[row, 0]) + abs(asked[row, 1]) + abs(asked[row, 2]) + enter) / reach)
+    first, last = 0.0, leave - enter
+    for k in range(clips.shape[0]):
+        low, high = cut(clips[k], x, y, z, dx, dy, dz, off * sizes[k])
+        first, last = max(first, low), min(last, high)
+    return enter + first, enter + last
 
 
 @part
@@ -59,13 +103,13 @@ def answer(rays, found, j, anywhere):
     return t if t0 > 0.0 or t > t0 + FINE * (t1 - t0) else np.nan
 
 
-@lean(types.void(*ARGUMENTS, types.float64[:, ::1], ASKED, types.int64, types.int64[::1], types.float64[:, ::1]))
+@lean(types.void(*ARGUMENTS, _rows, _rows, types.float64[::1], ASKED, types.int64, types.int64[::1], _rows))
 def meet_asked(
     code, constants, singles, registers, point, status, lanes, ids, rays, asked_from, queue, found, parts, scratch,
-    beams, doubles, points, short, near_singles, near_parts, plan, order, room, table, flat, other, box, asked, column,
-    chosen, spans,
+    beams, doubles, points, short, near_singles, near_parts, plan, order, room, table, flat, other, box, clips,
+    sizes, asked, column, chosen, spans,
 ):  # fmt: skip
-    """Where all rays of ``asked`` meet {f < 0} in ``box`` (2, 3), into a column of it.
+    """Where all rays of ``asked`` meet {f < 0} in ``box`` (2, 3) and ``clips`` (k, 10), into a column of it.
 
     ``chosen`` (RAYS,) and ``spans`` (2, RAYS) are working memory.
     """
@@ -78,7 +122,7 @@ def meet_asked(
                 if asked[row, WANT] != want:
                     continue
                 asked[row, column] = np.inf
-                enter, leave = in_box(asked, row, box)
+                enter, leave = in_solid(asked, row, box, clips, sizes)
                 if enter < leave:
                     chosen[n], spans[0, n], spans[1, n] = row, enter, leave
                     n += 1

@@ -43,11 +43,18 @@ FAINT = 0.025
 """Weight of a mirrored ray below which the sky's reflection stands for what it would meet; above twice that not."""
 QUICK = 8
 """Samples of light and sky on surfaces that are seen only in a thing seen in another."""
-RADIUS, SPREAD, LIGHT_WEIGHT, GATHERED, STRAIGHT, KEEP, BOUNCE, PERSPECTIVE, LIVE, DOUBTED = 6, 7, 8, 11, *range(14, 20)
+RADIUS, SPREAD, LIGHT_WEIGHT, GATHERED, STRAIGHT, KEEP, BOUNCE, PERSPECTIVE, LIVE, DOUBTED, DARK = (
+    6,
+    7,
+    8,
+    11,
+    *range(14, 21),
+)
 """Numbers of a path behind those of its ray: the ray's cone, the weight and sum of what it sees (3 each), whether it
 has only come through things, so that it sees the backdrop; whether its second record is still to be found; surfaces so
-far, whether the camera sees in perspective, whether it goes on, whether a root was undecided."""
-WAITING, LATER, LATER_WEIGHT, LATER_RADIUS, LATER_SPREAD, PATH = 20, 21, 27, 28, 29, 30
+far, whether the camera sees in perspective, whether it goes on, whether a root was undecided,
+whether what it has met is still to be lit."""
+WAITING, LATER, LATER_WEIGHT, LATER_RADIUS, LATER_SPREAD, PATH = 21, 22, 28, 29, 30, 31
 """Glass is seen by two rays: whether the mirrored one waits, and what it begins with; how many numbers a path has."""
 
 
@@ -62,17 +69,17 @@ def begin(reals, px, py, path, first, second):
         path[GATHERED + c] = 0.0
     path[STRAIGHT], path[KEEP], path[BOUNCE], path[LIVE] = 1.0, 1.0, 0.0, 1.0
     path[PERSPECTIVE] = 1.0 if spread > 0.0 else 0.0
-    path[WAITING] = path[DOUBTED] = 0.0
+    path[WAITING] = path[DOUBTED] = path[DARK] = 0.0
     erase(first)
     erase(second)
 
 
-@kernel(types.void(SCENE, SCRATCH, ASKED, PLACES, ROW, ROW, ROW, ROW), _nrt=False, inner=True)
-def advance(scene, scratch, asked, path, first, second, spare, visibility):
+@kernel(types.void(SCENE, SCRATCH, PLACES, ROW, ROW, ROW), _nrt=False, inner=True)
+def advance(scene, scratch, path, first, second, spare):
     """Take a path to what its ray meets, and let it go on from there or end.
 
     It writes its records: ``first`` is of what the camera sees, ``second`` of the first matte thing seen in that. What
-    is seen behind is lit by QUICK samples. ``spare`` (COLUMNS,) and ``visibility`` are working memory.
+    is seen behind is left in ``spare`` (COLUMNS,), for ``light_behind``; the path is DARK until then.
     """
     ox, oy, oz, dx, dy, dz = path[0], path[1], path[2], path[3], path[4], path[5]
     radius, spread = path[RADIUS], path[SPREAD]
@@ -117,9 +124,7 @@ def advance(scene, scratch, asked, path, first, second, spare, visibility):
             copy_record(spare, second)
             keep = False
         elif outside or not glass:
-            look_around(scene, scratch, asked, spare, 0, QUICK, QUICK, visibility)
-            r, g, b = shade(scene, spare, visibility)
-            cr, cg, cb = cr + r, cg + g, cb + b
+            path[DARK] = 1.0
         goes_on = (glass or traced > 0.0) and bounce < BOUNCES
         if goes_on:
             turn = bend(scene, scratch, spare)
@@ -169,12 +174,27 @@ def advance(scene, scratch, asked, path, first, second, spare, visibility):
     path[STRAIGHT], path[KEEP] = (1.0 if straight else 0.0), (1.0 if keep else 0.0)
 
 
+@part
+def light_behind(scene, scratch, asked, path, record, visibility):
+    """Add the light of what a path sees behind its records to what it has GATHERED, by QUICK samples."""
+    look_around(scene, scratch, asked, record, 0, QUICK, QUICK, visibility)
+    r, g, b = shade(scene, record, visibility)
+    path[GATHERED] += r
+    path[GATHERED + 1] += g
+    path[GATHERED + 2] += b
+
+
 @kernel(types.void(SCENE, SCRATCH, ASKED, _f, _f, PLACES, ROW, ROW, ROW, ROW), _nrt=False, inner=True)
 def gather(scene, scratch, asked, px, py, path, first, second, spare, visibility):
     """Follow a path through the picture's point (px, py) to its end: its GATHERED is what needs no visibility."""
     begin(scene.reals, px, py, path, first, second)
     while path[LIVE] != 0.0:
-        advance(scene, scratch, asked, path, first, second, spare, visibility)
+        advance(scene, scratch, path, first, second, spare)
+        if path[DARK] != 0.0:
+            path[DARK] = 0.0
+            light_behind(scene, scratch, asked, path, spare, visibility)
+            if scratch[scratch.shape[0] - 1, 0] > 0.0:
+                path[DOUBTED] = 1.0
 
 
 @kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _stack, _rows, _stack, PLACES, ROW), _nrt=False)

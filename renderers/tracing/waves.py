@@ -1,7 +1,7 @@
 """The stages of a picture that trace rays, with implicit solids met in packets: all rays of a wave are asked first.
 
 Shadow rays and those to the sky of a whole band make a wave, and so does each turn of all its paths: camera, mirrored
-and refracted rays. What is lit in a mirror's mirror, and what lies behind the sky's rays, asks for no company.
+and refracted rays, with the light on what they see. Single are the rays that light what hides the sky.
 """
 
 from __future__ import annotations
@@ -18,7 +18,15 @@ from renderers.tracing.pack import scratch
 from renderers.tracing.record_kernels import COLUMNS
 from renderers.tracing.refine_kernels import refine
 from renderers.tracing.scene_kernels import ASKING, MODE, NEXT, SHAPE_COUNT, TELLING, WIDTH
-from renderers.tracing.waves_kernels import TILE, advance_paths, ask_paths, begin_paths, end_paths, look_from
+from renderers.tracing.waves_kernels import (
+    TILE,
+    advance_paths,
+    ask_paths,
+    begin_paths,
+    end_paths,
+    light_paths,
+    look_from,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -48,13 +56,14 @@ class Waves:
         self.edges, self.sums = np.zeros(pixels, dtype=np.int64), np.zeros((pixels, 4))
         self.own = np.zeros((2, pixels, COLUMNS), dtype=np.float32)
         self.found = np.zeros((2, pixels, columns), dtype=np.float32)
-        self.spare = np.empty(COLUMNS, dtype=np.float32)
+        self.spares = np.zeros((pixels, COLUMNS), dtype=np.float32)
+        self.spare = np.empty(columns, dtype=np.float32)
 
     def gather(self, start: int, stop: int, records: Array, radiance: Array, visibility: Array) -> int:
         """As gather_kernels.gather_rows."""
         scene, asked, at = self.scene, self.asked, np.empty_like(self.at)
         count = begin_paths(scene, start, stop, records, self.paths, at)
-        self._follow(self.paths[:count], at, records, visibility)
+        self._follow(self.paths[:count], at, records)
         self._ask(0, count, lambda i, end: look_from(scene, self.scratch, asked, i, end, at, records, visibility))
         undecided: int = end_paths(self.paths[:count], at, radiance)
         return undecided
@@ -86,18 +95,24 @@ class Waves:
         each, count = len(some), len(some) * len(edges)
         paths, own, found = self.paths[:count], self.own, self.found
         begin_samples(scene, some, edges, paths, own)
-        self._follow(paths, self.at, own, found)
+        self._follow(paths, self.at, own)
         more = each, edges, records, visibility, own, found
         self._ask(0, count, lambda i, end: look_from_samples(scene, self.scratch, self.asked, i, end, *more))
         light = records, radiance, paths, own, found
         left = add_samples(scene, each, used + each, len(points), edges, *light, self.sums, picture)
         return edges[:left]
 
-    def _follow(self, paths: Array, at: Array, records: Array, visibility: Array) -> None:
+    def _follow(self, paths: Array, at: Array, records: Array) -> None:
         """Let paths go to their ends."""
         while ask_paths(paths, self.asked):
             self.packets.meet(self.asked)
-            advance_paths(self.scene, self.scratch, self.asked, paths, at, records, visibility, self.spare)
+            if advance_paths(self.scene, self.scratch, self.asked, paths, at, records, self.spares):
+                self._ask(0, len(paths), lambda i, end: self._light(i, end, paths))
+
+    def _light(self, start: int, stop: int, paths: Array) -> int:
+        """Light what paths start..stop see behind their records; where it ends."""
+        end: int = light_paths(self.scene, self.scratch, self.asked, start, stop, paths, self.spares, self.spare)
+        return end
 
     def _ask(self, start: int, stop: int, work: Callable[[int, int], int]) -> None:
         """Do ``work`` twice for each part of start..stop, which it ends: its rays are asked, then they are told."""

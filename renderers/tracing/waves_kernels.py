@@ -7,7 +7,7 @@ Pixels are taken in tiles of 16 x 16, blocks of 4 x 4 of them together: a packet
 import numpy as np
 from numba import types
 
-from renderers.tracing.gather_kernels import DOUBTED, GATHERED, LIVE, advance, begin
+from renderers.tracing.gather_kernels import DARK, DOUBTED, GATHERED, LIVE, QUICK, advance, begin, light_behind
 from renderers.tracing.intersect_kernels import put_ray, tell
 from renderers.tracing.record_kernels import OWNER
 from renderers.tracing.sampling_kernels import sample_of
@@ -17,7 +17,6 @@ from renderers.tracing.scene_kernels import (
     LIGHT_COUNT,
     MODE,
     NEXT,
-    PLAIN,
     ROW,
     SCENE,
     SCRATCH,
@@ -72,20 +71,46 @@ def ask_paths(paths, asked):
     return row - 1
 
 
-@kernel(types.void(SCENE, SCRATCH, ASKED, _paths, _many, _stack, _stack, ROW), _nrt=False)
-def advance_paths(scene, scratch, asked, paths, at, records, visibility, spare):
+@kernel(_i(SCENE, SCRATCH, ASKED, _paths, _many, _stack, _rows), _nrt=False)
+def advance_paths(scene, scratch, asked, paths, at, records, spares):
     """Let all live paths go on by what is told of their rays; path i has the records ``at[i]``.
 
-    ``spare`` and those rows of the visibility are working memory.
+    How many are to be lit in what they see behind these, left in ``spares`` (n, COLUMNS).
     """
-    asked[0, MODE] = PLAIN
     row = 1
+    dark = 0
     for i in range(paths.shape[0]):
         if paths[i, LIVE] != 0.0:
             k = at[i]
             tell(scratch, asked, row)
             row += 1
-            advance(scene, scratch, asked, paths[i], records[0, k], records[1, k], spare, visibility[0, k])
+            advance(scene, scratch, paths[i], records[0, k], records[1, k], spares[i])
+            dark += paths[i, DARK] > 0.0
+    return dark
+
+
+@kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _paths, _rows, ROW), _nrt=False)
+def light_paths(scene, scratch, asked, first, last, paths, spares, visibility):
+    """Light what paths first..last see behind their records; of as many as ``asked`` has room for the rays of.
+
+    Returns where it ends. ``visibility`` is working memory.
+    """
+    room = asked.shape[0] - QUICK * (1 + scene.ints[LIGHT_COUNT])
+    counter = scratch.shape[0] - 1
+    for i in range(first, last):
+        if paths[i, DARK] == 0.0:
+            continue
+        if asked[0, MODE] == ASKING:
+            if asked[0, NEXT] > room:
+                return i
+            look_around(scene, scratch, asked, spares[i], 0, QUICK, QUICK, visibility)
+            continue
+        scratch[counter, 0] = 0.0
+        light_behind(scene, scratch, asked, paths[i], spares[i], visibility)
+        paths[i, DARK] = 0.0
+        if scratch[counter, 0] > 0.0:
+            paths[i, DOUBTED] = 1.0
+    return last
 
 
 @kernel(_i(_paths, _many, _rows), _nrt=False)
