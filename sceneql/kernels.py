@@ -29,7 +29,7 @@ from numba import types
 from numba.core import cgutils, event
 from numba.extending import intrinsic
 
-from sceneql.compiling import HelperCompiler, KernelCompiler, call_by_name, collecting_later
+from sceneql.compiling import HelperCompiler, KernelCompiler, WayInCompiler, call_by_name, collecting_later
 
 OURS = ("sceneql", "renderers", "sceneql_generated")
 IMPORTED = re.compile(r"^from ([\w.]+) import", re.MULTILINE)
@@ -134,18 +134,22 @@ def kernel(signature: Any, *, inner: bool = False, **options: Any) -> Callable[[
     """Compile a function for one explicit signature, cached on disk, without the GIL, NaN and inf as in numpy.
 
     Fastmath stays off, so that the bits do not depend on the machine. Only kernels call an ``inner`` one, by its name
-    or its address: without the code for calls from Python it compiles sooner.
+    or its address. The code for calls from Python is made when the first one comes.
     """
-    options |= COMMON | {"no_cpython_wrapper": inner}
+    options |= COMMON | {"no_cpython_wrapper": True}
 
     def compile(function: Callable[..., Any]) -> Any:
         folder = cache_folder(function.__module__)
-        with alone(folder / function.__name__), collecting_later():
-            numba.config.CACHE_DIR = str(folder)
-            made = numba.njit(signature, cache=True, pipeline_class=KernelCompiler, **options)(function)
+
+        def made(folder: Path, compiler: Any) -> Any:
+            with alone(folder / function.__name__), collecting_later():
+                numba.config.CACHE_DIR = str(folder)
+                return numba.njit(signature, cache=True, pipeline_class=compiler, **options)(function)
+
+        whole = made(folder, KernelCompiler)
         if not numba.config.DISABLE_JIT:
-            call_by_name(made, inner)
-        return made
+            call_by_name(whole, None if inner else lambda: made(folder / "from_python", WayInCompiler))
+        return whole
 
     return compile
 

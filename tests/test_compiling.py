@@ -15,7 +15,7 @@ from numba import types
 
 from sceneql.compiling import collecting_later
 from sceneql.kernels import HELPER, KernelCompiler
-from sceneql.simulation.forces.gravity_kernels import gravity
+from sceneql.simulation.forces.gravity_kernels import acceleration, gravity
 
 helper = numba.njit(**HELPER)
 
@@ -52,6 +52,18 @@ def test_a_helper_refuses_to_be_called_from_python():
 def test_an_inner_kernel_is_called_by_kernels_and_refuses_python():
     with pytest.raises(TypeError, match="gravity is for kernels only"):
         gravity(0.0, *[np.zeros(3)] * 3, np.zeros(3, np.int64))
+
+
+@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+def test_the_way_from_python_into_a_kernel_is_made_once_and_takes_what_the_kernel_does():
+    floats = np.array([0.0, -3.0, 4.0, 10.0])
+    with ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(lambda _: acceleration(floats, 0, 0, 3), range(8)))
+    assert found == [pytest.approx((0.0, -6.0, 8.0))] * 8
+    with pytest.raises(TypeError, match="No matching definition"):
+        acceleration(floats.astype(np.float32), 0, 0, 3)
+    with pytest.raises(TypeError, match="not enough arguments"):
+        acceleration(floats, 0)
 
 
 def test_a_late_kernel_is_there_from_its_first_call_on_and_not_before():

@@ -11,6 +11,7 @@ from copy import copy
 
 from llvmlite import binding
 from llvmlite.binding import ffi
+from llvmlite.binding.newpassmanagers import create_new_function_pass_manager
 from numba import config
 from numba.core import cgutils
 from numba.core.codegen import JITCodeLibrary
@@ -33,6 +34,7 @@ from numba.core.untyped_passes import (
 from sceneql.compiling.elements import take_elements
 from sceneql.compiling.shortcuts import take_shortcuts
 from sceneql.compiling.statements import Free, KernelLower
+from sceneql.compiling.ways_in import WayIn, lead_in
 from sceneql.compiling.words import take_words
 
 FRONT = (
@@ -48,22 +50,42 @@ FRONT = (
 
 
 class KernelLibrary(JITCodeLibrary):
-    """Code of a kernel: nothing of it is looked over for LLVM's own mistakes, or made good where there is nothing."""
+    """Code of a kernel: nothing of it is looked over for LLVM's own mistakes, or made good where there is nothing.
+
+    Nor is it made good twice: numba has LLVM do so for each function by itself, and then for all that are put together.
+    """
 
     def add_ir_module(self, ir_module):
         """Take LLVM's words in."""
         module = binding.parse_assembly(cgutils.normalize_ir_text(str(ir_module)))
         module.name = ir_module.name
         module.data_layout = self._codegen._data_layout
+        passes, builder = self._passes()
         for function in module.functions:
             if not function.is_declaration:
-                passes, builder = self._codegen._function_pass_manager()
                 passes.run(function, builder)
         self._final_module.link_in(module)
 
+    def _passes(self):
+        passes = create_new_function_pass_manager()
+        passes.add_sroa_pass()
+        passes.add_simplify_cfg_pass()
+        passes.add_refprune_pass()
+        return passes, self._codegen._pass_builder()
+
+    def serialize_using_object_code(self):
+        """What is cached: machine code, and the names in it. No other code will be linked with LLVM's words for it."""
+        self._ensure_finalized()
+        names = (one.name for one in self.get_defined_functions())
+        words = "".join(f'define void @"{name}"() {{\nret void\n}}\n' for name in names)
+        return self.name, "object", (self._get_compiled_object(), binding.parse_assembly(words).as_bitcode())
+
 
 class HelperLibrary(KernelLibrary):
-    """Code of a helper: it goes into its callers, is made good there, and never becomes machine code of its own."""
+    """Code of a helper: made good by itself, it goes into its callers, and never becomes machine code of its own."""
+
+    def _passes(self):
+        return self._codegen._function_pass_manager()
 
     def _optimize_final_module(self):
         passes, builder = self._codegen._module_pass_manager(
@@ -150,11 +172,32 @@ class HelperCompiler(CompilerBase):
         return _pipeline(*FRONT, HelperLowering, NoPythonBackend)
 
 
-def call_by_name(kernel, inner):
+@register_pass(mutates_CFG=True, analysis_only=False)
+class LowerWayIn(WayIn):
+    """Lower the way into a kernel to a KernelLibrary."""
+
+    _name = "lower_way_in"
+
+    def run_pass(self, state):
+        """Leave the code in state.library, to be cached."""
+        state.library = KernelLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.enable_object_caching()
+        return super().run_pass(state)
+
+
+class WayInCompiler(CompilerBase):
+    """For ``pipeline_class`` of what leads from Python into a kernel that is there."""
+
+    def define_pipelines(self):
+        """The one list of passes."""
+        return _pipeline(LowerWayIn, NoPythonBackend)
+
+
+def call_by_name(kernel, way_in):
     """Let other kernels call this one by its name, where numba would put its code into each of them once more.
 
     The name is the function's own: what numba makes of it differs from process to process, and callers are cached.
-    An ``inner`` kernel has no code for calls from Python: they raise TypeError.
+    ``way_in()`` gives what Python calls the kernel by, when it does; where there is None, calls raise TypeError.
     """
     (made,) = kernel.overloads.values()  # of one signature: a name stands for one function
     called = copy(made.fndesc)
@@ -163,7 +206,9 @@ def call_by_name(kernel, inner):
     context = made.target_context
     context.remove_user_function(made.entry_point)
     context.insert_user_function(made.entry_point, called, [])
-    if inner:
+    if way_in is not None:
+        lead_in(kernel, called, way_in)
+    else:
         kernel._clear()
         kernel._explain_matching_error = _refusal(kernel.__name__)
 

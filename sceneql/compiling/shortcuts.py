@@ -6,12 +6,25 @@ None of them changes what is compiled. Each names the function of numba that it 
 
 import operator
 from functools import cache
-from importlib import import_module
+from importlib import import_module, metadata
 from types import BuiltinFunctionType
 
 from llvmlite.ir._utils import DuplicatedNameError, NameScope
 from numba import types
-from numba.core import base, byteflow, cpu, errors, interpreter, ir, lowering, postproc, ssa, transforms, typeinfer
+from numba.core import (
+    base,
+    byteflow,
+    cpu,
+    entrypoints,
+    errors,
+    interpreter,
+    ir,
+    lowering,
+    postproc,
+    ssa,
+    transforms,
+    typeinfer,
+)
 from numba.core.rewrites.ir_print import RewritePrintCalls
 from numba.core.typing.context import BaseContext
 from numba.np import linalg
@@ -270,6 +283,21 @@ def believe_in_scipy():
     linalg.ensure_blas = look
 
 
+def look_for_extensions():
+    """Whether any library extends numba: numba reads the entry points of all that are installed to find out."""
+    initialize = entrypoints.init_all
+
+    def look():
+        if entrypoints._already_initialized:
+            return
+        told = (one.read_text("entry_points.txt") for one in metadata.distributions())
+        if any("numba_extensions" in text for text in told if text):
+            initialize()
+        entrypoints._already_initialized = True
+
+    entrypoints.init_all = look
+
+
 def silence():
     """The log of what passes do, which nobody reads."""
     for module in (byteflow, interpreter, ssa, transforms, typeinfer):
@@ -297,6 +325,7 @@ def take_shortcuts():
     look_for_print()
     remember_sizes()
     believe_in_scipy()
+    look_for_extensions()
     silence()
     typeinfer.ConstraintNetwork.propagate = propagate
     typeinfer.new_error_context = lowering.new_error_context = Context

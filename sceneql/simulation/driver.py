@@ -59,7 +59,7 @@ def jacobian(system: System) -> Any:
         return None
     if system.pattern.exact:
         return _exact_jacobian(system.structure)
-    return load("sceneql.simulation.slopes_kernels").differences
+    return load("sceneql.simulation.differences_kernels").differences
 
 
 @cache

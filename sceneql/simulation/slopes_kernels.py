@@ -1,14 +1,9 @@
 # mypy: ignore-errors
-"""An island's Jacobian: put together of the slopes of its terms, or by differences."""
-
-import math
+"""An island's Jacobian, put together of the slopes of its terms."""
 
 from sceneql.kernels import lean
-from sceneql.simulation.pointers_kernels import AT_RATE, rate_at
 from sceneql.simulation.threads_kernels import TILE, over_threads
-from sceneql.system_kernels import JACOBIAN, TERM
-
-ROUNDING = 2.2e-16
+from sceneql.system_kernels import TERM
 
 
 @lean(TILE)
@@ -71,26 +66,3 @@ def gather(t, y, values, floats, ints):
         single_tile(0, t, y, values, floats, ints)
     else:
         over_threads(ints[at + 12], ints[at + 13], ints[at + 15], ints[at + 9], t, y, values, floats, ints)
-
-
-@lean(JACOBIAN)
-def differences(functions, t, y, values, floats, ints):
-    """The full Jacobian by forward differences; moves as in RADAU5 (Hairer & Wanner 1996, IV.8).
-
-    ``values``: (n * n,) row by row, then 3n of scratch.
-    """
-    rate = rate_at(functions[AT_RATE])
-    n = y.size
-    moved = values[n * n : n * n + n]
-    first = values[n * n + n : n * n + 2 * n]
-    other = values[n * n + 2 * n : n * n + 3 * n]
-    for k in range(n):
-        moved[k] = y[k]
-    rate(t, y, first, floats, ints)
-    for j in range(n):
-        moved[j] = y[j] + math.sqrt(ROUNDING * max(1e-5, abs(y[j])))
-        move = moved[j] - y[j]
-        rate(t, moved, other, floats, ints)
-        moved[j] = y[j]
-        for i in range(n):
-            values[i * n + j] = (other[i] - first[i]) / move

@@ -198,13 +198,13 @@ class SpringModel(Model):
         """Any output of the manual."""
         import numpy as np
 
-        from sceneql.simulation.models.mass_spring_kernels import energy
-
         assert state.bodies is not None
         blocks_at, stiffness_at, torn_at = state.ints
         if output in point_masses.BODY_OUTPUTS:
             own = 0.0
             if output in ("potential", "energy"):
+                from sceneql.simulation.models.mass_spring_energy_kernels import energy
+
                 at = state.bodies.position_at
                 own = energy(state.y, at, state.floats, blocks_at, stiffness_at, self.net.pairs)
             return point_masses.read(output, state.bodies, state, own)

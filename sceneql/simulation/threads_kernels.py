@@ -9,112 +9,33 @@ goes to thread k modulo their number and writes to places of its own: the bytes 
 from typing import Any
 
 import numba
-import numpy as np
-from llvmlite import ir
-from numba import carray, types
-from numba.extending import intrinsic
+from numba import types
 
-from sceneql.kernels import address, cache_folder, function_at, kernel, thread_count
-from sceneql.simulation.arithmetic_kernels import bits, from_bits
+from sceneql.compiling.late import late
+from sceneql.kernels import address, thread_count
 from sceneql.system_kernels import A, F, I, N
 
 TILE = types.void(N, F, A, A, A, I)
 """tile(number, t, y, rate, floats, ints): its part of a term."""
 TILE_FUNCTION = types.FunctionType(TILE)
+OVER_THREADS = types.void(N, N, N, N, F, A, A, A, I)
 
-FUNCTION, FIRST, STRIDE, TILES, TIME, ARRAYS, WORDS = 0, 1, 2, 3, 4, 5, 13
-"""What a thread is told: 64-bit words; from ARRAYS on address and length of y, rate, floats, ints."""
+uncompiled: dict[int, Any] = {}
+"""Functions by their addresses where numba is switched off."""
 
-_plain: dict = {}
+over_threads = late("sceneql.simulation.start_threads_kernels:over_threads", OVER_THREADS)
+"""over_threads(several, count, function, tiles, t, y, rate, floats, ints); small islands never call it."""
 
 
 def tile_address(function: Any) -> int:
     """What `over_threads` calls the kernel by; keep the kernel alive."""
     if numba.config.DISABLE_JIT:
-        _plain[id(function)] = function
+        uncompiled[id(function)] = function
         return id(function)
     return address(function, TILE_FUNCTION)
 
 
-tile_at = _plain.__getitem__ if numba.config.DISABLE_JIT else function_at(TILE_FUNCTION)
-
-
-@intrinsic
-def pointer(typing, number):
-    """A float64 pointer from an address."""
-
-    def code(context, builder, signature, arguments):
-        return builder.inttoptr(arguments[0], ir.PointerType(ir.DoubleType()))
-
-    return types.CPointer(types.float64)(types.int64), code
-
-
-@intrinsic
-def integer_pointer(typing, number):
-    """An int64 pointer from an address."""
-
-    def code(context, builder, signature, arguments):
-        return builder.inttoptr(arguments[0], ir.PointerType(ir.IntType(64)))
-
-    return types.CPointer(types.int64)(types.int64), code
-
-
-pthread_create = types.ExternalFunction("pthread_create", types.int32(N, N, N, N))
-pthread_join = types.ExternalFunction("pthread_join", types.int32(N, N))
-
-
-def _entry(told):
-    """What a thread runs: its tiles."""
-    words = carray(told, WORDS)
-    y = carray(pointer(words[ARRAYS]), words[ARRAYS + 1])
-    rate = carray(pointer(words[ARRAYS + 2]), words[ARRAYS + 3])
-    floats = carray(pointer(words[ARRAYS + 4]), words[ARRAYS + 5])
-    ints = carray(integer_pointer(words[ARRAYS + 6]), words[ARRAYS + 7])
-    tile = tile_at(words[FUNCTION])
-    for k in range(words[FIRST], words[TILES], words[STRIDE]):
-        tile(k, from_bits(words[TIME]), y, rate, floats, ints)
-    return 0
-
-
-if numba.config.DISABLE_JIT:
-    ENTRY = None
-else:
-    numba.config.CACHE_DIR = str(cache_folder(__name__))
-    ENTRY = numba.cfunc(N(types.CPointer(N)), nopython=True, cache=True)(_entry)
-
-
 def threads() -> tuple[int, int]:
-    """Integers for `over_threads`: the address of the threads' entry (0 where there is one thread), their number."""
-    count = 1 if ENTRY is None else thread_count()
-    return (0 if count == 1 else ENTRY.address), count
-
-
-@kernel(types.void(N, N, N, N, F, A, A, A, I), inner=True)
-def over_threads(entry, count, function, tiles, t, y, rate, floats, ints):
-    """Call the tile function for tiles 0..tiles-1; ``entry``, ``count`` from `threads`, ``function`` its address."""
-    count = min(count, tiles)
-    tile = tile_at(function)
-    if count < 2 or entry == 0:
-        for k in range(tiles):
-            tile(k, t, y, rate, floats, ints)
-        return
-    told = np.empty((count, WORDS), dtype=np.int64)
-    handles = np.zeros(count, dtype=np.int64)
-    for k in range(count):
-        told[k, FUNCTION], told[k, FIRST], told[k, STRIDE], told[k, TILES] = function, k, count, tiles
-        told[k, TIME] = bits(t)
-        told[k, ARRAYS], told[k, ARRAYS + 1] = y.ctypes.data, y.size
-        told[k, ARRAYS + 2], told[k, ARRAYS + 3] = rate.ctypes.data, rate.size
-        told[k, ARRAYS + 4], told[k, ARRAYS + 5] = floats.ctypes.data, floats.size
-        told[k, ARRAYS + 6], told[k, ARRAYS + 7] = ints.ctypes.data, ints.size
-    started = np.zeros(count, dtype=np.int64)
-    for k in range(1, count):
-        at = told.ctypes.data + 8 * WORDS * k
-        started[k] = pthread_create(handles.ctypes.data + 8 * k, 0, entry, at) == 0
-    for k in range(count):
-        if started[k] == 0:
-            for number in range(k, tiles, count):
-                tile(number, t, y, rate, floats, ints)
-    for k in range(1, count):
-        if started[k] == 1:
-            pthread_join(handles[k], 0)
+    """Integers for `over_threads`: whether there are several threads, and how many."""
+    count = 1 if numba.config.DISABLE_JIT else thread_count()
+    return int(count > 1), count

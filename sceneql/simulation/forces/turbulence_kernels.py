@@ -242,6 +242,10 @@ def turbulence(t, y, rate, floats, ints):
     angular frequency), power_at, octaves, seed, threads' entry and number, address of the tile function.
     """
     tiles = (ints[2] + PART - 1) // PART
-    over_threads(ints[12], ints[13] if tiles >= MANY else 1, ints[14], tiles, t, y, rate, floats, ints)
+    if tiles >= MANY:
+        over_threads(ints[12], ints[13], ints[14], tiles, t, y, rate, floats, ints)
+    else:
+        for tile in range(tiles):
+            turbulence_tile(tile, t, y, rate, floats, ints)
     for tile in range(tiles):
         rate[ints[3]] += floats[ints[9] + tile]

@@ -138,9 +138,7 @@ def _laid_out(pattern: Any, order: Rows, fronts: list[_Front], first: Rows, unit
     import numpy as np
 
     from sceneql.simulation.linear.fronts_plan_kernels import FIELDS, HEAD, PAD
-    from sceneql.simulation.linear.fronts_solve_kernels import backward_piece, forward_piece
-    from sceneql.simulation.linear.fronts_symmetric_kernels import piece
-    from sceneql.simulation.threads_kernels import threads, tile_address
+    from sceneql.simulation.threads_kernels import threads
 
     n, count, groups = unit * len(order), len(fronts), len(first) - 1
     scalars = (unit * order[:, None] + np.arange(unit)).ravel()
@@ -209,12 +207,20 @@ def _laid_out(pattern: Any, order: Rows, fronts: list[_Front], first: Rows, unit
     parts: list[Any] = [table, scalars, expanded, maps, entries, np.zeros(n, dtype=np.int64), halves]
     parts += [pattern.indptr, pattern.indices]
     starts = list(accumulate((len(part) for part in parts), initial=HEAD))
-    head = [n, count, *starts[1:6], room, starts[6], len(pieces), *threads(), tile_address(piece), unit]
-    head += [tile_address(forward_piece), tile_address(backward_piece)]
+    piece, *passes = _of_pieces() if pieces else [0] * 3
+    head = [n, count, *starts[1:6], room, starts[6], len(pieces), *threads(), piece, unit, *passes]
     head += [*_single(float(operations.sum())), 0, 0, int(exact), 0, *starts[7:9]]
     numbers = np.concatenate([np.array(part, dtype=np.int64) for part in (head, *parts)])
     work = max(room + largest * largest, int(row_starts[-1]) + PAD * count) + 2 * n
     return Plan(numbers, factors, work, float(operations.sum()))
+
+
+def _of_pieces() -> list[int]:
+    """The kernels that factor a piece, and solve in it."""
+    from sceneql.simulation.linear.fronts_pieces_kernels import backward_piece, forward_piece, piece
+    from sceneql.simulation.threads_kernels import tile_address
+
+    return [tile_address(one) for one in (piece, forward_piece, backward_piece)]
 
 
 def _single(operations: float) -> list[int]:

@@ -9,7 +9,7 @@ them.
 
 from numba import types
 
-from sceneql.kernels import kernel, lean, lean_inlined
+from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.arithmetic_kernels import widest
 from sceneql.simulation.lanes_kernels import BYTES, fma, folded, load, spread, store
 from sceneql.simulation.linear.fronts_plan_kernels import (
@@ -23,7 +23,7 @@ from sceneql.simulation.linear.fronts_plan_kernels import (
     PIECES_AT,
     THREADS,
 )
-from sceneql.simulation.threads_kernels import TILE, over_threads
+from sceneql.simulation.threads_kernels import over_threads
 from sceneql.system_kernels import A, I, N
 
 ROWS = 4
@@ -164,20 +164,6 @@ def backward(plan, factors, x, carried, begin, end):
     backward_of(plan, factors, x, carried, begin, end)
 
 
-@kernel(TILE)
-def forward_piece(number, t, factors, x, carried, plan):
-    """The first pass over a piece."""
-    at = plan[PIECES_AT] + 3 * number
-    forward(plan, factors, x, carried, plan[at], plan[at + 1])
-
-
-@kernel(TILE)
-def backward_piece(number, t, factors, x, carried, plan):
-    """The second."""
-    at = plan[PIECES_AT] + 3 * number
-    backward(plan, factors, x, carried, plan[at], plan[at + 1])
-
-
 @lean(SOLVE, inner=True)
 def solve_symmetric(plan, factors, b, work):
     """Solve as fronts_kernels.solve_system does."""
@@ -186,7 +172,8 @@ def solve_symmetric(plan, factors, b, work):
     entry = plan[ENTRY] if plan[HEAD + FIELDS * fronts + 5] >= WORTH_THREADS else 0
     for k in range(n):
         x[k] = b[plan[order + k]]
-    over_threads(entry, plan[THREADS], plan[FORWARD], pieces, 0.0, factors, x, carried, plan)
+    if pieces > 0:
+        over_threads(entry, plan[THREADS], plan[FORWARD], pieces, 0.0, factors, x, carried, plan)
     done = 0
     for at in range(plan[PIECES_AT], plan[PIECES_AT] + 3 * pieces, 3):
         forward(plan, factors, x, carried, done, plan[at])
@@ -197,6 +184,7 @@ def solve_symmetric(plan, factors, b, work):
         backward(plan, factors, x, carried, plan[at + 1], last)
         last = plan[at]
     backward(plan, factors, x, carried, 0, last)
-    over_threads(entry, plan[THREADS], plan[BACKWARD], pieces, 0.0, factors, x, carried, plan)
+    if pieces > 0:
+        over_threads(entry, plan[THREADS], plan[BACKWARD], pieces, 0.0, factors, x, carried, plan)
     for k in range(n):
         b[plan[order + k]] = x[k]

@@ -12,7 +12,7 @@ import math
 
 from numba import types
 
-from sceneql.kernels import kernel, lean, lean_inlined
+from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.arithmetic_kernels import fma, widest
 from sceneql.simulation.linear.fronts_plan_kernels import (
     ENTRY,
@@ -26,7 +26,6 @@ from sceneql.simulation.linear.fronts_plan_kernels import (
     UNIT,
 )
 from sceneql.simulation.linear.rank_kernels import MOST, ROWS, add_rows, coefficients
-from sceneql.simulation.threads_kernels import TILE as PIECE
 from sceneql.simulation.threads_kernels import over_threads
 from sceneql.system_kernels import A, I, N
 
@@ -221,17 +220,11 @@ def factor_fronts(plan, values, factors, work, begin, end):
     return fronts_of(plan, values, 1.0, factors, work, begin, end)
 
 
-@kernel(PIECE)
-def piece(number, t, values, factors, work, plan):
-    """The fronts of a piece; its third integer says that all pivots were regular."""
-    at = plan[PIECES_AT] + 3 * number
-    plan[at + 2] = 1 if factor_fronts(plan, values, factors, work, plan[at], plan[at + 1]) else 0
-
-
 @lean(FACTOR_SYMMETRIC, inner=True)
 def factor_symmetric(plan, values, factors, work):
     """Factor as fronts_kernels.factor_system does; half of the values is read."""
-    over_threads(plan[ENTRY], plan[THREADS], plan[PIECE_AT], plan[PIECES], 0.0, values, factors, work, plan)
+    if plan[PIECES] > 0:
+        over_threads(plan[ENTRY], plan[THREADS], plan[PIECE_AT], plan[PIECES], 0.0, values, factors, work, plan)
     done = 0
     for at in range(plan[PIECES_AT], plan[PIECES_AT] + 3 * plan[PIECES], 3):
         if plan[at + 2] == 0 or not factor_fronts(plan, values, factors, work, done, plan[at]):

@@ -202,9 +202,9 @@ def likely_kernels(system: System) -> tuple[str, ...]:
     if system.pattern is None or system.grids:
         return ()
     few = (system.partner < 0).sum() <= SMALL
-    return tuple(
-        f"{__package__}.{name}_kernels" for name in (("dense_systems",) if few else ("fronts_symmetric", "fronts"))
-    )
+    # The process beside begins with the first, this one with the last.
+    names = ("dense_systems",) if few else ("fronts_solve", "fronts", "fronts_symmetric")
+    return tuple(f"{__package__}.{name}_kernels" for name in names)
 
 
 def _factored(pattern: Any, unit: int, points: Floats | None, exact: bool) -> _Solver | None:

@@ -1,0 +1,64 @@
+# mypy: ignore-errors
+"""The code by which Python calls a kernel: made, and cached, when Python first does. Most kernels only kernels call."""
+
+import threading
+from copy import copy
+
+from llvmlite import ir
+from numba.core.callwrapper import PyCallWrapper
+from numba.core.compiler import _LowerResult
+from numba.core.compiler_machinery import LoweringPass, register_pass
+from numba.core.lowering import Environment
+
+_called = {}
+"""By the name that others call a kernel by (call_by_name): its description."""
+_one_by_one = threading.RLock()
+
+
+def lead_in(kernel, called, make):
+    """Let the first call of a dispatcher from Python ``make`` the way into the kernel so ``called``, and take it.
+
+    ``make()`` compiles a dispatcher's function by the pass below, or loads it.
+    """
+    _called[called.mangled_name] = called
+    kernel._clear()
+
+    def take(*_, **__):
+        with _one_by_one:
+            if kernel._can_compile:
+                (way,) = make().overloads.values()
+                kernel.way_in = way  # which keeps it: numba's table does not
+                kernel._insert([one._code for one in way.signature.args], way.entry_point, False)
+                kernel._can_compile = False
+        return kernel
+
+    kernel._compile_for_args = take
+    kernel._can_compile = True
+    kernel.compile = lambda _: None  # kernels that call it would ask, for types that are nearly its own
+
+
+@register_pass(mutates_CFG=False, analysis_only=False)
+class WayIn(LoweringPass):
+    """Instead of all that makes a kernel of a function: what takes Python's arguments, and calls the kernel by name."""
+
+    _name = "way_in"
+
+    def __init__(self):
+        LoweringPass.__init__(self)
+
+    def run_pass(self, state):
+        """Leave the code in state.library, to be cached."""
+        context, function = state.targetctx, state.func_id
+        called = _called[f"{function.modname}.{function.func_qualname}"]
+        own = copy(called)
+        name = f"{called.mangled_name}.from_python"
+        own.mangled_name, own.env_name = (context.mangler(f"{part}{name}", own.argtypes) for part in ("", ".NumbaEnv."))
+        module = context.create_module(name)
+        kind = context.call_conv.get_function_type(own.restype, own.argtypes)
+        kernel = ir.Function(module, kind, called.mangled_name)
+        environment = Environment.from_fndesc(own)
+        PyCallWrapper(context, module, kernel, own, environment, None, release_gil=True).build()
+        state.library.add_ir_module(module)
+        entry = context.get_executable(state.library, own, environment)
+        state.cr = _LowerResult(own, None, cfunc=entry, env=environment)
+        return True

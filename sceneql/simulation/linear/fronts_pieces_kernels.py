@@ -1,0 +1,29 @@
+# mypy: ignore-errors
+"""Pieces of a plan (fronts_kernels): the subtrees of fronts that threads share where there are many operations."""
+
+from sceneql.kernels import kernel
+from sceneql.simulation.linear.fronts_plan_kernels import PIECES_AT
+from sceneql.simulation.linear.fronts_solve_kernels import backward, forward
+from sceneql.simulation.linear.fronts_symmetric_kernels import factor_fronts
+from sceneql.simulation.threads_kernels import TILE
+
+
+@kernel(TILE)
+def piece(number, t, values, factors, work, plan):
+    """The fronts of a piece; its third integer says that all pivots were regular."""
+    at = plan[PIECES_AT] + 3 * number
+    plan[at + 2] = 1 if factor_fronts(plan, values, factors, work, plan[at], plan[at + 1]) else 0
+
+
+@kernel(TILE)
+def forward_piece(number, t, factors, x, carried, plan):
+    """The first pass over a piece."""
+    at = plan[PIECES_AT] + 3 * number
+    forward(plan, factors, x, carried, plan[at], plan[at + 1])
+
+
+@kernel(TILE)
+def backward_piece(number, t, factors, x, carried, plan):
+    """The second."""
+    at = plan[PIECES_AT] + 3 * number
+    backward(plan, factors, x, carried, plan[at], plan[at + 1])
