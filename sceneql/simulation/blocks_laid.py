@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from numpy import int64
     from numpy.typing import NDArray
 
+    from sceneql.quantities.span import Span
     from sceneql.system import Slopes
 
 GROUPS_AT = 5
@@ -28,6 +29,7 @@ class Block:
     pairs: int = 0
     slopes: Slopes | Callable[[], Slopes | None] | None = None
     part: str = ""
+    span: Span | None = None
 
 
 def grouped(blocks: list[Block], laid: list[Block]) -> list[tuple[tuple[str, ...], int]]:

@@ -101,6 +101,8 @@ class System:
     """Of all its fields."""
     masses: tuple[tuple[int, int, int], ...] = ()
     """Of each model of masses: where in y their velocities start, where in floats their inverse masses, how many."""
+    terms: tuple[Origin, ...] = ()
+    """Where the terms of the rate come from, in the order in which they act."""
 
     def origin(self, index: int) -> Origin:
         """Part and line of an entry of y."""
@@ -214,7 +216,7 @@ class IslandAssembly:
     ) -> None:
         """Add a term to the rate."""
         self._apart = self._apart and apart
-        self._terms[stage].append(Block((kernel,), tuple(ints), 0, jacobian, self._word[0]))
+        self._terms[stage].append(Block((kernel,), tuple(ints), 0, jacobian, *self._word[:2]))
 
     def inertia(self, velocity_at: int, inverse_at: int, count: int) -> None:
         """Say which rows of the Jacobian inverse masses multiply (system.Assembly)."""
@@ -336,6 +338,7 @@ class IslandAssembly:
             unsloped=self._unsloped,
             grids=tuple(self.fields.values()),
             masses=tuple(self._masses),
+            terms=tuple(Origin(block.part, block.span) for block in blocks[1:first_exact]),
         )
 
     def start(self) -> Floats:

@@ -212,7 +212,9 @@ class March:
             k = int(bad[0])
             finite = math.isfinite(y[k]) and math.isfinite(self._rate1[k])
             what = f"has a value beyond {LARGEST:.0e}" if finite else "has no finite value"
-            self._fail(k, f"the {'state' if abs(y[k]) > LARGEST else 'rate'} {what} at the start")
+            self._fail(
+                k, f"the {'state' if abs(y[k]) > LARGEST else 'rate'} {what} at the start", None if finite else 0.0
+            )
         moved = np.abs(self._rate1).max(initial=0.0) * self.end
         self._clock[kernels.LIMIT] = GROWTH_LIMIT * max(1.0, np.abs(y).max(initial=0.0), moved)
         positions = np.abs(y[self.system.partner >= 0]).max(initial=1.0)
@@ -296,7 +298,8 @@ class March:
         at = int(self._counts[kernels.INDEX])
         why = "the equations run away" if self.stepper.adaptive else "the step is unstable"
         unsolved = self.stepper.unsolved if status == kernels.NOT_FINITE else ""
-        self._fail(-1 if status == kernels.STUCK else at, unsolved or MESSAGES[status].format(why))
+        ahead = float(self._clock[kernels.STEP]) if status == kernels.NOT_FINITE and not unsolved else None
+        self._fail(-1 if status == kernels.STUCK else at, unsolved or MESSAGES[status].format(why), ahead)
 
     def _look(self) -> None:
         """Let the other method take over where it is time to see which is the better one."""
@@ -331,6 +334,17 @@ class March:
         clock[kernels.ERROR] = 1e-4
         return True
 
-    def _fail(self, entry: int, message: str) -> None:
-        origin = self.system.origin(entry)
-        raise RunFailure(message, part=origin.part, time=float(self._clock[kernels.T1]), span=origin.span)
+    def _fail(self, entry: int, message: str, ahead: float | None = None) -> None:
+        """``ahead`` [s]: a term may have no finite value so much later, which then is named."""
+        origin, t = self.system.origin(entry), float(self._clock[kernels.T1])
+        span = origin.span
+        if ahead is not None:
+            from sceneql.simulation.blame import culprit
+
+            for h in dict.fromkeys((0.0, 0.5 * ahead, ahead)):
+                y = self._y1 + h * self._rate1 if h else self._y1
+                term = culprit(self.system, self.driver, self.floats, t + h, y)
+                if term is not None and term.part != origin.part:
+                    message, span = f"{message.partition(':')[0]}: '{term.part}' gives none", term.span or span
+                    break
+        raise RunFailure(message, part=origin.part, time=t, span=span)
