@@ -22,6 +22,7 @@ from sceneql.frame import Tape
 from sceneql.mesh.bounded import bounded
 from sceneql.mesh.cases import CENTERS, cases, decisions
 from sceneql.mesh.cube import FACES_OF, segments
+from sceneql.mesh.flips import facing
 from sceneql.mesh.hausdorff import hausdorff
 from sceneql.mesh.measures import area, curved_volume, edge_counts, euler_characteristic, volume
 from sceneql.mesh.polygonise import polygonise
@@ -146,6 +147,20 @@ def test_closed_smooth_shapes_are_closed_manifolds_facing_outward(name):
     across = np.cross(b - a, c - a)
     outward = field_gradients(tape_of(text), (a + b + c) / 3)
     assert ((across * outward).sum(axis=1) > 0).all()
+
+
+@pytest.mark.parametrize("way", ["refined", "sharp"])
+@pytest.mark.parametrize("cells", [12, 20, 24, 32, 38])
+def test_coarse_cells_leave_no_triangle_facing_inward(way, cells):
+    # Where coarse triangles follow fine curves, and where a quad's corners lie past one another, some folded over.
+    for text, half, euler in (CLOSED["tanglecube"], CLOSED["torus"]):
+        found = cut_finer(text, half, cells)[0] if way == "refined" else cut_sharp(text, half, cells)
+        assert_closed_manifold(found)
+        assert euler_characteristic(found.triangles) == euler
+        assert facing(tape_of(text), found.vertices, found.triangles).min() > 0.0
+        if way == "refined":
+            steep = np.linalg.norm(field_gradients(tape_of(text), found.vertices), axis=1)
+            assert (np.abs(field_values(tape_of(text), found.vertices)) / steep).max() < 1e-6 * half
 
 
 @pytest.mark.parametrize("name", CLOSED)

@@ -40,7 +40,7 @@ def faced_outward(tape: Tape, places: Floats, triangles: Ints, doubtful: Rows) -
     return found.astype(np.int32)
 
 
-def facing(tape: Tape, places: Floats, triangles: Rows) -> Floats:
+def facing(tape: Tape, places: Floats, triangles: Rows | Ints) -> Floats:
     """(t,) cosine of the angle between a triangle's normal and the gradient in its middle; 0 where one has none."""
     import numpy as np
 

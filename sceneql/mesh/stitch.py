@@ -6,20 +6,16 @@ from collections import defaultdict
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from sceneql.field.solid import field_gradients, field_values
-from sceneql.mesh.flips import faced_outward
+from sceneql.mesh.moves import settled, turned_outward
 from sceneql.mesh.polygons import Polygons
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from sceneql.frame import Floats, Tape
+    from sceneql.frame import Tape
     from sceneql.mesh.faces import Curves, Sides
     from sceneql.mesh.refine import Level
-
-STEPS = 4
-"""Of Newton's method towards the surface."""
 
 
 def stitched(tape: Tape, coarse: Level, kept: NDArray[np.bool_], fine: Level, sides: Sides, curves: Curves) -> Polygons:
@@ -56,7 +52,7 @@ def stitched(tape: Tape, coarse: Level, kept: NDArray[np.bool_], fine: Level, si
             fans += [(a, b, apex) for a, b in zip(ring, [*ring[1:], ring[0]], strict=True)]
     places, normals = np.concatenate([coarse.places, fine.places]), np.concatenate([coarse.normals, fine.normals])
     means = [np.array([places[ring].mean(axis=0) for ring in middles]).reshape(-1, 3)]
-    own, slopes = _settled(tape, means[0])
+    own, slopes = settled(tape, means[0])
     triangles = np.concatenate(
         [same[coarse.triangles[plain]], np.array(fans, dtype=np.int64).reshape(-1, 3), fine.triangles + offset]
     )
@@ -65,18 +61,4 @@ def stitched(tape: Tape, coarse: Level, kept: NDArray[np.bool_], fine: Level, si
     used[triangles] = True
     triangles = (np.cumsum(used) - 1)[triangles].astype(np.int32)
     seams = np.arange(plain.sum(), len(triangles) - len(fine.triangles))
-    return Polygons(places[used], faced_outward(tape, places[used], triangles, seams), normals[used])
-
-
-def _settled(tape: Tape, places: Floats) -> tuple[Floats, Floats]:
-    """Places brought to the surface by Newton's method along the gradient, and the unit gradients there."""
-    import numpy as np
-
-    with np.errstate(all="ignore"):
-        for _ in range(STEPS):
-            slopes = field_gradients(tape, places)
-            moves = (field_values(tape, places) / (slopes**2).sum(axis=1))[:, None] * slopes
-            places = places - np.where(np.isfinite(moves).all(axis=1)[:, None], moves, 0.0)
-        slopes = field_gradients(tape, places)
-        slopes /= np.linalg.norm(slopes, axis=1, keepdims=True)
-    return places, np.where(np.isfinite(slopes), slopes, 0.0)
+    return turned_outward(tape, Polygons(places[used], triangles, normals[used]), seams)
