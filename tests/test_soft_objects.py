@@ -1,13 +1,10 @@
 """Soft objects on scripts: skeletons that follow models, colors, joints, paths, and triangles to draw."""
 
-import itertools
 import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from moment import IDENTITY, FakeMoment, const, link
 from sceneql.failure import RunFailure
@@ -22,7 +19,6 @@ from sceneql.simulation.ears import ears
 from sceneql.simulation.objects.blobby import Blobby
 from sceneql.simulation.run import Run
 from sceneql.simulation.skeleton_parts import Part
-from sceneql.simulation.spline import smooth
 
 
 def moments(folder, script, times):
@@ -208,18 +204,6 @@ def test_a_polygon_is_filled_once():
         assert len(middles) == 8
         radii, angles = np.hypot(middles[:, 0], middles[:, 2]), np.arctan2(middles[:, 2], middles[:, 0])
         assert (radii * np.cos((angles + math.pi) % (2 * math.pi / 5) - math.pi / 5) < 0.99).all()
-
-
-@settings(max_examples=40)
-@given(st.lists(st.tuples(*[st.floats(-2, 2)] * 3), min_size=3, max_size=6, unique=True), st.booleans())
-def test_a_spline_runs_through_its_points(points, closed):
-    points = np.array(points)
-    if min(np.linalg.norm(p - q) for p, q in itertools.pairwise([*points, points[0]])) < 1e-3:
-        return
-    path = np.concatenate([points, points[:1]]) if closed else points
-    places, radii = smooth(path, np.linspace(0.2, 0.4, len(path)), closed)
-    assert max(np.linalg.norm(places - point, axis=1).min() for point in points) < 1e-12
-    assert (radii > 0).all()
 
 
 def test_pieces_are_counted_by_what_hangs_together():

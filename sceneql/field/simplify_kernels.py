@@ -9,7 +9,7 @@ import numpy as np
 from sceneql.field.density_kernels import offset
 from sceneql.field.falloff_kernels import WYVILL
 from sceneql.field.skeleton_bounds_kernels import skeleton_near
-from sceneql.field.skeleton_kernels import GROUP, KERNEL, RADIUS, RADIUS_B, SEGMENT, SHAPE, STRIDE
+from sceneql.field.skeleton_parts_kernels import GROUP, KERNEL, RADIUS, RADIUS_B, SEGMENT, SHAPE, STRIDE
 from sceneql.field.tape_ops import CONSTANT, COS, DENSITY, MAX, MIN, SIN, SKELETON, X, Y, Z
 from sceneql.kernels import inlined, lean
 

@@ -1,11 +1,11 @@
-"""Skeletons as rows of a tape: parts of points, segments and triangles, in a hierarchy of boxes.
+"""Skeletons as rows of a tape: parts of points, segments, triangles and curves, in a hierarchy of boxes.
 
 Imports numpy: to be imported by the function that needs it.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 KERNELS = ("wyvill", "soft_object", "metaball", "gaussian", "inverse_square")
 """In the order of falloff_kernels."""
-SEGMENT, TRIANGLE, NODE = range(3)
-"""As in skeleton_kernels."""
+SEGMENT, TRIANGLE, NODE, CURVE = range(4)
+"""As in skeleton_parts_kernels."""
 FLAT = 1e-6
 """Sine of the angle between two sides below which a triangle is taken for its longest side."""
 BRANCHES = 8
@@ -37,7 +37,7 @@ class Skeleton:
     """Parts of a density field: see skeleton_kernels for what they mean."""
 
     corners: Floats
-    """(p, 3, 3) [m]: ends a and b, and c of a triangle; a segment has c = a, a point a = b = c."""
+    """(p, 3, 3) [m]: ends a and b, and c of a triangle or curve; a segment has c = a, a point a = b = c."""
     radii: Floats
     """(p, 2) [m] > 0, at a and at b; of a triangle the first counts."""
     weights: Floats
@@ -46,10 +46,23 @@ class Skeleton:
     """(p,) whole numbers >= 0: of the parts of a group the largest density counts."""
     kernel: int = 0
     """Index into KERNELS."""
+    middles: Floats | None = None
+    """(p,) [m] > 0, the radius at the control point c of a quadratic Bezier curve a c b; NaN for other parts."""
+
+    @property
+    def curved(self) -> NDBool:
+        """(p,) which parts are curves."""
+        return np.zeros(len(self.weights), dtype=bool) if self.middles is None else np.isfinite(self.middles)
+
+    @property
+    def largest(self) -> Floats:
+        """(p,) [m] a radius that a part has nowhere more than."""
+        ends: Floats = self.radii.max(axis=1)
+        return ends if self.middles is None else np.fmax(ends, self.middles)
 
     def weighted(self, weights: Floats) -> Skeleton:
         """The same parts with other weights (p,)."""
-        return Skeleton(self.corners, self.radii, weights, self.groups, self.kernel)
+        return replace(self, weights=weights)
 
     def plain(self) -> NDBool:
         """(p,) which parts are points or segments of one radius, alone in their group, with Wyvill's kernel."""
@@ -57,14 +70,15 @@ class Skeleton:
         _, where, count = np.unique(self.groups, return_inverse=True, return_counts=True)
         lone = count[where] == 1
         flat = (c == a).all(axis=1) | (c == b).all(axis=1)
-        plain: NDBool = lone & flat & (self.radii[:, 0] == self.radii[:, 1]) & (self.kernel == 0)
+        plain: NDBool = lone & flat & ~self.curved & (self.radii[:, 0] == self.radii[:, 1]) & (self.kernel == 0)
         return plain
 
     def chosen(self, which: NDBool) -> Skeleton:
         """Some of the parts."""
+        middles = None if self.middles is None else self.middles[which]
         return Skeleton(
-            self.corners[which], self.radii[which], self.weights[which], self.groups[which], self.kernel
-        )  # fmt: skip
+            self.corners[which], self.radii[which], self.weights[which], self.groups[which], self.kernel, middles
+        )
 
     def density_rows(self) -> Floats:
         """(p, 8) rows of the operation DENSITY, which knows plain parts alone."""
@@ -75,8 +89,12 @@ class Skeleton:
     def rows(self) -> Floats:
         """(r, 8) rows of the operation SKELETON: parts by place, groups kept together, boxes before what they hold."""
         corners, radii, shapes, condition = _settled(self.corners, self.radii)
+        curved = self.curved
+        corners[curved], radii[curved], shapes[curved] = self.corners[curved], self.radii[curved], CURVE
+        if self.middles is not None:
+            condition[curved] = self.middles[curved]
         low, high = corners.min(axis=1), corners.max(axis=1)
-        reach = radii.max(axis=1)[:, None]
+        reach = self.largest[:, None]
         order = _order(0.5 * (low + high), self.groups)
         low, high = (low - reach)[order], (high + reach)[order]
         room = WIDER * (high - low + np.abs(low) + np.abs(high))

@@ -5,10 +5,13 @@ The distance to a part changes no faster than the point moves, nor does the vect
 """
 
 import numpy as np
+from numba import types
 
+from sceneql.compiling.late import late
 from sceneql.field.falloff_kernels import falloff, falloff_slope
-from sceneql.field.skeleton_enclosure_kernels import CONDITION
-from sceneql.field.skeleton_kernels import (
+from sceneql.field.skeleton_kernels import outside_node, radius_at, to_part
+from sceneql.field.skeleton_parts_kernels import (
+    CURVE,
     GROUP,
     KERNEL,
     NODE,
@@ -16,13 +19,15 @@ from sceneql.field.skeleton_kernels import (
     SHAPE,
     STRIDE,
     WEIGHT,
-    outside_node,
-    radius_at,
-    to_part,
+    condition,
+    largest_radius,
+    least_radius,
 )
 from sceneql.kernels import inlined
 
 ULPS = 1.2e-15
+F = types.float64
+curve_way = late("sceneql.field.curve_kernels:curve_way", types.UniTuple(F, 2)(F[:, ::1], types.int64, F, F, F, F))
 
 
 @inlined
@@ -44,16 +49,21 @@ def range_of(parts, i, x, y, z, diagonal):
     for k in range(3):
         size += abs(parts[i, k]) + abs(parts[i, k + 3]) + abs(parts[i + 1, k])
         length2 += (parts[i, k + 3] - parts[i, k]) ** 2
-    off = diagonal * (1.0 + 1.0e-14) + 8.0 * ULPS * size * parts[i + 1, CONDITION]
+    off = diagonal * (1.0 + 1.0e-14) + 8.0 * ULPS * size * condition(parts, i)
     one = parts[i, RADIUS]
     two = radius_at(parts, i, 1.0)
     radius = radius_at(parts, i, q)
-    small = min(one, two)
-    large = max(one, two)
+    small = least_radius(parts, i)
+    large = largest_radius(parts, i)
     r = np.sqrt(wx * wx + wy * wy + wz * wz)
     nearest = max(r / radius * (1.0 - 8.0 * ULPS) - off / small, 0.0)
     farthest = (r + off) / radius * (1.0 + 8.0 * ULPS)
-    if one != two and length2 > 0.0:
+    if parts[i + 1, SHAPE] == CURVE:
+        move, change = curve_way(parts, i, x, y, z, off)
+        off += move * (1.0 + 1.0e-12)
+        small = max(small, radius - change * (1.0 + 1.0e-12))
+        large = min(large, radius + change * (1.0 + 1.0e-12))
+    elif one != two and length2 > 0.0:
         # How far the best point may go: dq/dx = (s R(a) + r (2 w - q s))/den.
         along = 0.0
         change = two - one

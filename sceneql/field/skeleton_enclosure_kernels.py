@@ -9,26 +9,27 @@ import numpy as np
 
 from sceneql.field.falloff_kernels import falloff, falloff_slope
 from sceneql.field.forms_kernels import PAD, TINY, larger_of
-from sceneql.field.skeleton_kernels import (
+from sceneql.field.skeleton_kernels import radius_at, to_part
+from sceneql.field.skeleton_parts_kernels import (
+    CURVE,
     GROUP,
     KERNEL,
     NODE,
     RADIUS,
-    RADIUS_B,
     SEGMENT,
     SHAPE,
     STRIDE,
     WEIGHT,
-    radius_at,
-    to_part,
+    condition,
+    convex,
+    largest_radius,
+    least_radius,
 )
 from sceneql.kernels import inlined
 
 LISTED, LISTED_FROM, LISTED_TO = 4, 5, 6
 """Columns of a skeleton's row: how many rows are listed behind those of the surveyed parts, and for which piece of the
 line, from where to where along it."""
-CONDITION = 7
-"""Column of a part's second row: how much more than a segment's a triangle's distance suffers from rounding."""
 
 
 @inlined
@@ -59,7 +60,7 @@ def rounding(table, i, cx, cy, cz, ux, uy, uz):
     size = abs(cx) + abs(cy) + abs(cz) + abs(ux) + abs(uy) + abs(uz)
     for k in range(3):
         size += abs(table[i, k]) + abs(table[i, k + 3]) + abs(table[i + 1, k])
-    return 8.0 * PAD * size * table[i + 1, CONDITION]
+    return 8.0 * PAD * size * condition(table, i)
 
 
 @inlined
@@ -69,7 +70,7 @@ def span_of(table, i, cx, cy, cz, half, blur):
     r = np.sqrt(wx * wx + wy * wy + wz * wz)
     radius = radius_at(table, i, q)
     way = (half + blur) * (1.0 + 8.0 * PAD)
-    least = r / radius * (1.0 - 8.0 * PAD) - way / min(table[i, RADIUS], table[i + 1, RADIUS_B])
+    least = r / radius * (1.0 - 8.0 * PAD) - way / least_radius(table, i)
     return least, (r + way) / radius * (1.0 + 8.0 * PAD)
 
 
@@ -78,8 +79,8 @@ def part_segment(table, i, cx, cy, cz, ux, uy, uz, speed2, point_blur):
     """(least s, s0, s1, e): s of the part at row i lies in s0 + s1 tau +- e at the point c + u tau.
 
     s is the least of parabolas, each of second derivative 2 |u|^2/R^2 at most: it lies above its chord less that much
-    of 1 - tau^2, and below its tangent in the middle plus that much of tau^2. Of one radius it is convex besides,
-    and so below its chord.
+    of 1 - tau^2, and below its tangent in the middle plus that much of tau^2. Where it is convex besides, it lies below
+    its chord.
     """
     ax, ay, az, first = to_part(table, i, cx - ux, cy - uy, cz - uz)
     bx, by, bz, second = to_part(table, i, cx + ux, cy + uy, cz + uz)
@@ -88,7 +89,7 @@ def part_segment(table, i, cx, cy, cz, ux, uy, uz, speed2, point_blur):
     two = radius_at(table, i, second)
     low = (ax * ax + ay * ay + az * az) / (one * one)
     high = (bx * bx + by * by + bz * bz) / (two * two)
-    small = min(table[i, RADIUS], table[i + 1, RADIUS_B])
+    small = least_radius(table, i)
     steep = speed2 / (small * small) * (1.0 + 8.0 * PAD)
     mean = 0.5 * (low + high)
     slope = 0.5 * (high - low)
@@ -97,7 +98,7 @@ def part_segment(table, i, cx, cy, cz, ux, uy, uz, speed2, point_blur):
         least = mean - steep - slope * slope / (4.0 * steep)
     bottom = mean - steep
     top = mean
-    if table[i, RADIUS] != table[i + 1, RADIUS_B]:
+    if not convex(table, i):
         wx, wy, wz, q = to_part(table, i, cx, cy, cz)
         radius = radius_at(table, i, q)
         inverse = 1.0 / (radius * radius)
@@ -129,7 +130,7 @@ def fallen(kind, least, s0, s1, es):
 
 @inlined
 def passes_by(parts, i, cx, cy, cz, ux, uy, uz, speed2, blur):
-    """Whether the points c + u tau +- blur, tau in [-1, 1], surely miss the ball around segment i's reach."""
+    """Whether the points c + u tau +- blur, tau in [-1, 1], surely miss a ball around segment or curve i's reach."""
     wx = cx - 0.5 * (parts[i, 0] + parts[i, 3])
     wy = cy - 0.5 * (parts[i, 1] + parts[i, 4])
     wz = cz - 0.5 * (parts[i, 2] + parts[i, 5])
@@ -138,7 +139,13 @@ def passes_by(parts, i, cx, cy, cz, ux, uy, uz, speed2, blur):
     sz = parts[i, 5] - parts[i, 2]
     square = wx * wx + wy * wy + wz * wz
     way = abs(wx * ux + wy * uy + wz * uz)
-    reach = 0.5 * np.sqrt(sx * sx + sy * sy + sz * sz) + max(parts[i, RADIUS], parts[i + 1, RADIUS_B]) + 2.0 * blur
+    half2 = 0.25 * (sx * sx + sy * sy + sz * sz)
+    if parts[i + 1, SHAPE] == CURVE:
+        sx = parts[i + 1, 0] - 0.5 * (parts[i, 0] + parts[i, 3])
+        sy = parts[i + 1, 1] - 0.5 * (parts[i, 1] + parts[i, 4])
+        sz = parts[i + 1, 2] - 0.5 * (parts[i, 2] + parts[i, 5])
+        half2 = max(half2, sx * sx + sy * sy + sz * sz)
+    reach = np.sqrt(half2) + largest_radius(parts, i) + 2.0 * blur
     least = reach * reach * (1.0 + 1.0e-9) + 1.0e-12 * (square + speed2)
     if way < speed2:
         return square * speed2 - way * way > least * speed2
@@ -155,8 +162,8 @@ def within_reach(parts, start, stop, scratch, base, cx, cy, cz, ux, uy, uz, spee
             clear = segment_outside(parts, i, cx, cy, cz, ux, uy, uz, point_blur)
             i += STRIDE + (int(parts[i, RADIUS]) if clear else 0)
             continue
-        plain = parts[i + 1, SHAPE] == SEGMENT
-        if plain and passes_by(parts, i, cx, cy, cz, ux, uy, uz, speed2, point_blur):
+        thin = parts[i + 1, SHAPE] == SEGMENT or parts[i + 1, SHAPE] == CURVE
+        if thin and passes_by(parts, i, cx, cy, cz, ux, uy, uz, speed2, point_blur):
             i += STRIDE
             continue
         least, _, _, _ = part_segment(parts, i, cx, cy, cz, ux, uy, uz, speed2, point_blur)

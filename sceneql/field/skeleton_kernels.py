@@ -1,24 +1,34 @@
 # mypy: ignore-errors
 """Density fields of skeletons: values and gradients of parts of any shape and kernel, in a hierarchy of boxes.
 
-A part takes two rows of the tape's parts: end a (3), end b (3), radius at a, weight; corner c (3), radius at b, kernel,
-group, shape. Its density is K(s), s the least |x - p|^2/R(p)^2 over the points p of the segment a b or the triangle
-a b c; R changes evenly along a segment from a's radius to b's. Of the parts of one group, which follow each other, the
-largest density counts; what groups give is added up. A NODE is a box (low, high) and the number of rows behind it that
-reach no farther.
+The density of a part (rows as in skeleton_parts_kernels) is K(s), s the least |x - p|^2/R(p)^2 over the points p of
+the segment a b, the triangle a b c or the quadratic Bezier curve a c b; R changes evenly along a segment from a's
+radius to b's, quadratically along a curve. Of the parts of one group, which follow each other, the largest density
+counts; what groups give is added up.
 """
 
 import numpy as np
+from numba import types
 
+from sceneql.compiling.late import late
 from sceneql.field.falloff_kernels import falloff, falloff_slope
+from sceneql.field.skeleton_parts_kernels import (
+    CURVE,
+    GROUP,
+    KERNEL,
+    MIDDLE,
+    NODE,
+    RADIUS,
+    RADIUS_B,
+    SHAPE,
+    STRIDE,
+    TRIANGLE,
+    WEIGHT,
+)
 from sceneql.kernels import inlined
 
-RADIUS, WEIGHT = 6, 7
-RADIUS_B, KERNEL, GROUP, SHAPE = 3, 4, 5, 6
-"""Columns of a part's second row."""
-SEGMENT, TRIANGLE, NODE = range(3)
-STRIDE = 2
-"""Rows of a part."""
+F = types.float64
+to_curve = late("sceneql.field.curve_kernels:to_curve", types.UniTuple(F, 4)(F[:, ::1], types.int64, F, F, F))
 
 
 @inlined
@@ -99,12 +109,18 @@ def to_part(parts, i, x, y, z):
             ax, ay, az, bx, by, bz, parts[i + 1, 0], parts[i + 1, 1], parts[i + 1, 2], x, y, z
         )  # fmt: skip
         return wx, wy, wz, 0.0
+    if parts[i + 1, SHAPE] == CURVE:
+        return to_curve(parts, i, x, y, z)
     return to_segment(ax, ay, az, bx, by, bz, parts[i, RADIUS], parts[i + 1, RADIUS_B], x, y, z)
 
 
 @inlined
 def radius_at(parts, i, q):
     """Radius of the part at row i at a place along it."""
+    if parts[i + 1, SHAPE] == CURVE:
+        ra = parts[i, RADIUS]
+        rc = parts[i + 1, MIDDLE]
+        return ra + q * (2.0 * (rc - ra) + q * (ra - 2.0 * rc + parts[i + 1, RADIUS_B]))
     return parts[i, RADIUS] + q * (parts[i + 1, RADIUS_B] - parts[i, RADIUS])
 
 

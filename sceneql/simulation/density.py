@@ -23,7 +23,7 @@ def reaches(skeleton: Skeleton, threshold: float) -> Floats:
 
     from sceneql.field.skeleton import farthest
 
-    radii, weights = skeleton.radii.max(axis=1), skeleton.weights
+    radii, weights = skeleton.largest, skeleton.weights
     giving = weights > 0
     gaps = _gaps(skeleton.corners) if len(radii) <= PAIRWISE_LIMIT else None
     reach = np.where(giving, radii, 0.0)

@@ -24,12 +24,16 @@ MOST = 200_000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Shape:
-    """Some parts at an instant: corners (p, 3, 3) and radii (p, 2) [m], weights (p,), and groups (p,) from 0 on."""
+    """Some parts at an instant: corners (p, 3, 3) and radii (p, 2) [m], weights (p,), and groups (p,) from 0 on.
+
+    Curves have ``middles`` (p,) [m], the radii at their control points, which are their third corners.
+    """
 
     corners: Floats
     radii: Floats
     weights: Floats
     groups: Floats
+    middles: Floats | None = None
 
 
 class Part(Record):
@@ -45,7 +49,7 @@ class Part(Record):
     points: Points | None = field("Points, each a part of its own; with `triangles` their corners.", None)
     segments: Pairs | None = field("Pairs of points, each a part of its own: `cage.springs`.", None)
     polyline: Points | None = field("A line through points.", None)
-    spline: Points | None = field("A smooth line through points: the cubic with the slopes of chords.", None)
+    spline: Points | None = field("A smooth line through points, with the slopes of chords.", None)
     polygon: Points | None = field("A flat face with these corners, which may be concave.", None)
     triangles: Numbers | None = field("Faces of `points`, by their numbers from 0: `sheet.triangles`.", None)
     closed: bool = field("The line runs on from its last point to its first.", False)
@@ -119,12 +123,13 @@ class Part(Record):
         radii = each(self.radius, len(places), "points", moment)
         if self.closed:
             places, radii = np.concatenate([places, places[:1]]), np.concatenate([radii, radii[:1]])
-        if self.spline is not None:
-            if (places[1:] == places[:-1]).all(axis=1).any():
-                raise failure("two points of a spline that follow each other are the same", value, moment)
-            places, radii = smooth(places, radii, self.closed)
-        corners = np.stack([places[:-1], places[1:], places[:-1]], axis=1)
-        return Shape(corners, np.stack([radii[:-1], radii[1:]], axis=1), *self._as_one(len(corners), moment))
+        if self.spline is None:
+            corners = np.stack([places[:-1], places[1:], places[:-1]], axis=1)
+            return Shape(corners, np.stack([radii[:-1], radii[1:]], axis=1), *self._as_one(len(corners), moment))
+        if (places[1:] == places[:-1]).all(axis=1).any():
+            raise failure("two points of a spline that follow each other are the same", value, moment)
+        corners, radii = smooth(places, radii, self.closed)
+        return Shape(corners, radii[:, :2], *self._as_one(len(corners), moment), radii[:, 2])
 
     def _polygon(self, places: Floats, value: Value, moment: Moment) -> Shape:
         from sceneql.simulation.ears import ears

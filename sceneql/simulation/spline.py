@@ -1,4 +1,4 @@
-"""A smooth line through points, as a chain of short straight pieces."""
+"""A smooth line through points, as a chain of quadratic curves that share their tangents where they meet."""
 
 from __future__ import annotations
 
@@ -8,16 +8,20 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 OFF = 3e-4
-"""How far the pieces may lie off the curve, in parts of the radius there."""
+"""How far the curves may lie off the cubic, in parts of the radius there."""
 MOST = 64
-"""Pieces between two points."""
+"""Pairs of curves between two points."""
+HELD = 0.5
+"""Parts of the least radius that the radius may come down to between points."""
 
 
 def smooth(points: Floats, radii: Floats, closed: bool) -> tuple[Floats, Floats]:
-    """(places (m, 3), radii (m,)) along the cubic through points (n, 3) with the slopes of chords (Catmull & Rom 1974).
+    """(corners (m, 3, 3), radii (m, 3)) of Bezier curves along the cubic through points (n, 3).
 
-    Its parameter is the length of the polygon, as along the path of a `motion`. Of a closed line the last point is the
-    first. The radius goes the same way.
+    Of each curve: first end, last end, control point. The cubic has the slopes of chords (Catmull & Rom 1974); its
+    parameter is the length of the polygon, as along the path of a `motion`. A pair of quadratic curves, halved in the
+    middle, has the places and the slopes of a piece of it at both ends (Powell & Sabin 1977, in one dimension). Of a
+    closed line the last point is the first. The radius goes the same way, but not far below what it is at the points.
     """
     import numpy as np
 
@@ -28,17 +32,26 @@ def smooth(points: Floats, radii: Floats, closed: bool) -> tuple[Floats, Floats]
     slopes[1:-1] = (data[2:] - data[:-2]) / (t[2:] - t[:-2])[:, None]
     slopes[0] = (data[1] - data[0]) / steps[0]
     slopes[-1] = (data[-1] - data[-2]) / steps[-1]
+    behind, ahead = np.concatenate([steps[:1], steps]), np.concatenate([steps, steps[-1:]])
     if closed:
         slopes[0] = slopes[-1] = (data[1] - data[-2]) / (steps[0] + steps[-1])
-    found = [data[:1]]
+        behind[0], ahead[-1] = steps[-1], steps[0]
+    # A cubic lies within its control points, which are a third of its slopes away from its ends.
+    room = 3.0 * (radii - HELD * radii.min())
+    slopes[:, 3] = np.clip(slopes[:, 3], -room / ahead, room / behind)
+    found = []
     for k, h in enumerate(steps):
         a, b, p, q = data[k], data[k + 1], h * slopes[k], h * slopes[k + 1]
-        # The second derivative of a cubic is largest at an end; a chord of 1/n of it lies within bend/(8 n^2).
-        bend = max(np.linalg.norm((6 * (b - a) - 4 * p - 2 * q)[:3]), np.linalg.norm((6 * (a - b) + 2 * p + 4 * q)[:3]))
-        n = int(np.clip(np.ceil(np.sqrt(bend / (8 * OFF * min(radii[k], radii[k + 1])))), 1, MOST))
-        s = (np.arange(1, n + 1) / n)[:, None]
-        found.append(
-            (2 * s**3 - 3 * s**2 + 1) * a + (s**3 - 2 * s**2 + s) * p + (3 * s**2 - 2 * s**3) * b + (s**3 - s**2) * q
-        )
-    path = np.concatenate(found)
-    return path[:, :3], np.maximum(path[:, 3], radii.min())
+        # The pair is off by t (1 - t)^2/48 times the third derivative, t from the middle to an end: 1/324 at most.
+        third = float(np.linalg.norm(12.0 * (a - b) + 6.0 * (p + q)))
+        n = int(np.clip(np.ceil(np.cbrt(third / (324.0 * OFF * min(radii[k], radii[k + 1])))), 1, MOST))
+        s = (np.arange(n + 1) / n)[:, None]
+        places = (2 * s**3 - 3 * s**2 + 1) * a + (s**3 - 2 * s**2 + s) * p + (3 * s**2 - 2 * s**3) * b
+        places += (s**3 - s**2) * q
+        ways = (6 * (s**2 - s) * (a - b) + (3 * s**2 - 4 * s + 1) * p + (3 * s**2 - 2 * s) * q) / (4 * n)
+        first, last = places[:-1] + ways[:-1], places[1:] - ways[1:]
+        middle = 0.5 * (first + last)
+        pairs = np.stack([places[:-1], middle, first, middle, places[1:], last], axis=1)
+        found.append(pairs.reshape(2 * n, 3, 4))
+    curves = np.concatenate(found)
+    return curves[:, :, :3].copy(), curves[:, :, 3].copy()

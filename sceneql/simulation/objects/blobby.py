@@ -88,7 +88,13 @@ class Blobby(Object):
         corners, radii, weights = (
             np.concatenate([getattr(shape, name) for shape in shapes]) for name in ("corners", "radii", "weights")
         )
-        return Skeleton(corners, radii, weights, np.concatenate(groups), get_args(Kernel).index(self.kernel))
+        middles = None
+        if any(shape.middles is not None for shape in shapes):
+            straight = [np.full(len(shape.weights), np.nan) for shape in shapes]
+            middles = np.concatenate(
+                [none if shape.middles is None else shape.middles for shape, none in zip(shapes, straight, strict=True)]
+            )
+        return Skeleton(corners, radii, weights, np.concatenate(groups), get_args(Kernel).index(self.kernel), middles)
 
     def _shapes(self, moment: Moment) -> list[Shape]:
         import numpy as np
