@@ -14,8 +14,10 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.simulation.island import System
 
-FULL = 150
-"""Unknowns up to which full matrices are factored."""
+FULL = 100
+"""Unknowns up to which full matrices are factored: at so many both ways take as long."""
+LARGEST = 100_000
+"""Unknowns up to which `auto` thinks of radau: a Jacobian, its factors and the stages take some 10 kB each."""
 _SOLVERS = "sceneql.simulation.solvers"
 
 
@@ -39,6 +41,16 @@ def radau_systems(system: System) -> Systems:
 
     few = _unknowns(system) <= FULL
     return _full(reduction(system)) if few else _sparse(system)
+
+
+def step_cost(unknowns: int) -> float:
+    """Steps of dopri5 that take as long as one of radau.
+
+    Full: 8 rates to 6, the Jacobian, a real and a complex factorization. Sparse: somewhat more than was measured on
+    chains (40 to 75), nets (50 to 100 with up to 2,000 unknowns, 190 with 8,000) and lattices (tests/bench/
+    bench_stiff_steps.py).
+    """
+    return (11.0 + 0.055 * unknowns**2) / 6.0 if unknowns <= FULL else 60.0 + 1.4 * unknowns**0.5
 
 
 def likely_kernels(system: System) -> tuple[str, ...]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from sceneql.simulation.radau_systems import LARGEST, step_cost
 from sceneql.simulation.spectrum import boundary, dominant
 
 if TYPE_CHECKING:
@@ -24,8 +25,6 @@ TRIAL = 100
 """Steps of a stiff method after which it is looked at first, and after which it is first judged."""
 PATIENCE = 1 / 3
 """Part of its cost that a stiff step has to replace: vibrations that its start excites take it some time to damp."""
-LARGEST = 400
-"""Unknowns of the linear systems up to which a stiff method is tried."""
 
 
 class Switch:
@@ -44,8 +43,8 @@ class Switch:
 
     @property
     def cost(self) -> float:
-        """Explicit steps that one stiff step costs: 8 rates to 6, the Jacobian, a real and a complex factorization."""
-        return (11.0 + 0.055 * self.size**2) / 6.0
+        """Explicit steps that one stiff step costs."""
+        return step_cost(self.size)
 
     def start(self, march: March, y: Floats, step: float) -> None:
         """Choose the method to begin with; ``step`` [s]: what the tolerance seems to allow at the start."""

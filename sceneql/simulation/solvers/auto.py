@@ -20,11 +20,12 @@ if TYPE_CHECKING:
 class Auto(Solver):
     """The solver that suits: dopri5, and radau where stability rather than the tolerance would hold its steps.
 
-    The choice is made at the start, by the fastest mode of the island and the step that the tolerance allows, and
-    looked at again during the run; `explain` says the first and why. Local contacts keep it with dopri5, since they act
-    at the ends of steps, which stiffness must not make long. A field on a grid is marched by tr_bdf2, and on a box
-    whose coefficient and boundary do not vary by exact. Sources: see these words; the sign of stiffness is that of
-    Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.2.
+    The choice is made at the start, by the fastest mode of the island, the step that the tolerance allows and what a
+    step of radau costs with so many unknowns, and looked at again during the run; `explain` says the first and why.
+    (On large nets tr_bdf2 is quicker where errors of 1e-4 will do: ask for it by name.) Local contacts keep it with
+    dopri5, since they act at the ends of steps, which stiffness must not make long. A field on a grid is marched by
+    tr_bdf2, and on a box whose coefficient and boundary do not vary by exact. Sources: see these words; the sign of
+    stiffness is that of Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.2.
     """
 
     tolerance: FixedScalar = field(
