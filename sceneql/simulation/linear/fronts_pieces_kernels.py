@@ -2,8 +2,9 @@
 """Pieces of a plan (fronts_kernels): the subtrees of fronts that threads share where there are many operations."""
 
 from sceneql.kernels import kernel
+from sceneql.simulation.linear.fronts_backward_kernels import backward
+from sceneql.simulation.linear.fronts_forward_kernels import forward
 from sceneql.simulation.linear.fronts_plan_kernels import PIECES_AT
-from sceneql.simulation.linear.fronts_solve_kernels import backward, forward
 from sceneql.simulation.linear.fronts_symmetric_kernels import factor_fronts
 from sceneql.simulation.threads_kernels import TILE
 

@@ -3,8 +3,9 @@
 
 from numba import types
 
+from sceneql.kernels import lean_inlined
 from sceneql.simulation.numbered_kernels import kernel_at
-from sceneql.system_kernels import A, I
+from sceneql.system_kernels import A, I, N
 
 PIECES_AT, PIECES, ENTRY, THREADS, PIECE_AT, UNIT, FORWARD, BACKWARD = range(8, 16)
 SINGLE_FACTOR, SINGLE_SOLVE, SINGLE_PIECE, SINGLE_FORWARD, SINGLE_BACKWARD = range(16, 21)
@@ -18,3 +19,13 @@ PAD = 16
 FACTOR_SINGLE = types.boolean(I, A, A, A)
 SOLVE_SINGLE = types.boolean(I, A, A, A, A)
 factor_single_at, solve_single_at = kernel_at(FACTOR_SINGLE), kernel_at(SOLVE_SINGLE)
+
+ROWS = 4
+"""Of the factors, that a pass of a solution reads at a time."""
+PASS = types.void(I, A, A, A, N, N)
+
+
+@lean_inlined
+def at_front(plan, s):
+    """Where the numbers that are carried to a front start: behind each front's there is room for lanes beyond it."""
+    return plan[HEAD + FIELDS * s + 3] + PAD * s

@@ -15,6 +15,8 @@ from numba import types
 
 from sceneql.kernels import kernel, lean, lean_inlined
 from sceneql.simulation.arithmetic_kernels import bits, from_bits
+from sceneql.simulation.linear.fronts_backward_kernels import backward_of
+from sceneql.simulation.linear.fronts_forward_kernels import forward_of
 from sceneql.simulation.linear.fronts_plan_kernels import (
     COLUMNS_AT,
     ENTRY,
@@ -22,6 +24,7 @@ from sceneql.simulation.linear.fronts_plan_kernels import (
     FACTOR_SINGLE,
     IN_SINGLE,
     NEW,
+    PASS,
     PIECES,
     PIECES_AT,
     SCALE,
@@ -35,7 +38,6 @@ from sceneql.simulation.linear.fronts_plan_kernels import (
     UNIT,
     WEAK,
 )
-from sceneql.simulation.linear.fronts_solve_kernels import PASS, backward_of, forward_of
 from sceneql.simulation.linear.fronts_symmetric_kernels import FACTOR_FRONTS, fronts_of
 from sceneql.simulation.threads_kernels import TILE, over_threads
 from sceneql.system_kernels import A, I

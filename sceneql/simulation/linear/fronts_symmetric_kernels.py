@@ -10,6 +10,7 @@ that threads share; the bytes do not depend on how many there are.
 
 import math
 
+import numpy as np
 from numba import types
 
 from sceneql.kernels import lean, lean_inlined
@@ -35,6 +36,9 @@ TINY = 1e-18
 """In single precision and a matrix whose largest number is about 1: what is less is made 0."""
 TILE = 384
 """Columns that are updated at a time: what of U belongs to them stays in the cache."""
+
+NOWHERE = np.int64(0)
+"""Shifted by nothing, in the type of all shifts: numba would compile `update` once more for a plain 0."""
 
 FACTOR_SYMMETRIC = types.boolean(I, A, A, A)
 FACTOR_FRONTS = types.boolean(I, A, A, A, N, N)
@@ -122,7 +126,7 @@ def eliminate(panel, height, begin, end):
     for low in range(begin, end, ROWS):
         high = min(low + ROWS, end)
         if low > begin:
-            update(panel, height, begin, low, panel, height, 0, low, high)
+            update(panel, height, begin, low, panel, height, NOWHERE, low, high)
         for few in range(low, high, FEW):
             if not eliminate_few(panel, height, few, min(few + FEW, high)):
                 return False
@@ -209,7 +213,7 @@ def fronts_of(plan, values, scale, factors, work, begin, end):
             high = min(low + MOST, width)
             if not eliminate(panel, height, low, high):
                 return False
-            update(panel, height, low, high, panel, height, 0, high, width)
+            update(panel, height, low, high, panel, height, NOWHERE, high, width)
             update(panel, height, low, high, square, rest, width, width, height)
     return True
 

@@ -203,7 +203,7 @@ def likely_kernels(system: System) -> tuple[str, ...]:
         return ()
     few = (system.partner < 0).sum() <= SMALL
     # The process beside begins with the first, this one with the last.
-    names = ("dense_systems",) if few else ("fronts_solve", "fronts", "fronts_symmetric")
+    names = ("dense_systems",) if few else ("fronts_forward", "fronts", "fronts_backward", "fronts_symmetric")
     return tuple(f"{__package__}.{name}_kernels" for name in names)
 
 
