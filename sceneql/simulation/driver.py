@@ -96,6 +96,12 @@ def modules(structure: Structure) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name.partition(":")[0] for name in names))
 
 
+def late_first(structure: Structure) -> list[str]:
+    """Modules that contacts will soon ask for, in their order, when this process will be busy with the others."""
+    local = dict.fromkeys(name.partition(":")[0] for name in structure.local)
+    return [first for module in local for first in getattr(load(module), "FIRST", ())]
+
+
 def text(structure: Structure) -> str:
     """The module's text."""
     names: dict[str, str] = {}

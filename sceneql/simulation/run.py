@@ -104,7 +104,7 @@ class IslandRun:
         from sceneql.ahead import compile_ahead
         from sceneql.compiling import late
         from sceneql.simulation.assembled import blocks_of, models_of
-        from sceneql.simulation.driver import driver, function, jacobian, modules
+        from sceneql.simulation.driver import driver, function, jacobian, late_first, modules
         from sceneql.simulation.jacobian import BY_DIFFERENCES
         from sceneql.simulation.linear.stage import likely_kernels
 
@@ -134,8 +134,10 @@ class IslandRun:
         events = ("sceneql.simulation.events_kernels",) if system.pairs else ()
         likely = likely_kernels if stepper.likely is None else function(stepper.likely)
         solving = (stepper.step.partition(":")[0], *likely(system))
-        acting = compile_ahead((*solving, *modules(system.structure), *events))
+        dense = () if stepper.dense is None or system.structure.local else (stepper.dense.partition(":")[0],)
+        acting = compile_ahead((*solving, *modules(system.structure), *events, *dense))
         acting(*solving)
+        compile_ahead(late_first(system.structure))
         if stepper.march is None:  # while the process beside compiles what solves
             driver(system.structure)
             if stepper.jacobian:

@@ -172,5 +172,5 @@ DORMAND_PRINCE = Tableau(
     ),
     (35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84, 0.0),
     (5179 / 57600, 0.0, 7571 / 16695, 393 / 640, -92097 / 339200, 187 / 2100, 1 / 40),
-    dense=f"{KERNELS}:dopri5_dense",
+    dense="sceneql.simulation.solvers.dopri5_dense_kernels:dopri5_dense",
 )

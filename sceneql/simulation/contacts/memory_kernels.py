@@ -43,10 +43,14 @@ HOLDS = -1.0
 
 ANSWER = types.void(F, F, A, A, A, A, A, A, I)
 """(start and end of the step, state at both, bodies found, room for a path and its mean acceleration, floats, ints)."""
+BRAKE = types.void(F, N, N, F, A, A, A, I)
+"""(time, body, object, length of the step, state at its start and end, floats, ints)."""
 KEEP = types.boolean(F, N, N, A, A, I)
 """(time, body, object, state, floats, ints): whether anything changed."""
 HOLD = types.void(A, A, A, I)
 """(state, rate, floats, ints)."""
+OF_BODY = types.void(N, A, A, A, I)
+"""(body, state, rate, floats, ints)."""
 SETTLE_HELD = types.void(F, F, A, A, A, I)
 """(start and end of the step, state at both, floats, ints)."""
 SUPPORT = types.void(N, A, A, A, I)

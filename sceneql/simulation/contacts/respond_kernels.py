@@ -9,6 +9,7 @@ two steps is no impact: the body rests (resting_kernels), and slides for the res
 
 from numba import types
 
+from sceneql.compiling.late import late
 from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.contacts.impulse_kernels import (
     BODIES,
@@ -32,6 +33,7 @@ from sceneql.simulation.contacts.meet_kernels import earliest
 from sceneql.simulation.contacts.memory_kernels import (
     ANSWER,
     ASKED,
+    BRAKE,
     CREEPS,
     CUTS,
     FREE,
@@ -47,8 +49,10 @@ from sceneql.simulation.contacts.pair_kernels import is_flat
 from sceneql.simulation.contacts.path_kernels import NEVER, moving, place
 from sceneql.simulation.contacts.resting_kernels import come_to_rest, keep, lies
 from sceneql.simulation.contacts.shape_kernels import OBJECT, clear, surface, velocity
-from sceneql.simulation.contacts.slide_kernels import brake, fly_on, slide, start_with
+from sceneql.simulation.contacts.slide_kernels import fly_on, slide, start_with
 from sceneql.system_kernels import A, F, I, N
+
+brake = late("sceneql.simulation.contacts.friction_kernels:brake", BRAKE)
 
 MOST_IMPACTS = 8
 """Impacts of a body in one step; after that it is only kept outside."""
@@ -191,7 +195,8 @@ def settle_found(t0, t1, y0, y1, found, path, mean, floats, ints):
             continue
         reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
         for j in range(ints[OBJECTS]):
-            brake(t1, k, j, h, y0, y1, floats, ints)
+            if floats[ints[FRICTION]] > 0.0:
+                brake(t1, k, j, h, y0, y1, floats, ints)
             keep(t1, k, j, y1, floats, ints)
         pair = ints[PAIRS] + PAIR * k
         if ints[OBJECTS] == 1 and floats[pair] != FREE and floats[pair + PRESS] < 0.0:

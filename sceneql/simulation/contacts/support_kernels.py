@@ -1,8 +1,7 @@
 # mypy: ignore-errors
 """The normal force that carries bodies that rest, and Coulomb's friction: compiled when the first body needs them."""
 
-import math
-
+from sceneql.compiling.late import late
 from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.contacts.impulse_kernels import (
     BODIES,
@@ -10,44 +9,26 @@ from sceneql.simulation.contacts.impulse_kernels import (
     HEAD,
     INVERSE,
     LAST,
-    MASS,
     OBJECTS,
     PAIRS,
-    STILL,
     VELOCITY,
-    WORK,
 )
 from sceneql.simulation.contacts.memory_kernels import (
-    ALONG,
-    CREEPS,
     FREE,
     LIST,
     LOAD,
+    OF_BODY,
     PAIR,
     PRESS,
-    PULL,
     RESTING,
-    STICKS,
     SUPPORT,
 )
-from sceneql.simulation.contacts.pair_kernels import away, body_of, is_flat
-from sceneql.simulation.contacts.shape_kernels import FOUR, OBJECT, acceleration, bend, facing, surface, velocity
-from sceneql.system_kernels import A, I, N
+from sceneql.simulation.contacts.pair_kernels import away, is_flat
+from sceneql.simulation.contacts.pressing_kernels import pressing
+from sceneql.simulation.contacts.shape_kernels import facing
 
-SWEEPS = 50
-
-
-@lean(FOUR(N, N, A, A, A, I), inner=True)
-def pressing(k, j, y, rate, floats, ints):
-    """Second derivative of the gap [m/s^2] and the normal (3) there."""
-    at = HEAD + OBJECT * j
-    to = ints[VELOCITY] + 3 * k
-    px, py, pz, vx, vy, vz = body_of(ints, k, y)
-    ux, uy, uz = velocity(floats, ints, at, px, py, pz)
-    ax, ay, az = acceleration(floats, ints, at, px, py, pz)
-    _, nx, ny, nz = surface(floats, ints, at, px, py, pz)
-    press = (rate[to] - ax) * nx + (rate[to + 1] - ay) * ny + (rate[to + 2] - az) * nz
-    return press + bend(floats, ints, at, px, py, pz, vx - ux, vy - uy, vz - uz), nx, ny, nz
+rub = late("sceneql.simulation.contacts.friction_kernels:rub", OF_BODY)
+carry = late("sceneql.simulation.contacts.carry_kernels:carry", OF_BODY)
 
 
 @lean_inlined
@@ -81,70 +62,6 @@ def bear(k, memory, nx, ny, nz, rate, floats, ints):
     rate[to] += load * nx
     rate[to + 1] += load * ny
     rate[to + 2] += load * nz
-
-
-@lean_inlined
-def carry(k, y, rate, floats, ints):
-    """Normal forces, none negative, that leave no resting pair pressing: projected Gauss-Seidel over the pairs."""
-    to = ints[VELOCITY] + 3 * k
-    for _ in range(SWEEPS):
-        change = 0.0
-        for j in range(ints[OBJECTS]):
-            memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
-            if floats[memory] == FREE:
-                continue
-            press, nx, ny, nz = pressing(k, j, y, rate, floats, ints)
-            load = max(0.0, floats[memory + LOAD] - press)
-            add = load - floats[memory + LOAD]
-            floats[memory + LOAD] = load
-            rate[to] += add * nx
-            rate[to + 1] += add * ny
-            rate[to + 2] += add * nz
-            change = max(change, abs(add))
-        if change < 1e-12:
-            break
-
-
-@lean_inlined
-def rub(k, y, rate, floats, ints):
-    """Coulomb's friction of resting pairs: against the sliding, or up to its bound against the pull."""
-    mu = floats[ints[FRICTION]]
-    to = ints[VELOCITY] + 3 * k
-    for j in range(ints[OBJECTS]):
-        memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
-        most = mu * floats[memory + LOAD]
-        if floats[memory] == FREE or floats[memory] == CREEPS:
-            continue
-        at = HEAD + OBJECT * j
-        px, py, pz, vx, vy, vz = body_of(ints, k, y)
-        ux, uy, uz = velocity(floats, ints, at, px, py, pz)
-        vx, vy, vz = vx - ux, vy - uy, vz - uz
-        ax, ay, az = acceleration(floats, ints, at, px, py, pz)
-        _, nx, ny, nz = surface(floats, ints, at, px, py, pz)
-        dx, dy, dz = rate[to] - ax, rate[to + 1] - ay, rate[to + 2] - az
-        dn = dx * nx + dy * ny + dz * nz
-        dx, dy, dz = dx - dn * nx, dy - dn * ny, dz - dn * nz
-        size = math.sqrt(dx * dx + dy * dy + dz * dz)
-        floats[memory + PULL] = size
-        if floats[memory] == STICKS:
-            most = min(most, size)
-        else:
-            ax, ay, az = floats[memory + ALONG], floats[memory + ALONG + 1], floats[memory + ALONG + 2]
-            vn = vx * nx + vy * ny + vz * nz
-            dx, dy, dz = vx - vn * nx, vy - vn * ny, vz - vn * nz
-            size = math.sqrt(dx * dx + dy * dy + dz * dz)
-            # Past the instant when it stops the force goes on, so that the stop is a clean root.
-            if size < STILL:
-                dx, dy, dz, size = ax, ay, az, 1.0
-            elif dx * ax + dy * ay + dz * az < 0.0:
-                size = -size
-        if size == 0.0:
-            continue
-        dx, dy, dz = dx / size, dy / size, dz / size
-        rate[to] -= most * dx
-        rate[to + 1] -= most * dy
-        rate[to + 2] -= most * dz
-        rate[ints[WORK]] += floats[ints[MASS] + k] * most * (dx * vx + dy * vy + dz * vz)
 
 
 @lean_inlined
