@@ -9,6 +9,7 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.check import check, values_of
 from sceneql.compiler.passes.circles import report_circles
 from sceneql.compiler.passes.expand import expand
+from sceneql.compiler.passes.insides import report_hollow
 from sceneql.compiler.passes.islands import islands
 from sceneql.compiler.passes.layouts import check_layouts
 from sceneql.compiler.passes.prune import prune
@@ -30,6 +31,7 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
     check_studies(checked.settings.studies, script.root, catalogue, found)
     report_circles(checked.tasks, found)
     tasks = expand(checked.tasks, catalogue)
+    report_hollow(tasks, found)
     groups = islands(tasks, found)
     drawn = _drawn(tasks)
     cameras = _cameras(tasks)

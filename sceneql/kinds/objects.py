@@ -81,6 +81,10 @@ class Object(Kind):
         """Objects that are drawn by this one, and so not by themselves."""
         return ()
 
+    def joins(self) -> tuple[Ref, ...]:
+        """Those of its members whose insides it is made of."""
+        return ()
+
     def labels(self, name: str, moment: Moment) -> Iterable[tuple[Any, str]]:
         """Points (3,) in the world [m] with words that stand over them in the picture."""
         return ()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from sceneql.compiler.passes.insides import without_inside
 from sceneql.compiler.passes.reads import reads
 from sceneql.graph import Task
 from sceneql.kinds import Formula, Model, Object, Value
@@ -65,13 +66,7 @@ def _has_inside(task: Task, tasks: Mapping[str, Task]) -> bool:
 
     kind = task.kind
     assert isinstance(kind, Object)
-    return type(kind).collider is not Object.collider or _has_field(task, tasks)
-
-
-def _has_field(task: Task, tasks: Mapping[str, Task]) -> bool:
-    kind = task.kind
-    own = isinstance(kind, Object) and type(kind).implicit is not Object.implicit
-    return own and all(_has_field(member, tasks) for member in _members(task, tasks))
+    return type(kind).collider is not Object.collider or without_inside(task, tasks) is None
 
 
 def _changes_shape(task: Task, tasks: Mapping[str, Task]) -> bool:

@@ -5,23 +5,26 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from sceneql.kinds import FieldBuilder, Moment
+from sceneql.simulation.blend import largest
 from sceneql.simulation.csg import Combination
+from sceneql.simulation.placement import compose
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 
 class Intersection(Combination):
-    """All that lies in every member: its field is the largest of theirs (Ricci 1973)."""
+    """All that lies in every member: its field is the largest of theirs (Ricci 1973).
+
+    A `blend` rounds the edges where members' surfaces meet, by the smooth maximum that mirrors the smooth minimum of
+    a blended `union`: what is drawn lies inside of what would be without it.
+    """
 
     def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
         """Its field from those of its members."""
-        first, *others = self.values(build, x, y, z, moment)
-        for value in others:
-            first = build.op("max", first, value)
-        return first
+        return largest(build, self.values(build, x, y, z, moment), self.width(moment))
 
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
         """What the boxes of its members have in common; inverted where that is nothing."""
-        low, high = self.extents(place, moment)
+        low, high = self.extents(compose(place, self.local(moment)), moment)
         return low.max(axis=0), high.min(axis=0)
