@@ -15,6 +15,7 @@ from exact_rays import along, blob_entry, exact, first_entry, real_roots, roots_
 from moment import IDENTITY, FakeMoment, const
 from sceneql.field.builder import TapeBuilder
 from sceneql.field.certified_kernels import certify
+from sceneql.field.enclosure_kernels import segment
 from sceneql.field.gradient_kernels import gradient
 from sceneql.field.isolation_kernels import any_root, exit_root
 from sceneql.field.slope_kernels import on_ray
@@ -162,6 +163,18 @@ def test_surface_roots_are_those_of_exact_arithmetic(name):
         expected.append(("hit", places[0]) if places else ("miss", None))
     assert check(*cast(tape, *segments, TOLERANCE, surface=True), expected, *segments[2:]) == 0
     assert check(*certified(tape, *segments, touching=True), expected, *segments[2:]) == 0
+
+
+@pytest.mark.parametrize("text", ["abs(x)^2.5", "sqrt(abs(x))", "(x^2)^0.75", "sqrt(x^2)"])
+def test_powers_and_roots_of_what_is_never_negative_are_defined_all_over(text):
+    def enclosed(tape):
+        room = scratch(tape)
+        return segment(tape.code, tape.constants, tape.parts, room, -1.0, 0.1, 0.2, 1.0, 0.0, 0.0, 0.75, 1.5, True)
+
+    c0, c1, e, status = enclosed(tape_of(text))
+    assert status == WHOLE
+    assert c0 + abs(c1) + e >= 0.5**2.5
+    assert enclosed(tape_of("x^2.5"))[3] != WHOLE
 
 
 PHI = (1 + 5**0.5) / 2

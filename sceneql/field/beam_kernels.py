@@ -34,8 +34,11 @@ def gather_whole(rays, count, groups, wide, ids):
         k = np.uint64(0)
         for g in range(0, groups, RUN):
             for first in range(g, count, groups):
-                for c in range(RUN):
-                    target[k + np.uint64(c)] = source[np.uint64(first + c)]
+                j = np.uint64(first)
+                one, two = source[j], source[j + np.uint64(1)]  # all are read before one is written: in one go
+                three, four = source[j + np.uint64(2)], source[j + np.uint64(3)]
+                target[k], target[k + np.uint64(1)] = one, two
+                target[k + np.uint64(2)], target[k + np.uint64(3)] = three, four
                 k += np.uint64(RUN)
     k = 0
     for g in range(0, groups, RUN):

@@ -10,7 +10,7 @@ by some units in the last place of all that was added, and by some of its own.
 import numpy as np
 
 from sceneql.field.density_enclosure_kernels import density_segment
-from sceneql.field.forms_kernels import LARGE, PAD, TINY, WIDER, hull, larger_of, product, spread
+from sceneql.field.forms_kernels import LARGE, PAD, TINY, WIDER, hull, larger_of, never_negative, product, spread
 from sceneql.field.sine_kernels import sine_cosine
 from sceneql.field.skeleton_enclosure_kernels import skeleton_segment
 from sceneql.field.tape_ops import (
@@ -215,16 +215,19 @@ def unary(op, a0, a1, ea):
 
 
 @inlined
-def domain(op, a0, reach_a, b0, reach_b, b_constant):
-    """WHOLE, PARTIAL or NOWHERE: where an operation's value is a number, as far as the ranges of its arguments tell."""
+def domain(op, positive, a0, reach_a, b0, reach_b, b_constant):
+    """WHOLE, PARTIAL or NOWHERE: where an operation's value is a number, as far as the ranges of its arguments tell.
+
+    ``positive``: the first of them is never below 0.
+    """
     if op == SQRT:
-        return WHOLE if a0 >= reach_a else (NOWHERE if a0 + reach_a < 0.0 else PARTIAL)
+        return WHOLE if positive or a0 >= reach_a else (NOWHERE if a0 + reach_a < 0.0 else PARTIAL)
     if op == LOG:
         return WHOLE if a0 > reach_a else (NOWHERE if a0 + reach_a < 0.0 else PARTIAL)
     if op == DIV:
         return WHOLE if abs(b0) > reach_b else PARTIAL
     if op == POW:
-        if a0 > reach_a:
+        if a0 > reach_a or (positive and b_constant and b0 > 0.0):
             return WHOLE
         return NOWHERE if a0 + reach_a < 0.0 and b_constant and b0 != np.floor(b0) else PARTIAL
     return WHOLE
@@ -307,14 +310,15 @@ def segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, sur
                 s, c = c, -s
             c0, c1, e = sine(s, c, a1, ea)
         elif op <= ATAN2:
-            found = domain(op, a0, abs(a1) + ea, b0, abs(b1) + eb, b1 == 0.0 and eb == 0.0)
+            positive = never_negative(code[left, 0])
+            found = domain(op, positive, a0, abs(a1) + ea, b0, abs(b1) + eb, b1 == 0.0 and eb == 0.0)
             if found == NOWHERE:
                 return 0.0, 0.0, np.inf, NOWHERE
             status = max(status, found)
             c0, c1, e = binary(op, a0, a1, ea, b0, b1, eb)
             e += TINY
         else:
-            found = domain(op, a0, abs(a1) + ea, 0.0, 0.0, False)
+            found = domain(op, never_negative(code[left, 0]), a0, abs(a1) + ea, 0.0, 0.0, False)
             if found == NOWHERE:
                 return 0.0, 0.0, np.inf, NOWHERE
             status = max(status, found)

@@ -1,6 +1,7 @@
 # mypy: ignore-errors
 """Affine forms c0 + c1 tau +- e, tau in [-1, 1]: what every kernel of enclosures along a ray is made of."""
 
+from sceneql.field.tape_ops import ABS, EXP, SQRT, SQUARE
 from sceneql.kernels import inlined
 
 PAD = 1.0e-15
@@ -9,6 +10,12 @@ TINY = 1.0e-300
 """More than underflow takes away."""
 WIDER = 1.0 + 4.0e-15
 """More than the rounding of some sums and products of what is not negative."""
+
+
+@inlined
+def never_negative(op):
+    """Whether values of an operation are at least 0, whatever their enclosure says."""
+    return op == ABS or op == SQUARE or op == SQRT or op == EXP
 
 
 @inlined

@@ -29,6 +29,7 @@ from sceneql.field.affine_kernels import (
     turned,
     wave,
 )
+from sceneql.field.forms_kernels import never_negative
 from sceneql.field.packet_density_kernels import density_lanes
 from sceneql.field.single_kernels import lane, sine_cosine
 from sceneql.field.tape_ops import (
@@ -105,12 +106,6 @@ def scale_lanes(a, b, out, n):
     es = b[E]
     for i in range(n):
         out[i], out[C1 + i], out[E + i] = scaled(a[i], a[C1 + i], a[E + i], s, es)
-
-
-@inlined
-def never_negative(op):
-    """Whether values of an operation are at least 0, whatever their enclosure says."""
-    return op == ABS or op == SQUARE or op == SQRT or op == EXP
 
 
 @inlined

@@ -5,20 +5,35 @@ from sceneql.field.certified_kernels import CROSSES, TOUCHES, certify, hidden, t
 from sceneql.field.enclosure_kernels import segment
 from sceneql.field.isolation_kernels import BACK, search
 from sceneql.field.slope_kernels import on_ray
-from sceneql.field.tape_ops import HIT, MISS, TAPE, UNDECIDED, WHOLE
+from sceneql.field.tape_ops import HIT, MISS, NOWHERE, TAPE, UNDECIDED, WHOLE
 from sceneql.kernels import lean, woven
 
 POLES = 16
 """Changes of sign without a root that are passed on one ray."""
+NO_ROOT = -2
+"""Beside the sides of f."""
 
 
 @woven
 def side_of(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, near):
-    """(side, t) as ``told``: by the enclosure at the start, which is sooner, and only else by intervals."""
-    c0, c1, e, status = segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, start, True)
-    if status == WHOLE and abs(c0) - abs(c1) > e:
-        return (1 if c0 > 0.0 else -1), start
-    return told(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, near, 1.0)
+    """(side, t, whole) as ``told``, or NO_ROOT in start..t1, and whether f is known to be a number all over that.
+
+    An enclosure of all of it mostly tells, else one at the start, which is sooner than intervals.
+    """
+    c0, c1, e, status = segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, True)
+    whole = status == WHOLE
+    side, t = 0, start
+    if status == NOWHERE or abs(c0) - abs(c1) > e:
+        side = NO_ROOT
+    elif whole and abs(c0 - c1) > e:
+        side = 1 if c0 > c1 else -1
+    else:
+        c0, c1, e, status = segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, start, True)
+        if status == WHOLE and abs(c0) - abs(c1) > e:
+            side = 1 if c0 > 0.0 else -1
+        else:
+            side, t = told(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, near, 1.0)
+    return side, t, whole
 
 
 @woven
@@ -46,9 +61,11 @@ def surface_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1
     near = tolerance * (t1 - t0)
     start = t0
     for _ in range(POLES):
-        side, start = side_of(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, near)
+        side, start, whole = side_of(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, near)
         if side == 0:
             return UNDECIDED, start
+        if side == NO_ROOT:
+            return MISS, t1
         side = min(side, 1)
         status, t = search(
             code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, tolerance, float(side), False
@@ -67,7 +84,7 @@ def surface_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1
             status, t = certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, near, 1.0, False, True)
             if status != HIT:
                 return status, t
-        if is_defined(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
+        if whole or is_defined(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
             return HIT, t
         start = t + near
         if not start < t1:
