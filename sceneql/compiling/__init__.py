@@ -11,7 +11,6 @@ from copy import copy
 
 from llvmlite import binding
 from llvmlite.binding import ffi
-from llvmlite.binding.newpassmanagers import create_new_function_pass_manager
 from numba import config
 from numba.core import cgutils
 from numba.core.codegen import JITCodeLibrary
@@ -50,28 +49,18 @@ FRONT = (
 
 
 class KernelLibrary(JITCodeLibrary):
-    """Code of a kernel: nothing of it is looked over for LLVM's own mistakes, or made good where there is nothing.
-
-    Nor is it made good twice: numba has LLVM do so for each function by itself, and then for all that are put together.
-    """
+    """Code of a kernel: nothing of it is looked over for LLVM's own mistakes, or made good where there is nothing."""
 
     def add_ir_module(self, ir_module):
         """Take LLVM's words in."""
         module = binding.parse_assembly(cgutils.normalize_ir_text(str(ir_module)))
         module.name = ir_module.name
         module.data_layout = self._codegen._data_layout
-        passes, builder = self._passes()
+        passes, builder = self._codegen._function_pass_manager()
         for function in module.functions:
             if not function.is_declaration:
                 passes.run(function, builder)
         self._final_module.link_in(module)
-
-    def _passes(self):
-        passes = create_new_function_pass_manager()
-        passes.add_sroa_pass()
-        passes.add_simplify_cfg_pass()
-        passes.add_refprune_pass()
-        return passes, self._codegen._pass_builder()
 
     def serialize_using_object_code(self):
         """What is cached: machine code, and the names in it. No other code will be linked with LLVM's words for it."""
@@ -82,10 +71,7 @@ class KernelLibrary(JITCodeLibrary):
 
 
 class HelperLibrary(KernelLibrary):
-    """Code of a helper: made good by itself, it goes into its callers, and never becomes machine code of its own."""
-
-    def _passes(self):
-        return self._codegen._function_pass_manager()
+    """Code of a helper: it goes into its callers, is made good there, and never becomes machine code of its own."""
 
     def _optimize_final_module(self):
         passes, builder = self._codegen._module_pass_manager(
