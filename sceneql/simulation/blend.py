@@ -12,6 +12,8 @@ from collections.abc import Iterator, Sequence
 from functools import reduce
 from typing import TYPE_CHECKING
 
+from sceneql.simulation.solid import less
+
 if TYPE_CHECKING:
     from sceneql.kinds import FieldBuilder
 
@@ -43,23 +45,28 @@ def _of_two(build: FieldBuilder, a: int, b: int, width: float) -> int:
 
 
 def _of_many(build: FieldBuilder, values: Sequence[int], width: float) -> int:
-    """t - k/2 - sum max(t - f_i, 0)^2 / (2 k), where t is the level with sum max(t - f_i, 0) = k.
+    """f - k/2 + t - sum max(t - g_i, 0)^2 / (2 k): f the least, g_i = f_i - f, and sum max(t - g_i, 0) = k.
 
-    It is the least of the levels (k + f_1 + ... + f_j) / j of the values in order, least first, since with other values
-    than those below t the sum is smaller (Held, Wolfe & Crowder 1974, on projections to the simplex).
+    The level t is the least of (k + g_1 + ... + g_j) / j of the gaps in order, least first: with others than those below
+    t the sum is smaller (Held, Wolfe & Crowder 1974, on projections to the simplex). No gap above k counts.
     """
-    rising = list(values)
-    for low, high in comparators(len(rising)):
-        a, b = rising[low], rising[high]
-        rising[low], rising[high] = build.op("min", a, b), build.op("max", a, b)
-    total = build.op("add", rising[0], build.constant(width))
-    level = total
-    for count, value in enumerate(rising[1:], 2):
-        total = build.op("add", total, value)
+    first = reduce(lambda a, b: build.op("min", a, b), values)
+    most = build.constant(width)
+    gaps = [build.op("min", build.op("sub", value, first), most) for value in values]
+    for low, high in comparators(len(gaps)):
+        a, b = gaps[low], gaps[high]
+        gaps[low], gaps[high] = build.op("min", a, b), build.op("max", a, b)
+    total = level = most
+    for count, gap in enumerate(gaps[1:], 2):
+        total = build.op("add", total, gap)
         level = build.op("min", level, build.op("mul", total, build.constant(1.0 / count)))
-    squares = [build.op("square", build.op("max", build.op("sub", level, f), build.constant(0.0))) for f in values]
-    below = build.op("mul", reduce(lambda a, b: build.op("add", a, b), squares), build.constant(0.5 / width))
-    return build.op("sub", build.op("sub", level, build.constant(0.5 * width)), below)
+    squares = build.op("square", level)  # of the first gap, which is 0
+    for gap in gaps[1:]:
+        share = build.op("max", build.op("sub", level, gap), build.constant(0.0))
+        squares = build.op("add", squares, build.op("square", share))
+    below = build.op("sub", build.op("mul", squares, build.constant(0.5 / width)), less(build, level, 0.5 * width))
+    # The bound is met only where all are equal; it keeps enclosures of the whole narrow.
+    return build.op("sub", first, build.op("min", below, build.constant(bulge(len(values), width))))
 
 
 def comparators(count: int) -> Iterator[tuple[int, int]]:
