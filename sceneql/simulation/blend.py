@@ -47,8 +47,8 @@ def _of_two(build: FieldBuilder, a: int, b: int, width: float) -> int:
 def _of_many(build: FieldBuilder, values: Sequence[int], width: float) -> int:
     """f - k/2 + t - sum max(t - g_i, 0)^2 / (2 k): f the least, g_i = f_i - f, and sum max(t - g_i, 0) = k.
 
-    The level t is the least of (k + g_1 + ... + g_j) / j of the gaps in order, least first: with others than those below
-    t the sum is smaller (Held, Wolfe & Crowder 1974, on projections to the simplex). No gap above k counts.
+    The level t is the least of (k + g_1 + ... + g_j) / j of the gaps in order, least first: the sum is smaller with
+    others than those below t (Held, Wolfe & Crowder 1974, on projections to the simplex). No gap above k counts.
     """
     first = reduce(lambda a, b: build.op("min", a, b), values)
     most = build.constant(width)
