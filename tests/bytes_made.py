@@ -23,7 +23,28 @@ objects:
   knot: {implicit: {field: "abs(sin(3*x)*cos(4*y) + sin(5*z)) + x^2 + y^2 + z^2 - 0.8", bounds: {ball: 1}}}
   floor: plane
   ball: {sphere: {position: 1 1 0 m, radius: 0.5 m, material: {glass: {}}}}
-outputs: {still: {image: {size: 96 54, time: 0 s}}}
+  drops: {blobby: {points: [-1 0.5 0 m, -0.7 0.6 0.2 m, -1.2 0.8 0 m], radius: 0.4 m, color: tomato}}
+  quartic:
+    implicit: {field: x^4 + y^4 + z^4 - x^2 - y^2 - z^2 + 0.4, bounds: {ball: 1.6}, unit: 0.4 m, position: 0 0.5 1 m}
+outputs: {still: {image: {size: 96 54, time: 0 s, renderer: {trace: {packets: PACKETS}}}}}
+"""
+PHYSICS = """sceneql: 1
+clock: {end: 0.2 s}
+models:
+  net: {cloth: {cells: 6 6, pins: [top_left]}}
+  stars: {galaxy: {stars: 200, seed: 3, constant: 1 m^3/kg/s^2, softening: 1 cm}}
+  stiff:
+    equations:
+      start: {a: 1, b: 0, c: 0}
+      rate: {a: "-0.04*a + 1e4*b*c", b: "0.04*a - 1e4*b*c - 3e7*b^2", c: "3e7*b^2"}
+objects: {floor: {plane: {height: 1.99 m}}}
+forces:
+  pull: {mutual_gravity: {on: [stars], constant: 1 m^3/kg/s^2, softening: 1 cm}}
+  weight: {gravity: {on: [net]}}
+  gusts: {turbulence: {on: [net], linear: 2 g/s}}
+contacts: {lie: {collision: {between: [net, floor], friction: 0.3}}}
+solvers: {a: {bdf2: {on: [net], step: 5 ms}}, b: {dopri5: {on: [stars]}}, c: {radau: {on: [stiff]}}}
+outputs: {t: {record: {of: [net.positions, stars.positions, stiff.a, stiff.b], format: npz, every: frame}}}
 """
 
 
@@ -43,16 +64,30 @@ def mesh() -> Iterator[bytes]:
     yield from (array.tobytes() for array in (made.vertices, made.triangles, made.normals))
 
 
-def trace() -> Iterator[bytes]:
-    """A traced picture."""
+def _made(script: str, name: str) -> bytes:
     with tempfile.TemporaryDirectory() as folder:
-        script, still = Path(folder) / "scene.yaml", Path(folder) / "still.png"
-        script.write_text(SCENE, encoding="utf-8")
-        pipeline.render(pipeline.load(script), output=still)
-        yield still.read_bytes()
+        path, made = Path(folder) / "scene.yaml", Path(folder) / name
+        path.write_text(script, encoding="utf-8")
+        pipeline.render(pipeline.load(path), output=made)
+        return made.read_bytes()
 
 
-MADE = {"mesh": mesh, "trace": trace}
+def trace() -> Iterator[bytes]:
+    """Traced pictures, ray by ray and by packets."""
+    for packets in ("no", "yes"):
+        yield _made(SCENE.replace("PACKETS", packets), "still.png")
+
+
+def physics() -> Iterator[bytes]:
+    """Marched islands: a cloth in contact by an implicit method, stars, stiff equations."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "t.npz"
+        path.write_bytes(_made(PHYSICS, "t.npz"))
+        with np.load(path) as table:
+            yield from (table[name].tobytes() for name in sorted(table.files))
+
+
+MADE = {"mesh": mesh, "trace": trace, "physics": physics}
 
 
 def digests(names: list[str]) -> list[str]:

@@ -7,16 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from bytes_made import digests
+from bytes_made import MADE, digests
 
 AVX2 = "haswell"
 """A processor without AVX-512."""
 
 
-LONG = pytest.mark.skipif("SCENEQL_LONG" not in os.environ, reason="the tracer's compilation takes minutes")
-
-
-@pytest.mark.parametrize("name", ["mesh", pytest.param("trace", marks=LONG)])
+@pytest.mark.parametrize("name", MADE)
 def test_same_bytes_with_the_processor_restricted_to_avx2(name):
     script = Path(__file__).with_name("bytes_made.py")
     environment = {**os.environ, "NUMBA_CPU_NAME": AVX2, "PYTHONPATH": os.pathsep.join(sys.path)}
