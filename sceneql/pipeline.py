@@ -239,7 +239,7 @@ class Tools:
     def _seen(self, output: Picture, moment: Any, camera: str | None = None, part: int = 0, parts: int = 1) -> Any:
         """The scene from a camera, by default the output's own; None before the last part of an exposure."""
         from renderers.develop import develop
-        from sceneql.simulation.presence import look
+        from sceneql.simulation.presence import look, solids
 
         shot = output.seen_from(moment.time)
         eye = camera if camera is not None or shot is None else shot.name
@@ -249,7 +249,8 @@ class Tools:
         drawn_by = self.graph.tasks[self.name if output.renderer is None else output.renderer.name]
         with failing_as(drawn_by.name, moment.time, drawn_by.span):
             picture = renderer.draw(frame)
-        look(frame.shapes, self.report.present)
+        asked = solids(self.graph.drawn[self.name], self.graph.tasks)
+        look(frame.shapes, asked, self.report.present)
         if picture.undecided:
             counts = self.report.undecided.setdefault(self.name, {})
             counts[frame.index] = counts.get(frame.index, 0) + picture.undecided

@@ -46,6 +46,9 @@ def test_what_cannot_be_drawn_is_refused_at_its_place(tmp_path, entry, message):
         ('implicit: {field: "x^2 + y^2 + z^2 + 1"}', "nowhere negative"),
         ('implicit: {field: "x^2 + y^2 + z^2 + 1", mode: surface}', "nowhere zero"),
         ('implicit: {field: "log(x - 2) + t"}', "nowhere negative"),
+        ("intersection: {of: [{sphere: {}}, {sphere: {position: 5 0 0 m}}]}", "empty whenever"),
+        ("group: {children: {b: {blobby: {points: [0 0 0 m], weight: -1}}}}", "empty whenever"),
+        ("blobby: {points: [0 0 0 m], weight: 0}", "empty whenever"),
         ('implicit: {field: "exp(1000*x + 2000) - 1"}', "nowhere finite"),
         ('implicit: {field: "1/(x - x)"}', "nowhere finite"),
         ('implicit: {field: "exp(exp(10 + x^2))", mode: surface}', "nowhere finite"),
@@ -61,3 +64,21 @@ def test_what_is_nowhere_is_told_with_its_place(tmp_path, entry, message):
 def test_values_that_overflow_in_a_part_of_the_bounds_do_no_harm(tmp_path):
     report = rendered(tmp_path, 'implicit: {field: "exp(1000*x) - exp(1000*(y - 2))"}')
     assert report.frames == 1
+
+
+GROWS = """\
+sceneql: 1
+clock: {end: 0.3 s, fps: 10}
+objects:
+  a: {blobby: {points: [0 0 0 m], weight: 5*(time - 0.15 s)/(1 s)}}
+outputs: {film: {images: {size: 16 9, renderer: normals}}}
+"""
+
+
+def test_what_comes_later_was_there(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text(GROWS.replace("5*(", "20*("))
+    assert pipeline.render(pipeline.load(path), folder=tmp_path).warnings == ()
+    path.write_text(GROWS.replace("0.15 s", "0.5 s"))
+    (warning,) = pipeline.render(pipeline.load(path), folder=tmp_path).warnings
+    assert warning.code == "empty-solid"

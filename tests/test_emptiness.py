@@ -14,6 +14,7 @@ from sceneql.field.emptiness import nowhere_defined, proved_empty
 from sceneql.field.solid import field_values
 from sceneql.simulation.objects.implicit import Implicit, Within
 from sceneql.simulation.solid import traced
+from test_mesh import tape_of as plain_tape
 
 LEVEL = st.floats(-2.0, 2.0)
 
@@ -48,6 +49,14 @@ def test_a_small_ball_anywhere_is_not_empty(center, radius):
 @pytest.mark.parametrize("text", ["x^2 + y^2 + z^2 + 0.01", "x^2 + y^2 + z^2", "max(x, -x) + 1e-6", "sqrt(x - 1.1)"])
 def test_what_is_nowhere_negative_is_proved_empty(text):
     assert proved_empty(*tape_of(text))
+
+
+@pytest.mark.parametrize("power", [-250, -100, -20, 0, 20, 100, 290])
+def test_how_large_a_field_is_proves_nothing(power):
+    box = (-1.1,) * 3, (1.1,) * 3
+    assert not proved_empty(plain_tape(f"1e{power}*(x^4 + y^4 + z^4 - 0.1)"), *box)
+    assert proved_empty(plain_tape(f"1e{power}*(x^4 + y^4 + z^4 + 0.1)"), *box)
+    assert not proved_empty(plain_tape("exp(x^2 + y^2 + z^2) - 1.001"), (-20.0,) * 3, (20.0,) * 3)
 
 
 def test_bounds_beside_the_solid_hold_nothing():

@@ -610,7 +610,7 @@ objects:
         ("never", 4, "its field is nowhere negative in its bounds, so it has no surface"),
         ("undefined", 5, "its field is nowhere defined in its bounds"),
         ("speck", 6, "no surface was met by cells of 1 m; a smaller --cell finds smaller things"),
-        ("pointer", 7, "Arrow has no inside"),
+        ("pointer", 7, "`arrow` has no inside"),
         ("endless", 8, "cells of 1 m are too many for a box of 2e+300 m"),
         ("vast", 9, "its field is nowhere finite in its bounds"),
     ],

@@ -223,3 +223,26 @@ def test_keys_that_never_change_give_one_time_what_they_give_many(curve):
         many = evaluate_arrays(expr, lambda node, h=height: times if node.name == "time" else h)
         single = [evaluate_arrays(expr, lambda node, t=t, h=height: t if node.name == "time" else h) for t in times]
         assert single == pytest.approx(many, abs=1e-14)
+
+
+SPRAYED = """
+clock: {end: 0.2 s, fps: 10}
+models:
+  spray: {particles: {emit: {rate: 30 Hz, spread: 30 deg, lifetime: 1 s, seed: 3}}}
+objects:
+  goo: {blobby: {skeleton: [{spline: spray.positions, radius: 0.1 m}, {point: 0 0 0 m}]}}
+outputs: {film: {images: {size: 16 9, renderer: normals}}}
+"""
+
+
+def test_a_line_through_points_that_are_not_yet_there_comes_with_them(tmp_path):
+    (goo,) = (task.kind for task in load_text(tmp_path, SPRAYED).tasks.values() if task.name == "goo")
+    counts = [len(goo.parts(moment).weights) for moment in moments(tmp_path, SPRAYED, [0.0, 0.02, 0.19])]
+    assert counts[0] == counts[1] == 1
+    assert counts[2] > 3
+
+
+def load_text(folder, script):
+    path = folder / "scene.yaml"
+    path.write_text(script)
+    return load(path)

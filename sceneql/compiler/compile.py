@@ -13,6 +13,7 @@ from sceneql.compiler.passes.insides import report_hollow
 from sceneql.compiler.passes.islands import islands
 from sceneql.compiler.passes.layouts import check_layouts
 from sceneql.compiler.passes.prune import prune
+from sceneql.compiler.passes.sizes import check_sizes
 from sceneql.compiler.passes.stable_steps import warn_of_steps
 from sceneql.compiler.studies import check_studies
 from sceneql.graph import SimulationGraph, Task
@@ -32,6 +33,7 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
     report_circles(checked.tasks, found)
     tasks = expand(checked.tasks, catalogue)
     report_hollow(tasks, found)
+    check_sizes(tasks, found)
     groups = islands(tasks, found)
     drawn = _drawn(tasks)
     cameras = _cameras(tasks)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sceneql.field import interval_kernels, tape_kernels
+from sceneql.field.magnitude import lattice
 from sceneql.field.solid import field_values, scratch
 from sceneql.field.tape_ops import NOWHERE, WHOLE
 
@@ -20,21 +21,23 @@ if TYPE_CHECKING:
 
 BOXES = 4096
 """Boxes that a proof may take; without one by then the answer is no."""
-SAMPLES = 7
-"""Along each axis."""
 SHALLOW = 1e-12
-"""A solid nowhere deeper than this is taken for empty."""
+"""A solid nowhere deeper than this, in parts of its box's size and of what |f| typically is there, counts as empty."""
 
 Corner = tuple[float, float, float]
 
 
 def proved_empty(tape: Tape, low: Corner, high: Corner) -> bool:
-    """Whether f is proved to be nowhere negative, where it is defined at all, in the box low..high [m]."""
+    """Whether f is proved to be nowhere negative, where it is defined at all, in the box low..high [m].
+
+    Touching 0 from above is not negative, by how much rounding may make of it: SHALLOW.
+    """
+    slack = SHALLOW * _depth(tape, low, high)
     return _all_settled(
         tape,
         low,
         high,
-        lambda least, most, status: status == NOWHERE or least >= -SHALLOW,
+        lambda least, most, status: status == NOWHERE or least >= -slack,
         lambda value, status: value < 0.0,
     )
 
@@ -62,10 +65,16 @@ def nowhere_defined(tape: Tape, low: Corner, high: Corner) -> bool:
 
 
 def nowhere_finite(tape: Tape, low: Corner, high: Corner) -> bool:
-    """Whether f is infinite or no number at all of SAMPLES^3 places of the box low..high [m]: a reason, no proof."""
-    ticks = [np.linspace(a, b, SAMPLES + 2)[1:-1] for a, b in zip(low, high, strict=True)]
-    points = np.stack(np.meshgrid(*ticks), axis=-1).reshape(-1, 3)
-    return not np.isfinite(field_values(tape, points)).any()
+    """Whether f is infinite or no number at all places of a lattice in the box low..high [m]: a reason, no proof."""
+    return not np.isfinite(field_values(tape, lattice(low, high))).any()
+
+
+def _depth(tape: Tape, low: Corner, high: Corner) -> float:
+    """The size [m] of the box low..high, or the median of |f| in it where that is less."""
+    values = np.abs(field_values(tape, lattice(low, high)))
+    values = values[np.isfinite(values)]
+    size = max(b - a for a, b in zip(low, high, strict=True))
+    return min(size, float(np.median(values))) if len(values) else size
 
 
 def _all_settled(

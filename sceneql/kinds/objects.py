@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
@@ -56,14 +56,14 @@ class Object(Kind):
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Drawn]:
         """Closed-set shapes of this instant; ``place`` (3, 4) maps the parent's coordinates to the world."""
-        raise TypeError(f"{type(self).__name__} cannot be drawn")
+        raise TypeError(f"`{self._word()}` cannot be drawn")
 
     def implicit(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
         """Register of a field that is negative inside; (x, y, z) are registers of a point in the parent's coordinates.
 
         Near the surface it should behave like a distance. Raises TypeError where the object has no inside.
         """
-        raise TypeError(f"{type(self).__name__} has no inside")
+        raise TypeError(f"`{self._word()}` has no inside")
 
     def domain(self) -> Any:
         """Its inside as a flat domain of fields (simulation.grids.cut.Level with bounds); None: it is none."""
@@ -71,11 +71,15 @@ class Object(Kind):
 
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
         """Low and high corner (3,) of a world box around it; infinite where it is unbounded."""
-        raise TypeError(f"{type(self).__name__} has no extent")
+        raise TypeError(f"`{self._word()}` has no extent")
 
     def read(self, output: str, moment: Moment) -> Any:
         """An output of ``gives`` now, SI."""
         raise KeyError(output)
+
+    def excess(self, count: Callable[[Value], int | None]) -> Iterable[tuple[Value, str]]:
+        """Lists that are too long for it, and why; ``count`` tells how many items one has where that is known."""
+        return ()
 
     def members(self) -> tuple[Ref, ...]:
         """Objects that are drawn by this one, and so not by themselves."""
@@ -93,9 +97,13 @@ class Object(Kind):
         """Values that it needs of the past (`Moment.past`): how far back [s], and how often [s]."""
         return ()
 
+    def _word(self) -> str:
+        """What scripts call it: a word is a file."""
+        return type(self).__module__.rpartition(".")[2]
+
     def collider(self, assembly: Assembly) -> Collider:
         """Its surface for contacts. Raises TypeError where the object cannot be collided with."""
-        raise TypeError(f"{type(self).__name__} cannot be collided with")
+        raise TypeError(f"`{self._word()}` cannot be collided with")
 
 
 @dataclass(frozen=True, slots=True)

@@ -47,6 +47,10 @@ class Model(Kind):
         """An output at a state: float or float64 array."""
         raise TypeError(f"{type(self).__name__} gives no {output}")
 
+    def items(self, output: str) -> int | None:
+        """How many items an output has, where its fields tell."""
+        return None
+
     def formula(self, output: str) -> Expr:
         """An output of a kinematic model as an expression of time."""
         raise TypeError(f"{type(self).__name__} is not a function of time")

@@ -74,8 +74,17 @@ class Part(Record):
         if self.closed and self.polyline is None and self.spline is None:
             yield Problem("only a polyline or a spline can be closed", ("closed",), at_key=True)
 
+    def place(self) -> Value:
+        """Where it is."""
+        (given,) = (value for name in self.KINDS if (value := getattr(self, name)) is not None)
+        found: Value = given
+        return found
+
     def now(self, moment: Moment) -> Shape:
-        """Its parts now. Raises RunFailure for lists of other lengths than the points', and too few points."""
+        """Its parts now; none of a line or a polygon that gets its points with time and has too few of them yet.
+
+        Raises RunFailure for lists of other lengths than the points', and too few points where their number is given.
+        """
         import numpy as np
 
         for name in self.KINDS:
@@ -93,6 +102,8 @@ class Part(Record):
             if name == "points":
                 return self._points(places, moment) if self.triangles is None else self._faces(places, moment)
             if len(places) < (3 if name == "polygon" else 2):
+                if value.expr.type.shape[0] is None:
+                    return Shape(np.empty((0, 3, 3)), np.empty((0, 2)), np.empty(0), np.empty(0))
                 raise failure(f"a {name} has {len(places)} points, which are too few", value, moment)
             if name == "polygon":
                 return self._polygon(places, value, moment)

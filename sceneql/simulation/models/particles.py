@@ -112,6 +112,15 @@ class Particles(Model):
         single = masses.MASS_OUTPUTS if "of" in written else {}
         return {**cls.gives, **single, **masses.named_outputs(written.get("list"))}
 
+    def items(self, output: str) -> int | None:
+        """How many there are, where they are listed or counted; None of what is but one."""
+        several = type(self).gives.get(output)
+        if several is None or not several.type.shape or several.type.shape[0] is not None:
+            return None
+        if self.list is not None:
+            return len(self.list)
+        return None if self.fill is None else self.fill.count
+
     def assemble(self, name: str, assembly: Assembly) -> Bodies:
         """Reserve the masses."""
         import numpy as np

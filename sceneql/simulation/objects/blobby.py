@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
-from sceneql.kinds import FieldBuilder, FixedScalar, Gives, Moment, Object, Points, Problem, field
+from sceneql.kinds import FieldBuilder, FixedScalar, Gives, Moment, Object, Points, Problem, Value, field
 from sceneql.simulation.placement import balls_box, inverse
 from sceneql.simulation.skeleton_parts import (
     MOST,
@@ -70,6 +70,15 @@ class Blobby(Object):
                     yield Problem("points are counted from 0", ("segments", k, end))
         if self.segments and self.points is None:
             yield Problem("`segments` are told by numbers of `points`", ("segments",))
+
+    def excess(self, count: Callable[[Value], int | None]) -> Iterator[tuple[Value, str]]:
+        """More parts than a skeleton can have; a segment takes at most two points' places."""
+        values = [part.place() for part in self.skeleton] + ([] if self.points is None else [self.points])
+        counts = [1 if len(value.expr.type.shape) == 1 else count(value) or 1 for value in values]
+        total = sum(counts) - len(self.segments)
+        if total > MOST:
+            most = values[counts.index(max(counts))]
+            yield most, f"a skeleton has at most {MOST:,} parts, not {total:,}"
 
     def parts(self, moment: Moment) -> Skeleton:
         """Its skeleton in its parent's coordinates: that of `points`, then those of its entries.
