@@ -25,6 +25,27 @@ ABOVE_ZERO = click.FloatRange(min=0, min_open=True)
 F = TypeVar("F", bound=Callable[..., Any])
 
 
+def _length(context: click.Context, parameter: click.Parameter, value: Any) -> float | None:
+    """A length as scripts write it to meters, above 0; a bare number is in meters."""
+    if value is None:
+        return None
+    from sceneql.kinds import Quantity
+    from sceneql.kinds.word import literal
+    from sceneql.quantities.diagnostic import ScriptError
+    from sceneql.quantities.dimension import LENGTH, PLAIN
+    from sceneql.quantities.expression import Type
+
+    wrong = click.BadParameter(f"'{value}' is no length above 0, as 2mm or 0.5")
+    try:
+        read = literal(value, Quantity(LENGTH))
+        number = read.number()
+    except (ScriptError, ArithmeticError, ValueError):
+        raise wrong from None
+    if read.expr.type not in (Type((), LENGTH), Type((), PLAIN)) or not 0.0 < number < float("inf"):
+        raise wrong
+    return float(number)
+
+
 def _path(context: click.Context, parameter: click.Parameter, value: Any) -> Any:
     """Texts to paths; pathlib is not imported for ``--help``."""
     from pathlib import Path
@@ -278,8 +299,8 @@ def study(
 @_options
 @click.option("--object", "name", required=True, metavar="NAME", help="The object.")
 @click.option("-o", "--output", callback=_path, required=True, help="File to make: .ply, .stl, .obj or .glb.")
-@click.option("--cell", type=ABOVE_ZERO, metavar="METERS", help="Side of a cell; by default 1/128 of its size.")
-@click.option("--tolerance", type=ABOVE_ZERO, metavar="METERS", help="Distance from the surface, in place of --cell.")
+@click.option("--cell", callback=_length, metavar="LENGTH", help="Side of a cell, as 2mm; else 1/128 of its size.")
+@click.option("--tolerance", callback=_length, metavar="LENGTH", help="Distance from the surface, in place of --cell.")
 @click.option("--sharp", is_flag=True, help="Keep edges and corners.")
 @click.option("--time", type=click.FloatRange(min=0), default=0.0, metavar="SECONDS", help="Instant of the simulation.")
 def mesh(

@@ -12,7 +12,7 @@ from sceneql.kinds.word import Kind, field
 from sceneql.quantities.expression import Expr
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats
+    from sceneql.frame import Floats, Surface, Tape
     from sceneql.frame import Shape as Drawn
     from sceneql.kinds.moment import Moment
     from sceneql.system import Assembly
@@ -64,6 +64,10 @@ class Object(Kind):
         Near the surface it should behave like a distance. Raises TypeError where the object has no inside.
         """
         raise TypeError(f"`{self._word()}` has no inside")
+
+    def paint(self, surface: Surface, place: Floats, moment: Moment) -> Tape | None:
+        """A tape whose last values are the linear RGB at a point of the world; None where its surface has one color."""
+        return None
 
     def domain(self) -> Any:
         """Its inside as a flat domain of fields (simulation.grids.cut.Level with bounds); None: it is none."""

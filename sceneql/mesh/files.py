@@ -10,6 +10,10 @@ from sceneql.files import whole
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from numpy import uint8
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats
     from sceneql.mesh.polygons import Polygons
 
 FORMATS = ("ply", "stl", "obj", "glb")
@@ -24,8 +28,10 @@ def format_of(path: Path) -> str:
     return extension
 
 
-def write(path: Path, polygons: Polygons) -> None:
+def write(path: Path, polygons: Polygons, colors: Floats | None = None) -> None:
     """Write a mesh in meters, y up, with its normals where the format has any and the mesh has all.
+
+    ``colors`` (n, 3) are linear RGB of the vertices, which an STL file has not.
 
     Raises Unsuitable and OSError.
     """
@@ -38,9 +44,22 @@ def write(path: Path, polygons: Polygons) -> None:
         vertex_normals=polygons.normals if smooth else None,
         process=False,
     )
-    normals = {"ply": "vertex_normal", "obj": "include_normals", "glb": "include_normals"}
     kind = format_of(path)
+    if colors is not None:
+        levels = _levels(colors, linear=kind == "glb")
+        mesh.visual = trimesh.visual.ColorVisuals(mesh, vertex_colors=levels)
+    normals = {"ply": "vertex_normal", "obj": "include_normals", "glb": "include_normals"}
     options: dict[str, Any] = {normals[kind]: smooth} if kind in normals else {}
     data: Any = mesh.export(file_type=kind, **options)
     with whole(path) as stream:
         stream.write(data.encode() if isinstance(data, str) else data)
+
+
+def _levels(colors: Floats, *, linear: bool) -> NDArray[uint8]:
+    """8 bits of linear RGB as it is, as glTF 2.0 (3.7.2.1) has it, or by the sRGB curve (IEC 61966-2-1)."""
+    import numpy as np
+
+    shares = np.clip(np.nan_to_num(colors), 0.0, 1.0)
+    curved = np.where(shares <= 0.0031308, 12.92 * shares, 1.055 * shares ** (1 / 2.4) - 0.055)
+    levels: NDArray[uint8] = np.rint(255 * (shares if linear else curved)).astype(np.uint8)
+    return levels

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 CELLS = 128
 """Cells along the longest side of an object's box, where nothing is said."""
+COARSE = 16
+"""Likewise, where the search for a tolerance begins."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +81,7 @@ def mesh(
         raise Unsuitable(f"the scene ends at {graph.settings.clock.end:g} s, so there is nothing at {time:g} s")
     task = _object(graph, name)
     moment = next(pipeline.simulate(graph, [time]))
+    colors = None
     if grids := _on_grids(task, name, moment):
         if cell is not None or tolerance is not None or sharp:
             raise Unsuitable(f"'{name}' is meshed between the cells of its field, so nothing can be said of cells here")
@@ -87,8 +90,13 @@ def mesh(
         polygons, cell = polygons_of(grids)
         hidden = None
     else:
-        polygons, cell, hidden = _of_solid(_solid(task, name, moment), task, name, moment.time, cell, tolerance, sharp)
-    write(output, polygons)
+        solid = _solid(task, name, moment)
+        polygons, cell, hidden = _of_solid(solid, task, name, moment.time, cell, tolerance, sharp)
+        if solid.paint is not None:
+            from sceneql.field.solid import paint_values
+
+            colors = paint_values(solid.paint, polygons.vertices)
+    write(output, polygons, colors)
     return _account(output, polygons, cell, hidden)
 
 
@@ -104,12 +112,16 @@ def _of_solid(
         cell = size / CELLS
     with failing_as(name, time, task.span):
         grid_around(solid.low, solid.high, cell)
+        least = cell
         method = _kept_sharp if sharp else _refined
         if tolerance is not None:
             from sceneql.mesh.tolerance import polygonise_within
 
-            _, cell = polygonise_within(*box, tolerance, cell, lambda *cells: method(*cells)[0])
+            _, cell = polygonise_within(*box, tolerance, size / COARSE, lambda *cells: method(*cells)[0])
         polygons, hidden = method(*box, cell)
+        while not len(polygons.triangles) and cell > least:  # nothing is no distance from coarse cells
+            cell = max(0.5 * cell, least)
+            polygons, hidden = method(*box, cell)
         if not len(polygons.triangles):
             raise ValueError(_why_empty(*box, cell))
     return polygons, cell, hidden

@@ -78,7 +78,8 @@ def traced(solid: Object, name: str, place: Floats, moment: Moment) -> Iterable[
     value = solid.implicit(build, *build.affine(inverse(place), build.x, build.y, build.z), moment)
     room = MARGIN * float(np.max(high - low))
     surface = moment.surface(name, solid.material, solid.color)
-    yield frame.Implicit(name, surface, build.finish(value), triple(low - room), triple(high + room))
+    box = triple(low - room), triple(high + room)
+    yield frame.Implicit(name, surface, build.finish(value), *box, solid.paint(surface, place, moment))
 
 
 def measure(solid: Object, output: str, moment: Moment) -> Any:

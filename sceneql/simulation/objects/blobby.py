@@ -165,12 +165,9 @@ class Blobby(Object):
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[frame.Shape]:
         """Its density as a tape, with one of its colors where parts have theirs."""
-        from dataclasses import replace
+        return traced(self, name, place, moment)
 
-        for shape in traced(self, name, place, moment):
-            yield replace(shape, paint=self._paint(shape.surface, place, moment))
-
-    def _paint(self, surface: frame.Surface, place: Floats, moment: Moment) -> frame.Tape | None:
+    def paint(self, surface: frame.Surface, place: Floats, moment: Moment) -> frame.Tape | None:
         """The mean of its parts' colors, by what each adds to the density, as a tape; None where it has but one."""
         import numpy as np
 
