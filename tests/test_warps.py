@@ -14,6 +14,7 @@ from sceneql import pipeline
 from sceneql.field.builder import TapeBuilder
 from sceneql.field.interval_kernels import box as interval
 from sceneql.field.solid import cast, field_gradients, field_values, scratch
+from sceneql.field.tape_ops import HIT, INSIDE
 from sceneql.kinds import Ref
 from sceneql.simulation.objects.bend import Bend
 from sceneql.simulation.objects.box import Box
@@ -219,9 +220,9 @@ def test_rays_meet_a_warped_object_where_its_field_first_is_negative(pair, seed)
         values = field_values(tape, origins[i] + t[:, None] * direction[i])
         below = np.flatnonzero(values < -1e-9)
         if len(below):
-            assert status[i] == 1
+            assert status[i] == (HIT if below[0] else INSIDE)
             assert hit[i] <= t[below[0]] + 1e-9
-        if status[i] == 1:
+        if status[i] == HIT:
             assert abs(field_values(tape, (origins[i] + hit[i] * direction[i])[None])[0]) < 1e-6
 
 
