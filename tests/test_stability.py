@@ -258,6 +258,12 @@ def test_energy_out_of_nothing_is_warned_of_where_one_picture_is_made_at_the_end
     assert [found.code for found in wild.warnings] == ["energy-gained"]
 
 
+def test_energy_that_births_bring_is_no_fault(tmp_path):
+    spray = "models: {spray: {particles: {emit: {rate: 30 Hz, spread: 30 deg, lifetime: 1 s}}}}\nforces: [gravity]\n"
+    spray += "clock: {end: 1.2 s}\noutputs: {table: {record: {of: [spray.energy]}}}\n"
+    assert pipeline.render(loaded(tmp_path, spray), folder=tmp_path).warnings == ()
+
+
 def test_momentum_is_told_where_nothing_outside_acts(tmp_path):
     free = PENDULUM.replace("forces: [gravity]\n", "").replace("pivot: {fixed: yes}", "pivot: {velocity: 0 1 0 m/s}")
     (line,) = pipeline.render(loaded(tmp_path, free, "define.k=100 N/m"), folder=tmp_path, account=True).conserved

@@ -51,6 +51,10 @@ class Model(Kind):
         """How many items an output has, where its fields tell."""
         return None
 
+    def lasts(self) -> bool:
+        """Whether its bodies are there all the time: births bring energy, and deaths take it."""
+        return True
+
     def formula(self, output: str) -> Expr:
         """An output of a kinematic model as an expression of time."""
         raise TypeError(f"{type(self).__name__} is not a function of time")

@@ -68,8 +68,10 @@ class Balance:
 
     @property
     def closed(self) -> bool:
-        """Whether energy is conserved: forces tell a potential or count their work, so only values in time drive."""
-        return not self.island.march.system.structure.varying
+        """Whether energy is conserved: forces tell a potential or count their work, so only values in time drive, and
+        births and deaths."""
+        lasting = all(cast(Model, self.island.graph.tasks[name].kind).lasts() for name in self.models)
+        return lasting and not self.island.march.system.structure.varying
 
 
 class Watch:

@@ -52,6 +52,10 @@ class Particle(Record):
     )
     fixed: bool = field("It never moves.", False)
 
+    def lasts(self) -> bool:
+        """Emitted ones come and go."""
+        return self.emit is None
+
     def problems(self) -> Iterator[Problem]:
         """A particle that is held and moves."""
         if self.fixed and any(self.velocity):
