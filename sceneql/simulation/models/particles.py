@@ -52,10 +52,6 @@ class Particle(Record):
     )
     fixed: bool = field("It never moves.", False)
 
-    def lasts(self) -> bool:
-        """Emitted ones come and go."""
-        return self.emit is None
-
     def problems(self) -> Iterator[Problem]:
         """A particle that is held and moves."""
         if self.fixed and any(self.velocity):
@@ -97,6 +93,10 @@ class Particles(Model):
     def _can_be_held(cls, fill: Fill | None) -> Fill | None:
         bounded(fill.count or 0 if fill is not None else 0)
         return fill
+
+    def lasts(self) -> bool:
+        """Emitted ones come and go."""
+        return self.emit is None
 
     def problems(self) -> Iterator[Problem]:
         """Several sources or none, an empty one, and ages of what is never born."""
