@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from expressions import POINTS, H, bound, parsed, trees
@@ -233,8 +233,9 @@ def test_derivatives_are_central_differences(name: str, seed: int) -> None:
             np.testing.assert_allclose(slope, (above - below) / (2 * step), rtol=1e-5, atol=1e-6)
 
 
+# Most of the trees have no value at a place, or a kink near it: that many are passed over is no fault.
 @given(trees, st.floats(0.3, 2))
-@settings(max_examples=60)
+@settings(max_examples=60, suppress_health_check=[HealthCheck.filter_too_much])
 def test_derivatives_of_random_expressions(tree: Expr, at: float) -> None:
     x = Symbol("x")
     text = show(tree)

@@ -62,8 +62,9 @@ def test_no_folder_is_made_for_a_path_that_was_named(tmp_path):
 
 def test_numbers_of_options_are_in_range(tmp_path):
     (tmp_path / "still.yaml").write_text(STILL)
-    for options in (["bench", "--error", "-1"], ["stability", "--points", "0"], ["mesh", "--cell", "0"]):
+    for options in (["bench", "--error", "-1"], ["stability", "--points", "0"]):
         assert "is not in the range" in sceneql(tmp_path, *options, "still.yaml", code=2)
+    assert "'0' is no length above 0" in sceneql(tmp_path, "mesh", "--cell", "0", "still.yaml", code=2)
 
 
 def test_render_sets_variants_and_names(tmp_path):

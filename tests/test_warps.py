@@ -137,7 +137,7 @@ def test_a_distance_is_nowhere_steeper_than_one_at_the_surface(pair, seed):
         faces[k, k % 3] = OFF[k % 3] + sign * (0.5 * SIZE[k % 3] - 1e-9)
     slopes = np.linalg.norm(field_gradients(tape, forward(faces)), axis=1)
     assert (slopes < 1 + 1e-6).all()
-    assert slopes.max() > 0.15
+    assert slopes.max() > 0.02  # nor is it divided by much more than its steepest place asks for
 
 
 @pytest.mark.parametrize(
