@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from numpy import uint8
-    from numpy.typing import NDArray
+from sceneql.mesh.colors import levels
 
+if TYPE_CHECKING:
     from renderers.rastering.triangles import Triangles
     from sceneql.frame import RGB, Floats
 
@@ -76,11 +75,4 @@ def _checks(gl: Any, even: RGB, odd: RGB) -> Any:
     sampler = gl.Sampler(
         magFilter=gltf.NEAREST, minFilter=gltf.LINEAR_MIPMAP_LINEAR, wrapS=gltf.REPEAT, wrapT=gltf.REPEAT
     )
-    return gl.Texture(source=_srgb(board), source_channels="RGB", sampler=sampler)
-
-
-def _srgb(linear: Floats) -> NDArray[uint8]:
-    """8 bits of linear light by the sRGB curve (IEC 61966-2-1)."""
-    coded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 0.0031308) ** (1 / 2.4) - 0.055)
-    found: NDArray[uint8] = np.rint(255 * np.clip(coded, 0.0, 1.0)).astype(np.uint8)
-    return found
+    return gl.Texture(source=levels(board), source_channels="RGB", sampler=sampler)

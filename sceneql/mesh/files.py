@@ -10,9 +10,6 @@ from sceneql.files import whole
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy import uint8
-    from numpy.typing import NDArray
-
     from sceneql.frame import Floats
     from sceneql.mesh.polygons import Polygons
 
@@ -46,20 +43,12 @@ def write(path: Path, polygons: Polygons, colors: Floats | None = None) -> None:
     )
     kind = format_of(path)
     if colors is not None:
-        levels = _levels(colors, linear=kind == "glb")
-        mesh.visual = trimesh.visual.ColorVisuals(mesh, vertex_colors=levels)
+        from sceneql.mesh.colors import levels
+
+        curved = kind != "glb"  # which has linear ones (glTF 2.0, 3.7.2.1)
+        mesh.visual = trimesh.visual.ColorVisuals(mesh, vertex_colors=levels(colors, curved=curved))
     normals = {"ply": "vertex_normal", "obj": "include_normals", "glb": "include_normals"}
     options: dict[str, Any] = {normals[kind]: smooth} if kind in normals else {}
     data: Any = mesh.export(file_type=kind, **options)
     with whole(path) as stream:
         stream.write(data.encode() if isinstance(data, str) else data)
-
-
-def _levels(colors: Floats, *, linear: bool) -> NDArray[uint8]:
-    """8 bits of linear RGB as it is, as glTF 2.0 (3.7.2.1) has it, or by the sRGB curve (IEC 61966-2-1)."""
-    import numpy as np
-
-    shares = np.clip(np.nan_to_num(colors), 0.0, 1.0)
-    curved = np.where(shares <= 0.0031308, 12.92 * shares, 1.055 * shares ** (1 / 2.4) - 0.055)
-    levels: NDArray[uint8] = np.rint(255 * (shares if linear else curved)).astype(np.uint8)
-    return levels

@@ -99,8 +99,7 @@ def modules(structure: Structure) -> tuple[str, ...]:
 def late_first(structure: Structure) -> list[str]:
     """Modules that contacts will soon ask for, in their order, when this process will be busy with the others."""
     local = dict.fromkeys(name.partition(":")[0] for name in structure.local)
-    told = (getattr(load(module), "FIRST", ()) for module in local)
-    return [first for found in told if isinstance(found, tuple) for first in found]  # a number is another's own
+    return [first for module in local for first in getattr(load(module), "LATE_FIRST", ())]
 
 
 def text(structure: Structure) -> str:
