@@ -6,12 +6,13 @@ Exit codes: 0 ok, 1 run failed, 2 usage, 3 script invalid, 4 gallery differs, 5 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, TypeVar
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from sceneql import __version__
+from sceneql.options import ABOVE_ZERO, SCENE, as_length, as_path, options
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -19,57 +20,6 @@ if TYPE_CHECKING:
     from sceneql.graph import SimulationGraph
 
 OK, RUN_FAILED, USAGE, SCRIPT_INVALID, GALLERY_DIFFERS, LIMIT_REFUSED, INTERRUPTED = 0, 1, 2, 3, 4, 5, 130
-
-ABOVE_ZERO = click.FloatRange(min=0, min_open=True)
-
-F = TypeVar("F", bound=Callable[..., Any])
-
-
-def _length(context: click.Context, parameter: click.Parameter, value: Any) -> float | None:
-    """A length as scripts write it to meters, above 0; a bare number is in meters."""
-    if value is None:
-        return None
-    from sceneql.kinds import Quantity
-    from sceneql.kinds.word import literal
-    from sceneql.quantities.diagnostic import ScriptError
-    from sceneql.quantities.dimension import LENGTH, PLAIN
-    from sceneql.quantities.expression import Type
-
-    wrong = click.BadParameter(f"'{value}' is no length above 0, as 2mm or 0.5")
-    try:
-        read = literal(value, Quantity(LENGTH))
-        number = read.number()
-    except (ScriptError, ArithmeticError, ValueError):
-        raise wrong from None
-    if read.expr.type not in (Type((), LENGTH), Type((), PLAIN)) or not 0.0 < number < float("inf"):
-        raise wrong
-    return float(number)
-
-
-def _path(context: click.Context, parameter: click.Parameter, value: Any) -> Any:
-    """Texts to paths; pathlib is not imported for ``--help``."""
-    from pathlib import Path
-
-    if isinstance(value, tuple):
-        return tuple(Path(item) for item in value)
-    return None if value is None else Path(value)
-
-
-SCENE = click.argument("scene", callback=_path)
-
-
-def _options(command: F) -> F:
-    """The options of every command that reads a script."""
-    command = click.option("--variant", metavar="NAME", help="Apply one of the script's variants.")(command)
-    command = click.option(
-        "--set", "sets", multiple=True, metavar="PATH=VALUE", help="Replace a value, as --set define.k='3 N/m'."
-    )(command)
-    return click.option(
-        "--words",
-        type=click.Path(file_okay=False, exists=True),
-        callback=_path,
-        help="A folder of words of your own (DIR/solvers/heun.py).",
-    )(command)
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -137,8 +87,8 @@ def _say_kept(error: BaseException | None) -> None:
 
 @cli.command()
 @SCENE
-@_options
-@click.option("-o", "--output", callback=_path, help="File to make, for a script with one output.")
+@options
+@click.option("-o", "--output", callback=as_path, help="File to make, for a script with one output.")
 @click.option("--report", "account", is_flag=True, help="Tell how far energy and momentum drifted.")
 def render(
     scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None, output: Path | None, account: bool
@@ -173,7 +123,7 @@ def render(
 
 @cli.command()
 @SCENE
-@_options
+@options
 def check(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None) -> None:
     """Find all errors of a script, and of each of its variants and studies, without running it."""
     from sceneql import pipeline
@@ -198,7 +148,7 @@ def check(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path |
 
 @cli.command()
 @SCENE
-@_options
+@options
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def explain(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None, as_json: bool) -> None:
     """Tell what will run, with which solver and step bound, and what is left out and why."""
@@ -219,8 +169,8 @@ def explain(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path
 
 @cli.command()
 @SCENE
-@_options
-@click.option("-o", "--output", callback=_path, help="Folder for the files, or their path without extension.")
+@options
+@click.option("-o", "--output", callback=as_path, help="Folder for the files, or their path without extension.")
 @click.option("--error", type=ABOVE_ZERO, help="Name the cheapest solver for this relative error.")
 def bench(
     scene: Path,
@@ -243,13 +193,13 @@ def bench(
 
 @cli.command()
 @SCENE
-@_options
+@options
 @click.option(
     "--sweep", metavar="PATH=LOW..HIGH", help="As 'define.k=1e0..1e12 N/m'; by default steps, as 'step=1e-5..1'."
 )
 @click.option("--points", type=click.IntRange(min=1), help="Values of the sweep; by default 13.")
 @click.option("--error", type=ABOVE_ZERO, default=0.1, show_default=True, help="Larger relative errors are inaccurate.")
-@click.option("-o", "--output", callback=_path, help="Folder for the files, or their path without extension.")
+@click.option("-o", "--output", callback=as_path, help="Folder for the files, or their path without extension.")
 def stability(
     scene: Path,
     variant: str | None,
@@ -276,8 +226,8 @@ def stability(
 @cli.command()
 @SCENE
 @click.argument("name", required=False)
-@_options
-@click.option("-o", "--output", callback=_path, help="Folder for the files, or their path without extension.")
+@options
+@click.option("-o", "--output", callback=as_path, help="Folder for the files, or their path without extension.")
 def study(
     scene: Path, name: str | None, variant: str | None, sets: tuple[str, ...], words: Path | None, output: Path | None
 ) -> None:
@@ -296,11 +246,13 @@ def study(
 
 @cli.command()
 @SCENE
-@_options
+@options
 @click.option("--object", "name", required=True, metavar="NAME", help="The object.")
-@click.option("-o", "--output", callback=_path, required=True, help="File to make: .ply, .stl, .obj or .glb.")
-@click.option("--cell", callback=_length, metavar="LENGTH", help="Side of a cell, as 2mm; else 1/128 of its size.")
-@click.option("--tolerance", callback=_length, metavar="LENGTH", help="Distance from the surface, in place of --cell.")
+@click.option("-o", "--output", callback=as_path, required=True, help="File to make: .ply, .stl, .obj or .glb.")
+@click.option("--cell", callback=as_length, metavar="LENGTH", help="Side of a cell, as 2mm; else 1/128 of its size.")
+@click.option(
+    "--tolerance", callback=as_length, metavar="LENGTH", help="Distance from the surface, in place of --cell."
+)
 @click.option("--sharp", is_flag=True, help="Keep edges and corners.")
 @click.option("--time", type=click.FloatRange(min=0), default=0.0, metavar="SECONDS", help="Instant of the simulation.")
 def mesh(
@@ -328,7 +280,7 @@ def mesh(
 @cli.command()
 @click.argument("word", required=False)
 @click.option(
-    "--words", "folder", type=click.Path(file_okay=False, exists=True), callback=_path, help="Your own words."
+    "--words", "folder", type=click.Path(file_okay=False, exists=True), callback=as_path, help="Your own words."
 )
 def words(word: str | None, folder: Path | None) -> None:
     """List the words of the language, or show the manual of one."""
@@ -341,7 +293,7 @@ def words(word: str | None, folder: Path | None) -> None:
 
 @cli.command()
 @click.option(
-    "--words", "folder", type=click.Path(file_okay=False, exists=True), callback=_path, help="Your own words."
+    "--words", "folder", type=click.Path(file_okay=False, exists=True), callback=as_path, help="Your own words."
 )
 def schema(folder: Path | None) -> None:
     """Print the JSON Schema of scripts, for editors."""
@@ -369,8 +321,8 @@ def gallery() -> None:
 
 
 @gallery.command("check")
-@click.argument("scenes", nargs=-1, type=click.Path(exists=True), callback=_path)
-@click.option("--folder", callback=_path, default="gallery", help="Where the posters are kept.")
+@click.argument("scenes", nargs=-1, type=click.Path(exists=True), callback=as_path)
+@click.option("--folder", callback=as_path, default="gallery", help="Where the posters are kept.")
 def gallery_check(scenes: tuple[Path, ...], folder: Path) -> None:
     """Run scenes small and short; compare posters and expected numbers."""
     from sceneql.report.gallery import check as compare
@@ -383,8 +335,8 @@ def gallery_check(scenes: tuple[Path, ...], folder: Path) -> None:
 
 
 @gallery.command("update")
-@click.argument("scenes", nargs=-1, type=click.Path(exists=True), callback=_path)
-@click.option("--folder", callback=_path, default="gallery", help="Where the posters are kept.")
+@click.argument("scenes", nargs=-1, type=click.Path(exists=True), callback=as_path)
+@click.option("--folder", callback=as_path, default="gallery", help="Where the posters are kept.")
 def gallery_update(scenes: tuple[Path, ...], folder: Path) -> None:
     """Keep the posters of scenes as they are now, and write the gallery's page."""
     from sceneql.report.gallery import update

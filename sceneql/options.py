@@ -1,0 +1,59 @@
+"""What commands are told on the command line, and how it is read. Nothing but click is imported."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import click
+
+ABOVE_ZERO = click.FloatRange(min=0, min_open=True)
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def as_length(context: click.Context, parameter: click.Parameter, value: Any) -> float | None:
+    """A length as scripts write it to meters, above 0; a bare number is in meters."""
+    if value is None:
+        return None
+    from sceneql.kinds import Quantity
+    from sceneql.kinds.word import literal
+    from sceneql.quantities.diagnostic import ScriptError
+    from sceneql.quantities.dimension import LENGTH, PLAIN
+    from sceneql.quantities.expression import Type
+
+    wrong = click.BadParameter(f"'{value}' is no length above 0, as 2mm or 0.5")
+    try:
+        read = literal(value, Quantity(LENGTH))
+        number = read.number()
+    except (ScriptError, ArithmeticError, ValueError):
+        raise wrong from None
+    if read.expr.type not in (Type((), LENGTH), Type((), PLAIN)) or not 0.0 < number < float("inf"):
+        raise wrong
+    return float(number)
+
+
+def as_path(context: click.Context, parameter: click.Parameter, value: Any) -> Any:
+    """Texts to paths; pathlib is not imported for ``--help``."""
+    from pathlib import Path
+
+    if isinstance(value, tuple):
+        return tuple(Path(item) for item in value)
+    return None if value is None else Path(value)
+
+
+SCENE = click.argument("scene", callback=as_path)
+
+
+def options(command: F) -> F:
+    """The options of every command that reads a script."""
+    command = click.option("--variant", metavar="NAME", help="Apply one of the script's variants.")(command)
+    command = click.option(
+        "--set", "sets", multiple=True, metavar="PATH=VALUE", help="Replace a value, as --set define.k='3 N/m'."
+    )(command)
+    return click.option(
+        "--words",
+        type=click.Path(file_okay=False, exists=True),
+        callback=as_path,
+        help="A folder of words of your own (DIR/solvers/heun.py).",
+    )(command)
