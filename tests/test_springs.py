@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from runs import complaint, watch
+from sceneql.failure import LimitRefused
 from sceneql.pipeline import load
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.simulation.run import Run
@@ -133,6 +134,14 @@ def test_a_solid_that_cannot_be_is_told(tmp_path, shape, spacing, pins, said):
     path.write_text(SOLID.format(shape=shape, spacing=spacing, pins=pins))
     with pytest.raises(ScriptError, match=said) as error:
         Run(load(path))
+    assert "scene.yaml:5" in str(error.value)
+
+
+def test_a_solid_that_is_too_much_is_refused_before_it_is_made(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text(SOLID.format(shape="box: {size: 1 1 1 m}", spacing=0.008, pins=""))
+    with pytest.raises(LimitRefused, match=r"1.91e\+06 masses and .* springs need about") as error:
+        Run(load(path))  # its grid can be looked at, its springs cannot be held
     assert "scene.yaml:5" in str(error.value)
 
 

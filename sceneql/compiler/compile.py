@@ -9,6 +9,7 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.check import check, values_of
 from sceneql.compiler.passes.circles import report_circles
 from sceneql.compiler.passes.expand import expand
+from sceneql.compiler.passes.fillings import check_fillings
 from sceneql.compiler.passes.insides import report_hollow
 from sceneql.compiler.passes.islands import islands
 from sceneql.compiler.passes.layouts import check_layouts
@@ -42,6 +43,7 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
     if checked.timed:
         _check_outputs(tasks, drawn, checked.settings.clock, None if clock is None else clock.span, found)
     found.raise_errors()
+    check_fillings(tasks, found)
     warn_of_steps(script, tasks, groups, checked.settings.clock.end, found)
     found.raise_errors()
     order, needed_by, left_out = prune(tasks, groups, drawn, cameras)

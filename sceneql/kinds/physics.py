@@ -51,6 +51,13 @@ class Model(Kind):
         """How many items an output has, where its fields tell."""
         return None
 
+    def fillings(self) -> Iterable[tuple[Ref, Callable[[Floats, Floats], None]]]:
+        """Objects that it fills by a measure, with a function of the low and high corner (3,) of their boxes.
+
+        The function raises Exceeds where that is sure to be too much.
+        """
+        return ()
+
     def lasts(self) -> bool:
         """Whether its bodies are there all the time: births bring energy, and deaths take it."""
         return True

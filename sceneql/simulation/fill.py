@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Literal
 
-from sceneql.kinds import FixedLength, Object, ObjectRef, Problem, Record, Ref, field
+from sceneql.failure import LimitRefused
+from sceneql.kinds import Exceeds, FixedLength, Object, ObjectRef, Problem, Record, Ref, field
 from sceneql.quantities.chance import philox, unit
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.simulation.memory import PLACE, bounded
 from sceneql.simulation.start import Start
 
 if TYPE_CHECKING:
@@ -39,6 +41,16 @@ class Fill(Record):
         elif self.pattern == "grid" and self.spacing is None:
             yield Problem("a grid needs a `spacing`", ("pattern",))
 
+    def bounded(self, low: Floats, high: Floats) -> None:
+        """Raise Exceeds where the filling of an object in a box at a spacing is sure to be too much."""
+        import numpy as np
+
+        assert self.spacing is not None
+        if self.pattern == "grid":
+            grid_counts(low, high, self.spacing)
+        else:
+            bounded(float(np.prod(np.maximum(high - low, 0.0) / self.spacing)) / EMPTIEST)
+
 
 class Inside:
     """The box around an object at the start of the run, and which places lie in the object."""
@@ -64,6 +76,13 @@ class Inside:
     def refusal(self, why: str) -> ScriptError:
         """That it cannot be filled."""
         return ScriptError([Diagnostic("not-filled", f"'{self.name}' cannot be filled: {why}", self.span)])
+
+    def bounded(self, bound: Callable[..., object], *arguments: Any) -> None:
+        """Raise LimitRefused where a function of the arguments (as memory.bounded) raises Exceeds."""
+        try:
+            bound(*arguments)
+        except Exceeds as error:
+            raise LimitRefused(str(error), self.span, "use a larger spacing") from None
 
     def random(self, first: int, count: int, key: int) -> Floats:
         """Those of the places number first to first + count of its box, by chance, that lie in it: (m, 3)."""
@@ -109,15 +128,14 @@ def _test(kind: Object, start: Any) -> Callable[[Floats], Any]:
     return lambda places: np.asarray(field_values(tape, places) < 0)
 
 
-def filled(fill: Fill, name: str, assembly: Assembly, bound: Callable[[float], None]) -> Floats:
-    """(n, 3) places [m]. ``bound`` is asked whether so many may be. Raises ScriptError where the object holds none."""
+def filled(fill: Fill, name: str, assembly: Assembly) -> Floats:
+    """(n, 3) places [m]. Raises ScriptError where the object holds none, LimitRefused where too many."""
     import numpy as np
 
     inside = Inside(fill.object, assembly)
     if fill.pattern == "grid":
-        places = grid(inside, fill.spacing or 1.0, bound)[0]
-        if not len(places):
-            raise inside.refusal("no place of the grid lies in it; make the spacing smaller")
+        places = grid(inside, fill.spacing or 1.0)[0]
+        inside.bounded(bounded, len(places))
         return places
     key = chance_key(name, fill.seed)
     size = float(np.prod(inside.high - inside.low))
@@ -128,7 +146,7 @@ def filled(fill: Fill, name: str, assembly: Assembly, bound: Callable[[float], N
     wanted = fill.count
     if wanted is None:
         wanted = max(1, round(min(volume / (fill.spacing or 1.0) ** 3, 1e18)))
-        bound(wanted)
+        inside.bounded(bounded, wanted)
     if fill.pattern == "even":
         from sceneql.simulation.fill_kernels import spread
 
@@ -156,15 +174,28 @@ def _even(inside: Inside, trial: Floats, wanted: int, apart: float, key: int, sp
         darts, first = inside.random(first, CHUNK, key), first + CHUNK
 
 
-def grid(inside: Inside, spacing: float, bound: Callable[[float], None]) -> tuple[Floats, Any]:
-    """Places (n, 3) of a cubic grid about the middle of an object's box, and their whole numbers (n, 3)."""
+def grid_counts(low: Floats, high: Floats, spacing: float) -> Floats:
+    """(3,) places along the sides of a box. Raises Exceeds where a grid of them cannot be looked at."""
     import numpy as np
 
-    room = inside.high - inside.low
-    count = np.floor(np.maximum(room, 0.0) / spacing + 1e-9) + 1
-    bound(float(np.prod(count)))
+    count: Floats = np.floor(np.maximum(high - low, 0.0) / spacing + 1e-9) + 1
+    bounded(float(np.prod(count)), "places of a grid", PLACE)
+    return count
+
+
+def grid(inside: Inside, spacing: float) -> tuple[Floats, Any]:
+    """Places (n, 3) of a cubic grid about the middle of an object's box, and their whole numbers (n, 3).
+
+    Raises ScriptError where the object holds none, LimitRefused where too many were to be looked at.
+    """
+    import numpy as np
+
+    inside.bounded(grid_counts, inside.low, inside.high, spacing)
+    count = grid_counts(inside.low, inside.high, spacing)
     axes = [np.arange(int(c)) for c in count]
     cells = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     places = (inside.low + inside.high) / 2 + spacing * (cells - (count - 1) / 2)
     held = inside.holds(places)
+    if not held.any():
+        raise inside.refusal("no place of the grid lies in it; make the spacing smaller")
     return places[held], cells[held]

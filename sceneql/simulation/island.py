@@ -21,6 +21,7 @@ from sceneql.quantities.expression import Expr, Link
 from sceneql.simulation.blocks_laid import Block, grouped, lay_out
 from sceneql.simulation.inputs import Inputs
 from sceneql.simulation.jacobian import full, section
+from sceneql.simulation.memory import LARGEST_MEMORY
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -31,8 +32,6 @@ if TYPE_CHECKING:
     from sceneql.system import Grid, Mode, Pattern, Slopes, Stage
 
 STAGES: tuple[Stage, ...] = ("internal", "force", "close", "constrain")
-LARGEST_MEMORY = 8 * 2**30
-"""[bytes] of the state and of a solver's stages."""
 VECTORS = 12
 """Arrays of the state's size that a run keeps: ends and rates of a step, and the stages of a solver."""
 RESERVED_FLOATS = 5

@@ -104,6 +104,15 @@ class SpringModel(Model):
         """
         raise NotImplementedError
 
+    def mass_count(self) -> int | None:
+        """Number of masses, where the fields tell."""
+        return None
+
+    def items(self, output: str) -> int | None:
+        """How many there are."""
+        several = point_masses.BODY_OUTPUTS.get(output)
+        return None if several is None or several.type.shape[:1] != (None,) else self.mass_count()
+
     def shared(self, assembly: Assembly) -> tuple[int, int]:
         """Offsets of the model's stiffness and damping in the floats."""
         return (assembly.floats([0.0]),) * 2

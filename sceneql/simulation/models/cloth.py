@@ -56,12 +56,15 @@ class Cloth(SpringModel):
 
     def problems(self) -> Iterator[Problem]:
         """What is wrong with the sheet, and pins that are no mass of it."""
-        sheet = Sheet.model_construct(cells=self.cells, facing=self.facing)
-        yield from sheet.problems()
-        yield from pin_problems(self.pins, (*EDGES, *CORNERS), sheet.mass_count())
+        yield from self._sheet().problems()
+        yield from pin_problems(self.pins, (*EDGES, *CORNERS), self.mass_count())
+
+    def mass_count(self) -> int:
+        """Number of masses."""
+        return self._sheet().mass_count()
 
     def _sheet(self) -> Sheet:
-        return Sheet(
+        return Sheet.model_construct(
             size=self.size,
             cells=self.cells,
             center=self.center,

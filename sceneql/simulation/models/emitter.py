@@ -26,6 +26,7 @@ from sceneql.kinds import (
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Link, Number, Type, Vector, walk
 from sceneql.simulation.fill import Fill, chance_key, draws, filled
+from sceneql.simulation.memory import bounded
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -40,23 +41,10 @@ STEPS = 50
 POOL = 4096
 """Places of an object that births are drawn from."""
 
-BYTES = 900
-"""Memory of a particle: its part of the state and of a solver's stages, its numbers, its picture."""
-LARGEST_MEMORY = 8 * 2**30
-
 
 def _aged(value: Value, age: float) -> Any:
     """A value whose `time` is an age [s]."""
     return evaluate(value.expr, lambda node: age, arrays=True)
-
-
-def bounded(count: float) -> None:
-    """Raise Exceeds for more particles than memory is allowed for."""
-    if count * BYTES > LARGEST_MEMORY:
-        raise Exceeds(
-            f"{count:.3g} particles need about {count * BYTES / 2**30:.3g} GiB; at most {LARGEST_MEMORY >> 30} GiB, "
-            f"{LARGEST_MEMORY / BYTES:.2g} particles, are allowed"
-        )
 
 
 class Aging(Record):
@@ -148,7 +136,7 @@ class Emit(Record):
 
         pool = np.zeros((1, 3))
         if self.within is not None:
-            pool = filled(Fill(object=self.within, count=POOL, seed=self.seed), name, assembly, bounded)
+            pool = filled(Fill(object=self.within, count=POOL, seed=self.seed), name, assembly)
         spec = [self.rate, self.start, self.total(), self.lifetime, self.variation, 1 - math.cos(self.spread)]
         # Of a source that is solved itself, the place at time 0 is not known here: its first step starts from its end.
         solved = [

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from sceneql.kinds import Damping, FixedMass, Gives, Problem, Stiffness, field, quantity_type
+from sceneql.kinds import Damping, FixedMass, Gives, Problem, Ref, Stiffness, field, quantity_type
 from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
@@ -78,9 +78,16 @@ class MassSpring(SpringModel):
             return
         if self.masses is not None and not self.masses:
             yield Problem("no masses are given", ("masses",))
+        yield from pin_problems(self.pins, (*known, *PLACES.get(given[0], ())), self.mass_count())
+
+    def mass_count(self) -> int | None:
+        """Number of masses; None of a solid."""
         shape = self.lattice or self.cloth or self.rope
-        count = len(self.masses) if self.masses is not None else shape.mass_count() if shape else None
-        yield from pin_problems(self.pins, (*known, *PLACES.get(given[0], ())), count)
+        return len(self.masses) if self.masses is not None else shape.mass_count() if shape else None
+
+    def fillings(self) -> Iterable[tuple[Ref, Callable[[Floats, Floats], None]]]:
+        """The object of a solid."""
+        return () if self.solid is None else ((self.solid.object, self.solid.bounded),)
 
     @classmethod
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from sceneql.kinds import (
     Axis,
+    Exceeds,
     FixedDamping,
     FixedLength,
     FixedMass,
@@ -26,6 +27,7 @@ from sceneql.kinds import (
     field,
 )
 from sceneql.quantities import dimension as dim
+from sceneql.simulation.memory import bounded_net
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -34,9 +36,10 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
     from sceneql.system import Assembly
 
-MOST_MASSES = 5_000_000
 SIDES = ("left", "right", "bottom", "top", "back", "front")
 EDGES = ("left", "right", "bottom", "top")
+STEPS = tuple(step for step in product((-1, 0, 1), repeat=3) if step > (0, 0, 0))
+"""To the neighbors of a place of a grid, each pair once."""
 CORNERS = ("bottom_left", "bottom_right", "top_left", "top_right")
 
 
@@ -110,9 +113,11 @@ class Spring(Record):
             yield Problem(f"a spring from '{self.between[0]}' to itself", ("between",))
 
 
-def _too_many(count: float, field: str) -> Iterator[Problem]:
-    if count > MOST_MASSES:
-        yield Problem(f"{count:.3g} masses: at most {MOST_MASSES:,} are possible", (field,), code="limit-refused")
+def _too_many(masses: float, springs: float, field: str) -> Iterator[Problem]:
+    try:
+        bounded_net(masses, springs)
+    except Exceeds as error:
+        yield Problem(str(error), (field,), code="limit-refused")
 
 
 def neighbors(cells: Any, shear: float) -> tuple[NDArray[int64], Floats]:
@@ -124,9 +129,8 @@ def neighbors(cells: Any, shear: float) -> tuple[NDArray[int64], Floats]:
 
     index = np.full(np.max(cells, axis=0) + 1, -1, dtype=np.int64)
     index[tuple(cells.T)] = np.arange(len(cells))
-    steps = [s for s in product((-1, 0, 1), repeat=3) if s > (0, 0, 0)]
     pairs, parts = [np.zeros((0, 2), dtype=np.int64)], [np.zeros(0)]
-    for step in sorted(steps, key=lambda s: (sum(map(abs, s)), s)):
+    for step in sorted(STEPS, key=lambda s: (sum(map(abs, s)), s)):
         part = 1.0 if sum(map(abs, step)) == 1 else shear
         if part == 0:
             continue
@@ -159,19 +163,19 @@ class Filling(Record):
         """Bound on (angular frequency)^2 mass / stiffness: that of an endless lattice."""
         return Lattice(count=(3, 3, 3), shear=self.shear).stiffest()
 
+    def bounded(self, low: Floats, high: Floats) -> None:
+        """Raise Exceeds where a grid in a box cannot be looked at."""
+        from sceneql.simulation.fill import grid_counts
+
+        grid_counts(low, high, self.spacing)
+
     def net(self, assembly: Assembly) -> Net:
         """Raises ScriptError for an object that holds no two neighbors, LimitRefused for too many masses."""
-        from sceneql.failure import LimitRefused
         from sceneql.simulation.fill import Inside, grid
 
-        def bound(count: float) -> None:
-            for problem in _too_many(count, "spacing"):
-                raise LimitRefused(problem.text, self.object.span, "use a larger spacing")
-
         inside = Inside(self.object, assembly)
-        points, cells = grid(inside, self.spacing, bound)
-        if not len(points):
-            raise inside.refusal("no place of the grid lies in it; make the spacing smaller")
+        points, cells = grid(inside, self.spacing)
+        inside.bounded(bounded_net, len(points), len(points) * (13 if self.shear else 3))
         pairs, parts = neighbors(cells, self.shear)
         if not len(pairs):
             raise inside.refusal("no two neighbors of the grid lie in it; make the spacing smaller")
@@ -191,11 +195,16 @@ class Lattice(Record):
 
     def problems(self) -> Iterator[Problem]:
         """More masses than are possible."""
-        yield from _too_many(self.mass_count(), "count")
+        yield from _too_many(self.mass_count(), self.spring_count(), "count")
 
     def mass_count(self) -> int:
         """Number of masses."""
         return prod(self.count)
+
+    def spring_count(self) -> int:
+        """Number of springs."""
+        steps = [step for step in STEPS if self.shear or sum(map(abs, step)) == 1]
+        return sum(prod(c - abs(s) for c, s in zip(self.count, step, strict=True)) for step in steps)
 
     def stiffest(self) -> float:
         """Bound on (angular frequency)^2 mass / stiffness."""
@@ -233,7 +242,8 @@ class Cloth(Record):
 
     def problems(self) -> Iterator[Problem]:
         """More masses than are possible, or no side that faces anywhere."""
-        yield from _too_many(self.mass_count(), "cells")
+        kinds = 1 + (self.shear > 0) + (self.bend > 0)
+        yield from _too_many(self.mass_count(), 2 * kinds * self.mass_count(), "cells")
         if not any(self.facing):
             yield Problem("a cloth that faces 0 0 0 faces nowhere", ("facing",))
 
@@ -300,7 +310,7 @@ class Rope(Record):
 
     def problems(self) -> Iterator[Problem]:
         """More masses than are possible, or no length."""
-        yield from _too_many(self.mass_count(), "count")
+        yield from _too_many(self.mass_count(), self.mass_count(), "count")
         if self.from_ == self.to:
             yield Problem("a rope that ends where it starts", ("to",))
 

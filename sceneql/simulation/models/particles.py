@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import field_validator
 
-from sceneql.failure import LimitRefused
 from sceneql.kinds import (
     Color,
-    Exceeds,
     FixedLength,
     FixedMass,
     FixedPosition,
@@ -23,6 +21,7 @@ from sceneql.kinds import (
     Points,
     Problem,
     Record,
+    Ref,
     Value,
     field,
     quantity_type,
@@ -31,7 +30,8 @@ from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.simulation import bodies as masses
 from sceneql.simulation.fill import Fill, filled
-from sceneql.simulation.models.emitter import Aging, Emit, bounded
+from sceneql.simulation.memory import bounded
+from sceneql.simulation.models.emitter import Aging, Emit
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -125,6 +125,10 @@ class Particles(Model):
             return len(self.list)
         return None if self.fill is None else self.fill.count
 
+    def fillings(self) -> Iterable[tuple[Ref, Callable[[Floats, Floats], None]]]:
+        """The object that they fill at a spacing."""
+        return () if self.fill is None or self.fill.spacing is None else ((self.fill.object, self.fill.bounded),)
+
     def assemble(self, name: str, assembly: Assembly) -> Bodies:
         """Reserve the masses."""
         import numpy as np
@@ -149,7 +153,7 @@ class Particles(Model):
             self.emit.assemble(name, assembly, room, self.mass, default)
             return room
         if self.fill is not None:
-            places = filled(self.fill, name, assembly, self._bound)
+            places = filled(self.fill, name, assembly)
         elif self.positions is not None:
             places = np.asarray(assembly.initial(self.positions), dtype=float).reshape(-1, 3)
         else:
@@ -173,14 +177,6 @@ class Particles(Model):
         if self.emit is not None:
             self.emit.assemble_part(name, assembly, part, start, first)
         return part
-
-    def _bound(self, count: float) -> None:
-        """Raise LimitRefused for more particles than can be held."""
-        try:
-            bounded(count)
-        except Exceeds as error:
-            span = None if self.fill is None else self.fill.object.span
-            raise LimitRefused(str(error), span, "use a larger spacing") from None
 
     def _object(self, assembly: Assembly) -> tuple[Floats, float]:
         """Place (1, 3) and radius of the object at the start."""

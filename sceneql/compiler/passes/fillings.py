@@ -1,0 +1,62 @@
+"""Models that fill objects with more than memory is allowed for, by the objects' boxes at the start."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import isfinite
+from typing import Any
+
+from sceneql.failure import RunFailure
+from sceneql.graph import Task
+from sceneql.kinds import Exceeds, Model, Object, Ref, Value
+from sceneql.quantities.diagnostic import Diagnostics, ScriptError
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Link, Symbol
+
+
+class Beginning:
+    """What an object's extent may ask of a moment (part of kinds.Moment), where the script alone tells it."""
+
+    time = 0.0
+
+    def __init__(self, tasks: Mapping[str, Task]) -> None:
+        self._tasks = tasks
+
+    def at(self, value: Value) -> Any:
+        """A value at the start. Raises TypeError where it reads what only a run knows."""
+        return evaluate(value.expr, self._look_up, arrays=True)
+
+    def object(self, ref: Ref) -> Object:
+        """The kind of an object."""
+        kind = self._tasks[ref.name].kind
+        assert isinstance(kind, Object)
+        return kind
+
+    def _look_up(self, node: Symbol | Link) -> Any:
+        if isinstance(node, Symbol):
+            return self.time
+        source = self._tasks[node.task].kind
+        if not isinstance(source, Model) or not source.kinematic:
+            raise TypeError("only a run knows it")
+        return evaluate(source.formula(node.output), self._look_up, arrays=True)
+
+
+def check_fillings(tasks: Mapping[str, Task], found: Diagnostics) -> None:
+    """Report what fills more than can be held; where a box is known to the run alone, the run refuses."""
+    start: Any = Beginning(tasks)
+    for task in tasks.values():
+        for ref, bounds in task.kind.fillings() if isinstance(task.kind, Model) else ():
+            try:
+                low, high = start.object(ref).extent(_place(), start)
+                if isfinite(sum(high - low)):
+                    bounds(low, high)
+            except Exceeds as error:
+                found.error("limit-refused", f"{task.name}: at least {error}", ref.span, help="use a larger spacing")
+            except (TypeError, ValueError, RunFailure, ScriptError):
+                continue  # the run says why
+
+
+def _place() -> Any:
+    import numpy as np
+
+    return np.eye(3, 4)
