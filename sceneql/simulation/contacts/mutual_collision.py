@@ -10,9 +10,15 @@ from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
 
 if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats
     from sceneql.system import Assembly, Bodies, ModelState
 
 MOST_EXACT = 8
+FEW = 300
+"""Of so few masses all pairs are looked at, which takes less time than the import of scipy's trees."""
 
 
 class MutualCollision(Contact):
@@ -101,13 +107,12 @@ class MutualCollision(Contact):
 def _must_be_apart(assembly: Assembly, everyone: Sequence[Bodies]) -> None:
     """Raise ScriptError where two moving masses overlap at the start."""
     import numpy as np
-    from scipy.spatial import cKDTree
 
     y, floats = assembly.start(), assembly.numbers()
     places = np.concatenate([y[at.position_at : at.position_at + 3 * at.count] for at in everyone]).reshape(-1, 3)
     radii = np.concatenate([floats[at.radius_at : at.radius_at + at.count] for at in everyone])
     moving = np.concatenate([floats[at.inverse_at : at.inverse_at + at.count] for at in everyone]) > 0.0
-    pairs = cKDTree(places).query_pairs(2.0 * float(radii.max(initial=0.0)), output_type="ndarray")
+    pairs = _near(places, 2.0 * float(radii.max(initial=0.0)))
     pairs = pairs[moving[pairs].all(axis=1)]
     apart = np.linalg.norm(places[pairs[:, 0]] - places[pairs[:, 1]], axis=1)
     depth = radii[pairs].sum(axis=1) - apart
@@ -119,3 +124,15 @@ def _must_be_apart(assembly: Assembly, everyone: Sequence[Bodies]) -> None:
         raise ScriptError(
             [Diagnostic("masses-overlap", text, assembly.line(), "move them apart, or make them smaller")]
         )
+
+
+def _near(places: Floats, reach: float) -> NDArray[int64]:
+    """(m, 2) pairs of places (n, 3) that are no further apart than that [m], and, of a few places, the others too."""
+    import numpy as np
+
+    if len(places) <= FEW:
+        return np.column_stack(np.triu_indices(len(places), 1))
+    from scipy.spatial import cKDTree
+
+    found: NDArray[int64] = cKDTree(places).query_pairs(reach, output_type="ndarray")
+    return found
