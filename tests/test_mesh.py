@@ -15,10 +15,11 @@ from sceneql.field.batch_kernels import LANES, evaluate
 from sceneql.field.builder import TapeBuilder
 from sceneql.field.interval_kernels import box
 from sceneql.field.simplify_kernels import simplify
-from sceneql.field.solid import field_gradients, field_values, scratch
+from sceneql.field.solid import field_gradients, field_values, many_gradients, scratch
 from sceneql.field.steepness_kernels import steepness
 from sceneql.field.tape_ops import WHOLE
 from sceneql.frame import Tape
+from sceneql.mesh import moves
 from sceneql.mesh.bounded import bounded
 from sceneql.mesh.cases import CENTERS, cases, decisions
 from sceneql.mesh.cube import FACES_OF, segments
@@ -157,7 +158,7 @@ def test_coarse_cells_leave_no_triangle_facing_inward(way, cells):
         found = cut_finer(text, half, cells)[0] if way == "refined" else cut_sharp(text, half, cells)
         assert_closed_manifold(found)
         assert euler_characteristic(found.triangles) == euler
-        assert facing(tape_of(text), found.vertices, found.triangles).min() > 0.0
+        assert facing(tape_of(text), found.vertices[found.triangles]).min() > 0.0
         if way == "refined":
             steep = np.linalg.norm(field_gradients(tape_of(text), found.vertices), axis=1)
             assert (np.abs(field_values(tape_of(text), found.vertices)) / steep).max() < 1e-6 * half
@@ -388,6 +389,8 @@ def test_evaluators_of_many_points_agree_to_the_bit_also_when_simplified(tape, p
     rows, used = simplify(tape.code, tape.parts, room, status == WHOLE, short, near)
     expected = field_values(tape, points[:, :40].T)
     slopes = field_gradients(tape, points[:, :40].T)
+    with np.errstate(all="ignore"):
+        assert np.array_equal(many_gradients(tape, points.T), field_gradients(tape, points.T), equal_nan=True)
     for shorter in (tape, Tape(short[:rows], tape.constants, near[:used])):
         registers, slope = np.zeros((len(shorter.code), LANES)), np.zeros((len(shorter.code), 3, LANES))
         evaluate(*program(shorter), registers, points, 40)
@@ -461,6 +464,21 @@ def test_no_triangle_faces_inward_where_fine_cells_meet_coarse_ones(cells):
     inward = (np.cross(b - a, c - a) * field_gradients(tape_of(TANGLECUBE), (a + b + c) / 3)).sum(axis=1) < 0
     assert inward.sum() == 0
     assert euler_characteristic(found.triangles) == -8
+
+
+def test_no_corner_is_tried_again_before_something_near_it_has_moved(monkeypatch):
+    tried = []
+
+    def noted(tape, places, normals, star, vertex):
+        tried.append((vertex, places[star].tobytes()))
+        return moved(tape, places, normals, star, vertex)
+
+    moved = moves._moved
+    monkeypatch.setattr(moves, "_moved", noted)
+    gyroid = "sin(9*x)*cos(9*y) + sin(9*y)*cos(9*z) + sin(9*z)*cos(9*x)"
+    found, _ = cut_finer(f"max({gyroid}, sqrt(x^2 + y^2 + z^2) - 1)", 1.0, 40)
+    assert_closed_manifold(found)
+    assert len(tried) == len(set(tried)) > 10
 
 
 @settings(max_examples=40)

@@ -13,6 +13,8 @@ from sceneql.field import tape_kernels
 from sceneql.field.tape_ops import SCRATCH_COLUMNS, scratch_rows
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats, Tape
@@ -38,6 +40,18 @@ def field_gradients(tape: Tape, points: Floats) -> Floats:
     room = scratch(tape)
     rows = [gradient(tape.code, tape.constants, tape.parts, room, *map(float, point)) for point in points]
     return np.array(rows).reshape(-1, 4)[:, 1:]
+
+
+def many_gradients(tape: Tape, points: Floats) -> Floats:
+    """``field_gradients`` to the bit, by kernels that meshes have compiled already: sooner from a few points on."""
+    from sceneql.field.batch_gradient_kernels import differentiate
+    from sceneql.field.batch_kernels import LANES
+
+    out, slope = np.empty((len(points), 3)), np.empty((len(tape.code), 3, LANES))
+    for start, n, registers in _by_lanes(tape, points):
+        differentiate(tape.code, tape.constants, tape.parts, registers, slope, n)
+        out[start : start + n] = slope[-1, :, :n].T
+    return out
 
 
 def cast(
@@ -74,13 +88,19 @@ def cast(
 
 def paint_values(tape: Tape, points: Floats) -> Floats:
     """The last three registers of a tape at points (n, 3) [m]: (n, 3)."""
+    out = np.empty((len(points), 3))
+    for start, n, registers in _by_lanes(tape, points):
+        out[start : start + n] = registers[-3:, :n].T
+    return out
+
+
+def _by_lanes(tape: Tape, points: Floats) -> Iterator[tuple[int, int, Floats]]:
+    """Of points (n, 3) [m], LANES at a time: the first, how many, and their registers (rows, LANES)."""
     from sceneql.field.batch_kernels import LANES, evaluate
 
     registers, block = np.empty((len(tape.code), LANES)), np.zeros((3, LANES))
-    out = np.empty((len(points), 3))
     for start in range(0, len(points), LANES):
         n = min(LANES, len(points) - start)
         block[:, :n] = points[start : start + n].T
         evaluate(tape.code, tape.constants, tape.parts, registers, block, n)
-        out[start : start + n] = registers[-3:, :n].T
-    return out
+        yield start, n, registers

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from sceneql.field.solid import field_gradients
+from sceneql.field.solid import many_gradients
 
 if TYPE_CHECKING:
     import numpy as np
@@ -27,7 +27,7 @@ def faced_outward(tape: Tape, places: Floats, triangles: Ints, doubtful: Rows) -
 
     found = triangles.astype(np.int64)
     for _ in range(ROUNDS):
-        turned = doubtful[facing(tape, places, found[doubtful]) < 0.0]
+        turned = doubtful[facing(tape, places[found[doubtful]]) < 0.0]
         near = np.zeros(len(places), dtype=bool)
         near[found[turned]] = True
         around = np.flatnonzero(near[found].any(axis=1))
@@ -40,12 +40,15 @@ def faced_outward(tape: Tape, places: Floats, triangles: Ints, doubtful: Rows) -
     return found.astype(np.int32)
 
 
-def facing(tape: Tape, places: Floats, triangles: Rows | Ints) -> Floats:
-    """(t,) cosine of the angle between a triangle's normal and the gradient in its middle; 0 where one has none."""
+def facing(tape: Tape, corners: Floats) -> Floats:
+    """(t,) cosine of the angle between the normals of triangles (t, 3, 3) and the gradients in their middles.
+
+    0 where one has none.
+    """
     import numpy as np
 
-    a, b, c = (places[triangles[:, k]] for k in range(3))
-    normals, slopes = np.cross(b - a, c - a), field_gradients(tape, (a + b + c) / 3.0)
+    a, b, c = (corners[:, k] for k in range(3))
+    normals, slopes = np.cross(b - a, c - a), many_gradients(tape, (a + b + c) / 3.0)
     sizes = np.linalg.norm(normals, axis=1) * np.linalg.norm(slopes, axis=1)
     dots = np.einsum("tj,tj->t", normals, slopes)
     cosines: Floats = np.divide(dots, sizes, out=np.zeros_like(dots), where=sizes > 0.0)
@@ -74,7 +77,7 @@ def _flipped(tape: Tape, places: Floats, triangles: Rows, turned: Rows) -> dict[
         return {}
     old = triangles[np.array([choice[:2] for choice in choices]).ravel()]
     new = np.array([choice[2:] for choice in choices]).reshape(-1, 3)
-    least = [facing(tape, places, corners).reshape(-1, 2).min(axis=1) for corners in (old, new)]
+    least = [facing(tape, places[corners]).reshape(-1, 2).min(axis=1) for corners in (old, new)]
     gains = least[1] - least[0]
     changed: dict[int, tuple[int, int, int]] = {}
     edges: set[frozenset[int]] = set()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from sceneql.field.solid import field_gradients, field_values
+from sceneql.field.solid import field_values, many_gradients
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints, Tape
@@ -73,7 +73,7 @@ def _feet(tape: Tape, points: Floats) -> tuple[Floats, Ints]:
     feet = points.copy()
     with np.errstate(all="ignore"):
         for _ in range(STEPS):
-            slopes = field_gradients(tape, feet)
+            slopes = many_gradients(tape, feet)
             moves = (field_values(tape, feet) / (slopes**2).sum(axis=1))[:, None] * slopes
             finite = np.isfinite(moves).all(axis=1)
             feet -= np.where(finite[:, None], moves, 0.0)

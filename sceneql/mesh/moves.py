@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from sceneql.field.solid import field_gradients, field_values
+from sceneql.field.solid import field_values, many_gradients
 from sceneql.mesh.flips import faced_outward, facing
 from sceneql.mesh.polygons import Polygons
 
@@ -31,10 +31,10 @@ def settled(tape: Tape, places: Floats) -> tuple[Floats, Floats]:
 
     with np.errstate(all="ignore"):
         for _ in range(STEPS):
-            slopes = field_gradients(tape, places)
+            slopes = many_gradients(tape, places)
             moves = (field_values(tape, places) / (slopes**2).sum(axis=1))[:, None] * slopes
             places = places - np.where(np.isfinite(moves).all(axis=1)[:, None], moves, 0.0)
-        slopes = field_gradients(tape, places)
+        slopes = many_gradients(tape, places)
         slopes /= np.linalg.norm(slopes, axis=1, keepdims=True)
     return places, np.where(np.isfinite(slopes), slopes, 0.0)
 
@@ -52,35 +52,64 @@ def turned_outward(tape: Tape, polygons: Polygons, doubtful: Rows) -> Polygons:
     near = np.zeros(len(places), dtype=bool)
     near[triangles[doubtful]] = True
     doubtful = np.flatnonzero(near[triangles].any(axis=1))
+    near[triangles[doubtful]] = True
+    stars = Stars(triangles[near[triangles].any(axis=1)])
+    cosines, still = facing(tape, places[triangles[doubtful]]), set[int]()
     for _ in range(ROUNDS):
-        turned = doubtful[facing(tape, places, triangles[doubtful]) < 0.0]
+        turned = doubtful[cosines < 0.0]
         if len(turned) > MOST:
             break
         corners = np.unique(triangles[turned])
-        moved = False
+        moved = []
         for vertex in corners[normals[corners].any(axis=1)].tolist():
-            moved |= _moved(tape, places, normals, triangles[(triangles == vertex).any(axis=1)], vertex)
+            if vertex in still:
+                continue
+            star = stars.around(vertex)
+            still.add(vertex)
+            if _moved(tape, places, normals, star, vertex):
+                moved.append(vertex)
+                still.difference_update(star.ravel().tolist())
         if not moved:
             break
+        near[:] = False
+        near[moved] = True
+        stale = near[triangles[doubtful]].any(axis=1)
+        cosines[stale] = facing(tape, places[triangles[doubtful[stale]]])
     return Polygons(places, triangles, normals)
+
+
+class Stars:
+    """Triangles by their corners."""
+
+    def __init__(self, triangles: Ints) -> None:
+        import numpy as np
+
+        corners = triangles.ravel()
+        self.triangles, self._order = triangles, np.argsort(corners, kind="stable")
+        self._ascending = corners[self._order]
+
+    def around(self, vertex: int) -> Ints:
+        """(n, 3) the triangles at a vertex, in their order."""
+        import numpy as np
+
+        first, last = np.searchsorted(self._ascending, [vertex, vertex + 1])
+        found: Ints = self.triangles[self._order[first:last] // 3]
+        return found
 
 
 def _moved(tape: Tape, places: Floats, normals: Floats, star: Ints, vertex: int) -> bool:
     """Move a vertex of the triangles ``star`` (n, 3) around it where they gain by it; whether it was."""
     import numpy as np
 
-    before = facing(tape, places, star).min()
+    at = places[star]
+    before = facing(tape, at).min()
     if before > 0.0:
         return False
     middle = places[np.setdiff1d(star, [vertex])].mean(axis=0)
     choices, slopes = settled(tape, places[vertex] + np.array(SHARES)[:, None] * (middle - places[vertex]))
-    old = places[vertex].copy()
-    gains = []
-    for choice in choices:
-        places[vertex] = choice
-        gains.append(facing(tape, places, star).min() - before)
+    after = np.where((star == vertex)[:, :, None], choices[:, None, None], at)
+    gains = facing(tape, after.reshape(-1, 3, 3)).reshape(len(choices), -1).min(axis=1) - before
     best = int(np.argmax(gains))
-    places[vertex] = choices[best] if gains[best] > 0.0 else old
     if gains[best] > 0.0:
-        normals[vertex] = slopes[best]
+        places[vertex], normals[vertex] = choices[best], slopes[best]
     return bool(gains[best] > 0.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from sceneql.field.solid import field_gradients, field_values
+from sceneql.field.solid import field_values, many_gradients
 from sceneql.mesh.bounded import Corner, bounded
 from sceneql.mesh.polygonise import polygonise
 from sceneql.mesh.polygons import Polygons
@@ -38,7 +38,7 @@ def distance(tape: Tape, polygons: Polygons) -> float:
     corners = polygons.vertices[triangles]
     middles = 0.5 * (corners + np.roll(corners, 1, axis=1))
     places = np.concatenate([corners.mean(axis=1), middles.reshape(-1, 3)])
-    slopes = np.linalg.norm(field_gradients(tape, places), axis=1)
+    slopes = np.linalg.norm(many_gradients(tape, places), axis=1)
     steep = slopes > 0.0
     return BETWEEN * float(np.max(np.abs(field_values(tape, places[steep])) / slopes[steep], initial=0.0))
 
