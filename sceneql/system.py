@@ -271,6 +271,9 @@ class Assembly(Protocol):
     def step_at_most(self, seconds: float) -> None:
         """Say that steps of a length chosen by a tolerance must not be longer: something happens that it cannot see."""
 
+    def stop_at(self, time: float) -> None:
+        """Say that something happens at an instant [s]: such steps end there. (At keys of values they do already.)"""
+
     def start(self) -> Any:
         """The state reserved so far (n,), at the start of the run."""
 

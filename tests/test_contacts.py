@@ -262,13 +262,6 @@ solvers: {main: SOLVER}
     np.testing.assert_allclose(*shapes, rtol=1e-2)
 
 
-def test_local_contacts_of_masses_without_springs_leave_steps_long(tmp_path):
-    path = tmp_path / "scene.yaml"
-    path.write_text(ball("{mode: local}", FLOOR, DROP, 1, DOPRI5), encoding="utf-8")
-    (island,) = Run(load(path)).islands
-    assert island.march.system.largest_step == math.inf
-
-
 def test_a_flight_past_local_contacts_costs_no_more_evaluations_of_the_rate(tmp_path):
     counts = []
     for contact in ("{hit: {collision: {mode: local}}}", "{}"):

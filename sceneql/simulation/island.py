@@ -22,6 +22,7 @@ from sceneql.simulation.blocks_laid import Block, grouped, lay_out
 from sceneql.simulation.inputs import Inputs
 from sceneql.simulation.jacobian import full, section
 from sceneql.simulation.memory import LARGEST_MEMORY
+from sceneql.simulation.stops import Stop, stops
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -90,6 +91,8 @@ class System:
     ranges: tuple[tuple[int, int, str, tuple[Span | None, ...]], ...]
     largest_step: float = float("inf")
     """[s], of steps that a tolerance chooses."""
+    stops: tuple[Stop, ...] = ()
+    """Where such steps end."""
     pattern: Pattern | None = None
     """Of its Jacobian; None: not asked for, or too large to be found by differences."""
     grid: Grid | None = None
@@ -139,6 +142,7 @@ class IslandAssembly:
     _local: list[Block] = field(default_factory=list)
     _varying: list[tuple[int, Value]] = field(default_factory=list)
     _largest_step: float = float("inf")
+    _stops: set[Stop] = field(default_factory=set)
     _grids: list[Grid] = field(default_factory=list)
     _apart: bool = True
     _unsloped: str = "a value that reads the state"
@@ -256,6 +260,10 @@ class IslandAssembly:
         """Bound the steps that a tolerance chooses (system.Assembly)."""
         self._largest_step = min(self._largest_step, seconds)
 
+    def stop_at(self, time: float) -> None:
+        """Let steps that a tolerance chooses end at an instant (system.Assembly)."""
+        self._stops.add((time, 0.0))
+
     def line(self) -> Span | None:
         """Where in the script the word stands that is being assembled."""
         return self._word[1]
@@ -332,6 +340,7 @@ class IslandAssembly:
             partner=partner,
             ranges=tuple(self._ranges),
             largest_step=self._largest_step,
+            stops=tuple(sorted(self._stops)),
             pattern=found,
             grid=self.only_field,
             unsloped=self._unsloped,
@@ -353,6 +362,7 @@ class IslandAssembly:
         program: list[int] = []
         found = Diagnostics()
         for first, value in self._varying:
+            self._stops.update(stops(value.expr, self.setting.formula))
             try:
                 program += inputs.program(value, first)
             except ScriptError as error:

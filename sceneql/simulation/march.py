@@ -15,6 +15,7 @@ from sceneql.simulation import march_kernels as kernels
 from sceneql.simulation.driver import driver, function, jacobian
 from sceneql.simulation.island import IslandAssembly, System
 from sceneql.simulation.pointers_kernels import addresses
+from sceneql.simulation.stops import next_stop
 from sceneql.simulation.switching import Switch
 from sceneql.system import Prepared
 
@@ -87,6 +88,8 @@ class March:
         if stepper.stiff is not None and stepper.adaptive and not system.structure.local:
             self._switch = Switch(stepper, stepper.stiff, int((system.partner < 0).sum()))
         self._last_look = 0
+        self._stop = 0.0
+        self._pass_stop()
         self._engage(stepper)
 
     def _engage(self, stepper: Stepper) -> None:
@@ -117,6 +120,10 @@ class March:
         self._counts[kernels.ORDER] = stepper.order
         self._counts[kernels.LAST_STAGE] = stepper.last_stage
         self._counts[kernels.CONTROLS] = stepper.controls
+
+    def _pass_stop(self) -> None:
+        """Look for the next instant at which a step of chosen length has to end."""
+        self._stop = next_stop(self.system.stops, self._stop, self.end) if self.stepper.adaptive else self.end
 
     def _change(self, switch: Switch, t: float) -> None:
         """Go on with the method that a switch has chosen, if it takes this island."""
@@ -255,8 +262,8 @@ class March:
             counts[kernels.LEFT] = left
             status = kernels.march(
                 self._functions,
-                target,
-                self.end,
+                min(target, self._stop),
+                self._stop,
                 self._y0,
                 self._rate0,
                 self._y1,
@@ -277,6 +284,8 @@ class March:
                 counts[kernels.SWAPPED] = 0
             if status == kernels.PAUSED:
                 self._look()
+            elif status == kernels.REACHED and target > self._stop:
+                self._pass_stop()
             elif not self._goes_on(status):
                 break
         done = self.statistics

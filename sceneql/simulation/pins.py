@@ -70,6 +70,9 @@ def guide(pins: Mapping[str, Pin], net: Net, assembly: Assembly, bodies: Bodies)
         starts = assembly.floats(net.points[masses])
         shifts = [assembly.value(Value(_at(pin.shift, by, assembly), pin.shift.span)) for by in (-APART, 0.0, APART)]
         places = (bodies.position_at, bodies.velocity_at, bodies.work_at, bodies.mass_at, bodies.inverse_at)
+        if pin.until is not None:
+            assembly.stop_at(pin.until - APART)  # frames within a step see the rates at both ends: the last is short
+            assembly.stop_at(pin.until)
         until = assembly.floats([float("inf") if pin.until is None else pin.until])
         ints = (*places, *shifts, assembly.floats([APART]), starts, until, len(masses), *masses.tolist())
         alone = Slopes("", (), ())

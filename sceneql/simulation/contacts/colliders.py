@@ -13,17 +13,11 @@ from sceneql.simulation.contacts.shapes import implicit
 from sceneql.simulation.shift import APART, later
 
 if TYPE_CHECKING:
-    from sceneql.system import Assembly, Bodies
+    from sceneql.system import Assembly
 
-IN_A_PERIOD = 8
-"""Steps in the shortest period of springs whose masses have local contacts: within a step each settles by itself."""
 OFTEN = 1 / 240
-"""But contacts ask for no shorter steps [s], so that stiff springs do not take an implicit method its long ones."""
-
-
-def step_by_springs(bodies: Bodies, assembly: Assembly) -> None:
-    """Let springs act between local contacts: bound the steps that a tolerance chooses."""
-    assembly.step_at_most(max(bodies.period / IN_A_PERIOD, OFTEN))
+"""Longest step [s] that a tolerance may choose where contacts act at the ends of steps or objects move: it sees
+neither, and what comes as slowly as gravity makes it in two steps is taken to rest."""
 
 
 def surfaces(refs: Sequence[Ref], assembly: Assembly, at: int) -> tuple[int, ...]:
@@ -67,6 +61,7 @@ def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, 
         if not is_moving(kind):
             poses = (0, here.position_at, here.rotation_at, here.position_at, here.rotation_at)
         else:
+            assembly.step_at_most(OFTEN)
             before, after = _shifted(kind, -APART, assembly), _shifted(kind, APART, assembly)
             poses = (assembly.floats([APART]), *before, *after)
     except (TypeError, ValueError) as error:

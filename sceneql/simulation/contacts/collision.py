@@ -72,7 +72,7 @@ class Collision(Contact):
 
         from sceneql.ahead import compile_ahead
         from sceneql.compiling import late
-        from sceneql.simulation.contacts.colliders import must_be_outside, step_by_springs, surfaces
+        from sceneql.simulation.contacts.colliders import OFTEN, must_be_outside, surfaces
         from sceneql.simulation.contacts.impulse_kernels import HEAD, INSTANT, MOST_CUTS
 
         if not others:
@@ -111,7 +111,7 @@ class Collision(Contact):
         if exact:
             assembly.contact("exact", (f"{found}:gap", f"{found}:impact"), ints, pairs)
         else:
-            step_by_springs(bodies, assembly)
+            assembly.step_at_most(OFTEN)
             assembly.contact("local", (f"{found}:settle",), ints, pairs, apart=True)
         held = None if exact else lambda: _held(bodies)
         assembly.term("constrain", f"{found}:constrain", ints, held, apart=not exact)

@@ -1,0 +1,77 @@
+"""Instants at which values of a script change their course: steps that a tolerance chooses end there.
+
+Such a step may be as long as nothing happens, and would go over a key, a pulse or a switch between two of its stages
+without a sign of it in its error.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator
+
+from sceneql.quantities.curves import known_table
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import TIME_SYMBOL, Call, Expr, Keys, Link, Symbol, walk
+
+Stop = tuple[float, float]
+"""An instant and the period that it comes again with, 0 for none [s]."""
+
+TURNING = ("lt", "le", "gt", "ge", "eq", "min", "max")
+"""Operations on two numbers whose value turns where they are equal."""
+APART = 1e-12
+"""Instants nearer to each other than this part of the run count as one."""
+
+
+def stops(expr: Expr, formula: Callable[[Link], Expr | None]) -> Iterator[Stop]:
+    """Where an expression turns: at keys, and where what goes evenly with the time passes what it is compared with.
+
+    ``formula`` gives a linked output as an expression of time; None for one that is solved.
+    """
+    for node in walk(expr):
+        match node:
+            case Link():
+                meaning = formula(node)
+                if meaning is not None:
+                    yield from stops(meaning, formula)
+            case Keys(argument=argument) if (table := known_table(node)) is not None:
+                here, slope = _even(argument, formula)
+                if slope > 0.0:
+                    yield from (((time - here) / slope, table.cycle / slope) for time in table.times)
+            case Call(op=op, args=args) if op in TURNING and len(args) == 2 and not any(one.type.shape for one in args):
+                (first, rise), (second, climb) = (_even(one, formula) for one in args)
+                if rise != climb and not math.isnan(rise - climb):
+                    yield (second - first) / (rise - climb), 0.0
+
+
+def _even(expr: Expr, formula: Callable[[Link], Expr | None]) -> tuple[float, float]:
+    """What goes evenly with the time, as its value at 0 and its rate; (nan, nan) for all else."""
+
+    def at(time: float) -> float:
+        def look_up(node: Symbol | Link) -> float:
+            if isinstance(node, Symbol) and node.name == TIME_SYMBOL:
+                return time
+            meaning = formula(node) if isinstance(node, Link) else None
+            if meaning is None:
+                raise KeyError(node)
+            return float(evaluate(meaning, look_up))
+
+        return float(evaluate(expr, look_up))
+
+    try:
+        here, there, between = at(0.0), at(1e3), at(373.3)
+    except (KeyError, TypeError, ValueError):  # it reads what is solved, or what is no number
+        return math.nan, math.nan
+    slope = (there - here) / 1e3
+    even = abs(here + slope * 373.3 - between) <= 1e-12 * max(abs(here), abs(there))
+    return (here, slope) if even else (math.nan, math.nan)
+
+
+def next_stop(known: Iterable[Stop], time: float, end: float) -> float:
+    """The first of them after an instant, at most the end of the run [s]."""
+    best, least = end, time + APART * end
+    for at, period in known:
+        if at <= least and period > 0.0:
+            at += period * (math.floor((least - at) / period) + 1.0)
+        if least < at < best - APART * end:
+            best = at
+    return best

@@ -1,0 +1,125 @@
+"""What steps of chosen length must not step over: keys, switches, the ends of pins, floors and moving objects."""
+
+import math
+
+import numpy as np
+import pytest
+
+from runs import watch
+from sceneql.quantities.expression import Call, Key, Keys, Link, Number, Symbol, Type
+from sceneql.simulation.stops import next_stop, stops
+
+G = 9.81
+TIME = Symbol("time", Type())
+ADAPTIVE = ["auto", "{dopri5: {}}", "{dop853: {}}", "{gauss_radau15: {}}", "{radau: {}}", "{rodas5p: {}}"]
+
+
+def number(value):
+    return Number(value, Type(), False)
+
+
+def keys(argument=TIME, cycle=None):
+    return Keys(argument, tuple(Key(number(t), number(t)) for t in (1.0, 2.5)), cycle=cycle)
+
+
+def test_keys_and_switches_are_stops_whatever_they_stand_in():
+    later = Call("add", (Call("mul", (number(2.0), TIME), Type()), number(0.5)), Type())
+    linked = Link("lift", "progress", Type())
+
+    def found(expr):
+        return sorted(stops(expr, lambda link: later))
+
+    assert found(keys()) == [(1.0, 0.0), (2.5, 0.0)]
+    assert found(keys(later, number(4.0))) == [(0.25, 2.0), (1.0, 2.0)]
+    assert found(keys(linked)) == [(0.25, 0.0), (1.0, 0.0)]
+    assert found(Call("mul", (number(3.0), Call("gt", (later, number(4.0)), Type())), Type())) == [(1.75, 0.0)]
+    assert found(Call("max", (number(0.0), Call("sub", (TIME, number(3.0)), Type())), Type())) == [(3.0, 0.0)]
+    assert found(Call("gt", (Call("sin", (TIME,), Type()), number(0.5)), Type())) == []
+    assert found(keys(Call("neg", (TIME,), Type()))) == []
+
+
+def test_the_next_stop_is_the_first_one_after_an_instant_and_periods_go_on():
+    known = [(1.0, 0.0), (2.5, 0.0), (0.25, 2.0), (1.0 + 1e-15, 0.0), (math.nan, 0.0), (-1.0, 0.0)]
+    passed, time = [], 0.0
+    while time < 7.0:
+        time = next_stop(known, time, 7.0)
+        passed.append(time)
+    assert passed == [0.25, 1.0, 2.25, 2.5, 4.25, 6.25, 7.0]
+
+
+@pytest.mark.parametrize("solver", ADAPTIVE)
+def test_a_short_gust_after_long_calm_is_felt(tmp_path, solver):
+    gust = "{keys: {0 s: 0 0 0, 3 s: 0 0 0, 3.05 s: 100 0 0, 3.1 s: 0 0 0}, curve: linear}"
+    script = f"""
+models: {{p: {{particles: {{list: {{a: {{position: 0 0 0}}}}}}}}}}
+forces: [{{wind: {{velocity: {gust}, linear: 1 N*s/m}}}}]
+solvers: {{main: {solver}}}
+"""
+
+    def ramp(t):
+        return 2000 * (t - 1 + math.exp(-t))
+
+    ((v,),) = watch(tmp_path, script, [4.0], "p.a.velocity")
+    assert v[0] == pytest.approx(ramp(1.0) - 2 * ramp(0.95) + ramp(0.9), rel=1e-5)
+
+
+def test_a_force_that_is_switched_on_and_off_is_felt(tmp_path):
+    script = """
+models: {p: {particles: {list: {a: {position: 0 0 0}}}}}
+forces:
+  gust:
+    wind:
+      velocity:
+        - where(time > 3 s, where(time < 3.01 s, 1 km/s, 0 m/s), 0 m/s)
+        - 0 m/s
+        - 0 m/s
+      linear: 1 N*s/m
+"""
+    ((v,),) = watch(tmp_path, script, [4.0], "p.a.velocity")
+    assert v[0] == pytest.approx(1000 * (1 - math.exp(-0.01)) * math.exp(-0.99), rel=1e-4)
+
+
+@pytest.mark.parametrize("solver", ["auto", "{radau: {}}"])
+def test_a_pin_lets_go_at_its_time_however_long_nothing_moved(tmp_path, solver):
+    masses = "{a: {position: 0 0 0, mass: 1 kg}, wall: {position: 1 0 0, fixed: yes}}"
+    springs = "[{between: [a, wall], stiffness: 100 N/m, rest: 0.9 m}]"
+    script = f"""
+models: {{m: {{mass_spring: {{masses: {masses}, springs: {springs}, pins: {{a: {{until: 1 s}}}}}}}}}}
+solvers: {{main: {solver}}}
+"""
+    before, later = watch(tmp_path, script, [0.7, 2.5], "m.a.position", "m.a.velocity")
+    np.testing.assert_allclose(before, 0, atol=1e-12)
+    assert later[0][0] == pytest.approx(0.1 * (1 - math.cos(15)), abs=1e-4)
+
+
+@pytest.mark.parametrize("solver", [*ADAPTIVE, "{tr_bdf2: {}}", "{bdf2: {}}"])
+def test_what_falls_on_a_floor_by_long_steps_bounces_as_it_must(tmp_path, solver):
+    script = f"""
+models: {{p: {{particles: {{list: {{a: {{position: 0 1 0, radius: 0 m}}}}}}}}}}
+objects: {{floor: plane}}
+forces: [gravity]
+contacts: {{hit: {{collision: {{between: [p, floor], restitution: 0.8, mode: local}}}}}}
+solvers: {{main: {solver}}}
+"""
+    hit = math.sqrt(2 / G)
+    for row, t in zip(watch(tmp_path, script, [0.4, 0.6, 1.1], "p.a.position"), [0.4, 0.6, 1.1], strict=True):
+        since = t - hit
+        expected = 1 - G * t * t / 2 if since < 0 else 0.8 * G * hit * since - G * since**2 / 2
+        assert row[0][1] == pytest.approx(expected, abs=5e-3 if "bdf2" in solver else 1e-6)
+
+
+@pytest.mark.parametrize("mode", ["exact", "local"])
+@pytest.mark.parametrize("curve", ["linear", "smooth"])
+def test_what_falls_on_a_lift_by_long_steps_goes_up_with_it(tmp_path, mode, curve):
+    height = f"{{keys: {{0 s: 0.2 m, 1.5 s: 0.2 m, 2.5 s: 1.2 m}}, curve: {curve}}}"
+    script = f"""
+models: {{p: {{particles: {{list: {{a: {{position: 0 1 0, radius: 0.1 m}}}}}}}}}}
+objects: {{lift: {{box: {{size: 1 0.2 1 m, position: {{x: 0 m, z: 0 m, y: {height}}}}}}}}}
+forces: [gravity]
+contacts: {{hit: {{collision: {{between: [p, lift], restitution: 0.3, mode: {mode}}}}}}}
+"""
+    resting, end = watch(tmp_path, script, [1.4, 3.5], "p.a.position", "p.energy")
+    np.testing.assert_allclose(resting[0], [0, 0.4, 0], atol=1e-9)
+    np.testing.assert_allclose(end[0], [0, 1.4, 0], atol=1e-9)
+    if curve == "smooth":  # the lift's work is that of lifting 1 kg by 1 m; a jolt tosses it up besides
+        assert end[1] == pytest.approx(2 * G, abs=1e-4)
