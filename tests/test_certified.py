@@ -246,6 +246,48 @@ def test_poles_and_jumps_are_no_part_of_a_surface():
             assert t[0] == pytest.approx(1.0 - places[0], abs=1e-9)
 
 
+def test_the_cut_of_an_angle_is_a_jump():
+    """From pi to -pi: the mean value form must not reach over it."""
+    for aside in (-1.0, -0.3, -1e-6):
+        segments = [[aside, 1.0, 0.2]], [[0.0, -1.0, 0.1]], np.zeros(1), np.full(1, 2.5)
+        for status, t in (
+            cast(tape_of("atan2(y, x)"), *segments, TOLERANCE),
+            certified(tape_of("atan2(y, x)"), *segments),
+        ):
+            assert status[0] == HIT
+            assert t[0] == pytest.approx(1.0, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    "formula",
+    [
+        "2 - tanh(1000*x)",
+        "exp(1000*x) + 1",
+        "1/(1 + exp(1000*x)) + 0.1",
+        "exp(-1/x^2) + 0.01",
+        "log(1 + exp(1000*x)) + 0.1",
+        "1/x^2 + 1",
+        "1/sqrt(x^2 + y^2) + 1",
+        "abs(x)^abs(x) + y^2 + 0.01",
+        "cosh(800*x) - 0.5",
+    ],
+)
+def test_what_overflows_or_has_a_pole_is_told_from_zero(formula):
+    tape = tape_of(formula)
+    origins = np.column_stack([np.full(9, -2.0), np.linspace(-0.8, 0.8, 9), np.full(9, 0.1)])
+    segments = origins, np.array([[1.0, 0.0, 0.05]]).repeat(9, axis=0), np.zeros(9), np.full(9, 4.0)
+    assert (cast(tape, *segments, TOLERANCE)[0] == MISS).all()
+    assert (cast(tape, *segments, TOLERANCE, surface=True)[0] == MISS).all()
+
+
+@pytest.mark.parametrize(("formula", "begin"), [("1.5 - floor(y) + x", 0.25), ("1.5 - floor(y) - x", -0.25)])
+def test_a_ray_in_a_plane_of_jumps_misses_nothing(formula, begin):
+    """Of floor(2) rounding makes 1 or 2: what is inside must not be proved to be outside."""
+    segments = [[begin, 2.0, 0.0]], [[1.0, 0.0, 0.0]], np.zeros(1), np.full(1, 0.6)
+    assert field_values(tape_of(formula), np.array(segments[0]))[0] < 0.0
+    assert cast(tape_of(formula), *segments, TOLERANCE)[0][0] != MISS
+
+
 def test_what_is_zero_all_along_is_undecided():
     """A polynomial that is zero but for its rounding."""
     tape = tape_of("(x + 1)^4 - x^4 - 4*x^3 - 6*x^2 - 4*x - 1")

@@ -618,7 +618,7 @@ objects:
   speck: {implicit: {field: (x - 0.31)^2 + y^2 + z^2 - 1e-6, bounds: {ball: 1}}}
   pointer: {arrow: {vector: 0 1 0 m}}
   endless: {sphere: {radius: 1e300 m}}
-  vast: {implicit: {field: "exp(exp(10 + x^2))"}}
+  vast: {implicit: {field: "exp(exp(10 + x^2)) - exp(exp(9 + x^2))"}}
 """
 
 

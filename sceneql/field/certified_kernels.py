@@ -138,15 +138,16 @@ def certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, fin
                     found = HIT
                     continue
         if status == WHOLE and not clear:
+            reach = WIDEST * (t1 - t0) + least  # from where f cannot be told from zero to where it is
             if slope0 > 0.0:
-                side, _, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, sign)
-                clear = side >= 0
+                low, high, _, _, _ = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, a, sign)
+                clear = high >= 0.0 and low >= -slope0 * reach
             elif slope1 < 0.0:
-                side, _, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, b, sign)
-                if side < 0:
+                low, high, _, _, _ = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, b, b, sign)
+                if high < 0.0:
                     return HIT, polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign)
-                clear = side > 0 or b == end
-                if not clear:
+                clear = low > 0.0 or (b == end and low >= slope1 * reach)
+                if not clear and b < end:
                     b = min(b + width, end)
                     continue
         if not clear and (width <= least or (eager and status == WHOLE and below <= 0.0 <= above)):

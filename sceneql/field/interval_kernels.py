@@ -1,10 +1,14 @@
 # mypy: ignore-errors
-"""Interval bounds of a tape over a box, rounded outward, to cull what a solid cannot reach."""
+"""Interval bounds of a tape over a box, rounded outward, to cull what a solid cannot reach.
+
+A bound may be infinite: what a number too large or a pole makes of what comes after is still enclosed.
+"""
 
 import numpy as np
 from numba import types
 
 from sceneql.compiling.late import late
+from sceneql.field.forms_kernels import never_negative
 from sceneql.field.order_kernels import sign_of
 from sceneql.field.sine_kernels import sine_cosine
 from sceneql.field.tape_ops import (
@@ -53,14 +57,54 @@ skeleton_box = late("sceneql.field.parts_box_kernels:skeleton_box", OF_PARTS)
 
 @inlined
 def outward(low, high):
-    """The interval widened by its rounding."""
-    return low - ULPS * abs(low) - TINY, high + ULPS * abs(high) + TINY
+    """The interval widened by its rounding; infinite bounds stay so."""
+    down = min(low * (1.0 - ULPS), low * (1.0 + ULPS))
+    up = max(high * (1.0 - ULPS), high * (1.0 + ULPS))
+    return down - TINY, up + TINY
 
 
 @inlined
 def hull4(p, q, r, s):
     """Least interval with four numbers."""
     return outward(min(min(p, q), min(r, s)), max(max(p, q), max(r, s)))
+
+
+@inlined
+def products(a, b, c, d):
+    """Interval of [a, b] [c, d]; zero times an infinite bound is zero: no number is infinite."""
+    p = a * c
+    q = a * d
+    r = b * c
+    s = b * d
+    if np.isnan(p + q + r + s):
+        p = 0.0 if a == 0.0 or c == 0.0 else p
+        q = 0.0 if a == 0.0 or d == 0.0 else q
+        r = 0.0 if b == 0.0 or c == 0.0 else r
+        s = 0.0 if b == 0.0 or d == 0.0 else s
+    return hull4(p, q, r, s)
+
+
+@inlined
+def quotients(a, b, c, d):
+    """Interval of [a, b] / [c, d] with one sign of the divisor; anything over an infinite bound is zero."""
+    p = a / c
+    q = a / d
+    r = b / c
+    s = b / d
+    if np.isnan(p + q + r + s):
+        p = 0.0 if abs(c) == np.inf else p
+        q = 0.0 if abs(d) == np.inf else q
+        r = 0.0 if abs(c) == np.inf else r
+        s = 0.0 if abs(d) == np.inf else s
+    return hull4(p, q, r, s)
+
+
+@inlined
+def over_zero(a, b, d):
+    """Interval of [a, b] / [0, d], which is not defined at zero."""
+    if a >= 0.0:
+        return outward(a / d, np.inf)
+    return outward(-np.inf, b / d if b <= 0.0 else np.inf)
 
 
 @inlined
@@ -99,7 +143,7 @@ def binary_box(op, a, b, c, d):
     elif op == SUB:
         low, high = outward(a - d, b - c)
     elif op == MUL:
-        low, high = hull4(a * c, a * d, b * c, b * d)
+        low, high = products(a, b, c, d)
     elif op == MIN:
         return min(a, c), min(b, d), WHOLE
     elif op == MAX:
@@ -107,7 +151,7 @@ def binary_box(op, a, b, c, d):
     elif op == DIV:
         if c <= 0.0 <= d:
             return -np.inf, np.inf, PARTIAL
-        low, high = hull4(a / c, a / d, b / c, b / d)
+        low, high = quotients(a, b, c, d)
     elif op == POW:
         if a > 0.0:
             low, high = hull4(a**c, a**d, b**c, b**d)
@@ -116,6 +160,9 @@ def binary_box(op, a, b, c, d):
                 return 0.0, 0.0, NOWHERE
             low, high = outward(0.0, b**c)
             return max(low, 0.0), high, PARTIAL if a < 0.0 else WHOLE
+        elif a == 0.0 and c >= 0.0:
+            low, high = outward(0.0, max(1.0, max(b**c, b**d)))
+            return 0.0, high, WHOLE
         else:
             return -np.inf, np.inf, PARTIAL
     elif c <= 0.0 and a <= 0.0 <= b:
@@ -150,12 +197,12 @@ def unary_box(op, a, b):
         low, high = wave(a, b, 0.0)
     elif op == EXP:
         low, high = outward(np.exp(a), np.exp(b))
+        low = max(low, 0.0)
     elif op == LOG:
         if b < 0.0:
             return 0.0, 0.0, NOWHERE
-        if a <= 0.0:
-            return -np.inf, np.inf, PARTIAL
-        low, high = outward(np.log(a), np.log(b))
+        status = WHOLE if a > 0.0 else PARTIAL
+        low, high = outward(np.log(a) if a > 0.0 else -np.inf, np.log(b))
     elif op == FLOOR:
         low, high = np.floor(a), np.floor(b)
     elif op == COPY:
@@ -165,12 +212,24 @@ def unary_box(op, a, b):
     return low, high, status
 
 
+@inlined
+def finite(scratch, k):
+    """Whether the bounds of a row are."""
+    return scratch[k, 0] > -LARGE and scratch[k, 1] < LARGE
+
+
+@inlined
+def positive_or_zero(op):
+    """Whether a zero that bounds values of an operation from below is +0, so that one over it is +infinity."""
+    return never_negative(op) or op == ADD
+
+
 @kernel(f"Tuple((float64, float64, int64))({TAPE}, float64, float64, float64, float64, float64, float64)", _nrt=False)
 def box(code, constants, parts, scratch, x0, x1, y0, y1, z0, z1):
     """(low, high, status): f lies in low..high wherever it is defined in the box; ``scratch`` (rows, 8) is overwritten.
 
-    ``status`` says WHOLE (defined all over), PARTIAL (perhaps not) or NOWHERE. Where nothing can be claimed, as for a
-    box that is not finite or upside down, the answer is (-inf, inf, PARTIAL).
+    ``status`` says WHOLE (defined all over), PARTIAL (perhaps not, or too large for float64) or NOWHERE. Where nothing
+    can be claimed, as for a box that is no numbers or upside down, the answer is (-inf, inf, PARTIAL).
     """
     last = code.shape[0] - 1
     status = WHOLE
@@ -190,10 +249,19 @@ def box(code, constants, parts, scratch, x0, x1, y0, y1, z0, z1):
         elif op == Z:
             low = z0
             high = z1
-        elif op == DENSITY:
-            low, high = density_box(parts, left, right, scratch, code[k, 3])
-        elif op == SKELETON:
-            low, high = skeleton_box(parts, left, right, scratch, code[k, 3])
+        elif op == DENSITY or op == SKELETON:
+            p = code[k, 3]
+            if finite(scratch, p) and finite(scratch, p + 1) and finite(scratch, p + 2):
+                if op == DENSITY:
+                    low, high = density_box(parts, left, right, scratch, p)
+                else:
+                    low, high = skeleton_box(parts, left, right, scratch, p)
+            else:
+                low = -np.inf
+                high = np.inf
+        elif op == DIV and scratch[right, 0] == 0.0 < scratch[right, 1] and positive_or_zero(code[right, 0]):
+            low, high = over_zero(scratch[left, 0], scratch[left, 1], scratch[right, 1])
+            found = PARTIAL
         elif op <= ATAN2 and op != COPY:
             low, high, found = binary_box(op, scratch[left, 0], scratch[left, 1], scratch[right, 0], scratch[right, 1])
         else:
@@ -201,8 +269,12 @@ def box(code, constants, parts, scratch, x0, x1, y0, y1, z0, z1):
         if found == NOWHERE:
             return np.inf, -np.inf, NOWHERE
         status = max(status, found)
-        if not (low <= high and low > -LARGE and high < LARGE):
+        if not low <= high:
             return -np.inf, np.inf, PARTIAL
+        if low <= -LARGE or high >= LARGE:
+            status = max(status, PARTIAL)
+            low = min(low, LARGE)
+            high = max(high, -LARGE)
         scratch[k, 0] = low
         scratch[k, 1] = high
     return low, high, status

@@ -57,7 +57,9 @@ def _hyperbolic(tape: TapeBuilder, a: int, join: str) -> int:
 
 
 def _tanh(tape: TapeBuilder, a: int) -> int:
-    grown = tape.op("exp", tape.op("mul", tape.constant(2.0), a))
+    """1 - 2/(exp(2 a) + 1); from |a| = 20 on that is +-1 in float64, and exp(2 a) need not overflow."""
+    held = tape.op("clamp", a, tape.constant(-20.0), tape.constant(20.0))
+    grown = tape.op("exp", tape.op("mul", tape.constant(2.0), held))
     less = tape.op("div", tape.constant(2.0), tape.op("add", grown, tape.constant(1.0)))
     return tape.op("sub", tape.constant(1.0), less)
 

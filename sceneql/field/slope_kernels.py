@@ -88,6 +88,8 @@ def pair_slopes(op, low, high, a, b, c, d):
     if op == MIN or op == MAX:
         return branches(op, a, b, c, d)
     if op == ATAN2:
+        if c <= 0.0 and a <= 0.0 <= b:  # the cut, where it jumps
+            return -np.inf, np.inf, -np.inf, np.inf
         p, q, _ = unary_box(SQUARE, a, b)
         r, s, _ = unary_box(SQUARE, c, d)
         p, q = outward(p + r, q + s)
