@@ -91,6 +91,25 @@ def test_a_damped_oscillation_that_a_method_tells_nothing_of_is_not_warned_of(tm
     assert len(warnings(loaded(tmp_path, PENDULUM, wild[0]))) == 1
 
 
+def test_the_stiff_spring_is_told_not_a_soft_one_that_hangs_on_it(tmp_path):
+    soft = PENDULUM.replace(
+        "name: tether}", "name: tether}\n        - {between: [bob, end], stiffness: 1 N/m, name: thread}"
+    )
+    soft = soft.replace("mass: 1 kg}}", "mass: 1 kg}, end: {position: 2 0 0 m, mass: 1 kg}}")
+    assert warnings(loaded(tmp_path, soft, "define.dt=1/60 s")) == [
+        "dt = 16.7 ms exceeds 2.83 ms, set by spring 'tether' (scene.yaml:9)"
+    ]
+
+
+@pytest.mark.parametrize("damping", [100.0, 1900.0, 3e3])
+def test_damped_springs_have_their_bound_under_semi_implicit_euler(tmp_path, damping):
+    # It holds up to step decay + (step frequency)^2 / 2 = 2.
+    sets = (f"define.c={damping} N*s/m", "define.dt=5 ms")
+    (message,) = warnings(loaded(tmp_path, PENDULUM.replace("rk4", "semi_implicit_euler"), *sets))
+    exact = (math.sqrt(damping**2 + 4 * 1e6) - damping) / 1e6
+    assert message == f"dt = 5 ms exceeds {exact * 1e3:.3g} ms, set by spring 'tether' (scene.yaml:9)"
+
+
 def test_adaptive_steps_are_not_warned_of(tmp_path):
     assert warnings(loaded(tmp_path, PENDULUM, "define.dt=1 s", "solvers.main=dopri5")) == []
 

@@ -217,19 +217,25 @@ class MassSpring(SpringModel):
         told = [(k, c) for k, c in given if k is not None and c is not None]
         if len(told) < len(given) or not told:
             return ()
-        squares, decays = (self._rows([pair[which] for pair in told]) for which in (0, 1))
-        worst = {max(range(len(told)), key=rows.__getitem__) for rows in (squares, decays) if any(rows)}
+        rows = [self._rows([pair[which] for pair in told]) for which in (0, 1)]
+        squares, decays = ([sum(row.values()) for row in each] for each in rows)
+        culprits: dict[int, int] = {}
+        for sums, each in zip((squares, decays), rows, strict=True):
+            k = max(range(len(told)), key=sums.__getitem__)
+            if sums[k] > 0.0:
+                # The row may be that of a soft spring beside the stiff one that makes it so.
+                culprits[k] = max(each[k], key=each[k].__getitem__)
         return tuple(
-            Oscillation(math.sqrt(squares[k]), decays[k], f"spring {self._spring_name(k)}", ("springs", k))
-            for k in sorted(worst)
+            Oscillation(math.sqrt(squares[k]), decays[k], f"spring {self._spring_name(of)}", ("springs", of))
+            for k, of in sorted(culprits.items())
         )
 
     def _spring_name(self, k: int) -> str:
         spring = self.springs[k]
         return f"'{spring.name}'" if spring.name else f"'{spring.between[0]}'-'{spring.between[1]}'"
 
-    def _rows(self, weights: Sequence[float]) -> list[float]:
-        """For each spring the sum over springs at its ends of weight |cos of the angle between them| / mass."""
+    def _rows(self, weights: Sequence[float]) -> list[dict[int, float]]:
+        """For each spring, of the springs at its ends: weight |cos of the angle between them| / mass."""
         masses = self.masses or {}
         pinned = {pin if pin in masses else list(masses)[int(pin)] for pin in self.pins}
         inverse = {
@@ -250,11 +256,10 @@ class MassSpring(SpringModel):
                 return 1.0
             return abs(sum(a * b for a, b in zip(directions[k], directions[other], strict=True)))
 
-        return [
-            sum(
-                weights[other] * (1.0 if other == k else cosine(k, other)) * inverse[name]
-                for name in spring.between
-                for other in at[name]
-            )
-            for k, spring in enumerate(self.springs)
-        ]
+        rows: list[dict[int, float]] = [{} for _ in self.springs]
+        for k, spring in enumerate(self.springs):
+            for name in spring.between:
+                for other in at[name]:
+                    share = weights[other] * (1.0 if other == k else cosine(k, other)) * inverse[name]
+                    rows[k][other] = rows[k].get(other, 0.0) + share
+        return rows

@@ -44,8 +44,8 @@ class SemiImplicitEuler(Solver):
         return float(np.abs(np.linalg.eigvals(matrix)).max(initial=0.0))
 
     def oscillation(self, frequency: float, decay: float, step: float) -> float:
-        """Larger root of g^2 - (2 - step decay - (step frequency)^2) g + 1 - step decay."""
-        product = 1.0 - step * decay
-        half = 0.5 * (1.0 + product - (step * frequency) ** 2)
-        root = sqrt(complex(half * half - product))
-        return max(abs(half + root), abs(half - root))
+        """Larger root of g^2 - (2 - step decay - (step frequency)^2) g + 1 - step decay; 1 - g without its rounding."""
+        square = (step * frequency) ** 2
+        half = 0.5 * (step * decay + square)
+        root = sqrt(complex(half * half - square))
+        return max(abs(1.0 - (half - root)), abs(1.0 - (half + root)))
