@@ -102,12 +102,12 @@ SOLID = """
 clock: {{end: 0.5 s}}
 objects: {{body: {{{shape}}}}}
 models:
-  jelly: {{mass_spring: {{solid: {{object: body, spacing: {spacing} m}}, mass: 1 g, pins: [{pins}]}}}}
+  jelly: {{mass_spring: {{solid: {{object: body, spacing: {spacing} m, cells: cubes}}, mass: 1 g, pins: [{pins}]}}}}
 solvers: {{main: {{rk4: {{step: 1 ms}}}}}}
 """
 
 
-def test_a_solid_has_the_springs_of_a_lattice_inside_its_object(tmp_path):
+def test_a_solid_of_cubes_has_the_springs_of_a_lattice_inside_its_object(tmp_path):
     shape = "torus: {radius: 0.5 m, tube: 0.2 m, position: 1 0 0 m, hidden: yes}"
     ((x, ends, stretch),) = watch(
         tmp_path, SOLID.format(shape=shape, spacing=0.07, pins="bottom"), [0.5], "jelly.positions", "jelly.springs",

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly
 
 CHUNK = 1 << 18
+HALVINGS = 40
+"""Of a way, to find where it leaves."""
 EMPTIEST = 2000
 """An object that holds less than one in so many places of its box counts as holding none."""
 
@@ -69,9 +71,24 @@ class Inside:
             self.low, self.high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
             if not (np.isfinite(self.low).all() and np.isfinite(self.high).all()):
                 raise TypeError("it has no end")
-            self.holds: Callable[[Floats], Any] = _test(kind, start)
+            self.holds, self._exits = _test(kind, start)
         except (TypeError, ValueError) as error:
             raise self.refusal(str(error)) from None
+
+    def crossing(self, inner: Floats, outer: Floats) -> Floats:
+        """(n,) where (0..1) the ways from places inside to places outside, each (n, 3), leave the object."""
+        import numpy as np
+
+        found = np.full(len(inner), np.nan) if self._exits is None else self._exits(inner, outer)
+        left = np.isnan(found)
+        start, way = inner[left], (outer - inner)[left]
+        low, high = np.zeros(len(start)), np.ones(len(start))
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            held = self.holds(start + middle[:, None] * way)
+            low, high = np.where(held, middle, low), np.where(held, high, middle)
+        found[left] = 0.5 * (low + high)
+        return found
 
     def refusal(self, why: str) -> ScriptError:
         """That it cannot be filled."""
@@ -110,8 +127,11 @@ def chance_key(name: str, seed: int) -> int:
     return zlib.crc32(f"{seed}:{name}".encode())
 
 
-def _test(kind: Object, start: Any) -> Callable[[Floats], Any]:
-    """places (n, 3) -> (n,) bool: whether they lie in the object. Raises TypeError where it has no inside."""
+def _test(kind: Object, start: Any) -> tuple[Callable[[Floats], Any], Callable[[Floats, Floats], Floats] | None]:
+    """places (n, 3) -> (n,) bool, whether they lie in the object; of meshes where ways leave it, too (winding.exits).
+
+    Raises TypeError where it has no inside.
+    """
     import numpy as np
 
     from sceneql.field.builder import TapeBuilder
@@ -119,13 +139,13 @@ def _test(kind: Object, start: Any) -> Callable[[Floats], Any]:
 
     triangles = getattr(kind, "triangles_at", None)
     if triangles is not None:
-        from sceneql.simulation.winding import winding
+        from sceneql.simulation.winding import exits, winding
 
         corners = triangles(start)
-        return lambda places: winding(places, corners) > 0.5
+        return lambda places: winding(places, corners) > 0.5, lambda inner, outer: exits(inner, outer, corners)
     build = TapeBuilder()
     tape = build.finish(kind.implicit(build, build.x, build.y, build.z, start))
-    return lambda places: np.asarray(field_values(tape, places) < 0)
+    return lambda places: np.asarray(field_values(tape, places) < 0), None
 
 
 def filled(fill: Fill, name: str, assembly: Assembly) -> Floats:

@@ -6,7 +6,7 @@ from sceneql.kinds import Exceeds
 
 LARGEST_MEMORY = 8 * 2**30
 """[bytes] that a model may take."""
-BODY, SPRING, PLACE = 900, 350, 80
+BODY, SPRING, PLACE = 900, 350, 100
 """[bytes] of a mass with its part of the state, of an explicit solver's stages and of the picture; of a spring; of a
 place of a grid that is looked at. Measured as the growth of the peak of runs by `rk4` with the count."""
 

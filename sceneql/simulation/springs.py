@@ -69,7 +69,7 @@ class SpringModel(Model):
         "stretch": Gives(Type(), "Largest |L - L0| / L0 of a spring that holds."),
         "springs": Gives(quantity_type(dim.LENGTH, (None, 2, 3)), "The two ends of every spring that holds."),
         "torn": Gives(Type(), "Number of springs that have torn."),
-        "triangles": Gives(Type((None, 3)), "Of a cloth's surface, by numbers of masses, those that have not torn."),
+        "triangles": Gives(Type((None, 3)), "Of a cloth or a solid: its surface by numbers of masses, less what tore."),
     }
 
     pins: tuple[str, ...] | dict[str, Pin] = field(
@@ -89,7 +89,8 @@ class SpringModel(Model):
         at_least=0,
     )
     look: Literal["auto", "coil", "line", "masses"] = field(
-        "How it draws itself: springs as coils or lines, or not at all; auto: coils when few, a cloth as a sheet.",
+        "How it draws itself: springs as coils or lines, or not at all; auto: coils when few, a cloth as a sheet, a "
+        "solid as its surface.",
         "auto",
     )
     material: MaterialRef | None = field("How it looks where no object draws it.", None)
@@ -239,13 +240,30 @@ class SpringModel(Model):
         net = self.net
         if net.triangles is None or self.tear is None:
             return net.triangles
+        if net.tetrahedra is not None:
+            from sceneql.simulation.tetrahedra import boundary
+
+            return boundary(self.tetrahedra(state))
         n = len(net.points)
         torn = np.sort(net.pairs[~self.holding(state)], axis=1) @ [n, 1]
         sides = np.sort(net.triangles[:, [[0, 1], [1, 2], [2, 0]]].astype(np.int64), axis=2) @ [n, 1]
         return net.triangles[~np.isin(sides, torn).any(axis=1)]
 
+    def tetrahedra(self, state: ModelState) -> Any:
+        """(t, 4) those of a solid that have no torn edge; none of other models."""
+        import numpy as np
+
+        from sceneql.simulation.tetrahedra import edges
+
+        net = self.net
+        if net.tetrahedra is None:
+            return np.zeros((0, 4), dtype=np.int32)
+        if self.tear is None:
+            return net.tetrahedra
+        return net.tetrahedra[self.holding(state)[edges(net.tetrahedra)[1]].all(axis=1)]
+
     def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Shape]:
-        """A cloth as a sheet, else masses as spheres and springs as coils or lines."""
+        """A cloth as a sheet, a solid as its skin, else masses as spheres and springs as coils or lines."""
         from sceneql.simulation.models import spring_look
 
         assert state.bodies is not None
@@ -253,7 +271,7 @@ class SpringModel(Model):
         places = point_masses.positions(state.bodies, state).copy()
         triangles = self.triangles(state)
         if triangles is not None and self.look == "auto":
-            yield spring_look.sheet(name, surface, places, triangles, 0.5 * self.mass_radius())
+            yield spring_look.skin(name, surface, places, triangles, 0.5 * self.mass_radius())
             return
         yield spring_look.spheres(name, surface, places, self.mass_radius())
         holding = self.holding(state)

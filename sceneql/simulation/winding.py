@@ -1,4 +1,4 @@
-"""Whether places lie inside a closed mesh."""
+"""Whether places lie inside a closed mesh, and where ways leave it."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 PAIRS_AT_ONCE = 4_000_000
+EDGE = 1e-9
+"""Share of a triangle by which ways may miss it, so that none slips through between two."""
 
 
 def winding(places: Floats, corners: Floats) -> Floats:
@@ -28,4 +30,27 @@ def winding(places: Floats, corners: Floats) -> Floats:
         for p, q, length in ((a, b, lc), (b, c, la), (c, a, lb)):
             rest += np.sum(p * q, axis=2) * length
         result[first : first + rows] = np.arctan2(triple, rest).sum(axis=1) / (2 * np.pi)
+    return result
+
+
+def exits(inner: Floats, outer: Floats, corners: Floats) -> Floats:
+    """(n,) where (0..1) the ways from places ``inner`` to ``outer``, each (n, 3), first meet triangles (m, 3, 3).
+
+    NaN where none is met (Moeller & Trumbore 1997).
+    """
+    rows = max(1, PAIRS_AT_ONCE // max(1, len(corners)))
+    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    result = np.full(len(inner), np.nan)
+    for at in range(0, len(inner), rows):
+        start = inner[at : at + rows, None] - corners[None, :, 0]
+        way = (outer - inner)[at : at + rows, None]
+        across, turned = np.cross(way, second), np.cross(start, first)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            whole = np.sum(across * first, axis=2)
+            u = np.sum(across * start, axis=2) / whole
+            v = np.sum(turned * way, axis=2) / whole
+            t = np.sum(turned * second, axis=2) / whole
+            met = (u >= -EDGE) & (v >= -EDGE) & (u + v <= 1.0 + EDGE) & (t >= 0.0) & (t <= 1.0)
+        nearest = np.where(met, t, np.inf).min(axis=1, initial=np.inf)
+        result[at : at + rows] = np.where(np.isfinite(nearest), nearest, np.nan)
     return result

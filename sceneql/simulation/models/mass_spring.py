@@ -11,13 +11,13 @@ from sceneql.kinds import Damping, FixedMass, Gives, Problem, Ref, Stiffness, fi
 from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.expression import Type
 from sceneql.simulation import bodies as point_masses
 from sceneql.simulation.models.nets import (
     CORNERS,
     EDGES,
     SIDES,
     Cloth,
-    Filling,
     Lattice,
     MassPoint,
     Net,
@@ -26,6 +26,7 @@ from sceneql.simulation.models.nets import (
     alike,
     turned,
 )
+from sceneql.simulation.models.solids import Filling
 from sceneql.simulation.springs import SpringModel, pin_problems
 
 if TYPE_CHECKING:
@@ -37,6 +38,10 @@ PLACES: Mapping[str, tuple[str, ...]] = {
     "cloth": (*EDGES, *CORNERS),
     "rope": ("start", "end"),
     "solid": SIDES,
+}
+SOLID_OUTPUTS = {
+    "volume": Gives(quantity_type(dim.VOLUME), "What the tetrahedra of a solid hold, those with a torn edge left out."),
+    "inverted": Gives(Type(), "How many tetrahedra of a solid are turned inside out."),
 }
 SPRING_OUTPUTS = {
     "length": Gives(quantity_type(dim.LENGTH), "Length of the spring."),
@@ -57,7 +62,9 @@ class MassSpring(SpringModel):
     lattice: Lattice | None = field("A block of masses.", None)
     cloth: Cloth | None = field("A sheet of masses.", None)
     rope: Rope | None = field("A line of masses.", None)
-    solid: Filling | None = field("A block of masses in the shape of an object.", None)
+    solid: Filling | None = field(
+        "Masses that fill an object; of tetrahedra it tells `volume` and how many are `inverted`.", None
+    )
     mass: FixedMass = field("Mass of each that says nothing else.", "0.1 kg", above=0)
     stiffness: Stiffness = field("Force for a stretch, of each spring that says nothing else.", "100 N/m", above=0)
     damping: Damping = field("Force for a speed of stretching, likewise.", "0 N*s/m", at_least=0)
@@ -96,14 +103,15 @@ class MassSpring(SpringModel):
         entries = springs if isinstance(springs, list | tuple) else [springs]
         named = [str(entry["name"]) for entry in entries if isinstance(entry, Mapping) and entry.get("name")]
         more = {f"{name}.{output}": gives for name in named for output, gives in SPRING_OUTPUTS.items()}
-        return {**cls.gives, **point_masses.named_outputs(written.get("masses")), **more}
+        solid = SOLID_OUTPUTS if "solid" in written else {}
+        return {**cls.gives, **point_masses.named_outputs(written.get("masses")), **more, **solid}
 
     def make(self, assembly: Assembly) -> tuple[Net, Floats, Floats]:
         """The net with the numbers of single masses and springs."""
         import numpy as np
 
         net = self._net(assembly)
-        weights = np.full(len(net.points), self.mass)
+        weights = np.full(len(net.points), self.mass) if net.masses is None else net.masses.copy()
         blocks = alike(net)
         if self.lattice is not None and self.lattice.rotation is not None:
             points = turned(net.points, self.lattice.center, assembly.initial(self.lattice.rotation))
@@ -176,6 +184,11 @@ class MassSpring(SpringModel):
         assert state.bodies is not None
         if output in self.gives:
             return super().read(output, state)
+        if output in SOLID_OUTPUTS:
+            from sceneql.simulation.tetrahedra import volumes
+
+            held = volumes(point_masses.positions(state.bodies, state), self.tetrahedra(state))
+            return float(held.sum() if output == "volume" else np.count_nonzero(held < 0.0))
         name, _, what = output.rpartition(".")
         if what not in SPRING_OUTPUTS:
             return point_masses.read_named(output, tuple(self.masses or ()), state.bodies, state)
@@ -199,14 +212,14 @@ class MassSpring(SpringModel):
         if self.masses is None:
             if stiffness is None or damping is None:
                 return ()
-            shape = self.solid or self.lattice or self.cloth or self.rope
-            assert shape is not None
-            factor = shape.stiffest() / self.mass
+            shape = self.lattice or self.cloth or self.rope
+            if self.solid is not None:
+                square, decay = self.solid.fastest(stiffness, damping, self.mass)
+            else:
+                assert shape is not None
+                square, decay = (shape.stiffest() * of / self.mass for of in (stiffness, damping))
             field_name = next(shape for shape in PLACES if getattr(self, shape) is not None)
-            found = Oscillation(
-                math.sqrt(factor * stiffness), factor * damping, f"the springs of '{name}'", (field_name,)
-            )
-            return (found,)
+            return (Oscillation(math.sqrt(square), decay, f"the springs of '{name}'", (field_name,)),)
         given = [
             (
                 stiffness if spring.stiffness is None else spring.stiffness,

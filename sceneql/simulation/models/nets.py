@@ -19,7 +19,6 @@ from sceneql.kinds import (
     FixedScalar,
     FixedStiffness,
     FixedVelocity,
-    ObjectRef,
     Problem,
     Quantity,
     Record,
@@ -34,7 +33,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats, Ints
-    from sceneql.system import Assembly
 
 SIDES = ("left", "right", "bottom", "top", "back", "front")
 EDGES = ("left", "right", "bottom", "top")
@@ -61,6 +59,12 @@ class Net:
     """(m,) strain at which each spring tears, as a part of the model's; None: all alike."""
     line: bool = False
     """Whether it is a rope."""
+    tetrahedra: Ints | None = None
+    """(t, 4) of a solid, of positive volume at the start."""
+    masses: Floats | None = None
+    """(n,) [kg]; None: the model's, all alike."""
+    springs: Floats | None = None
+    """(m,) [N/m] in place of the model's stiffness."""
 
 
 def alike(net: Net) -> Floats:
@@ -70,6 +74,8 @@ def alike(net: Net) -> Floats:
     blocks = np.zeros((len(net.pairs), 5))
     blocks[:, 0] = np.linalg.norm(net.points[net.pairs[:, 1]] - net.points[net.pairs[:, 0]], axis=1)
     blocks[:, 2] = blocks[:, 4] = net.stiffness
+    if net.springs is not None:
+        blocks[:, 1], blocks[:, 2] = net.springs, 0.0
     return blocks
 
 
@@ -148,38 +154,6 @@ def side_masks(cells: Any) -> dict[str, Any]:
     low, high = cells.min(axis=0), cells.max(axis=0)
     masks = [mask for axis in range(3) for mask in (cells[:, axis] == low[axis], cells[:, axis] == high[axis])]
     return dict(zip(SIDES, masks, strict=True))
-
-
-class Filling(Record):
-    """Masses at the places of a cubic grid inside an object, tied as those of a lattice."""
-
-    object: ObjectRef = field("The object; usually a hidden one.")
-    spacing: FixedLength = field("Distance of neighbors.", "0.1 m", above=0)
-    shear: FixedScalar = field(
-        "Stiffness of the diagonals as a part of the edges'; 0 leaves them out.", "1", at_least=0
-    )
-
-    def stiffest(self) -> float:
-        """Bound on (angular frequency)^2 mass / stiffness: that of an endless lattice."""
-        return Lattice(count=(3, 3, 3), shear=self.shear).stiffest()
-
-    def bounded(self, low: Floats, high: Floats) -> None:
-        """Raise Exceeds where a grid in a box cannot be looked at."""
-        from sceneql.simulation.fill import grid_counts
-
-        grid_counts(low, high, self.spacing)
-
-    def net(self, assembly: Assembly) -> Net:
-        """Raises ScriptError for an object that holds no two neighbors, LimitRefused for too many masses."""
-        from sceneql.simulation.fill import Inside, grid
-
-        inside = Inside(self.object, assembly)
-        points, cells = grid(inside, self.spacing)
-        inside.bounded(bounded_net, len(points), len(points) * (13 if self.shear else 3))
-        pairs, parts = neighbors(cells, self.shear)
-        if not len(pairs):
-            raise inside.refusal("no two neighbors of the grid lie in it; make the spacing smaller")
-        return Net(points=points, pairs=pairs, stiffness=parts, places=side_masks(cells))
 
 
 class Lattice(Record):

@@ -63,6 +63,13 @@ def coil(start: Floats, end: Floats, radius: float) -> Floats:
     return np.stack([path[:-1], path[1:]], axis=1)
 
 
+def skin(name: str, surface: Surface, places: Floats, triangles: Ints, half: float) -> Mesh:
+    """Triangles of masses (n, 3): closed ones as they are, smooth, others as a sheet of thickness 2 ``half`` [m]."""
+    if len(rim_edges(triangles)):
+        return sheet(name, surface, places, triangles, half)
+    return Mesh(name, surface, places, triangles, vertex_normals(places, triangles))
+
+
 def sheet(name: str, surface: Surface, places: Floats, triangles: Ints, half: float) -> Mesh:
     """A surface of masses (n, 3) as a closed slab of thickness 2 ``half`` [m], smooth on both sides."""
     import numpy as np

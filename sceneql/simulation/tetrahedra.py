@@ -1,0 +1,55 @@
+"""Tetrahedra of masses: what they hold, their edges, their angles, and the triangles around them. Imports numpy."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats, Ints
+
+ENDS = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))
+"""The edges of a tetrahedron by its corners; the k-th lies across from the one before the k-th last."""
+FACES = ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))
+"""Its faces, counterclockwise from outside, each across from the corner of its number."""
+
+
+def volumes(points: Floats, tetrahedra: Ints) -> Floats:
+    """(t,) [m^3] of tetrahedra (t, 4) of points (n, 3); below 0 where one is turned inside out."""
+    a, b, c, d = points[tetrahedra].transpose(1, 0, 2)
+    held: Floats = np.einsum("ij,ij->i", b - a, np.cross(c - a, d - a)) / 6.0
+    return held
+
+
+def edges(tetrahedra: Ints) -> tuple[NDArray[int64], NDArray[int64]]:
+    """(e, 2) the edges, each once, its lower end first; (t, 6) which one is the k-th of ENDS."""
+    ends = np.sort(tetrahedra[:, ENDS].astype(np.int64), axis=2).reshape(-1, 2)
+    size = int(ends.max(initial=0)) + 1
+    keys, which = np.unique(ends @ (size, 1), return_inverse=True)
+    return np.stack(np.divmod(keys, size), axis=1), which.reshape(-1, 6)
+
+
+def boundary(tetrahedra: Ints) -> Ints:
+    """(k, 3) the faces that belong to one tetrahedron alone, counterclockwise from outside."""
+    faces = tetrahedra[:, FACES].reshape(-1, 3)
+    low, middle, high = np.sort(faces.astype(np.int64), axis=1).T
+    size = int(high.max(initial=0)) + 1
+    _, first, count = np.unique((low * size + middle) * size + high, return_index=True, return_counts=True)
+    found: Ints = faces[np.sort(first[count == 1])].astype(np.int32)
+    return found
+
+
+def dihedral_angles(points: Floats, tetrahedra: Ints) -> Floats:
+    """(t, 6) angles [rad] between the two faces at each edge of ENDS."""
+    corners = points[tetrahedra]
+    normals = [np.cross(corners[:, b] - corners[:, a], corners[:, c] - corners[:, a]) for a, b, c in FACES]
+    normals = [n / np.linalg.norm(n, axis=1, keepdims=True) for n in normals]
+    # The faces at an edge are those across from the two other corners.
+    others = [[k for k in range(4) if k not in ends] for ends in ENDS]
+    cosines = np.stack([-np.einsum("ij,ij->i", normals[a], normals[b]) for a, b in others], axis=1)
+    angles: Floats = np.arccos(np.clip(cosines, -1.0, 1.0))
+    return angles
