@@ -347,3 +347,22 @@ solvers: {main: {rk4: {step: 5 ms}}}
     late = np.linalg.norm((last[3] - last[1])[1:, :2], axis=1)
     assert np.median(late / r) == pytest.approx(1, abs=0.1)
     assert last[4] == pytest.approx(first[4], rel=1e-3)
+
+
+def test_a_force_on_named_models_ties_them_only_where_it_reads_one(tmp_path):
+    """Each of two models that fall keeps its own solver; one that is pushed as the other goes is solved with it."""
+    scene = """\
+models:
+  one: {particles: {list: {a: {mass: 1 kg}}}}
+  other: {particles: {list: {b: {position: 1 0 0 m}}}}
+forces:
+  weight: {gravity: {on: [one, other], strength: STRENGTH}}
+solvers: {near: {rk4: {on: [one], step: 1 ms}}, far: {verlet: {on: [other], step: 2 ms}}}
+outputs: {data: {record: {of: [one.a.position, other.b.position]}}}
+"""
+    path = tmp_path / "scene.yaml"
+    path.write_text(scene.replace("STRENGTH", "9.81 m/s^2"))
+    assert [island.models for island in load(path).islands] == [("one",), ("other",)]
+    path.write_text(scene.replace("STRENGTH", "9.81 m/s^2 + norm(one.a.position)*1 Hz^2"))
+    with pytest.raises(ScriptError, match="both march one, other"):
+        load(path)

@@ -130,6 +130,7 @@ class Memory:
     """What one thread works in for bundles of up to ``count`` rays against a tape."""
 
     def __init__(self, tape: Tape, count: int) -> None:
+        count = -(-count // LANES) * LANES  # lanes beyond the rays are looked at, too
         rows = len(tape.code)
         self.tape = tape
         self.rays = lined((hunt_kernels.RAY, count))
@@ -147,9 +148,7 @@ class Memory:
         beams, doubles = lined((BEAM, -(-count // GROUP) + 1)), lined((rows, LANES))
         near = np.zeros_like(tape.code), lined(self.singles.shape, single), lined(tape.parts.shape)
         plan = plan_of(tape)
-        whole = (
-            -(-max(count, density_march_kernels.LANES, len(tape.parts)) // LANES) * LANES
-        )  # lanes beyond the rays are looked at, too
+        whole = -(-max(count, density_march_kernels.LANES, len(tape.parts)) // LANES) * LANES
         march = (
             plan,
             lined(4 * density_march_kernels.LANES + count + len(tape.parts), np.int64),

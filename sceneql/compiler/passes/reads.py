@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from sceneql.compiler.check import values_of
 from sceneql.graph import Task
-from sceneql.kinds import Model, Object
+from sceneql.kinds import Force, Model, Object
 
 
 def reads(name: str, tasks: Mapping[str, Task]) -> tuple[str, ...]:
-    """The dynamic models that a part's values depend on, through objects and kinematic models."""
+    """The dynamic models that a part's values depend on, through objects and kinematic models.
+
+    What a force acts on it does not read for that.
+    """
     found: dict[str, None] = {}
-    stack, seen = list(tasks[name].needs), {name}
+    stack, seen = _needs(tasks[name]), {name}
     while stack:
         other = stack.pop()
         if other in seen or other not in tasks:
@@ -28,3 +32,9 @@ def reads(name: str, tasks: Mapping[str, Task]) -> tuple[str, ...]:
 def _driven_by(model: str, name: str, tasks: Mapping[str, Task]) -> bool:
     kind = tasks[model].kind
     return isinstance(kind, Model) and name in kind.drives()
+
+
+def _needs(task: Task) -> list[str]:
+    acted_on = set(task.kind.targets() or ()) if isinstance(task.kind, Force) else set()
+    linked = {link.task for value in values_of(task.kind) for link in value.links} if acted_on else set()
+    return [name for name in task.needs if name in linked or name not in acted_on]
