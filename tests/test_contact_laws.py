@@ -137,6 +137,30 @@ def test_a_moving_surface_hands_on_its_speed(tmp_path, mode, wall):
     np.testing.assert_allclose(v, [7, 0, 0], atol=1e-6)
 
 
+@pytest.mark.parametrize("mode", SOLVERS)
+@pytest.mark.parametrize(
+    ("pose", "place", "v"),
+    [
+        ('position: ["0.1 m/s*time + 0.05 m", 0, 0]', [0.15 - 0.0005, 0.1, 0.2], [0.1, 0, 0]),
+        ('position: ["20 m/s*time", 0, 0]', [20 - 0.0005, 0.1, 0.2], [20, 0, 0]),
+        ("rotation: {about: y, angle: 30 deg*time/(1 s)}", None, None),
+    ],
+)
+def test_a_fast_mass_never_passes_a_thin_wall_that_moves(tmp_path, mode, pose, place, v):
+    contact = f"{{between: [ball, wall], restitution: 0, mode: {mode}}}"
+    wall = f"{{wall: {{box: {{size: 1e-3 3 3 m, {pose}}}}}}}"
+    start = "position: -2 0.1 0.2 m, velocity: 500 0 0 m/s, radius: 0 m"
+    script = ball(contact, wall, start, 1, "{rk4: {step: 10 ms}}", "[]")
+    early, late = watch(tmp_path, script, [0.02, 1], "ball.a.position", "ball.a.velocity", "hit.hits.count")
+    assert late[2] >= 1
+    if place is None:
+        turned = math.radians(30) * 0.02
+        assert early[0] @ [math.cos(turned), 0, -math.sin(turned)] == pytest.approx(-0.00065, abs=1.5e-4)
+    else:
+        np.testing.assert_allclose(late[0], place, atol=1e-6)
+        np.testing.assert_allclose(late[1], v, atol=1e-6)
+
+
 def masses(mode, places, end, step="1 ms", restitution=1, friction=0, more="", forces="[]", objects="{}"):
     rows = ", ".join(
         f"p{k}: {{position: {x} m, velocity: {v} m/s, mass: {m} kg, radius: 0.1 m}}"

@@ -26,11 +26,12 @@ from sceneql.simulation.contacts.impulse_kernels import (
 from sceneql.simulation.contacts.memory_kernels import ALONG, FREE, KEEP, PAIR, PATH, SLIDES, STICKS, SUPPORT
 from sceneql.simulation.contacts.pair_kernels import away, body_of
 from sceneql.simulation.contacts.path_kernels import NEVER, first_contact, moving, place
-from sceneql.simulation.contacts.shape_kernels import MOVING, OBJECT, surface, velocity
+from sceneql.simulation.contacts.shape_kernels import DEPTH, FROM_TYPE, MOVING, OBJECT, surface, velocity
 from sceneql.system_kernels import GAP, IMPACT, TERM
 
 hit = late("sceneql.simulation.contacts.hit_kernels:hit", IMPACT)
 keep = late("sceneql.simulation.contacts.resting_kernels:keep", KEEP)
+from_object = late("sceneql.simulation.contacts.moving_kernels:from_object", FROM_TYPE)
 support = late("sceneql.simulation.contacts.support_kernels:support", SUPPORT)
 
 CHANGED = 1
@@ -44,12 +45,18 @@ def swept(t, k, at, x, y, z, vx, vy, vz, distance, reach, path, floats, ints):
     """The gap; negative also where the path since the last accepted instant went through the object."""
     last = ints[LAST] + INSTANT * k
     gap = distance - reach
-    if ints[at + MOVING] != 0 or not t > floats[last]:
+    if not t > floats[last]:
         return gap
     for c in range(6):
         path[c] = floats[last + 1 + c]
     path[6], path[7], path[8], path[9], path[10], path[11] = x, y, z, vx, vy, vz
     path[12] = t - floats[last]
+    if ints[at + MOVING] != 0:
+        # So far in that what the path is off by cannot feign it.
+        off = from_object(floats, ints, at, path)
+        if not off < 0.5 * (floats[ints[at + DEPTH]] + reach):
+            return gap
+        reach -= off
     s = first_contact(path, floats, ints, at, reach)
     if s == NEVER or s == 1.0:
         return gap

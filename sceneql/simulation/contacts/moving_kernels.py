@@ -1,8 +1,10 @@
 # mypy: ignore-errors
-"""How an object's own points move: central differences of its poses."""
+"""How an object's own points move, by central differences of its poses, and paths as they are seen from it."""
+
+import math
 
 from sceneql.kernels import lean, lean_inlined
-from sceneql.simulation.contacts.shape_kernels import AFTER, BEFORE, MOTION_TYPE, MOVING, inward, turn
+from sceneql.simulation.contacts.shape_kernels import AFTER, BEFORE, FROM_TYPE, MOTION_TYPE, MOVING, inward, turn
 
 
 @lean_inlined
@@ -31,3 +33,26 @@ def moving_acceleration(floats, ints, at, x, y, z):
     p, q, r = carried(floats, ints, at, AFTER, x, y, z)
     square = apart * apart
     return (p - 2.0 * x + a) / square, (q - 2.0 * y + b) / square, (r - 2.0 * z + c) / square
+
+
+@lean(FROM_TYPE, inner=True)
+def from_object(floats, ints, at, path):
+    """Change a path (path_kernels) to what is seen of it from one that moves, where that stands at the path's end.
+
+    Returns how far off it may be [m]: half the object's acceleration at either end times the square of the duration.
+    """
+    h = path[12]
+    most = 0.0
+    for end in range(0, 12, 6):
+        x, y, z = path[end], path[end + 1], path[end + 2]
+        a, b, c = moving_acceleration(floats, ints, at, x, y, z)
+        most = max(most, math.sqrt(a * a + b * b + c * c))
+        u, v, w = moving_velocity(floats, ints, at, x, y, z)
+        p, q, r = path[end + 3] - u, path[end + 4] - v, path[end + 5] - w
+        if end == 0:
+            # What the object has turned since turns the velocity, too.
+            a, b, c = moving_velocity(floats, ints, at, x + p, y + q, z + r)
+            p, q, r = p + h * (a - u), q + h * (b - v), r + h * (c - w)
+            path[0], path[1], path[2] = x + h * u, y + h * v, z + h * w
+        path[end + 3], path[end + 4], path[end + 5] = p, q, r
+    return 0.5 * most * h * h

@@ -42,6 +42,7 @@ UNIT = 4e-16
 FOUR = types.UniTuple(F, 4)
 THREE = types.UniTuple(F, 3)
 MOTION_TYPE = THREE(A, I, N, F, F, F)
+FROM_TYPE = F(A, I, N, A)
 SURFACE_TYPE = FOUR(A, I, N, F, F, F)
 BEND_TYPE = F(A, I, N, F, F, F, F, F, F)
 CLEAR_TYPE = types.boolean(A, I, N, F, F, F, F)
