@@ -255,3 +255,15 @@ def test_masses_that_cannot_collide_are_told(tmp_path, change, text):
     assert complaint(tmp_path, script) == ""
     with pytest.raises(ScriptError, match=text + r"(.|\n)*scene.yaml:5"):
         watch(tmp_path, script, [1], "b.energy")
+
+
+@pytest.mark.parametrize(
+    ("solver", "drift"), [("implicit_euler", 0.015), ("implicit_midpoint", 1e-9), ("bdf2", 1e-3), ("tr_bdf2", 1e-3)]
+)
+def test_impacts_within_stages_take_the_energy_that_they_say(tmp_path, solver, drift):
+    # Its own damping of free flight is implicit Euler's.
+    start = "position: 0 1 0 m, velocity: 1 0 0 m/s, radius: 0.1 m"
+    contact = "{between: [ball, floor], restitution: 0.5, friction: 0.2, mode: local}"
+    script = ball(contact, "{floor: plane}", start, 3, f"{{{solver}: {{step: 2 ms}}}}")
+    rows = watch(tmp_path, script, [0, 0.5, 1, 3], "ball.energy")
+    np.testing.assert_allclose([row[0] for row in rows], rows[0][0], rtol=drift)

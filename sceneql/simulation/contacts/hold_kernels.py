@@ -194,7 +194,8 @@ def hold(y, rate, floats, ints):
                 px, py, pz, vx, vy, vz = body_of(ints, k, y)
                 ux, uy, uz = velocity(floats, ints, HEAD + OBJECT * j, px, py, pz)
                 speed = (vx - ux) * nx + (vy - uy) * ny + (vz - uz) * nz
-                rate[ints[WORK]] -= floats[ints[MASS] + k] * floats[memory + LOAD] * speed
+                if floats[memory] != FREE:  # what an impact takes is told when the step is done
+                    rate[ints[WORK]] -= floats[ints[MASS] + k] * floats[memory + LOAD] * speed
                 tie = firm * gap / a
                 rate[to] -= tie * nx
                 rate[to + 1] -= tie * ny

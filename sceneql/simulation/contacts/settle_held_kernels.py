@@ -96,7 +96,11 @@ def find_missed(h, y0, y1, found, listed, path, mean, floats, ints):
 
 @lean(types.void(F, F, N, N, A, A, A, I), inner=True)
 def arrive(t1, h, k, j, y0, y1, floats, ints):
-    """The impact of a pair that a stage of the step of length h has stopped, or the beginning of its rest."""
+    """The impact of a pair that a stage of the step of length h has stopped, or the beginning of its rest.
+
+    What the stages took of the speed of approach, and the other forces' work along the normal, are counted here: what
+    loads at the ends of stages say of that is off by as much as an impact has.
+    """
     memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
     at = HEAD + OBJECT * j
     reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
@@ -116,6 +120,9 @@ def arrive(t1, h, k, j, y0, y1, floats, ints):
     if before >= 0.0 or floats[ints[RESTITUTION]] == 0.0 or rx * nx + ry * ny + rz * nz <= 0.0:
         come_to_rest(t1, memory, rx, ry, rz, nx, ny, nz, floats, ints)
     set_velocity(k, rx + ux, ry + uy, rz + uz, y1, floats, ints)
+    way = (px - qx - h * ux) * nx + (py - qy - h * uy) * ny + (pz - qz - h * uz) * nz
+    stopped = 0.5 * (before * before - now * now) + floats[memory + PRESS] * way
+    y1[ints[WORK]] += floats[ints[MASS] + k] * stopped
 
 
 @lean(types.void(F, F, N, N, A, A, A, I), inner=True)
