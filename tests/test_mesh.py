@@ -288,7 +288,7 @@ def assert_closed_manifold(found):
     assert len(np.unique(sides, axis=0)) == len(sides)  # neighbors agree on what is outside
 
 
-@pytest.mark.parametrize("cells", [20, 33, 50])
+@pytest.mark.parametrize("cells", [20, 33, 50, 51, 56])
 def test_sharp_cubes_have_their_corners_edges_and_faces(cells):
     found = cut_sharp(TURNED, 1.3, cells)
     assert_closed_manifold(found)

@@ -21,6 +21,7 @@ from sceneql.field.tape_ops import (
     DIV,
     EXP,
     FLOOR,
+    KEEP,
     LOG,
     MAX,
     MIN,
@@ -116,11 +117,32 @@ def binary_lanes(op, a, b, out, n):
             out[i] = np.arctan2(a[i], b[i])
 
 
+@inlined
+def along_z(code, rest):
+    """Write into ``rest`` (rows, 4) the tape of what changes with z alone: KEEP for the other operations."""
+    for k in range(code.shape[0]):
+        op = code[k, 0]
+        for j in range(1, 4):
+            rest[k, j] = code[k, j]
+        if op == CONSTANT or op == X or op == Y:
+            kept = True
+        elif op == Z:
+            kept = False
+        elif op == DENSITY or op == SKELETON:
+            p = code[k, 3]
+            kept = rest[p, 0] == KEEP and rest[p + 1, 0] == KEEP and rest[p + 2, 0] == KEEP
+        else:
+            kept = rest[code[k, 1], 0] == KEEP and rest[code[k, 2], 0] == KEEP
+        rest[k, 0] = KEEP if kept else op
+
+
 @lean(f"void({BATCH}, float64[:, ::1], int64)")
 def evaluate(code, constants, parts, registers, points, n):
     """f at n points, into the first n columns of the last operation's register."""
     for k in range(code.shape[0]):
         op = code[k, 0]
+        if op == KEEP:
+            continue
         left = code[k, 1]
         right = code[k, 2]
         out = registers[k]

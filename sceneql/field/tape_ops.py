@@ -7,6 +7,8 @@ CONSTANT, X, Y, Z, COPY = range(5)
 ADD, SUB, MUL, DIV, MIN, MAX, POW, ATAN2 = range(5, 13)
 NEG, ABS, SQUARE, SQRT, SIN, COS, EXP, LOG, FLOOR, SIGN = range(13, 23)
 DENSITY, SKELETON = 23, 24
+KEEP = -1
+"""For ``batch_kernels.evaluate`` alone: the register holds its values already."""
 OF_PARTS = (DENSITY, SKELETON)
 """Operations on a range of the tape's parts and on a point, whose three registers follow each other."""
 

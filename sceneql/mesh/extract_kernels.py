@@ -1,17 +1,19 @@
 # mypy: ignore-errors
 """What the surface does in a block: cubes it passes through with their variants, and its vertices on grid edges."""
 
-from sceneql.field.batch_kernels import LANES, evaluate
+from sceneql.field.batch_kernels import LANES, along_z, evaluate
 from sceneql.field.simplify_kernels import simplify
 from sceneql.field.tape_ops import TAPE
 from sceneql.kernels import inlined, lean
-from sceneql.mesh.cull_kernels import CLEAR, CUT, verdict
+from sceneql.mesh.cull_kernels import CLEAR, CUT, REACH, verdict
 from sceneql.mesh.decide_kernels import CASES, decide
 from sceneql.mesh.grid import BLOCK
 from sceneql.mesh.polish_kernels import DX, DY, DZ, FA, FB, SIDE, UNDEFINED, A, B, T, normals, polish
 
 NODES = BLOCK + 1
 """Nodes along a block; those on its high sides are its neighbors' too."""
+LAYERS = NODES // -(-NODES // (LANES // NODES**2))
+"""Of nodes, that are sampled at once: equal shares of NODES that LANES have room for."""
 EDGES = 3 * BLOCK**3
 """Edges that a block owns: the three that go up from each node but those on its high sides."""
 VERTICES, CUBES, TRIANGLES, OWN = range(4)
@@ -19,27 +21,24 @@ VERTICES, CUBES, TRIANGLES, OWN = range(4)
 
 
 @inlined
-def sample(code, constants, parts, registers, points, grid, i, j, k, values):
-    """f at the nodes of the block whose first node is (i, j, k), x fastest."""
+def sample(code, constants, parts, registers, rest, points, grid, i, j, k, values):
+    """f at the nodes of the block whose first node is (i, j, k), x fastest; ``rest`` (rows, 4) is room for a tape.
+
+    Some layers at a time; what does not change with z is evaluated for the first ones alone.
+    """
     h = grid[3]
     last = code.shape[0] - 1
-    n = 0
-    done = 0
-    for z in range(NODES):
-        pz = grid[2] + (k + z) * h
-        for y in range(NODES):
-            py = grid[1] + (j + y) * h
-            for x in range(NODES):
-                points[0, n + x] = grid[0] + (i + x) * h
-                points[1, n + x] = py
-                points[2, n + x] = pz
-            n += NODES
-            if n + NODES > LANES or (z == BLOCK and y == BLOCK):
-                evaluate(code, constants, parts, registers, points, n)
-                for lane in range(n):
-                    values[done + lane] = registers[last, lane]
-                done += n
-                n = 0
+    n = LAYERS * NODES * NODES
+    along_z(code, rest)
+    for lane in range(n):
+        points[0, lane] = grid[0] + (i + lane % NODES) * h
+        points[1, lane] = grid[1] + (j + lane // NODES % NODES) * h
+    for z in range(0, NODES, LAYERS):
+        for lane in range(n):
+            points[2, lane] = grid[2] + (k + z + lane // NODES**2) * h
+        evaluate(code if z == 0 else rest[: code.shape[0]], constants, parts, registers, points, n)
+        for lane in range(n):
+            values[z * NODES**2 + lane] = registers[last, lane]
 
 
 @inlined
@@ -90,17 +89,6 @@ def cubes_of(values, masks, corners, first, faces, tunnel, start, own, cubes, at
                 tally[OWN] += own[variant]
     tally[CUBES] = n - at
     return n
-
-
-@inlined
-def settled(code, constants, parts, registers, slope, points, starts, search, place, normal, at, n):
-    """Bring n vertices to the surface and store them from ``at`` on; where they end."""
-    polish(code, constants, parts, registers, points, search, starts, n)
-    normals(code, constants, parts, registers, slope, points, normal, at, n)
-    for i in range(n):
-        for axis in range(3):
-            place[at + i, axis] = points[axis, i]
-    return at + n
 
 
 @inlined
@@ -160,22 +148,20 @@ def vertices_of(
                     search[DX, n] = h if axis == 0 else 0.0
                     search[DY, n] = h if axis == 1 else 0.0
                     search[DZ, n] = h if axis == 2 else 0.0
-                    starts[0, n] = points[0, n] = grid[0] + (i + x) * h
-                    starts[1, n] = points[1, n] = grid[1] + (j + y) * h
-                    starts[2, n] = points[2, n] = grid[2] + (k + z) * h
+                    starts[0, n] = grid[0] + (i + x) * h
+                    starts[1, n] = grid[1] + (j + y) * h
+                    starts[2, n] = grid[2] + (k + z) * h
                     n += 1
-                if n > LANES - 3:
-                    done = settled(
-                        code, constants, parts, registers, slope, points, starts, search, place, normal, done, n
-                    )
-                    n = 0
-    if n > 0:
-        done = settled(code, constants, parts, registers, slope, points, starts, search, place, normal, done, n)
+            if n > LANES - 3 * BLOCK or (n > 0 and z == BLOCK - 1 and y == BLOCK - 1):
+                polish(code, constants, parts, registers, points, search, starts, place, done, n)
+                normals(code, constants, parts, registers, slope, points, place, normal, done, n)
+                done += n
+                n = 0
     return done
 
 
 @lean(
-    f"UniTuple(int64, 2)({TAPE}, int32[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, :, ::1],"
+    f"UniTuple(int64, 2)({TAPE}, int32[:, :, ::1], float64[:, :, ::1], float64[:, ::1], float64[:, :, ::1],"
     " float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1], int64[::1], float64[::1],"
     f" float64[::1], int32[:, ::1], {CASES}, int32[::1], int32[::1],"
     " int16[::1], float64[:, ::1], float64[:, ::1], int32[:, ::1], int64[:, ::1])"
@@ -188,9 +174,13 @@ def extract(
 ):  # fmt: skip
     """Vertices, normals, edge keys and cubes of some blocks, one after the other; their (vertices, cubes).
 
-    ``tally`` (blocks, 4) counts by block. ``short``, ``near``, ``registers``, ``slope``, ``points``, ``starts``,
-    ``search``, ``values``, ``masks`` and ``corners`` are room to work in.
+    ``tally`` (blocks, 4) counts by block. Those that follow each other in one box of REACH a side begin with what is
+    left of the tape there. ``short`` (3, rows, 4), ``near`` (2, parts, 8), ``registers``, ``slope``, ``points``,
+    ``starts``, ``search``, ``values``, ``masks`` and ``corners`` are room to work in.
     """
+    wide = REACH * BLOCK
+    x = y = z = -1
+    rows1 = used1 = 0
     vertices = 0
     found = 0
     for b in range(blocks.shape[0]):
@@ -199,13 +189,19 @@ def extract(
         k = blocks[b, 2] * BLOCK
         for column in range(4):
             tally[b, column] = 0
-        at = verdict(code, constants, parts, scratch, grid, i, j, k, BLOCK)
+        if i // wide != x or j // wide != y or k // wide != z:
+            x, y, z = i // wide, j // wide, k // wide
+            at = verdict(code, constants, parts, scratch, grid, x * wide, y * wide, z * wide, wide)
+            rows1, used1 = simplify(code, parts, scratch, at == CUT, short[0], near[0])
+        code1 = short[0][:rows1]
+        parts1 = near[0][:used1]
+        at = verdict(code1, constants, parts1, scratch, grid, i, j, k, BLOCK)
         if at == CLEAR:
             continue
-        rows, used = simplify(code, parts, scratch, at == CUT, short, near)
-        code2 = short[:rows]
-        parts2 = near[:used]
-        sample(code2, constants, parts2, registers, points, grid, i, j, k, values)
+        rows, used = simplify(code1, parts1, scratch, at == CUT, short[1], near[1])
+        code2 = short[1][:rows]
+        parts2 = near[1][:used]
+        sample(code2, constants, parts2, registers, short[2], points, grid, i, j, k, values)
         if not insides(values, masks):
             continue
         found = cubes_of(values, masks, corners, first, faces, tunnel, start, own, cubes, found, tally[b])

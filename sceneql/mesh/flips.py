@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     Rows = NDArray[np.int64]
 
 ROUNDS = 8
+SLIVER = 1.0e-6
+"""Height of a triangle over its longest side, below which it has no direction."""
 
 
 def faced_outward(tape: Tape, places: Floats, triangles: Ints, doubtful: Rows) -> Ints:
@@ -43,15 +45,17 @@ def faced_outward(tape: Tape, places: Floats, triangles: Ints, doubtful: Rows) -
 def facing(tape: Tape, corners: Floats) -> Floats:
     """(t,) cosine of the angle between the normals of triangles (t, 3, 3) and the gradients in their middles.
 
-    0 where one has none.
+    0 where there is no gradient, and of a SLIVER, as along a sharp edge, whose normal is noise.
     """
     import numpy as np
 
     a, b, c = (corners[:, k] for k in range(3))
     normals, slopes = np.cross(b - a, c - a), many_gradients(tape, (a + b + c) / 3.0)
-    sizes = np.linalg.norm(normals, axis=1) * np.linalg.norm(slopes, axis=1)
+    areas = np.linalg.norm(normals, axis=1)
+    sizes = areas * np.linalg.norm(slopes, axis=1)
+    longest = ((corners - np.roll(corners, 1, axis=1)) ** 2).sum(axis=2).max(axis=1)
     dots = np.einsum("tj,tj->t", normals, slopes)
-    cosines: Floats = np.divide(dots, sizes, out=np.zeros_like(dots), where=sizes > 0.0)
+    cosines: Floats = np.divide(dots, sizes, out=np.zeros_like(dots), where=(sizes > 0.0) & (areas > SLIVER * longest))
     return cosines
 
 

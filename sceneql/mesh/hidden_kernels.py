@@ -70,7 +70,7 @@ def doubtful(code, constants, parts, scratch, x, y, z, half, negative, deepest, 
 
 
 @lean(
-    f"int64({TAPE}, int32[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1],"
+    f"int64({TAPE}, int32[:, :, ::1], float64[:, :, ::1], float64[:, ::1], float64[:, ::1],"
     " float64[::1], float64[:, ::1], float64[::1], int32[:, ::1], int64, int32[:, ::1], float64[::1])"
 )
 def hidden(
@@ -90,14 +90,14 @@ def hidden(
         at = verdict(code, constants, parts, scratch, grid, i, j, k, BLOCK)
         if at == CLEAR:
             continue
-        rows, used = simplify(code, parts, scratch, at == CUT, short, near)
-        code2 = short[:rows]
-        parts2 = near[:used]
+        rows, used = simplify(code, parts, scratch, at == CUT, short[1], near[1])
+        code2 = short[1][:rows]
+        parts2 = near[1][:used]
         far = 1.0e300
         if verdict(code2, constants, parts2, scratch, grid, i, j, k, BLOCK) == CUT:
             gx, gy, gz = steepness(code2, constants, parts2, scratch)
             far = 0.5 * h * (gx + gy + gz) * (1.0 + 1.0e-9)
-        sample(code2, constants, parts2, registers, points, grid, i, j, k, values)
+        sample(code2, constants, parts2, registers, short[2], points, grid, i, j, k, values)
         for z in range(BLOCK):
             for y in range(BLOCK):
                 for x in range(BLOCK):

@@ -5,27 +5,31 @@ from sceneql.field.batch_gradient_kernels import differentiate
 from sceneql.field.batch_kernels import evaluate
 from sceneql.kernels import inlined
 
-CLOSE = 1.0e-7
-"""How near, in parts of an edge, two guesses end the search: the error of the last is smaller by some powers.
+CLOSE = 1.0e-9
+"""How near, in parts of an edge, two guesses end the search: the error of the last is smaller yet.
 
 Only where |f| fell from the one to the other, though: where the ends' values differ by many powers of ten, guesses are
 near each other and far from the root. Then a step of CLOSE looks for the root just beyond (after Brent 1973, ch. 4).
 """
-MOST_TURNS = 60
+MOST_TURNS = 100
+HALVES_FROM, HALVES_EACH = 8, 3
+"""Turn from which on, and each how many-th, brackets are halved; two chords must follow each other, to be seen near."""
 UNDEFINED = 1.0e300
 """Stands for the value where there is none."""
-A, FA, B, FB, T, SIDE, DX, DY, DZ = range(9)
-"""Rows of a search: bracket [A, B] with f(A) < 0, not f(B) < 0, and their values; guess; last side; the edge [m].
+A, FA, B, FB, T, SIDE, DX, DY, DZ, LANE, BUSY = range(11)
+"""Rows of a search: bracket [A, B] with f(A) < 0, not f(B) < 0, and their values; guess; last side; the edge [m]; the
+lane that it began in; and whether it goes on, 1 or 0.
 
 The side is -1 for A and 1 for B, twice that where |f| did not fall to half of what it was at that end.
 """
+ROWS = 11
 
 
 @inlined
 def guess(search, points, starts, turn, n):
     """Move to where the chord is zero (Illinois, Dowell & Jarratt 1971), or to the middle; how many still moved."""
     busy = 0
-    halve = turn >= 8 and turn % 2 == 1
+    halve = turn >= HALVES_FROM and turn % HALVES_EACH == HALVES_FROM % HALVES_EACH
     for i in range(n):
         a = search[A, i]
         b = search[B, i]
@@ -39,7 +43,9 @@ def guess(search, points, starts, turn, n):
             ahead = CLOSE if (search[SIDE, i] < 0.0) == (b > a) else -CLOSE
             t = search[T, i] + ahead
             near = False
-        busy += 1 if wide and not near else 0
+        moved = 1 if wide and not near and turn < MOST_TURNS else 0
+        busy += moved
+        search[BUSY, i] = moved
         search[T, i] = t
         points[0, i] = starts[0, i] + t * search[DX, i]
         points[1, i] = starts[1, i] + t * search[DY, i]
@@ -48,14 +54,42 @@ def guess(search, points, starts, turn, n):
 
 
 @inlined
-def polish(code, constants, parts, registers, points, search, starts, n):
-    """Bring the places T (0 at the node, 1 at the next one) of n edges, and ``points`` (3, LANES), onto the surface."""
+def parted(search, points, starts, place, first, n):
+    """Store what is found of n searches in place[first:], and move the others to the front: how many they are."""
+    busy = 0
+    for i in range(n):
+        if search[BUSY, i] == 0.0:
+            out = first + int(search[LANE, i])
+            for axis in range(3):
+                place[out, axis] = points[axis, i]
+            continue
+        if busy < i:
+            for row in range(ROWS):
+                search[row, busy] = search[row, i]
+            for axis in range(3):
+                starts[axis, busy] = starts[axis, i]
+                points[axis, busy] = points[axis, i]
+        busy += 1
+    return busy
+
+
+@inlined
+def polish(code, constants, parts, registers, points, search, starts, place, first, n):
+    """Bring the places T (0 at the node, 1 at the next one) of n edges onto the surface, and these to place[first:].
+
+    Most edges end after four values, some after many: when half of them have, only the others go on.
+    """
     found = registers[code.shape[0] - 1]
-    for turn in range(MOST_TURNS):
-        if guess(search, points, starts, turn, n) == 0:
+    left = n
+    for i in range(n):
+        search[LANE, i] = i
+    for turn in range(MOST_TURNS + 1):
+        if 2 * guess(search, points, starts, turn, left) <= left:
+            left = parted(search, points, starts, place, first, left)
+        if left == 0:
             break
-        evaluate(code, constants, parts, registers, points, n)
-        for i in range(n):
+        evaluate(code, constants, parts, registers, points, left)
+        for i in range(left):
             f = found[i]
             side = search[SIDE, i]
             if f < 0.0:
@@ -71,9 +105,12 @@ def polish(code, constants, parts, registers, points, search, starts, n):
 
 
 @inlined
-def normals(code, constants, parts, registers, slope, points, out, first, n):
-    """Unit gradients at n points into out[first:], zero where there is none."""
+def normals(code, constants, parts, registers, slope, points, place, out, first, n):
+    """Unit gradients at the n points of place[first:] into out[first:], zero where there is none."""
     last = code.shape[0] - 1
+    for i in range(n):
+        for axis in range(3):
+            points[axis, i] = place[first + i, axis]
     evaluate(code, constants, parts, registers, points, n)
     differentiate(code, constants, parts, registers, slope, n)
     for i in range(n):

@@ -14,6 +14,7 @@ from sceneql.mesh.cull_kernels import REACH, cull
 from sceneql.mesh.extract_kernels import CUBES, EDGES, NODES, OWN, TRIANGLES, VERTICES, extract
 from sceneql.mesh.grid import BLOCK
 from sceneql.mesh.hidden_kernels import DEEPEST
+from sceneql.mesh.polish_kernels import ROWS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,11 +34,11 @@ class Room:
 
         rows = len(tape.code)
         self.scratch = scratch(tape)
-        self.short = np.empty((rows, 4), dtype=np.int32)
-        self.near = np.empty((len(tape.parts), 8))
+        self.short = np.empty((3, rows, 4), dtype=np.int32)
+        self.near = np.empty((2, len(tape.parts), 8))
         self.registers = np.empty((rows, LANES))
         self.slope = np.empty((rows, 3, LANES))
-        self.points, self.starts, self.search = np.empty((3, LANES)), np.empty((3, LANES)), np.empty((9, LANES))
+        self.points, self.starts, self.search = np.empty((3, LANES)), np.empty((3, LANES)), np.empty((ROWS, LANES))
         self.values, self.masks = np.empty(NODES**3), np.empty(NODES**2, dtype=np.int64)
         self.corners = np.empty(8)
         self.keys = np.empty(BATCH * EDGES, dtype=np.int16)
@@ -98,7 +99,7 @@ class Workshop:
 
         def work(layer: int) -> None:
             r, blocks = self.room(), np.empty((most, 3), dtype=np.int32)
-            n = cull(*self.program, r.scratch, r.short, r.near, grid.numbers, counts, layer, blocks)
+            n = cull(*self.program, r.scratch, r.short[0], r.near[0], grid.numbers, counts, layer, blocks)
             found[layer] = blocks[:n].copy()
 
         over_tiles(layers, work)
