@@ -116,16 +116,18 @@ def reference(tmp_path_factory):
 
 
 @pytest.mark.parametrize(
-    "solver", ["implicit_euler: {step: 1/60 s}", "bdf2: {step: 1/120 s}", "tr_bdf2: {step: 1/60 s}"]
+    ("solver", "drift"),
+    [("implicit_euler: {step: 1/60 s}", 0.04), ("bdf2: {step: 1/120 s}", 0.03), ("tr_bdf2: {step: 1/60 s}", 0.004)],
 )
-def test_cloth_drapes_over_a_ball_as_by_rk4(tmp_path, reference, solver):
+def test_cloth_drapes_over_a_ball_as_by_rk4(tmp_path, reference, solver, drift):
     rows = drape(tmp_path, solver)
     np.testing.assert_allclose(rows[-1][0], reference[-1][0], atol=1e-7)
     for positions, _ in rows:
         assert np.linalg.norm(positions, axis=1).min() > 0.61 - 1e-9
     energies = np.array([row[1] for row in rows])
-    # Those of order 2 take turns of a part in 1e5, Euler's method loses throughout.
-    assert np.diff(energies).max() < (1e-12 if "euler" in solver else 1e-5) * energies[0]
+    assert np.abs(energies - energies[0]).max() < drift * energies[0]
+    # Euler's method loses throughout, those of order 2 may err in what impacts take.
+    assert np.diff(energies).max() < (1e-12 if "euler" in solver else 1e-3) * energies[0]
 
 
 def test_a_solver_without_such_stages_refuses_many_masses(tmp_path):
