@@ -69,6 +69,8 @@ class Bodies:
     """floats[radius_at + k]: collision radius [m]."""
     period: float = float("inf")
     """No oscillation of the springs between them is faster at the start [s]; infinite without springs."""
+    tied: Any = None
+    """(m, 2) int: the bodies at the ends of these springs; None without."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

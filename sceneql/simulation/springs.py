@@ -191,7 +191,7 @@ class SpringModel(Model):
             guide(self.pins, net, assembly, bodies)
         assembly.remember(blocks_at, stiffness_at, torn_at)
         stiffnesses = blocks[:, 1] + blocks[:, 2] * assembly.numbers()[stiffness_at]
-        return replace(bodies, period=_shortest_period(net.pairs, stiffnesses, weights))
+        return replace(bodies, period=_shortest_period(net.pairs, stiffnesses, weights), tied=net.pairs)
 
     def holding(self, state: ModelState) -> Any:
         """(m,) bool: the springs that have not torn."""

@@ -29,6 +29,10 @@ class MutualCollision(Contact):
     restarts the solver there, for elastic masses; `local` finds the impacts of a step by cell lists (Hockney & Eastwood
     1981), first ones first, and lets masses that approach no faster than they are pressed rest on each other and on the
     objects, by impulses at the end of the step (Moreau 1988); `auto` is exact for up to 8 elastic masses.
+
+    In mode `local` masses that a spring ties, and masses of one net that overlap at the start, do not collide: so a
+    cloth or a rope lies on itself, each mass a sphere as wide as the cloth is thick. Its layers cannot pass through
+    each other where the thickness is no less than the side of a cell.
     """
 
     mutual: ClassVar[bool] = True
@@ -57,7 +61,6 @@ class MutualCollision(Contact):
         from sceneql.simulation.contacts.sphere_pair_kernels import BODY, HEAD
         from sceneql.simulation.neighbors import table
 
-        _must_be_apart(assembly, everyone)
         rows = [
             (
                 at.position_at + 3 * k,
@@ -76,6 +79,7 @@ class MutualCollision(Contact):
             text = "exact collisions between masses are elastic: those that lose speed come to rest on each other"
             raise ScriptError([Diagnostic("not-elastic", text, assembly.line(), "set restitution: 1 or mode: local")])
         exact = self.mode == "exact" or (self.mode == "auto" and elastic and n <= MOST_EXACT)
+        tied = _tied(assembly, everyone, exact)
         size, first, second = table(n)
         tally = assembly.floats([0.0, np.nan, np.nan, 0.0, np.nan])
         objects = (
@@ -86,9 +90,11 @@ class MutualCollision(Contact):
             *(n, assembly.value(self.restitution), assembly.value(self.friction), tally),
             *(assembly.floats(np.zeros(count)) for count in scratch),
             *(size, first, second, 0 if exact else len(others)),
+            HEAD + BODY * n + len(objects) if len(tied) else 0,
             *(number for row in rows for number in row),
             *objects,
         )
+        ints = (*ints, *_partners(tied, n, len(ints)))
         folder = "sceneql.simulation.contacts"
         if exact:
             kernels = (f"{folder}.sphere_events_kernels:gap", f"{folder}.sphere_events_kernels:impact")
@@ -103,26 +109,44 @@ class MutualCollision(Contact):
         return float(sum(state.floats[at] for at in state.ints))
 
 
-def _must_be_apart(assembly: Assembly, everyone: Sequence[Bodies]) -> None:
-    """Raise ScriptError where two moving masses overlap at the start."""
+def _tied(assembly: Assembly, everyone: Sequence[Bodies], exact: bool) -> NDArray[int64]:
+    """(m, 2) the pairs that do not meet: those that springs tie, and those that overlap within a net at the start.
+
+    The lower number stands first. In `exact` mode all meet. Raises ScriptError where two moving masses overlap
+    otherwise.
+    """
     import numpy as np
 
     y, floats = assembly.start(), assembly.numbers()
+    nets = () if exact else tuple(k for k, at in enumerate(everyone) if at.tied is not None)
+    model = np.repeat(np.arange(len(everyone)), [at.count for at in everyone])
     places = np.concatenate([y[at.position_at : at.position_at + 3 * at.count] for at in everyone]).reshape(-1, 3)
     radii = np.concatenate([floats[at.radius_at : at.radius_at + at.count] for at in everyone])
     moving = np.concatenate([floats[at.inverse_at : at.inverse_at + at.count] for at in everyone]) > 0.0
-    pairs = _near(places, 2.0 * float(radii.max(initial=0.0)))
-    pairs = pairs[moving[pairs].all(axis=1)]
-    apart = np.linalg.norm(places[pairs[:, 0]] - places[pairs[:, 1]], axis=1)
-    depth = radii[pairs].sum(axis=1) - apart
-    if len(pairs) and depth.max() > 1e-9 * radii.max():
-        worst = int(np.argmax(depth))
+    pairs = np.sort(_near(places, 2.0 * float(radii.max(initial=0.0))), axis=1)
+    depth = radii[pairs].sum(axis=1) - np.linalg.norm(places[pairs[:, 0]] - places[pairs[:, 1]], axis=1)
+    own = (model[pairs[:, 0]] == model[pairs[:, 1]]) & np.isin(model[pairs[:, 0]], nets)
+    wrong = np.where(moving[pairs].all(axis=1) & ~own, depth, 0.0)
+    if len(pairs) and wrong.max() > 1e-9 * radii.max():
+        worst = int(np.argmax(wrong))
         names = [f"mass {k} of '{bodies.model}'" for bodies in everyone for k in range(bodies.count)]
         one, other = (names[k] for k in pairs[worst])
-        text = f"{one} and {other} overlap by {depth[worst]:.3g} m at the start"
+        text = f"{one} and {other} overlap by {wrong[worst]:.3g} m at the start"
         raise ScriptError(
             [Diagnostic("masses-overlap", text, assembly.line(), "move them apart, or make them smaller")]
         )
+    springs = [np.sort(everyone[k].tied, axis=1) + np.searchsorted(model, k) for k in nets]
+    return np.unique(np.concatenate([pairs[own & (depth > 0.0)], *springs]), axis=0)
+
+
+def _partners(tied: NDArray[int64], count: int, start: int) -> tuple[int, ...]:
+    """Of ``count`` masses the tied ones (sphere_pair_kernels), for integers that begin at ``start``."""
+    import numpy as np
+
+    if not len(tied):
+        return ()
+    firsts = start + count + 1 + np.searchsorted(tied[:, 0], np.arange(count + 1))
+    return (*firsts.tolist(), *tied[:, 1].tolist())
 
 
 def _near(places: Floats, reach: float) -> NDArray[int64]:

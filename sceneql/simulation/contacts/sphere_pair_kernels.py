@@ -2,8 +2,10 @@
 """Pairs of masses as spheres: layout, when two meet in a step, and what an impact does to both.
 
 ints: number of masses, offsets of restitution, friction and tally in the floats, of the places, the sorted places,
-numbers and starts of the cell lists, table of cells (neighbors.table), number of objects; BODY integers a mass: places
-in y of position, velocity and work, in floats of mass, inverse mass and radius; the objects (shape_kernels).
+numbers and starts of the cell lists, table of cells (neighbors.table), number of objects, where the tied ones stand in
+the ints (0: there are none); BODY integers a mass: places in y of position, velocity and work, in floats of mass,
+inverse mass and radius; the objects (shape_kernels). Of the tied ones n + 1 places where those of each mass begin, and
+then for each the masses of larger number that it does not meet.
 """
 
 import math
@@ -14,7 +16,7 @@ from sceneql.kernels import inlined, kernel
 from sceneql.simulation.neighbors_kernels import cell_of, sort_by_cell
 from sceneql.system_kernels import A, F, I, N
 
-COUNT, RESTITUTION, FRICTION, TALLY, POINTS, SORTED, ORDER, START, SIZE, P, Q, OBJECTS, HEAD = range(13)
+COUNT, RESTITUTION, FRICTION, TALLY, POINTS, SORTED, ORDER, START, SIZE, P, Q, OBJECTS, TIED, HEAD = range(14)
 X, V, WORK, MASS, INVERSE, RADIUS, BODY = range(7)
 
 FOUR = types.UniTuple(F, 4)
@@ -38,6 +40,16 @@ def of(ints, k, what):
 def radii(i, j, floats, ints):
     """Sum of the radii of two masses."""
     return floats[of(ints, i, RADIUS)] + floats[of(ints, j, RADIUS)]
+
+
+@inlined
+def tied(i, j, ints):
+    """Whether mass i and mass j of larger number are tied, so that they do not meet."""
+    found = False
+    if ints[TIED] > 0:
+        for at in range(ints[ints[TIED] + i], ints[ints[TIED] + i + 1]):
+            found = found or ints[at] == j
+    return found
 
 
 @kernel(FOUR(N, N, A, A, A, I), inner=True)

@@ -23,6 +23,7 @@ from sceneql.simulation.contacts.sphere_pair_kernels import (
     of,
     radii,
     sort_cells,
+    tied,
 )
 from sceneql.system_kernels import SETTLE, A, F, I
 
@@ -76,6 +77,8 @@ def candidates(h, y0, y1, floats, ints):
             # Without mass: a place for a particle that is not there now.
             absent = floats[of(ints, k, MASS)] == 0.0 or floats[of(ints, j, MASS)] == 0.0
             if fixed or absent or square > (radii(k, j, floats, ints) + 2.0 * math.sqrt(longest)) ** 2:
+                continue
+            if tied(k, j, ints):
                 continue
             if total == others.size:
                 others = twice(others)
