@@ -270,6 +270,7 @@ def test_the_cut_of_an_angle_is_a_jump():
         "1/sqrt(x^2 + y^2) + 1",
         "abs(x)^abs(x) + y^2 + 0.01",
         "cosh(800*x) - 0.5",
+        "x^200 + 0.1",
     ],
 )
 def test_what_overflows_or_has_a_pole_is_told_from_zero(formula):

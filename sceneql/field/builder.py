@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 Row = tuple[int, int, int, int]
 COMMUTATIVE = {ops.ADD, ops.MUL, ops.MIN, ops.MAX}
-LARGEST_POWER = 64
+LARGEST_POWER = 1024
 """Integer powers up to this one become multiplications."""
 FEW = 128
 """Plain parts up to this number are looked at one by one; more go into a hierarchy."""
