@@ -106,9 +106,10 @@ class Slopes:
     numbers of an entry follow one another, row by row. Thrice as quick, where masses act on masses."""
 
     in_stages: bool = False
-    """They are known within stages of Newton's method alone (Stepper.newton), in which the term acts otherwise: while
-    floats[3] is above 0 it is the coefficient a [s] of y = base + a f(t, y), whose base is floats[-3n : -2n]; it is -1
-    between those, and 0 where a solver has none. floats[4] counts the stages."""
+    """They are known where the term acts in another way than it does for explicit methods. Within stages of Newton's
+    method (Stepper.newton) floats[3] is the coefficient a [s] of y = base + a f(t, y), whose base is floats[-3n : -2n];
+    floats[4] counts the stages. It is -1 between those, -2 throughout for other methods that ask for slopes (of small
+    islands they are found by differences), and 0 for those that ask for none."""
 
     @property
     def entries(self) -> int:

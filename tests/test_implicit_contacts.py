@@ -1,10 +1,12 @@
-"""Local contacts within the steps of implicit solvers: nothing sinks in, friction holds, what rests is still."""
+"""Local contacts of implicit solvers, within their stages or between steps: nothing sinks in, friction holds, what
+rests is still."""
 
 import numpy as np
 import pytest
 
 from runs import watch
-from sceneql.failure import LimitRefused
+from sceneql.pipeline import load
+from sceneql.simulation.run import IslandRun
 
 G = 9.81
 SOLVERS = (
@@ -13,6 +15,8 @@ SOLVERS = (
     "tr_bdf2: {step: 1/120 s}",
     "implicit_midpoint: {step: 1/120 s}",
 )
+BETWEEN = ("radau: {}", "rodas5p: {}")
+"""Those whose contacts act between steps, in which what rests is tied."""
 SHEET = """clock: {{end: {end} s}}
 models:
   sheet: {{cloth: {{size: 1 1 m, cells: 9 9, center: {center}, facing: {facing}, stretch: 4 kN/m, shear: 400 N/m,
@@ -39,7 +43,18 @@ def test_a_stiff_sheet_lands_on_the_floor_and_lies_still(tmp_path, solver):
     assert two[2] == pytest.approx(one[2], rel=1e-9)
 
 
-@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("solver", BETWEEN)
+def test_a_stiff_sheet_lands_and_lies_still_between_steps_of_any_length(tmp_path, solver):
+    outputs = ("sheet.positions", "sheet.velocities", "sheet.energy", "hit.hits.count")
+    start, one, two = watch(tmp_path, sheet(solver, 1, "0 0.11 0 m"), [0, 0.5, 1], *outputs)
+    assert one[3] == two[3] >= 100
+    np.testing.assert_allclose(two[0][:, 1], 0.01, atol=1e-9)
+    np.testing.assert_allclose(two[0], one[0], atol=1e-9)
+    np.testing.assert_allclose(two[1], 0, atol=1e-8)
+    assert two[2] == pytest.approx(start[2], rel=1e-3)
+
+
+@pytest.mark.parametrize("solver", [*SOLVERS, *BETWEEN])
 def test_on_a_slope_a_sheet_slides_if_it_is_steeper_than_friction_holds(tmp_path, solver):
     # tan(angle) = 3/4.
     normal = np.array([0.6, 0.8, 0])
@@ -49,23 +64,25 @@ def test_on_a_slope_a_sheet_slides_if_it_is_steeper_than_friction_holds(tmp_path
         script = sheet(solver, 0.5, "0.006 0.008 0 m", friction, slope, "3 4 0")
         early, late = watch(tmp_path, script, [0.25, 0.5], "sheet.positions", "sheet.velocities")
         faster = max(0.0, 0.6 - friction * 0.8) * G * 0.25
-        np.testing.assert_allclose(late[1] - early[1], np.tile(down * faster, (100, 1)), atol=1e-8)
+        # A friction that turns into rest, or nearly, is no rate that steps between contacts see to the end.
+        atol = 1e-8 if solver in SOLVERS else 2e-5
+        np.testing.assert_allclose(late[1] - early[1], np.tile(down * faster, (100, 1)), atol=atol)
         np.testing.assert_allclose(late[0] @ normal, 0.01, atol=1e-9)
         if friction > 0.75:
             np.testing.assert_allclose(late[1], 0, atol=1e-9)
 
 
-@pytest.mark.parametrize("word", ["implicit_euler", "bdf2"])
+@pytest.mark.parametrize("solver", ["implicit_euler: {step: 10 ms}", "bdf2: {step: 10 ms}", *BETWEEN])
 @pytest.mark.parametrize(
     "wall", ["{box: {size: 0.001 9 9 m}}", "{plane: {normal: -1 0 0}}", "{sphere: {radius: 2 m, position: 2 0 0 m}}"]
 )
-def test_nothing_passes_a_wall_at_500_m_s(tmp_path, word, wall):
+def test_nothing_passes_a_wall_at_500_m_s(tmp_path, solver, wall):
     script = f"""
 clock: {{end: 0.2 s}}
 models: {{dust: {{particles: {{fill: {{object: room, count: 100}}, velocity: 500 0 0 m/s, radius: 1 mm}}}}}}
 objects: {{room: {{box: {{size: 1 1 1 m, position: -3 0 0 m}}}}, wall: {wall}}}
 contacts: {{hit: {{collision: {{between: [dust, wall], restitution: 0, mode: local}}}}}}
-solvers: {{main: {{{word}: {{step: 10 ms}}}}}}
+solvers: {{main: {{{solver}}}}}
 """
     rows = watch(tmp_path, script, [0.01, 0.02, 0.2], "dust.positions", "hit.hits.count")
     for positions, _ in rows:
@@ -76,14 +93,15 @@ solvers: {{main: {{{word}: {{step: 10 ms}}}}}}
     assert rows[-1][1] >= 100
 
 
-def test_bounces_reach_their_heights(tmp_path):
-    script = """
-clock: {end: 1 s}
-models: {dust: {particles: {fill: {object: room, count: 100}, radius: 10 mm}}}
-objects: {room: {box: {size: 1 1 1 m, position: 0 1.5 0 m}}, floor: plane}
+@pytest.mark.parametrize("solver", ["bdf2: {step: 1 ms}", "dopri5: {}", *BETWEEN])
+def test_bounces_reach_their_heights(tmp_path, solver):
+    script = f"""
+clock: {{end: 1 s}}
+models: {{dust: {{particles: {{fill: {{object: room, count: 100}}, radius: 10 mm}}}}}}
+objects: {{room: {{box: {{size: 1 1 1 m, position: 0 1.5 0 m}}}}, floor: plane}}
 forces: [gravity]
-contacts: {hit: {collision: {between: [dust, floor], restitution: 0.8, mode: local}}}
-solvers: {main: {bdf2: {step: 1 ms}}}
+contacts: {{hit: {{collision: {{between: [dust, floor], restitution: 0.8, mode: local}}}}}}
+solvers: {{main: {{{solver}}}}}
 """
     start, end = watch(tmp_path, script, [0, 1], "dust.positions", "hit.hits.count")
     height = start[0][:, 1] - 0.01
@@ -92,7 +110,7 @@ solvers: {main: {bdf2: {step: 1 ms}}}
     expected = 0.01 + 0.8 * np.sqrt(2 * G * height) * apart - G * apart**2 / 2
     once = (apart > 0) & (apart < 1.6 * fall)
     assert once.sum() > 50
-    np.testing.assert_allclose(end[0][once, 1], expected[once], atol=0.01)
+    np.testing.assert_allclose(end[0][once, 1], expected[once], atol=0.01 if "bdf2" in solver else 1e-4)
 
 
 DRAPE = """clock: {{end: 4 s}}
@@ -130,7 +148,38 @@ def test_cloth_drapes_over_a_ball_as_by_rk4(tmp_path, reference, solver, drift):
     assert np.diff(energies).max() < (1e-12 if "euler" in solver else 1e-3) * energies[0]
 
 
-def test_a_solver_without_such_stages_refuses_many_masses(tmp_path):
-    script = sheet("rodas5p: {}", 1, "0 0.2 0 m")
-    with pytest.raises(LimitRefused, match="hit gives no slopes"):
-        watch(tmp_path, script, [0.1], "sheet.energy")
+@pytest.mark.parametrize("solver", ["radau: {tolerance: 1e-4}", "rodas5p: {tolerance: 1e-4}"])
+def test_cloth_drapes_over_a_ball_between_steps(tmp_path, reference, solver):
+    rows = drape(tmp_path, solver)
+    np.testing.assert_allclose(rows[-1][0], reference[-1][0], atol=1e-7)
+    for (positions, energy), (expected, _) in zip(rows, reference, strict=True):
+        np.testing.assert_allclose(positions, expected, atol=1e-3)
+        assert np.linalg.norm(positions, axis=1).min() > 0.61 - 1e-6
+        assert energy == pytest.approx(rows[0][1], rel=2e-4)
+
+
+def test_auto_takes_radau_once_the_cloth_hardly_moves(tmp_path, reference):
+    path = tmp_path / "scene.yaml"
+    path.write_text(DRAPE.format(solver="auto: {}"), encoding="utf-8")
+    graph = load(path, pruned=False)
+    march = IslandRun(graph, graph.islands[0]).march
+    y, _ = march.advance(4.0)
+    assert [why.partition(":")[0] for _, why in march.choices()] == ["dopri5", "radau"]
+    places = np.linalg.norm(y[: 3 * 121].reshape(-1, 3) - reference[-1][0], axis=1)
+    assert places.max() < 1e-7
+
+
+def test_a_tie_that_pulls_is_let_go(tmp_path):
+    """Gravity turns round after half a second: beads fly off the floor, and nothing holds them back."""
+    script = """
+clock: {end: 1 s}
+models: {dust: {particles: {fill: {object: room, count: 100}, radius: 1 mm}}}
+objects: {room: {box: {size: 1 0.002 1 m, position: 0 0.002 0 m, hidden: yes}}, floor: plane}
+forces: {pull: {gravity: {acceleration: {x: 0 m/s^2, y: 20 m/s^3*(time - 0.5 s), z: 0 m/s^2}}}}
+contacts: {hit: {collision: {between: [dust, floor], restitution: 0, mode: local}}}
+solvers: {main: {SOLVER}}
+"""
+    for solver in BETWEEN:
+        half, end = watch(tmp_path, script.replace("SOLVER", solver), [0.5, 1], "dust.positions")
+        np.testing.assert_allclose(half[0][:, 1], 0.001, atol=1e-9)
+        np.testing.assert_allclose(end[0][:, 1], 0.001 + 20 * 0.5**3 / 6, atol=1e-2)

@@ -20,7 +20,7 @@ from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.expression import Expr, Link
 from sceneql.simulation.blocks_laid import Block, grouped, lay_out
 from sceneql.simulation.inputs import Inputs
-from sceneql.simulation.jacobian import full, section
+from sceneql.simulation.jacobian import BY_DIFFERENCES, full, section
 from sceneql.simulation.memory import LARGEST_MEMORY
 from sceneql.simulation.stops import Stop, stops
 
@@ -38,8 +38,9 @@ VECTORS = 12
 RESERVED_FLOATS = 5
 """floats[0] counts rate evaluations; floats[1] is set by a contact that changed the state (march_kernels); floats[2] is
 above 0 while slopes are to serve Newton's method; floats[3] is not 0 where terms may act within its stages, whose
-number is floats[4] (system.Slopes)."""
+number is floats[4], or give slopes of how they act between steps (system.Slopes)."""
 STAGE = 3
+WITHIN, BETWEEN = -1.0, -2.0
 
 
 class Setting(Protocol):
@@ -329,8 +330,8 @@ class IslandAssembly:
         for position, velocity, count in self._pairs:
             partner[position : position + count] = np.arange(velocity, velocity + count)
         floats = np.concatenate([*self._numbers, np.zeros(0 if found is None else 3 * len(y))])
-        if newton and self._local:
-            floats[STAGE] = -1.0
+        if slopes is not None and self._local:
+            floats[STAGE] = WITHIN if newton else BETWEEN
         return System(
             structure=structure,
             y=y,
@@ -375,7 +376,7 @@ class IslandAssembly:
         found = []
         for block in (block for stage in STAGES for block in self._terms[stage]):
             slopes = block.slopes() if callable(block.slopes) else block.slopes
-            if slopes is None or (slopes.in_stages and not newton):
+            if slopes is None or (slopes.in_stages and not newton and self._size <= BY_DIFFERENCES):
                 self._unsloped = block.part
                 return None
             found.append((slopes, block.ints if slopes.ints is None else slopes.ints))

@@ -13,7 +13,8 @@ from sceneql.failure import LimitRefused, RunFailure
 from sceneql.kernels import compiled
 from sceneql.simulation import march_kernels as kernels
 from sceneql.simulation.driver import driver, function, jacobian
-from sceneql.simulation.island import IslandAssembly, System
+from sceneql.simulation.island import STAGE, IslandAssembly, System
+from sceneql.simulation.jacobian import BY_DIFFERENCES
 from sceneql.simulation.pointers_kernels import addresses
 from sceneql.simulation.stops import next_stop
 from sceneql.simulation.switching import Switch
@@ -85,7 +86,8 @@ class March:
         self._started = False
         self._floats_time = math.nan
         self._switch = None
-        if stepper.stiff is not None and stepper.adaptive and not system.structure.local:
+        takes_turns = not system.structure.local or len(system.y) > BY_DIFFERENCES
+        if stepper.stiff is not None and stepper.adaptive and takes_turns:
             self._switch = Switch(stepper, stepper.stiff, int((system.partner < 0).sum()))
         self._last_look = 0
         self._stop = 0.0
@@ -102,7 +104,12 @@ class March:
         self._step = function(stepper.step)
         self._jacobian = jacobian(system) if stepper.jacobian else None
         local = bool(system.structure.local)
-        self._dense = kernels.hermite if stepper.dense is None or local else function(stepper.dense)
+        between = stepper.jacobian and not stepper.newton
+        if local:
+            self.floats[STAGE] = system.floats[STAGE] if stepper.jacobian else 0.0
+            self._dense = kernels.straightened if between else kernels.hermite
+        else:
+            self._dense = kernels.hermite if stepper.dense is None else function(stepper.dense)
         self._extend = None if stepper.extend is None or local else function(stepper.extend)
         self._extended = math.nan
         # Islands without exact contacts have no events: the kernels that find them are not even loaded.
@@ -118,7 +125,7 @@ class March:
         self.prepared_text = prepared.text
         self._counts[kernels.ADAPTIVE] = stepper.adaptive
         self._counts[kernels.ORDER] = stepper.order
-        self._counts[kernels.LAST_STAGE] = stepper.last_stage
+        self._counts[kernels.LAST_STAGE] = -1 if local and between else stepper.last_stage
         self._counts[kernels.CONTROLS] = stepper.controls
 
     def _pass_stop(self) -> None:
@@ -322,6 +329,8 @@ class March:
             self._change(switch, t)
             clock[kernels.STEP] = switch.stable(self, t, self._y1, step)
             clock[kernels.ERROR] = 1e-4
+        if self._counts[kernels.HELD]:
+            self.rate(t, self._y1)  # what contacts are to read is that of the state again
 
     def _goes_on(self, status: int) -> bool:
         """Whether another method goes on where one finds no step."""

@@ -46,6 +46,11 @@ class Switch:
         """Explicit steps that one stiff step costs."""
         return step_cost(self.size)
 
+    @property
+    def _often(self) -> int:
+        """Stiff steps between two looks: as many as cost what the most of explicit ones do."""
+        return max(TRIAL, int(LAST / self.cost))
+
     def start(self, march: March, y: Floats, step: float) -> None:
         """Choose the method to begin with; ``step`` [s]: what the tolerance seems to allow at the start."""
         speed = dominant(march, 0.0, y)
@@ -64,7 +69,8 @@ class Switch:
         if self._warming:
             self._warming = False
             return False
-        self.until_look = self._between = min(LAST, 2 * self._between)
+        self._between = min(LAST, 2 * self._between)
+        self.until_look = self._between if self.active is self.explicit else min(self._between, self._often)
         speed = dominant(march, t, y)
         if self.active is self.explicit:
             if not self._possible or self._steps(min(step, mean), speed) < HELD:
@@ -75,6 +81,8 @@ class Switch:
         if gain >= PATIENCE * self.cost:
             return False
         self._take(self.explicit, t, f"a stiff step replaces but {gain:.2g} explicit ones and costs {self.cost:.2g}")
+        # A trial in vain is not to cost more than what it is between.
+        self.until_look = max(self.until_look, int(TRIAL * self.cost))
         return True
 
     def give_up(self, t: float) -> bool:

@@ -3,7 +3,7 @@
 
 import math
 
-from sceneql.kernels import lean
+from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.contacts.impulse_kernels import (
     FRICTION,
     HEAD,
@@ -17,6 +17,7 @@ from sceneql.simulation.contacts.impulse_kernels import (
 )
 from sceneql.simulation.contacts.memory_kernels import (
     ALONG,
+    BETWEEN,
     BRAKE,
     CREEPS,
     EARLIER,
@@ -26,7 +27,9 @@ from sceneql.simulation.contacts.memory_kernels import (
     PAIR,
     PULL,
     SLIDES,
+    STAGE,
     STICKS,
+    tightness,
 )
 from sceneql.simulation.contacts.pair_kernels import body_of
 from sceneql.simulation.contacts.resting_kernels import come_to_rest, set_velocity
@@ -35,6 +38,18 @@ from sceneql.simulation.contacts.slide_kernels import tangential
 
 FAST = 4.0
 """Slip, as a multiple of what friction can take from it in a step, above which its direction hardly turns."""
+
+
+@lean_inlined
+def hold_still(memory, vx, vy, vz, nx, ny, nz, dx, dy, dz, pull, to, rate, floats, ints):
+    """Take away all of a pull d along the surface, and what slip is left of a velocity v relative to it."""
+    if pull > 0.0:
+        floats[memory + ALONG], floats[memory + ALONG + 1], floats[memory + ALONG + 2] = dx / pull, dy / pull, dz / pull
+    vx, vy, vz = tangential(vx, vy, vz, nx, ny, nz)
+    tight = tightness(floats, ints)
+    rate[to] -= dx + tight * vx
+    rate[to + 1] -= dy + tight * vy
+    rate[to + 2] -= dz + tight * vz
 
 
 @lean(OF_BODY, inner=True)
@@ -58,6 +73,10 @@ def rub(k, y, rate, floats, ints):
         dx, dy, dz = dx - dn * nx, dy - dn * ny, dz - dn * nz
         size = math.sqrt(dx * dx + dy * dy + dz * dz)
         floats[memory + PULL] = size
+        if floats[memory] == STICKS and floats[STAGE] == BETWEEN:
+            # To the end of the step, which sees whether the pull was too much.
+            hold_still(memory, vx, vy, vz, nx, ny, nz, dx, dy, dz, size, to, rate, floats, ints)
+            continue
         if floats[memory] == STICKS:
             most = min(most, size)
         else:

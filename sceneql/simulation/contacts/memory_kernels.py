@@ -28,7 +28,11 @@ numbers: most bodies fly, and the others are found without looking at all."""
 
 STAGE = 3
 """floats[3]: a [s] in a stage of Newton's method, y = base + a f(t, y), whose base stands at floats[-3n : -2n]; -1
-outside, where contacts act within such stages; 0 where they act between steps."""
+outside, where contacts act within such stages; 0 where they act between steps; BETWEEN where they do, but a solver
+asks for slopes."""
+OUTSIDE = -1.0
+BETWEEN = -2.0
+"""Then what rests at a step's start stays tied to its end, so that the rate is smooth there, and slopes are known."""
 NUMBER = 4
 """floats[4]: how many stages there were."""
 FIRM = 1e3
@@ -49,6 +53,9 @@ KEEP = types.boolean(F, N, N, A, A, I)
 """(time, body, object, state, floats, ints): whether anything changed."""
 HOLD = types.void(A, A, A, I)
 """(state, rate, floats, ints)."""
+FIRMEST = 1e6
+"""Least rate [1/s] at which a tie takes away what normal velocity is left, where slopes are asked for between steps."""
+
 OF_BODY = types.void(N, A, A, A, I)
 """(body, state, rate, floats, ints)."""
 SETTLE_HELD = types.void(F, F, A, A, A, I)
@@ -61,3 +68,12 @@ SUPPORT = types.void(N, A, A, A, I)
 def firmness(a, floats, ints):
     """How firm ties are in a stage of coefficient a [1/s]; the square of the springs' frequency follows the list."""
     return FIRM * (1.0 + a * a * floats[ints[LAST] + LIST + ints[BODIES]]) / a
+
+
+@lean_inlined
+def tightness(floats, ints):
+    """The rate [1/s] at which a tie takes away normal velocity where slopes are asked for between steps.
+
+    For steps up to a second it is far above what springs could do against it, which slopes leave out.
+    """
+    return max(FIRMEST, FIRM * floats[ints[LAST] + LIST + ints[BODIES]])

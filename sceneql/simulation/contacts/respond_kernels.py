@@ -33,16 +33,22 @@ from sceneql.simulation.contacts.meet_kernels import earliest
 from sceneql.simulation.contacts.memory_kernels import (
     ANSWER,
     ASKED,
+    BETWEEN,
     BRAKE,
     CREEPS,
     CUTS,
+    EARLIER,
     FREE,
     HOLDS,
     LIST,
+    LOAD,
     PAIR,
     PRESS,
+    PULL,
     RESTING,
     SLIDES,
+    STAGE,
+    STICKS,
     WHOLE,
 )
 from sceneql.simulation.contacts.pair_kernels import is_flat
@@ -155,6 +161,33 @@ def set_out(k, h, y0, y1, path, mean, ints):
     path[12] = h
 
 
+@lean_inlined
+def pulls(k, floats, ints):
+    """Where in a step the first tie of body k began to pull, by its load at the ends; 1 where none does."""
+    first = 1.0
+    for j in range(ints[OBJECTS]):
+        memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
+        load, pull = floats[memory + EARLIER], floats[memory + PRESS]
+        if floats[memory] != FREE and pull > 0.0 and load > 0.0:
+            first = min(first, load / (load + pull))
+    return first
+
+
+@lean_inlined
+def let_go(k, floats, ints):
+    """End the ties of body k that pull, or that friction could not hold; of the others the load is noted."""
+    for j in range(ints[OBJECTS]):
+        memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
+        if floats[memory] == FREE:
+            continue
+        if floats[memory + PRESS] > 0.0:
+            floats[memory] = FREE
+        elif floats[memory] == STICKS and floats[memory + PULL] > floats[ints[FRICTION]] * floats[memory + LOAD]:
+            floats[memory] = SLIDES
+        if floats[memory] != CREEPS:
+            floats[memory + EARLIER] = floats[memory + LOAD]
+
+
 @lean(ANSWER, inner=True)
 def cut(t0, t1, y0, y1, found, path, mean, floats, ints):
     """When the step should end: after its first impact, where few of the bodies with found[k] = 1 have one."""
@@ -168,8 +201,13 @@ def cut(t0, t1, y0, y1, found, path, mean, floats, ints):
         reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
         set_out(k, h, y0, y1, path, mean, ints)
         s, j = earliest(k, reach, path, floats, ints)
+        end = 1.0
         if s != NEVER and hits(s, floats[memory + WHOLE], j, path, mean, floats, ints):
-            first = min(first, s)
+            end = s
+        if floats[STAGE] == BETWEEN:
+            end = min(end, pulls(k, floats, ints))
+        if end < 1.0:
+            first = min(first, end)
             count += 1
             if count > FEW:
                 return
@@ -184,7 +222,8 @@ def settle_found(t0, t1, y0, y1, found, path, mean, floats, ints):
     """Settle the bodies with found[k] = 1, and note which ones rest."""
     h = t1 - t0
     resting = 0
-    flat = is_flat(ints)
+    ties = floats[STAGE] == BETWEEN
+    flat = is_flat(ints) and not ties
     level, nx, ny, nz = surface(floats, ints, HEAD, 0.0, 0.0, 0.0)
     for k in range(ints[BODIES]):
         if found[k] == 0.0:
@@ -194,6 +233,8 @@ def settle_found(t0, t1, y0, y1, found, path, mean, floats, ints):
             resting += 1
             continue
         reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
+        if ties:
+            let_go(k, floats, ints)
         for j in range(ints[OBJECTS]):
             if floats[ints[FRICTION]] > 0.0:
                 brake(t1, k, j, h, y0, y1, floats, ints)

@@ -31,6 +31,7 @@ from sceneql.simulation.contacts.memory_kernels import (
     FREE,
     HOLD,
     LIST,
+    OUTSIDE,
     PAIR,
     PATH,
     RESTING,
@@ -101,7 +102,7 @@ def some(found):
 def settle(t0, t1, y0, rate0, y1, floats, ints):
     """Change y1 so that no body went through a surface in the step from t0 to t1; or only say when it should end."""
     asked = floats[ASKED] > 0.0
-    if floats[STAGE] != 0.0:
+    if floats[STAGE] == OUTSIDE:
         if not asked:
             settle_held(t0, t1, y0, y1, floats, ints)
         return

@@ -14,6 +14,7 @@ from sceneql.simulation.contacts.impulse_kernels import (
     VELOCITY,
 )
 from sceneql.simulation.contacts.memory_kernels import (
+    BETWEEN,
     FREE,
     LIST,
     LOAD,
@@ -21,6 +22,7 @@ from sceneql.simulation.contacts.memory_kernels import (
     PAIR,
     PRESS,
     RESTING,
+    STAGE,
     SUPPORT,
 )
 from sceneql.simulation.contacts.pair_kernels import away, is_flat
@@ -29,6 +31,7 @@ from sceneql.simulation.contacts.shape_kernels import facing
 
 rub = late("sceneql.simulation.contacts.friction_kernels:rub", OF_BODY)
 carry = late("sceneql.simulation.contacts.carry_kernels:carry", OF_BODY)
+tie = late("sceneql.simulation.contacts.tie_kernels:tie", OF_BODY)
 
 
 @lean_inlined
@@ -87,7 +90,8 @@ def support(first, y, rate, floats, ints):
     With ``first`` at least 0, bodies from that one on are looked at, and it is also noted how free pairs would press.
     """
     near = first >= 0
-    if not near and is_flat(ints):
+    ties = floats[STAGE] == BETWEEN
+    if not near and not ties and is_flat(ints):
         bear_lying(y, rate, floats, ints)
         return
     resting_at = ints[LAST] + LIST
@@ -97,7 +101,9 @@ def support(first, y, rate, floats, ints):
         if floats[ints[INVERSE] + k] == 0.0:
             continue
         resting, memory, nx, ny, nz = press_of_pairs(k, near, y, rate, floats, ints)
-        if resting > 1:
+        if resting > 0 and ties:
+            tie(k, y, rate, floats, ints)
+        elif resting > 1:
             carry(k, y, rate, floats, ints)
         elif resting == 1:
             bear(k, memory, nx, ny, nz, rate, floats, ints)

@@ -22,8 +22,8 @@ class Auto(Solver):
 
     The choice is made at the start, by the fastest mode of the island, the step that the tolerance allows and what a
     step of radau costs with so many unknowns, and looked at again during the run; `explain` says the first and why.
-    (On large nets tr_bdf2 is quicker where errors of 1e-4 will do: ask for it by name.) Local contacts keep it with
-    dopri5, since they act at the ends of steps, which stiffness must not make long. A field on a grid is marched by
+    (On large nets tr_bdf2 is quicker where errors of 1e-4 will do: ask for it by name.) Local contacts of up to
+    some sixty masses keep it with dopri5. A field on a grid is marched by
     tr_bdf2, and on a box whose coefficient and boundary do not vary by exact. Sources: see these words; the sign of
     stiffness is that of Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.2.
     """

@@ -26,8 +26,8 @@ class Radau(Solver):
     is held below ``tolerance`` times how large an entry has been: of late, for a state of equations, whatever its
     unit; for a position of a mass the largest that any of its model has had, at most 1 m unless its own is more, and
     for velocities likewise. An ``absolute`` that is given holds instead: the error is then below
-    ``absolute + tolerance |y|``. Local contacts act at the ends of its steps, which may be long: give a
-    ``largest_step`` with them where springs are stiff.
+    ``absolute + tolerance |y|``. Local contacts act between its steps, in which what rests stays tied; a step ends
+    where a tie begins to pull.
     Sources: Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.8; Cooper & Butcher (1983), IMA J.
     Numer. Anal. 3, 127-140.
     """

@@ -1,0 +1,57 @@
+# mypy: ignore-errors
+"""Ties of bodies that rest, between whose steps contacts act: for solvers that ask for slopes.
+
+What rests at the start of a step is tied to the surface up to its end, also where the tie pulls: Newton's method finds
+no way across the edge between the two. The end of the step lets go (respond_kernels). The tie takes from the
+acceleration all that leads off the surface, and the normal velocity at a rate far above that of springs: that is zero at
+the solution, but slopes that have it say that the mass is held, and lose no symmetry (hold_slopes_kernels).
+"""
+
+from sceneql.kernels import lean
+from sceneql.simulation.contacts.impulse_kernels import HEAD, OBJECTS, PAIRS, VELOCITY
+from sceneql.simulation.contacts.memory_kernels import FREE, LOAD, OF_BODY, PAIR, PRESS, tightness
+from sceneql.simulation.contacts.pair_kernels import body_of
+from sceneql.simulation.contacts.pressing_kernels import pressing
+from sceneql.simulation.contacts.shape_kernels import OBJECT, surface, velocity
+
+SWEEPS = 50
+"""Over the objects that a body rests on at once."""
+
+
+@lean(OF_BODY, inner=True)
+def tie(k, y, rate, floats, ints):
+    """Tie body k to all that it rests on; their loads, where they press, stay in the memory."""
+    to = ints[VELOCITY] + 3 * k
+    objects = ints[OBJECTS]
+    resting = 0
+    for j in range(objects):
+        resting += floats[ints[PAIRS] + PAIR * (k * objects + j)] != FREE
+    for _ in range(SWEEPS if resting > 1 else 1):
+        change = 0.0
+        for j in range(objects):
+            memory = ints[PAIRS] + PAIR * (k * objects + j)
+            if floats[memory] == FREE:
+                continue
+            press, nx, ny, nz = pressing(k, j, y, rate, floats, ints)
+            floats[memory + LOAD] -= press
+            rate[to] -= press * nx
+            rate[to + 1] -= press * ny
+            rate[to + 2] -= press * nz
+            change = max(change, abs(press))
+        if change < 1e-12:
+            break
+    tight = tightness(floats, ints)
+    for j in range(objects):
+        memory = ints[PAIRS] + PAIR * (k * objects + j)
+        if floats[memory] == FREE:
+            continue
+        floats[memory + PRESS] = -floats[memory + LOAD]
+        floats[memory + LOAD] = max(0.0, floats[memory + LOAD])
+        at = HEAD + OBJECT * j
+        px, py, pz, vx, vy, vz = body_of(ints, k, y)
+        _, nx, ny, nz = surface(floats, ints, at, px, py, pz)
+        ux, uy, uz = velocity(floats, ints, at, px, py, pz)
+        speed = tight * ((vx - ux) * nx + (vy - uy) * ny + (vz - uz) * nz)
+        rate[to] -= speed * nx
+        rate[to + 1] -= speed * ny
+        rate[to + 2] -= speed * nz
