@@ -379,8 +379,8 @@ class Stepper:
     otherwise: Stepper | None = None
     """What takes its place from the first step of a given length on that it finds no solution of."""
     by_scale: bool = False
-    """Whether the absolute tolerance, on a grid, counts in units of the largest value at the start, and radau's errors
-    in units of how large entries are (solvers/scales_kernels.py)."""
+    """Whether the absolute tolerance, on a grid, counts in units of the largest value at the start, and the errors of
+    radau and rodas5p in units of how large entries are (solvers/scales_kernels.py)."""
     march: str | None = None
     """``"package.module:class"``, a march.March of its own, in place of compiled steps."""
     linear: str = "auto"

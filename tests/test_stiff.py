@@ -156,6 +156,8 @@ def test_radau_meets_the_exact_values_of_van_der_pol(tmp_path, tolerance, digits
     assert march.statistics.steps < 12_000
 
 
+BY_SCALE = ["radau", "rodas5p"]
+"""Whose errors are measured by how large entries have been."""
 HIRES = """{y1: -1.71*y1 + 0.43*y2 + 8.32*y3 + 0.0007*U, y2: 1.71*y1 - 8.75*y2, y3: -10.03*y3 + 0.43*y4 + 0.035*y5,
   y4: 8.32*y2 + 1.71*y3 - 1.12*y4, y5: -1.745*y5 + 0.43*y6 + 0.43*y7,
   y6: -280/U*y6*y8 + 0.69*y4 + 1.71*y5 - 0.43*y6 + 0.69*y7, y7: 280/U*y6*y8 - 1.81*y7, y8: -280/U*y6*y8 + 1.81*y7}"""
@@ -166,28 +168,31 @@ def hires(unit):
     return equations(start, HIRES.replace("U", repr(unit)))
 
 
-def test_radau_sees_small_entries_without_being_told_how_small_they_are(tmp_path):
-    y, _ = marched(tmp_path, hires(1.0), "radau: {tolerance: 1e-7}", 321.8122)
+@pytest.mark.parametrize("word", BY_SCALE)
+def test_small_entries_are_seen_without_being_told_how_small_they_are(tmp_path, word):
+    y, _ = marched(tmp_path, hires(1.0), f"{word}: {{tolerance: 1e-7}}", 321.8122)
     exact = """7.371312573325668e-4 1.442485726316185e-4 5.888729740967575e-5 1.175651343283149e-3 2.386356198831331e-3
         6.238968252742796e-3 2.849998395185769e-3 2.850001604814231e-3"""
     assert np.abs(y / np.array(exact.split(), dtype=float) - 1).max() < 1e-8
 
 
-def test_radau_steps_alike_in_all_units(tmp_path):
+@pytest.mark.parametrize("word", BY_SCALE)
+def test_steps_are_alike_in_all_units(tmp_path, word):
     runs = []
     for unit in (1.0, 2.0**-20, 2.0**20):
-        y, march = marched(tmp_path, hires(unit), "radau: {tolerance: 1e-6, first_step: 1 us}", 30)
+        y, march = marched(tmp_path, hires(unit), f"{word}: {{tolerance: 1e-6, first_step: 1 us}}", 30)
         runs.append((march.statistics.steps, *(y / unit)))
     assert runs[0] == runs[1] == runs[2]
 
 
+@pytest.mark.parametrize("word", BY_SCALE)
 @pytest.mark.parametrize(
     "row",
     ["b: 1000*((a + 0.1) - 0.1 - a - b)", "b: 0*a", "b: 'where(t > 5, a, 0) - b'", "b: -1e4*b", "b: a - sin(t)"],
 )
-def test_radau_does_not_stall_on_entries_that_stay_at_zero_or_at_rounding(tmp_path, row):
+def test_no_stall_on_entries_that_stay_at_zero_or_at_rounding(tmp_path, row, word):
     start = "{a: 1, a': 0, b: 1e-17}"
-    y, march = marched(tmp_path, equations(start, "{a'': -a, " + row + "}"), "radau: {tolerance: 1e-6}", 10)
+    y, march = marched(tmp_path, equations(start, "{a'': -a, " + row + "}"), f"{word}: {{tolerance: 1e-6}}", 10)
     assert y[0] == pytest.approx(np.cos(10), abs=1e-5)
     assert march.statistics.steps < 1000
 
@@ -199,12 +204,13 @@ def test_radau_keeps_what_linear_invariants_conserve(tmp_path):
     assert y[0] == pytest.approx(0.7158270688, abs=1e-6)
 
 
-def test_radau_does_not_follow_small_motion_through_the_last_of_its_vibrations(tmp_path):
+@pytest.mark.parametrize("word", BY_SCALE)
+def test_none_follows_small_motion_through_the_last_of_its_vibrations(tmp_path, word):
     """Hung a micrometer off its rest, a mass on a stiff damped spring: neither of any size beside the spring's."""
     masses = "{hold: {position: 0 0 0 m, fixed: yes}, bob: {position: 0 -1.0000108 0 m, mass: 1 kg}}"
     spring = "{between: [hold, bob], rest: 1 m, stiffness: 1e6 N/m, damping: 10 N*s/m}"
     script = f"models: {{m: {{mass_spring: {{masses: {masses}, springs: [{spring}]}}}}}}\nforces: [gravity]"
-    y, march = marched(tmp_path, script, "radau: {tolerance: 1e-5}", 20)
+    y, march = marched(tmp_path, script, f"{word}: {{tolerance: 1e-5}}", 20)
     assert y[4] == pytest.approx(-1 - 9.81e-6, abs=1e-6)
     assert march.statistics.steps < 200
 

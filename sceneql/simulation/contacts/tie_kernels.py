@@ -3,8 +3,8 @@
 
 What rests at the start of a step is tied to the surface up to its end, also where the tie pulls: Newton's method finds
 no way across the edge between the two. The end of the step lets go (respond_kernels). The tie takes from the
-acceleration all that leads off the surface, and the normal velocity at a rate far above that of springs: that is zero at
-the solution, but slopes that have it say that the mass is held, and lose no symmetry (hold_slopes_kernels).
+acceleration all that leads off the surface, and the normal velocity at a rate far above that of springs: this is zero
+at the solution, but slopes that have it say that the mass is held, and lose no symmetry (hold_slopes_kernels).
 """
 
 from sceneql.kernels import lean

@@ -5,9 +5,11 @@
 one before, and y1 is the last of these states plus u_s, which is also the error.
 
 ``settings``: relative and absolute tolerance, g, c (s), d (s), rows of a (s - 2) and of C (s) below the diagonal,
-packed, the dense output's H (3 s); then the scales of the stage plan. ``numbers``: [stages, where the scales start,
-entries of the Jacobian's room], then the stage plan. ``work``: the rate at the end, the s stages, two arrays of
-scratch; the Jacobian; the store of the stage plan.
+packed, the dense output's H (3 s); the scales of the stage plan; those of scales_kernels. ``numbers``: [stages, where
+the scales of the stage plan start, entries of the Jacobian's room, where the other scales start, length of the plan of
+scales_kernels, which is 0 where an absolute tolerance is given], then that plan, the stage plan. ``work``: the rate at
+the end, the s stages, two arrays of scratch, the weights of entries in the error; the Jacobian; the store of the stage
+plan.
 """
 
 import math
@@ -16,9 +18,10 @@ from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.linear.newton_kernels import fail
 from sceneql.simulation.linear.stage_kernels import TALLIES, TALLIES_AT, factor_stage, solve_stage
 from sceneql.simulation.pointers_kernels import AT_JACOBIAN, AT_RATE, jacobian_at, rate_at
+from sceneql.simulation.solvers.scales_kernels import weigh_anew
 from sceneql.system_kernels import DENSE, STEP
 
-STAGES, SCALES_AT, ROOM, HEAD = range(4)
+STAGES, SCALES_AT, ROOM, SIZES_AT, SCALED, HEAD = range(6)
 LOBATTO = 0.27639320225002106
 """(1 - 1/sqrt 5)/2: the inner nodes of Lobatto's quadrature, order 6, stand there and at 1 less that."""
 
@@ -37,7 +40,7 @@ def dense(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
             third += settings[at + 2 * stages + j] * u
         bend = (1.0 - theta) * (first + theta * (second + theta * third))
         out[k] = (1.0 - theta) * y0[k] + theta * (y1[k] + bend)
-    plan = numbers[HEAD:]
+    plan = numbers[HEAD + numbers[SCALED] :]
     at = plan[TALLIES_AT]
     for place in range(at, at + plan[TALLIES]):
         k = plan[place]
@@ -71,9 +74,10 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     n, stages = y0.size, numbers[STAGES]
     stages_end = (1 + stages) * n
     last, drift, sample = work[:n], work[stages_end : stages_end + n], work[stages_end + n : stages_end + 2 * n]
-    jacobian = work[stages_end + 2 * n : stages_end + 2 * n + numbers[ROOM]]
-    store = work[stages_end + 2 * n + numbers[ROOM] :]
-    scales, plan = settings[numbers[SCALES_AT] :], numbers[HEAD:]
+    weights = work[stages_end + 2 * n : stages_end + 3 * n]
+    jacobian = work[stages_end + 3 * n : stages_end + 3 * n + numbers[ROOM]]
+    store = work[stages_end + 3 * n + numbers[ROOM] :]
+    scales, plan = settings[numbers[SCALES_AT] :], numbers[HEAD + numbers[SCALED] :]
     a = settings[2] * h
     c, d = 3, 3 + stages
     row, inner = 3 + 2 * stages, 3 + 2 * stages + (stages - 2) * (stages - 3) // 2
@@ -120,7 +124,13 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         u[plan[plan[TALLIES_AT] + k]] = 0.0
     for k in range(n):
         y1[k] += u[k]
-        part = u[k] / (settings[1] + settings[0] * max(abs(y0[k]), abs(y1[k])))
+    if numbers[SCALED] > 0:
+        weigh_anew(t, settings[0], h, y0, rate0, settings[numbers[SIZES_AT] :], numbers[HEAD:], weights)
+    else:
+        for k in range(n):
+            weights[k] = 1.0 / (settings[1] + settings[0] * max(abs(y0[k]), abs(y1[k])))
+    for k in range(n):
+        part = u[k] * weights[k]
         total += part * part
     rate(t + h, y1, last, floats, ints)
     if plan[TALLIES] > 0:

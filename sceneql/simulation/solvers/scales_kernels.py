@@ -16,7 +16,7 @@ turns), the group of each entry].
 
 from numba import types
 
-from sceneql.kernels import lean
+from sceneql.kernels import lean, lean_inlined
 from sceneql.system_kernels import A, F, I
 
 WEIGH = types.void(types.boolean, F, F, A, A, A, I, A)
@@ -57,3 +57,11 @@ def weigh(new, tolerance, h, y0, rate0, scales, plan, weights):
         # Of a state that is all zero and stays so nothing is known.
         allowed = max(tolerance * scale, least)
         weights[k] = 1.0 / (allowed if allowed > 1e-100 else tolerance)
+
+
+@lean_inlined
+def weigh_anew(t, tolerance, h, y0, rate0, scales, plan, weights):
+    """As `weigh`; a step from another time than that in the last of ``scales`` is a new one."""
+    last = scales.size - 1
+    weigh(t != scales[last], tolerance, h, y0, rate0, scales, plan, weights)
+    scales[last] = t
