@@ -7,6 +7,7 @@ from click.testing import CliRunner
 
 from sceneql import pipeline
 from sceneql.cli import cli
+from sceneql.field.solid import paint_values
 from sceneql.mesh.polygonise import polygonise
 from sceneql.mesh.polygons import Polygons
 from sceneql.mesh.tolerance import distance
@@ -90,6 +91,65 @@ def test_colors_that_are_mixed_in_a_field_are_the_vertices(scene, extension):
     assert left == pytest.approx([255, 0, 0], abs=1)
     gray = 128 if extension != "glb" else round(255 * ((128 / 255 + 0.055) / 1.055) ** 2.4)
     assert right == pytest.approx([gray] * 3, abs=1)
+
+
+JOINED = """
+objects:
+  left: {blobby: {skeleton: [{point: -0.5 0 0 m, radius: 0.9 m, color: red}, {point: -0.5 0.4 0 m, radius: 0.5 m,
+    color: blue}]}}
+  right: {sphere: {radius: 0.5 m, position: 0.4 0 0 m, color: lime}}
+  twins: {group: {children: [left, right], position: 0 3 0 m, scale: 2}}
+  both: {union: {of: [left, right]}}
+  soft: {union: {of: [left, right], blend: 0.08 m}}
+  plain: {union: {of: [left, right], color: gray}}
+  alike: {union: {of: {a: {sphere: {radius: 1 m}}, b: {box: {size: 1 1 1 m, position: 1 0 0 m}}}}}
+"""
+
+
+def colored(tmp_path, name):
+    """(places, colors) of the vertices of an object of JOINED, colors None where its file has none."""
+    path = tmp_path / "s.yaml"
+    path.write_text(JOINED)
+    mesh(pipeline.load(path, pruned=False), name, path.with_suffix(".ply"), cell=0.05)
+    found = trimesh.load(path.with_suffix(".ply"), process=False)
+    return found.vertices, found.visual.vertex_colors[:, :3].astype(int) if found.visual.kind == "vertex" else None
+
+
+@pytest.mark.parametrize("name", ["both", "twins"])
+def test_what_is_joined_has_the_color_of_the_member_that_is_there(tmp_path, name):
+    places, colors = colored(tmp_path, name)
+    green = np.linalg.norm((places - (0, 3, 0)) / 2 - (0.4, 0, 0) if name == "twins" else places - (0.4, 0, 0), axis=1)
+    assert (colors[np.abs(green - 0.5) < 1e-6] == [0, 255, 0]).all()
+    assert (colors[green > 0.501, 1] == 0).all()
+    assert (colors[green > 0.501, 0] > 200).any()
+    assert (colors[green > 0.501, 2] > 200).any()
+
+
+def test_colors_run_over_where_a_blend_joins_and_nowhere_else(tmp_path):
+    places, colors = colored(tmp_path, "soft")
+    x = places[:, 0]
+    assert (colors[x > 0.7] == [0, 255, 0]).all()
+    assert (colors[x < -0.7, 1] == 0).all()
+    mixed = (colors[:, 1] > 60) & (colors[:, 0] > 60)
+    assert mixed.any()
+    assert np.ptp(x[mixed]) < 0.3
+
+
+@pytest.mark.parametrize("name", ["plain", "alike"])
+def test_a_union_of_one_color_has_no_colors_in_its_file(tmp_path, name):
+    assert colored(tmp_path, name)[1] is None
+
+
+def test_pictures_show_a_union_by_its_members_colors(tmp_path):
+    path = tmp_path / "s.yaml"
+    path.write_text(JOINED)
+    graph = pipeline.load(path, pruned=False)
+    moment = next(pipeline.simulate(graph, [0.0]))
+    shapes = {n: next(iter(graph.tasks[n].kind.lower(n, np.eye(3, 4), moment))) for n in ("both", "soft", "plain")}
+    assert shapes["plain"].paint is None
+    for name in ("both", "soft"):
+        assert paint_values(shapes[name].paint, np.array([[0.9, 0, 0]]))[0] == pytest.approx([0, 1, 0])
+        assert paint_values(shapes[name].paint, np.array([[-0.9, -0.3, 0]]))[0] == pytest.approx([1, 0, 0], abs=0.02)
 
 
 def test_an_object_of_one_color_has_no_colors_in_its_file(scene):

@@ -12,7 +12,7 @@ from sceneql.kinds.word import Kind, field
 from sceneql.quantities.expression import Expr
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats, Surface, Tape
+    from sceneql.frame import Floats, Surface
     from sceneql.frame import Shape as Drawn
     from sceneql.kinds.moment import Moment
     from sceneql.system import Assembly
@@ -65,8 +65,10 @@ class Object(Kind):
         """
         raise TypeError(f"`{self._word()}` has no inside")
 
-    def paint(self, surface: Surface, place: Floats, moment: Moment) -> Tape | None:
-        """A tape whose last values are the linear RGB at a point of the world; None where its surface has one color."""
+    def hues(
+        self, build: FieldBuilder, x: int, y: int, z: int, surface: Surface, moment: Moment
+    ) -> tuple[int, int, int] | None:
+        """Registers of the linear RGB at a point of the parent's coordinates; None: its ``surface`` has one color."""
         return None
 
     def domain(self) -> Any:

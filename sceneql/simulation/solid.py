@@ -79,7 +79,10 @@ def traced(solid: Object, name: str, place: Floats, moment: Moment) -> Iterable[
     room = MARGIN * float(np.max(high - low))
     surface = moment.surface(name, solid.material, solid.color)
     box = triple(low - room), triple(high + room)
-    yield frame.Implicit(name, surface, build.finish(value), *box, solid.paint(surface, place, moment))
+    colored = TapeBuilder()
+    at = colored.affine(inverse(place), colored.x, colored.y, colored.z)
+    hues = solid.hues(colored, *at, surface, moment)
+    yield frame.Implicit(name, surface, build.finish(value), *box, None if hues is None else colored.finish(*hues))
 
 
 def measure(solid: Object, output: str, moment: Moment) -> Any:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
 from sceneql.kinds import FieldBuilder, FixedScalar, Gives, Moment, Object, Points, Problem, Value, field
-from sceneql.simulation.placement import balls_box, inverse
+from sceneql.simulation.placement import balls_box
 from sceneql.simulation.skeleton_parts import (
     MOST,
     LengthOrLengths,
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from sceneql.field.skeleton import Skeleton
     from sceneql.frame import Floats
 
+TINY = 1e-300
+"""Density that its own color is given everywhere, so that it has one where no part reaches."""
 Kernel = Literal["wyvill", "soft_object", "metaball", "gaussian", "inverse_square"]
 
 
@@ -167,11 +169,12 @@ class Blobby(Object):
         """Its density as a tape, with one of its colors where parts have theirs."""
         return traced(self, name, place, moment)
 
-    def paint(self, surface: frame.Surface, place: Floats, moment: Moment) -> frame.Tape | None:
-        """The mean of its parts' colors, by what each adds to the density, as a tape; None where it has but one."""
+    def hues(
+        self, build: FieldBuilder, x: int, y: int, z: int, surface: frame.Surface, moment: Moment
+    ) -> tuple[int, int, int] | None:
+        """The mean of its parts' colors, by what each adds to the density; None where it has but one."""
         import numpy as np
 
-        from sceneql.field.builder import TapeBuilder
         from sceneql.simulation.color import linear
 
         if all(part.color is None for part in self.skeleton):
@@ -182,8 +185,10 @@ class Blobby(Object):
         colors = np.repeat(np.array(own + given), [len(shape.weights) for shape in shapes], axis=0)
         skeleton = self.parts(moment)
         gives = np.maximum(skeleton.weights, 0.0)
-        build = TapeBuilder()
-        at = build.affine(inverse(place), build.x, build.y, build.z)
-        total = build.skeleton(skeleton.weighted(gives), *at)
-        sums = [build.skeleton(skeleton.weighted(gives * colors[:, k]), *at) for k in range(3)]
-        return build.finish(*(build.op("div", one, total) for one in sums))
+        total = build.op("add", build.skeleton(skeleton.weighted(gives), x, y, z), build.constant(TINY))
+        sums = [build.skeleton(skeleton.weighted(gives * colors[:, k]), x, y, z) for k in range(3)]
+        r, g, b = (
+            build.op("div", build.op("add", one, build.constant(TINY * float(color))), total)
+            for one, color in zip(sums, surface.color, strict=True)
+        )
+        return r, g, b

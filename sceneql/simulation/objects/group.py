@@ -9,7 +9,7 @@ from sceneql.kinds import FieldBuilder, Moment, Object, ObjectRef, Ref, field
 from sceneql.simulation.placement import Placed, Scale, affine, compose, inverse
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats, Shape
+    from sceneql.frame import Floats, Shape, Surface
 
 
 class Group(Placed):
@@ -59,6 +59,15 @@ class Group(Placed):
             total = build.op("min", total, value)
         least = float(np.min(moment.at(self.scale)))
         return total if least == 1 else build.op("mul", total, build.constant(least))
+
+    def hues(
+        self, build: FieldBuilder, x: int, y: int, z: int, surface: Surface, moment: Moment
+    ) -> tuple[int, int, int] | None:
+        """The color of the child that is there."""
+        from sceneql.simulation.hues import joined
+
+        own = build.affine(inverse(self.local(moment)), x, y, z)
+        return joined(build, list(self._objects(moment)), own, None, 0.0, moment)
 
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
         """The box around those of its children; inverted (inf, -inf) where there is none."""

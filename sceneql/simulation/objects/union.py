@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 from sceneql.kinds import FieldBuilder, Moment
 from sceneql.simulation.blend import bulge, least
 from sceneql.simulation.csg import Combination
-from sceneql.simulation.placement import compose, mapped_box
+from sceneql.simulation.placement import compose, inverse, mapped_box
 from sceneql.simulation.solid import block
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats
+    from sceneql.frame import Floats, Surface
 
 SLOPE = 3**-0.5
 """At least so much of the distance are fields, such as a box's, that measure it in the maximum norm."""
@@ -26,7 +26,8 @@ class Union(Combination):
     quadratic term keeps apart (Nesterov 2005), whatever their order. Where no second surface is within k, nothing
     changes; where several run together it bulges, by k/4 for two and less than k/2 for any number. It asks for fields
     that are distances near the surface, as those of all solids but formulas and skeletons are. Nothing is filled
-    farther from the members' boxes than the bulge reaches. The union has one material, its own.
+    farther from the members' boxes than the bulge reaches. The union has one material, its own; without a color and a
+    material it shows the colors of its members, mixed where a blend runs between them.
     """
 
     def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
@@ -39,6 +40,18 @@ class Union(Combination):
         if not ((low > -float("inf")) | (high < float("inf"))).any():
             return value
         return build.op("max", value, block(build, (x, y, z), low, high))
+
+    def hues(
+        self, build: FieldBuilder, x: int, y: int, z: int, surface: Surface, moment: Moment
+    ) -> tuple[int, int, int] | None:
+        """The colors of its members, where it has none of its own."""
+        from sceneql.simulation.hues import joined
+
+        if self.color is not None or self.material is not None:
+            return None
+        members = [(ref.name, moment.object(ref)) for ref in self.members()]
+        at = build.affine(inverse(self.local(moment)), x, y, z)
+        return joined(build, members, at, surface, self.width(moment), moment)
 
     def _room(self, moment: Moment) -> tuple[Floats, Floats]:
         """The box in its own coordinates around those of its members and what is filled between them."""
