@@ -20,7 +20,7 @@ from sceneql.field.gradient_kernels import gradient
 from sceneql.field.isolation_kernels import any_root, exit_root
 from sceneql.field.slope_kernels import on_ray
 from sceneql.field.solid import cast, field_values, scratch
-from sceneql.field.tape_ops import HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
+from sceneql.field.tape_ops import ATAN2, HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
 from sceneql.quantities.bind import bind
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.expression import Symbol
@@ -256,6 +256,39 @@ def test_the_cut_of_an_angle_is_a_jump():
         ):
             assert status[0] == HIT
             assert t[0] == pytest.approx(1.0, abs=1e-8)
+
+
+ROUND = ["5*atan2(y, x)", "z - 3*atan2(y, x)", "8*hypot(x, y) + 2*atan2(y, x)", "3*acos(x/hypot(x, y))"]
+
+
+@pytest.mark.parametrize("angle", ROUND)
+def test_angles_in_waves_have_no_cut(angle):
+    tape = tape_of(f"hypot(x, y) - 0.6 - 0.2*cos({angle})")
+    generator = np.random.default_rng(1)
+    origins = np.column_stack([generator.uniform(-1.0, -0.3, 100), generator.uniform(-0.3, 0.3, 100), np.ones(100)])
+    ways = np.column_stack([generator.uniform(-0.2, 0.2, 100), -3.0 * origins[:, 1], np.full(100, -0.3)])
+    status, t = cast(tape, origins, ways, 0.0, 3.0, TOLERANCE)
+    assert (status != UNDECIDED).all()
+    places = np.linspace(0.0, 3.0, 1001)
+    inside = field_values(tape, (origins[:, None] + places[:, None] * ways[:, None]).reshape(-1, 3)) < -1e-9
+    inside = inside.reshape(100, -1)
+    assert not (inside.any(axis=1) & (status == MISS)).any()
+    assert not (inside & (places < t[:, None] - 1e-6)).any()
+    program = tape.code, tape.constants, tape.parts, scratch(tape)
+    for o, d in zip(origins[:20], ways[:20], strict=True):
+        for t0, t1 in ((0.0, 3.0), (0.32, 0.35), (0.333333, 0.333334)):
+            low, high, least, most, _ = on_ray(*program, *o, *d, t0, t1, 1.0)
+            f = field_values(tape, o + np.linspace(t0, t1, 21)[:, None] * d)
+            assert ((f >= low) & (f <= high)).all()
+            assert (np.diff(f) >= least * (t1 - t0) / 20 - 1e-14).all()
+            assert (np.diff(f) <= most * (t1 - t0) / 20 + 1e-14).all()
+
+
+@pytest.mark.parametrize(
+    "formula", ["cos(2.5*atan2(y, x))", "atan2(y, x)", "atan2(y, x)*cos(atan2(y, x))", "atan2(y, x)^2"]
+)
+def test_angles_of_which_whole_turns_matter_keep_their_cut(formula):
+    assert not (tape_of(formula).code[:, 3] * (tape_of(formula).code[:, 0] == ATAN2)).any()
 
 
 @pytest.mark.parametrize(

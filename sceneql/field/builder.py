@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from sceneql.field import tape_ops as ops
 from sceneql.field.lowering import FOLD, LOWERED
+from sceneql.field.turns import up_to_whole_turns
 from sceneql.quantities.expression import Call, Expr, Number, Symbol
 
 if TYPE_CHECKING:
@@ -229,6 +230,9 @@ class TapeBuilder:
                 code.append((op, 0, 0, 0))
             else:
                 code.append((op, place[left], place[right], self._twin(k, place)))
+        known = {row: self._constants[numbers[left]] for row, (op, left, _, _) in enumerate(code) if op == ops.CONSTANT}
+        for row in up_to_whole_turns(code, known, [place[register] for register in registers]):
+            code[row] = (*code[row][:3], 1)
         return Tape(
             code=np.array(code, dtype=np.int32),
             constants=np.array([self._constants[old] for old in numbers], dtype=np.float64),

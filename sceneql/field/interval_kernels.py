@@ -213,6 +213,13 @@ def unary_box(op, a, b):
 
 
 @inlined
+def over_cut(code, scratch, k):
+    """Whether the angle of row k, of which whole turns do not matter, is taken across its cut: y = 0 > x."""
+    y = code[k, 1]
+    return code[k, 3] != 0 and scratch[code[k, 2], 1] < 0.0 and scratch[y, 0] <= 0.0 <= scratch[y, 1]
+
+
+@inlined
 def finite(scratch, k):
     """Whether the bounds of a row are."""
     return scratch[k, 0] > -LARGE and scratch[k, 1] < LARGE
@@ -227,6 +234,8 @@ def positive_or_zero(op):
 @kernel(f"Tuple((float64, float64, int64))({TAPE}, float64, float64, float64, float64, float64, float64)", _nrt=False)
 def box(code, constants, parts, scratch, x0, x1, y0, y1, z0, z1):
     """(low, high, status): f lies in low..high wherever it is defined in the box; ``scratch`` (rows, 8) is overwritten.
+
+    So do all rows, but for angles of which whole turns do not matter: they go on beyond pi.
 
     ``status`` says WHOLE (defined all over), PARTIAL (perhaps not, or too large for float64) or NOWHERE. Where nothing
     can be claimed, as for a box that is no numbers or upside down, the answer is (-inf, inf, PARTIAL).
@@ -262,6 +271,10 @@ def box(code, constants, parts, scratch, x0, x1, y0, y1, z0, z1):
         elif op == DIV and scratch[right, 0] == 0.0 < scratch[right, 1] and positive_or_zero(code[right, 0]):
             low, high = over_zero(scratch[left, 0], scratch[left, 1], scratch[right, 1])
             found = PARTIAL
+        elif op == ATAN2 and over_cut(code, scratch, k):
+            # pi - atan2(y, -x), or a whole turn less
+            low, high, _ = binary_box(op, scratch[left, 0], scratch[left, 1], -scratch[right, 1], -scratch[right, 0])
+            low, high = outward(np.pi - high, np.pi - low)
         elif op <= ATAN2 and op != COPY:
             low, high, found = binary_box(op, scratch[left, 0], scratch[left, 1], scratch[right, 0], scratch[right, 1])
         else:

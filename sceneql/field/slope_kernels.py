@@ -8,7 +8,7 @@ more than the bounds times the way.
 import numpy as np
 
 from sceneql.field.density_kernels import offset
-from sceneql.field.interval_kernels import TINY, TURN, binary_box, box, outward, unary_box, wave
+from sceneql.field.interval_kernels import TINY, TURN, binary_box, box, outward, over_cut, unary_box, wave
 from sceneql.field.skeleton_bounds_kernels import skeleton_steepness
 from sceneql.field.tape_ops import (
     ABS,
@@ -88,8 +88,6 @@ def pair_slopes(op, low, high, a, b, c, d):
     if op == MIN or op == MAX:
         return branches(op, a, b, c, d)
     if op == ATAN2:
-        if c <= 0.0 and a <= 0.0 <= b:  # the cut, where it jumps
-            return -np.inf, np.inf, -np.inf, np.inf
         p, q, _ = unary_box(SQUARE, a, b)
         r, s, _ = unary_box(SQUARE, c, d)
         p, q = outward(p + r, q + s)
@@ -209,6 +207,9 @@ def differentiate(code, parts, scratch, columns, dx, dy, dz):
             continue
         low = scratch[k, 0]
         high = scratch[k, 1]
+        if op == ATAN2 and scratch[right, 0] <= 0.0 and scratch[left, 0] <= 0.0 <= scratch[left, 1]:
+            if not over_cut(code, scratch, k):
+                return False  # it jumps there
         r = s = 0.0
         if op <= ATAN2 and op != COPY:
             p, q, r, s = pair_slopes(
