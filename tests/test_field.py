@@ -34,6 +34,7 @@ from sceneql.field.tape_ops import (
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Number, Symbol, Vector
 from sceneql.quantities.operations import OPERATIONS
+from search_kernels import searched
 
 NAMES = sorted([*UNARY, *BINARY, "density", *LOWERED])
 ARGUMENTS = dict.fromkeys(UNARY, 1) | dict.fromkeys(BINARY, 2)
@@ -502,3 +503,27 @@ def test_value_is_that_of_the_formula():
     assert value(*arguments(tape), 0.3, 0.2, 0.7) == pytest.approx(
         math.atan2(math.exp(0.3), math.tanh(-0.5)), rel=1e-15
     )
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e3, 1e4, 1e5])
+def test_a_bracket_within_the_tolerance_is_a_hit_though_rounding_leaves_none_narrower(noise):
+    # x + noise - noise is known to noise 1e-16 alone: enclosures end there, and needed the certified intervals.
+    def plane(build, op, c):
+        return op("sub", op("add", op("sub", c(0.3), build.x), c(noise)), c(noise))
+
+    tape = implicit(plane)
+    where = np.array([-1.0, 0.1, 0.2]), np.array([1.0, 0.3, -0.2])
+    for tolerance in (1e-9, 1e-8, 1e-6):
+        program = tape.code, tape.constants, tape.parts, scratch(tape), *where
+        status, t = searched(*program, 0.0, 2.0, tolerance, False)
+        assert status == HIT
+        assert t == pytest.approx(1.3, abs=2.0 * tolerance)
+        assert searched(*program, 0.0, 1.3 - 2.0 * tolerance, tolerance, False)[0] == MISS
+
+
+def test_what_rounding_hides_beyond_the_tolerance_is_left_to_the_certified_intervals():
+    tape = implicit(lambda build, op, c: op("sub", op("add", op("sub", c(0.3), build.x), c(1e9)), c(1e9)))
+    ray = np.array([-1.0, 0.0, 0.0]), np.array([1.0, 0.0, 0.0]), 0.0, 2.0, 1e-9
+    status, t = searched(tape.code, tape.constants, tape.parts, scratch(tape), *ray, False)
+    assert status == UNDECIDED
+    assert t < 1.3
