@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any
 
 from sceneql.kinds import Renderer, field
@@ -18,7 +19,7 @@ class March(Renderer):
 
     samples: int = field("Places on a ray at which a field is sampled.", 64, at_least=1, at_most=100000)
 
-    def kernels(self, traced: bool) -> tuple[str, ...]:
+    def kernels(self, traced: Collection[str]) -> tuple[str, ...]:
         """Of the tracer."""
         own = "renderers.tracing.draw"
         return (own, "renderers.tracing.implicit", "renderers.tracing.march_kernels") if traced else (own,)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any, ClassVar, Literal
 
 from sceneql.kinds import Renderer, field
@@ -17,7 +18,7 @@ class Normals(Renderer):
 
     samples: Literal[1, 2, 4, 8, 16, 32, 64] = field("Rays in a pixel; 1 keeps every normal's length.", 1)
 
-    def kernels(self, traced: bool) -> tuple[str, ...]:
+    def kernels(self, traced: Collection[str]) -> tuple[str, ...]:
         """Of the tracer."""
         from renderers.tracing import certified
 

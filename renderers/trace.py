@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any, Literal
 
 from sceneql.kinds import FixedScalar, Renderer, field
@@ -22,22 +23,21 @@ class Trace(Renderer):
         at_most=1e-3,
     )
     samples: Literal[1, 2, 4, 8, 16, 32, 64] = field("Rays in a pixel in which things meet.", 8)
-    packets: bool = field(
-        "Rays meet implicit solids in packets: up to twice as fast, but more to compile once.",
-        False,
-    )
 
-    def kernels(self, traced: bool) -> tuple[str, ...]:
+    def kernels(self, traced: Collection[str]) -> tuple[str, ...]:
         """Of the tracer."""
-        from renderers.tracing import certified
+        from renderers.tracing import TOLERANCE, certified
 
         if not traced:
             return ("renderers.tracing.draw",)
-        bundles = ("renderers.tracing.bundles_kernels", "renderers.tracing.waves") if self.packets else ()
-        return (*bundles, *certified("renderers.tracing.draw"))
+        together: tuple[str, ...] = ()
+        if self.tolerance == TOLERANCE:
+            own = {"formula": "enclose_kernels", "density": "density_bundle_kernels"}
+            together = (*(f"sceneql.field.{own[kind]}" for kind in sorted(traced)), "renderers.tracing.bundles")
+        return (*together, *certified("renderers.tracing.draw"))
 
     def draw(self, frame: Any) -> Any:
         """The Picture of a frame: linear (h, w, 3) and the number of undecided pixels."""
         from renderers.tracing.draw import draw
 
-        return draw(frame, self.samples, self.tolerance, packets=self.packets)
+        return draw(frame, self.samples, self.tolerance)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any, ClassVar
 
 from sceneql.kinds import FixedScalar, Renderer, field
@@ -18,7 +19,7 @@ class Undecided(Renderer):
 
     tolerance: FixedScalar = field("As of `trace`.", "1e-9", above=0, at_most=1e-3)
 
-    def kernels(self, traced: bool) -> tuple[str, ...]:
+    def kernels(self, traced: Collection[str]) -> tuple[str, ...]:
         """Of the tracer."""
         from renderers.tracing import certified
 

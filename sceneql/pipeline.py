@@ -323,12 +323,14 @@ class Tools:
 
     def prepare(self, output: Picture) -> Callable[[], None]:
         """Start compiling what the output is drawn with, beside the physics; call the result to wait for it."""
-        modules = self._renderer(output).kernels(any(map(self._traced, self.graph.drawn[self.name])))
+        modules = self._renderer(output).kernels(self._traced(self.graph.drawn[self.name]))
         return _compile_ahead(modules) if modules else lambda: None
 
-    def _traced(self, name: str) -> bool:
-        kind = self.graph.tasks[name].kind
-        return isinstance(kind, Object) and (kind.traced or any(self._traced(ref.name) for ref in kind.members()))
+    def _traced(self, names: Iterable[str]) -> set[str]:
+        """By which fields parts, or what these draw, are drawn."""
+        kinds = [kind for name in names if isinstance(kind := self.graph.tasks[name].kind, Object)]
+        within = (self._traced(ref.name for ref in kind.members()) for kind in kinds if not kind.traced)
+        return {kind.traced for kind in kinds if kind.traced}.union(*within)
 
     def _renderer(self, output: Picture) -> Renderer:
         if output.renderer is not None:

@@ -77,6 +77,17 @@ def test_the_view_of_the_undecided_shows_where_they_are():
     assert ((clear.linear[..., 0] > 0) == ((x - 23.5) ** 2 + (y - 23.5) ** 2 < (0.8 / 0.99 * 24) ** 2)).all()
 
 
+def test_undecided_pixels_are_sampled_more():
+    """Walls that are only touched in the middle of every pixel: what is seen there is the same all over, and wrong."""
+    walls = lit(lowered("abs(z) - 0.4*cos(pi*x*48/1.98)^2"))
+    picture = Trace(samples=1).draw(walls)
+    assert picture.undecided == 48 * 48
+    assert coverage(picture) == 0.0
+    picture = Trace(samples=8).draw(walls)
+    assert picture.undecided == 48 * 48
+    assert coverage(picture) == pytest.approx(1.0, abs=0.01)
+
+
 SCENE = """
 sceneql: 1
 objects:

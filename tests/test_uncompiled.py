@@ -65,7 +65,7 @@ objects:
   ring: {torus: {radius: 0.4 m, tube: 0.1 m, position: 0 0.2 1 m}}
   form: {implicit: {field: x^4 + y^4 + z^4 - 1, unit: 0.2 m, bounds: {ball: 1.6}, position: 1 0.3 1 m, hidden: yes}}
   brick: {polygonised: {of: form, cell: 0.2 m, edges: no}}
-outputs: {still: {image: {size: 16 10, time: 0 s, renderer: {trace: {packets: PACKETS, samples: 1}}}}}
+outputs: {still: {image: {size: 16 10, time: 0 s, renderer: {trace: {tolerance: TOLERANCE, samples: 1}}}}}
 """
 
 
@@ -88,9 +88,9 @@ def test_islands_of_many_kinds(tmp_path):
         np.testing.assert_array_equal(compiled[name], written[name], err_msg=name)
 
 
-@pytest.mark.parametrize("packets", ["no", "yes"])
-def test_pictures(tmp_path, packets):
-    script = PICTURE.replace("PACKETS", packets)
+@pytest.mark.parametrize("tolerance", ["1e-9", "1e-8"], ids=["in packets", "one by one"])
+def test_pictures(tmp_path, tolerance):
+    script = PICTURE.replace("TOLERANCE", tolerance)
     compiled = rendered(tmp_path / "compiled", script, "still.png")
     written = rendered(tmp_path / "written", script, "still.png", NUMBA_DISABLE_JIT="1")
     assert compiled.read_bytes() == written.read_bytes()

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 import stage
 from renderers.trace import Trace
+from renderers.tracing import TOLERANCE
 from renderers.tracing.bundles import Packets, solids_in_lanes
 from renderers.tracing.intersect_kernels import walk
 from renderers.tracing.pack import pack, scratch
@@ -24,6 +25,8 @@ from stage import GLOW, WHITE, frame, sun, view
 
 SKY = Sky((0.9, 1.0, 1.2), (0.8, 0.8, 0.8), (0.3, 0.3, 0.3))
 GLASS = Surface(color=(0.9, 1.0, 0.95), roughness=0.0, transmission=1.0)
+ONE_BY_ONE = 0.5 * TOLERANCE
+"""A tolerance at which no packets are asked."""
 MIRROR = Surface(color=(0.9, 0.9, 0.9), roughness=0.0, metallic=1.0)
 
 
@@ -152,8 +155,8 @@ def test_what_is_told_of_rays_is_what_they_find_one_by_one(name, seed, spread, c
 
 def pictures(*shapes, lights, seen, samples=4):
     one, other = (
-        Trace(samples=samples, packets=packets).draw(frame(*shapes, lights=lights, seen=seen))
-        for packets in (False, True)
+        Trace(samples=samples, tolerance=tolerance).draw(frame(*shapes, lights=lights, seen=seen))
+        for tolerance in (ONE_BY_ONE, TOLERANCE)
     )
     assert one.undecided == other.undecided == 0
     return one.linear, other.linear
@@ -194,5 +197,5 @@ def test_threads_do_not_change_a_bit_in_packets(monkeypatch):
     made = []
     for threads in (1, 3):
         monkeypatch.setenv("SCENEQL_THREADS", str(threads))
-        made.append(Trace(packets=True).draw(scene).linear.tobytes())
+        made.append(Trace().draw(scene).linear.tobytes())
     assert made[0] == made[1]

@@ -30,7 +30,7 @@ class Packets:
             box, clips = np.array([shape.low, shape.high], dtype=np.float64), clips_of(shape.tape)
             reach = float(np.abs(box).max()) ** np.array([2.0] * 6 + [1.0] * 3 + [0.0])
             self.bounds.append((box, clips, np.abs(clips) @ reach))
-        self.chosen, self.spans = np.empty(RAYS, dtype=np.int64), np.empty((2, RAYS))
+        self.chosen, self.spans = np.empty((2, 1 + RAYS), dtype=np.int64), np.empty((2, 2, RAYS))
 
     def asked(self, rays: int) -> Floats:
         """An empty list for so many rays, see scene_kernels.ASKED."""

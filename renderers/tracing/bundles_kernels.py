@@ -12,6 +12,7 @@ from sceneql.field.tape_ops import HIT, MISS
 from sceneql.kernels import lean
 
 _rows = types.float64[:, ::1]
+_lists, _spans = types.int64[:, ::1], types.float64[:, :, ::1]
 RAYS = 256
 """Of a bundle."""
 ROUNDED = 1.0e-12
@@ -27,6 +28,8 @@ def in_box(asked, row, box):
     for axis in range(3):
         first, last = box_span(box[0, axis], box[1, axis], asked[row, axis], inverse(asked[row, 3 + axis]))
         enter, leave = max(enter, first), min(leave, last)
+        if not enter < leave:
+            break
     return enter, leave
 
 
@@ -103,7 +106,7 @@ def answer(rays, found, j, anywhere):
     return t if t0 > 0.0 or t > t0 + FINE * (t1 - t0) else np.nan
 
 
-@lean(types.void(*ARGUMENTS, _rows, _rows, types.float64[::1], ASKED, types.int64, types.int64[::1], _rows))
+@lean(types.void(*ARGUMENTS, _rows, _rows, types.float64[::1], ASKED, types.int64, _lists, _spans))
 def meet_asked(
     code, constants, singles, registers, point, status, lanes, ids, rays, asked_from, queue, found, parts, scratch,
     beams, doubles, points, short, near_singles, near_parts, plan, order, room, table, flat, other, box, clips,
@@ -111,29 +114,32 @@ def meet_asked(
 ):  # fmt: skip
     """Where all rays of ``asked`` meet {f < 0} in ``box`` (2, 3) and ``clips`` (k, 10), into a column of it.
 
-    ``chosen`` (RAYS,) and ``spans`` (2, RAYS) are working memory.
+    ``chosen`` (2, 1 + RAYS) and ``spans`` (2, 2, RAYS) are working memory: rows and spans of rays that wait, by what is
+    wanted of them, and behind the rows their number.
     """
     rows = int(asked[0, NEXT])
-    for want in (FIRST, ANYWHERE):
-        anywhere = want == ANYWHERE
-        n = 0
-        for row in range(1, rows + 1):
-            if row < rows:
-                if asked[row, WANT] != want:
-                    continue
-                asked[row, column] = np.inf
-                enter, leave = in_solid(asked, row, box, clips, sizes)
-                if enter < leave:
-                    chosen[n], spans[0, n], spans[1, n] = row, enter, leave
-                    n += 1
-            if n == RAYS or (row == rows and n > 0):
-                count = place(rays, asked, chosen, spans, n)
-                first_roots(
-                    code, constants, singles, registers, point, status, lanes, ids, rays, asked_from, queue, count,
-                    anywhere, found, parts, scratch, beams, doubles, points, short, near_singles, near_parts,
-                    plan, order, room, table, flat, other,
-                )  # fmt: skip
-                groups = count // GROUP
-                for i in range(n):
-                    asked[chosen[i], column] = answer(rays, found, i % GROUP * groups + i // GROUP, anywhere)
-                n = 0
+    chosen[FIRST, RAYS] = chosen[ANYWHERE, RAYS] = 0
+    for row in range(1, rows + 2):
+        # Behind the last ray what waits is met, be it a whole bundle or not.
+        want = int(asked[row, WANT]) if row < rows else (FIRST if row == rows else ANYWHERE)
+        waiting, own = chosen[want], spans[want]
+        n = waiting[RAYS]
+        if row < rows:
+            asked[row, column] = np.inf
+            enter, leave = in_solid(asked, row, box, clips, sizes)
+            if not enter < leave:
+                continue
+            waiting[n], own[0, n], own[1, n] = row, enter, leave
+            n += 1
+            waiting[RAYS] = n
+        if n == RAYS or (row >= rows and n > 0):
+            count = place(rays, asked, waiting, own, n)
+            first_roots(
+                code, constants, singles, registers, point, status, lanes, ids, rays, asked_from, queue, count,
+                want == ANYWHERE, found, parts, scratch, beams, doubles, points, short, near_singles, near_parts,
+                plan, order, room, table, flat, other,
+            )  # fmt: skip
+            groups = count // GROUP
+            for i in range(n):
+                asked[waiting[i], column] = answer(rays, found, i % GROUP * groups + i // GROUP, want == ANYWHERE)
+            waiting[RAYS] = 0

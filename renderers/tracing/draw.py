@@ -6,23 +6,23 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from renderers.tracing.edges_kernels import smooth_rows
+from renderers.tracing import TOLERANCE
 from renderers.tracing.filter_kernels import deepen, widen
-from renderers.tracing.gather_kernels import PATH, gather_rows
-from renderers.tracing.pack import TOLERANCE, pack, scratch
+from renderers.tracing.pack import pack
 from renderers.tracing.picture import Picture, over_rows
 from renderers.tracing.record_kernels import COLUMNS
-from renderers.tracing.refine_kernels import refine, shade_rows
+from renderers.tracing.refine_kernels import shade_rows
 from renderers.tracing.sampling_kernels import subpixels
-from renderers.tracing.scene_kernels import ANSWERS, LIGHT_COUNT, Scene
+from renderers.tracing.scene_kernels import LIGHT_COUNT
 from renderers.tracing.sprites import over
 from renderers.tracing.visibility_kernels import FIRST_LIGHT
+from renderers.tracing.waves import Waves
 from sceneql.frame import Implicit
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from renderers.tracing.waves import Waves
+    from renderers.tracing.bundles import Packets
     from sceneql.frame import Floats, Frame
 
 
@@ -48,13 +48,11 @@ def _buffers(count: int, columns: int) -> Buffers:
     return kept if kept is not None and kept.shape == (count, columns) else Buffers(count, columns)
 
 
-def draw(
-    frame: Frame, samples: int = 8, tolerance: float = TOLERANCE, march: int = 0, packets: bool = False
-) -> Picture:
+def draw(frame: Frame, samples: int = 8, tolerance: float = TOLERANCE, march: int = 0) -> Picture:
     """Ray-trace a frame; ``samples``, a power of two from 1 to 64: rays in a pixel in which things meet.
 
     ``tolerance`` is that of roots of implicit surfaces; with ``march`` they are looked for at so many places of a ray.
-    ``packets``: rays look for them in bundles, at the usual tolerance alone.
+    At the usual tolerance rays look for those of solids in packets, at others one by one.
 
     Roots of implicit surfaces are certified (sceneql.field); shadows and the sky's light are sampled once a pixel by a
     net and averaged over the surface around it, so that the picture has no grain and repeats to the bit.
@@ -64,27 +62,27 @@ def draw(
     columns = FIRST_LIGHT + 2 * int(scene.ints[LIGHT_COUNT])
     buffers = _buffers(width * height, columns)
     undecided: list[int] = []
-    waves = _waves(frame, scene, rows, columns) if packets and not march and tolerance == TOLERANCE else None
-    plain = np.zeros((1, ANSWERS))
+    together = packets_for(frame, tolerance, march)
+    idle: list[Waves] = []
+
+    def with_waves(work: Callable[[Waves], Any]) -> Any:
+        """Do work with a thread's own."""
+        waves = idle.pop() if idle else Waves(scene, together and together(), rows, columns)
+        result = work(waves)
+        idle.append(waves)
+        return result
 
     def gather(start: int, stop: int) -> None:
-        b, path, spare = buffers, np.empty(PATH), np.empty(COLUMNS, np.float32)
-        out = b.records, b.radiance, b.visibility
-        if waves is None:
-            undecided.append(gather_rows(scene, scratch(rows), plain, start, stop, *out, path, spare))
-        else:
-            undecided.append(waves(lambda w: w.gather(start, stop, *out)))
+        out = buffers.records, buffers.radiance, buffers.visibility
+        undecided.append(with_waves(lambda w: w.gather(start, stop, *out)))
 
-    def refine_rows(start: int, stop: int, *of_layer: Floats) -> None:
+    def refine(start: int, stop: int, *of_layer: Floats) -> None:
         records, visibility, fine = of_layer
-        if waves is None:
-            refine(scene, scratch(rows), plain, start, stop, records, visibility, buffers.means, fine)
-        else:
-            waves(lambda w: w.refine(start, stop, records, visibility, buffers.means, fine))
+        with_waves(lambda w: w.refine(start, stop, records, visibility, buffers.means, fine))
 
     over_rows(height, gather)
     for layer in range(2):
-        _filter(refine_rows, buffers, layer, width, height)
+        _filter(refine, buffers, layer, width, height)
 
     def shade(start: int, stop: int) -> None:
         shade_rows(scene, start, stop, buffers.records, buffers.fine, buffers.visibility, buffers.radiance)
@@ -94,12 +92,8 @@ def draw(
     linear = np.empty((width * height, 3), dtype=np.float32)
 
     def smooth(start: int, stop: int) -> None:
-        path, own, found = np.empty(PATH), np.empty((3, COLUMNS), np.float32), np.empty(columns, np.float32)
         light = buffers.records, buffers.radiance, buffers.visibility
-        if waves is None:
-            smooth_rows(scene, scratch(rows), plain, start, stop, points, *light, path, own, found, linear)
-        else:
-            waves(lambda w: w.smooth(start, stop, points, *light, linear))
+        with_waves(lambda w: w.smooth(start, stop, points, *light, linear))
 
     over_rows(height, smooth)
     over(frame, buffers.records[0], buffers.radiance, linear)
@@ -116,22 +110,11 @@ def _filter(refine_rows: Callable[..., None], buffers: Buffers, layer: int, widt
     over_rows(height, lambda start, stop: refine_rows(start * width, stop * width, records, visibility, fine))
 
 
-def _waves(frame: Frame, scene: Scene, rows: int, columns: int) -> Callable[[Callable[[Waves], Any]], Any] | None:
-    """Does work with a thread's Waves; None where packets know no shape. Its kernels are for implicit shapes alone."""
-    if not any(isinstance(shape, Implicit) for shape in frame.shapes):
+def packets_for(frame: Frame, tolerance: float, march: int) -> Callable[[], Packets] | None:
+    """What makes a thread's Packets; None where they know no shape. Their kernels are for implicit shapes alone."""
+    if march or tolerance != TOLERANCE or not any(isinstance(shape, Implicit) for shape in frame.shapes):
         return None
-    from renderers.tracing.bundles import solids_in_lanes
-    from renderers.tracing.waves import Waves
+    from renderers.tracing.bundles import Packets, solids_in_lanes
 
     solids = solids_in_lanes(frame.shapes)
-    if not solids:
-        return None
-    idle: list[Waves] = []
-
-    def lend(work: Callable[[Waves], Any]) -> Any:
-        waves = idle.pop() if idle else Waves(scene, frame.shapes, solids, rows, columns)
-        result = work(waves)
-        idle.append(waves)
-        return result
-
-    return lend
+    return (lambda: Packets(frame.shapes, solids)) if solids else None

@@ -4,17 +4,20 @@
 from numba import types
 
 from renderers.tracing.filter_kernels import SLACK
-from renderers.tracing.gather_kernels import GATHERED, PLACES, gather
-from renderers.tracing.record_kernels import OWNER, TRACED, alike
+from renderers.tracing.gather_kernels import DOUBTED, GATHERED, begin
+from renderers.tracing.record_kernels import OWNER, TRACED, UNSURE, alike
 from renderers.tracing.sampling_kernels import sample_of
-from renderers.tracing.scene_kernels import ASKED, HEIGHT, ROW, SCENE, SCRATCH, WIDTH, part
+from renderers.tracing.scene_kernels import ASKED, ASKING, HEIGHT, LIGHT_COUNT, MODE, NEXT, SCENE, SCRATCH, WIDTH, part
 from renderers.tracing.shade_kernels import shade
 from renderers.tracing.visibility_kernels import look_around
+from renderers.tracing.waves_kernels import place_of
 from sceneql.kernels import kernel
 
 _i = types.int64
 _rows = types.float32[:, ::1]
 _stack = types.float32[:, :, ::1]
+_reals = types.float64[:, ::1]
+_many = types.int64[::1]
 BRIGHTEST = 16.0
 """Radiance to which one of a pixel's rays is limited, so that a bright spot's edge does not flicker."""
 CONTRAST = 0.08
@@ -36,11 +39,13 @@ def contrast(radiance, k, red, green, blue):
 
 @part
 def jagged(records, radiance, k, x, y, width, height):
-    """Whether a pixel's neighbors show something else than it does."""
+    """Whether a pixel's neighbors show something else than it does, or may: where a root of theirs is undecided."""
     glossy = records[0, k, TRACED] > 0.0
     for j in range(max(y - 1, 0), min(y + 1, height - 1) + 1):
         for i in range(max(x - 1, 0), min(x + 1, width - 1) + 1):
             m = j * width + i
+            if records[0, m, UNSURE] != 0.0:
+                return True
             if m == k:
                 continue
             if records[0, m, OWNER] != records[0, k, OWNER]:
@@ -70,59 +75,88 @@ def borrow(records, visibility, record, x, y, width, height, found):
     return count > 0
 
 
-@part
-def finished(scene, scratch, asked, records, visibility, own, k, x, y, number, found):
-    """Radiance (3) of the two records ``own`` (3, COLUMNS) of one ray through pixel (x, y)."""
+@kernel(_i(SCENE, _i, _i, _stack, _rows, _rows, _many), _nrt=False)
+def list_edges(scene, start, stop, records, radiance, picture, edges):
+    """The pixels of rows start..stop, no more than TILE, that are to be drawn anew; the others go to the picture."""
     width, height = int(scene.reals[WIDTH]), int(scene.reals[HEIGHT])
-    r, g, b = 0.0, 0.0, 0.0
-    for layer in range(2):
-        if own[layer, OWNER] == 0.0:
+    n = 0
+    for i in range(len(edges)):
+        x, y = place_of(i)
+        y += start
+        if x >= width or y >= stop:
             continue
-        if not borrow(records[layer], visibility[layer], own[layer], x, y, width, height, found):
-            look_around(scene, scratch, asked, own[layer], number, ANEW, ANEW, found)
-        red, green, blue = shade(scene, own[layer], found)
-        r, g, b = r + red, g + green, b + blue
-    return r, g, b
+        k = y * width + x
+        if jagged(records, radiance, k, x, y, width, height):
+            edges[n] = k
+            n += 1
+        else:
+            for c in range(3):
+                picture[k, c] = radiance[k, c]
+    return n
 
 
-@kernel(
-    _i(SCENE, SCRATCH, ASKED, _i, _i, types.float64[:, ::1], _stack, _rows, _stack, PLACES, _rows, ROW, _rows),
-    _nrt=False,
-)
-def smooth_rows(scene, scratch, asked, start, stop, points, records, radiance, visibility, path, own, found, picture):
-    """Fill rows start..stop of ``picture`` (n, 3): as ``radiance``, edges by one ray for each of ``points`` (s, 2).
+@kernel(types.void(SCENE, _reals, _many, _reals, _stack), _nrt=False)
+def begin_samples(scene, points, edges, paths, own):
+    """Begin paths through ``points`` (s, 2) of each of the pixels ``edges``, which have the records ``own``."""
+    width = int(scene.reals[WIDTH])
+    each = len(points)
+    for i in range(each * len(edges)):
+        k, s = edges[i // each], i % each
+        px, py = k % width + points[s, 0], k // width + points[s, 1]
+        begin(scene.reals, px, py, paths[i], own[0, i], own[1, i])
 
-    ``path`` (PATH,), ``own`` (3, COLUMNS) and ``found`` (V,) are working memory. Returns the number of pixels drawn
-    anew.
+
+@kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _i, _many, _stack, _stack, _stack, _stack), _nrt=False)
+def look_from_samples(scene, scratch, asked, first, last, each, edges, records, visibility, own, found):
+    """The visibility ``found`` of the records ``own`` of samples first..last: that of neighbors alike, else anew.
+
+    Of as many as ``asked`` has room for the rays of; returns where it ends.
     """
     width, height = int(scene.reals[WIDTH]), int(scene.reals[HEIGHT])
-    anew = 0
-    for y in range(start, stop):
-        for x in range(width):
-            k = y * width + x
-            if not jagged(records, radiance, k, x, y, width, height):
-                for c in range(3):
-                    picture[k, c] = radiance[k, c]
+    room = asked.shape[0] - 2 * ANEW * (1 + scene.ints[LIGHT_COUNT])
+    for i in range(first, last):
+        if asked[0, MODE] == ASKING and asked[0, NEXT] > room:
+            return i
+        x, y = edges[i // each] % width, edges[i // each] // width
+        for layer in range(2):
+            if own[layer, i, OWNER] == 0.0:
                 continue
-            anew += 1
-            number = sample_of(x, y)
-            red, green, blue = 0.0, 0.0, 0.0
-            used = 0
-            plain = True
-            for s in range(len(points)):
-                if used == TRIAL and plain:
-                    break
-                px, py = x + points[s, 0], y + points[s, 1]
-                gather(scene, scratch, asked, px, py, path, own[0], own[1], own[2], found)
-                r, g, b = path[GATHERED], path[GATHERED + 1], path[GATHERED + 2]
-                fr, fg, fb = finished(scene, scratch, asked, records, visibility, own, k, x, y, number, found)
-                r, g, b = min(r + fr, BRIGHTEST), min(g + fg, BRIGHTEST), min(b + fb, BRIGHTEST)
-                red, green, blue = red + r, green + g, blue + b
-                used += 1
-                plain = (
-                    plain and alike(records[0, k], own[0], SLACK) and contrast(radiance, k, r, g, b) < 0.5 * CONTRAST
-                )
-            picture[k, 0] = red / used
-            picture[k, 1] = green / used
-            picture[k, 2] = blue / used
-    return anew
+            if not borrow(records[layer], visibility[layer], own[layer, i], x, y, width, height, found[layer, i]):
+                look_around(scene, scratch, asked, own[layer, i], sample_of(x, y), ANEW, ANEW, found[layer, i])
+    return last
+
+
+@kernel(_i(SCENE, _i, _i, _i, _many, _stack, _rows, _reals, _stack, _stack, _reals, _rows), _nrt=False)
+def add_samples(scene, each, used, whole, edges, records, radiance, paths, own, found, sums, picture):
+    """Add ``each`` samples of the pixels ``edges`` to ``sums`` (n, 4): radiance, and whether all show one smooth thing.
+
+    ``used`` samples there are then, ``whole`` there shall be. Pixels that need no more go to the picture, the others
+    to the front of ``edges``; how many these are.
+    """
+    left = 0
+    for p in range(len(edges)):
+        k = edges[p]
+        red, green, blue = sums[p, 0], sums[p, 1], sums[p, 2]
+        plain = sums[p, 3] != 0.0 and records[0, k, UNSURE] == 0.0
+        for i in range(p * each, (p + 1) * each):
+            r, g, b = 0.0, 0.0, 0.0
+            for layer in range(2):
+                if own[layer, i, OWNER] != 0.0:
+                    dr, dg, db = shade(scene, own[layer, i], found[layer, i])
+                    r, g, b = r + dr, g + dg, b + db
+            r, g, b = paths[i, GATHERED] + r, paths[i, GATHERED + 1] + g, paths[i, GATHERED + 2] + b
+            r, g, b = min(r, BRIGHTEST), min(g, BRIGHTEST), min(b, BRIGHTEST)
+            red, green, blue = red + r, green + g, blue + b
+            plain = (
+                plain
+                and paths[i, DOUBTED] == 0.0
+                and alike(records[0, k], own[0, i], SLACK)
+                and contrast(radiance, k, r, g, b) < 0.5 * CONTRAST
+            )
+        if used == whole or (used == TRIAL and plain):
+            picture[k, 0], picture[k, 1], picture[k, 2] = red / used, green / used, blue / used
+        else:
+            edges[left] = k
+            sums[left, 0], sums[left, 1], sums[left, 2], sums[left, 3] = red, green, blue, 1.0 if plain else 0.0
+            left += 1
+    return left

@@ -1,7 +1,7 @@
 # mypy: ignore-errors
-"""First stage of a picture: every pixel's records, the light that needs no filtering, and one sample of visibility.
+"""What a picture's point shows: a path through it begins, and advances by what its ray meets, to the path's end.
 
-A path through a picture's point begins, and advances by what its ray meets: alone, or with others in packets.
+It finds the point's records, and the light that needs no filtering.
 """
 
 import numpy as np
@@ -11,10 +11,8 @@ from renderers.tracing.camera_kernels import camera_ray
 from renderers.tracing.intersect_kernels import walk
 from renderers.tracing.light_kernels import backdrop, dielectric, sharpness, sky_radiance, smoothstep
 from renderers.tracing.path_kernels import behind, bend, describe, faded, mirrored, refracted
-from renderers.tracing.record_kernels import OWNER, TINT, TRACED, WEIGHT, copy_record, erase, start_of
-from renderers.tracing.sampling_kernels import sample_of
+from renderers.tracing.record_kernels import TINT, TRACED, WEIGHT, copy_record, erase, start_of
 from renderers.tracing.scene_kernels import (
-    ASKED,
     INDEX,
     ITEMS,
     METALLIC,
@@ -25,18 +23,13 @@ from renderers.tracing.scene_kernels import (
     SURFACE_AT,
     TOLD,
     TRANSMISSION,
-    WIDTH,
     part,
 )
 from renderers.tracing.shade_kernels import facing_ratio, mean_specular, shade
 from renderers.tracing.visibility_kernels import look_around
 from sceneql.kernels import kernel
 
-_f = types.float64
-_i = types.int64
 PLACES = types.float64[::1]
-_rows = types.float32[:, ::1]
-_stack = types.float32[:, :, ::1]
 BOUNCES = 8
 """Surfaces that a ray meets behind the first one, at the most."""
 FAINT = 0.025
@@ -182,39 +175,3 @@ def light_behind(scene, scratch, asked, path, record, visibility):
     path[GATHERED] += r
     path[GATHERED + 1] += g
     path[GATHERED + 2] += b
-
-
-@kernel(types.void(SCENE, SCRATCH, ASKED, _f, _f, PLACES, ROW, ROW, ROW, ROW), _nrt=False, inner=True)
-def gather(scene, scratch, asked, px, py, path, first, second, spare, visibility):
-    """Follow a path through the picture's point (px, py) to its end: its GATHERED is what needs no visibility."""
-    begin(scene.reals, px, py, path, first, second)
-    while path[LIVE] != 0.0:
-        advance(scene, scratch, path, first, second, spare)
-        if path[DARK] != 0.0:
-            path[DARK] = 0.0
-            light_behind(scene, scratch, asked, path, spare, visibility)
-            if scratch[scratch.shape[0] - 1, 0] > 0.0:
-                path[DOUBTED] = 1.0
-
-
-@kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _stack, _rows, _stack, PLACES, ROW), _nrt=False)
-def gather_rows(scene, scratch, asked, start, stop, records, radiance, visibility, path, spare):
-    """Fill rows start..stop of a picture (h, w): records (2, h w, COLUMNS), radiance (h w, 3), visibility (2, h w, V).
-
-    Returns the number of pixels with an undecided root. Radiance holds what needs no visibility.
-    """
-    width = int(scene.reals[WIDTH])
-    undecided = 0
-    for y in range(start, stop):
-        for x in range(width):
-            k = y * width + x
-            number = sample_of(x, y)
-            first, second, seen = records[0, k], records[1, k], visibility[0, k]
-            gather(scene, scratch, asked, x + 0.5, y + 0.5, path, first, second, spare, seen)
-            undecided += path[DOUBTED] > 0.0
-            for c in range(3):
-                radiance[k, c] = path[GATHERED + c]
-            for layer in range(2):
-                if records[layer, k, OWNER] > 0.0:
-                    look_around(scene, scratch, asked, records[layer, k], number, 1, 1, visibility[layer, k])
-    return undecided

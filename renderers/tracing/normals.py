@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from renderers.tracing import TOLERANCE
 from renderers.tracing.normals_kernels import normal_rows, undecided_rows
-from renderers.tracing.pack import TOLERANCE, pack, scratch
+from renderers.tracing.pack import pack, scratch
 from renderers.tracing.picture import Picture, over_rows
 from renderers.tracing.sampling_kernels import subpixels
 

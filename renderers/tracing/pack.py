@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from renderers.tracing import hierarchy_kernels
+from renderers.tracing import TOLERANCE, hierarchy_kernels
 from renderers.tracing.scene_kernels import (
     CAMERA,
     CELLS,
@@ -49,10 +49,6 @@ if TYPE_CHECKING:
 
 
 UNBOUNDED = np.repeat([-np.inf, np.inf], 3)
-
-
-TOLERANCE = 1e-9
-"""Of roots of implicit objects, relative to the searched piece of a ray, where nothing is said."""
 
 
 def pack(frame: Frame, tolerance: float = TOLERANCE, samples: int = 0, certain: bool = False) -> tuple[Scene, int]:

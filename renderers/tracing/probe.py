@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from renderers.tracing.pack import TOLERANCE, pack, scratch
+from renderers.tracing import TOLERANCE
+from renderers.tracing.pack import pack, scratch
 from renderers.tracing.picture import over_rows
 from renderers.tracing.probe_kernels import probe_rows
 

@@ -8,10 +8,11 @@ are found for whole pictures of records and filtered there, before anything is s
 from renderers.tracing.scene_kernels import part
 
 PLACE, NORMAL, VIEW, TINT, WEIGHT, SURFACE, OWNER, RADIUS, LIFT, TRACED, ITEM = 0, 3, 6, 9, 12, 15, 16, 17, 18, 19, 20
+UNSURE = 21
 """Columns: point, shading normal, direction to the viewer, color, weight in the pixel, place of the surface, shape
 index + 1 (0: no record), radius of the pixel's cone there, lift of shadow rays, share of the reflection that is
-traced, item."""
-COLUMNS = 21
+traced, item; whether a root on the pixel's path is undecided (of the first record alone, be there one or not)."""
+COLUMNS = 22
 
 
 @part

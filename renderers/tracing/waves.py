@@ -1,7 +1,8 @@
-"""The stages of a picture that trace rays, with implicit solids met in packets: all rays of a wave are asked first.
+"""The stages of a picture that trace rays: all rays of a wave are asked first, so that packets can meet them together.
 
 Shadow rays and those to the sky of a whole band make a wave, and so does each turn of all its paths: camera, mirrored
-and refracted rays, with the light on what they see. Single are the rays that light what hides the sky.
+and refracted rays, with the light on what they see. Single are the rays that light what hides the sky, and all of them
+where there is nothing that packets know.
 """
 
 from __future__ import annotations
@@ -10,14 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from renderers.tracing.bundles import Packets
-from renderers.tracing.edge_waves_kernels import add_samples, begin_samples, list_edges, look_from_samples
-from renderers.tracing.edges_kernels import TRIAL
+from renderers.tracing.edges_kernels import TRIAL, add_samples, begin_samples, list_edges, look_from_samples
 from renderers.tracing.gather_kernels import PATH
 from renderers.tracing.pack import scratch
 from renderers.tracing.record_kernels import COLUMNS
 from renderers.tracing.refine_kernels import refine
-from renderers.tracing.scene_kernels import ASKING, MODE, NEXT, SHAPE_COUNT, TELLING, WIDTH
+from renderers.tracing.scene_kernels import ANSWERS, ASKING, MODE, NEXT, SHAPE_COUNT, TELLING, WIDTH
 from renderers.tracing.waves_kernels import (
     TILE,
     advance_paths,
@@ -33,8 +32,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from renderers.tracing.bundles import Packets
     from renderers.tracing.scene_kernels import Scene
-    from sceneql.frame import Shape
 
     Array = NDArray[Any]
 
@@ -45,13 +44,13 @@ ROOM = 16384
 class Waves:
     """A thread's working memory for bands of a picture, TILE rows high at the most."""
 
-    def __init__(self, scene: Scene, shapes: tuple[Shape, ...], solids: list[int], rows: int, columns: int) -> None:
-        """``solids``: indices of the shapes that packets meet; ``rows`` of scratch and ``columns`` of visibility."""
-        self.scene, self.packets = scene, Packets(shapes, solids)
+    def __init__(self, scene: Scene, packets: Packets | None, rows: int, columns: int) -> None:
+        """``packets``: what meets solids in them; ``rows`` of scratch and ``columns`` of visibility."""
+        self.scene, self.packets = scene, packets
         self.scratch = scratch(rows)
         self.scratch[-1 - int(scene.ints[SHAPE_COUNT]) : -1, 0] = np.nan
         pixels = -(-int(scene.reals[WIDTH]) // TILE) * TILE * TILE
-        self.asked = self.packets.asked(max(pixels, ROOM))
+        self.asked = np.zeros((1 + pixels, ANSWERS)) if packets is None else packets.asked(max(pixels, ROOM))
         self.paths, self.at = np.zeros((pixels, PATH)), np.arange(pixels, dtype=np.int64)
         self.edges, self.sums = np.zeros(pixels, dtype=np.int64), np.zeros((pixels, 4))
         self.own = np.zeros((2, pixels, COLUMNS), dtype=np.float32)
@@ -60,12 +59,15 @@ class Waves:
         self.spare = np.empty(columns, dtype=np.float32)
 
     def gather(self, start: int, stop: int, records: Array, radiance: Array, visibility: Array) -> int:
-        """As gather_kernels.gather_rows."""
+        """Fill rows start..stop: records (2, h w, COLUMNS), radiance (h w, 3), visibility (2, h w, V).
+
+        Returns the number of pixels with an undecided root. Radiance holds what needs no visibility.
+        """
         scene, asked, at = self.scene, self.asked, np.empty_like(self.at)
         count = begin_paths(scene, start, stop, records, self.paths, at)
         self._follow(self.paths[:count], at, records)
         self._ask(0, count, lambda i, end: look_from(scene, self.scratch, asked, i, end, at, records, visibility))
-        undecided: int = end_paths(self.paths[:count], at, radiance)
+        undecided: int = end_paths(self.paths[:count], at, records, radiance)
         return undecided
 
     def refine(self, start: int, stop: int, records: Array, visibility: Array, means: Array, fine: Array) -> None:
@@ -77,7 +79,7 @@ class Waves:
         self, start: int, stop: int, points: Array, records: Array, radiance: Array, visibility: Array,
         picture: Array,
     ) -> None:  # fmt: skip
-        """As edges_kernels.smooth_rows."""
+        """Fill rows start..stop of ``picture`` (n, 3): as ``radiance``; edges by one ray a point (s, 2)."""
         count = list_edges(self.scene, start, stop, records, radiance, picture, self.edges)
         some = len(self.paths) // TRIAL
         for first in range(0, count, some):
@@ -105,7 +107,8 @@ class Waves:
     def _follow(self, paths: Array, at: Array, records: Array) -> None:
         """Let paths go to their ends."""
         while ask_paths(paths, self.asked):
-            self.packets.meet(self.asked)
+            if self.packets is not None:
+                self.packets.meet(self.asked)
             if advance_paths(self.scene, self.scratch, self.asked, paths, at, records, self.spares):
                 self._ask(0, len(paths), lambda i, end: self._light(i, end, paths))
 
@@ -115,7 +118,13 @@ class Waves:
         return end
 
     def _ask(self, start: int, stop: int, work: Callable[[int, int], int]) -> None:
-        """Do ``work`` twice for each part of start..stop, which it ends: its rays are asked, then they are told."""
+        """Do ``work`` twice for each part of start..stop, which it ends: its rays are asked, then they are told.
+
+        Once for all of it where no packets are to be told anything.
+        """
+        if self.packets is None:
+            work(start, stop)
+            return
         while start < stop:
             self.asked[0, [MODE, NEXT]] = ASKING, 1
             end = work(start, stop)

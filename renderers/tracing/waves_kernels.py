@@ -9,7 +9,7 @@ from numba import types
 
 from renderers.tracing.gather_kernels import DARK, DOUBTED, GATHERED, LIVE, QUICK, advance, begin, light_behind
 from renderers.tracing.intersect_kernels import put_ray, tell
-from renderers.tracing.record_kernels import OWNER
+from renderers.tracing.record_kernels import OWNER, UNSURE
 from renderers.tracing.sampling_kernels import sample_of
 from renderers.tracing.scene_kernels import (
     ASKED,
@@ -113,12 +113,16 @@ def light_paths(scene, scratch, asked, first, last, paths, spares, visibility):
     return last
 
 
-@kernel(_i(_paths, _many, _rows), _nrt=False)
-def end_paths(paths, at, radiance):
-    """The radiance of the pixels ``at`` which paths are, but for their records; how many have an undecided root."""
+@kernel(_i(_paths, _many, _stack, _rows), _nrt=False)
+def end_paths(paths, at, records, radiance):
+    """The radiance of the pixels ``at`` which paths are, but for their records, and whether they are UNSURE.
+
+    Returns how many are.
+    """
     doubted = 0
     for i in range(paths.shape[0]):
         doubted += paths[i, DOUBTED] > 0.0
+        records[0, at[i], UNSURE] = paths[i, DOUBTED]
         for c in range(3):
             radiance[at[i], c] = paths[i, GATHERED + c]
     return doubted

@@ -7,18 +7,16 @@ field is outside whatever g is; at the root its value tells.
 """
 
 import numpy as np
+from numba import types
 
+from sceneql.compiling.late import late
 from sceneql.field.beam_kernels import (
     BEAM,
     HIGH,
     INVERSE_SPEED,
     LOW,
     RADIUS_OF,
-    beam_around,
     beam_within,
-    gather,
-    keep_reaching,
-    keep_reaching_skeleton,
     list_parts,
     next_slice,
 )
@@ -39,10 +37,8 @@ from sceneql.field.density_march_kernels import (
     advance,
     sum_up,
 )
-from sceneql.field.density_polish_kernels import polish
 from sceneql.field.density_slice_kernels import (
     BASE,
-    BEAM_ROW,
     CLEARLY,
     INFINITE,
     OWN_ROW,
@@ -54,7 +50,7 @@ from sceneql.field.density_slice_kernels import (
     start_lanes,
 )
 from sceneql.field.hunt_kernels import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS
-from sceneql.field.tape_ops import DENSITY, HIT, MISS, UNDECIDED
+from sceneql.field.tape_ops import HIT, MISS, UNDECIDED
 from sceneql.kernels import inlined
 
 MOST_PARTS = 512
@@ -67,6 +63,12 @@ STEEPEST = 1.72
 """R times the largest slope of a density of weight 1, a little more than 96/(25 sqrt(5))."""
 UNIT = 1.2e-7
 """Two half units in the last place."""
+_ids, _wide = types.int64[::1], types.float64[:, ::1]
+DENSITY_ROOTS = types.UniTuple(types.int64, 2)(
+    types.int32[:, ::1], types.float64[::1], _wide, _ids, _wide, types.int64, types.int64, types.boolean, _wide, _ids,
+    _ids, _wide, types.float32[:, ::1], types.float32[::1], types.int32[:, ::1], _wide
+)  # fmt: skip
+density_roots = late("sceneql.field.density_bundle_kernels:density_roots", DENSITY_ROOTS)
 
 
 @inlined
@@ -246,43 +248,3 @@ def search_packet(
             return spent, met, doubted
         begin = end
     return spent, met, doubted
-
-
-@inlined
-def density_roots(
-    code, constants, parts, plan, rays, count, groups, anywhere, found, queue, order, room, table, state, short, near
-):  # fmt: skip
-    """Settle a bundle as ``packet_roots_kernels.first_roots`` does; (segments, rays that may be met, in ``queue``).
-
-    ``short`` becomes the tape with the parts alone that reach into the bundle, which are ``near``, as a DENSITY.
-    """
-    k = plan[ROW_OF]
-    for row in range(code.shape[0]):
-        for j in range(4):
-            short[row, j] = code[row, j]
-    ids = order[4 * LANES :]
-    listed = ids[rays.shape[1] :]
-    n = gather(rays, count, groups, room, ids)
-    if n == 0:
-        return 0, 0
-    beam = room[BEAM_ROW, :BEAM]
-    lowest = beam_around(room, 0, n, beam, room[SPARE:])
-    if code[k, 0] == DENSITY:
-        kept = keep_reaching(parts, code[k, 1], code[k, 2], beam, near)
-    else:
-        kept = keep_reaching_skeleton(parts, code[k, 1], code[k, 2], beam, near)
-    short[k, 0], short[k, 1], short[k, 2] = DENSITY, 0, kept
-    spent = met = doubted = 0
-    if kept > 0:
-        for first in range(0, n, LANES):
-            more, met, doubted = search_packet(
-                room, first, min(first + LANES, n), near, kept, constants[plan[THRESHOLD]], anywhere, table, state,
-                order, listed, ids, beam, lowest, found, queue, met, doubted,
-            )  # fmt: skip
-            spent += more
-    last = len(queue) - 1
-    for k in range(doubted):
-        queue[met + k], queue[last - k] = queue[last - k], queue[met + k]
-    if not anywhere:
-        polish(near, kept, constants[plan[THRESHOLD]], rays, queue, met, room, found)
-    return spent, met + doubted

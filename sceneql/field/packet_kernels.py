@@ -7,7 +7,10 @@ angle for its twin; of ``point`` (3, WIDTH), the enclosures of x, y and z, the f
 """
 
 import numpy as np
+from numba import types
+from numba.core.sigutils import normalize_signature
 
+from sceneql.compiling.late import late
 from sceneql.field.affine_kernels import (
     GROW,
     PAD,
@@ -25,48 +28,35 @@ from sceneql.field.affine_kernels import (
     reciprocal,
     signed,
     square_root,
-    squared,
     turned,
     wave,
 )
-from sceneql.field.forms_kernels import never_negative
-from sceneql.field.packet_density_kernels import density_lanes
 from sceneql.field.single_kernels import lane, sine_cosine
 from sceneql.field.tape_ops import (
     ABS,
-    ADD,
-    ATAN2,
     CONSTANT,
-    COPY,
-    COS,
-    DENSITY,
     DIV,
     EXP,
     FLOOR,
     LOG,
     MAX,
     MIN,
-    MUL,
-    NEG,
     NOWHERE,
     PARTIAL,
     POW,
-    SIGN,
     SIN,
     SQRT,
-    SQUARE,
-    SUB,
     WHOLE,
-    X,
-    Z,
 )
-from sceneql.kernels import inlined, lean
+from sceneql.kernels import inlined
 
 LANES = 64
 C1, E, SINE, COSINE, WIDTH = LANES, 2 * LANES, 3 * LANES, 4 * LANES, 5 * LANES
 """Columns of a register."""
 PACKET = "int32[:, ::1], float64[::1], float32[:, ::1], float32[:, ::1], float32[:, ::1]"
 """Types of (code, constants, parts, registers, point)."""
+ENCLOSE = types.void(*normalize_signature(f"void({PACKET}, float32[::1], int64)")[0])
+enclose = late("sceneql.field.enclose_kernels:enclose", ENCLOSE)
 
 
 @lane
@@ -196,99 +186,3 @@ def place(row, i, o, d, middle, half):
     row[i] = o + middle * d
     row[C1 + i] = c1
     row[E + i] = PAD * (abs(o) + abs(middle * d) + abs(c1)) + TINY
-
-
-@lean(f"void({PACKET}, float32[::1], int64)", inner=True)
-def enclose(code, constants, parts, registers, point, status, n):
-    """Enclose f in n lanes, into the last operation's register; ``status`` (LANES,) gets WHOLE, PARTIAL or NOWHERE.
-
-    Nothing is claimed of a lane in which c0, c1 or e is not finite. ``parts`` are those of
-    ``packet_density_kernels``.
-    """
-    for i in range(n):
-        status[i] = ZERO
-    for k in range(code.shape[0]):
-        op = code[k, 0]
-        left = code[k, 1]
-        right = code[k, 2]
-        out = registers[k]
-        if op == CONSTANT:
-            continue
-        if op >= X and op <= Z:
-            p = point[op - X]
-            for i in range(3 * LANES):
-                out[i] = p[i]
-            continue
-        if op == DENSITY:
-            p = code[k, 3]
-            density_lanes(parts, left, right, registers[p], registers[p + 1], registers[p + 2], out, n)
-            continue
-        a = registers[left]
-        b = registers[right]
-        if op == MUL:
-            if code[left, 0] == CONSTANT:
-                scale_lanes(b, a, out, n)
-            elif code[right, 0] == CONSTANT:
-                scale_lanes(a, b, out, n)
-            else:
-                for i in range(n):
-                    out[i], out[C1 + i], out[E + i] = product(a[i], a[C1 + i], a[E + i], b[i], b[C1 + i], b[E + i])
-        elif op == ADD:
-            for i in range(n):
-                c0 = a[i] + b[i]
-                c1 = a[C1 + i] + b[C1 + i]
-                out[i] = c0
-                out[C1 + i] = c1
-                out[E + i] = (a[E + i] + b[E + i]) * GROW + PAD * (abs(c0) + abs(c1))
-        elif op == SUB:
-            for i in range(n):
-                c0 = a[i] - b[i]
-                c1 = a[C1 + i] - b[C1 + i]
-                out[i] = c0
-                out[C1 + i] = c1
-                out[E + i] = (a[E + i] + b[E + i]) * GROW + PAD * (abs(c0) + abs(c1))
-        elif op == SQUARE:
-            for i in range(n):
-                out[i], out[C1 + i], out[E + i] = squared(a[i], a[C1 + i], a[E + i])
-        elif op == NEG:
-            for i in range(n):
-                out[i] = -a[i]
-                out[C1 + i] = -a[C1 + i]
-                out[E + i] = a[E + i]
-        elif op == COPY:
-            for i in range(3 * LANES):
-                out[i] = a[i]
-        elif op == SIN or op == COS:
-            twin = registers[code[k, 3] if code[k, 3] else k]
-            if code[k, 3] == 0:
-                turn_lanes(a, out, n)
-            wave_lanes(op, a, out, twin, n)
-        elif op <= ATAN2:
-            binary_lanes(op, a, b, out, n, status, never_negative(code[left, 0]))
-        elif op <= SIGN:
-            unary_lanes(op, a, out, n, status, never_negative(code[left, 0]))
-        else:  # nothing is claimed of an operation that has no lanes
-            for i in range(n):
-                out[i] = F(np.nan)
-
-
-@lean(
-    f"void({PACKET}, float32[::1], float64[:, ::1], float64[:, ::1], float64[::1], float64[::1], float64[:, ::1])",
-)
-def enclose_rays(code, constants, parts, registers, point, status, origins, directions, t0, t1, out):
-    """(c0, c1, e, status) of f on segments o + t d, t in [t0, t1], into ``out`` (4, n); rays are (n, 3)."""
-    load_constants(code, constants, registers)
-    last = registers[code.shape[0] - 1]
-    for start in range(0, len(t0), LANES):
-        count = min(LANES, len(t0) - start)
-        for i in range(LANES):
-            j = start + min(i, count - 1)
-            for axis in range(3):
-                o, d = origins[j, axis], directions[j, axis]
-                middle, half = 0.5 * (t0[j] + t1[j]), 0.5 * (t1[j] - t0[j])
-                place(point[axis], i, F(o), F(d), F(middle), F(half))
-        enclose(code, constants, parts, registers, point, status, LANES)
-        for i in range(count):
-            for column in range(3):
-                out[column, start + i] = last[column * LANES + i]
-            out[3, start + i] = status[i]

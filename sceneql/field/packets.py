@@ -15,7 +15,6 @@ from sceneql.field import (
     density_slice_kernels,
     hunt_kernels,
     packet_density_kernels,
-    packet_kernels,
     packet_roots_kernels,
 )
 from sceneql.field.packet_kernels import LANES, WIDTH
@@ -47,13 +46,13 @@ def enclosures(tape: Tape, origins: Floats, directions: Floats, t0: Floats, t1: 
     f lies in c0 + c1 tau +- e, t = (t0 + t1)/2 + tau (t1 - t0)/2, wherever it is defined there; status is WHOLE,
     PARTIAL or NOWHERE. Nothing is claimed where c0, c1 or e is not finite.
     """
+    from sceneql.field.enclosures_kernels import enclose_rays
+
     out = np.empty((4, len(t0)))
     registers = np.zeros((len(tape.code), WIDTH), dtype=np.float32)
     point, status = np.zeros((3, WIDTH), dtype=np.float32), np.zeros(LANES, dtype=np.float32)
     memory = registers, point, status
-    packet_kernels.enclose_rays(
-        tape.code, tape.constants, single_parts(tape), *memory, origins, directions, t0, t1, out
-    )
+    enclose_rays(tape.code, tape.constants, single_parts(tape), *memory, origins, directions, t0, t1, out)
     return out
 
 

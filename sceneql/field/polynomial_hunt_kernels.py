@@ -6,13 +6,13 @@ outside are left out at both ends.
 """
 
 import numpy as np
+from numba import types
 
+from sceneql.compiling.late import late
 from sceneql.field.affine_kernels import GROW, HALF, PAD, ZERO, F
-from sceneql.field.density_roots_kernels import OTHER
 from sceneql.field.extent_kernels import extent
 from sceneql.field.hunt_kernels import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS, SETTLED
-from sceneql.field.packet_kernels import C1, LANES, E, enclose, load_constants, place
-from sceneql.field.polynomial_kernels import DEGREES, POLYNOMIAL, coefficients, rounding
+from sceneql.field.packet_kernels import C1, ENCLOSE, LANES, E, place
 from sceneql.field.polynomial_steps_kernels import (
     CHANGE,
     END,
@@ -25,11 +25,8 @@ from sceneql.field.polynomial_steps_kernels import (
     TRIES,
     A,
     B,
-    C,
     polish,
-    step,
 )
-from sceneql.field.slab_kernels import left_of_slabs
 from sceneql.field.tape_ops import HIT, MISS, UNDECIDED
 from sceneql.kernels import inlined
 
@@ -37,6 +34,11 @@ SHORTEST = -0.98
 """Where the first segment ends at least."""
 T0, T1, SPOT = 6, 7, 8
 """Rows of packed rays, of which the first are those of rays; the last is working memory."""
+_f, _i, _ids, _wide = types.float64, types.int64, types.int64[::1], types.float64[:, ::1]
+POLYNOMIAL_ROOTS = types.Tuple((_i, _i, _f, _f))(
+    *ENCLOSE.args[:-1], _wide, _i, types.boolean, _wide, _ids, _ids, _ids, _wide, _f[::1]
+)
+polynomial_roots = late("sceneql.field.polynomial_bundle_kernels:polynomial_roots", POLYNOMIAL_ROOTS)
 
 
 @inlined
@@ -180,59 +182,3 @@ def settle_lanes(lanes, rows, degree, ids, kept, width, live, rays, anywhere, fo
         for i in range(live, width):
             lanes[STATE + i] = float(MISS)
     return queued
-
-
-@inlined
-def polynomial_roots(
-    code, constants, singles, registers, point, status, rays, count, anywhere, found, queue, plan, order, room, lanes
-):  # fmt: skip
-    """Settle a bundle as ``packet_roots_kernels.first_roots`` does.
-
-    Returns (enclosures, rays that may be met, in ``queue``, begin and end of where the other field is proved negative).
-    """
-    n = pack(rays, count, order, room)
-    if n == 0:
-        return 0, 0, np.inf, np.inf
-    wide, spot = rays if n == count else room, room[SPOT]
-    base, _ = extent(wide[T0], n)
-    _, stop = extent(wide[T1], n)
-    x = place_beam(wide, n, base, stop, 0, spot, point[0])
-    y = place_beam(wide, n, base, stop, 1, spot, point[1])
-    z = place_beam(wide, n, base, stop, 2, spot, point[2])
-    load_constants(code, constants, registers)
-    enclose(code, constants, singles, registers, point, status, LANES)
-    first, final, run = left_of_slabs(registers[code.shape[0] - 1], status, 0, LANES)
-    if first == LANES:
-        return LANES, 0, np.inf, np.inf
-    depth = (stop - base) / LANES
-    begin, end, run_end = base + (first - 1e-6) * depth, base + (final + 1 + 1e-6) * depth, base + run * depth
-    safe, unsafe = np.inf, np.inf
-    if plan[OTHER] >= 0:
-        k, m = negative_slabs(registers[plan[OTHER]])
-        safe, unsafe = base + (k + 1e-6) * depth, base + (m - 1e-6) * depth
-    off = rounding(code, constants, plan, (x[0], y[0], z[0], x[1], y[1], z[1]), lanes)
-    rows = plan[POLYNOMIAL] + 1
-    degree = plan[DEGREES + rows - 1]
-    kept = C + (max(degree + degree % 2, 4) + 1) * LANES  # coefficients up to the next even degree from 4 on
-    spare = order[rays.shape[1] :]
-    spent = LANES
-    queued = 0
-    for first in range(0, n, LANES):
-        width = min(LANES, n - first)
-        m = (width + 15) // 16 * 16
-        take(wide, first, width, m, begin, run_end, end, lanes)
-        coefficients(code, constants, plan, wide, first, lanes[MIDDLE:], lanes[HALF_WAY:], m, lanes)
-        for i in range(C + (degree + 1) * LANES, kept):
-            lanes[i] = 0.0
-        live = count_lanes(lanes, m, LIVE)
-        while width > 0:
-            while 2 * live > width:
-                step(lanes, degree, m, off, anywhere)
-                spent += live
-                live = count_lanes(lanes, m, LIVE)
-            queued = settle_lanes(
-                lanes, kept, degree, order, spare, width, live, rays, anywhere, found, queue, queued
-            )  # fmt: skip
-            width = live
-            m = (width + 15) // 16 * 16
-    return spent, queued, safe, unsafe

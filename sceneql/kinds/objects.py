@@ -44,8 +44,8 @@ class Object(Kind):
     collides: ClassVar[bool] = False
     """Whether contacts that name no surface take it as one even where more of it varies in time than its place."""
 
-    traced: ClassVar[bool] = False
-    """Whether it may be drawn by its field, whose roots rays have to find (frame.Implicit)."""
+    traced: ClassVar[str] = ""
+    """What field it may be drawn by, whose roots rays have to find (frame.Implicit): "formula", "density"; or none."""
 
     decorates: ClassVar[bool] = False
     """Whether a model that it reads draws itself all the same."""

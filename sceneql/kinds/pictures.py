@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from sceneql.kinds.types import Scalar
@@ -62,8 +62,8 @@ class Renderer(Kind):
     data: ClassVar[bool] = False
     """Whether its pictures are data (depth, normals), which are not developed."""
 
-    def kernels(self, traced: bool) -> tuple[str, ...]:
-        """Modules whose import compiles what it draws with; ``traced``: objects that are found by roots among it."""
+    def kernels(self, traced: Collection[str]) -> tuple[str, ...]:
+        """Modules whose import compiles what it draws with; ``traced``: by which fields objects are (Object.traced)."""
         return ()
 
     def draw(self, frame: Any) -> Any:

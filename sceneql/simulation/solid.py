@@ -30,7 +30,7 @@ class Solid(Placed):
     """An object with a field in its own coordinates."""
 
     gives: ClassVar[Mapping[str, Gives]] = MEASURES
-    traced: ClassVar[bool] = True
+    traced: ClassVar[str] = "formula"
 
     def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
         """Register of its field, negative inside; (x, y, z) are registers of a point in its own coordinates."""

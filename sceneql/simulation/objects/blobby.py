@@ -45,7 +45,7 @@ class Blobby(Object):
     """
 
     gives: ClassVar[Mapping[str, Gives]] = MEASURES
-    traced: ClassVar[bool] = True
+    traced: ClassVar[str] = "density"
 
     skeleton: tuple[Part, ...] = field("Parts of any kind, each with its radius, weight and color.", ())
     points: Points | None = field("The points of the skeleton, or more of them.", None)

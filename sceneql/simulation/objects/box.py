@@ -25,7 +25,7 @@ class Box(Solid):
     """
 
     collides: ClassVar[bool] = True
-    traced: ClassVar[bool] = False
+    traced: ClassVar[str] = ""
 
     size: Position = field("Its sides along its own x, y and z.", "1 1 1 m", above=0)
 

@@ -21,7 +21,7 @@ class Cylinder(Solid):
     than the distance in front of its rims.
     """
 
-    traced: ClassVar[bool] = False
+    traced: ClassVar[str] = ""
 
     radius: Length = field("Its radius.", "0.5 m", above=0)
     height: Length = field("Its length along its own y.", "1 m", above=0)

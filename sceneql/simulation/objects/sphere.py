@@ -19,7 +19,7 @@ class Sphere(Solid):
     """The ball |p| <= radius about its position. Its field is the signed distance |p| - radius."""
 
     collides: ClassVar[bool] = True
-    traced: ClassVar[bool] = False
+    traced: ClassVar[str] = ""
 
     radius: Length = field("Its radius.", "0.5 m", above=0)
 
