@@ -65,6 +65,7 @@ def rows(path):
 
 
 def test_rays_and_meshes_are_measured(tmp_path, monkeypatch):
+    monkeypatch.setattr(surfaces, "SIZES", (1_296, 5_184, 60_000))
     monkeypatch.setattr(surfaces, "CELLS", (16, 32, 64))
     monkeypatch.setattr(surfaces, "SAMPLES", (16, 64, 256))
     monkeypatch.setattr(surfaces, "REPEATS", 1)
@@ -72,12 +73,15 @@ def test_rays_and_meshes_are_measured(tmp_path, monkeypatch):
     text = bench(pipeline.load(tmp_path / "scene.yaml"), tmp_path)
     rays, meshes = rows(tmp_path / "scene.bench.rays.csv"), rows(tmp_path / "scene.bench.meshes.csv")
     traced = [run for run in rays if run["renderer"] == "trace" and float(run["setting"]) <= 1e-7]
-    marched = [int(run["wrong"]) for run in rays if run["renderer"] == "march"]
-    assert len(traced) == 3
+    assert len(traced) == 6
     assert all(int(run["wrong"]) == 0 and float(run["largest_depth_error"]) < 1e-9 for run in traced)
-    # March never sees the sheet, which is a third of the picture, and tears the shell.
-    assert marched == sorted(marched, reverse=True)
-    assert marched[-1] > 0.1 * int(rays[0]["pixels"])
+    assert list(dict.fromkeys((run["width"], run["height"]) for run in rays)) == [("48", "27"), ("96", "54")]
+    for width in ("48", "96"):
+        # March never sees the sheet, which is a third of the picture, and tears the shell.
+        marched = [run for run in rays if run["renderer"] == "march" and run["width"] == width]
+        wrong = [int(run["wrong"]) for run in marched]
+        assert wrong == sorted(wrong, reverse=True)
+        assert wrong[-1] > 0.1 * int(marched[0]["pixels"])
     assert {run["name"] for run in meshes} == {"torus", "shell"}
     torus = [run for run in meshes if run["name"] == "torus"]
     assert [int(run["euler"]) for run in torus] == [0, 0, 0]

@@ -16,6 +16,7 @@ from renderers.tracing import TOLERANCE
 from renderers.tracing.bundles import Packets, solids_in_lanes
 from renderers.tracing.intersect_kernels import walk
 from renderers.tracing.pack import pack, scratch
+from renderers.tracing.probe import probe
 from renderers.tracing.scene_kernels import ANSWERS, ANYWHERE, FAR, FIRST, NEXT, WANT
 from sceneql.field.builder import TapeBuilder
 from sceneql.field.clips import clips_of
@@ -151,6 +152,23 @@ def test_what_is_told_of_rays_is_what_they_find_one_by_one(name, seed, spread, c
     assert sure[outside].all()
     hit = sure & np.isfinite(shaded)
     assert ((shaded[hit] >= 0.0) & (shaded[hit] <= far[hit])).all()
+
+
+def test_what_is_looked_at_is_met_in_packets(monkeypatch):
+    """At the usual tolerance: see `bench` of surfaces."""
+    asked = []
+    meet = Packets.meet
+    monkeypatch.setattr(Packets, "meet", lambda self, rays: asked.append(int(rays[0, NEXT]) - 1) or meet(self, rays))
+    scene = frame(*(SOLIDS[name] for name in ("lattice", "cubic", "blob")), seen=view(size=(70, 45)))
+    single, together = probe(scene, ONE_BY_ONE), probe(scene)
+    assert sum(asked) == 70 * 45
+    assert (np.isfinite(single.depth) == np.isfinite(together.depth)).all()
+    met = np.isfinite(single.depth)
+    assert 0.2 < met.mean() < 0.9
+    assert np.abs(single.depth[met] - together.depth[met]).max() < 1e-5
+    # A crease has two normals.
+    assert (np.abs(single.normals - together.normals).max(axis=-1) > 1e-5).mean() < 0.005
+    assert (single.undecided == together.undecided).all()
 
 
 def pictures(*shapes, lights, seen, samples=4):

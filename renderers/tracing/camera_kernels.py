@@ -5,6 +5,9 @@ import numpy as np
 
 from renderers.tracing.scene_kernels import CAMERA, HEIGHT, WIDTH, part
 
+TILE, BLOCK = 16, 4
+"""Pixels are taken in tiles of 16 x 16, blocks of 4 x 4 of them together: a packet's rays are neighbors."""
+
 
 @part
 def camera_ray(reals, px, py):
@@ -43,3 +46,12 @@ def camera_ray(reals, px, py):
         0.0,
         pixel / length,
     )
+
+
+@part
+def place_of(i):
+    """(x, y) of pixel i of a band that is TILE rows high."""
+    left, i = i // (TILE * TILE) * TILE, i % (TILE * TILE)
+    g, r = i // TILE, i % TILE
+    x, y = g & 1 | (g >> 1) & 2, (g >> 1) & 1 | (g >> 2) & 2
+    return left + x * BLOCK + r % BLOCK, y * BLOCK + r // BLOCK

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,14 +15,13 @@ from renderers.tracing.refine_kernels import shade_rows
 from renderers.tracing.sampling_kernels import subpixels
 from renderers.tracing.scene_kernels import LIGHT_COUNT
 from renderers.tracing.sprites import over
+from renderers.tracing.together import lender, packets_for
 from renderers.tracing.visibility_kernels import FIRST_LIGHT
 from renderers.tracing.waves import Waves
-from sceneql.frame import Implicit
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from renderers.tracing.bundles import Packets
     from sceneql.frame import Floats, Frame
 
 
@@ -62,15 +61,8 @@ def draw(frame: Frame, samples: int = 8, tolerance: float = TOLERANCE, march: in
     columns = FIRST_LIGHT + 2 * int(scene.ints[LIGHT_COUNT])
     buffers = _buffers(width * height, columns)
     undecided: list[int] = []
-    together = packets_for(frame, tolerance, march)
-    idle: list[Waves] = []
-
-    def with_waves(work: Callable[[Waves], Any]) -> Any:
-        """Do work with a thread's own."""
-        waves = idle.pop() if idle else Waves(scene, together and together(), rows, columns)
-        result = work(waves)
-        idle.append(waves)
-        return result
+    together = None if march else packets_for(frame, tolerance)
+    with_waves = lender(lambda: Waves(scene, together and together(), rows, columns))
 
     def gather(start: int, stop: int) -> None:
         out = buffers.records, buffers.radiance, buffers.visibility
@@ -108,13 +100,3 @@ def _filter(refine_rows: Callable[..., None], buffers: Buffers, layer: int, widt
     over_rows(height, lambda start, stop: widen(start, stop, width, records, visibility, sums))
     over_rows(height, lambda start, stop: deepen(start, stop, width, height, records, sums, means))
     over_rows(height, lambda start, stop: refine_rows(start * width, stop * width, records, visibility, fine))
-
-
-def packets_for(frame: Frame, tolerance: float, march: int) -> Callable[[], Packets] | None:
-    """What makes a thread's Packets; None where they know no shape. Their kernels are for implicit shapes alone."""
-    if march or tolerance != TOLERANCE or not any(isinstance(shape, Implicit) for shape in frame.shapes):
-        return None
-    from renderers.tracing.bundles import Packets, solids_in_lanes
-
-    solids = solids_in_lanes(frame.shapes)
-    return (lambda: Packets(frame.shapes, solids)) if solids else None

@@ -3,6 +3,7 @@
 
 from numba import types
 
+from renderers.tracing.camera_kernels import place_of
 from renderers.tracing.filter_kernels import SLACK
 from renderers.tracing.gather_kernels import DOUBTED, GATHERED, begin
 from renderers.tracing.record_kernels import OWNER, TRACED, UNSURE, alike
@@ -10,7 +11,6 @@ from renderers.tracing.sampling_kernels import sample_of
 from renderers.tracing.scene_kernels import ASKED, ASKING, HEIGHT, LIGHT_COUNT, MODE, NEXT, SCENE, SCRATCH, WIDTH, part
 from renderers.tracing.shade_kernels import shade
 from renderers.tracing.visibility_kernels import look_around
-from renderers.tracing.waves_kernels import place_of
 from sceneql.kernels import kernel
 
 _i = types.int64

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from renderers.tracing import TOLERANCE
+from renderers.tracing.camera_kernels import TILE
 from renderers.tracing.pack import pack, scratch
 from renderers.tracing.picture import over_rows
 from renderers.tracing.probe_kernels import probe_rows
+from renderers.tracing.scene_kernels import ANSWERS, ASKING, MODE, NEXT, SHAPE_COUNT, TELLING, WIDTH
+from renderers.tracing.together import lender, packets_for
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from renderers.tracing.bundles import Packets
+    from renderers.tracing.scene_kernels import Scene
     from sceneql.frame import Floats, Frame
 
 
@@ -30,11 +35,32 @@ class Probe:
     """(h, w)."""
 
 
+class Lines:
+    """A thread's working memory for the rays of bands of pixels."""
+
+    def __init__(self, scene: Scene, packets: Packets | None, rows: int) -> None:
+        """``packets``: what meets solids in them; ``rows`` of scratch."""
+        self.scene, self.packets, self.scratch = scene, packets, scratch(rows)
+        self.scratch[-1 - int(scene.ints[SHAPE_COUNT]) : -1, 0] = np.nan
+        pixels = (int(scene.reals[WIDTH]) + TILE) * TILE
+        self.asked = np.zeros((1, ANSWERS)) if packets is None else packets.asked(pixels)
+
+    def look(self, start: int, stop: int, *out: Any) -> None:
+        """As probe_kernels.probe_rows: once, or twice where packets are asked."""
+        if self.packets is not None:
+            self.asked[0, [MODE, NEXT]] = ASKING, 1
+            probe_rows(self.scene, self.scratch, self.asked, start, stop, *out)
+            self.packets.meet(self.asked)
+            self.asked[0, [MODE, NEXT]] = TELLING, 1
+        probe_rows(self.scene, self.scratch, self.asked, start, stop, *out)
+
+
 def probe(frame: Frame, tolerance: float = TOLERANCE, *, march: int = 0, certain: bool = False) -> Probe:
     """Look through every pixel's center: as `trace` does, by ``march`` samples, or by certified intervals alone."""
     scene, rows = pack(frame, tolerance, march, certain)
     width, height = frame.view.size
-    depth, normals = np.empty((height, width)), np.empty((height, width, 3))
-    undecided = np.empty((height, width), dtype=np.bool_)
-    over_rows(height, lambda start, stop: probe_rows(scene, scratch(rows), start, stop, depth, normals, undecided))
-    return Probe(depth, normals, undecided)
+    out = np.empty((height, width)), np.empty((height, width, 3)), np.empty((height, width), dtype=np.bool_)
+    together = None if march or certain else packets_for(frame, tolerance)
+    with_lines = lender(lambda: Lines(scene, together and together(), rows))
+    over_rows(height, lambda start, stop: with_lines(lambda lines: lines.look(start, stop, *out)))
+    return Probe(*out)

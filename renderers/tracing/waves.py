@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from renderers.tracing.camera_kernels import TILE
 from renderers.tracing.edges_kernels import TRIAL, add_samples, begin_samples, list_edges, look_from_samples
 from renderers.tracing.gather_kernels import PATH
 from renderers.tracing.pack import scratch
@@ -18,7 +19,6 @@ from renderers.tracing.record_kernels import COLUMNS
 from renderers.tracing.refine_kernels import refine
 from renderers.tracing.scene_kernels import ANSWERS, ASKING, MODE, NEXT, SHAPE_COUNT, TELLING, WIDTH
 from renderers.tracing.waves_kernels import (
-    TILE,
     advance_paths,
     ask_paths,
     begin_paths,

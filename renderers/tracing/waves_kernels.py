@@ -1,12 +1,10 @@
 # mypy: ignore-errors
-"""The stage of gathering in waves: all paths of a band ask for their next ray, and go on once packets have told.
-
-Pixels are taken in tiles of 16 x 16, blocks of 4 x 4 of them together: a packet's rays are neighbors.
-"""
+"""The stage of gathering in waves: all paths of a band ask for their next ray, and go on once packets have told."""
 
 import numpy as np
 from numba import types
 
+from renderers.tracing.camera_kernels import place_of
 from renderers.tracing.gather_kernels import DARK, DOUBTED, GATHERED, LIVE, QUICK, advance, begin, light_behind
 from renderers.tracing.intersect_kernels import put_ray, tell
 from renderers.tracing.record_kernels import OWNER, UNSURE
@@ -21,26 +19,15 @@ from renderers.tracing.scene_kernels import (
     SCENE,
     SCRATCH,
     WIDTH,
-    part,
 )
 from renderers.tracing.visibility_kernels import look_around
 from sceneql.kernels import kernel
 
-TILE, BLOCK = 16, 4
 _i = types.int64
 _rows = types.float32[:, ::1]
 _stack = types.float32[:, :, ::1]
 _paths = types.float64[:, ::1]
 _many = types.int64[::1]
-
-
-@part
-def place_of(i):
-    """(x, y) of pixel i of a band that is TILE rows high."""
-    left, i = i // (TILE * TILE) * TILE, i % (TILE * TILE)
-    g, r = i // TILE, i % TILE
-    x, y = g & 1 | (g >> 1) & 2, (g >> 1) & 1 | (g >> 2) & 2
-    return left + x * BLOCK + r % BLOCK, y * BLOCK + r // BLOCK
 
 
 @kernel(_i(SCENE, _i, _i, _stack, _paths, _many), _nrt=False)

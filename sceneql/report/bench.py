@@ -48,12 +48,13 @@ def bench(
     ``output`` is a folder, or the files' path without extension: CSV and JSON with all runs, SVGs of the error against
     run time and step and of the drift of energy, HTML with all of it. Fields are run on several grids (``grids``), on
     these by all schemes (``schemes``), their systems solved by every linear solver (``linear``); what is of implicit
-    surfaces, those of the first picture at its start, has files of its own (``rays``, ``meshes``, ``surfaces``).
+    surfaces, those of the first picture at its start, in some sizes, has files of its own (``rays``, ``meshes``,
+    ``surfaces``).
     ``words`` is a folder of the user's own words; ``asked`` the relative error for which the cheapest solver is named.
     Raises Unsuitable for a scene without either, RunFailure where no reference reaches the end.
     """
-    frame = pictured(graph)
-    if not graph.islands and frame is None:
+    frames = pictured(graph)
+    if not graph.islands and not frames:
         raise Unsuitable(
             f"nothing in {graph.name} is solved in time or drawn as an implicit surface, so there is nothing to measure"
         )
@@ -91,7 +92,7 @@ def bench(
         lines.append(f"compiled in {compile_seconds:.1f} s, which is in none of the times")
         summary.append(lines[-1])
     stem = file_names(graph.name, "bench", output)
-    section = None if frame is None else surface_section(frame, graph.name, stem)
+    section = surface_section(frames, graph.name, stem) if frames else None
     if section is not None:
         lines += section.lines
         summary.append(section.lines[0])

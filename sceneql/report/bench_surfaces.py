@@ -31,17 +31,14 @@ class Section:
     data: dict[str, Any]
 
 
-def surface_section(frame: Frame, title: str, stem: Path) -> Section:
-    """Measure the implicit objects of a frame; write CSVs and a plot beside ``stem``."""
-    rays = list(ray_runs(frame))
-    solids = [shape for shape in frame.shapes if isinstance(shape, Implicit) and shape.within is None]
+def surface_section(frames: Sequence[Frame], title: str, stem: Path) -> Section:
+    """Measure the implicit objects of a frame in its sizes; write CSVs and a plot beside ``stem``."""
+    by_size = [list(ray_runs(frame)) for frame in frames]
+    rays = [run for runs in by_size for run in runs]
+    solids = [shape for shape in frames[0].shapes if isinstance(shape, Implicit) and shape.within is None]
     meshes = [run for solid in solids for run in mesh_runs(solid)]
-    width, height = frame.view.size
-    lines = [
-        f"implicit surfaces at {width} x {height}, {rays[0].pixels} pixels of them: rays against certified intervals",
-        *map(ray_line, rays),
-        *map(mesh_line, meshes),
-    ]
+    lines = [line for runs in by_size for line in (size_line(runs[0]), *map(ray_line, runs))]
+    lines += map(mesh_line, meshes)
     files = [beside(stem, "rays.csv"), beside(stem, "meshes.csv")]
     for path, kind, runs in ((files[0], RayRun, rays), (files[1], MeshRun, meshes)):
         _write_csv(path, kind, runs)
@@ -50,6 +47,12 @@ def surface_section(frame: Frame, title: str, stem: Path) -> Section:
     tables = [_table("Rays", RayRun, rays), *([_table("Meshes", MeshRun, meshes)] if meshes else [])]
     data = {"rays": [asdict(run) for run in rays], "meshes": [asdict(run) for run in meshes]}
     return Section(lines, tables, [("Implicit surfaces", plot)], [*files, plot], data)
+
+
+def size_line(run: RayRun) -> str:
+    """The picture of a run and others as a line of text."""
+    size = f"{run.width} x {run.height}"
+    return f"implicit surfaces at {size}, {run.pixels} pixels of them: rays against certified intervals"
 
 
 def ray_line(run: RayRun) -> str:

@@ -86,11 +86,14 @@ def surface_errors(path: Path, title: str, rays: Sequence[RayRun], meshes: Seque
             axes = figure.add_subplot(2 + len(named), 1, k + 1)
             logarithmic(axes)
             axes.set(xlabel="run time [s]", ylabel=label, title=title)
-            for renderer, mark in zip(dict.fromkeys(run.renderer for run in rays), MARKS, strict=False):
-                mine = [run for run in rays if run.renderer == renderer]
+            ways = dict.fromkeys((run.renderer, run.width, run.height) for run in rays)
+            for (renderer, width, height), mark in zip(ways, cycle(MARKS), strict=False):
+                mine = [run for run in rays if (run.renderer, run.width) == (renderer, width)]
                 wrong = [max(run.wrong, 0.1) / max(run.pixels, 1) for run in mine]
                 errors = [wrong, [max(run.depth_error, SMALLEST) for run in mine]][k]
-                axes.plot([run.seconds for run in mine], errors, marker=mark, ms=4, label=renderer)
+                axes.plot(
+                    [run.seconds for run in mine], errors, marker=mark, ms=4, label=f"{renderer}, {width} x {height}"
+                )
             explain(axes)
         for k, name in enumerate(named):
             axes = figure.add_subplot(2 + len(named), 1, 3 + k)

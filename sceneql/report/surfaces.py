@@ -22,8 +22,8 @@ TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)
 SAMPLES = tuple(2**k for k in range(4, 13))
 CELLS = (16, 32, 64, 128, 256)
 """Along the longest side of an object's box."""
-PIXELS = 60_000
-"""Of a picture, at the most: a larger one is made smaller."""
+SIZES = 4_000, 16_000, 64_000
+"""Pixels of the pictures, at the most: a larger one is made smaller."""
 REPEATS = 3
 ENOUGH_SECONDS = 3.0
 """A run that takes so long is not repeated, and no finer one is made."""
@@ -34,6 +34,9 @@ class RayRun:
     """A picture's implicit surfaces, looked at once through each pixel's center."""
 
     renderer: str
+    width: int
+    height: int
+    """Of the picture [pixels]."""
     setting: float
     """Tolerance of `trace`, samples on a ray of `march`."""
     seconds: float
@@ -74,8 +77,8 @@ class MeshRun:
     area_error: float
 
 
-def pictured(graph: SimulationGraph) -> Frame | None:
-    """The first picture of a scene with the implicit objects in it alone, made small; None where it shows none."""
+def pictured(graph: SimulationGraph) -> list[Frame]:
+    """The first picture of a scene with the implicit objects in it alone, in rising sizes; none where it shows none."""
     from sceneql.frame import Implicit
 
     for name, drawn in graph.drawn.items():
@@ -84,11 +87,14 @@ def pictured(graph: SimulationGraph) -> Frame | None:
             continue  # before a camera is asked, which may run the physics ahead
         output = cast(Picture, graph.tasks[name].kind)
         width, height = output.pixels
-        share = min(1.0, math.sqrt(PIXELS / (width * height)))
-        size = max(1, round(share * width)), max(1, round(share * height))
-        frame: Frame = pipeline.frame_of(graph, name, size, moment, 0)
-        return replace(frame, shapes=tuple(shape for shape in frame.shapes if isinstance(shape, Implicit)))
-    return None
+        shares = (min(1.0, math.sqrt(pixels / (width * height))) for pixels in SIZES)
+        sizes = dict.fromkeys((max(1, round(share * width)), max(1, round(share * height))) for share in shares)
+        frames: list[Frame] = [pipeline.frame_of(graph, name, size, moment, 0) for size in sizes]
+        return [
+            replace(frame, shapes=tuple(shape for shape in frame.shapes if isinstance(shape, Implicit)))
+            for frame in frames
+        ]
+    return []
 
 
 def timed(work: Callable[[], Any]) -> tuple[Any, float]:
@@ -102,7 +108,10 @@ def timed(work: Callable[[], Any]) -> tuple[Any, float]:
 
 
 def ray_runs(frame: Frame) -> Iterator[RayRun]:
-    """`trace` over tolerances and `march` over samples, against the certified intervals alone."""
+    """`trace` over tolerances and `march` over samples, against the certified intervals alone.
+
+    What `trace` meets in packets, at its usual tolerance, is met in packets here.
+    """
     from renderers.tracing.probe import probe
 
     truth = probe(frame, certain=True)
@@ -131,6 +140,8 @@ def compared(renderer: str, setting: float, seconds: float, found: Probe, truth:
     some = both.any()
     return RayRun(
         renderer=renderer,
+        width=truth.depth.shape[1],
+        height=truth.depth.shape[0],
         setting=setting,
         seconds=seconds,
         pixels=int((there & known).sum()),
