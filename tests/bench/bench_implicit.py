@@ -4,7 +4,8 @@ Run it as ``python tests/bench/bench_implicit.py [--tape] [SCENE...]``. The pict
 and a shadow ray where the light is faced. A pixel is wrong where its center disagrees with the certified routine.
 Nothing is compiled for a scene: tapes are interpreted in lanes, and where one is a polynomial or a density of points
 its exact form along each ray is used besides; with ``--tape`` the interpreter works alone, beside half of each bar.
-POV-Ray is run where it is installed; its figures from another machine are given else.
+POV-Ray is run where it is installed; its figures from another machine are given else. Times are medians of rounds in
+which each is run once. Beside them stands the processor time of `trace` on that picture: what a film pays for shading.
 """
 
 from __future__ import annotations
@@ -13,22 +14,28 @@ import json
 import os
 import re
 import shutil
+import statistics
 import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from bench_certified import frame_of
 from bench_polygonise import SCENES, register, scene_tape
 
+from renderers.trace import Trace
 from sceneql.field import packets
 from sceneql.field.builder import TapeBuilder
 from sceneql.field.packets import Memory, lined
 from sceneql.field.solid import cast, field_values
 from sceneql.field.tape_ops import HIT, INSIDE
+from sceneql.frame import Sun
 from sceneql.kernels import over_tiles
 
 FILE = Path(__file__).parent / "scenes" / "implicit.json"
@@ -38,7 +45,7 @@ POV_ELSEWHERE = {"blob40": (88, 84), "gyroid": (1410, 707), "barth_sextic": (246
 POV_ELSEWHERE |= {"steiner": (113, 104), "shell": (133, 133)}
 """ms with 1 and 2 threads on a Zen 5 machine, POV-Ray 3.7: blob, isosurface, polynomial with sturm."""
 BARS = {"blob40": 12, "gyroid": 25, "barth_sextic": 25, "kummer": 25, "steiner": 25}
-ROUNDS = 15
+ROUNDS = 9
 CROWD = 4000
 
 
@@ -129,15 +136,24 @@ class Picture:
         return int((met != (self.depth.ravel() >= 0.0)).sum())
 
 
-def milliseconds(picture: Picture, threads: int) -> float:
-    """Least time of a picture."""
+def milliseconds(draw: Callable[[], object], threads: int, clock: Callable[[], float] = time.perf_counter) -> float:
+    """Time of a picture."""
     os.environ["SCENEQL_THREADS"] = str(threads)
-    seconds = []
-    for _ in range(ROUNDS):
-        start = time.perf_counter()
-        picture.draw()
-        seconds.append(time.perf_counter() - start)
-    return 1e3 * min(seconds)
+    start = clock()
+    draw()
+    return 1e3 * (clock() - start)
+
+
+def medians(works: dict[str, Callable[[], float]]) -> dict[str, float]:
+    """Of what works return, in rounds of one of each: what slows the machine down slows all of them."""
+    found = [[work() for work in works.values()] for _ in range(ROUNDS)]
+    return dict(zip(works, map(statistics.median, zip(*found, strict=True)), strict=True))
+
+
+def traced(name: str) -> Callable[[], object]:
+    """Has `trace` draw a scene as these pictures show it: one sample, a matte surface, a hard light and its shadow."""
+    frame = replace(frame_of(name), lights=(Sun(tuple(view(name)[3]), (np.pi,) * 3, 0.0),))
+    return lambda: Trace(samples=1).draw(frame)
 
 
 def coefficients(name: str) -> str:
@@ -173,7 +189,7 @@ def povray_object(name: str) -> str:
 
 
 def povray(name: str, threads: int) -> float:
-    """Least ms in which POV-Ray traces a scene."""
+    """ms in which POV-Ray traces a scene once."""
     right, up, way, light, (size, far, _) = view(name)
     camera = f"location {vector(-far * way)} right {vector(WIDTH * size * right)} up {vector(HEIGHT * size * up)}"
     text = (
@@ -194,14 +210,11 @@ def povray(name: str, threads: int) -> float:
             f"+H{HEIGHT}",
             f"+WT{threads}",
         ]
-        times = []
-        for _ in range(3):
-            run = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-            found = re.search(r"Trace Time:.*?\(([\d.]+) seconds\)", run.stderr, re.DOTALL)
-            if found is None:
-                raise RuntimeError(run.stderr[-2000:])
-            times.append(1e3 * float(found[1]))
-    return min(times)
+        run = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+        found = re.search(r"Trace Time:.*?\(([\d.]+) seconds\)", run.stderr, re.DOTALL)
+        if found is None:
+            raise RuntimeError(run.stderr[-2000:])
+        return 1e3 * float(found[1])
 
 
 def main(names: list[str]) -> None:
@@ -209,13 +222,24 @@ def main(names: list[str]) -> None:
     for name in names:
         picture = Picture(name)
         spent, certified, undecided = picture.draw()
-        one, two = milliseconds(picture, 1), milliseconds(picture, 2)
+        draw = traced(name)
+        draw()
+        works = {
+            "one": lambda picture=picture: milliseconds(picture.draw, 1),
+            "two": lambda picture=picture: milliseconds(picture.draw, 2),
+            "trace": lambda draw=draw: milliseconds(draw, 1, time.thread_time),
+        }
+        here = name in BARS and shutil.which("povray")
+        if here:
+            works |= {f"peer {k}": lambda name=name, k=k: povray(name, k) for k in (1, 2)}
+        took = medians(works)
+        one, two = took["one"], took["two"]
         rays = WIDTH * HEIGHT
         line = f"{name:13} {one:6.1f} / {two:5.1f} ms (1 / 2 threads), {spent / rays:.1f} enclosures a pixel,"
         line += f" {certified} rays certified, {undecided} undecided, {picture.wrong()} wrong"
+        line += f"; `trace` {took['trace']:.1f} ms of one processor"
         if name in BARS:
-            here = name != "shell" and shutil.which("povray")
-            peer = (povray(name, 1), povray(name, 2)) if here else POV_ELSEWHERE[name]
+            peer = (took["peer 1"], took["peer 2"]) if here else POV_ELSEWHERE[name]
             line += f"; POV-Ray {'here' if here else 'elsewhere'} {peer[0]:.0f} / {peer[1]:.0f} ms:"
             line += f" ratio {peer[0] / one:.1f} / {peer[1] / two:.1f} (bar {BARS[name]})"
         print(line, flush=True)
