@@ -180,6 +180,18 @@ def test_a_jelly_in_flight_keeps_momentum_and_energy(tmp_path):
     assert end[4] == 0
 
 
+def test_a_retardation_damps_by_the_springs_stiffness(tmp_path):
+    """What swells alike in every direction loses 9 K tau (strain rate)^2 of its volume, K = 2/3 E."""
+    script = JELLY.format(shape=BOX, spacing="0.2 m", more="").replace("kPa}", "kPa, retardation: 2 ms}")
+    kind, state, moment = state_of(tmp_path, script)
+    assert kind.net.dampers == pytest.approx(2e-3 * kind.net.springs)
+    swelling = state.y.copy()
+    n, at, moving = 3 * state.bodies.count, state.bodies.position_at, state.bodies.velocity_at
+    swelling[moving : moving + n] = 0.5 * state.y[at : at + n]
+    rate = moment.run.islands[0].march.rate(0.0, swelling)
+    assert rate[state.bodies.work_at] == pytest.approx(2 * 3 * 30e3 * 2e-3 * 0.5**2 * kind.read("volume", state))
+
+
 def test_a_solid_draws_its_skin_less_what_tore(tmp_path):
     more = "tear: {at: 1.2}"
     kind, state, moment = state_of(tmp_path, JELLY.format(shape=RING, spacing="0.1 m", more=more))
@@ -222,6 +234,7 @@ def test_a_closed_mesh_is_filled_up_to_its_triangles(tmp_path):
         ("shear: 0.5", "tetrahedra have no shear"),
         ("cells: cubes, density: 1 kg/m^3", "cubes have no density"),
         ("cells: cubes, modulus: 1 Pa", "cubes have no modulus"),
+        ("retardation: 1 ms", "a retardation needs a `modulus`"),
         ("density: 0 kg/m^3", "must be above 0"),
     ],
 )

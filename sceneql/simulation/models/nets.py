@@ -65,6 +65,8 @@ class Net:
     """(n,) [kg]; None: the model's, all alike."""
     springs: Floats | None = None
     """(m,) [N/m] in place of the model's stiffness."""
+    dampers: Floats | None = None
+    """(m,) [N s/m] in place of the model's damping."""
 
 
 def alike(net: Net) -> Floats:
@@ -76,6 +78,8 @@ def alike(net: Net) -> Floats:
     blocks[:, 2] = blocks[:, 4] = net.stiffness
     if net.springs is not None:
         blocks[:, 1], blocks[:, 2] = net.springs, 0.0
+    if net.dampers is not None:
+        blocks[:, 3], blocks[:, 4] = net.dampers, 0.0
     return blocks
 
 

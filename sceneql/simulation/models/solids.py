@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from sceneql.kinds import FixedLength, FixedScalar, ObjectRef, Problem, Quantity, Record, field
+from sceneql.kinds import FixedLength, FixedScalar, FixedTime, ObjectRef, Problem, Quantity, Record, field
 from sceneql.quantities import dimension as dim
 from sceneql.simulation.memory import PLACE, bounded, bounded_net
 from sceneql.simulation.models.nets import SIDES, Lattice, Net, neighbors, side_masks
@@ -31,7 +31,8 @@ class Filling(Record):
     they are moved to it or cut (Labelle & Shewchuk 2007), so that the outer masses lie on the surface. Springs run
     along their edges. With a ``modulus`` E each tetrahedron gives a spring of length L along each of its edges
     k = E volume / L^2 (Van Gelder 1998), 1.2 of it along the sides of cubes and 0.9 from their middles: in the small
-    this is an isotropic solid with Young's modulus E and Poisson's ratio 1/4, and a finer one is the same solid.
+    this is an isotropic solid with Young's modulus E and Poisson's ratio 1/4, and a finer one is the same solid. No
+    spring resists that a tetrahedron turns inside out: what is squeezed to nothing may.
     """
 
     object: ObjectRef = field("The object; usually a hidden one.")
@@ -49,12 +50,20 @@ class Filling(Record):
         "Of tetrahedra: Young's modulus, in place of a stiffness of all springs alike.", None, above=0
     )
 
+    retardation: FixedTime | None = field(
+        "With a modulus: viscosity over modulus (Kelvin & Voigt), in place of a damping of all springs alike.",
+        None,
+        at_least=0,
+    )
+
     def problems(self) -> Iterator[Problem]:
-        """Fields of the other cells."""
-        others = ("shear",) if self.cells == "tetrahedra" else ("density", "modulus")
+        """Fields of the other cells, and viscosity without a modulus."""
+        others = ("shear",) if self.cells == "tetrahedra" else ("density", "modulus", "retardation")
         for name in others:
             if getattr(self, name) is not None:
                 yield Problem(f"{self.cells} have no {name}", (name,), at_key=True)
+        if self.cells == "tetrahedra" and self.retardation is not None and self.modulus is None:
+            yield Problem("a retardation needs a `modulus`", ("retardation",), at_key=True)
 
     def fastest(self, stiffness: float, damping: float, mass: float) -> tuple[float, float]:
         """Bounds on (angular frequency)^2 and decay of an endless one, from the model's numbers.
@@ -71,7 +80,8 @@ class Filling(Record):
         if self.modulus is None:
             return factor * stiffness, factor * damping
         springs = 8 / 3 * SHORT * 2 / 3 + 2 * LONG / 3  # [modulus times spacing]
-        return 2 * springs * self.modulus * self.spacing / mass, factor * damping
+        square = 2 * springs * self.modulus * self.spacing / mass
+        return square, factor * damping if self.retardation is None else self.retardation * square
 
     def bounded(self, low: Floats, high: Floats) -> None:
         """Raise Exceeds where places in a box cannot be looked at."""
@@ -143,6 +153,7 @@ class Filling(Record):
             tetrahedra=tetrahedra,
             masses=masses,
             springs=springs,
+            dampers=None if springs is None or self.retardation is None else self.retardation * springs,
         )
 
 
