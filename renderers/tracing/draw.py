@@ -60,20 +60,21 @@ def draw(frame: Frame, samples: int = 8, tolerance: float = TOLERANCE, march: in
     width, height = frame.view.size
     columns = FIRST_LIGHT + 2 * int(scene.ints[LIGHT_COUNT])
     buffers = _buffers(width * height, columns)
-    undecided: list[int] = []
+    counts: list[tuple[int, int]] = []
     together = None if march else packets_for(frame, tolerance)
     with_waves = lender(lambda: Waves(scene, together and together(), rows, columns))
 
     def gather(start: int, stop: int) -> None:
         out = buffers.records, buffers.radiance, buffers.visibility
-        undecided.append(with_waves(lambda w: w.gather(start, stop, *out)))
+        counts.append(with_waves(lambda w: w.gather(start, stop, *out)))
 
     def refine(start: int, stop: int, *of_layer: Floats) -> None:
         records, visibility, fine = of_layer
         with_waves(lambda w: w.refine(start, stop, records, visibility, buffers.means, fine))
 
     over_rows(height, gather)
-    for layer in range(2):
+    undecided, seconds = map(sum, zip(*counts, strict=True))
+    for layer in range(2 if seconds else 1):
         _filter(refine, buffers, layer, width, height)
 
     def shade(start: int, stop: int) -> None:
@@ -90,7 +91,7 @@ def draw(frame: Frame, samples: int = 8, tolerance: float = TOLERANCE, march: in
     over_rows(height, smooth)
     over(frame, buffers.records[0], buffers.radiance, linear)
     _kept[:] = [buffers]
-    return Picture(linear.reshape(height, width, 3), sum(undecided))
+    return Picture(linear.reshape(height, width, 3), undecided)
 
 
 def _filter(refine_rows: Callable[..., None], buffers: Buffers, layer: int, width: int, height: int) -> None:

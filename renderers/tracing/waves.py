@@ -58,17 +58,18 @@ class Waves:
         self.spares = np.zeros((pixels, COLUMNS), dtype=np.float32)
         self.spare = np.empty(columns, dtype=np.float32)
 
-    def gather(self, start: int, stop: int, records: Array, radiance: Array, visibility: Array) -> int:
+    def gather(self, start: int, stop: int, records: Array, radiance: Array, visibility: Array) -> tuple[int, int]:
         """Fill rows start..stop: records (2, h w, COLUMNS), radiance (h w, 3), visibility (2, h w, V).
 
-        Returns the number of pixels with an undecided root. Radiance holds what needs no visibility.
+        Returns how many pixels have an undecided root, and how many a second record. Radiance holds what needs no
+        visibility.
         """
         scene, asked, at = self.scene, self.asked, np.empty_like(self.at)
         count = begin_paths(scene, start, stop, records, self.paths, at)
         self._follow(self.paths[:count], at, records)
         self._ask(0, count, lambda i, end: look_from(scene, self.scratch, asked, i, end, at, records, visibility))
-        undecided: int = end_paths(self.paths[:count], at, records, radiance)
-        return undecided
+        counts: tuple[int, int] = end_paths(self.paths[:count], at, records, radiance)
+        return counts
 
     def refine(self, start: int, stop: int, records: Array, visibility: Array, means: Array, fine: Array) -> None:
         """As refine_kernels.refine."""

@@ -100,19 +100,20 @@ def light_paths(scene, scratch, asked, first, last, paths, spares, visibility):
     return last
 
 
-@kernel(_i(_paths, _many, _stack, _rows), _nrt=False)
+@kernel(types.UniTuple(_i, 2)(_paths, _many, _stack, _rows), _nrt=False)
 def end_paths(paths, at, records, radiance):
     """The radiance of the pixels ``at`` which paths are, but for their records, and whether they are UNSURE.
 
-    Returns how many are.
+    Returns how many are, and how many have a second record.
     """
-    doubted = 0
+    doubted = seconds = 0
     for i in range(paths.shape[0]):
         doubted += paths[i, DOUBTED] > 0.0
+        seconds += records[1, at[i], OWNER] > 0.0
         records[0, at[i], UNSURE] = paths[i, DOUBTED]
         for c in range(3):
             radiance[at[i], c] = paths[i, GATHERED + c]
-    return doubted
+    return doubted, seconds
 
 
 @kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _many, _stack, _stack), _nrt=False)
