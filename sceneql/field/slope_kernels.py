@@ -8,7 +8,7 @@ more than the bounds times the way.
 import numpy as np
 
 from sceneql.field.density_kernels import offset
-from sceneql.field.interval_kernels import TINY, TURN, binary_box, box, outward, over_cut, unary_box, wave
+from sceneql.field.interval_kernels import TINY, TURN, box, hull4, outward, over_cut, unary_box, wave
 from sceneql.field.skeleton_bounds_kernels import skeleton_steepness
 from sceneql.field.tape_ops import (
     ABS,
@@ -49,15 +49,15 @@ def times(a, b, c, d):
     """[a, b] [c, d], where zero times anything is zero."""
     if (a == 0.0 and b == 0.0) or (c == 0.0 and d == 0.0):
         return 0.0, 0.0
-    low, high, _ = binary_box(MUL, a, b, c, d)
-    return low, high
+    return hull4(a * c, a * d, b * c, b * d)
 
 
 @inlined
 def divided(a, b, c, d):
     """[a, b] / [c, d]; all numbers where the divisor may be zero."""
-    low, high, _ = binary_box(DIV, a, b, c, d)
-    return low, high
+    if c <= 0.0 <= d:
+        return -np.inf, np.inf
+    return hull4(a / c, a / d, b / c, b / d)
 
 
 @inlined
