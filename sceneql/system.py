@@ -275,7 +275,10 @@ class Assembly(Protocol):
         """Say that steps of a length chosen by a tolerance must not be longer: something happens that it cannot see."""
 
     def stop_at(self, time: float) -> None:
-        """Say that something happens at an instant [s]: such steps end there. (At keys of values they do already.)"""
+        """Say that something happens at an instant [s]: such steps end there."""
+
+    def stop_where_it_turns(self, expr: Expr) -> None:
+        """Say that a formula is read: such steps end where the time switches it. (So they do for each `value`.)"""
 
     def start(self) -> Any:
         """The state reserved so far (n,), at the start of the run."""

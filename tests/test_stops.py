@@ -32,8 +32,12 @@ def test_keys_and_switches_are_stops_whatever_they_stand_in():
     assert found(keys()) == [(1.0, 0.0), (2.5, 0.0)]
     assert found(keys(later, number(4.0))) == [(0.25, 2.0), (1.0, 2.0)]
     assert found(keys(linked)) == [(0.25, 0.0), (1.0, 0.0)]
-    assert found(Call("mul", (number(3.0), Call("gt", (later, number(4.0)), Type())), Type())) == [(1.75, 0.0)]
-    assert found(Call("max", (number(0.0), Call("sub", (TIME, number(3.0)), Type())), Type())) == [(3.0, 0.0)]
+    assert found(Call("mul", (number(3.0), Call("gt", (later, number(4.0)), Type())), Type())) == [
+        (pytest.approx(1.75, rel=1e-15), 0.0)
+    ]
+    assert found(Call("max", (number(0.0), Call("sub", (TIME, number(3.0)), Type())), Type())) == [
+        (pytest.approx(3.0, rel=1e-15), 0.0)
+    ]
     assert found(Call("gt", (Call("sin", (TIME,), Type()), number(0.5)), Type())) == []
     assert found(keys(Call("neg", (TIME,), Type()))) == []
 
@@ -76,7 +80,22 @@ forces:
       linear: 1 N*s/m
 """
     ((v,),) = watch(tmp_path, script, [4.0], "p.a.velocity")
-    assert v[0] == pytest.approx(1000 * (1 - math.exp(-0.01)) * math.exp(-0.99), rel=1e-4)
+    assert v[0] == pytest.approx(1000 * (1 - math.exp(-0.01)) * math.exp(-0.99), rel=1e-6)
+
+
+@pytest.mark.parametrize("solver", ADAPTIVE)
+def test_switches_within_formulas_are_felt(tmp_path, solver):
+    script = f"""
+models:
+  q: {{equations: {{start: {{y: 0}}, where: {{on: "t > 3"}}, rate: {{y: "on*where(time < 3.01, 700, 0)"}}}}}}
+  p: {{particles: {{list: {{a: {{position: 0 0 0}}}}}}}}
+forces: [{{force: {{components: "[where(t > 3, where(t < 3.01, 700, 0), 0), 0, 0]"}}}}]
+objects: {{seen: {{sphere: {{radius: 1 m, position: [q.y, 0, 0]}}}}}}
+solvers: {{main: {solver}}}
+"""
+    ((y, v),) = watch(tmp_path, script, [4.0], "q.y", "p.a.velocity")
+    assert y == pytest.approx(7, rel=1e-9)
+    assert v[0] == pytest.approx(7, rel=1e-9)
 
 
 @pytest.mark.parametrize("solver", ["auto", "{radau: {}}"])

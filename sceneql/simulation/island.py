@@ -265,6 +265,10 @@ class IslandAssembly:
         """Let steps that a tolerance chooses end at an instant (system.Assembly)."""
         self._stops.add((time, 0.0))
 
+    def stop_where_it_turns(self, expr: Expr) -> None:
+        """Let them end where a formula turns (system.Assembly)."""
+        self._stops.update(stops(expr, self.setting.formula))
+
     def line(self) -> Span | None:
         """Where in the script the word stands that is being assembled."""
         return self._word[1]
@@ -363,7 +367,7 @@ class IslandAssembly:
         program: list[int] = []
         found = Diagnostics()
         for first, value in self._varying:
-            self._stops.update(stops(value.expr, self.setting.formula))
+            self.stop_where_it_turns(value.expr)
             try:
                 program += inputs.program(value, first)
             except ScriptError as error:

@@ -16,7 +16,7 @@ from sceneql.simulation.driver import driver, function, jacobian
 from sceneql.simulation.island import STAGE, IslandAssembly, System
 from sceneql.simulation.jacobian import BY_DIFFERENCES
 from sceneql.simulation.pointers_kernels import addresses
-from sceneql.simulation.stops import next_stop
+from sceneql.simulation.stops import before, next_stop
 from sceneql.simulation.switching import Switch
 from sceneql.system import Prepared
 
@@ -90,8 +90,7 @@ class March:
         if stepper.stiff is not None and stepper.adaptive and takes_turns:
             self._switch = Switch(stepper, stepper.stiff, int((system.partner < 0).sum()))
         self._last_look = 0
-        self._stop = 0.0
-        self._pass_stop()
+        self._look_for_stop(0.0)
         self._engage(stepper)
 
     def _engage(self, stepper: Stepper) -> None:
@@ -128,9 +127,17 @@ class March:
         self._counts[kernels.LAST_STAGE] = -1 if local and between else stepper.last_stage
         self._counts[kernels.CONTROLS] = stepper.controls
 
+    def _look_for_stop(self, time: float) -> None:
+        """Find what turns next after an instant: a step of chosen length ends before it, by as little as can be."""
+        self._stop = next_stop(self.system.stops, time, self.end) if self.stepper.adaptive else self.end
+        self._step_end = before(self._stop) if self._stop < self.end else self.end
+
     def _pass_stop(self) -> None:
-        """Look for the next instant at which a step of chosen length has to end."""
-        self._stop = next_stop(self.system.stops, self._stop, self.end) if self.stepper.adaptive else self.end
+        """Go on behind what turns: the next step begins with what is there then."""
+        self._clock[kernels.T1] = self._stop
+        self._rate1[:] = self.rate(self._stop, self._y1)
+        self._floats_time = math.nan
+        self._look_for_stop(self._stop)
 
     def _change(self, switch: Switch, t: float) -> None:
         """Go on with the method that a switch has chosen, if it takes this island."""
@@ -269,8 +276,8 @@ class March:
             counts[kernels.LEFT] = left
             status = kernels.march(
                 self._functions,
-                min(target, self._stop),
-                self._stop,
+                min(target, self._step_end),
+                self._step_end,
                 self._y0,
                 self._rate0,
                 self._y1,
@@ -291,7 +298,7 @@ class March:
                 counts[kernels.SWAPPED] = 0
             if status == kernels.PAUSED:
                 self._look()
-            elif status == kernels.REACHED and target > self._stop:
+            elif status == kernels.REACHED and target > self._step_end:
                 self._pass_stop()
             elif not self._goes_on(status):
                 break

@@ -10,6 +10,7 @@ from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Expr, Symbol
 from sceneql.simulation.shift import APART, later
+from sceneql.simulation.stops import after
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -72,7 +73,7 @@ def guide(pins: Mapping[str, Pin], net: Net, assembly: Assembly, bodies: Bodies)
         places = (bodies.position_at, bodies.velocity_at, bodies.work_at, bodies.mass_at, bodies.inverse_at)
         if pin.until is not None:
             assembly.stop_at(pin.until - APART)  # frames within a step see the rates at both ends: the last is short
-            assembly.stop_at(pin.until)
+            assembly.stop_at(after(pin.until))
         until = assembly.floats([float("inf") if pin.until is None else pin.until])
         ints = (*places, *shifts, assembly.floats([APART]), starts, until, len(masses), *masses.tolist())
         alone = Slopes("", (), ())

@@ -57,6 +57,8 @@ def add_force(
     """Add the force [N] of three scalar rows to every mass; ``counted``: what it gives is counted in the work."""
     from sceneql.system import Slopes
 
+    for row in rows:
+        assembly.stop_where_it_turns(row)
     constants = Constants()
     printer = Printer(NAMES, {}, constants)
     forces = [printer.name(row) for row in [constants.lift(row) for row in rows]]

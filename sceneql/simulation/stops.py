@@ -9,12 +9,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator
 
+from sceneql.kinds.values import TIME
 from sceneql.quantities.curves import known_table
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import TIME_SYMBOL, Call, Expr, Keys, Link, Symbol, walk
+from sceneql.quantities.expression import Call, Expr, Keys, Link, Symbol, walk
 
 Stop = tuple[float, float]
-"""An instant and the period that it comes again with, 0 for none [s]."""
+"""An instant at which what is new holds, and the period that it comes again with, 0 for none [s]."""
 
 TURNING = ("lt", "le", "gt", "ge", "eq", "min", "max")
 """Operations on two numbers whose value turns where they are equal."""
@@ -40,7 +41,17 @@ def stops(expr: Expr, formula: Callable[[Link], Expr | None]) -> Iterator[Stop]:
             case Call(op=op, args=args) if op in TURNING and len(args) == 2 and not any(one.type.shape for one in args):
                 (first, rise), (second, climb) = (_even(one, formula) for one in args)
                 if rise != climb and not math.isnan(rise - climb):
-                    yield (second - first) / (rise - climb), 0.0
+                    yield after((second - first) / (rise - climb), 2), 0.0
+
+
+def after(time: float, steps: int = 4) -> float:
+    """As little later as tells that rounding leaves it on the other side of an instant."""
+    return time + steps * math.ulp(time)
+
+
+def before(time: float) -> float:
+    """As little earlier."""
+    return time - 4 * math.ulp(time)
 
 
 def _even(expr: Expr, formula: Callable[[Link], Expr | None]) -> tuple[float, float]:
@@ -48,7 +59,7 @@ def _even(expr: Expr, formula: Callable[[Link], Expr | None]) -> tuple[float, fl
 
     def at(time: float) -> float:
         def look_up(node: Symbol | Link) -> float:
-            if isinstance(node, Symbol) and node.name == TIME_SYMBOL:
+            if isinstance(node, Symbol) and node.name in TIME:
                 return time
             meaning = formula(node) if isinstance(node, Link) else None
             if meaning is None:
