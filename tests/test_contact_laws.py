@@ -138,6 +138,19 @@ def test_a_moving_surface_hands_on_its_speed(tmp_path, mode, wall):
 
 
 @pytest.mark.parametrize("mode", SOLVERS)
+@pytest.mark.parametrize("speed", [1, 10, 100])
+def test_a_fast_bat_strikes_a_resting_ball_along_the_line_of_centers(tmp_path, mode, speed):
+    bat = f'{{bat: {{sphere: {{radius: 0.05 m, position: ["{speed} m/s*(time - 1 s)", 0.02 m, 0 m]}}}}}}'
+    contact = f"{{between: [ball, bat], restitution: 1, mode: {mode}}}"
+    start = "position: 0 0 0 m, velocity: 0 0 0 m/s, radius: 0.05 m"
+    script = ball(contact, bat, start, 1.5, "{rk4: {step: 10 ms}}", "[]")
+    ((v, count),) = watch(tmp_path, script, [1.5], "ball.a.velocity", "hit.hits.count")
+    normal = np.array([math.sqrt(0.96), -0.2, 0.0])
+    np.testing.assert_allclose(v, 2 * speed * normal[0] * normal, atol=1e-6 * speed)
+    assert count == 1
+
+
+@pytest.mark.parametrize("mode", SOLVERS)
 @pytest.mark.parametrize(
     ("pose", "place", "v"),
     [

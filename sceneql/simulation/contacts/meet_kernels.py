@@ -6,7 +6,7 @@ from numba import types
 from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.contacts.impulse_kernels import HEAD, OBJECTS, PAIRS
 from sceneql.simulation.contacts.memory_kernels import FREE, PAIR
-from sceneql.simulation.contacts.path_kernels import NEVER, first_contact
+from sceneql.simulation.contacts.path_kernels import NEVER, first_contact, place
 from sceneql.simulation.contacts.shape_kernels import OBJECT, velocity
 from sceneql.system_kernels import A, F, I, N
 
@@ -24,6 +24,15 @@ def shift(path, ux, uy, uz, h):
         path[9] += ux
         path[10] += uy
         path[11] += uz
+
+
+@lean_inlined
+def seen(path, s, floats, ints, at):
+    """Where the body is at s, as `earliest` sees it from an object: that stands where it is at the path's end."""
+    x, y, z = place(path, s)
+    left = (1.0 - s) * path[12]
+    ux, uy, uz = velocity(floats, ints, at, path[0], path[1], path[2])
+    return x + left * ux, y + left * uy, z + left * uz
 
 
 @lean(types.Tuple((F, N))(N, F, A, A, I), inner=True)

@@ -29,7 +29,7 @@ from sceneql.simulation.contacts.impulse_kernels import (
     bounce,
     count_hit,
 )
-from sceneql.simulation.contacts.meet_kernels import earliest
+from sceneql.simulation.contacts.meet_kernels import earliest, seen
 from sceneql.simulation.contacts.memory_kernels import (
     ANSWER,
     ASKED,
@@ -72,7 +72,7 @@ AFTER_IMPACT = 1e-4
 def hits(s, whole, j, path, mean, floats, ints):
     """Whether the contact at s with object j is an impact, not the beginning of rest."""
     at = HEAD + OBJECT * j
-    x, y, z = place(path, s)
+    x, y, z = seen(path, s, floats, ints, at)
     vx, vy, vz = moving(path, s)
     ux, uy, uz = velocity(floats, ints, at, x, y, z)
     _, nx, ny, nz = surface(floats, ints, at, x, y, z)
@@ -92,10 +92,11 @@ def fly(k, t1, whole, reach, path, mean, floats, ints):
         at = HEAD + OBJECT * j
         px, py, pz = place(path, s)
         vx, vy, vz = moving(path, s)
-        d, nx, ny, nz = surface(floats, ints, at, px, py, pz)
+        qx, qy, qz = seen(path, s, floats, ints, at)
+        d, nx, ny, nz = surface(floats, ints, at, qx, qy, qz)
         # Onto the surface: a root is found to rounding, a body may start a little inside.
         d = min(0.0, d - reach)
-        ux, uy, uz = velocity(floats, ints, at, px, py, pz)
+        ux, uy, uz = velocity(floats, ints, at, qx, qy, qz)
         rx, ry, rz = vx - ux, vy - uy, vz - uz
         vn = rx * nx + ry * ny + rz * nz
         press = min(0.0, mean[0] * nx + mean[1] * ny + mean[2] * nz)
