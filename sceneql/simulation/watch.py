@@ -21,6 +21,8 @@ COST, AT_LEAST = 0.008, 0.005
 """Part of the time of the run that looking may take, and seconds that it may take in any case."""
 MOST_STATES = 20_000
 """Of an island that is looked at without being asked: the first and the last look are not free."""
+MOST_PAIRED = 256
+"""Bodies of one with forces between all of them."""
 GAINED = 0.5
 """Energy gained, as a part of the largest kinetic energy, that is warned of."""
 OVERSTRETCHED = 4.0
@@ -146,9 +148,11 @@ class Watch:
 
 
 def _cheap(island: IslandRun) -> bool:
-    """Whether its energy is told in no time: forces between all masses take their own."""
+    """Whether its energy is told in no time: forces between very many masses take their own."""
     forces = (cast(Force, island.graph.tasks[force].kind) for force, _ in island.island.forces)
-    return len(island.march.system.y) <= MOST_STATES and not any(force.mutual for force in forces)
+    bodies = sum(0 if one is None else one.count for one in island.bodies.values())
+    paired = bodies > MOST_PAIRED and any(force.mutual for force in forces)
+    return len(island.march.system.y) <= MOST_STATES and not paired
 
 
 def _telling(island: IslandRun) -> tuple[str, ...]:
