@@ -14,6 +14,7 @@ from pydantic import ValidationError
 from scipy.integrate import solve_ivp
 
 from islands import assembly
+from runs import watch
 from sceneql import kernels, pipeline
 from sceneql.kinds import Formula
 from sceneql.quantities.bind import bind
@@ -323,3 +324,26 @@ def test_errors_point_into_the_script(tmp_path):
     with pytest.raises(ScriptError, match="w has a rate but no value at the start") as caught:
         pipeline.load(tmp_path / "scene.yaml")
     assert caught.value.diagnostics[0].span.line == 8
+
+
+@pytest.mark.parametrize("order", ["pq", "qp"])
+@pytest.mark.parametrize("solver", ["auto", "{rk4: {step: 1 ms}}", "{radau: {}}"])
+def test_equations_read_masses_and_forces_read_equations(tmp_path, order, solver):
+    models = {
+        "p": "p: {particles: {list: {a: {position: 1 0 0 m}}}}",
+        "q": "q: {equations: {start: {y: 0}, rate: {y: p.a.position.x}}}",
+    }
+    script = f"""
+clock: {{end: 2 s}}
+models:
+  {models[order[0]]}
+  {models[order[1]]}
+forces: [{{force: {{components: "[-x - 0.3*q.y, 0, 0]"}}}}]
+solvers: {{main: {solver}}}
+"""
+    ((x, y),) = watch(tmp_path, script, [2], "p.a.position", "q.y")
+    # x''' = -x' - 0.3 x for y' = x.
+    roots = np.roots([1, 0, 1, 0.3])
+    parts = np.linalg.solve(np.array([roots**0, roots, roots**2]), [1, 0, -1])
+    assert x[0] == pytest.approx((parts * np.exp(2 * roots)).sum().real, abs=1e-5)
+    assert y == pytest.approx((parts / roots * (np.exp(2 * roots) - 1)).sum().real, abs=1e-5)
