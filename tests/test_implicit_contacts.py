@@ -183,3 +183,24 @@ solvers: {main: {SOLVER}}
         half, end = watch(tmp_path, script.replace("SOLVER", solver), [0.5, 1], "dust.positions")
         np.testing.assert_allclose(half[0][:, 1], 0.001, atol=1e-9)
         np.testing.assert_allclose(end[0][:, 1], 0.001 + 20 * 0.5**3 / 6, atol=1e-2)
+
+
+@pytest.mark.parametrize("solver", BETWEEN)
+def test_a_valley_of_two_slopes_holds_what_rests_on_both(tmp_path, solver):
+    script = f"""
+clock: {{end: 1 s}}
+models: {{dust: {{particles: {{fill: {{object: room, count: 100}}, radius: 10 mm}}}}}}
+objects:
+  room: {{box: {{size: 0.1 0.1 1 m, position: 0 0.3 0 m, hidden: yes}}}}
+  left: {{plane: {{normal: 1 1 0}}}}
+  right: {{plane: {{normal: -1 1 0}}}}
+forces: [gravity]
+contacts: {{hit: {{collision: {{between: [dust, left, right], restitution: 0, mode: local}}}}}}
+solvers: {{main: {{{solver}}}}}
+"""
+    outputs = ("dust.positions", "dust.velocities", "dust.energy")
+    start, end = watch(tmp_path, script, [0, 1], *outputs)
+    expected = start[0] * [0, 0, 1] + [0, 0.01 * np.sqrt(2), 0]
+    np.testing.assert_allclose(end[0], expected, atol=1e-9)
+    np.testing.assert_allclose(end[1], 0, atol=1e-9)
+    assert end[2] == pytest.approx(start[2], rel=1e-3)

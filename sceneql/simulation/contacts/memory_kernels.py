@@ -58,6 +58,8 @@ FIRMEST = 1e6
 
 OF_BODY = types.void(N, A, A, A, I)
 """(body, state, rate, floats, ints)."""
+OF_PAIR = types.void(N, N, F, F, F, A, A, A, I)
+"""(body, memory of the pair, normal, state, rate, floats, ints)."""
 SETTLE_HELD = types.void(F, F, A, A, A, I)
 """(start and end of the step, state at both, floats, ints)."""
 SUPPORT = types.void(N, A, A, A, I)

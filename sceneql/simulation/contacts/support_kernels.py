@@ -19,6 +19,7 @@ from sceneql.simulation.contacts.memory_kernels import (
     LIST,
     LOAD,
     OF_BODY,
+    OF_PAIR,
     PAIR,
     PRESS,
     RESTING,
@@ -32,6 +33,7 @@ from sceneql.simulation.contacts.shape_kernels import facing
 rub = late("sceneql.simulation.contacts.friction_kernels:rub", OF_BODY)
 carry = late("sceneql.simulation.contacts.carry_kernels:carry", OF_BODY)
 tie = late("sceneql.simulation.contacts.tie_kernels:tie", OF_BODY)
+tie_one = late("sceneql.simulation.contacts.tie_kernels:tie_one", OF_PAIR)
 
 
 @lean_inlined
@@ -101,8 +103,10 @@ def support(first, y, rate, floats, ints):
         if floats[ints[INVERSE] + k] == 0.0:
             continue
         resting, memory, nx, ny, nz = press_of_pairs(k, near, y, rate, floats, ints)
-        if resting > 0 and ties:
+        if resting > 1 and ties:
             tie(k, y, rate, floats, ints)
+        elif resting == 1 and ties:
+            tie_one(k, memory, nx, ny, nz, y, rate, floats, ints)
         elif resting > 1:
             carry(k, y, rate, floats, ints)
         elif resting == 1:

@@ -7,9 +7,9 @@ acceleration all that leads off the surface, and the normal velocity at a rate f
 at the solution, but slopes that have it say that the mass is held, and lose no symmetry (hold_slopes_kernels).
 """
 
-from sceneql.kernels import lean
+from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.contacts.impulse_kernels import HEAD, OBJECTS, PAIRS, VELOCITY
-from sceneql.simulation.contacts.memory_kernels import FREE, LOAD, OF_BODY, PAIR, PRESS, tightness
+from sceneql.simulation.contacts.memory_kernels import FREE, LOAD, OF_BODY, OF_PAIR, PAIR, PRESS, tightness
 from sceneql.simulation.contacts.pair_kernels import body_of
 from sceneql.simulation.contacts.pressing_kernels import pressing
 from sceneql.simulation.contacts.shape_kernels import OBJECT, surface, velocity
@@ -18,15 +18,39 @@ SWEEPS = 50
 """Over the objects that a body rests on at once."""
 
 
+@lean_inlined
+def restrain(k, memory, nx, ny, nz, y, rate, floats, ints):
+    """Note what the pair bears, and take its normal velocity away."""
+    floats[memory + PRESS] = -floats[memory + LOAD]
+    floats[memory + LOAD] = max(0.0, floats[memory + LOAD])
+    to = ints[VELOCITY] + 3 * k
+    px, py, pz, vx, vy, vz = body_of(ints, k, y)
+    j = (memory - ints[PAIRS]) // PAIR - k * ints[OBJECTS]
+    ux, uy, uz = velocity(floats, ints, HEAD + OBJECT * j, px, py, pz)
+    speed = tightness(floats, ints) * ((vx - ux) * nx + (vy - uy) * ny + (vz - uz) * nz)
+    rate[to] -= speed * nx
+    rate[to + 1] -= speed * ny
+    rate[to + 2] -= speed * nz
+
+
+@lean(OF_PAIR, inner=True)
+def tie_one(k, memory, nx, ny, nz, y, rate, floats, ints):
+    """Tie body k to the only thing that it rests on, whose pressing is known."""
+    to = ints[VELOCITY] + 3 * k
+    press = floats[memory + PRESS]
+    floats[memory + LOAD] = -press
+    rate[to] -= press * nx
+    rate[to + 1] -= press * ny
+    rate[to + 2] -= press * nz
+    restrain(k, memory, nx, ny, nz, y, rate, floats, ints)
+
+
 @lean(OF_BODY, inner=True)
 def tie(k, y, rate, floats, ints):
-    """Tie body k to all that it rests on; their loads, where they press, stay in the memory."""
+    """Tie body k to all that it rests on."""
     to = ints[VELOCITY] + 3 * k
     objects = ints[OBJECTS]
-    resting = 0
-    for j in range(objects):
-        resting += floats[ints[PAIRS] + PAIR * (k * objects + j)] != FREE
-    for _ in range(SWEEPS if resting > 1 else 1):
+    for _ in range(SWEEPS):
         change = 0.0
         for j in range(objects):
             memory = ints[PAIRS] + PAIR * (k * objects + j)
@@ -40,18 +64,9 @@ def tie(k, y, rate, floats, ints):
             change = max(change, abs(press))
         if change < 1e-12:
             break
-    tight = tightness(floats, ints)
+    px, py, pz, _, _, _ = body_of(ints, k, y)
     for j in range(objects):
         memory = ints[PAIRS] + PAIR * (k * objects + j)
-        if floats[memory] == FREE:
-            continue
-        floats[memory + PRESS] = -floats[memory + LOAD]
-        floats[memory + LOAD] = max(0.0, floats[memory + LOAD])
-        at = HEAD + OBJECT * j
-        px, py, pz, vx, vy, vz = body_of(ints, k, y)
-        _, nx, ny, nz = surface(floats, ints, at, px, py, pz)
-        ux, uy, uz = velocity(floats, ints, at, px, py, pz)
-        speed = tight * ((vx - ux) * nx + (vy - uy) * ny + (vz - uz) * nz)
-        rate[to] -= speed * nx
-        rate[to + 1] -= speed * ny
-        rate[to + 2] -= speed * nz
+        if floats[memory] != FREE:
+            _, nx, ny, nz = surface(floats, ints, HEAD + OBJECT * j, px, py, pz)
+            restrain(k, memory, nx, ny, nz, y, rate, floats, ints)
