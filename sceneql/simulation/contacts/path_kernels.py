@@ -10,6 +10,7 @@ from numba import types
 
 from sceneql.compiling.late import late
 from sceneql.kernels import lean, lean_inlined
+from sceneql.simulation.contacts.impulse_kernels import POSITION, VELOCITY
 from sceneql.simulation.contacts.shape_kernels import FLAT, clear, facing
 from sceneql.system_kernels import A, F, I, N
 
@@ -17,6 +18,17 @@ NEVER = 2.0
 SEARCH = types.float64(A, F, A, I, N, F)
 
 search = late("sceneql.simulation.contacts.search_kernels:search", SEARCH)
+
+
+@lean_inlined
+def set_out(k, h, y0, y1, path, mean, ints):
+    """The path of body k in a step of length h, and its mean acceleration."""
+    at, to = ints[POSITION] + 3 * k, ints[VELOCITY] + 3 * k
+    for c in range(3):
+        path[c], path[3 + c] = y0[at + c], y0[to + c]
+        path[6 + c], path[9 + c] = y1[at + c], y1[to + c]
+        mean[c] = (y1[to + c] - y0[to + c]) / h
+    path[12] = h
 
 
 @lean_inlined

@@ -52,7 +52,7 @@ from sceneql.simulation.contacts.memory_kernels import (
     WHOLE,
 )
 from sceneql.simulation.contacts.pair_kernels import is_flat
-from sceneql.simulation.contacts.path_kernels import NEVER, moving, place
+from sceneql.simulation.contacts.path_kernels import NEVER, moving, place, set_out
 from sceneql.simulation.contacts.resting_kernels import come_to_rest, keep, lies
 from sceneql.simulation.contacts.shape_kernels import OBJECT, clear, surface, velocity
 from sceneql.simulation.contacts.slide_kernels import fly_on, slide, start_with
@@ -149,17 +149,6 @@ def push_out(reach, path, mean, floats, ints):
         if apart:
             break
     return work + 0.5 * (before - path[9] ** 2 - path[10] ** 2 - path[11] ** 2)
-
-
-@lean_inlined
-def set_out(k, h, y0, y1, path, mean, ints):
-    """The path of body k in the step of length h, and its mean acceleration."""
-    at, to = ints[POSITION] + 3 * k, ints[VELOCITY] + 3 * k
-    for c in range(3):
-        path[c], path[3 + c] = y0[at + c], y0[to + c]
-        path[6 + c], path[9 + c] = y1[at + c], y1[to + c]
-        mean[c] = (y1[to + c] - y0[to + c]) / h
-    path[12] = h
 
 
 @lean_inlined

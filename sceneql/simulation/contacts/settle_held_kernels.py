@@ -49,7 +49,7 @@ from sceneql.simulation.contacts.memory_kernels import (
     WHOLE,
 )
 from sceneql.simulation.contacts.pair_kernels import body_of
-from sceneql.simulation.contacts.path_kernels import NEVER
+from sceneql.simulation.contacts.path_kernels import NEVER, set_out
 from sceneql.simulation.contacts.resting_kernels import come_to_rest, set_velocity
 from sceneql.simulation.contacts.settle_kernels import find_near
 from sceneql.simulation.contacts.shape_kernels import DEPTH, MOVING, NEAR, OBJECT, near_at, surface, velocity
@@ -79,11 +79,7 @@ def find_missed(h, y0, y1, found, listed, path, mean, floats, ints):
     for k in range(ints[BODIES]):
         if found[k] == 0.0:
             continue
-        at, to = ints[POSITION] + 3 * k, ints[VELOCITY] + 3 * k
-        for c in range(3):
-            path[c], path[3 + c] = y0[at + c], y0[to + c]
-            path[6 + c], path[9 + c] = y1[at + c], y1[to + c]
-        path[12] = h
+        set_out(k, h, y0, y1, path, mean, ints)
         reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
         held = False
         for j in range(ints[OBJECTS]):
