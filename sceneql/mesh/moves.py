@@ -84,7 +84,7 @@ class Stars:
     def __init__(self, triangles: Ints) -> None:
         import numpy as np
 
-        corners = triangles.ravel()
+        corners = triangles.ravel().astype(np.int64)  # as vertices are asked for: else all are converted at each call
         self.triangles, self._order = triangles, np.argsort(corners, kind="stable")
         self._ascending = corners[self._order]
 
