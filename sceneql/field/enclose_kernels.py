@@ -4,7 +4,7 @@
 import numpy as np
 
 from sceneql.field.affine_kernels import GROW, PAD, ZERO, F, product, squared
-from sceneql.field.forms_kernels import never_negative
+from sceneql.field.forms_kernels import row_never_negative
 from sceneql.field.packet_density_kernels import density_lanes
 from sceneql.field.packet_kernels import (
     C1,
@@ -87,9 +87,9 @@ def enclose(code, constants, parts, registers, point, status, n):
                 turn_lanes(a, out, n)
             wave_lanes(op, a, out, twin, n)
         elif op <= ATAN2:
-            binary_lanes(op, a, b, out, n, status, never_negative(code[left, 0]))
+            binary_lanes(op, a, b, out, n, status, row_never_negative(code, left))
         elif op <= SIGN:
-            unary_lanes(op, a, out, n, status, never_negative(code[left, 0]))
+            unary_lanes(op, a, out, n, status, row_never_negative(code, left))
         else:  # nothing is claimed of an operation that has no lanes
             for i in range(n):
                 out[i] = F(np.nan)

@@ -1,7 +1,7 @@
 # mypy: ignore-errors
 """Affine forms c0 + c1 tau +- e, tau in [-1, 1]: what every kernel of enclosures along a ray is made of."""
 
-from sceneql.field.tape_ops import ABS, EXP, SQRT, SQUARE
+from sceneql.field.tape_ops import ABS, ADD, EXP, SQRT, SQUARE
 from sceneql.kernels import inlined
 
 PAD = 1.0e-15
@@ -16,6 +16,20 @@ WIDER = 1.0 + 4.0e-15
 def never_negative(op):
     """Whether values of an operation are at least 0, whatever their enclosure says."""
     return op == ABS or op == SQUARE or op == SQRT or op == EXP
+
+
+@inlined
+def row_never_negative(code, k):
+    """The same of a row, also where it is a sum of such."""
+    while code[k, 0] == ADD:
+        left, right = code[k, 1], code[k, 2]
+        if never_negative(code[left, 0]):
+            k = right
+        elif never_negative(code[right, 0]):
+            k = left
+        else:
+            return False
+    return never_negative(code[k, 0])
 
 
 @inlined

@@ -6,20 +6,25 @@ can tell no more is left UNDECIDED at a place up to which all is proved outside,
 Places along a ray are counted from its own start, so that float32 numbers them finely.
 """
 
+import numpy as np
+
 from sceneql.field.affine_kernels import GROW, HALF, ONE, PAD, TINY, TWO, ZERO, F
 from sceneql.field.packet_kernels import C1, LANES, PACKET, E, enclose, place
 from sceneql.field.tape_ops import HIT, MISS, NOWHERE, UNDECIDED, WHOLE
 from sceneql.kernels import inlined, lean
 
-OX, OY, OZ, DX, DY, DZ, A, B, END, CUT_FROM, CUT_TO, HELD, TRIES, STATE, ROOT, SLOPE, LENGTH = range(17)
+OX, OY, OZ, DX, DY, DZ, A, B, END, CUT_FROM, CUT_TO, HELD, TRIES, LENGTH, STATE, ROOT, SLOPE = range(17)
 """Rows of ``lanes``, each of LANES, one behind the other: ray, segment, where the search ends, a piece cut out, whether
-the inside is proved at the end, enclosures so far, outcome (LIVE until there is one), root and slope [1/t] of the last
-enclosure, length of the search."""
+the inside is proved at the end, enclosures so far, length of the search, outcome (LIVE until there is one), root and
+slope [1/t] of the last enclosure."""
 ROWS = 17
 LIVE = F(-1.0)
 LARGE = F(1.0e36)
 FINE, ROUGH, LEAST = F(2.0e-5), F(1.0e-4), F(2.0e-6)
 """Widths relative to the search: of a bracket good enough; of one that float32 cannot narrow; too small to cut."""
+SAFE, SHORTEST, LONGEST, AFTER_CUT = F(0.8), F(0.25), F(8.0), TWO
+"""The next segment, relative to how far the enclosure foretells the outside; least part of one that is looked at again;
+longest one, relative to the segment just rejected, and to a piece cut out just passed."""
 MOST = F(48.0)
 """Enclosures after which a ray is left to the certified routine."""
 SETTLED = 1e-6
@@ -29,8 +34,15 @@ RAY = 8
 """Rows of rays: origin, direction, begin and end."""
 FOUND_STATUS, FOUND_LOW, FOUND_HIGH, FOUND_ROOT, FOUND_SLOPE = range(5)
 """Rows of what is found, by ray; places from the ray's own start."""
-NEAR, FAR, RUN = range(3)
-"""Rows of what is asked, by ray: where to begin and to end, and where the first segment ends."""
+NEAR, FAR, RUN, SURE = range(4)
+"""Rows of what is asked, by ray: where to begin and to end, where the first segment ends, 1 where the end is known to
+be inside."""
+
+
+@inlined
+def place_of(row, i):
+    """Where in ``lanes`` a row has its number for lane i."""
+    return np.uint64(row * LANES) + np.uint64(i)
 
 
 @inlined
@@ -38,15 +50,28 @@ def load(lanes, i, rays, j, asked):
     """Put ray j into lane i."""
     t0 = rays[6, j]
     for axis in range(3):
-        lanes[(OX + axis) * LANES + i] = rays[axis, j] + t0 * rays[3 + axis, j]
-        lanes[(DX + axis) * LANES + i] = rays[3 + axis, j]
-    lanes[A * LANES + i] = asked[NEAR, j]
-    lanes[B * LANES + i] = asked[RUN, j]
-    lanes[END * LANES + i] = asked[FAR, j]
-    lanes[CUT_FROM * LANES + i] = lanes[CUT_TO * LANES + i] = asked[FAR, j]
-    lanes[LENGTH * LANES + i] = rays[7, j] - t0
-    lanes[HELD * LANES + i] = lanes[TRIES * LANES + i] = ZERO
-    lanes[STATE * LANES + i] = LIVE
+        lanes[place_of(OX + axis, i)] = rays[axis, j] + t0 * rays[3 + axis, j]
+        lanes[place_of(DX + axis, i)] = rays[3 + axis, j]
+    far = asked[FAR, j]
+    lanes[place_of(A, i)] = asked[NEAR, j]
+    lanes[place_of(B, i)] = asked[RUN, j]
+    lanes[place_of(END, i)] = far
+    lanes[place_of(CUT_FROM, i)] = far
+    lanes[place_of(CUT_TO, i)] = far
+    lanes[place_of(HELD, i)] = asked[SURE, j]
+    lanes[place_of(TRIES, i)] = ZERO
+    lanes[place_of(LENGTH, i)] = rays[7, j] - t0
+    lanes[place_of(STATE, i)] = LIVE
+
+
+@inlined
+def note(lanes, i, j, found):
+    """Note what became of ray j in lane i."""
+    found[FOUND_STATUS, j] = lanes[place_of(STATE, i)]
+    found[FOUND_LOW, j] = lanes[place_of(A, i)]
+    found[FOUND_HIGH, j] = lanes[place_of(B, i)]
+    found[FOUND_ROOT, j] = lanes[place_of(ROOT, i)]
+    found[FOUND_SLOPE, j] = lanes[place_of(SLOPE, i)]
 
 
 @inlined
@@ -104,10 +129,21 @@ def advance(lanes, last, status, n, anywhere):
         stuck = (~bracket) & (narrow <= LEAST * whole_way)
         stuck = stuck | (lanes[TRIES * LANES + i] > MOST)
         stuck = stuck | (bracket & slow & (narrow <= LEAST * whole_way))
-        now = start + HALF * narrow if slow & (~hit) else now
+        # How far all is outside from where the field is f on, if the enclosure widens with the square of the length.
+        f = c0 + c1 if outside else c0 - c1
+        fall = c1 if c1 < ZERO else ZERO
+        far = SAFE * f / (np.sqrt(fall * fall + e * f) - fall + TINY) if f > ZERO else ZERO
+        share = HALF * m / (e + TINY)  # where the slope tells most
+        share = far if far > share else share
+        share = share if share > SHORTEST else SHORTEST
+        now = start + (share if share < HALF else HALF) * narrow if slow & (~hit) else now
         # What follows a rejected segment.
-        after = cut_to if b == cut_from else b
-        then = after + TWO * width
+        passed = b == cut_from
+        after = cut_to if passed else b
+        far = far if far > ONE else ONE
+        ahead = (far if far < LONGEST else LONGEST) * width
+        beyond = AFTER_CUT * (cut_to - cut_from)
+        then = after + (beyond if passed & (beyond > ahead) else ahead)
         then = then if then < end else end
         then = cut_from if (cut_from > after) & (cut_from < then) else then
         done = after >= end
@@ -134,40 +170,37 @@ def advance(lanes, last, status, n, anywhere):
 def hunt(code, constants, parts, registers, point, status, lanes, ids, rays, asked, queue, count, anywhere, found):
     """Settle the first ``count`` rays of the ``queue``; returns the enclosures spent.
 
-    ``rays`` (RAY, n), ``asked`` (3, n) and ``found`` (5, n) are by ray. A HIT has a bracket low..high with all before
+    ``rays`` (RAY, n), ``asked`` (4, n) and ``found`` (5, n) are by ray. A HIT has a bracket low..high with all before
     it outside and the inside at its end; with ``anywhere`` (shadow rays) high is any place inside. MISS: all outside.
     """
     last = registers[code.shape[0] - 1]
-    upcoming = 0
-    live = 0
+    live = min(count, LANES)
+    upcoming = live
+    for i in range(live):
+        ids[i] = queue[i]
+        load(lanes, i, rays, np.uint64(ids[i]), asked)
     spent = 0
-    while True:
-        while live < LANES and upcoming < count:
-            j = queue[upcoming]
-            load(lanes, live, rays, j, asked)
-            ids[live] = j
-            live += 1
-            upcoming += 1
-        if live == 0:
-            return spent
+    while live > 0:
         n = (live + 15) // 16 * 16
         place_lanes(lanes, point, n)
         enclose(code, constants, parts, registers, point, status, n)
         advance(lanes, last, status, n, anywhere)
         spent += live
-        i = 0
-        while i < live:
-            state = lanes[STATE * LANES + i]
-            if state == LIVE:
-                i += 1
-                continue
-            j = ids[i]
-            found[FOUND_STATUS, j] = state
-            found[FOUND_LOW, j] = lanes[A * LANES + i]
-            found[FOUND_HIGH, j] = lanes[B * LANES + i]
-            found[FOUND_ROOT, j] = lanes[ROOT * LANES + i]
-            found[FOUND_SLOPE, j] = lanes[SLOPE * LANES + i]
-            live -= 1
-            for row in range(ROWS):
-                lanes[row * LANES + i] = lanes[row * LANES + live]
-            ids[i] = ids[live]
+        ended = 0
+        for i in range(live):
+            ids[np.uint64(LANES + ended)] = i
+            ended += 1 if lanes[STATE * LANES + i] != LIVE else 0
+        # From the last on, so that what is moved into the place of an ended lane is live.
+        for k in range(ended - 1, -1, -1):
+            i = np.uint64(ids[np.uint64(LANES + k)])
+            note(lanes, i, np.uint64(ids[i]), found)
+            if upcoming < count:
+                ids[i] = queue[np.uint64(upcoming)]
+                load(lanes, i, rays, np.uint64(ids[i]), asked)
+                upcoming += 1
+            else:
+                live -= 1
+                for row in range(ROOT):
+                    lanes[place_of(row, i)] = lanes[place_of(row, live)]
+                ids[i] = ids[np.uint64(live)]
+    return spent

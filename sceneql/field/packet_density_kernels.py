@@ -13,6 +13,10 @@ from sceneql.kernels import inlined, lean
 F = np.float32
 LANES, VECTOR = 64, 16
 C1, E = LANES, 2 * LANES
+SPARE = 3 * LANES
+"""Where others keep the sine and cosine of an angle, the register of a density has working memory."""
+SPEED, OFF = SPARE, SPARE + LANES
+"""Of that: squares of the ways of the point, and how far it is off."""
 PAD = F(5.0e-7)
 GROW = F(1.0 + 4.0e-6)
 TINY = F(1.0e-37)
@@ -72,12 +76,13 @@ def span(row, n):
     return low - hair, high + hair
 
 
-@inlined
+@lane
 def gap(a, axis, low, high):
     """How far a segment a, a + axis along one coordinate stays off low..high."""
-    first = a if axis > ZERO else a + axis
-    last = a + axis if axis > ZERO else a
-    return max(max(first - high, low - last), ZERO)
+    before = low - (a + axis if axis > ZERO else a)
+    behind = (a if axis > ZERO else a + axis) - high
+    off = before if before > behind else behind
+    return off if off > ZERO else ZERO
 
 
 @lane
@@ -126,6 +131,17 @@ def beside(wx, wy, wz, ux, uy, uz, sx, sy, sz, shrink):
 
 
 @inlined
+def prepare(x, y, z, out, n):
+    """What all parts ask of n lanes, and no density yet."""
+    for i in range(n):
+        ux, uy, uz = x[C1 + i], y[C1 + i], z[C1 + i]
+        size = abs(x[i]) + abs(y[i]) + abs(z[i]) + abs(ux) + abs(uy) + abs(uz)
+        out[i] = out[C1 + i] = out[E + i] = ZERO
+        out[SPEED + i] = ux * ux + uy * uy + uz * uz
+        out[OFF + i] = x[E + i] + y[E + i] + z[E + i] + PAD * size
+
+
+@inlined
 def add_part(p, x, y, z, out, n, straight):
     """Add the density of a part (PART,) in n lanes; ``straight``: it is a segment, else a point."""
     ax, ay, az, sx, sy, sz = p[0], p[1], p[2], p[3], p[4], p[5]
@@ -134,7 +150,7 @@ def add_part(p, x, y, z, out, n, straight):
     for i in range(n):
         wx, wy, wz = x[i] - ax, y[i] - ay, z[i] - az
         ux, uy, uz = x[C1 + i], y[C1 + i], z[C1 + i]
-        speed = ux * ux + uy * uy + uz * uz
+        speed = out[SPEED + i]
         bent = ZERO
         if straight:
             wx, wy, wz, speed, bent = beside(wx, wy, wz, ux, uy, uz, sx, sy, sz, shrink)
@@ -142,7 +158,7 @@ def add_part(p, x, y, z, out, n, straight):
         a1 = -TWO * (wx * ux + wy * uy + wz * uz) * inverse
         a2 = speed * inverse
         su = abs(ux) + abs(uy) + abs(uz)
-        off = x[E + i] + y[E + i] + z[E + i] + blur + PAD * (abs(x[i]) + abs(y[i]) + abs(z[i]) + su)
+        off = out[OFF + i] + blur
         # |d^2 - D| <= off (2 d + off) wherever one of the two is within reach.
         error = (off * (TWO * (radius + su) + THREE * off) + bent) * inverse
         error += PAD * (ONE + abs(a0) + abs(a1) + a2)
@@ -179,8 +195,7 @@ def reaches(p, box):
 @inlined
 def density_lanes(parts, start, stop, x, y, z, out, n):
     """Enclosure of the density of parts start..stop-1 at the point with enclosures x, y, z, into ``out``."""
-    for i in range(n):
-        out[i] = out[C1 + i] = out[E + i] = ZERO
+    prepare(x, y, z, out, n)
     # Boxes around VECTOR lanes each.
     boxes = around(x, y, z, 0, n), around(x, y, z, 1, n), around(x, y, z, 2, n), around(x, y, z, 3, n)
     for part in range(start, stop):
@@ -201,44 +216,50 @@ def density_lanes(parts, start, stop, x, y, z, out, n):
 
 
 @inlined
-def within_reach(p, x, y, z, first, stop):
-    """Whether a part (PART,) may have a density in one of the lanes first..stop-1."""
+def sizes(x, y, z, spare):
+    """Radii of balls that what is enclosed in all lanes stays in."""
+    for i in range(LANES):
+        hx = (abs(x[C1 + i]) + x[E + i]) * GROW + PAD * abs(x[i])
+        hy = (abs(y[C1 + i]) + y[E + i]) * GROW + PAD * abs(y[i])
+        hz = (abs(z[C1 + i]) + z[E + i]) * GROW + PAD * abs(z[i])
+        spare[i] = np.sqrt(hx * hx + hy * hy + hz * hz) * GROW
+
+
+@inlined
+def within_reach(p, x, y, z, spare, first, stop):
+    """Whether a part (PART,) may have a density in one of the lanes first..stop-1, whose ``sizes`` are in ``spare``."""
     ax, ay, az = p[0], p[1], p[2]
     sx, sy, sz = p[3], p[4], p[5]
     shrink, blur = p[8], p[10]
     reach = p[9] * GROW + blur
-    x, y, z = x[first:], y[first:], z[first:]
     lanes = np.int32(0)
-    for i in range(stop - first):
+    for i in range(LANES):
         wx, wy, wz = x[i] - ax, y[i] - ay, z[i] - az
         q = (wx * sx + wy * sy + wz * sz) * shrink
         q = q if q > ZERO else ZERO
         q = q if q < ONE else ONE
-        wx, wy, wz = abs(wx - q * sx), abs(wy - q * sy), abs(wz - q * sz)
-        hx = (abs(x[C1 + i]) + x[E + i]) * GROW + PAD * abs(x[i])
-        hy = (abs(y[C1 + i]) + y[E + i]) * GROW + PAD * abs(y[i])
-        hz = (abs(z[C1 + i]) + z[E + i]) * GROW + PAD * abs(z[i])
+        wx, wy, wz = wx - q * sx, wy - q * sy, wz - q * sz
         # The distance changes no faster than the point moves.
-        far = reach + np.sqrt(hx * hx + hy * hy + hz * hz) * GROW
+        far = reach + spare[i]
         # Where the place is not a number, nothing is known to be off.
         off = wx * wx + wy * wy + wz * wz > far * far * GROW + TINY
-        lanes += np.int32(0) if off else np.int32(1)
+        lanes += np.int32(0) if off | (i < first) | (i >= stop) else np.int32(1)
     return lanes > 0
 
 
 @inlined
-def keep_near(code, k, registers, first, stop, singles, parts, kept, short, near_singles, near_parts):
+def keep_near(code, k, registers, first, stop, singles, parts, kept, near_singles, near_parts):
     """Copy the parts of density row k that are near lanes first..stop-1 behind those kept; how many there are then."""
     p = code[k, 3]
-    short[k, 1] = kept
+    x, y, z, spare = registers[p], registers[p + 1], registers[p + 2], registers[k, SPARE:]
+    sizes(x, y, z, spare)
     for part in range(code[k, 1], code[k, 2]):
-        if within_reach(singles[part], registers[p], registers[p + 1], registers[p + 2], first, stop):
+        if within_reach(singles[part], x, y, z, spare, first, stop):
             for j in range(PART):
                 near_singles[kept, j] = singles[part, j]
             for j in range(8):
                 near_parts[kept, j] = parts[part, j]
             kept += 1
-    short[k, 2] = kept
     return kept
 
 

@@ -21,26 +21,30 @@ from sceneql.field.hunt_kernels import (
     NEAR,
     RUN,
     SETTLED,
+    SURE,
     hunt,
 )
 from sceneql.field.isolation_kernels import isolate
-from sceneql.field.packet_density_kernels import keep_near
 from sceneql.field.packet_kernels import LANES, PACKET, enclose, load_constants
 from sceneql.field.polynomial_hunt_kernels import polynomial_roots
 from sceneql.field.polynomial_kernels import POLYNOMIAL
-from sceneql.field.slab_kernels import BEGIN, STOP, bundle, join, left_of_slabs, place_slabs
-from sceneql.field.tape_ops import DENSITY, HIT, MISS, SKELETON, UNDECIDED
+from sceneql.field.shorten_kernels import shorten
+from sceneql.field.slab_kernels import BEGIN, STOP, bundle, first_inside, join, left_of_slabs, place_slabs
+from sceneql.field.tape_ops import DENSITY, HIT, MAX, MIN, MISS, SKELETON, UNDECIDED
 from sceneql.kernels import inlined, lean
 
-GROUP, SLABS = 16, 8
+GROUP, SLABS, VECTOR = 16, 8, 16
 BEAMS = LANES // SLABS
 TOLERANCE = 1e-9
 """Of the certified routine, relative to the searched piece of the ray."""
 
 
 @inlined
-def ask(rays, j, begin, depth, first, final, run, asked):
-    """Set where the search on ray j begins and ends; False where nothing is left of it."""
+def ask(rays, j, begin, depth, first, final, deep, anywhere, asked, found):
+    """Set where the search on ray j begins and ends; False where nothing is left of it.
+
+    It ends in slab ``deep``, which is inside (-1: none is known to be), where the ray comes through it.
+    """
     t0 = rays[6, j]
     t1 = rays[7, j]
     if not t0 < t1:
@@ -52,9 +56,19 @@ def ask(rays, j, begin, depth, first, final, run, asked):
         return False
     low *= 1.0 - 2e-7
     high *= 1.0 + 2e-7
+    inside = begin + (deep + 0.5) * depth
+    sure = deep >= 0 and t0 + low < inside < t1
+    if sure:
+        high = inside - t0
+        if anywhere:
+            found[FOUND_STATUS, j] = HIT
+            found[FOUND_LOW, j] = found[FOUND_HIGH, j] = high
+            found[FOUND_ROOT, j] = inside
+            return False
     asked[NEAR, j] = low
     asked[FAR, j] = high
-    asked[RUN, j] = min(max(begin + run * depth - t0, low + 0.01 * (high - low)), high)
+    asked[RUN, j] = min(max(begin + (first + 1) * depth - t0, low + 0.01 * (high - low)), high)
+    asked[SURE, j] = 1.0 if sure else 0.0
     return True
 
 
@@ -94,12 +108,12 @@ def has(code, op):
 
 
 @inlined
-def certify_ray(code, constants, parts, scratch, rays, j, anywhere, found):
-    """Settle ray j from FOUND_LOW on by the certified routine."""
+def certify_ray(code, constants, parts, scratch, rays, j, end, anywhere, found):
+    """Settle ray j from FOUND_LOW on by the certified routine; behind ``end`` it is known to be outside."""
     ox, oy, oz, dx, dy, dz = rays[0, j], rays[1, j], rays[2, j], rays[3, j], rays[4, j], rays[5, j]
     begin = rays[6, j] + found[FOUND_LOW, j] * (1.0 - 1e-7)
     outcome, t = isolate(
-        code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, begin, rays[7, j], TOLERANCE, 1.0, anywhere
+        code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, begin, min(rays[7, j], end), TOLERANCE, 1.0, anywhere
     )
     found[FOUND_STATUS, j] = outcome
     found[FOUND_ROOT, j] = t
@@ -112,25 +126,37 @@ def certify(code, constants, parts, scratch, rays, count, anywhere, found):
     for j in range(count):
         found[FOUND_LOW, j] = 0.0
         if rays[6, j] < rays[7, j]:
-            certify_ray(code, constants, parts, scratch, rays, j, anywhere, found)
+            certify_ray(code, constants, parts, scratch, rays, j, np.inf, anywhere, found)
             certified += 1
     return certified
 
 
 @inlined
+def all_through(rays, count, low, high):
+    """Whether all rays that have a length come through low..high."""
+    begins, ends = rays[6], rays[7]
+    others = 0
+    for j in range(count):
+        others += 1 if (begins[j] < ends[j]) & ~((begins[j] < low) & (ends[j] > high)) else 0
+    return others == 0
+
+
+@inlined
 def packet_roots(
     code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, count, groups, anywhere, found,
-    parts, beams, short, near_singles, near_parts,
+    parts, scratch, beams, short, near_singles, near_parts,
 ):  # fmt: skip
-    """Settle a bundle by enclosures: (enclosures, rays that may be met, in ``queue``, whether ``short`` was made)."""
+    """Settle a bundle by enclosures: (enclosures, rays that may be met, in ``queue``, rows of ``short`` that hold up to
+    where all is looked at, that place)."""
     load_constants(code, constants, registers)
-    last = registers[code.shape[0] - 1]
+    length = code.shape[0]
+    last = registers[length - 1]
     spent = 0
     queued = 0
-    shortened = False
+    rows = 0
     base = bundle(rays, count, groups, beams)
     if base == np.inf:
-        return 0, 0, False
+        return 0, 0, 0, np.inf
     join(beams, groups, groups)
     begin, end = base, beams[STOP, groups]
     if groups > BEAMS:
@@ -139,19 +165,21 @@ def packet_roots(
         spent += LANES
         first, final, _ = left_of_slabs(last, status, 0, LANES)
         if first == LANES:
-            return spent, 0, False
-        if has(code, DENSITY):
-            kept = 0
-            for k in range(code.shape[0]):
-                for j in range(4):
-                    short[k, j] = code[k, j]
-                if code[k, 0] == DENSITY:
-                    kept = keep_near(
-                        code, k, registers, first, final + 1, singles, parts, kept, short, near_singles, near_parts
-                    )
-            code, singles, shortened = short, near_singles, True
+            return spent, 0, 0, np.inf
         depth = (end - begin) / LANES
+        deep = first_inside(last, status, 0, LANES)
+        if deep >= 0 and all_through(rays, count, base + deep * depth, base + (deep + 1) * depth):
+            final = deep
         begin, end = base + (first - 1e-6) * depth, base + (final + 1 + 1e-6) * depth
+        if has(code, DENSITY) or has(code, MAX) or has(code, MIN):
+            rows = shorten(
+                code, registers, status, first, final, singles, parts, scratch, short, near_singles, near_parts
+            )
+            code = short[length : length + rows]
+            if has(code, DENSITY):
+                singles = near_singles
+            last = registers[rows - 1]
+            load_constants(code, constants, registers)
     waiting = 0
     for g in range(groups):
         low, high = max(beams[BEGIN, g], begin), min(beams[STOP, g], end)
@@ -161,23 +189,24 @@ def packet_roots(
             waiting += 1
         if waiting == 0 or (waiting < BEAMS and g + 1 < groups):
             continue
-        enclose(code, constants, singles, registers, point, status, SLABS * waiting)
+        enclose(code, constants, singles, registers, point, status, (SLABS * waiting + VECTOR - 1) // VECTOR * VECTOR)
         spent += SLABS * waiting
         for b in range(waiting):
-            first, final, run = left_of_slabs(last, status, SLABS * b, SLABS)
+            first, final, _ = left_of_slabs(last, status, SLABS * b, SLABS)
             if first == SLABS:
                 continue
+            deep = first_inside(last, status, SLABS * b, SLABS)
             low, high = max(beams[BEGIN, ids[b]], begin), min(beams[STOP, ids[b]], end)
             depth = (high - low) / SLABS
             for j in range(ids[b], count, groups):
-                if ask(rays, j, low, depth, first, final, run, asked):
+                if ask(rays, j, low, depth, first, final, deep, anywhere, asked, found):
                     queue[queued] = j
                     queued += 1
         waiting = 0
     spent += hunt(
         code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, queued, anywhere, found
     )
-    return spent, queued, shortened
+    return spent, queued, rows, end
 
 
 @inlined
@@ -259,13 +288,13 @@ def first_roots(
     for j in range(count):
         found[FOUND_STATUS, j] = MISS
     groups = (count + GROUP - 1) // GROUP
-    safe = unsafe = np.inf
+    safe = unsafe = end = np.inf
     if plan[ROW_OF] >= 0:
         spent, queued = density_roots(
             code, constants, parts, plan, rays, count, groups, anywhere, found, queue, order, room, table, lanes,
             short, near_parts,
         )  # fmt: skip
-        code, parts = short, near_parts
+        code, parts = short[: code.shape[0]], near_parts
     elif plan[POLYNOMIAL] >= 0:
         spent, queued, safe, unsafe = polynomial_roots(
             code, constants, singles, registers, point, status, rays, count, anywhere, found, queue, plan, order,
@@ -274,12 +303,15 @@ def first_roots(
     elif has(code, SKELETON):
         return 0, certify(code, constants, parts, scratch, rays, count, anywhere, found)
     else:
-        spent, queued, shortened = packet_roots(
+        spent, queued, rows, end = packet_roots(
             code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, count, groups,
-            anywhere, found, parts, beams, short, near_singles, near_parts,
+            anywhere, found, parts, scratch, beams, short, near_singles, near_parts,
         )  # fmt: skip
-        if shortened:
-            code, parts = short, near_parts
+        if rows > 0:
+            length = code.shape[0]
+            code, parts = short[length : length + rows], near_parts
+        else:
+            end = np.inf
     if not anywhere and plan[POLYNOMIAL] < 0 and plan[ROW_OF] < 0:
         hits = 0
         for k in range(queued):  # hits to the front of the queue
@@ -296,7 +328,7 @@ def first_roots(
         j = np.uint64(queue[k])
         if found[FOUND_STATUS, j] == UNDECIDED:
             certified += 1
-            certify_ray(code, constants, parts, scratch, rays, j, anywhere, found)
+            certify_ray(code, constants, parts, scratch, rays, j, end, anywhere, found)
         else:
             found[FOUND_ROOT, j] += rays[6, j]
     return spent, certified

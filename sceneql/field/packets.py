@@ -140,12 +140,12 @@ class Memory:
             lined((3, WIDTH), single),
             lined(LANES, single),
             lined(max(hunt_kernels.ROWS * LANES, density_march_kernels.ROWS), single),
-            lined(LANES, np.int64),
+            lined(2 * LANES, np.int64),
         )
-        self.asked, self.queue = lined((3, count), single), lined(count, np.int64)
+        self.asked, self.queue = lined((4, count), single), lined(count, np.int64)
         self.singles = single_parts(tape)
         beams, doubles = lined((BEAM, -(-count // GROUP) + 1)), lined((rows, LANES))
-        near = np.zeros_like(tape.code), lined(self.singles.shape, single), lined(tape.parts.shape)
+        near = np.zeros((2 * rows, 4), dtype=np.int32), lined(self.singles.shape, single), lined(tape.parts.shape)
         plan = plan_of(tape)
         whole = -(-max(count, density_march_kernels.LANES, len(tape.parts)) // LANES) * LANES
         march = (

@@ -8,13 +8,11 @@ import numpy as np
 
 from sceneql.field.density_kernels import offset
 from sceneql.field.falloff_kernels import WYVILL
+from sceneql.field.short_rows_kernels import ALIAS, LIVE, mark, write_row
 from sceneql.field.skeleton_bounds_kernels import skeleton_near
 from sceneql.field.skeleton_parts_kernels import GROUP, KERNEL, RADIUS, RADIUS_B, SEGMENT, SHAPE, STRIDE
-from sceneql.field.tape_ops import CONSTANT, COS, DENSITY, MAX, MIN, SIN, SKELETON, X, Y, Z
+from sceneql.field.tape_ops import DENSITY, MAX, MIN, SKELETON
 from sceneql.kernels import inlined, lean
-
-ALIAS, LIVE, PLACE = 4, 5, 6
-"""Columns of scratch: the row that a row's value is that of, whether it is needed, where it goes."""
 
 
 @inlined
@@ -46,24 +44,6 @@ def winner(code, k, scratch):
         if scratch[right, 1] < scratch[left, 0]:
             return int(scratch[right if op == MIN else left, ALIAS])
     return k
-
-
-@inlined
-def mark(code, last, scratch):
-    """Mark the rows that the value of ``last`` needs."""
-    for k in range(last + 1):
-        scratch[k, LIVE] = 0.0
-    scratch[int(scratch[last, ALIAS]), LIVE] = 1.0
-    for k in range(last, -1, -1):
-        if scratch[k, LIVE] == 0.0:
-            continue
-        op = code[k, 0]
-        if op == DENSITY or op == SKELETON:
-            for j in range(3):
-                scratch[code[k, 3] + j, LIVE] = 1.0
-        elif not (op == CONSTANT or op == X or op == Y or op == Z):
-            scratch[int(scratch[code[k, 1], ALIAS]), LIVE] = 1.0
-            scratch[int(scratch[code[k, 2], ALIAS]), LIVE] = 1.0
 
 
 @inlined
@@ -106,11 +86,7 @@ def simplify(code, parts, scratch, whole, short, near):
         if scratch[k, LIVE] == 0.0:
             continue
         op = code[k, 0]
-        scratch[k, PLACE] = rows
-        short[rows, 0] = op
-        short[rows, 1] = code[k, 1]
-        short[rows, 2] = code[k, 2]
-        short[rows, 3] = 0
+        write_row(code, k, scratch, short, rows)
         if op == SKELETON and whole:
             short[rows, 1] = found
             found = skeleton_near(parts, code[k, 1], code[k, 2], scratch, code[k, 3], near, found)
@@ -119,7 +95,6 @@ def simplify(code, parts, scratch, whole, short, near):
                 short[rows, 0] = DENSITY
                 found = behind
             short[rows, 2] = found
-            short[rows, 3] = int(scratch[code[k, 3], PLACE])
         elif op == DENSITY or op == SKELETON:
             short[rows, 1] = found
             for i in range(code[k, 1], code[k, 2]):
@@ -128,11 +103,5 @@ def simplify(code, parts, scratch, whole, short, near):
                         near[found, j] = parts[i, j]
                     found += 1
             short[rows, 2] = found
-            short[rows, 3] = int(scratch[code[k, 3], PLACE])
-        elif not (op == CONSTANT or op == X or op == Y or op == Z):
-            short[rows, 1] = int(scratch[int(scratch[code[k, 1], ALIAS]), PLACE])
-            short[rows, 2] = int(scratch[int(scratch[code[k, 2], ALIAS]), PLACE])
-            if (op == SIN or op == COS) and code[k, 3] and scratch[code[k, 3], LIVE] != 0.0:
-                short[rows, 3] = int(scratch[code[k, 3], PLACE])
         rows += 1
     return rows, found

@@ -3,9 +3,9 @@
 
 import numpy as np
 
-from sceneql.field.affine_kernels import GROW, HALF, PAD, F
+from sceneql.field.affine_kernels import GROW, HALF, PAD, ZERO, F
 from sceneql.field.packet_kernels import C1, E, place
-from sceneql.field.tape_ops import NOWHERE
+from sceneql.field.tape_ops import NOWHERE, WHOLE
 from sceneql.kernels import inlined
 
 PLACE, WAY, PLACE_OFF, WAY_OFF, BEGIN, STOP = 0, 3, 6, 9, 12, 13
@@ -20,35 +20,35 @@ def bundle(rays, count, groups, beams):
 
     A group of rays without any length ends before it begins. Groups are lanes here: ray j belongs to j % groups.
     """
-    for g in range(groups):
-        beams[BEGIN, g] = np.inf
-        beams[STOP, g] = -np.inf
-    for first in range(0, count, groups):
-        for g in range(min(groups, count - first)):
-            t0, t1 = rays[6, first + g], rays[7, first + g]
-            low, high = beams[BEGIN, g], beams[STOP, g]
-            beams[BEGIN, g] = t0 if (t0 < t1) & (t0 < low) else low
-            beams[STOP, g] = t1 if (t0 < t1) & (t1 > high) else high
+    t0, t1 = rays[6], rays[7]
     begin = np.inf
     for g in range(groups):
-        begin = min(begin, beams[BEGIN, g])
+        low, high = np.inf, -np.inf
+        for first in range(g, count, groups):
+            j = np.uint64(first)
+            if t0[j] < t1[j]:
+                low = t0[j] if t0[j] < low else low
+                high = t1[j] if t1[j] > high else high
+        beams[BEGIN, g], beams[STOP, g] = low, high
+        begin = low if low < begin else begin
     if begin == np.inf:
         return begin
     for axis in range(3):
+        place, way = rays[axis], rays[3 + axis]
         for g in range(groups):
-            beams[PLACE + axis, g] = beams[WAY + axis, g] = np.inf
-            beams[PLACE_OFF + axis, g] = beams[WAY_OFF + axis, g] = -np.inf
-        for first in range(0, count, groups):
-            for g in range(min(groups, count - first)):
-                d = rays[3 + axis, first + g]
-                p = rays[axis, first + g] + begin * d
-                alive = rays[6, first + g] < rays[7, first + g]
-                low, high = beams[PLACE + axis, g], beams[PLACE_OFF + axis, g]
-                d_low, d_high = beams[WAY + axis, g], beams[WAY_OFF + axis, g]
-                beams[PLACE + axis, g] = p if alive & (p < low) else low
-                beams[PLACE_OFF + axis, g] = p if alive & (p > high) else high
-                beams[WAY + axis, g] = d if alive & (d < d_low) else d_low
-                beams[WAY_OFF + axis, g] = d if alive & (d > d_high) else d_high
+            low = d_low = np.inf
+            high = d_high = -np.inf
+            for first in range(g, count, groups):
+                j = np.uint64(first)
+                if t0[j] < t1[j]:
+                    d = way[j]
+                    p = place[j] + begin * d
+                    low = p if p < low else low
+                    high = p if p > high else high
+                    d_low = d if d < d_low else d_low
+                    d_high = d if d > d_high else d_high
+            beams[PLACE + axis, g], beams[PLACE_OFF + axis, g] = low, high
+            beams[WAY + axis, g], beams[WAY_OFF + axis, g] = d_low, d_high
     return begin
 
 
@@ -108,3 +108,15 @@ def left_of_slabs(last, status, lane, slabs):
         first = min(first, k)
         final = k
     return first, final, run
+
+
+@inlined
+def first_inside(last, status, lane, slabs):
+    """The first of the slabs that is proved to be inside; -1: none."""
+    for k in range(slabs):
+        i = lane + k
+        m = abs(last[C1 + i])
+        e = last[E + i] * GROW + PAD * (abs(last[i]) + m)
+        if status[i] == F(WHOLE) and last[i] + m + e < ZERO:
+            return k
+    return -1

@@ -123,7 +123,7 @@ def draw_row(
     near, near_of = code, parts
     for k in range(code.shape[0]):
         if code[k, 0] == DENSITY or plan[0] >= 0:
-            near, near_of = short, near_parts
+            near, near_of = short[: code.shape[0]], near_parts
     rows = slice(top * width, (top + TILE) * width)
     picture[rows] = 0.0
     depth[rows] = -1.0
