@@ -32,8 +32,9 @@ class Trace(Renderer):
             return ("renderers.tracing.draw",)
         together: tuple[str, ...] = ()
         if self.tolerance == TOLERANCE:
-            own = {"formula": "enclose_kernels", "density": "density_bundle_kernels"}
-            together = (*(f"sceneql.field.{own[kind]}" for kind in sorted(traced)), "renderers.tracing.bundles")
+            own = {"formula": ("tape_bundle", "enclose"), "density": ("density_bundle",)}
+            names = (name for kind in sorted(traced) for name in own[kind])
+            together = (*(f"sceneql.field.{name}_kernels" for name in names), "renderers.tracing.bundles")
         return (*together, *certified("renderers.tracing.draw"))
 
     def draw(self, frame: Any) -> Any:

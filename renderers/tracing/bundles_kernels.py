@@ -6,8 +6,8 @@ from numba import types
 
 from renderers.tracing.scene_kernels import ANYWHERE, ASKED, FAR, FIRST, NEXT, WANT, part
 from renderers.tracing.solids_kernels import box_span, inverse
-from sceneql.field.hunt_kernels import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS
 from sceneql.field.packet_roots_kernels import ARGUMENTS, GROUP, first_roots
+from sceneql.field.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS
 from sceneql.field.tape_ops import HIT, MISS
 from sceneql.kernels import lean
 

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from sceneql.field.hunt_kernels import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS, SETTLED
+from sceneql.field.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS, SETTLED
 from sceneql.field.tape_ops import UNDECIDED
 from sceneql.kernels import inlined
 

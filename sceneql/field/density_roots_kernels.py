@@ -49,7 +49,7 @@ from sceneql.field.density_slice_kernels import (
     set_part,
     start_lanes,
 )
-from sceneql.field.hunt_kernels import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS
+from sceneql.field.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS
 from sceneql.field.tape_ops import HIT, MISS, UNDECIDED
 from sceneql.kernels import inlined
 

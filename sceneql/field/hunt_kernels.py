@@ -10,6 +10,17 @@ import numpy as np
 
 from sceneql.field.affine_kernels import GROW, HALF, ONE, PAD, TINY, TWO, ZERO, F
 from sceneql.field.packet_kernels import C1, LANES, PACKET, E, enclose, place
+from sceneql.field.ray_rows import (
+    FAR,
+    FOUND_HIGH,
+    FOUND_LOW,
+    FOUND_ROOT,
+    FOUND_SLOPE,
+    FOUND_STATUS,
+    NEAR,
+    RUN,
+    SURE,
+)
 from sceneql.field.tape_ops import HIT, MISS, NOWHERE, UNDECIDED, WHOLE
 from sceneql.kernels import inlined, lean
 
@@ -17,7 +28,6 @@ OX, OY, OZ, DX, DY, DZ, A, B, END, CUT_FROM, CUT_TO, HELD, TRIES, LENGTH, STATE,
 """Rows of ``lanes``, each of LANES, one behind the other: ray, segment, where the search ends, a piece cut out, whether
 the inside is proved at the end, enclosures so far, length of the search, outcome (LIVE until there is one), root and
 slope [1/t] of the last enclosure."""
-ROWS = 17
 LIVE = F(-1.0)
 LARGE = F(1.0e36)
 FINE, ROUGH, LEAST = F(2.0e-5), F(1.0e-4), F(2.0e-6)
@@ -27,16 +37,6 @@ SAFE, SHORTEST, LONGEST, AFTER_CUT = F(0.8), F(0.25), F(8.0), TWO
 longest one, relative to the segment just rejected, and to a piece cut out just passed."""
 MOST = F(48.0)
 """Enclosures after which a ray is left to the certified routine."""
-SETTLED = 1e-6
-"""Change of a root, relative to the length of its search, at the last step of its polish, beyond which it is sought
-anew by the certified routine."""
-RAY = 8
-"""Rows of rays: origin, direction, begin and end."""
-FOUND_STATUS, FOUND_LOW, FOUND_HIGH, FOUND_ROOT, FOUND_SLOPE = range(5)
-"""Rows of what is found, by ray; places from the ray's own start."""
-NEAR, FAR, RUN, SURE = range(4)
-"""Rows of what is asked, by ray: where to begin and to end, where the first segment ends, 1 where the end is known to
-be inside."""
 
 
 @inlined

@@ -57,6 +57,28 @@ PACKET = "int32[:, ::1], float64[::1], float32[:, ::1], float32[:, ::1], float32
 """Types of (code, constants, parts, registers, point)."""
 ENCLOSE = types.void(*normalize_signature(f"void({PACKET}, float32[::1], int64)")[0])
 enclose = late("sceneql.field.enclose_kernels:enclose", ENCLOSE)
+BUNDLE = f"{PACKET}, float32[::1], float32[::1], int64[::1], float64[:, ::1], float32[:, ::1], int64[::1]"
+MEMORY = "float64[:, ::1]," * 6 + "int32[:, ::1], float32[:, ::1], float64[:, ::1]"
+"""Types of a bundle of rays, and of what a tape works in: see ``packets.Memory``."""
+_many, _wide = types.int64[::1], types.float64[:, ::1]
+TAPE_ROOTS = types.Tuple((types.int64, types.int64, types.int64, types.float64))(
+    *normalize_signature(f"void({BUNDLE}, int64, int64, boolean, {MEMORY})")[0]
+)
+tape_roots = late("sceneql.field.tape_bundle_kernels:tape_roots", TAPE_ROOTS)
+CHECK_INSIDE = types.void(
+    types.int32[:, ::1],
+    types.float64[::1],
+    _wide,
+    _wide,
+    _wide,
+    _wide,
+    _many,
+    types.int64,
+    types.int64,
+    types.float64,
+    _wide,
+)
+check_inside = late("sceneql.field.inside_kernels:check_inside", CHECK_INSIDE)
 
 
 @lane
@@ -186,3 +208,12 @@ def place(row, i, o, d, middle, half):
     row[i] = o + middle * d
     row[C1 + i] = c1
     row[E + i] = PAD * (abs(o) + abs(middle * d) + abs(c1)) + TINY
+
+
+@inlined
+def has(code, op):
+    """Whether a tape has an operation."""
+    for k in range(code.shape[0]):
+        if code[k, 0] == op:
+            return True
+    return False

@@ -13,7 +13,6 @@ from sceneql.field import (
     density_march_kernels,
     density_roots_kernels,
     density_slice_kernels,
-    hunt_kernels,
     packet_density_kernels,
     packet_roots_kernels,
 )
@@ -22,6 +21,7 @@ from sceneql.field.packet_roots_kernels import GROUP
 from sceneql.field.plans import degrees_of, density_of, without_factor
 from sceneql.field.polynomial_kernels import DEGREES, POLYNOMIAL
 from sceneql.field.polynomial_steps_kernels import ROWS, C
+from sceneql.field.ray_rows import FOUND_ROOT, FOUND_STATUS, LANE_ROWS, RAY
 from sceneql.field.slab_kernels import BEAM
 from sceneql.field.solid import scratch
 from sceneql.field.tape_ops import CONSTANT, MAX, OF_PARTS, SKELETON, X, Y, Z
@@ -132,14 +132,14 @@ class Memory:
         count = -(-count // LANES) * LANES  # lanes beyond the rays are looked at, too
         rows = len(tape.code)
         self.tape = tape
-        self.rays = lined((hunt_kernels.RAY, count))
+        self.rays = lined((RAY, count))
         self.found = lined((5, count))
         single = np.float32
         self.packet = (
             lined((rows, WIDTH), single),
             lined((3, WIDTH), single),
             lined(LANES, single),
-            lined(max(hunt_kernels.ROWS * LANES, density_march_kernels.ROWS), single),
+            lined(max(LANE_ROWS * LANES, density_march_kernels.ROWS), single),
             lined(2 * LANES, np.int64),
         )
         self.asked, self.queue = lined((4, count), single), lined(count, np.int64)
@@ -188,6 +188,6 @@ def cast_together(
         memory.rays[:3, :n], memory.rays[3:6, :n] = origins[ray].T, directions[ray].T
         memory.rays[6, :n], memory.rays[7, :n] = t0[ray], t1[ray]
         memory.settle(n, anywhere)
-        status[ray] = memory.found[hunt_kernels.FOUND_STATUS, :n]
-        t[ray] = memory.found[hunt_kernels.FOUND_ROOT, :n]
+        status[ray] = memory.found[FOUND_STATUS, :n]
+        t[ray] = memory.found[FOUND_ROOT, :n]
     return status, t

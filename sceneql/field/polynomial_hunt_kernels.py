@@ -11,7 +11,6 @@ from numba import types
 from sceneql.compiling.late import late
 from sceneql.field.affine_kernels import GROW, HALF, PAD, ZERO, F
 from sceneql.field.extent_kernels import extent
-from sceneql.field.hunt_kernels import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS, SETTLED
 from sceneql.field.packet_kernels import C1, ENCLOSE, LANES, E, place
 from sceneql.field.polynomial_steps_kernels import (
     CHANGE,
@@ -27,6 +26,7 @@ from sceneql.field.polynomial_steps_kernels import (
     B,
     polish,
 )
+from sceneql.field.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS, SETTLED
 from sceneql.field.tape_ops import HIT, MISS, UNDECIDED
 from sceneql.kernels import inlined
 

@@ -5,9 +5,9 @@ import numpy as np
 
 from sceneql.field.batch_gradient_kernels import differentiate
 from sceneql.field.batch_kernels import evaluate
-from sceneql.field.hunt_kernels import FOUND_ROOT, FOUND_STATUS
 from sceneql.field.packet_kernels import LANES, PACKET
 from sceneql.field.packet_roots_kernels import first_roots
+from sceneql.field.ray_rows import FOUND_ROOT, FOUND_STATUS
 from sceneql.field.tape_ops import DENSITY, HIT, UNDECIDED
 from sceneql.kernels import inlined, lean
 
