@@ -192,6 +192,32 @@ def test_densities_of_points_are_met_where_the_certified_routine_meets_them(coun
     agree_with_the_certified(tape, origins, directions, t0, t1, within=2e-6)
 
 
+@pytest.mark.parametrize("height", [2e-6, -2e-6])
+def test_shadow_rays_from_a_hair_off_a_density_need_no_certified_routine(height):
+    generator = np.random.default_rng(8)
+    centers = generator.uniform(-0.5, 0.5, (20, 3))
+    tape = kernels(centers, 0.3, 0.5)
+    memory = Memory(tape, 256)
+    begins = 0.03 * generator.normal(size=(256, 3)) + [0.2, 0.3, 1.5]
+    _, t = cast(tape, begins, np.array([-0.1, -0.15, -1.0]), np.zeros(256), np.full(256, 1.5))
+    begins += t[:, None] * [-0.1, -0.15, -1.0]
+    step = 1e-5 * np.eye(3)
+    slopes = np.column_stack([field_values(tape, begins + e) - field_values(tape, begins - e) for e in step]) / 2e-5
+    steep = np.linalg.norm(slopes, axis=1)[:, None]
+    begins += height * slopes / steep**2
+    assert field_values(tape, begins) == pytest.approx(height, abs=1e-8)
+    ways = np.cross(slopes / steep, [0.0, 1.0, 0.0])
+    ways = ways / np.linalg.norm(ways, axis=1)[:, None] + 0.1 * slopes / steep
+    ways /= np.linalg.norm(ways, axis=1)[:, None]
+    memory.rays[:3], memory.rays[3:6], memory.rays[6], memory.rays[7] = begins.T, ways.T, 0.0, 2.0
+    _, certified = memory.settle(256, anywhere=True)
+    assert certified == 0
+    status, _ = cast(tape, begins, ways, np.zeros(256), np.full(256, 2.0))
+    hits = (status == HIT) | (status == INSIDE)
+    assert ((memory.found[0] == HIT) == hits).all()
+    assert hits.all() if height < 0.0 else not hits.all()
+
+
 POLYNOMIALS = {
     "x^2*y^2 + y^2*z^2 + z^2*x^2 - x*y*z": 4,
     "(x^2 + y^2 + z^2 - 1)^2*5 - 4*(3*x^2 - y^2)*(3*y^2 - z^2)*(3*z^2 - x^2)": 6,

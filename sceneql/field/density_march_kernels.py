@@ -79,9 +79,9 @@ def sum_up(table, kept, state, n):
 
 
 @inlined
-def advance(state, n, threshold, off, off_slope, bend, anywhere):
-    """The next segment of each lane, or its outcome; ``off``, ``off_slope`` bound the rounding of D and its slope,
-    ``bend`` its second derivative.
+def advance(state, n, threshold, close, drift, off_slope, bend, anywhere):
+    """The next segment of each lane, or its outcome; ``close`` + ``drift`` t and ``off_slope`` bound the rounding of D
+    at t and of its slope, ``bend`` its second derivative.
 
     Returns how many lanes have no outcome. A bracket is good enough where D surely rises all along it, and the secant
     is so near the root that one step of polish is enough.
@@ -90,28 +90,31 @@ def advance(state, n, threshold, off, off_slope, bend, anywhere):
     looking = np.int32(0)
     for i in range(n):
         a, b, end = state[A + i], state[B + i], state[END + i]
+        off = close + drift * b
         fa = threshold - state[AT_A + i]
         fb = threshold - state[AT_B + i]
         slope = SIX * state[SLOPE + i]
         slope = slope * MORE + off_slope
         clear = fa - off
         clear = clear if clear > ZERO else ZERO
-        step = clear * LESS / (slope if slope > TINY else TINY)
+        flat = ONE / (slope if slope > TINY else TINY)
+        step = clear * LESS * flat
         width = b - a
         full = (clear > ZERO) & (slope * width * MORE < clear)
         start = b if full else a + step
         inside = fb + off < ZERO
         # Where D is convex, it lies below its chord; from behind, Newton's step stays behind the root.
         convex = inside & (clear > ZERO) & (state[HOLLOW + i] == ZERO)
-        chord = a + width * (clear * LESS / (fa - fb if fa > fb else ONE))
+        fall = width / (fa - fb if fa > fb else ONE)
+        chord = a + clear * LESS * fall
         start = chord if convex & (chord > start) else start
         start = start if start < b else b
         begun = fa + off < ZERO
         fine = state[FINE + i]
         # Where the root may be: by the secant, or Newton's way on.
-        r = a + width * (fa / (fa - fb if fa > fb else ONE))
+        r = a + fa * fall
         past = r + HALF * (r - start if r > start else ZERO) + HALF * fine
-        past = b + fb / slope + HALF * fine if convex else past
+        past = b + fb * flat + HALF * fine if convex else past
         past = past if past > start else start + HALF * (b - start)
         past = past if past < b else b
         on = start + F(2.5) * step
@@ -131,7 +134,8 @@ def advance(state, n, threshold, off, off_slope, bend, anywhere):
         live = state[STATE + i] == LIVE
         then_state = outcome if live else state[STATE + i]
         state[STATE + i] = then_state
-        looking += np.int32(1) if then_state == LIVE else np.int32(0)
+        # Counted in int32: numba's sum of two would be int64, and half as many lanes go into a vector then.
+        looking = np.int32(looking + (np.int32(1) if then_state == LIVE else np.int32(0)))
         state[A + i] = start if live else a
         # Where a ray begins inside, what is known to be inside is its begin.
         stop = (start if begun else b) if hit else then

@@ -61,6 +61,8 @@ BENT = 6.0
 """R^2 times the largest second derivative of a density of weight 1."""
 STEEPEST = 1.72
 """R times the largest slope of a density of weight 1, a little more than 96/(25 sqrt(5))."""
+NEARLY = 1.1
+"""Only of densities up to so many times the threshold may rounding change on which side of it they are."""
 UNIT = 1.2e-7
 """Two half units in the last place."""
 _ids, _wide = types.int64[::1], types.float64[:, ::1]
@@ -73,16 +75,21 @@ density_roots = late("sceneql.field.density_bundle_kernels:density_roots", DENSI
 
 @inlined
 def rounding(rows, bulk, bend, stiff, stiffer, negative, reach, threshold):
-    """How far the computed density about c, and the computed slope, may be off where places are off by UNIT reach.
+    """How far the computed density about c may be off where the lane begins, how much more for a meter from there, and
+    how far the computed slope, where places are off by UNIT reach.
 
     ``bulk``, ``stiff`` and ``stiffer`` are the sums of |w|, |w|/R and |w|/R^2, ``bend`` is the largest 1/R.
-    Of positive parts sum w u^2 <= (sum w u^3)^(2/3) (sum w)^(1/3) by Hoelder's inequality, with |du/dt| <= 2/R.
+    Of positive parts sum w u^2 <= (sum w u^3)^(2/3) (sum w)^(1/3) by Hoelder's inequality, with |du/dt| <= 2/R; of a
+    density of more than NEARLY c no rounding makes less than c. A part felt at x has |T| <= x + R, so that u is off by
+    UNIT (x/R + 1) for T and by 7 half units for the steps to u; a place met from behind is rounded once more.
     """
     off = UNIT * reach
-    level = bulk if negative else 2.0 * abs(threshold)
-    squares = (level * level * bulk) ** (1.0 / 3.0)
+    level = bulk if negative else NEARLY * abs(threshold)
+    turns = 2.0 if negative else 1.0
+    unit = 3.0 * UNIT * (level * level * bulk) ** (1.0 / 3.0)
     return (
-        F(3.0 * squares * (2.0 * bend * off + 4.0 * UNIT) + UNIT * (rows + 12) * level),
+        F(unit * (3.0 + 2.0 * turns) + UNIT * (0.5 * rows + 4.0) * level),
+        F(unit * turns * bend),
         F(STEEPEST * (30.0 * off * stiffer + (rows + 40) * UNIT * stiff)),
     )
 
@@ -154,8 +161,8 @@ def settle_lanes(table, rows, state, room, live, width, looking, left, later, ra
 
 @inlined
 def search_slice(
-    table, kept, state, room, live, n, looking, later, threshold, off, off_slope, bend, anywhere, rays, found,
-    queue, met, doubted,
+    table, kept, state, room, live, n, looking, later, threshold, off, drift, off_slope, bend, anywhere, rays,
+    found, queue, met, doubted,
 ):  # fmt: skip
     """March all lanes, so many of which are ``looking``: (how many still are at the end of the slice, put first into
     ``live``, segments, hits, undecided)."""
@@ -169,7 +176,7 @@ def search_slice(
         while looking > enough:
             sum_up(table, kept, state, whole)
             spent += looking
-            looking = advance(state, whole, threshold, off, off_slope, bend, anywhere)
+            looking = advance(state, whole, threshold, off, drift, off_slope, bend, anywhere)
         left, met, doubted = settle_lanes(
             table, kept, state, room, live, width, looking, left, later, rays, found, queue, met, doubted
         )
@@ -237,11 +244,11 @@ def search_packet(
                 if rows == table.shape[0]:
                     return spent, met, leave_undecided(room, live, n, rays, found, queue, doubted)
         reach = min(end, beam[HIGH]) - start + 2.0 * own[RADIUS_OF]
-        off, off_slope = rounding(rows, bulk, bend, stiff, stiffer, negative, reach, threshold)
-        looking = start_lanes(state, n, F(threshold), off, negative, anywhere)
+        off, drift, off_slope = rounding(rows, bulk, bend, stiff, stiffer, negative, reach, threshold)
+        looking = start_lanes(state, n, F(threshold), off, drift, negative, anywhere)
         n, more, met, doubted = search_slice(
-            table, rows, state, room, live, n, looking, end < np.inf, F(threshold), off, off_slope,
-            F(BENT * stiffer), anywhere, rays, found, queue, met, doubted,
+            table, rows, state, room, live, n, looking, end < np.inf, F(threshold), off, drift,
+            off_slope, F(BENT * stiffer), anywhere, rays, found, queue, met, doubted,
         )  # fmt: skip
         spent += more
         if end == np.inf:

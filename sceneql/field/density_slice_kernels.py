@@ -120,7 +120,7 @@ def set_part(part, room, row, state, n, level):
         last = exit if exit > t + half else t + half
         state[AT_A + i] = first if near else entry
         state[AT_B + i] = last if near else exit
-        lanes += np.int32(1) if near else np.int32(0)
+        lanes = np.int32(lanes + (np.int32(1) if near else np.int32(0)))
         state[TOP + i] += most * (p * p * p) if near else ZERO
         lift = p - level
         inner = t - reach * np.sqrt(lift if lift > ZERO else ZERO)
@@ -133,13 +133,13 @@ def set_part(part, room, row, state, n, level):
 
 
 @inlined
-def start_lanes(state, n, threshold, off, negative, anywhere):
+def start_lanes(state, n, threshold, close, drift, negative, anywhere):
     """Begin the search in each lane, between where the parts of the slice are entered and left; in how many.
 
     Where all parts together cannot reach the threshold, nothing is met. Where no part is negative, a place is inside
-    if one part alone tells.
+    if one part alone tells. ``close`` + ``drift`` t: see ``density_march_kernels.advance``.
     """
-    told = (not negative) & (off < (CLEARLY - ONE) * threshold)
+    positive = not negative
     looking = np.int32(0)
     for i in range(n):
         way = state[FINE + i]
@@ -148,7 +148,8 @@ def start_lanes(state, n, threshold, off, negative, anywhere):
         low = low if low > ZERO else ZERO
         high = high if high < state[END + i] else state[END + i]
         deep = state[DEEP + i]
-        known = told & (deep < high) & (deep > low)
+        off = close + drift * high
+        known = positive & (off < (CLEARLY - ONE) * threshold) & (deep < high) & (deep > low)
         state[A + i] = low
         state[B + i] = deep if known else high
         state[END + i] = high
@@ -158,7 +159,7 @@ def start_lanes(state, n, threshold, off, negative, anywhere):
         live = (low < high) & (state[TOP + i] > threshold - off)
         met = known & anywhere
         state[STATE + i] = F(HIT) if met else (LIVE if live else F(MISS))
-        looking += np.int32(1) if live & (not met) else np.int32(0)
+        looking = np.int32(looking + (np.int32(1) if live & (not met) else np.int32(0)))
     for i in range(n, LANES):
         state[STATE + i] = F(MISS)
     return looking
