@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 
 from runs import watch
+from sceneql.pipeline import load
 from sceneql.quantities.expression import Call, Key, Keys, Link, Number, Symbol, Type
+from sceneql.simulation.run import Run
+from sceneql.simulation.shift import goes_evenly
 from sceneql.simulation.stops import next_stop, stops
 
 G = 9.81
@@ -142,3 +145,46 @@ contacts: {{hit: {{collision: {{between: [p, lift], restitution: 0.3, mode: {mod
     np.testing.assert_allclose(end[0], [0, 1.4, 0], atol=1e-9)
     if curve == "smooth":  # the lift's work is that of lifting 1 kg by 1 m; a jolt tosses it up besides
         assert end[1] == pytest.approx(2 * G, abs=1e-4)
+
+
+@pytest.mark.parametrize("height", ["1 mm/s*time - 1 m", "(time*1 mm/s - 2 m)/2 + time*0.5 mm/s"])
+def test_what_an_even_lift_reaches_after_an_hour_takes_no_more_steps_for_that(tmp_path, height):
+    script = f"""
+clock: {{end: 3600 s}}
+models: {{p: {{particles: {{list: {{a: {{position: 0 1 0, radius: 0.1 m}}}}}}}}}}
+objects: {{lift: {{box: {{size: 1 0.2 1 m, position: [time*1 um/s, "{height}", 0 m]}}}}}}
+contacts: {{hit: {{collision: {{between: [p, lift], restitution: 1, mode: exact}}}}}}
+"""
+    (tmp_path / "lift.yaml").write_text(script)
+    run = Run(load(tmp_path / "lift.yaml"))
+    for moment in run.moments([3600.0]):
+        y = moment.read("p", "a.position")[1]
+    assert y == pytest.approx(1 + 2e-3 * 1800, rel=1e-11)
+    assert run.islands[0].march.statistics.steps < 100
+
+
+def test_on_an_even_lift_all_goes_as_on_a_floor(tmp_path):
+    ends = []
+    for speed in (0.0, 2.0):
+        script = f"""
+models: {{p: {{particles: {{list: {{a: {{position: 0 1 0, velocity: 0.3 {speed} 0, radius: 0.1 m}}}}}}}}}}
+objects: {{lift: {{plane: {{height: "time*{speed} m/s"}}}}}}
+forces: [gravity]
+contacts: {{hit: {{collision: {{between: [p, lift], restitution: 0.7, friction: 0.02, mode: exact}}}}}}
+"""
+        rows = watch(tmp_path, script, [0.7, 1.5, 4.0], "p.a.position")
+        ends.append([row[0] - [0, speed * t, 0] for row, t in zip(rows, [0.7, 1.5, 4.0], strict=True)])
+    np.testing.assert_allclose(ends[1], ends[0], rtol=0, atol=1e-9)
+
+
+def test_only_what_is_a_line_in_the_time_goes_evenly():
+    def call(op, *args):
+        return Call(op, args, Type())
+
+    linked = Link("lift", "height", Type())
+    even = [number(2), TIME, call("sub", number(1), call("mul", number(2), TIME)), call("div", TIME, number(3)), linked]
+    for expr in even:
+        assert goes_evenly(expr, lambda link: call("neg", TIME))
+    uneven = [call("mul", TIME, TIME), call("div", number(1), TIME), call("sin", TIME), call("min", TIME, number(2))]
+    for expr in [*uneven, keys(), linked]:
+        assert not goes_evenly(expr, lambda link: None)

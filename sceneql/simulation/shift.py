@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from math import inf
 
 from sceneql.quantities.dimension import PLAIN, TIME
 from sceneql.quantities.expression import TIME_SYMBOL, Call, Expr, Key, Keys, Link, Number, Symbol, Type, Vector
@@ -40,6 +41,34 @@ def later(expr: Expr, by: float, follow: Callable[[Link], Expr | None] = lambda 
         return Key(key.time, shifted(key.value), *slopes)
 
     return shifted(expr)
+
+
+def goes_evenly(expr: Expr, follow: Callable[[Link], Expr | None]) -> bool:
+    """Whether it is known to change by as much in every second, at all times; ``follow`` as in `later`."""
+
+    def degree(node: Expr) -> float:
+        """As a polynomial of the time; infinite for what is not known as one."""
+        match node:
+            case Number():
+                return 0.0
+            case Symbol(name=name) if name == TIME_SYMBOL:
+                return 1.0
+            case Link():
+                meaning = follow(node)
+                return inf if meaning is None else degree(meaning)
+            case Vector(items=items):
+                return max(map(degree, items))
+            case Call(op="add" | "sub" | "neg" | "component", args=args):
+                return max(map(degree, args))
+            case Call(op="mul", args=args):
+                return sum(map(degree, args))
+            case Call(op="div", args=(above, below)) if degree(below) == 0.0:
+                return degree(above)
+            case Call(args=args) if not any(map(degree, args)):
+                return 0.0
+        return inf
+
+    return degree(expr) <= 1.0
 
 
 def rate_of_change(expr: Expr) -> Expr:

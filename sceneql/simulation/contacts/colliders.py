@@ -10,14 +10,18 @@ from typing import TYPE_CHECKING
 from sceneql.kinds import Collider, Object, Ref, Value
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.simulation.contacts.shapes import implicit
-from sceneql.simulation.shift import APART, later
+from sceneql.simulation.shift import APART, goes_evenly, later
 
 if TYPE_CHECKING:
     from sceneql.system import Assembly
 
 OFTEN = 1 / 240
-"""Longest step [s] that a tolerance may choose where contacts act at the ends of steps or objects move: it sees
-neither, and what comes as slowly as gravity makes it in two steps is taken to rest."""
+"""Longest step [s] that a tolerance may choose where contacts act at the ends of steps or objects move unevenly: it
+sees neither, and what comes as slowly as gravity makes it in two steps is taken to rest."""
+SHIFTING = ("position", "height")
+"""What only shifts an object that may be collided with; `height` is a plane's."""
+FAR_APART = 1.0
+"""Seconds between the poses of an object that moves evenly: exact for any, and its velocity is as good as its place."""
 
 
 def surfaces(refs: Sequence[Ref], assembly: Assembly, at: int) -> tuple[int, ...]:
@@ -61,9 +65,12 @@ def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, 
         if not is_moving(kind):
             poses = (0, here.position_at, here.rotation_at, here.position_at, here.rotation_at)
         else:
-            assembly.step_at_most(OFTEN)
-            before, after = _shifted(kind, -APART, assembly), _shifted(kind, APART, assembly)
-            poses = (assembly.floats([APART]), *before, *after)
+            even = _moves_evenly(kind, assembly)
+            if not even:
+                assembly.step_at_most(OFTEN)
+            apart = FAR_APART if even else APART
+            before, after = _shifted(kind, -apart, assembly), _shifted(kind, apart, assembly)
+            poses = (assembly.floats([apart]), *before, *after)
     except (TypeError, ValueError) as error:
         help = f"name under `between` what may touch, without '{ref.name}'"
         place = ref.span or assembly.line()
@@ -100,6 +107,15 @@ def _shifted(kind: Object, by: float, assembly: Assembly) -> tuple[int, int]:
 def is_moving(kind: Object) -> bool:
     """Whether any of its values varies in time."""
     return any(isinstance(value, Value) and not value.constant for _, value in kind)
+
+
+def _moves_evenly(kind: Object, assembly: Assembly) -> bool:
+    """Whether it is known to go straight on at one speed: what it does to masses is then what one at rest does."""
+    return all(
+        name in SHIFTING and goes_evenly(value.expr, assembly.formula)
+        for name, value in kind
+        if isinstance(value, Value) and not value.constant
+    )
 
 
 def shifted(kind: Object, by: float, assembly: Assembly) -> Object:

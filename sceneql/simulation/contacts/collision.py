@@ -42,6 +42,10 @@ class Collision(Contact):
     field is zero; a mass with a radius at that distance from it, but in front of the sharp edges of combined solids,
     where it is the field over its slope. An object may move, but not change its shape. A fast mass sees what is thicker
     than a ten-thousandth of the object's size.
+
+    Steps that a tolerance chooses are at most 1/240 s in mode `local`, and where an object moves other than straight on
+    at one speed. In mode `local` what lands slower than gravity makes it in two steps comes to rest, at 1/240 s below
+    8 cm/s on Earth: smaller bounces need a solver of shorter steps, by `largest_step` or `step`, or mode `exact`.
     """
 
     gives: ClassVar[Mapping[str, Gives]] = {

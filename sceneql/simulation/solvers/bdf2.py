@@ -33,7 +33,7 @@ class Bdf2(Solver):
         below=1,
     )
     first_step: FixedTime | None = field("Length of the first step; by default it is chosen.", None, above=0)
-    largest_step: FixedTime | None = field("No step is longer; by default any may be.", None, above=0)
+    largest_step: FixedTime | None = field("No step is longer; by default as long as contacts allow.", None, above=0)
 
     def stepper(self) -> Stepper:
         """Fixed steps, or by the error."""

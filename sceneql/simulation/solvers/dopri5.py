@@ -25,7 +25,7 @@ class Dopri5(Solver):
         "Absolute error of a step, in SI units; by default the number of the relative.", None, above=0
     )
     first_step: FixedTime | None = field("Length of the first step; by default it is chosen.", None, above=0)
-    largest_step: FixedTime | None = field("No step is longer; by default any may be.", None, above=0)
+    largest_step: FixedTime | None = field("No step is longer; by default as long as contacts allow.", None, above=0)
 
     def stepper(self) -> Stepper:
         """Steps by the error of the embedded method."""

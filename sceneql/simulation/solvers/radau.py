@@ -39,7 +39,7 @@ class Radau(Solver):
         None,
     )
     first_step: FixedTime | None = field("Length of the first step; by default it is chosen.", None, above=0)
-    largest_step: FixedTime | None = field("No step is longer; by default any may be.", None, above=0)
+    largest_step: FixedTime | None = field("No step is longer; by default as long as contacts allow.", None, above=0)
 
     @field_validator("absolute")
     @classmethod

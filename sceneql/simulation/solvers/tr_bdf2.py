@@ -36,7 +36,7 @@ class TrBdf2(Solver):
         below=1,
     )
     first_step: FixedTime | None = field("Length of the first step; by default it is chosen.", None, above=0)
-    largest_step: FixedTime | None = field("No step is longer; by default any may be.", None, above=0)
+    largest_step: FixedTime | None = field("No step is longer; by default as long as contacts allow.", None, above=0)
 
     linear: Linear = field("How the linear systems are solved where the island is a field on a grid.", "auto")
 
