@@ -20,17 +20,19 @@ from sceneql.field.steepness_kernels import steepness
 from sceneql.field.tape_ops import WHOLE
 from sceneql.frame import Tape
 from sceneql.mesh import moves
+from sceneql.mesh import tolerance as tolerance_module
 from sceneql.mesh.bounded import bounded
 from sceneql.mesh.cases import CENTERS, cases, decisions
 from sceneql.mesh.cube import FACES_OF, segments
 from sceneql.mesh.flips import facing
+from sceneql.mesh.folds import folds, winding
 from sceneql.mesh.hausdorff import hausdorff
 from sceneql.mesh.measures import area, curved_volume, edge_counts, euler_characteristic, volume
 from sceneql.mesh.polygonise import polygonise
 from sceneql.mesh.polygons import Polygons
 from sceneql.mesh.refine import refined
 from sceneql.mesh.sharp import polygonise_sharp
-from sceneql.mesh.tolerance import distance, polygonise_within
+from sceneql.mesh.tolerance import distance, missed, polygonise_within
 from sceneql.mesh.unresolved import unresolved
 from sceneql.quantities.expression import Symbol
 from sceneql.report.mesh import mesh
@@ -162,6 +164,52 @@ def test_coarse_cells_leave_no_triangle_facing_inward(way, cells):
         if way == "refined":
             steep = np.linalg.norm(field_gradients(tape_of(text), found.vertices), axis=1)
             assert (np.abs(field_values(tape_of(text), found.vertices)) / steep).max() < 1e-6 * half
+
+
+CREASED = {  # formulas that meet themselves or their ball at sharp angles, half sides of their boxes
+    "cayley": ("max(4*(x^2 + y^2 + z^2) + 16*x*y*z - 1, sqrt(x^2 + y^2 + z^2) - 1.15)", 1.15),
+    "kummer": (
+        "max((x^2 + y^2 + z^2 - 1.3)^2 - 2.9/1.7*((1 - z)^2 - 2*x^2)*((1 + z)^2 - 2*y^2), sqrt(x^2 + y^2 + z^2) - 2)",
+        2.0,
+    ),
+    "gyroid": ("max(sin(9*x)*cos(9*y) + sin(9*y)*cos(9*z) + sin(9*z)*cos(9*x), sqrt(x^2 + y^2 + z^2) - 1)", 1.0),
+    "wedges": ("max(max(0.9*x - y, 0.9*x + y - 0.3*z), max(abs(z) - 0.8, -x - 0.9))", 1.0),
+}
+
+
+@pytest.mark.parametrize("name", ["torus", "tanglecube"])
+def test_a_mesh_goes_around_what_is_inside_and_nothing_else(name):
+    text, half, _ = CLOSED[name]
+    found = cut(text, half, 40)
+    points = np.random.default_rng(0).uniform(-half, half, (400, 3))
+    around = winding(points, found.vertices[found.triangles])
+    assert ((around == 1) == (field_values(tape_of(text), points) < 0.0)).all()
+    assert set(around) == {0, 1}
+    turned = winding(points, found.vertices[found.triangles[:, ::-1]])
+    assert (turned == -around).all()
+
+
+@pytest.mark.parametrize("name", CREASED)
+def test_triangles_across_a_crease_part_inside_from_outside_though_the_gradient_is_of_one_face(name):
+    text, half = CREASED[name]
+    whole = bounded(tape_of(text), (-half,) * 3, (half,) * 3)
+    against = 0
+    for cells in (48, 64):
+        found = cut(text, half, cells)
+        against += (facing(whole, found.vertices[found.triangles]) < 0.0).sum()
+        assert not len(folds(whole, found))
+    assert against > 0
+
+
+def test_a_corner_pushed_through_the_mesh_is_found_folded():
+    found = cut(BALL, 1.1, 20)
+    assert not len(folds(tape_of(BALL), found))
+    vertices = found.vertices.copy()
+    beside = np.setdiff1d(found.triangles[(found.triangles == 0).any(axis=1)], [0])
+    vertices[0] += 3.0 * (vertices[beside[0]] - vertices[0])
+    turned = facing(tape_of(BALL), vertices[found.triangles]) < 0.0
+    assert turned.any()
+    assert (folds(tape_of(BALL), Polygons(vertices, found.triangles, found.normals)) == np.flatnonzero(turned)).all()
 
 
 @pytest.mark.parametrize("name", CLOSED)
@@ -545,9 +593,33 @@ def test_hausdorff_distances_fall_with_the_square_of_the_cell_and_stay_with_shar
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-3])
 def test_a_tolerance_is_kept(tolerance):
     tape, low, high = tape_of(TORUS), (-1.5,) * 3, (1.5,) * 3
-    found, cell = polygonise_within(tape, low, high, tolerance, 0.5)
-    assert distance(bounded(tape, low, high), found) <= tolerance
-    assert cell <= 0.5
+    made = polygonise_within(tape, low, high, tolerance, 0.5, refined)
+    assert distance(bounded(tape, low, high), made.polygons) <= tolerance
+    assert made.missed <= tolerance
+    assert made.cell <= 0.5
+
+
+SHELL = "abs(x^2 + y^2 + z^2 - 0.5) - 2e-2"  # walls of 28 mm
+THIN = "abs(x^2 + y^2 + z^2 - 0.5) - 1e-3"  # of 1.4 mm
+
+
+def test_a_tolerance_is_kept_by_walls_that_pass_between_coarse_cells():
+    tape, low, high = tape_of(SHELL), (-0.75,) * 3, (0.75,) * 3
+    coarse = refined(tape, low, high, 0.25)
+    assert missed(bounded(tape, low, high), *coarse) > 2e-2
+    made = polygonise_within(tape, low, high, 2e-2, 0.25, refined)
+    assert euler_characteristic(made.polygons.triangles) == 4
+    assert made.missed <= 2e-2
+    assert hausdorff(made.polygons, tape, 4000).distance <= 2e-2
+
+
+def test_cells_are_not_shortened_beyond_a_count_and_it_is_told(tmp_path, monkeypatch):
+    monkeypatch.setattr(tolerance_module, "MOST", 20_000)
+    path = tmp_path / "shell.yaml"
+    path.write_text(f'sceneql: 1\nobjects: {{shell: {{implicit: {{field: "{THIN}"}}}}}}\n', encoding="utf-8")
+    account = mesh(pipeline.load(path, pruned=False), "shell", tmp_path / "a.ply", tolerance=1e-2)
+    assert account.missed > 1e-2
+    assert "the tolerance is not kept" in account.text()
 
 
 def test_grids_that_are_too_fine_are_refused():

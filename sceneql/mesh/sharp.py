@@ -8,6 +8,7 @@ from sceneql.field.solid import field_values
 from sceneql.mesh.bounded import Corner, bounded
 from sceneql.mesh.cases import cases
 from sceneql.mesh.dual_kernels import dual
+from sceneql.mesh.folds import doubtful
 from sceneql.mesh.grid import grid_around
 from sceneql.mesh.moves import turned_outward
 from sceneql.mesh.pinched import pinched
@@ -41,7 +42,8 @@ def polygonise_sharp(tape: Tape, low: Corner, high: Corner, cell: float) -> Poly
     plain, more_places, more = pinched(quads, rings, found.place, len(places))
     triangles = np.concatenate([_halved(whole, places, quads[plain]), more]).astype(np.int32)
     places, normals = np.concatenate([places, more_places]), np.concatenate([normals, np.zeros_like(more_places)])
-    return turned_outward(whole, Polygons(places, triangles, normals), _doubtful(places, normals, triangles))
+    polygons = Polygons(places, triangles, normals)
+    return turned_outward(whole, polygons, doubtful(polygons))
 
 
 def _vertices(shop: Workshop, found: Found) -> tuple[Floats, Floats, Ints, Ints, NDArray[np.int8]]:
@@ -65,16 +67,6 @@ def _vertices(shop: Workshop, found: Found) -> tuple[Floats, Floats, Ints, Ints,
 
     shop.over_blocks(len(found.blocks), work)
     return places, normals, rings, corners, outward
-
-
-def _doubtful(places: Floats, normals: Floats, triangles: Ints) -> NDArray[np.int64]:
-    """(n,) rows of triangles that do not face as the normals of all their corners do."""
-    import numpy as np
-
-    a, b, c = (places[triangles[:, k]] for k in range(3))
-    across = np.cross(b - a, c - a)
-    facing = [np.einsum("tj,tj->t", across, normals[triangles[:, k]]) for k in range(3)]
-    return np.flatnonzero(np.minimum.reduce(facing) <= 0.0)
 
 
 def _halved(tape: Tape, places: Floats, quads: Ints) -> Ints:

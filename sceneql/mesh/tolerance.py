@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from sceneql.field.solid import field_values, many_gradients
 from sceneql.mesh.bounded import Corner, bounded
-from sceneql.mesh.polygonise import polygonise
+from sceneql.mesh.moves import settled
 from sceneql.mesh.polygons import Polygons
+from sceneql.mesh.unresolved import Unresolved
 
 if TYPE_CHECKING:
     from sceneql.frame import Tape
 
-Method = Callable[["Tape", Corner, Corner, float], Polygons]
+Method = Callable[["Tape", Corner, Corner, float], tuple[Polygons, Unresolved]]
 PROBES = 10_000
 """Triangles that a distance is measured at."""
 BETWEEN = 16.0 / 15.0
@@ -21,6 +22,23 @@ BETWEEN = 16.0 / 15.0
 is sum d_ij l_i l_j in barycentric coordinates, largest beside these places where d = (1, 1, 1/4)."""
 TRIES = 8
 SAFETY = 0.9
+LONGEST = 0.7
+"""Of a cell, that the next one may be."""
+MOST = 2**23
+"""Triangles that cells may be shortened to for what passes between them; more take minutes and all of a memory."""
+LANDED = 1.0e-3
+"""Parts of a cell that a place found on the surface may be off it."""
+
+
+class Within(NamedTuple):
+    """Triangles, and how they were come by."""
+
+    polygons: Polygons
+    hidden: Unresolved
+    cell: float
+    """[m]"""
+    missed: float
+    """[m] as of ``missed``; above the tolerance where cells that miss less are too many."""
 
 
 def distance(tape: Tape, polygons: Polygons) -> float:
@@ -28,7 +46,7 @@ def distance(tape: Tape, polygons: Polygons) -> float:
 
     There it is |f| / |grad f|, right to first order; BETWEEN them a surface that is smooth across a triangle is nearer
     to second order, one with an edge or a corner there may be farther. What has no triangle near it, as a piece that
-    cells do not see, is not measured. Where there are more than PROBES triangles, every so many-th is looked at.
+    cells do not see, is for ``missed``. Where there are more than PROBES triangles, every so many-th is looked at.
     """
     import numpy as np
 
@@ -43,23 +61,49 @@ def distance(tape: Tape, polygons: Polygons) -> float:
     return BETWEEN * float(np.max(np.abs(field_values(tape, places[steep])) / slopes[steep], initial=0.0))
 
 
-def polygonise_within(
-    tape: Tape, low: Corner, high: Corner, tolerance: float, cell: float, method: Method = polygonise
-) -> tuple[Polygons, float]:
-    """Triangles that are within ``tolerance`` [m] of the surface, as of ``distance``, and their cell [m] <= ``cell``.
+def missed(tape: Tape, polygons: Polygons, hidden: Unresolved) -> float:
+    """The largest distance [m] from the triangles of surface that passes between the corners of unresolved cells.
 
-    The distance falls with the square of the cell, at edges and corners that are not kept with the cell itself: the
-    cell is shortened by what is measured. Raises ValueError as ``method``, and where TRIES cells do not reach it.
+    Newton's method finds it from the middles of these; what it does not find in or next to the cell it began in is
+    left to the account of what is unresolved. Where there are more than PROBES cells, every so many-th is looked at.
+    Infinite where there is surface, but no triangle.
+    """
+    import numpy as np
+
+    middles, side = hidden.middles[:: max(1, hidden.cells // PROBES)], hidden.grid.cell
+    places, slopes = settled(tape, middles)
+    with np.errstate(all="ignore"):
+        off = np.abs(field_values(tape, places)) / np.linalg.norm(many_gradients(tape, places), axis=1)
+        landed = (off < LANDED * side) & (np.abs(places - middles).max(axis=1) < side) & slopes.any(axis=1)
+    if not landed.any():
+        return 0.0
+    if not len(polygons.triangles):
+        return float(np.inf)
+    from sceneql.mesh.distance import distances
+
+    return float(distances(places[landed], polygons.vertices, polygons.triangles).max())
+
+
+def polygonise_within(tape: Tape, low: Corner, high: Corner, tolerance: float, cell: float, method: Method) -> Within:
+    """Triangles that are within ``tolerance`` [m] of the surface, as of ``distance``, of cells [m] <= ``cell``.
+
+    And the surface of them, as of ``missed``, unless that takes more than MOST triangles. The distance falls with the
+    square of the cell, at edges and corners that are not kept with the cell itself: the cell is shortened by what is
+    measured. Raises ValueError as ``method``, and where TRIES cells do not reach it.
     """
     import numpy as np
 
     if not tolerance > 0.0:
         raise ValueError("the tolerance must be above 0")
     whole = bounded(tape, low, high)
-    for _ in range(TRIES):
-        polygons = method(tape, low, high, cell)
-        found = distance(whole, polygons)
-        if found <= tolerance:
-            return polygons, cell
-        cell *= max(0.25, min(0.7, SAFETY * float(np.sqrt(tolerance / found))))
-    raise ValueError(f"{TRIES} cells, the last of {cell:g} m, did not come within {tolerance:g} m of the surface")
+    for left in reversed(range(TRIES)):
+        polygons, hidden = method(tape, low, high, cell)
+        found, unseen = distance(whole, polygons), missed(whole, polygons, hidden)
+        # A wall that passes through a cell will be two triangles on either side; they grow with the square of 1 / cell.
+        count = len(polygons.triangles) + 4 * hidden.cells * (hidden.grid.cell / cell) ** 2
+        shortest = float(np.sqrt(count / MOST))
+        if found <= tolerance and (unseen <= tolerance or shortest > LONGEST or not left):
+            return Within(polygons, hidden, cell, unseen)
+        share = max(0.25, min(LONGEST, SAFETY * float(np.sqrt(tolerance / max(found, unseen)))))
+        last, cell = cell, cell * (share if found > tolerance else max(share, shortest))
+    raise ValueError(f"{TRIES} cells, the last of {last:g} m, did not come within {tolerance:g} m of the surface")

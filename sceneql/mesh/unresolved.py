@@ -13,6 +13,7 @@ from sceneql.mesh.workshop import BATCH, Workshop
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints, Tape
+    from sceneql.mesh.grid import Grid
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -23,6 +24,8 @@ class Unresolved:
     """(n, 3) cells, counted from the grid's first node."""
     volumes: Floats
     """(n,) [m^3] of the parts of them that no proof was found for."""
+    grid: Grid
+    """That they are cells of."""
 
     @property
     def cells(self) -> int:
@@ -33,6 +36,12 @@ class Unresolved:
     def volume(self) -> float:
         """[m^3] in all."""
         return float(self.volumes.sum())
+
+    @property
+    def middles(self) -> Floats:
+        """(n, 3) [m] of the cells."""
+        found: Floats = self.grid.low + (self.where + 0.5) * self.grid.cell
+        return found
 
 
 def unresolved(tape: Tape, low: Corner, high: Corner, cell: float) -> Unresolved:
@@ -65,4 +74,5 @@ def hidden_in(shop: Workshop, blocks: Ints, deepest: int = DEEPEST) -> Unresolve
         found[batch] = cells[:n].copy(), rest[:n].copy()
 
     over_tiles(count, work)
-    return Unresolved(*(np.concatenate(column) for column in zip(*found, strict=True)))
+    where, volumes = (np.concatenate(column) for column in zip(*found, strict=True))
+    return Unresolved(where, volumes, shop.grid)

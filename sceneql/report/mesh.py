@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from sceneql.graph import SimulationGraph, Task
     from sceneql.mesh.bounded import Corner
     from sceneql.mesh.polygons import Polygons
+    from sceneql.mesh.tolerance import Within
     from sceneql.mesh.unresolved import Unresolved
     from sceneql.simulation.run import Instant
 
@@ -41,10 +42,14 @@ class Account:
     area: float
     """[m^2]"""
     boundary_edges: int
+    folded: int
+    """Triangles that face inward of the mesh itself, as of ``folds``."""
     unresolved: int
     """Cells without a change of sign, whether or not something smaller than they hides in them."""
     unresolved_volume: float
     """[m^3]"""
+    missed: float
+    """[m] How far surface was found from all triangles, where that is more than the tolerance."""
 
     def text(self) -> str:
         """As lines."""
@@ -55,11 +60,21 @@ class Account:
         ]
         if self.boundary_edges:
             lines.append(f"{self.boundary_edges} edges of one triangle: the mesh is open")
+        if self.folded:
+            triangles = "1 triangle is" if self.folded == 1 else f"{self.folded} triangles are"
+            lines.append(
+                f"{triangles} folded over, where the surface is finer than cells; a smaller --cell leaves fewer"
+            )
         if self.unresolved:
             cells = "1 cell" if self.unresolved == 1 else f"{self.unresolved} cells"
             lines.append(
                 f"{cells} unresolved, {self.unresolved_volume:.3g} m^3 in all: without a change of sign at the corners,"
                 " but not proved empty or full; a smaller --cell resolves more"
+            )
+        if self.missed:
+            lines.append(
+                f"the tolerance is not kept: there is surface {self.missed:.3g} m from the triangles, which passes"
+                " between the corners of cells, and shorter ones would be too many"
             )
         return "\n".join(lines)
 
@@ -88,23 +103,29 @@ def mesh(
         from sceneql.simulation.maps.iso_mesh import polygons_of
 
         polygons, cell = polygons_of(grids)
-        hidden = None
+        hidden, missed, folded = None, 0.0, 0
     else:
+        from sceneql.mesh.bounded import bounded
+        from sceneql.mesh.folds import folds
+
         solid = _solid(task, name, moment)
-        polygons, cell, hidden = _of_solid(solid, task, name, moment.time, cell, tolerance, sharp)
+        polygons, hidden, cell, missed = _of_solid(solid, task, name, moment.time, cell, tolerance, sharp)
+        folded = len(folds(bounded(solid.tape, solid.low, solid.high), polygons))
+        missed = missed if tolerance is not None and missed > tolerance else 0.0
         if solid.paint is not None:
             from sceneql.field.solid import paint_values
 
             colors = paint_values(solid.paint, polygons.vertices)
     write(output, polygons, colors)
-    return _account(output, polygons, cell, hidden)
+    return _account(output, polygons, cell, hidden, missed, folded)
 
 
 def _of_solid(
     solid: Implicit, task: Task, name: str, time: float, cell: float | None, tolerance: float | None, sharp: bool
-) -> tuple[Polygons, float, Unresolved]:
-    """Polygons of a solid, the cells [m] that they are of, and what they do not resolve."""
+) -> Within:
+    """Polygons of a solid, the cells that they are of, and what they do not resolve."""
     from sceneql.mesh.grid import grid_around
+    from sceneql.mesh.tolerance import Within, polygonise_within
 
     box = solid.tape, solid.low, solid.high
     size = max(high - low for low, high in zip(solid.low, solid.high, strict=True))
@@ -114,17 +135,16 @@ def _of_solid(
         grid_around(solid.low, solid.high, cell)
         least = cell
         method = _kept_sharp if sharp else _refined
-        if tolerance is not None:
-            from sceneql.mesh.tolerance import polygonise_within
-
-            _, cell = polygonise_within(*box, tolerance, size / COARSE, lambda *cells: method(*cells)[0])
-        polygons, hidden = method(*box, cell)
-        while not len(polygons.triangles) and cell > least:  # nothing is no distance from coarse cells
-            cell = max(0.5 * cell, least)
-            polygons, hidden = method(*box, cell)
-        if not len(polygons.triangles):
-            raise ValueError(_why_empty(*box, cell))
-    return polygons, cell, hidden
+        if tolerance is None:
+            made = Within(*method(*box, cell), cell, 0.0)
+        else:
+            made = polygonise_within(*box, tolerance, size / COARSE, method)
+        while not len(made.polygons.triangles) and made.cell > least:  # nothing is no distance from coarse cells
+            cell = max(0.5 * made.cell, least)
+            made = Within(*method(*box, cell), cell, 0.0)
+        if not len(made.polygons.triangles):
+            raise ValueError(_why_empty(*box, made.cell))
+    return made
 
 
 def _on_grids(task: Task, name: str, moment: Instant) -> list[Grid]:
@@ -142,7 +162,9 @@ def _on_grids(task: Task, name: str, moment: Instant) -> list[Grid]:
     return [shape for shape in shapes if isinstance(shape, Grid)]
 
 
-def _account(output: Path, polygons: Polygons, cell: float, hidden: Unresolved | None) -> Account:
+def _account(
+    output: Path, polygons: Polygons, cell: float, hidden: Unresolved | None, missed: float, folded: int
+) -> Account:
     """What was written."""
     from sceneql.mesh.measures import area, edge_counts, euler_characteristic, volume
 
@@ -156,8 +178,10 @@ def _account(output: Path, polygons: Polygons, cell: float, hidden: Unresolved |
         volume=volume(vertices, triangles),
         area=area(vertices, triangles),
         boundary_edges=edge_counts(triangles)[1],
+        folded=folded,
         unresolved=0 if hidden is None else hidden.cells,
         unresolved_volume=0.0 if hidden is None else hidden.volume,
+        missed=missed,
     )
 
 
