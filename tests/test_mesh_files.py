@@ -102,6 +102,13 @@ objects:
   both: {union: {of: [left, right]}}
   soft: {union: {of: [left, right], blend: 0.08 m}}
   plain: {union: {of: [left, right], color: gray}}
+  one: {sphere: {radius: 1 m, color: red}}
+  two: {sphere: {radius: 1 m, position: 1 0 0 m, color: red}}
+  bare: {sphere: {radius: 1 m}}
+  same: {union: {of: [one, two]}}
+  pair: {group: {children: [one, two]}}
+  inherited: {group: {children: [bare], color: red}}
+  alone: {group: {children: [bare]}}
   alike: {union: {of: {a: {sphere: {radius: 1 m}}, b: {box: {size: 1 1 1 m, position: 1 0 0 m}}}}}
 """
 
@@ -135,8 +142,13 @@ def test_colors_run_over_where_a_blend_joins_and_nowhere_else(tmp_path):
     assert np.ptp(x[mixed]) < 0.3
 
 
-@pytest.mark.parametrize("name", ["plain", "alike"])
-def test_a_union_of_one_color_has_no_colors_in_its_file(tmp_path, name):
+@pytest.mark.parametrize("name", ["same", "pair"])
+def test_what_is_joined_of_members_of_one_color_has_it(tmp_path, name):
+    assert (colored(tmp_path, name)[1] == [255, 0, 0]).all()
+
+
+@pytest.mark.parametrize("name", ["plain", "alike", "inherited", "alone"])
+def test_what_is_joined_without_colors_of_members_has_no_colors_in_its_file(tmp_path, name):
     assert colored(tmp_path, name)[1] is None
 
 
@@ -145,8 +157,11 @@ def test_pictures_show_a_union_by_its_members_colors(tmp_path):
     path.write_text(JOINED)
     graph = pipeline.load(path, pruned=False)
     moment = next(pipeline.simulate(graph, [0.0]))
-    shapes = {n: next(iter(graph.tasks[n].kind.lower(n, np.eye(3, 4), moment))) for n in ("both", "soft", "plain")}
+    shapes = {
+        n: next(iter(graph.tasks[n].kind.lower(n, np.eye(3, 4), moment))) for n in ("both", "soft", "same", "plain")
+    }
     assert shapes["plain"].paint is None
+    assert paint_values(shapes["same"].paint, np.zeros((1, 3))).tolist() == [[1, 0, 0]]
     for name in ("both", "soft"):
         assert paint_values(shapes[name].paint, np.array([[0.9, 0, 0]]))[0] == pytest.approx([0, 1, 0])
         assert paint_values(shapes[name].paint, np.array([[-0.9, -0.3, 0]]))[0] == pytest.approx([1, 0, 0], abs=0.02)

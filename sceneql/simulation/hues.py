@@ -13,24 +13,30 @@ if TYPE_CHECKING:
 
 
 def joined(
-    build: FieldBuilder, members: Sequence[tuple[str, Object]], at: Registers, own: Surface | None, width: float,
-    moment: Moment,
+    build: FieldBuilder, members: Sequence[tuple[str, Object]], at: Registers, surface: Surface, shared: bool,
+    width: float, moment: Moment,
 ) -> Registers | None:  # fmt: skip
-    """Registers of linear RGB at a point of the members' parent's coordinates; None where there is but one color.
+    """Registers of linear RGB at a point of the members' parent's coordinates; None where they have the one color of
+    their parent's ``surface``, or no member is given one.
 
-    ``own`` is the surface of members without a color or material, where they have no default of their own. A member's
+    With ``shared``, members without a color or material have that surface, else a default of their own. A member's
     share is max(width - gap, 0), its gap that of its field to the least one: so colors run over into each other just
     where a blend of this width [m] joins the members, whatever their order.
     """
     hues: list[Registers | None] = []
     colors = []
+    given = False
     for name, member in members:
-        plain = own is not None and member.color is None and member.material is None
-        surface = own if own is not None and plain else moment.surface(name, member.material, member.color)
-        colors.append(surface.color)
-        hues.append(member.hues(build, *at, surface, moment))
+        plain = member.color is None and member.material is None
+        own = surface if shared and plain else moment.surface(name, member.material, member.color)
+        given |= not plain
+        colors.append(own.color)
+        hues.append(member.hues(build, *at, own, moment))
     if not any(hues) and len(set(colors)) < 2:
-        return None
+        if not given or colors[0] == surface.color:
+            return None
+        red, green, blue = (build.constant(part) for part in colors[0])
+        return red, green, blue
     r, g, b = (
         [build.constant(color[k]) if hue is None else hue[k] for hue, color in zip(hues, colors, strict=True)]
         for k in range(3)

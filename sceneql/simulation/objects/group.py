@@ -67,7 +67,7 @@ class Group(Placed):
         from sceneql.simulation.hues import joined
 
         own = build.affine(inverse(self.local(moment)), x, y, z)
-        return joined(build, list(self._objects(moment)), own, None, 0.0, moment)
+        return joined(build, list(self._objects(moment)), own, surface, False, 0.0, moment)
 
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
         """The box around those of its children; inverted (inf, -inf) where there is none."""

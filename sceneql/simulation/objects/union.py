@@ -51,7 +51,7 @@ class Union(Combination):
             return None
         members = [(ref.name, moment.object(ref)) for ref in self.members()]
         at = build.affine(inverse(self.local(moment)), x, y, z)
-        return joined(build, members, at, surface, self.width(moment), moment)
+        return joined(build, members, at, surface, True, self.width(moment), moment)
 
     def _room(self, moment: Moment) -> tuple[Floats, Floats]:
         """The box in its own coordinates around those of its members and what is filled between them."""
