@@ -17,7 +17,10 @@ from sceneql.field.builder import TapeBuilder
 from sceneql.field.certified_kernels import certify
 from sceneql.field.enclosure_kernels import segment
 from sceneql.field.gradient_kernels import gradient
+from sceneql.field.interval_kernels import box
 from sceneql.field.isolation_kernels import any_root, exit_root
+from sceneql.field.packets import cast_together, tape_up_to
+from sceneql.field.simplify_kernels import simplify
 from sceneql.field.slope_kernels import on_ray
 from sceneql.field.solid import cast, field_values, scratch
 from sceneql.field.tape_ops import ATAN2, HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
@@ -261,12 +264,18 @@ def test_the_cut_of_an_angle_is_a_jump():
 ROUND = ["5*atan2(y, x)", "z - 3*atan2(y, x)", "8*hypot(x, y) + 2*atan2(y, x)", "3*acos(x/hypot(x, y))"]
 
 
+def over_the_cut(count):
+    """(origins, ways) of rays across the half plane y = 0 > x."""
+    generator = np.random.default_rng(1)
+    sides = generator.uniform(-1.0, -0.3, count), generator.uniform(-0.3, 0.3, count)
+    origins = np.column_stack([*sides, np.ones(count)])
+    return origins, np.column_stack([generator.uniform(-0.2, 0.2, count), -3.0 * sides[1], np.full(count, -0.3)])
+
+
 @pytest.mark.parametrize("angle", ROUND)
 def test_angles_in_waves_have_no_cut(angle):
     tape = tape_of(f"hypot(x, y) - 0.6 - 0.2*cos({angle})")
-    generator = np.random.default_rng(1)
-    origins = np.column_stack([generator.uniform(-1.0, -0.3, 100), generator.uniform(-0.3, 0.3, 100), np.ones(100)])
-    ways = np.column_stack([generator.uniform(-0.2, 0.2, 100), -3.0 * origins[:, 1], np.full(100, -0.3)])
+    origins, ways = over_the_cut(100)
     status, t = cast(tape, origins, ways, 0.0, 3.0, TOLERANCE)
     assert (status != UNDECIDED).all()
     places = np.linspace(0.0, 3.0, 1001)
@@ -282,6 +291,27 @@ def test_angles_in_waves_have_no_cut(angle):
             assert ((f >= low) & (f <= high)).all()
             assert (np.diff(f) >= least * (t1 - t0) / 20 - 1e-14).all()
             assert (np.diff(f) <= most * (t1 - t0) / 20 + 1e-14).all()
+
+
+@pytest.mark.parametrize("angle", ROUND)
+def test_angles_in_shorter_tapes_have_no_cut_either(angle):
+    whole = tape_of(f"max(hypot(x, y) - 0.6 - 0.2*cos({angle}), z - 9)")
+    origins, ways = over_the_cut(1000)
+    order = np.argsort(origins[:, 0])
+    status, _ = cast_together(whole, origins[order], ways[order], np.zeros(1000), np.full(1000, 3.0))
+    assert (status != UNDECIDED).all()
+    room, place = scratch(whole), (-1.0, -0.99, -0.001, 0.001, 0.1, 0.101)
+    expected = box(whole.code, whole.constants, whole.parts, room, *place)
+    short = np.zeros_like(whole.code)
+    rows, _ = simplify(whole.code, whole.parts, room, True, short, np.zeros((1, 8)))
+    assert rows < len(whole.code)
+    assert box(short[:rows], whole.constants, whole.parts, room, *place) == expected
+
+
+def test_the_tape_of_a_row_knows_of_which_angles_whole_turns_do_not_matter():
+    whole = tape_of("max(cos(5*atan2(z, y)), x)")
+    wave = tape_up_to(whole, int(whole.code[-1, 1:3].max()))
+    assert wave[wave[:, 0] == ATAN2, 3].tolist() == [1]
 
 
 @pytest.mark.parametrize(

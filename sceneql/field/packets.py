@@ -24,7 +24,7 @@ from sceneql.field.polynomial_steps_kernels import ROWS, C
 from sceneql.field.ray_rows import FOUND_ROOT, FOUND_STATUS, LANE_ROWS, RAY
 from sceneql.field.slab_kernels import BEAM
 from sceneql.field.solid import scratch
-from sceneql.field.tape_ops import CONSTANT, MAX, OF_PARTS, SKELETON, X, Y, Z
+from sceneql.field.tape_ops import ATAN2, CONSTANT, MAX, OF_PARTS, SKELETON, X, Y, Z
 
 if TYPE_CHECKING:
     from numpy import float32, int32, int64
@@ -101,7 +101,9 @@ def tape_up_to(tape: Tape, row: int) -> NDArray[int32]:
         if line[0] in OF_PARTS:
             line[3] = place[line[3]]
         elif line[0] not in (CONSTANT, X, Y, Z):
-            line[1:] = place[line[1]], place[line[2]], place.get(line[3], 0)
+            # The third operand of an angle is no row: see turns.
+            third = line[3] if line[0] == ATAN2 else place.get(line[3], 0)
+            line[1:] = place[line[1]], place[line[2]], third
     return np.array(code, dtype=np.int32).reshape(-1, 4)
 
 

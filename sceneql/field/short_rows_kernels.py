@@ -1,7 +1,7 @@
 # mypy: ignore-errors
 """A shorter tape of the rows that are needed, where the values of some are known to be those of others."""
 
-from sceneql.field.tape_ops import CONSTANT, COS, DENSITY, SIN, SKELETON, X, Y, Z
+from sceneql.field.tape_ops import ATAN2, CONSTANT, COS, DENSITY, SIN, SKELETON, X, Y, Z
 from sceneql.kernels import inlined
 
 ALIAS, LIVE, PLACE = 4, 5, 6
@@ -28,13 +28,13 @@ def mark(code, last, scratch):
 
 @inlined
 def write_row(code, k, scratch, short, row):
-    """Write row k into a row of ``short``; parts keep their numbers."""
+    """Write row k into a row of ``short``; parts keep their numbers, and angles whether whole turns of them matter."""
     op = code[k, 0]
     scratch[k, PLACE] = row
     short[row, 0] = op
     short[row, 1] = code[k, 1]
     short[row, 2] = code[k, 2]
-    short[row, 3] = 0
+    short[row, 3] = code[k, 3] if op == ATAN2 else 0
     if op == DENSITY or op == SKELETON:
         short[row, 3] = int(scratch[code[k, 3], PLACE])
     elif not (op == CONSTANT or op == X or op == Y or op == Z):
