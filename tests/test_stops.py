@@ -10,7 +10,7 @@ from sceneql.pipeline import load
 from sceneql.quantities.expression import Call, Key, Keys, Link, Number, Symbol, Type
 from sceneql.simulation.run import Run
 from sceneql.simulation.shift import goes_evenly
-from sceneql.simulation.stops import next_stop, stops
+from sceneql.simulation.stops import Stops, next_stop, stops
 
 G = 9.81
 TIME = Symbol("time", Type())
@@ -46,12 +46,31 @@ def test_keys_and_switches_are_stops_whatever_they_stand_in():
 
 
 def test_the_next_stop_is_the_first_one_after_an_instant_and_periods_go_on():
-    known = [(1.0, 0.0), (2.5, 0.0), (0.25, 2.0), (1.0 + 1e-15, 0.0), (math.nan, 0.0), (-1.0, 0.0)]
+    known = Stops.of([(2.5, 0.0), (math.nan, 0.0), (1.0, 0.0), (0.25, 2.0), (1.0 + 1e-15, 0.0), (-1.0, 0.0)])
     passed, time = [], 0.0
     while time < 7.0:
         time = next_stop(known, time, 7.0)
         passed.append(time)
     assert passed == [0.25, 1.0, 2.25, 2.5, 4.25, 6.25, 7.0]
+
+
+def test_the_next_of_many_stops_is_found_without_a_look_at_each():
+    looks = 0
+
+    class Counted(float):
+        def __lt__(self, other):
+            nonlocal looks
+            looks += 1
+            return float(self) < float(other)
+
+        def __gt__(self, other):
+            nonlocal looks
+            looks += 1
+            return float(self) > float(other)
+
+    known = Stops(tuple(Counted(time) for time in range(1, 4097)))
+    assert [next_stop(known, float(time), 5000.0) for time in range(100)] == [float(time) for time in range(1, 101)]
+    assert looks < 100 * 20
 
 
 @pytest.mark.parametrize("solver", ADAPTIVE)

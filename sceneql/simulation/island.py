@@ -22,7 +22,7 @@ from sceneql.simulation.blocks_laid import Block, grouped, lay_out
 from sceneql.simulation.inputs import Inputs
 from sceneql.simulation.jacobian import BY_DIFFERENCES, full, section
 from sceneql.simulation.memory import LARGEST_MEMORY
-from sceneql.simulation.stops import Stop, stops
+from sceneql.simulation.stops import Stop, Stops, stops
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -92,7 +92,7 @@ class System:
     ranges: tuple[tuple[int, int, str, tuple[Span | None, ...]], ...]
     largest_step: float = float("inf")
     """[s], of steps that a tolerance chooses."""
-    stops: tuple[Stop, ...] = ()
+    stops: Stops = field(default_factory=Stops)
     """Where such steps end."""
     pattern: Pattern | None = None
     """Of its Jacobian; None: not asked for, or too large to be found by differences."""
@@ -345,7 +345,7 @@ class IslandAssembly:
             partner=partner,
             ranges=tuple(self._ranges),
             largest_step=self._largest_step,
-            stops=tuple(sorted(self._stops)),
+            stops=Stops.of(self._stops),
             pattern=found,
             grid=self.only_field,
             unsloped=self._unsloped,

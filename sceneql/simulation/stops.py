@@ -7,7 +7,9 @@ without a sign of it in its error.
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator
+from typing import NamedTuple
 
 from sceneql.kinds.values import TIME
 from sceneql.quantities.curves import known_table
@@ -77,11 +79,28 @@ def _even(expr: Expr, formula: Callable[[Link], Expr | None]) -> tuple[float, fl
     return (here, slope) if even else (math.nan, math.nan)
 
 
-def next_stop(known: Iterable[Stop], time: float, end: float) -> float:
+class Stops(NamedTuple):
+    """Stops in the order in which they are looked up."""
+
+    once: tuple[float, ...] = ()
+    """Instants without a period, ascending [s]."""
+    again: tuple[Stop, ...] = ()
+
+    @classmethod
+    def of(cls, found: Iterable[Stop]) -> Stops:
+        """Those found, in any order."""
+        known = sorted(stop for stop in found if not math.isnan(stop[0]))  # no order holds where one is no number
+        return cls(tuple(at for at, period in known if period <= 0.0), tuple(stop for stop in known if stop[1] > 0.0))
+
+
+def next_stop(known: Stops, time: float, end: float) -> float:
     """The first of them after an instant, at most the end of the run [s]."""
     best, least = end, time + APART * end
-    for at, period in known:
-        if at <= least and period > 0.0:
+    first = bisect_right(known.once, least)
+    if first < len(known.once) and known.once[first] < end - APART * end:
+        best = known.once[first]
+    for at, period in known.again:
+        if at <= least:
             at += period * (math.floor((least - at) / period) + 1.0)
         if least < at < best - APART * end:
             best = at
