@@ -182,7 +182,23 @@ solvers: {main: {SOLVER}}
     for solver in BETWEEN:
         half, end = watch(tmp_path, script.replace("SOLVER", solver), [0.5, 1], "dust.positions")
         np.testing.assert_allclose(half[0][:, 1], 0.001, atol=1e-9)
-        np.testing.assert_allclose(end[0][:, 1], 0.001 + 20 * 0.5**3 / 6, atol=1e-2)
+        np.testing.assert_allclose(end[0][:, 1], 0.001 + 20 * 0.5**3 / 6, atol=1e-7)
+
+
+def test_a_tie_that_asks_too_much_of_friction_is_let_go(tmp_path):
+    """The pull grows beyond what friction holds: beads slide from that instant on, though many are let go at once."""
+    script = """
+clock: {end: 0.53 s}
+models: {dust: {particles: {fill: {object: room, count: 100}, radius: 1 mm}}}
+objects: {room: {box: {size: 1 0.002 1 m, position: 0 0.002 0 m, hidden: yes}}, floor: plane}
+forces: {pull: {gravity: {acceleration: {x: "20 km/s^3*max(0 s, time - 0.5 s)", y: -10 m/s^2, z: 0 m/s^2}}}}
+contacts: {hit: {collision: {between: [dust, floor], restitution: 0, friction: 0.5, mode: local}}}
+solvers: {main: {SOLVER}}
+"""
+    way = 2e4 * (0.03 - 5 / 2e4) ** 3 / 6
+    for solver in BETWEEN:
+        early, end = watch(tmp_path, script.replace("SOLVER", solver), [0.4, 0.53], "dust.positions")
+        np.testing.assert_allclose(end[0] - early[0], np.tile([way, 0, 0], (100, 1)), atol=1e-7)
 
 
 @pytest.mark.parametrize("solver", BETWEEN)
@@ -204,3 +220,18 @@ solvers: {{main: {{{solver}}}}}
     np.testing.assert_allclose(end[0], expected, atol=1e-9)
     np.testing.assert_allclose(end[1], 0, atol=1e-9)
     assert end[2] == pytest.approx(start[2], rel=1e-3)
+
+
+@pytest.mark.parametrize("solver", ["radau: {tolerance: 1e-4}", "rodas5p: {tolerance: 1e-4}"])
+def test_a_flight_that_touches_nothing_is_as_smooth_within_steps_as_without_contacts(tmp_path, solver):
+    script = f"""
+clock: {{end: 0.1 s}}
+models: {{m: {{mass_spring: {{masses: {{a: {{position: 1.1 0 0, mass: 1 kg}}, wall: {{position: 0 0 0, fixed: yes}}}},
+  springs: [{{between: [a, wall], stiffness: {(80 * np.pi) ** 2} N/m, rest: 1 m}}]}}}}}}
+objects: {{floor: {{plane: {{height: -5 m}}}}}}
+contacts: {{hit: {{collision: {{between: [m, floor], mode: local}}}}}}
+solvers: {{main: {{{solver}}}}}
+"""
+    times = np.linspace(0, 0.1, 401)
+    x = np.array([row[0][0] for row in watch(tmp_path, script, times, "m.a.position")])
+    np.testing.assert_allclose(x, 1 + 0.1 * np.cos(80 * np.pi * times), atol=2e-5)

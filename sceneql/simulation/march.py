@@ -106,9 +106,10 @@ class March:
         between = stepper.jacobian and not stepper.newton
         if local:
             self.floats[STAGE] = system.floats[STAGE] if stepper.jacobian else 0.0
-            self._dense = kernels.straightened if between else kernels.hermite
-        else:
-            self._dense = kernels.hermite if stepper.dense is None else function(stepper.dense)
+        self._mixed = local and between
+        # What contacts change after a step, its own dense output does not know.
+        dense = None if local and not between else stepper.dense
+        self._dense = kernels.hermite if dense is None else function(dense)
         self._extend = None if stepper.extend is None or local else function(stepper.extend)
         self._extended = math.nan
         # Islands without exact contacts have no events: the kernels that find them are not even loaded.
@@ -211,6 +212,12 @@ class March:
         y = np.empty_like(self._y1)
         steps = (self._y0, self._rate0, self._y1, self._rate1, self._work, self._settings, self._numbers)
         self._dense((t - t0) / h, h, *steps, y)
+        if self._mixed:
+            changed = self._sample != self._y1
+            if changed.any():
+                line = np.empty_like(y)
+                kernels.straightened((t - t0) / h, h, *steps, line)
+                y[changed] = line[changed]
         return y, False
 
     def _extend_step(self, t0: float, h: float) -> None:

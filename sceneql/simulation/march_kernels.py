@@ -66,8 +66,9 @@ def hermite(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
 def straightened(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
     """As `hermite`, but a line where the rates at the ends are not those of a curve that such a step could follow.
 
-    A stiff method steps over what an impact has started, whose rates are gone long before the step's end. Of a smooth
-    curve, what the mean of the rates misses is far less than their difference.
+    For what contacts have changed after a stiff step, which may pass over all that follows an impact: its rates are
+    gone long before the step's end. Of most smooth curves, what the mean of the rates misses is far less than their
+    difference.
     """
     for k in range(y0.size):
         difference, first, last = y1[k] - y0[k], h * rate0[k], h * rate1[k]
@@ -204,7 +205,8 @@ def march(
 ):  # fmt: skip
     """Take steps until clock[T1] >= target; the status. ``functions``: addresses (pointers_kernels).
 
-    y0, rate0, y1, rate1, sample are of y's size; leaving (pairs,), gaps (3 pairs,). On a failure the step is taken
+    y0, rate0, y1, rate1, sample are of y's size, and sample with local contacts is left as the step's end was before
+    these acted; leaving (pairs,), gaps (3 pairs,). On a failure the step is taken
     back: (clock[T1], y1, rate1) is the last good state, counts[INDEX] the entry of y (STUCK: the pair) at fault.
     """
     step, rate = step_at(functions[AT_STEP]), rate_at(functions[AT_RATE])
@@ -274,6 +276,7 @@ def march(
                 if counts[LAST_STAGE] < 0 and counts[HELD] > 0 and counts[ORDER] > 1:
                     rate(t1, y1, rate1, floats, ints)
             floats[CHANGED_AT] = 0.0
+            copy(y1, sample)
             settle(t0, t1, y0, rate0, y1, floats, ints)
             counts[HELD] = floats[CHANGED_AT] == HOLDS
             rate(t1, y1, rate1, floats, ints)

@@ -134,7 +134,8 @@ class IslandRun:
         events = ("sceneql.simulation.events_kernels",) if system.pairs else ()
         likely = likely_kernels if stepper.likely is None else function(stepper.likely)
         solving = (stepper.step.partition(":")[0], *likely(system))
-        dense = () if stepper.dense is None or system.structure.local else (stepper.dense.partition(":")[0],)
+        read = stepper.jacobian or not system.structure.local
+        dense = (stepper.dense.partition(":")[0],) if stepper.dense is not None and read else ()
         acting = compile_ahead((*solving, *modules(system.structure), *events, *dense))
         acting(*solving)
         compile_ahead(late_first(system.structure))

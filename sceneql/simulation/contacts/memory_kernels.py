@@ -15,6 +15,9 @@ from sceneql.system_kernels import A, F, I, N
 
 PRESS, LOAD, PULL, ALONG, EARLIER = 1, 2, 3, 4, 7
 TIED, LET_GO = 8, 9
+SLACK = 8
+"""Where ties last whole steps (BETWEEN), in TIED's place: by how much the pull along the surface could have been larger
+at the end of the step before [m/s^2], NaN where nothing stuck."""
 PAIR = 10
 FREE, SLIDES, STICKS, CREEPS = 0.0, 1.0, 2.0, 3.0
 """CREEPS, in `local` mode: slides, but so slowly that friction is left to the end of the step (slide_kernels)."""
@@ -53,6 +56,8 @@ KEEP = types.boolean(F, N, N, A, A, I)
 """(time, body, object, state, floats, ints): whether anything changed."""
 HOLD = types.void(A, A, A, I)
 """(state, rate, floats, ints)."""
+LONGEST = 1.0
+"""Step [s] up to which ties are firmer than springs where slopes are asked for between steps."""
 FIRMEST = 1e6
 """Least rate [1/s] at which a tie takes away what normal velocity is left, where slopes are asked for between steps."""
 
@@ -76,6 +81,6 @@ def firmness(a, floats, ints):
 def tightness(floats, ints):
     """The rate [1/s] at which a tie takes away normal velocity where slopes are asked for between steps.
 
-    For steps up to a second it is far above what springs could do against it, which slopes leave out.
+    For steps up to LONGEST it is far above what springs could do against it, which slopes leave out.
     """
-    return max(FIRMEST, FIRM * floats[ints[LAST] + LIST + ints[BODIES]])
+    return max(FIRMEST, FIRM * LONGEST * floats[ints[LAST] + LIST + ints[BODIES]])

@@ -3,9 +3,12 @@
 
 The body's path in the step is the cubic Hermite curve of its ends; after an impact it flies on with the step's mean
 acceleration, which costs the solver's order. So where few bodies meet something, the march is asked to end the step
-right after the first impact and to go on from there. An approach slower than what the pressing acceleration gives in
-two steps is no impact: the body rests (resting_kernels), and slides for the rest of the step.
+right after the first impact and to go on from there; and wherever a tie is torn off, for one cut serves all that are
+at that instant. An approach slower than what the pressing acceleration gives in two steps is no impact: the body rests
+(resting_kernels), and slides for the rest of the step.
 """
+
+import math
 
 from numba import types
 
@@ -46,6 +49,7 @@ from sceneql.simulation.contacts.memory_kernels import (
     PRESS,
     PULL,
     RESTING,
+    SLACK,
     SLIDES,
     STAGE,
     STICKS,
@@ -152,14 +156,30 @@ def push_out(reach, path, mean, floats, ints):
 
 
 @lean_inlined
-def pulls(k, floats, ints):
-    """Where in a step the first tie of body k began to pull, by its load at the ends; 1 where none does."""
+def slack(memory, floats, ints):
+    """By how much the pull on a pair along its surface may grow [m/s^2]; NaN where it does not stick."""
+    if floats[memory] != STICKS or floats[ints[FRICTION]] == 0.0:
+        return math.nan
+    return floats[ints[FRICTION]] * floats[memory + LOAD] - floats[memory + PULL]
+
+
+@lean_inlined
+def crossing(before, after):
+    """Where in a step what goes evenly from ``before`` to ``after`` turns negative; 1 where it does not (or NaN)."""
+    if before > 0.0 and after < 0.0:
+        return before / (before - after)
+    return 1.0
+
+
+@lean_inlined
+def torn_off(k, floats, ints):
+    """Where in a step the first tie of body k began to pull, or to ask too much of friction; 1 where none does."""
     first = 1.0
     for j in range(ints[OBJECTS]):
         memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
-        load, pull = floats[memory + EARLIER], floats[memory + PRESS]
-        if floats[memory] != FREE and pull > 0.0 and load > 0.0:
-            first = min(first, load / (load + pull))
+        if floats[memory] != FREE and not math.isnan(floats[memory + EARLIER]):
+            first = min(first, crossing(floats[memory + EARLIER], -floats[memory + PRESS]))
+            first = min(first, crossing(floats[memory + SLACK], slack(memory, floats, ints)))
     return first
 
 
@@ -170,9 +190,11 @@ def let_go(k, floats, ints):
         memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
         if floats[memory] == FREE:
             continue
+        left = slack(memory, floats, ints)
+        floats[memory + SLACK] = left
         if floats[memory + PRESS] > 0.0:
             floats[memory] = FREE
-        elif floats[memory] == STICKS and floats[memory + PULL] > floats[ints[FRICTION]] * floats[memory + LOAD]:
+        elif left < 0.0:
             floats[memory] = SLIDES
         if floats[memory] != CREEPS:
             floats[memory + EARLIER] = floats[memory + LOAD]
@@ -180,29 +202,33 @@ def let_go(k, floats, ints):
 
 @lean(ANSWER, inner=True)
 def cut(t0, t1, y0, y1, found, path, mean, floats, ints):
-    """When the step should end: after its first impact, where few of the bodies with found[k] = 1 have one."""
+    """When the step should end: after its first impact, where few of the bodies with found[k] = 1 have one.
+
+    Or after the first tie is torn off, however many are: mostly they are at one instant, or few.
+    """
     h = t1 - t0
     memory = ints[LAST]
-    first = 1.0
+    ties = floats[STAGE] == BETWEEN
+    impact = torn = 1.0
     count = 0
     for k in range(ints[BODIES]):
         if found[k] == 0.0:
             continue
+        if ties:
+            torn = min(torn, torn_off(k, floats, ints))
+        if count > FEW:
+            continue
         reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
         set_out(k, h, y0, y1, path, mean, ints)
         s, j = earliest(k, reach, path, floats, ints)
-        end = 1.0
         if s != NEVER and hits(s, floats[memory + WHOLE], j, path, mean, floats, ints):
-            end = s
-        if floats[STAGE] == BETWEEN:
-            end = min(end, pulls(k, floats, ints))
-        if end < 1.0:
-            first = min(first, end)
+            impact = min(impact, s)
             count += 1
-            if count > FEW:
+            if count > FEW and not ties:
                 return
+    first = min(torn, impact) if count <= FEW else torn
     end = first * h + AFTER_IMPACT * floats[memory + WHOLE]
-    if count > 0 and end < h * (1.0 - AFTER_IMPACT) and t0 + end < floats[ASKED]:
+    if first < 1.0 and end < h * (1.0 - AFTER_IMPACT) and t0 + end < floats[ASKED]:
         floats[ASKED] = t0 + end
         floats[memory + CUTS] += 1.0
 
