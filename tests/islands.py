@@ -23,6 +23,7 @@ class Scene:
     """Links to formulas by their text, and nothing else."""
 
     formulas: dict[str, Expr]
+    end: float = 100.0
 
     def object(self, ref: Ref) -> Object:
         raise KeyError(ref.name)

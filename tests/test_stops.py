@@ -10,7 +10,8 @@ from sceneql.pipeline import load
 from sceneql.quantities.expression import Call, Key, Keys, Link, Number, Symbol, Type
 from sceneql.simulation.run import Run
 from sceneql.simulation.shift import goes_evenly
-from sceneql.simulation.stops import Stops, next_stop, stops
+from sceneql.simulation.stops import Stops, next_stop
+from sceneql.simulation.turns import Turns
 
 G = 9.81
 TIME = Symbol("time", Type())
@@ -25,24 +26,74 @@ def keys(argument=TIME, cycle=None):
     return Keys(argument, tuple(Key(number(t), number(t)) for t in (1.0, 2.5)), cycle=cycle)
 
 
+def call(op, *args):
+    return Call(op, args, Type())
+
+
+def found(expr, end=10.0, formula=None):
+    turns = Turns(lambda link: formula, end)
+    turns.follow(expr)
+    assert not turns.beyond
+    return sorted(turns.stops)
+
+
+def instants(expr, end=10.0):
+    """Those without a period, of ones that are as good as one the first."""
+    times = [time for time, period in found(expr, end) if period == 0.0]
+    return [time for k, time in enumerate(times) if k == 0 or time - times[k - 1] > 1e-12 * end]
+
+
 def test_keys_and_switches_are_stops_whatever_they_stand_in():
-    later = Call("add", (Call("mul", (number(2.0), TIME), Type()), number(0.5)), Type())
+    later = call("add", call("mul", number(2.0), TIME), number(0.5))
     linked = Link("lift", "progress", Type())
-
-    def found(expr):
-        return sorted(stops(expr, lambda link: later))
-
     assert found(keys()) == [(1.0, 0.0), (2.5, 0.0)]
     assert found(keys(later, number(4.0))) == [(0.25, 2.0), (1.0, 2.0)]
-    assert found(keys(linked)) == [(0.25, 0.0), (1.0, 0.0)]
-    assert found(Call("mul", (number(3.0), Call("gt", (later, number(4.0)), Type())), Type())) == [
-        (pytest.approx(1.75, rel=1e-15), 0.0)
-    ]
-    assert found(Call("max", (number(0.0), Call("sub", (TIME, number(3.0)), Type())), Type())) == [
-        (pytest.approx(3.0, rel=1e-15), 0.0)
-    ]
-    assert found(Call("gt", (Call("sin", (TIME,), Type()), number(0.5)), Type())) == []
-    assert found(keys(Call("neg", (TIME,), Type()))) == []
+    assert found(keys(linked), formula=later) == [(0.25, 0.0), (1.0, 0.0)]
+    switch = call("mul", number(3.0), call("gt", later, number(4.0)))
+    assert instants(switch) == [pytest.approx(1.75, rel=1e-15)]
+    assert instants(call("max", number(0.0), call("sub", TIME, number(3.0)))) == [pytest.approx(3.0, rel=1e-15)]
+    assert found(keys(linked)) == []
+    assert found(call("gt", Symbol("y", Type()), TIME)) == []
+
+
+def test_keys_over_what_falls_or_swings_are_stops():
+    falling = call("sub", number(4.0), TIME)
+    assert instants(keys(falling)) == pytest.approx([1.5, 3.0], rel=1e-15)
+    assert [period for _, period in found(keys(falling, number(4.0)))] == [4.0, 4.0]
+    swing = call("mul", number(2.0), call("sin", TIME))
+    assert instants(keys(swing), 3.0) == pytest.approx([math.pi / 6, 5 * math.pi / 6], rel=1e-14)
+
+
+def test_what_turns_inside_what_turns_is_found_however_short_it_lasts():
+    since = call("abs", call("sub", TIME, number(3.005)))
+    for width in (5e-3, 5e-9):
+        pulse = call("lt", since, number(width))
+        assert instants(pulse) == pytest.approx([3.005 - width, 3.005, 3.005 + width], abs=4e-15)
+    rest = call("mod", TIME, number(1.0))
+    expected = sorted([*range(1, 11), *(k + 1e-6 for k in range(10))])
+    assert instants(call("lt", rest, number(1e-6)), 10.5) == pytest.approx([*expected, 10 + 1e-6], abs=1e-14)
+    held = call("clamp", TIME, number(0.0), number(3.5))
+    assert instants(call("gt", held, number(3.0))) == pytest.approx([3.0, 3.5], rel=1e-15)
+
+
+def test_smooth_numbers_are_closed_in_on_where_they_cross_and_where_they_only_just_do():
+    crest = call("gt", call("sin", TIME), number(1.0 - 5e-9))
+    first = math.acos(1.0 - 5e-9)
+    tops = [math.pi / 2, 5 * math.pi / 2]
+    assert instants(crest) == pytest.approx([top + side * first for top in tops for side in (-1, 1)], abs=1e-11)
+    square = call("pow", call("sub", TIME, number(3.1234567)), number(2.0))
+    assert instants(call("lt", square, number(1e-10))) == pytest.approx([3.1234467, 3.1234667], abs=1e-11)
+    assert instants(call("floor", call("pow", TIME, number(2.0))), 2.01) == pytest.approx(
+        [1.0, math.sqrt(2.0), math.sqrt(3.0), 2.0], rel=1e-15
+    )
+
+
+def test_what_turns_more_often_than_can_be_kept_is_told():
+    often = call("floor", call("mul", number(1e6), TIME))
+    turns = Turns(lambda link: None, 10.0)
+    turns.follow(call("add", often, call("gt", TIME, number(3.0))))
+    assert len(turns.beyond) == 1
+    assert len(turns.stops) == 1
 
 
 def test_the_next_stop_is_the_first_one_after_an_instant_and_periods_go_on():
@@ -117,6 +168,39 @@ solvers: {{main: {solver}}}
 """
     ((y, v),) = watch(tmp_path, script, [4.0], "q.y", "p.a.velocity")
     assert y == pytest.approx(7, rel=1e-9)
+    assert v[0] == pytest.approx(7, rel=1e-9)
+
+
+@pytest.mark.parametrize("solver", ADAPTIVE)
+@pytest.mark.parametrize(
+    ("force", "expected"),
+    [
+        ("where(mod(t, 1) < 0.01, 700, 0)", 280),
+        ("where((t - 3.005)^2 < 0.005^2, 700, 0)", 7),
+        ("350*(sign(t - 3) - sign(t - 3.01))", 7),
+        ("where(clamp(t, 0, 3.5) > 3, where(clamp(t, 0, 3.5) < 3.01, 700, 0), 0)", 7),
+        ("where(sin(2*pi*t/40) > 0.99999, 700, 0)", 700 * 2 * math.acos(0.99999) * 20 / math.pi),
+    ],
+)
+def test_short_pulses_by_formulas_of_the_time_are_felt(tmp_path, solver, force, expected):
+    script = f"""
+clock: {{end: 40 s}}
+models: {{p: {{particles: {{list: {{a: {{position: 0 0 0}}}}}}}}}}
+forces: [{{force: {{components: "[{force}, 0, 0]"}}}}]
+solvers: {{main: {solver}}}
+"""
+    ((v,),) = watch(tmp_path, script, [39.5], "p.a.velocity")
+    assert v[0] == pytest.approx(expected, rel=1e-5)
+
+
+@pytest.mark.parametrize("solver", ["auto", "{dopri5: {}}", "{dop853: {}}", "{gauss_radau15: {}}"])
+def test_a_short_ramp_up_and_down_is_felt(tmp_path, solver):
+    script = f"""
+models: {{p: {{particles: {{list: {{a: {{position: 0 0 0}}}}}}}}}}
+forces: [{{force: {{components: "[max(0, 700 - 70000*abs(t - 3)), 0, 0]"}}}}]
+solvers: {{main: {solver}}}
+"""
+    ((v,),) = watch(tmp_path, script, [4.0], "p.a.velocity")
     assert v[0] == pytest.approx(7, rel=1e-9)
 
 

@@ -23,6 +23,8 @@ class Setting:
     """What an island's assembly may ask of the scene."""
 
     tasks: Mapping[str, Task]
+    end: float
+    """Of the run [s]."""
 
     def object(self, ref: Ref) -> Object:
         """The kind of an object of the script, as written."""
@@ -96,7 +98,7 @@ class Assembled:
 
 def models_of(graph: SimulationGraph, island: Island) -> Assembled:
     """The island's models, on which nothing acts yet."""
-    made = Assembled(graph, island, IslandAssembly(Setting(graph.tasks)))
+    made = Assembled(graph, island, IslandAssembly(Setting(graph.tasks, graph.settings.clock.end)))
     for name in island.models:
         with made.word(name):
             made.bodies[name] = cast(Model, graph.tasks[name].kind).assemble(name, made.assembly)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import accumulate
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -22,7 +23,8 @@ from sceneql.simulation.blocks_laid import Block, grouped, lay_out
 from sceneql.simulation.inputs import Inputs
 from sceneql.simulation.jacobian import BY_DIFFERENCES, full, section
 from sceneql.simulation.memory import LARGEST_MEMORY
-from sceneql.simulation.stops import Stop, Stops, stops
+from sceneql.simulation.stops import Stop, Stops
+from sceneql.simulation.turns import Turns
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -45,6 +47,10 @@ WITHIN, BETWEEN = -1.0, -2.0
 
 class Setting(Protocol):
     """What an assembly asks of the scene."""
+
+    @property
+    def end(self) -> float:
+        """Of the run [s]."""
 
     def object(self, ref: Ref) -> Object:
         """The kind of an object of the script."""
@@ -267,7 +273,13 @@ class IslandAssembly:
 
     def stop_where_it_turns(self, expr: Expr) -> None:
         """Let them end where a formula turns (system.Assembly)."""
-        self._stops.update(stops(expr, self.setting.formula))
+        if not self.whole:  # the steps of blocks are given
+            self.turns.follow(expr, expr.span or self.line())
+
+    @cached_property
+    def turns(self) -> Turns:
+        """Where values and formulas turn in the run."""
+        return Turns(self.setting.formula, self.setting.end)
 
     def line(self) -> Span | None:
         """Where in the script the word stands that is being assembled."""
@@ -345,7 +357,7 @@ class IslandAssembly:
             partner=partner,
             ranges=tuple(self._ranges),
             largest_step=self._largest_step,
-            stops=Stops.of(self._stops),
+            stops=Stops.of(self._stops | self.turns.stops),
             pattern=found,
             grid=self.only_field,
             unsloped=self._unsloped,
@@ -367,7 +379,8 @@ class IslandAssembly:
         program: list[int] = []
         found = Diagnostics()
         for first, value in self._varying:
-            self.stop_where_it_turns(value.expr)
+            with self.word("values", value.span):
+                self.stop_where_it_turns(value.expr)
             try:
                 program += inputs.program(value, first)
             except ScriptError as error:

@@ -1,4 +1,4 @@
-"""Instants at which values of a script change their course: steps that a tolerance chooses end there.
+"""Instants at which values of a script change their course (turns.py): steps that a tolerance chooses end there.
 
 Such a step may be as long as nothing happens, and would go over a key, a pulse or a switch between two of its stages
 without a sign of it in its error.
@@ -8,42 +8,14 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable
 from typing import NamedTuple
-
-from sceneql.kinds.values import TIME
-from sceneql.quantities.curves import known_table
-from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import Call, Expr, Keys, Link, Symbol, walk
 
 Stop = tuple[float, float]
 """An instant at which what is new holds, and the period that it comes again with, 0 for none [s]."""
 
-TURNING = ("lt", "le", "gt", "ge", "eq", "min", "max")
-"""Operations on two numbers whose value turns where they are equal."""
 APART = 1e-12
 """Instants nearer to each other than this part of the run count as one."""
-
-
-def stops(expr: Expr, formula: Callable[[Link], Expr | None]) -> Iterator[Stop]:
-    """Where an expression turns: at keys, and where what goes evenly with the time passes what it is compared with.
-
-    ``formula`` gives a linked output as an expression of time; None for one that is solved.
-    """
-    for node in walk(expr):
-        match node:
-            case Link():
-                meaning = formula(node)
-                if meaning is not None:
-                    yield from stops(meaning, formula)
-            case Keys(argument=argument) if (table := known_table(node)) is not None:
-                here, slope = _even(argument, formula)
-                if slope > 0.0:
-                    yield from (((time - here) / slope, table.cycle / slope) for time in table.times)
-            case Call(op=op, args=args) if op in TURNING and len(args) == 2 and not any(one.type.shape for one in args):
-                (first, rise), (second, climb) = (_even(one, formula) for one in args)
-                if rise != climb and not math.isnan(rise - climb):
-                    yield after((second - first) / (rise - climb), 2), 0.0
 
 
 def after(time: float, steps: int = 4) -> float:
@@ -54,29 +26,6 @@ def after(time: float, steps: int = 4) -> float:
 def before(time: float) -> float:
     """As little earlier."""
     return time - 4 * math.ulp(time)
-
-
-def _even(expr: Expr, formula: Callable[[Link], Expr | None]) -> tuple[float, float]:
-    """What goes evenly with the time, as its value at 0 and its rate; (nan, nan) for all else."""
-
-    def at(time: float) -> float:
-        def look_up(node: Symbol | Link) -> float:
-            if isinstance(node, Symbol) and node.name in TIME:
-                return time
-            meaning = formula(node) if isinstance(node, Link) else None
-            if meaning is None:
-                raise KeyError(node)
-            return float(evaluate(meaning, look_up))
-
-        return float(evaluate(expr, look_up))
-
-    try:
-        here, there, between = at(0.0), at(1e3), at(373.3)
-    except (KeyError, TypeError, ValueError):  # it reads what is solved, or what is no number
-        return math.nan, math.nan
-    slope = (there - here) / 1e3
-    even = abs(here + slope * 373.3 - between) <= 1e-12 * max(abs(here), abs(there))
-    return (here, slope) if even else (math.nan, math.nan)
 
 
 class Stops(NamedTuple):

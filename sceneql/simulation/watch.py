@@ -12,6 +12,7 @@ from sceneql.kinds import Force, Model
 from sceneql.quantities.diagnostic import Diagnostic
 from sceneql.simulation.grids.extremes import watched
 from sceneql.simulation.grids.ringing import ringing
+from sceneql.simulation.turns import MOST
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -85,6 +86,7 @@ class Watch:
         self.balances = [Balance(island, models) for island in islands if (models := _telling(island))]
         self._ringing = [found for island in run.islands if (found := ringing(island)) is not None]
         self._fields = [(island, fields) for island in run.islands if (fields := watched(island))]
+        self._turning = [span for island in run.islands if _adaptive(island) for span in island.assembly.turns.beyond]
         self._started, self._spent = time.perf_counter(), 0.0
 
     def look(self, moment: Instant, *, last: bool = False) -> None:
@@ -100,8 +102,12 @@ class Watch:
         self._spent += time.perf_counter() - started
 
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """Energy that came from nowhere, springs beyond what springs can do, fields that ring or run over."""
+        """Energy that came from nowhere, springs beyond what springs can do, fields that ring or run over, switches."""
         found = list(self._ringing)
+        for span in self._turning:
+            message = f"this turns more than {MOST:,} times in the run: steps that a tolerance chooses go over some"
+            help = "choose a solver of given steps, or bound its `largest_step`"
+            found.append(Diagnostic("many-turns", message, span, help, severity="warning"))
         for island, fields in self._fields:
             for one in fields:
                 found += one.warnings(island)
@@ -153,6 +159,11 @@ def _cheap(island: IslandRun) -> bool:
     bodies = sum(0 if one is None else one.count for one in island.bodies.values())
     paired = bodies > MOST_PAIRED and any(force.mutual for force in forces)
     return len(island.march.system.y) <= MOST_STATES and not paired
+
+
+def _adaptive(island: IslandRun) -> bool:
+    """Whether a tolerance chooses its steps."""
+    return island.solver.stepper().adaptive
 
 
 def _telling(island: IslandRun) -> tuple[str, ...]:
