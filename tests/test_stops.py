@@ -54,6 +54,7 @@ def test_keys_and_switches_are_stops_whatever_they_stand_in():
     assert instants(call("max", number(0.0), call("sub", TIME, number(3.0)))) == [pytest.approx(3.0, rel=1e-15)]
     assert found(keys(linked)) == []
     assert found(call("gt", Symbol("y", Type()), TIME)) == []
+    assert found(call("mod", TIME, number(5e-324))) == []
 
 
 def test_keys_over_what_falls_or_swings_are_stops():

@@ -127,7 +127,7 @@ class Turns:
         even = self._evenly(argument)
         if even is None:
             yield from self._sampled(argument, _between(table))
-        elif even[1] != 0.0:
+        elif even[1] != 0.0 and math.isfinite(even[0] + even[1] * self.end):
             here, slope = even
             for time in table.times:  # what is new holds at a key: behind it where the argument falls
                 at = (time - here) / slope
@@ -138,7 +138,7 @@ class Turns:
         even = self._evenly(number)
         if even is None:
             yield from self._sampled(number, cells)
-        elif even[1] != 0.0:
+        elif even[1] != 0.0 and math.isfinite(even[0] + even[1] * self.end):
             here, slope = even
             first, last = 0, 0
             if cells is np.floor:
