@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import accumulate
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
     from sceneql.frame import Floats
     from sceneql.quantities.span import Span
+    from sceneql.simulation.setting import Setting
     from sceneql.system import Grid, Mode, Pattern, Slopes, Stage
 
 STAGES: tuple[Stage, ...] = ("internal", "force", "close", "constrain")
@@ -43,20 +44,6 @@ above 0 while slopes are to serve Newton's method; floats[3] is not 0 where term
 number is floats[4], or give slopes of how they act between steps (system.Slopes)."""
 STAGE = 3
 WITHIN, BETWEEN = -1.0, -2.0
-
-
-class Setting(Protocol):
-    """What an assembly asks of the scene."""
-
-    @property
-    def end(self) -> float:
-        """Of the run [s]."""
-
-    def object(self, ref: Ref) -> Object:
-        """The kind of an object of the script."""
-
-    def formula(self, link: Link) -> Expr | None:
-        """A linked output as an expression of time; None for one of a model that is solved."""
 
 
 @dataclass(frozen=True, slots=True)
