@@ -18,6 +18,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -94,27 +95,28 @@ class Picture:
         x, y = self.pixels.astype(np.int64)
         turns = np.arange(256).reshape(16, 16).T.ravel()
         self.numbers = np.array([y * WIDTH + x, turns, turns, turns, turns])
-        self.spare: list[tuple[Memory, Any, Any, Any]] = []
+        # Memory that goes from thread to thread goes from one core's cache to the other's, at every row.
+        self.own = threading.local()
 
     def draw(self) -> Any:
         """(enclosures, certified, undecided) of all rays."""
         from implicit_picture_kernels import draw_row
 
         counts = np.zeros((-(-HEIGHT // 16), 3), dtype=np.int64)
-        spare = self.spare
+        own = self.own
 
         # The middle first: what is quick fills up the time of both threads at the end.
         rows = sorted(range(len(counts)), key=lambda row: abs(2 * row + 1 - len(counts)))
 
         def work(tile: int) -> None:
             row = rows[tile]
-            memory, slopes, numbers, starts = spare.pop() if spare else (
-                Memory(self.tape, 256), lined((len(self.tape.code), 3, 64)), self.numbers.copy(), lined((3, 256))
-            )  # fmt: skip
+            if not hasattr(own, "arrays"):
+                slopes = lined((len(self.tape.code), 3, 64))
+                own.arrays = Memory(self.tape, 256), slopes, self.numbers.copy(), lined((3, 256))
+            memory, slopes, numbers, starts = own.arrays
             rest = slopes, self.pixels, numbers, starts, self.view, self.clip, row, WIDTH
             arrays = self.picture.reshape(-1), self.depth.reshape(-1)
             counts[row] = draw_row(*memory.bundle, memory.found, *memory.rest, *rest, *arrays)
-            spare.append((memory, slopes, numbers, starts))
 
         over_tiles(len(counts), work)
         return counts.sum(axis=0)
