@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from sceneql.kinds import FieldBuilder, Length, Moment, ObjectRef, Problem, Ref, field
+from sceneql.simulation.hues import Bare, joined
+from sceneql.simulation.placement import inverse
 from sceneql.simulation.present import not_negative
 from sceneql.simulation.solid import Solid
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats
+    from sceneql.frame import Floats, Surface
 
 
 class Combination(Solid):
     """Solids joined into one by set operations on their fields (Ricci 1973)."""
 
     of: tuple[ObjectRef, ...] | dict[str, ObjectRef] = field("The solids, by name or in place: at least two.")
+    bare: ClassVar[Bare] = "first"
     blend: Length = field("How wide its edges are rounded where surfaces of members meet.", "0 m", at_least=0)
 
     def problems(self) -> Iterator[Problem]:
@@ -39,6 +42,21 @@ class Combination(Solid):
     def values(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> list[int]:
         """Registers of its members' fields. Raises TypeError where a member has no inside."""
         return [moment.object(ref).implicit(build, x, y, z, moment) for ref in self.members()]
+
+    def gaps(self, build: FieldBuilder, values: list[int]) -> list[int]:
+        """Registers by members' fields, the least of them at the surface where the member's own is what is seen."""
+        raise NotImplementedError
+
+    def hues(
+        self, build: FieldBuilder, x: int, y: int, z: int, surface: Surface, moment: Moment
+    ) -> tuple[int, int, int] | None:
+        """The colors of its members, where it has none of its own."""
+        if self.color is not None or self.material is not None:
+            return None
+        members = [(ref.name, moment.object(ref)) for ref in self.members()]
+        at = build.affine(inverse(self.local(moment)), x, y, z)
+        gaps = self.gaps(build, self.values(build, *at, moment))
+        return joined(build, members, gaps, at, surface, self.bare, self.width(moment), moment)
 
     def extents(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
         """Low and high corners (m, 3) of its members' boxes in the coordinates that ``place`` maps its own to."""

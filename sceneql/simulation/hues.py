@@ -1,9 +1,9 @@
-"""Colors of what is joined of several objects: each member's where it is, mixed where a blend runs between them."""
+"""Colors of what is joined of several objects: each member's where its surface is seen, mixed where a blend runs."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     from sceneql.frame import Surface
@@ -11,27 +11,32 @@ if TYPE_CHECKING:
 
     Registers = tuple[int, int, int]
 
+Bare = Literal["apart", "shared", "first"]
+
 
 def joined(
-    build: FieldBuilder, members: Sequence[tuple[str, Object]], at: Registers, surface: Surface, shared: bool,
-    width: float, moment: Moment,
+    build: FieldBuilder, members: Sequence[tuple[str, Object]], gaps: Sequence[int], at: Registers,
+    surface: Surface, bare: Bare, width: float, moment: Moment,
 ) -> Registers | None:  # fmt: skip
     """Registers of linear RGB at a point of the members' parent's coordinates; None where they have the one color of
     their parent's ``surface``, or no member is given one.
 
-    With ``shared``, members without a color or material have that surface, else a default of their own. A member's
-    share is max(width - gap, 0), its gap that of its field to the least one: so colors run over into each other just
-    where a blend of this width [m] joins the members, whatever their order.
+    The ``gaps`` tell how far from the place the members' surfaces are: the least is that of the one that is seen. A
+    member's share is max(width - what its gap has more than the least, 0): so colors run over into each other just
+    where a blend of this width [m] joins the members, whatever their order. Members that are ``bare`` of color and
+    material have each a default of their own (apart), that surface (shared), or what the first member has (first).
     """
     hues: list[Registers | None] = []
-    colors = []
+    colors: list[tuple[float, float, float]] = []
     given = False
     for name, member in members:
         plain = member.color is None and member.material is None
-        own = surface if shared and plain else moment.surface(name, member.material, member.color)
+        own = moment.surface(name, member.material, member.color) if bare == "apart" or not plain else surface
+        hue = member.hues(build, *at, own, moment)
+        first = bare == "first" and plain and hue is None and bool(colors)
         given |= not plain
-        colors.append(own.color)
-        hues.append(member.hues(build, *at, own, moment))
+        colors.append(colors[0] if first else own.color)
+        hues.append(hues[0] if first else hue)
     if not any(hues) and len(set(colors)) < 2:
         if not given or colors[0] == surface.color:
             return None
@@ -41,11 +46,11 @@ def joined(
         [build.constant(color[k]) if hue is None else hue[k] for hue, color in zip(hues, colors, strict=True)]
         for k in range(3)
     )
-    shares = _shares(build, [member.implicit(build, *at, moment) for _, member in members], width)
+    shares = _shares(build, gaps, width)
     return _mean(build, shares, r), _mean(build, shares, g), _mean(build, shares, b)
 
 
-def _shares(build: FieldBuilder, values: list[int], width: float) -> list[int]:
+def _shares(build: FieldBuilder, values: Sequence[int], width: float) -> list[int]:
     """Of members by their fields' values; without a width those of the least alone are above 0."""
     least = values[0]
     for value in values[1:]:

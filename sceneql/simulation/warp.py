@@ -7,11 +7,13 @@ from math import ceil, cos, floor, hypot, pi, sin
 from typing import TYPE_CHECKING, Any, Literal
 
 from sceneql.kinds import FieldBuilder, Moment, ObjectRef, Ref, field
+from sceneql.simulation.hues import joined
+from sceneql.simulation.placement import inverse
 from sceneql.simulation.solid import Solid, traced
 
 if TYPE_CHECKING:
     from sceneql import frame
-    from sceneql.frame import Floats
+    from sceneql.frame import Floats, Surface
 
 AxisName = Literal["x", "y", "z"]
 Registers = tuple[int, int, int]
@@ -62,6 +64,17 @@ class Warp(Solid):
         place, factor = self.back(build, (x, y, z), low, high, moment)
         value = child.implicit(build, *place, moment)
         return value if factor is None else build.op("mul", value, factor)
+
+    def hues(self, build: FieldBuilder, x: int, y: int, z: int, surface: Surface, moment: Moment) -> Registers | None:
+        """Its object's colors where the point came from, unless it has one of its own."""
+        child = moment.object(self.of)
+        low, high = self._box(moment)
+        own = self.material, self.color
+        if own not in ((None, None), (child.material, child.color)) or not (high > low).all():
+            return None
+        at = build.affine(inverse(self.local(moment)), x, y, z)
+        place, _ = self.back(build, at, low, high, moment)
+        return joined(build, [(self.of.name, child)], [build.constant(0.0)], place, surface, "shared", 0.0, moment)
 
     def reach(self, moment: Moment) -> tuple[Any, Any]:
         """The box around its object's, warped."""

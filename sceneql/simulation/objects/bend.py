@@ -21,7 +21,7 @@ class Bend(Warp):
     per / angle; sections stay plane and square to it: (x, y) goes to (R - (R - x) cos(y / R), (R - x) sin(y / R)).
     A negative angle bends away from x. It is squeezed on the inner side, where its field is divided by the most that
     it becomes steeper, R / (R - x). The beam must end before the circle's center and before a full turn. Any object
-    with an inside can be bent, so no mesh; colors that are mixed in its field are lost.
+    with an inside can be bent, so no mesh; it keeps the object's colors.
     """
 
     angle: Angle = field("By how much it turns on the length `per`.", "90 deg")

@@ -67,7 +67,9 @@ class Group(Placed):
         from sceneql.simulation.hues import joined
 
         own = build.affine(inverse(self.local(moment)), x, y, z)
-        return joined(build, list(self._objects(moment)), own, surface, False, 0.0, moment)
+        children = list(self._objects(moment))
+        fields = [child.implicit(build, *own, moment) for _, child in children]
+        return joined(build, children, fields, own, surface, "apart", 0.0, moment)
 
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
         """The box around those of its children; inverted (inf, -inf) where there is none."""

@@ -17,8 +17,8 @@ class Taper(Warp):
 
     (x, y, z) goes to (s x, y, s z) with s = 1 at the height `from` and below, `factor` at `to` and above (Barr 1984).
     So it holds the integral of s^2 times the area of its sections. Its field is s times the object's, divided by the
-    most that this can be steeper. Any object with an inside can be tapered, so no mesh; colors that are mixed in its
-    field are lost.
+    most that this can be steeper. Any object with an inside can be tapered, so no mesh; it keeps the object's
+    colors.
     """
 
     factor: Scalar = field("How much as wide it is at `to`.", "0.5", above=0)

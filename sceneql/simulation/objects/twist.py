@@ -16,7 +16,7 @@ class Twist(Warp):
     The section at height y is turned by angle y / per, by the right-hand rule; that at 0 stays. Volume stays, since
     every section keeps its area. With the angle w per length and the distance r of its farthest point from the axis,
     its field is divided by (w r + sqrt(w^2 r^2 + 4)) / 2, the most that it becomes steeper. Any object with an inside
-    can be twisted, so no mesh; colors that are mixed in its field are lost.
+    can be twisted, so no mesh; it keeps the object's colors.
     """
 
     angle: Angle = field("By how much it turns on the length `per`.", "90 deg")

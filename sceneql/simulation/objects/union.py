@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 from sceneql.kinds import FieldBuilder, Moment
 from sceneql.simulation.blend import bulge, least
 from sceneql.simulation.csg import Combination
-from sceneql.simulation.placement import compose, inverse, mapped_box
+from sceneql.simulation.placement import compose, mapped_box
 from sceneql.simulation.solid import block
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats, Surface
+    from sceneql.frame import Floats
 
 SLOPE = 3**-0.5
 """At least so much of the distance are fields, such as a box's, that measure it in the maximum norm."""
@@ -30,6 +30,8 @@ class Union(Combination):
     material it shows the colors of its members, mixed where a blend runs between them.
     """
 
+    bare = "shared"
+
     def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
         """Its field from those of its members; with a blend, cut at its box."""
         width = self.width(moment)
@@ -41,17 +43,9 @@ class Union(Combination):
             return value
         return build.op("max", value, block(build, (x, y, z), low, high))
 
-    def hues(
-        self, build: FieldBuilder, x: int, y: int, z: int, surface: Surface, moment: Moment
-    ) -> tuple[int, int, int] | None:
-        """The colors of its members, where it has none of its own."""
-        from sceneql.simulation.hues import joined
-
-        if self.color is not None or self.material is not None:
-            return None
-        members = [(ref.name, moment.object(ref)) for ref in self.members()]
-        at = build.affine(inverse(self.local(moment)), x, y, z)
-        return joined(build, members, at, surface, True, self.width(moment), moment)
+    def gaps(self, build: FieldBuilder, values: list[int]) -> list[int]:
+        """They themselves."""
+        return values
 
     def _room(self, moment: Moment) -> tuple[Floats, Floats]:
         """The box in its own coordinates around those of its members and what is filled between them."""
