@@ -184,6 +184,61 @@ def test_runs_hold_below_the_bound_and_fail_above(tmp_path, word):
             assert warnings(again)
 
 
+def test_the_bound_of_a_large_cloth_is_as_sharp_as_that_of_a_small_one(tmp_path):
+    """The same cloth: its fastest waves are as long as its cells, and k/m goes with the square of their number."""
+    script = "clock: {end: 1 s}\nforces: [gravity]\nmodels: {c: {cloth: {cells: N N, pins: [top]}}}\n"
+    script += "outputs: {table: {record: {of: [c.energy]}}}\n"
+    small, large = (bound_of(tmp_path, script.replace("N", str(n)), "semi_implicit_euler") * n for n in (40, 62))
+    assert large == pytest.approx(small, rel=2e-3)
+
+
+BODY = """\
+clock: {end: 1 s}
+models: {p: {particles: {list: {a: {position: 1 0 0 m, velocity: 0 1 0 m/s, mass: 2 kg}}}}}
+outputs: {table: {record: {of: [p.velocities]}}}
+"""
+SPLIT = ["semi_implicit_euler", "verlet", "blanes_moan", "boris"]
+"""Methods that advance positions by velocities."""
+
+
+def bound_of(tmp_path, script, word):
+    graph = loaded(tmp_path, script + f"solvers: {{main: {{{word}: {{step: 1 ms}}}}}}\n")
+    (island,) = Run(graph).islands
+    return stability(island.march, island.solver).step
+
+
+def test_charges_that_run_round_are_no_oscillations_of_a_place(tmp_path):
+    """Only Boris' method turns velocities exactly; the others take them along explicitly, which grows at any step."""
+    turning = BODY + "forces: [{magnetic: {charge: 2 C, field: 0 0 100 T}}]\n"
+    assert [bound_of(tmp_path, turning, word) for word in SPLIT] == [0.0, 0.0, 0.0, math.inf]
+    slow = turning + "solvers: {main: {verlet: {step: 15 ms}}}\n"
+    with pytest.raises(RunFailure, match="unstable"):
+        list(Run(loaded(tmp_path, slow)).moments([1.0]))
+
+
+def test_states_that_turn_without_velocities_do_so_explicitly(tmp_path):
+    round_ = "models: {e: {equations: {start: {y: 1, z: 0}, rate: {y: z, z: -1e4*y}}}}\nclock: {end: 1 s}\n"
+    round_ += "outputs: {table: {record: {of: [e.y]}}}\n"
+    assert [bound_of(tmp_path, round_, word) for word in SPLIT] == [0.0, 0.0, 0.0, 0.0]
+    second = round_.replace("{y: 1, z: 0}", "{y: 1, y': 0}").replace("{y: z, z: -1e4*y}", "{y'': -1e4*y}")
+    assert bound_of(tmp_path, second, "verlet") == pytest.approx(0.02, rel=1e-3)
+
+
+def test_what_grows_by_itself_bounds_no_step_and_hides_no_bound(tmp_path):
+    """The saddle of a quadrupole: swings across, grows along."""
+    saddle = BODY + "forces: [{force: {potential: 1e6*(x^2 + y^2 - 2*z^2)}}]\n"
+    bounds = [bound_of(tmp_path, saddle, word) * 1e3 for word in SPLIT]
+    assert bounds == pytest.approx([2.0, 2.0, bounds[2], 2.0], rel=1e-3)
+    assert bounds[2] == pytest.approx(bound_of(tmp_path, saddle.replace("- 2*z^2", "+ z^2"), "blanes_moan") * 1e3)
+
+
+@pytest.mark.parametrize("force", ["vortex: {circulation: 3 m^2/s,", "turbulence: {", "wind: {velocity: 1 0 0 m/s,"])
+def test_air_that_carries_away_is_bounded_by_its_drag(tmp_path, force):
+    blown = BODY + f"forces: [{{{force} linear: 2e4 N*s/m}}}}]\n"
+    bounds = [bound_of(tmp_path, blown, word) * 1e3 for word in ("euler", "semi_implicit_euler", "boris", "verlet")]
+    assert bounds == pytest.approx([0.2, 0.2, 0.2, 0.1], rel=2e-3)
+
+
 @pytest.fixture
 def few(monkeypatch):
     """Fewer solvers: each is compiled for each structure of an island. No other family is asked for."""

@@ -83,6 +83,18 @@ def jacobian(march: March) -> Floats:
     return np.column_stack(columns) if columns else np.zeros((0, 0))
 
 
+def product(march: March, vector: Floats) -> Floats:
+    """(n,) the Jacobian at the start times a vector, by a central difference."""
+    y, direction = march.system.y, np.ravel(vector)
+    scale, size = _scale(y), float(np.abs(direction).max(initial=0.0))
+    if size == 0.0:
+        return np.zeros_like(direction)
+    move = DIFFERENCE * scale / size * direction
+    difference: Floats = march.rate(0.0, y + move) - march.rate(0.0, y - move)
+    difference *= size / (2.0 * DIFFERENCE * scale)
+    return difference
+
+
 def active(matrix: Floats) -> NDArray[int64]:
     """The entries that others depend on; the rest (tallies of energy, places under uniform gravity) only follow."""
     kept = np.arange(len(matrix))
@@ -110,20 +122,15 @@ def _fastest(march: March) -> tuple[Any, Any]:
     """Modes of largest |eigenvalue| by Arnoldi iteration (Lehoucq, Sorensen & Yang 1998), without a matrix."""
     from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs
 
+    from sceneql.simulation.spectrum import units_of
+
     y = march.system.y
-    scale = _scale(y)
+    units = units_of(march, 0.0, y, DIFFERENCE * _scale(y))
 
-    def product(vector: Floats) -> Floats:
-        direction = np.ravel(vector)
-        size = np.abs(direction).max(initial=0.0)
-        if size == 0.0:
-            return np.zeros_like(direction)
-        move = DIFFERENCE * scale / size * direction
-        difference: Floats = march.rate(0.0, y + move) - march.rate(0.0, y - move)
-        difference *= size / (2.0 * DIFFERENCE * scale)
-        return difference
+    def in_units(vector: Floats) -> Floats:
+        return product(march, units * np.ravel(vector)) / units
 
-    operator = LinearOperator((len(y), len(y)), matvec=product, dtype=np.float64)
+    operator = LinearOperator((len(y), len(y)), matvec=in_units, dtype=np.float64)
     start = np.random.Generator(np.random.Philox(1)).standard_normal(len(y))
     count, close = (FASTEST, CLOSE) if len(y) <= MANY else (FEW, ROUGH)
     try:
@@ -132,4 +139,4 @@ def _fastest(march: March) -> tuple[Any, Any]:
         values, vectors = found.eigenvalues, found.eigenvectors
         if not len(values):
             raise
-    return values, vectors
+    return values, units[:, None] * vectors

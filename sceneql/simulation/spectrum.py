@@ -29,7 +29,7 @@ def dominant(march: March, t: float, y: Floats) -> complex:
         matrix = np.column_stack(columns)
     else:
         scale = MOVE * max(1e-3, float(np.linalg.norm(y)))
-        units = _units(march, t, y, rate, scale)
+        units = units_of(march, t, y, scale)
         basis = np.zeros((SMALL + 1, n))
         matrix = np.zeros((SMALL + 1, SMALL))
         start = np.random.Generator(np.random.Philox(1)).standard_normal(n)
@@ -52,7 +52,7 @@ def dominant(march: March, t: float, y: Floats) -> complex:
     return complex(found.real, abs(found.imag))
 
 
-def _units(march: March, t: float, y: Floats, rate: Floats, scale: float) -> Floats:
+def units_of(march: March, t: float, y: Floats, scale: float) -> Floats:
     """Units (n,) in which positions and velocities of stiff springs are alike in size.
 
     Without them the Krylov space sees how far the matrix is from a normal one, not its eigenvalues.
@@ -63,7 +63,7 @@ def _units(march: March, t: float, y: Floats, rate: Floats, scale: float) -> Flo
         velocities = march.system.partner[positions]
         moved = y.copy()
         moved[positions] += scale * np.random.Generator(np.random.Philox(2)).choice([-1.0, 1.0], len(positions))
-        pull = (march.rate(t, moved) - rate)[velocities] / scale
+        pull = (march.rate(t, moved) - march.rate(t, y))[velocities] / scale
         square = float(np.sqrt(np.mean(pull * pull)))
         units[velocities] = np.sqrt(square) if 0.0 < square < np.inf else 1.0
     return units

@@ -1,29 +1,28 @@
 """The stable step of a solver on an assembled island: sharp, and named by the part and line that sets it.
 
 The rate is linearized at the start of the run; a solver's growth factor is asked for on the modes of the Jacobian, each
-as a small system of its own. A mode that grows by itself counts as neutral: its growth is the scene's, not the
-step's.
+as a small system of its own (mode_blocks.py). What a mode grows by itself is the scene's, not the step's.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sceneql.kinds.stable_step import LEAST, MOST, NEUTRAL, first_unstable
+from sceneql.simulation.mode_blocks import Block, alone, paired, uses_pairs
 from sceneql.simulation.modes import Modes, coupled, jacobian, modes_of
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats
     from sceneql.kinds import Solver
     from sceneql.quantities.span import Span
     from sceneql.simulation.march import March
 
 WHOLE = 200
-"""Up to so many entries a method that uses pairs is asked about the whole Jacobian where modes are overdamped."""
+"""Up to so many entries a method that uses pairs is asked about the whole Jacobian where modes are no oscillations."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +34,7 @@ class Stability:
     growth: float
     """Factor by which the worst mode grows in a step of the script's own length; 1 for adaptive methods."""
     frequency: float
-    """|lambda|/(2 pi) of the mode that sets the bound [1/s]."""
+    """|lambda|/(2 pi) of what sets the bound [1/s]."""
     part: str
     span: Span | None
     text: str
@@ -48,11 +47,13 @@ def stability(march: March, solver: Solver) -> Stability:
     if modes is None:
         return Stability(math.inf, 1.0, 0.0, "", None, "any step is stable: at the start no rate depends on the state")
     fastest = modes.fastest
-    blocks = [_block(value / fastest) for value in modes.values]
+    by_pairs = uses_pairs(solver)
+    simple = [alone(value / fastest) for value in modes.values]
+    blocks = paired(march, modes) if by_pairs else simple
     reduced = _Reduced(solver, blocks)
     bound = reduced.bound()
-    if bound > 0 and math.isfinite(bound) and _overdamped(modes) and len(system.y) <= WHOLE and _uses_pairs(solver):
-        bound = _whole(march, solver, bound / fastest) * fastest
+    if 0 < bound < math.inf and by_pairs and len(system.y) <= WHOLE and _mixed(modes):
+        bound = _whole(march, solver, bound / fastest, max(0.0, float(modes.values.real.max()))) * fastest
     script = 0.0 if stepper.adaptive else stepper.first_step
     tried = script * fastest if script else 1e-2
     if 0 < bound < math.inf and tried <= bound:
@@ -60,17 +61,17 @@ def stability(march: March, solver: Solver) -> Stability:
     growths = [reduced.growth_of(block, tried) for block in blocks]
     worst = int(np.argmax(growths))
     origin = system.origin(modes.leading(worst, system.partner))
-    frequency = abs(modes.values[worst]) / (2 * math.pi)
+    frequency = float(np.abs(np.linalg.eigvals(blocks[worst].jacobian)).max()) * fastest / (2 * math.pi)
     growth = max(reduced.growth_of(block, script * fastest) for block in blocks) if script else 1.0
     mode = f"a mode of '{origin.part}' at {frequency:.4g} Hz" + (f" ({origin.span})" if origin.span else "")
     step = bound / fastest
     text = _text(step, script, growth, mode, stepper.adaptive)
     if stepper.adaptive or math.isinf(bound):
-        text += _yardstick(blocks, fastest)
+        text += _yardstick(simple, fastest)
     return Stability(step, growth, frequency, origin.part, origin.span, text)
 
 
-def _yardstick(blocks: list[tuple[Floats, Any]], fastest: float) -> str:
+def _yardstick(blocks: list[Block], fastest: float) -> str:
     """What the method that everybody knows would ask for: how much another one saves."""
     from sceneql.simulation.solvers.rk4 import Rk4
 
@@ -97,10 +98,11 @@ class _Reduced:
     """Growth on single modes, time scaled so that the fastest has frequency 1."""
 
     solver: Solver
-    blocks: list[tuple[Floats, Any]]
+    blocks: list[Block]
 
-    def growth_of(self, block: tuple[Floats, Any], step: float) -> float:
-        return self.solver.growth(block[0], block[1], step)
+    def growth_of(self, block: Block, step: float) -> float:
+        """Beside what the mode grows by itself."""
+        return self.solver.growth(block.jacobian, block.partner, step) * math.exp(-block.own * step)
 
     def bound(self) -> float:
         """Largest stable scaled step; 0 where it is rounding alone that would allow one (below 100 LEAST)."""
@@ -111,7 +113,7 @@ class _Reduced:
 
     def _bound(self, neutral: float) -> float:
         """The bound of the fastest mode, and then of those too that do not hold at it."""
-        asked = {max(range(len(self.blocks)), key=lambda k: float(np.abs(self.blocks[k][0]).max()))}
+        asked = {max(range(len(self.blocks)), key=lambda k: float(np.abs(self.blocks[k].jacobian).max()))}
         while True:
 
             def holds(k: int, step: float) -> bool:
@@ -125,33 +127,18 @@ class _Reduced:
             asked.add(max(more, key=lambda k: self.growth_of(self.blocks[k], at)))
 
 
-def _block(value: complex) -> tuple[Floats, Any]:
-    """A mode as a real system: an oscillator x' = v, v' = -|value|^2 x + 2 Re(value) v, or a scalar."""
-    damping = 0.0 if abs(value.real) < NEUTRAL or value.real > 0 else value.real
-    if value.imag == 0.0:
-        return np.array([[damping]]), np.array([-1])
-    square = value.imag**2 + damping**2
-    return np.array([[0.0, 1.0], [-square, 2.0 * damping]]), np.array([1, -1])
+def _mixed(modes: Modes) -> bool:
+    """Whether modes that matter decay, each by the others' pairs, and none grows by itself, which would hide them."""
+    rates = modes.values.real / modes.fastest
+    return bool(rates.min() < -1e-3 and rates.max() < 1e-3)
 
 
-def _overdamped(modes: Modes) -> bool:
-    """Whether a mode that matters is no oscillation (then which are pairs is not seen from the modes)."""
-    real = np.abs(modes.values[modes.values.imag == 0.0])
-    return bool(np.any(real > 1e-3 * modes.fastest))
-
-
-def _uses_pairs(solver: Solver) -> bool:
-    oscillator = np.array([[0.0, 1.0], [-1.0, 0.0]])
-    with_pairs, without = (solver.growth(oscillator, np.array([k, -1]), 0.5) for k in (1, -1))
-    return abs(with_pairs - without) > 1e-9
-
-
-def _whole(march: March, solver: Solver, guess: float) -> float:
-    """The bound [s] by the whole Jacobian, from that of the modes."""
+def _whole(march: March, solver: Solver, guess: float, own: float) -> float:
+    """The bound [s] by the whole Jacobian, from that of the modes; ``own`` [1/s]: what grows by itself."""
     matrix, partner = coupled(jacobian(march), march.system.partner)
 
     def stable(step: float) -> bool:
-        return solver.growth(matrix, partner, step) <= 1.0 + 1e-6
+        return solver.growth(matrix, partner, step) <= (1.0 + 1e-6) * math.exp(own * step)
 
     low = guess
     while not stable(low):

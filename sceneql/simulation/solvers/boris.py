@@ -20,8 +20,7 @@ class Boris(Solver):
     comes out times (a/2)/tan(a/2), a = step q B/m being the angle of a step. Reversible in time, with the magnetic
     field, where other forces do not depend on the velocity; those that do, such as drag, see it in the middle of the
     step. The angular velocity of the turn, -q B/m, is read off the accelerations of all bodies at rest and moving along
-    x and along y at once: five evaluations a step. States without a velocity advance by the midpoint rule. `explain`
-    takes a charge that runs round for one that swings: its bound of 2 m/(q B) is one of accuracy here, not stability.
+    x and along y at once: five evaluations a step. States without a velocity advance by the midpoint rule.
     Source: Boris (1970), Proc. 4th Conf. Numerical Simulation of Plasmas, 3-67; Birdsall & Langdon, Plasma Physics via
     Computer Simulation (1985), section 4-4.
     """
@@ -37,10 +36,7 @@ class Boris(Solver):
         )
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
-        """Spectral radius of the step's matrix; three pairs make a body, that turns.
-
-        A single mode of two entries does not say whether it turns or swings: it counts as swinging.
-        """
+        """Spectral radius of the step's matrix; three pairs make a body, that turns, two one that turns in a plane."""
         import numpy as np
 
         j, of = np.asarray(jacobian, dtype=float), np.asarray(partner)
@@ -55,6 +51,11 @@ class Boris(Solver):
                 turn = _cross(along_y[c], -along_x[c], 0.5 * (along_x[b] - along_y[a]))
                 spin[np.ix_((a, b, c), (a, b, c))] = turn
                 half_turn[np.ix_((a, b, c), (a, b, c))] = _turned(turn, 0.5 * step)
+        elif len(velocities) == 2:
+            a, b = velocities
+            turn = _cross(0.0, 0.0, 0.5 * (j[b, a] - j[a, b]))
+            spin[np.ix_((a, b), (a, b))] = turn[:2, :2]
+            half_turn[np.ix_((a, b), (a, b))] = _turned(turn, 0.5 * step)[:2, :2]
         start = np.eye(n)
         seen = half_turn @ (start + 0.5 * step * (j - spin))
         seen[positions] = start[positions] + 0.5 * step * start[velocities]
