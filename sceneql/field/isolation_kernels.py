@@ -6,12 +6,24 @@ twice as long; else the segment is cut where the enclosure allows no zero, and h
 that lies before a root returned is proved to be outside, up to the tolerance.
 """
 
+from numba import types
+from numba.core.sigutils import normalize_signature
+
+from sceneql.compiling.late import late
 from sceneql.field.bracket_kernels import FINE, along
 from sceneql.field.certified_kernels import certify
 from sceneql.field.enclosure_kernels import segment
 from sceneql.field.tape_ops import HIT, INSIDE, MISS, NOWHERE, TAPE, UNDECIDED, WHOLE
 from sceneql.kernels import kernel, woven
 
+ARGUMENTS, OUTCOME = normalize_signature(
+    f"Tuple((int64, float64))({TAPE}, float64, float64, float64, float64, float64, float64,"
+    " float64, float64, float64, float64, boolean, boolean)"
+)
+BEYOND = OUTCOME(*ARGUMENTS)
+beyond = late("sceneql.field.jumps_kernels:beyond", BEYOND)
+LEAPS = types.boolean(*ARGUMENTS[:12])
+leaps = late("sceneql.field.jumps_kernels:leaps", LEAPS)
 EVALUATIONS = 2000
 """Enclosures spent on one ray before it is left undecided."""
 BACK = 2.0e-3
@@ -94,12 +106,18 @@ def search(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tole
 
 @woven
 def isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, sign, anywhere):
-    """As ``search``, and by the certified intervals from where that could not go on."""
+    """As ``search``, by the certified intervals from where that could not go on, and past jumps where these cannot."""
     status, t = search(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, sign, anywhere)
     if status == UNDECIDED:
         t = max(t - BACK * (t1 - t0), t0)
         finest = tolerance * (t1 - t0)
-        return certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, finest, sign, anywhere, False)
+        status, t = certify(
+            code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, finest, sign, anywhere, False
+        )
+        if status == UNDECIDED:
+            status, t = beyond(
+                code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, finest, sign, anywhere, False
+            )
     return status, t
 
 

@@ -3,9 +3,9 @@
 
 from sceneql.field.certified_kernels import CROSSES, TOUCHES, certify, hidden, told
 from sceneql.field.enclosure_kernels import segment
-from sceneql.field.isolation_kernels import BACK, search
+from sceneql.field.isolation_kernels import BACK, beyond, leaps, search
 from sceneql.field.slope_kernels import on_ray
-from sceneql.field.tape_ops import HIT, MISS, NOWHERE, TAPE, UNDECIDED, WHOLE
+from sceneql.field.tape_ops import ATAN2, FLOOR, HIT, MISS, NOWHERE, SIGN, TAPE, UNDECIDED, WHOLE
 from sceneql.kernels import lean, woven
 
 POLES = 16
@@ -49,6 +49,18 @@ def is_defined(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near)
     return status == WHOLE
 
 
+@woven
+def is_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near, whole):
+    """Whether f goes through zero at t, or to it, and does not leave its domain or jump; ``whole``: it is defined."""
+    if not (whole or is_defined(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near)):
+        return False
+    for k in range(code.shape[0]):
+        op = code[k, 0]
+        if op == FLOOR or op == SIGN or op == ATAN2:
+            return not leaps(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near)
+    return True
+
+
 @lean(
     f"Tuple((int64, float64))({TAPE}, float64, float64, float64, float64, float64, float64, float64, float64, float64)"
 )
@@ -82,9 +94,13 @@ def surface_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1
         if status == UNDECIDED:
             t = max(t - BACK * (t1 - t0), start)
             status, t = certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, near, 1.0, False, True)
+            if status == UNDECIDED:
+                status, t = beyond(
+                    code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, near, 1.0, False, True
+                )
             if status != HIT:
                 return status, t
-        if whole or is_defined(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
+        if is_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near, whole):
             return HIT, t
         start = t + near
         if not start < t1:

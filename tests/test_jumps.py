@@ -1,0 +1,111 @@
+"""Rays across places where fields jump: nothing is met there unless the field is below zero behind; all is decided."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sceneql.field.builder import TapeBuilder
+from sceneql.field.solid import cast, field_values
+from sceneql.field.tape_ops import HIT, INSIDE, MISS, UNDECIDED
+from test_certified import tape_of
+
+FIELDS = [
+    "max(x^2 + y^2 + z^2 - 1, abs(4*x - floor(4*x) - 0.5) - 0.3)",
+    "max(x^2 + y^2 + z^2 - 1, abs(mod(x, 0.5) - 0.25) - 0.1, abs(mod(y, 0.5) - 0.25) - 0.1)",
+    "max(abs(atan2(y, x) - 0.5) - 1, x^2 + y^2 - 1, abs(z) - 0.2)",
+    "max(abs(sqrt(x^2 + y^2) - 0.1*(atan2(y, x) + 3.2)) - 0.05, abs(z) - 0.2)",
+    "x^2 + y^2 + z^2 - 0.5 - 0.2*cos(2.5*atan2(y, x))",
+    "max(x^2 + y^2 + z^2 - 1, abs(tan(4*x)) - 0.5)",
+    "x^2 + y^2 + z^2 - 0.4 + 0.2*sign(x)*sign(y - 0.1)",
+    "abs(x - 0.3*floor(2*y) - 0.1*sign(z)) - 0.1",
+    "1/abs(x) + 1/(y - 0.2)^3 + z",
+]
+"""Steps of every operation that has some, alone and together."""
+TIMES = np.linspace(0, 1, 4001)
+"""At which a field is sampled along a ray."""
+
+
+def rays(seed, count=25):
+    """(origins, directions), each (count, 3), towards places in the cube |x|, |y|, |z| < 1."""
+    chance = np.random.default_rng(seed)
+    target = chance.uniform(-1, 1, (count, 3))
+    origins = 3.0 * chance.normal(size=(count, 3))
+    return origins, 2.0 * (target - origins)
+
+
+@pytest.mark.parametrize("text", FIELDS)
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 10**6))
+def test_rays_across_jumps_are_decided_as_samples_tell(text, seed):
+    tape = tape_of(text)
+    origins, directions = rays(seed)
+    status, t = cast(tape, origins, directions, 0.0, 1.0)
+    assert (status != UNDECIDED).all()
+    for i in range(len(origins)):
+        values = field_values(tape, origins[i] + TIMES[:, None] * directions[i])
+        below = np.flatnonzero(values < 0.0)
+        if len(below):
+            assert status[i] == (HIT if below[0] else INSIDE)
+            assert t[i] <= TIMES[below[0]]
+        if status[i] == HIT:
+            behind = t[i] + np.array([0.0, 1e-12, 1e-11, 1e-10, 1e-9])
+            assert (field_values(tape, origins[i] + behind[:, None] * directions[i]) < 0.0).any()
+
+
+def around_sign(f, t):
+    """The sum of |f| 2e-9 before and behind t, and as near to where the sign of f changes as numbers are; else 0."""
+    a, b = t - 2e-9, t + 2e-9
+    first, last = f(a), f(b)
+    ends = abs(first) + abs(last)
+    if first * last > 0.0:
+        return ends, 0.0
+    while a < 0.5 * (a + b) < b:
+        middle = 0.5 * (a + b)
+        value = f(middle)
+        if value * first > 0.0:
+            a, first = middle, value
+        else:
+            b, last = middle, value
+    return ends, abs(first) + abs(last)
+
+
+@pytest.mark.parametrize("text", FIELDS)
+def test_surfaces_have_no_part_where_a_field_jumps(text):
+    tape = tape_of(text)
+    origins, directions = rays(0, 400)
+    status, t = cast(tape, origins, directions, 0.0, 1.0, surface=True)
+    assert (status != UNDECIDED).all()
+    assert (status == HIT).any()
+    for i in np.flatnonzero(status == HIT):
+        ends, least = around_sign(
+            lambda s, i=i: float(field_values(tape, origins[i, None] + s * directions[i])[0]), t[i]
+        )
+        assert least <= 1e-3 * ends + 1e-9
+    for i in np.flatnonzero(status != HIT):
+        values = field_values(tape, origins[i] + TIMES[:, None] * directions[i])
+        turned = np.flatnonzero(values[1:] * values[:-1] < 0.0)
+        assert (np.abs(values[1:] - values[:-1])[turned] > 0.05).all()
+
+
+def test_a_side_that_is_below_zero_is_no_miss():
+    """Of sign(0) = 0 alone, of which no sample tells: a point of the ray is inside, so that nothing may be claimed."""
+    status, _ = cast(tape_of("abs(sign(x)) - 0.5"), [[-1.0, 0.3, 0.2]], [[2.0, 0.0, 0.0]], 0.0, 1.0)
+    assert status[0] != MISS
+
+
+def test_parts_about_a_place_that_jumps_are_met_where_they_are():
+    """A density whose point is folded by floor: a row of balls, of which no ray meets one that is not there."""
+    build = TapeBuilder()
+    place = build.op("sub", build.x, build.op("floor", build.op("add", build.x, build.constant(0.5))))
+    parts = build.density(np.array([[0, 0, 0, 0, 0, 0, 0.4, 1.0]]), place, build.y, build.z)
+    tape = build.finish(build.op("sub", build.constant(0.3), parts))
+    height = np.linspace(-0.45, 0.45, 31)
+    origins = np.column_stack([np.full(31, -3.5), height, np.zeros(31)])
+    status, t = cast(tape, origins, [[7.0, 0.0, 0.0]], 0.0, 1.0)
+    radius = 0.4 * np.sqrt(1 - 0.3 ** (1 / 3))
+    inside = np.abs(height) < radius
+    assert (status == np.where(inside, HIT, MISS)).all()
+    assert 7.0 * t[inside] == pytest.approx(0.5 - np.sqrt(radius**2 - height[inside] ** 2), abs=1e-8)
