@@ -4,8 +4,8 @@ Run it as ``python tests/bench/bench_implicit.py [--tape] [SCENE...]``. The pict
 and a shadow ray where the light is faced. A pixel is wrong where its center disagrees with the certified routine.
 Nothing is compiled for a scene: tapes are interpreted in lanes, and where one is a polynomial or a density of points
 its exact form along each ray is used besides; with ``--tape`` the interpreter works alone, beside half of each bar.
-POV-Ray is run where it is installed; its figures from another machine are given else. Times are medians of rounds in
-which each is run once. Beside them stands the processor time of `trace` on that picture: what a film pays for shading.
+POV-Ray is run where it is installed; its figures from another machine are given else, and fidget's always. Times are
+medians of rounds in which each is run once. Beside them stands the processor time of `trace` on that picture: what a film pays for shading.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from typing import Any
 
 import numpy as np
 from bench_certified import frame_of
-from bench_polygonise import SCENES, register, scene_tape
+from bench_polygonise import ELSEWHERE, SCENES, quoted, register, scene_tape
 
 from renderers.trace import Trace
 from sceneql.field import packets
@@ -42,9 +42,8 @@ from sceneql.kernels import over_tiles
 FILE = Path(__file__).parent / "scenes" / "implicit.json"
 VIEW = json.loads(FILE.read_text(encoding="utf-8"))["view"]
 WIDTH, HEIGHT = VIEW["size"]
-POV_ELSEWHERE = {"blob40": (88, 84), "gyroid": (1410, 707), "barth_sextic": (246, 124), "kummer": (120, 63)}
-POV_ELSEWHERE |= {"steiner": (113, 104), "shell": (133, 133)}
-"""ms with 1 and 2 threads on a Zen 5 machine, POV-Ray 3.7: blob, isosurface, polynomial with sturm."""
+POV_ELSEWHERE = ELSEWHERE["pictures"]["POV-Ray 3.7"]
+"""ms with 1 and 2 threads: blob, isosurface, polynomial with sturm."""
 BARS = {"blob40": 12, "gyroid": 25, "barth_sextic": 25, "kummer": 25, "steiner": 25}
 ROUNDS = 9
 CROWD = 4000
@@ -244,7 +243,9 @@ def main(names: list[str]) -> None:
             peer = (took["peer 1"], took["peer 2"]) if here else POV_ELSEWHERE[name]
             line += f"; POV-Ray {'here' if here else 'elsewhere'} {peer[0]:.0f} / {peer[1]:.0f} ms:"
             line += f" ratio {peer[0] / one:.1f} / {peer[1] / two:.1f} (bar {BARS[name]})"
-        print(line, flush=True)
+        print(line + quoted("pictures", name, one), flush=True)
+    for who, text in ELSEWHERE["flaws"].items():
+        print(f"{who} elsewhere: {text}")
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 Run it as ``python tests/bench/bench_polygonise.py [CELLS] [ROUNDS]``; peers that are not installed are left out. Ours
 evaluates, extracts, brings the vertices onto the surface and computes normals. The peers get a numpy grid evaluated
 slab by slab, so that intermediate arrays stay in the cache; for the blobs also with each blob in its own box alone.
+fidget's figures are quoted from another machine.
 """
 
 from __future__ import annotations
@@ -32,7 +33,10 @@ from sceneql.quantities.expression import Symbol
 from sceneql.quantities.parser import parse_expression
 from sceneql.quantities.span import Source, Span
 
-SCENES = json.loads((Path(__file__).parent / "scenes" / "implicit.json").read_text(encoding="utf-8"))["scenes"]
+FOLDER = Path(__file__).parent / "scenes"
+SCENES = json.loads((FOLDER / "implicit.json").read_text(encoding="utf-8"))["scenes"]
+ELSEWHERE = json.loads((FOLDER / "elsewhere.json").read_text(encoding="utf-8"))
+"""What other programs took for them on another machine."""
 PHI = (1 + 5**0.5) / 2
 SLAB = 8
 """Layers of nodes that numpy evaluates at a time."""
@@ -214,7 +218,17 @@ def compare(cells: int, rounds: int) -> None:
                 vertices, triangles = made(values)
                 who = f"numpy{', boxed,' if boxed else ''} + {peer}"
                 row(name, who, spent, seconds, (vertices * scale - half, triangles), tape)
-        print(f"{name:13} bar beside numpy + scikit-image: {bar}", flush=True)
+        beside = quoted("meshes", name, 1e3 * seconds[1][0]) if cells == 256 else ""
+        print(f"{name:13} bar beside numpy + scikit-image: {bar}{beside}", flush=True)
+
+
+def quoted(what: str, name: str, ours: float) -> str:
+    """What fidget took for a scene on another machine, beside the ms that we took here on one thread."""
+    found = ELSEWHERE[what]["fidget 0.5 JIT"].get(name)
+    if found is None:
+        return ""
+    took = " / ".join(f"{ms:.0f}" for ms in found)
+    return f"; fidget elsewhere {took} ms, ratio {found[0] / ours:.1f}"
 
 
 def tape_of(text: str) -> Any:
