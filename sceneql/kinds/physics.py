@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from sceneql.kinds.stable_step import Oscillation
+from sceneql.kinds.stable_step import Oscillation, Told
 from sceneql.kinds.types import ModelRef
 from sceneql.kinds.values import Ref, Value
 from sceneql.kinds.word import Kind, field
@@ -70,6 +70,10 @@ class Model(Kind):
         """Bounds on its fastest oscillations by its own fields, for `check`: without numpy, and quickly."""
         return ()
 
+    def told(self) -> Mapping[str, Told]:
+        """Masses by name as its fields alone tell them, for `check`; one without a name stands for the lightest."""
+        return {}
+
     def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Drawn]:
         """How it draws itself where no object of the script does."""
         return ()
@@ -104,6 +108,13 @@ class Force(Kind):
     def assemble_together(self, name: str, assembly: Assembly, everyone: Sequence[Bodies]) -> None:
         """Add its terms for all models at once, where it is `mutual`."""
         raise NotImplementedError
+
+    def fastest(self, name: str, on: Mapping[str, Mapping[str, Told]]) -> Iterable[Oscillation]:
+        """Bounds on the fastest that it makes of its models' masses, for `check`: without numpy, and quickly.
+
+        ``on``: by model what is told of the masses that it acts on.
+        """
+        return ()
 
     def remark(self, state: ModelState) -> str:
         """What `explain` says of a `mutual` force at the start of the run, as how far it is from exact."""
@@ -172,8 +183,8 @@ class Solver(Kind):
         """
         raise NotImplementedError
 
-    def oscillation(self, frequency: float, decay: float, step: float) -> float | None:
-        """Growth factor of a fixed step on x'' = -frequency^2 x - decay x', in plain Python for `check`.
+    def oscillation(self, frequency: float, decay: float, step: float, turn: float = 0.0) -> float | None:
+        """Growth factor of a fixed step on x'' = -frequency^2 x - (decay - i turn) x', in plain Python for `check`.
 
         None where no bound is told before the run: implicit methods, and those whose steps follow a tolerance.
         """

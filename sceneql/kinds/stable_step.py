@@ -1,10 +1,13 @@
-"""The stable step of a method on one oscillation, in plain Python: what `check` can know before the run."""
+"""The stable step of a method on one mode, in plain Python: what `check` can know before the run."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
+
+from sceneql.kinds.eigenvalues import Rows, eigenvalues
 
 LEAST, MOST = 1e-8, 1e3
 """Range of (step times frequency) that is searched."""
@@ -16,7 +19,10 @@ NEUTRAL = 1e-8
 
 @dataclass(frozen=True, slots=True)
 class Oscillation:
-    """A bound on the fastest x'' = -frequency^2 x - decay x' of a model."""
+    """A bound on the fastest x'' = -frequency^2 x - (decay - i turn) x' of a model or a force.
+
+    One without a frequency is that of a velocity, or of a state without one: v' = -(decay - i turn) v.
+    """
 
     frequency: float
     """Angular, undamped [1/s]."""
@@ -25,7 +31,44 @@ class Oscillation:
     what: str
     """What sets it: ``spring 'tether'``."""
     at: tuple[str | int, ...] = ()
-    """Where in the model's fields that stands: ``("springs", 2)``."""
+    """Where in the part's fields that stands: ``("springs", 2)``."""
+    turn: float = 0.0
+    """Angular velocity [1/s] with which velocities turn in a magnetic field, or states among each other."""
+
+    @property
+    def size(self) -> float:
+        """Largest of its rates [1/s]."""
+        return max(self.frequency, self.decay, abs(self.turn))
+
+
+class Told(NamedTuple):
+    """A mass, as its model's fields alone tell it at the start."""
+
+    mass: float
+    """[kg]"""
+    position: tuple[float, ...] | None = None
+    """[m]; None: not told."""
+    velocity: tuple[float, ...] | None = None
+    """[m/s]"""
+    fixed: bool = False
+    """It never moves."""
+
+    @property
+    def inverse(self) -> float:
+        """1/mass [1/kg], 0 of what never moves."""
+        return 0.0 if self.fixed else 1.0 / self.mass
+
+
+def oscillations(
+    matrix: Rows, what: str, at: tuple[str | int, ...] = (), *, paired: bool = False
+) -> Iterator[Oscillation]:
+    """The modes of y' = matrix y, or of x'' = matrix x if ``paired``, the fastest first, without what grows."""
+    for value in sorted(eigenvalues(matrix), key=abs, reverse=True):
+        if paired:
+            mode = (-value) ** 0.5
+            yield Oscillation(abs(mode.real), 0.0, what, at)
+        elif abs(value.real) + abs(value.imag) > 0.0:
+            yield Oscillation(0.0, max(0.0, -value.real), what, at, turn=value.imag)
 
 
 def first_unstable(stable: Callable[[float], bool]) -> float:

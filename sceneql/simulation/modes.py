@@ -105,14 +105,6 @@ def active(matrix: Floats) -> NDArray[int64]:
         kept = kept[used]
 
 
-def coupled(matrix: Floats, partner: NDArray[int64]) -> tuple[Floats, NDArray[int64]]:
-    """The Jacobian and the partners without the entries that only follow."""
-    kept = active(matrix)
-    place = np.full(len(matrix) + 1, -1)
-    place[kept] = np.arange(len(kept))
-    return matrix[np.ix_(kept, kept)], place[partner[kept]]
-
-
 def _scale(y: Floats) -> float:
     largest = float(np.abs(y).max(initial=0.0))
     return 1e-2 * largest if largest > 0.0 else 1.0

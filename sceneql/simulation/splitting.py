@@ -6,13 +6,11 @@ from dataclasses import dataclass
 from math import sqrt
 from typing import TYPE_CHECKING, Any
 
+from sceneql.kinds.eigenvalues import eigenvalues
 from sceneql.system import Stepper
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-
-LIGHT = 0.2
-"""Damping, as a part of the frequency, that moves the bound on the step by a few percent."""
 
 
 @dataclass(frozen=True)
@@ -59,13 +57,13 @@ class Splitting:
             y = y + kick * step * pushed * rate
         return float(np.abs(np.linalg.eigvals(np.vstack([y, rate]))).max(initial=0.0))
 
-    def oscillation(self, frequency: float, decay: float, step: float) -> float | None:
-        """Growth factor of a step on one oscillation, in plain Python; light damping is left out, None under more.
+    def oscillation(self, frequency: float, decay: float, step: float, turn: float = 0.0) -> float:
+        """Growth factor of a step on one mode, in plain Python.
 
-        The map of an undamped one has determinant 1: its trace tells the growth.
+        The map of an undamped oscillation has determinant 1: its trace tells the growth.
         """
-        if decay > LIGHT * frequency:
-            return None
+        if decay or turn:
+            return self._damped(frequency, -complex(decay, -turn), step)
         columns = []
         for x, v in ((1.0, 0.0), (0.0, 1.0)):
             v -= self.kicks[0] * step * frequency**2 * x
@@ -75,6 +73,20 @@ class Splitting:
             columns.append((x, v))
         half = 0.5 * abs(columns[0][0] + columns[1][1])
         return half + sqrt(half * half - 1.0) if half > 1.0 else 1.0
+
+    def _damped(self, frequency: float, damping: complex, step: float) -> float:
+        """As `growth`, of position, velocity and rate: the change in a step has the eigenvalues (growth - 1)/step."""
+        columns = []
+        for x0, v0, rate in ((1.0, 0.0, 0j), (0.0, 1.0, 0j), (0.0, 0.0, 1 + 0j)):
+            moved, pushed, last = 0j, self.kicks[0] * rate, rate
+            for drift, kick, ahead in zip(self.drifts, self.kicks[1:], self.leads(), strict=True):
+                moved += drift * (v0 + step * pushed)
+                seen = v0 + step * (pushed + ahead * rate)
+                rate = damping * seen - frequency**2 * (x0 + step * moved)
+                pushed += kick * rate
+            columns.append((moved, pushed, (rate - last) / step))
+        changes = eigenvalues(list(zip(*columns, strict=True)))
+        return max(abs(1.0 + step * change) for change in changes)
 
     def leads(self) -> tuple[float, ...]:
         """How far ahead of the velocity each evaluation looks: to the middle of its kick, which the last shares."""

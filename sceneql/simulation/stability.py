@@ -14,7 +14,7 @@ import numpy as np
 
 from sceneql.kinds.stable_step import LEAST, MOST, NEUTRAL, first_unstable
 from sceneql.simulation.mode_blocks import Block, alone, paired, uses_pairs
-from sceneql.simulation.modes import Modes, coupled, jacobian, modes_of
+from sceneql.simulation.modes import Modes, jacobian, modes_of
 
 if TYPE_CHECKING:
     from sceneql.kinds import Solver
@@ -135,7 +135,7 @@ def _mixed(modes: Modes) -> bool:
 
 def _whole(march: March, solver: Solver, guess: float, own: float) -> float:
     """The bound [s] by the whole Jacobian, from that of the modes; ``own`` [1/s]: what grows by itself."""
-    matrix, partner = coupled(jacobian(march), march.system.partner)
+    matrix, partner = jacobian(march), march.system.partner
 
     def stable(step: float) -> bool:
         return solver.growth(matrix, partner, step) <= (1.0 + 1e-6) * math.exp(own * step)

@@ -82,10 +82,11 @@ class Tableau:
         z = step * np.linalg.eigvals(jacobian)
         return float(np.abs(np.polyval(self.stability_function[::-1], z)).max(initial=0.0))
 
-    def oscillation(self, frequency: float, decay: float, step: float) -> float:
-        """max |R(step * lambda)| over the roots of lambda^2 + decay lambda + frequency^2, in plain Python."""
-        root = sqrt(complex(0.25 * decay * decay - frequency * frequency))
-        return max(abs(self._amplification(step * (sign * root - 0.5 * decay))) for sign in (1, -1))
+    def oscillation(self, frequency: float, decay: float, step: float, turn: float = 0.0) -> float:
+        """max |R(step * lambda)| over the roots of lambda^2 + (decay - i turn) lambda + frequency^2."""
+        half = 0.5 * complex(decay, -turn)
+        root = sqrt(half * half - frequency * frequency)
+        return max(abs(self._amplification(step * (sign * root - half))) for sign in (1, -1))
 
     @cached_property
     def stability_function(self) -> tuple[float, ...]:

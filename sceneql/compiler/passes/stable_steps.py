@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import cast
 
 from sceneql.graph import Island, Task
@@ -47,9 +47,9 @@ def warn_of_steps(
             found.error("limit-refused", message, at, help="take a longer step, or let auto march it")
             continue
         damped = any(type(cast(Force, tasks[force].kind)).potential is Force.potential for force, _ in island.forces)
-        for name in island.models:
-            entry = script.sections.get("models", {}).get(name)
-            for fastest in cast(Model, tasks[name].kind).fastest(name):
+        for name, modes in _modes(island, tasks):
+            entry = script.sections.get(tasks[name].family, {}).get(name)
+            for fastest in _known(modes):
                 wrong = _wrong(cast(Solver, solver.kind), solver.word, step, fastest, end, damped)
                 if wrong is not None:
                     message, smaller = wrong
@@ -61,6 +61,25 @@ def warn_of_steps(
                     break
 
 
+def _modes(island: Island, tasks: Mapping[str, Task]) -> Iterator[tuple[str, Iterable[Oscillation]]]:
+    """Parts by name, with the fastest that each of them does."""
+    models = {name: cast(Model, tasks[name].kind) for name in island.models}
+    for name, model in models.items():
+        yield name, model.fastest(name)
+    told = {name: model.told() for name, model in models.items()}
+    for force in dict.fromkeys(force for force, _ in island.forces):
+        on = {model: told[model] for other, model in island.forces if other == force}
+        yield force, cast(Force, tasks[force].kind).fastest(force, on)
+
+
+def _known(modes: Iterable[Oscillation]) -> tuple[Oscillation, ...]:
+    """What can be told: where numbers are too large or too small for it, the run says more."""
+    try:
+        return tuple(modes)
+    except ArithmeticError:
+        return ()
+
+
 def _wrong(
     solver: Solver, word: str, step: float, fastest: Oscillation, end: float, damped: bool
 ) -> tuple[str, bool] | None:
@@ -68,12 +87,14 @@ def _wrong(
 
     ``damped``: something else may damp the oscillation.
     """
-    scale = max(fastest.frequency, fastest.decay)
-    if solver.oscillation(fastest.frequency, fastest.decay, step) is None:
+    scale = fastest.size
+    if scale == 0.0 or not math.isfinite(scale):
+        return None
+    if solver.oscillation(fastest.frequency, fastest.decay, step, fastest.turn) is None:
         return None
 
     def growth(scaled: float) -> float:
-        return cast(float, solver.oscillation(fastest.frequency, fastest.decay, scaled / scale))
+        return cast(float, solver.oscillation(fastest.frequency, fastest.decay, scaled / scale, fastest.turn))
 
     bound = stable_step(growth) / scale
     if bound > 0.0:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated
 
 from sceneql.kinds import FixedLength, FixedScalar, Force, Position, Quantity, Value, field
+from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
+from sceneql.simulation.told import On, each, number
 
 if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies, ModelState
@@ -23,6 +27,17 @@ class Attractor(Force):
     strength: Annotated[Value, Quantity(dim.VOLUME / dim.TIME**2)] = field("G M of the pulling body.", "1 m^3/s^2")
     exponent: FixedScalar = field("Power of the distance that it falls with.", "2", at_least=-10, at_most=10)
     softening: FixedLength = field("Length below which the pull no longer grows.", "0 m", at_least=0)
+
+    def fastest(self, name: str, on: On) -> Iterator[Oscillation]:
+        """Swings across the pull and, where it grows with the distance, along it."""
+        strength, center = number(self.strength), number(self.position)
+        for one in each(on) if strength is not None and center is not None else ():
+            away = math.dist(one.position, center) if one.position is not None else 0.0
+            if away > 0.0:
+                rho = math.hypot(away, self.softening)
+                across = strength / rho ** (self.exponent + 1)
+                along = across * (1.0 - (self.exponent + 1) * (away / rho) ** 2)
+                yield Oscillation(math.sqrt(max(across, along, 0.0)), 0.0, f"force '{name}'", ("strength",))
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add the pull on every mass."""

@@ -6,7 +6,9 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated
 
 from sceneql.kinds import Force, Formula, Problem, Symbols, field
+from sceneql.kinds.stable_step import Oscillation
 from sceneql.simulation.forces.charges import Charges, ElectricField, each, of_moving
+from sceneql.simulation.told import On, by_formulas, number
 
 if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies, ModelState
@@ -34,6 +36,17 @@ class Electric(Force):
         for name, formula, count in (("formula", self.formula, 3), ("potential_", self.potential_, 1)):
             if formula is not None and (text := problem(formula, count)) is not None:
                 yield Problem(text, (name,))
+
+    def fastest(self, name: str, on: On) -> Iterator[Oscillation]:
+        """Swings of charges in a field that varies with the place."""
+        from sceneql.quantities.derivative import components
+        from sceneql.simulation.point_program import CHARGE, downhill, scaled
+
+        charge, formula = number(self.charge), self.formula or self.potential_
+        if isinstance(charge, float | int) and formula is not None:
+            rows = downhill(formula) if self.formula is None else components(formula.expr)
+            at = "potential" if self.formula is None else "formula"
+            yield from by_formulas(scaled(rows, CHARGE), on, f"force '{name}'", at, {"q": charge})
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add q E to every mass."""

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from sceneql.kinds import FixedLength, Force, Quantity, Value, field
+from sceneql.kinds.stable_step import Oscillation, Told
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.unit_table import CHARGE
 from sceneql.simulation.forces.charges import Charges, each
+from sceneql.simulation.told import On, number, pulled
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,6 +33,20 @@ class Electrostatic(Force):
         "Coulomb's constant k.", "8.9875517862e9 N*m^2/C^2"
     )
     softening: FixedLength = field("Length below which the force no longer grows.", "0 m", at_least=0)
+
+    def fastest(self, name: str, on: On) -> Iterator[Oscillation]:
+        """Two charges, as if each pair was alone: round each other, or along their line where they repel."""
+        charge, constant = number(self.charge), number(self.constant)
+        if constant is None or not isinstance(charge, float | int):
+            return
+
+        def square(a: Told, b: Told) -> float:
+            away = math.dist(a.position or (), b.position or ())
+            rho = math.hypot(away, self.softening)
+            stiffness = constant * charge**2 / rho**3 * (3.0 * (away / rho) ** 2 - 1.0)
+            return float(stiffness * (a.inverse + b.inverse))
+
+        yield from pulled(square, on, f"force '{name}'", "charge")
 
     def assemble_together(self, name: str, assembly: Assembly, everyone: Sequence[Bodies]) -> None:
         """Add the forces between all charges. Raises ScriptError where two stand at one place without softening."""

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 from sceneql.kinds import Force as Family
 from sceneql.kinds import Formula, Problem, Symbols, field
+from sceneql.kinds.stable_step import Oscillation
+from sceneql.simulation.told import On, by_formulas
 
 if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies, ModelState
@@ -35,6 +37,16 @@ class Force(Family):
         for name, formula, count in (("components", self.components, 3), ("potential_", self.potential_, 1)):
             if formula is not None and (text := problem(formula, count)) is not None:
                 yield Problem(text, (name,))
+
+    def fastest(self, name: str, on: On) -> Iterator[Oscillation]:
+        """Swings about the places where masses start, and what acts against their velocities."""
+        from sceneql.quantities.derivative import components
+        from sceneql.simulation.point_program import downhill
+
+        if self.potential_ is not None:
+            yield from by_formulas(downhill(self.potential_), on, f"force '{name}'", "potential")
+        elif self.components is not None:
+            yield from by_formulas(components(self.components.expr), on, f"force '{name}'", "components")
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add the force to every mass."""

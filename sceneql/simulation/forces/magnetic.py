@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated
 
 from sceneql.kinds import Force, Formula, Problem, Symbols, field
+from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities.expression import Call, Expr, Symbol
+from sceneql.simulation import told
 from sceneql.simulation.forces.charges import Charges, MagneticField, each
+from sceneql.simulation.told import On, by_formulas, number
 
 if TYPE_CHECKING:
-    from sceneql.system import Assembly, Bodies
+    from sceneql.system import Assembly, Bodies, ModelState
 
 
 class Magnetic(Force):
@@ -33,6 +37,20 @@ class Magnetic(Force):
         if self.formula is not None and (text := problem(self.formula, 3)) is not None:
             yield Problem(text, ("formula",))
 
+    def fastest(self, name: str, on: On) -> Iterator[Oscillation]:
+        """How fast charges run round."""
+        from sceneql.simulation.point_program import CHARGE, scaled
+
+        charge, field_ = number(self.charge), None if self.field_ is None else number(self.field_)
+        if not isinstance(charge, float | int):
+            return
+        if self.formula is not None:
+            rows = scaled(self._turned(self.formula), CHARGE)
+            yield from by_formulas(rows, on, f"force '{name}'", "formula", {"q": charge})
+        elif field_ is not None:
+            for one in told.each(on):
+                yield Oscillation(0.0, 0.0, f"force '{name}'", ("field",), turn=charge * math.hypot(*field_) / one.mass)
+
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add q v x B to every mass."""
         from sceneql.simulation import bodies as masses
@@ -46,12 +64,21 @@ class Magnetic(Force):
             places = (bodies, bodies.velocity_at)
             assembly.term("force", kernel, ints, lambda: Slopes(slopes, *masses.own_blocks(*places), blocks=True))
             return
-        from sceneql.quantities.derivative import components
         from sceneql.simulation.point_program import CHARGE, add_force, scaled
 
         assert self.formula is not None
-        turned = _cross([Symbol("vx"), Symbol("vy"), Symbol("vz")], list(components(self.formula.expr)))
-        add_force(assembly, bodies, scaled(turned, CHARGE), charge, counted=False)
+        add_force(assembly, bodies, scaled(self._turned(self.formula), CHARGE), charge, counted=False)
+
+    def potential(self, bodies: Bodies, state: ModelState) -> float:
+        """None, and it takes no energy either."""
+        return 0.0
+
+    @staticmethod
+    def _turned(formula: Formula) -> list[Expr]:
+        """v x B."""
+        from sceneql.quantities.derivative import components
+
+        return _cross([Symbol("vx"), Symbol("vy"), Symbol("vz")], list(components(formula.expr)))
 
 
 def _cross(a: list[Expr], b: list[Expr]) -> list[Expr]:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from sceneql.kinds import FixedLength, FixedScalar, Force, Quantity, Value, field
+from sceneql.kinds.stable_step import Oscillation, Told
 from sceneql.quantities import dimension as dim
+from sceneql.simulation.told import On, number, pulled
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,6 +42,18 @@ class MutualGravity(Force):
     opening: FixedScalar = field(
         "Angle [rad] from which on the tree opens a group; 0.65 gives errors of some 1e-3.", "0.65", above=0, at_most=1
     )
+
+    def fastest(self, name: str, on: On) -> Iterator[Oscillation]:
+        """Two masses round each other, as if each pair was alone."""
+        constant = number(self.constant)
+        if constant is None:
+            return
+
+        def square(a: Told, b: Told) -> float:
+            rho = math.hypot(math.dist(a.position or (), b.position or ()), self.softening)
+            return float(constant * (a.mass * (not b.fixed) + b.mass * (not a.fixed)) / rho**3)
+
+        yield from pulled(square, on, f"force '{name}'", "constant")
 
     def assemble_together(self, name: str, assembly: Assembly, everyone: Sequence[Bodies]) -> None:
         """Add the forces between all masses. Raises ScriptError where two stand at one place without softening."""

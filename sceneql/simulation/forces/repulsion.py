@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from sceneql.kinds import FixedLength, FixedScalar, Force, Quantity, Value, field
+from sceneql.kinds.stable_step import Oscillation, Told
 from sceneql.quantities import dimension as dim
+from sceneql.simulation.told import On, number, pulled
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,6 +30,19 @@ class Repulsion(Force):
     strength: Annotated[Value, Quantity(dim.FORCE)] = field("Force at no distance.", "1 N", at_least=0)
     range: FixedLength = field("Distance at which it ends.", "0.1 m", above=0)
     exponent: FixedScalar = field("How it fades: 1 linearly, more the softer.", "1", at_least=1, at_most=20)
+
+    def fastest(self, name: str, on: On) -> Iterator[Oscillation]:
+        """Two masses along their line, as if each pair was alone."""
+        strength = number(self.strength)
+        if strength is None:
+            return
+
+        def square(a: Told, b: Told) -> float:
+            rest = 1.0 - math.dist(a.position or (), b.position or ()) / self.range
+            stiffness = strength * self.exponent / self.range * max(rest, 0.0) ** (self.exponent - 1.0)
+            return float(stiffness * (a.inverse + b.inverse)) if rest > 0.0 else 0.0
+
+        yield from pulled(square, on, f"force '{name}'", "strength")
 
     def assemble_together(self, name: str, assembly: Assembly, everyone: Sequence[Bodies]) -> None:
         """Add the forces between all masses."""

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, ClassVar
 
 from sceneql.kinds import Damping, FixedLength, Force, Position, Problem, Stiffness, Value, field
+from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Link
+from sceneql.simulation.told import On, number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -40,6 +43,22 @@ class Spring(Force):
         """The models of the masses at its ends."""
         links = (end.expr for end in (self.from_, self.to))
         return tuple(dict.fromkeys(link.task for link in links if isinstance(link, Link)))
+
+    def fastest(self, name: str, on: On) -> Iterator[Oscillation]:
+        """The spring with the masses at its ends."""
+        inverses = [self._inverse(end, on) for end in (self.from_, self.to)]
+        stiffness, damping = number(self.stiffness), number(self.damping)
+        if None not in (*inverses, stiffness, damping):
+            inverse = sum(each or 0.0 for each in inverses)
+            yield Oscillation(math.sqrt(stiffness * inverse), damping * inverse, f"force '{name}'", ("stiffness",))
+
+    def _inverse(self, end: Value, on: On) -> float | None:
+        """1/mass [1/kg] at an end, 0 of a place of its own; None where that is not told."""
+        if not isinstance(end.expr, Link):
+            return 0.0
+        masses = on.get(end.expr.task, {})
+        which = end.expr.output.rpartition(".")[0]
+        return masses[which].inverse if which in masses else None
 
     def assemble_together(self, name: str, assembly: Assembly, everyone: Sequence[Bodies]) -> None:
         """Add the spring. Raises ScriptError where an end is computed of masses but is none."""

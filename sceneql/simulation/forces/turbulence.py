@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from sceneql.kinds import Damping, FixedLength, FixedTime, FixedVelocity, Force, Speed, field
+from sceneql.kinds.stable_step import Oscillation
 from sceneql.simulation import bodies as masses
+from sceneql.simulation.told import On, number, slowed
 
 if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies
@@ -26,6 +29,10 @@ class Turbulence(Force):
     velocity: FixedVelocity = field("How fast the air as a whole moves, and the eddies with it.", "0 0 0 m/s")
     linear: Damping = field("Force for a speed relative to the air.", "1 N*s/m", at_least=0)
     seed: int = field("Seed of the eddies.", 0, at_least=0, at_most=2**32 - 1)
+
+    def fastest(self, name: str, on: On) -> Iterator[Oscillation]:
+        """The drag of the lightest mass."""
+        return slowed(number(self.linear), on, f"force '{name}'", "linear")
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add the force to every mass, and its power to the work."""

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated
 
 from sceneql.kinds import Damping, Direction, FixedLength, Force, Position, Quantity, Speed, Value, field
+from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
+from sceneql.simulation.told import On, number, slowed
 
 if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies
@@ -24,6 +27,10 @@ class Vortex(Force):
     core: FixedLength = field("Radius inside which the air turns nearly as a whole.", "0.5 m", above=0)
     updraft: Speed = field("Speed along the axis, on it.", "0 m/s")
     linear: Damping = field("Force for a speed relative to the air.", "1 N*s/m", at_least=0)
+
+    def fastest(self, name: str, on: On) -> Iterator[Oscillation]:
+        """The drag of the lightest mass."""
+        return slowed(number(self.linear), on, f"force '{name}'", "linear")
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add the force to every mass, and its power to the work."""

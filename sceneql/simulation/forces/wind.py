@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import model_validator
 
 from sceneql.kinds import Damping, FixedTime, Force, Quantity, Scalar, Value, Velocity, field
+from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
+from sceneql.simulation.told import On, each, number
 
 if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies
@@ -36,6 +40,14 @@ class Wind(Force):
         if isinstance(given, dict) and not {"linear", "quadratic"} & set(given):
             raise ValueError("wind needs a coefficient: `linear: 0.1 N*s/m`, `quadratic: 0.01 kg/m`, or both")
         return given
+
+    def fastest(self, name: str, on: On) -> Iterator[Oscillation]:
+        """The drag of the lightest mass in the wind at its start."""
+        velocity, linear, quadratic = number(self.velocity), number(self.linear), number(self.quadratic)
+        for one in each(on) if velocity is not None else ():
+            speed = math.dist(one.velocity or (0.0, 0.0, 0.0), velocity)
+            decay = ((linear or 0.0) + 2.0 * (quadratic or 0.0) * speed) / one.mass
+            yield Oscillation(0.0, decay, f"force '{name}'", ("linear",))
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add the force to every mass, and its power to the work."""

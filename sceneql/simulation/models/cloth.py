@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated
 
@@ -17,8 +18,9 @@ from sceneql.kinds import (
     Rotation,
     field,
 )
+from sceneql.kinds.stable_step import Oscillation, Told
 from sceneql.quantities import dimension as dim
-from sceneql.simulation.models.nets import CORNERS, EDGES, Net, turned
+from sceneql.simulation.models.nets import CORNERS, EDGES, Net, stiffest, turned
 from sceneql.simulation.models.nets import Cloth as Sheet
 from sceneql.simulation.springs import SpringModel, pin_problems
 
@@ -72,6 +74,26 @@ class Cloth(SpringModel):
             shear=float(self.shear > 0),
             bend=float(self.bend > 0),
         )
+
+    def told(self) -> Mapping[str, Told]:
+        """One at a corner, a quarter of the others' mass."""
+        wide, high = (side / cells for side, cells in zip(self.size, self.cells, strict=True))
+        return {"": Told(0.25 * self.mass * wide * high, None, self.velocity)}
+
+    def fastest(self, name: str) -> tuple[Oscillation, ...]:
+        """Of a mass inside, by the springs around it: see `stiffest`."""
+        wide, high = (side / cells for side, cells in zip(self.size, self.cells, strict=True))
+        mass = self.mass * wide * high
+        across, along = self.stretch * high / wide, self.stretch * wide / high
+        bend = self.bend / self.stretch
+        springs: list[tuple[tuple[float, ...], float]] = []
+        for side in (-1.0, 1.0):
+            springs += [((side, 0.0, 0.0), across), ((0.0, side, 0.0), along)]
+            springs += [((side * wide, up * high, 0.0), self.shear) for up in (-1.0, 1.0)]
+            springs += [((side, 0.0, 0.0), 0.5 * bend * across), ((0.0, side, 0.0), 0.5 * bend * along)]
+        damped = [(way, 2.0 * self.damping * math.sqrt(0.5 * k * mass)) for way, k in springs]
+        square, decay = (stiffest(these) / mass for these in (springs, damped))
+        return (Oscillation(math.sqrt(square), decay, f"the springs of '{name}'", ("stretch",)),)
 
     def make(self, assembly: Assembly) -> tuple[Net, Floats, Floats]:
         """The sheet with numbers by the areas that masses and springs stand for."""

@@ -21,6 +21,7 @@ from sceneql.kinds import (
     field,
     quantity_type,
 )
+from sceneql.kinds.stable_step import Told
 from sceneql.quantities import dimension as dim
 from sceneql.simulation import bodies as masses
 
@@ -66,6 +67,10 @@ class Galaxy(Model):
     core: FixedLength = field("Radius of the center in the picture.", "30 mm", above=0)
     material: MaterialRef | None = field("How the stars look.", None)
     color: Color | None = field("Color in place of the material's.", None)
+
+    def told(self) -> Mapping[str, Told]:
+        """A star."""
+        return {"": Told(self.disk / self.stars)}
 
     def assemble(self, name: str, assembly: Assembly) -> Bodies:
         """Reserve the center and the stars."""

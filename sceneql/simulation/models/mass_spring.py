@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import Damping, FixedMass, Gives, Problem, Ref, Stiffness, field, quantity_type
-from sceneql.kinds.stable_step import Oscillation
+from sceneql.kinds.stable_step import Oscillation, Told
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
@@ -201,6 +201,27 @@ class MassSpring(SpringModel):
         own, part = state.floats[blocks_at + BLOCK * k + 1 : blocks_at + BLOCK * k + 3]
         return float((own + part * state.floats[stiffness_at]) * (length - self.rest[k]))
 
+    def told(self) -> Mapping[str, Told]:
+        """Named ones; else one for all of them, whose place is not told, and none of a solid's by its density."""
+        if self.masses is None:
+            alike = self.solid is None or self.solid.density is None
+            return {"": Told(self.mass, None, self.velocity)} if alike else {}
+        names = list(self.masses)
+        pinned = {names[int(pin)] if pin not in self.masses else pin for pin in self._named_pins()}
+        return {
+            name: Told(
+                self.mass if one.mass is None else one.mass,
+                one.position,
+                self.velocity if one.velocity is None else one.velocity,
+                fixed=one.fixed or name in pinned,
+            )
+            for name, one in self.masses.items()
+        }
+
+    def _named_pins(self) -> list[str]:
+        """The pins that are names or numbers of masses."""
+        return [pin for pin in self.pins if not isinstance(self.pins, dict) or self.pins[pin].where is None]
+
     def fastest(self, name: str) -> tuple[Oscillation, ...]:
         """The fastest spring, and the one that is damped most, by the stiffness at both its ends.
 
@@ -250,11 +271,7 @@ class MassSpring(SpringModel):
     def _rows(self, weights: Sequence[float]) -> list[dict[int, float]]:
         """For each spring, of the springs at its ends: weight |cos of the angle between them| / mass."""
         masses = self.masses or {}
-        pinned = {pin if pin in masses else list(masses)[int(pin)] for pin in self.pins}
-        inverse = {
-            name: 0.0 if mass.fixed or name in pinned else 1.0 / (self.mass if mass.mass is None else mass.mass)
-            for name, mass in masses.items()
-        }
+        inverse = {name: one.inverse for name, one in self.told().items()}
         directions: list[tuple[float, ...]] = []
         at: dict[str, list[int]] = {name: [] for name in masses}
         for k, spring in enumerate(self.springs):

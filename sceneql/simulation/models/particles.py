@@ -26,6 +26,7 @@ from sceneql.kinds import (
     field,
     quantity_type,
 )
+from sceneql.kinds.stable_step import Told
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.simulation import bodies as masses
@@ -128,6 +129,12 @@ class Particles(Model):
     def fillings(self) -> Iterable[tuple[Ref, Callable[[Floats, Floats], None]]]:
         """The object that they fill at a spacing."""
         return () if self.fill is None or self.fill.spacing is None else ((self.fill.object, self.fill.bounded),)
+
+    def told(self) -> Mapping[str, Told]:
+        """Listed ones; else one for all of them, whose place is not told."""
+        if self.list is None:
+            return {"": Told(self.mass, None, self.velocity if self.emit is None else None)}
+        return {name: Told(one.mass, one.position, one.velocity, one.fixed) for name, one in self.list.items()}
 
     def assemble(self, name: str, assembly: Assembly) -> Bodies:
         """Reserve the masses."""

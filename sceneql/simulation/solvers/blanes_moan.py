@@ -31,6 +31,6 @@ class BlanesMoan(Solver):
         """Spectral radius of the step's matrix."""
         return BLANES_MOAN.growth(jacobian, partner, step)
 
-    def oscillation(self, frequency: float, decay: float, step: float) -> float | None:
+    def oscillation(self, frequency: float, decay: float, step: float, turn: float = 0.0) -> float | None:
         """That of the splitting."""
-        return BLANES_MOAN.oscillation(frequency, decay, step)
+        return BLANES_MOAN.oscillation(frequency, decay, step, turn)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import cmath
+import math
 from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import FixedTime, Solver, field
+from sceneql.kinds.eigenvalues import eigenvalues
 from sceneql.simulation.splitting import VERLET
 
 if TYPE_CHECKING:
@@ -64,9 +67,20 @@ class Boris(Solver):
         end[positions] = seen[positions] + 0.5 * step * end[velocities]
         return float(np.abs(np.linalg.eigvals(end)).max(initial=0.0))
 
-    def oscillation(self, frequency: float, decay: float, step: float) -> float | None:
-        """That of leapfrog: without damping the same steps in another order."""
-        return VERLET.oscillation(frequency, decay, step)
+    def oscillation(self, frequency: float, decay: float, step: float, turn: float = 0.0) -> float | None:
+        """That of leapfrog without damping, where the steps are the same in another order; else of its own map."""
+        if not decay and not turn:
+            return VERLET.oscillation(frequency, decay, step)
+        half = cmath.exp(0.5j * turn * step)
+        # e^(i turn step) - 1 over the step, without its rounding.
+        round_ = 2j * math.sin(0.5 * turn * step) * half / step
+        columns = []
+        for x, v in ((1.0, 0.0), (0.0, 1.0)):
+            place = x + 0.5 * step * v
+            kick = -(frequency**2) * place - decay * half * (v + 0.5 * step * (-(frequency**2) * x - decay * v))
+            pushed = round_ * v + 0.5 * (half * half + 1.0) * kick
+            columns.append((v + 0.5 * step * pushed, pushed))
+        return max(abs(1.0 + step * change) for change in eigenvalues(list(zip(*columns, strict=True))))
 
 
 def _cross(x: float, y: float, z: float) -> Floats:

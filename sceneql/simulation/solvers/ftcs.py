@@ -30,6 +30,6 @@ class Ftcs(Solver):
         """max |1 + h lambda|."""
         return EULER.growth(jacobian, step)
 
-    def oscillation(self, frequency: float, decay: float, step: float) -> float:
+    def oscillation(self, frequency: float, decay: float, step: float, turn: float = 0.0) -> float:
         """That of the tableau."""
-        return EULER.oscillation(frequency, decay, step)
+        return EULER.oscillation(frequency, decay, step, turn)

@@ -31,6 +31,6 @@ class Heun(Solver):
         """max |R(h lambda)|, R(z) = 1 + z + z^2/2."""
         return HEUN.growth(jacobian, step)
 
-    def oscillation(self, frequency: float, decay: float, step: float) -> float:
+    def oscillation(self, frequency: float, decay: float, step: float, turn: float = 0.0) -> float:
         """That of the tableau."""
-        return HEUN.oscillation(frequency, decay, step)
+        return HEUN.oscillation(frequency, decay, step, turn)

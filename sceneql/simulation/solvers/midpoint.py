@@ -29,6 +29,6 @@ class Midpoint(Solver):
         """max |R(h lambda)|, R(z) = 1 + z + z^2/2."""
         return MIDPOINT.growth(jacobian, step)
 
-    def oscillation(self, frequency: float, decay: float, step: float) -> float:
+    def oscillation(self, frequency: float, decay: float, step: float, turn: float = 0.0) -> float:
         """That of the tableau."""
-        return MIDPOINT.oscillation(frequency, decay, step)
+        return MIDPOINT.oscillation(frequency, decay, step, turn)

@@ -29,6 +29,6 @@ class Rk4(Solver):
         """max |R(h lambda)|, R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24."""
         return CLASSIC.growth(jacobian, step)
 
-    def oscillation(self, frequency: float, decay: float, step: float) -> float:
+    def oscillation(self, frequency: float, decay: float, step: float, turn: float = 0.0) -> float:
         """That of the tableau."""
-        return CLASSIC.oscillation(frequency, decay, step)
+        return CLASSIC.oscillation(frequency, decay, step, turn)

@@ -77,6 +77,6 @@ class RungeKutta(Solver):
         """max |R(h lambda)| with the stability function of the tableau."""
         return self.tableau.growth(jacobian, step)
 
-    def oscillation(self, frequency: float, decay: float, step: float) -> float | None:
+    def oscillation(self, frequency: float, decay: float, step: float, turn: float = 0.0) -> float | None:
         """That of the tableau, for fixed steps."""
-        return None if self.tolerance is not None else self.tableau.oscillation(frequency, decay, step)
+        return None if self.tolerance is not None else self.tableau.oscillation(frequency, decay, step, turn)

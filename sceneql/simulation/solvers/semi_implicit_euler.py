@@ -43,9 +43,9 @@ class SemiImplicitEuler(Solver):
         matrix[positions] += step * change[np.asarray(partner)[positions]]
         return float(np.abs(np.linalg.eigvals(matrix)).max(initial=0.0))
 
-    def oscillation(self, frequency: float, decay: float, step: float) -> float:
-        """Larger root of g^2 - (2 - step decay - (step frequency)^2) g + 1 - step decay; 1 - g without its rounding."""
+    def oscillation(self, frequency: float, decay: float, step: float, turn: float = 0.0) -> float:
+        """Larger root of g^2 - (2 - d - (step frequency)^2) g + 1 - d, d = step (decay - i turn); 1 - g to rounding."""
         square = (step * frequency) ** 2
-        half = 0.5 * (step * decay + square)
-        root = sqrt(complex(half * half - square))
+        half = 0.5 * (step * complex(decay, -turn) + square)
+        root = sqrt(half * half - square)
         return max(abs(1.0 - (half - root)), abs(1.0 - (half + root)))

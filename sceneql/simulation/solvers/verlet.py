@@ -33,6 +33,6 @@ class Verlet(Solver):
         """Spectral radius of the step's matrix."""
         return VERLET.growth(jacobian, partner, step)
 
-    def oscillation(self, frequency: float, decay: float, step: float) -> float | None:
+    def oscillation(self, frequency: float, decay: float, step: float, turn: float = 0.0) -> float | None:
         """That of the splitting."""
-        return VERLET.oscillation(frequency, decay, step)
+        return VERLET.oscillation(frequency, decay, step, turn)

@@ -1,0 +1,142 @@
+"""Bounds on steps by any force and any model: by the script alone, and by the spectrum."""
+
+import math
+import re
+
+import pytest
+
+from sceneql.failure import RunFailure
+from sceneql.simulation.run import Run
+from sceneql.simulation.stability import stability
+from steps import loaded, warnings
+
+TAIL = "solvers: {main: {rk4: {step: 1 s}}}\nclock: {end: 1 s}\noutputs: {data: {record: {of: [net.energy]}}}\n"
+PAIR = """\
+clock: {end: 1 s}
+models:
+  p: {particles: {list: {a: {position: 1 0 0 m, velocity: 0 1 0 m/s}, b: {position: -1 0.1 0 m, mass: 3 kg}}}}
+outputs: {table: {record: {of: [p.positions]}}}
+"""
+STRONG = {
+    "attractor: {strength: 1e6 m^3/s^2}": "verlet",
+    "attractor: {strength: 1e6 m^3/s^2, exponent: -1}": "rk4",
+    "drag: {linear: 2e4 N*s/m}": "rk4",
+    "drag: {quadratic: 2e4 kg/m}": "rk4",
+    "wind: {velocity: 3 0 4 m/s, linear: 1e4 N*s/m, quadratic: 1e3 kg/m}": "rk4",
+    "vortex: {linear: 1e4 N*s/m}": "rk4",
+    "turbulence: {linear: 1e5 N*s/m}": "rk4",
+    "electric: {charge: 1 C, potential: 1e8*(x^2 + y^2 - 2*z^2)}": "verlet",
+    "electric: {charge: 1 C, formula: '[-1e8*x, -1e8*y, 0]'}": "rk4",
+    "magnetic: {charge: 1 C, field: 0 0 1e4 T}": "rk4",
+    "magnetic: {charge: 1 C, formula: '[0, 0, 1e4 + x]'}": "rk4",
+    "electrostatic: {charge: 1 C}": "verlet",
+    "mutual_gravity: {constant: 1e8 m^3/kg/s^2}": "verlet",
+    "repulsion: {strength: 1e8 N, range: 3 m}": "rk4",
+    "spring: {from: p.a.position, to: p.b.position, stiffness: 1e8 N/m}": "rk4",
+    "spring: {from: p.a.position, to: 0 0 0 m, stiffness: 100 N/m, damping: 1e5 N*s/m}": "rk4",
+    "force: {components: '[-1e8*x - 1e5*vx, -1e8*y - 1e5*vy, -1e8*z]'}": "rk4",
+    "force: {potential: 0.5e8*(x^2 + y^2 + z^2)}": "rk4",
+}
+"""Forces that bound a step, with a method of which they do so by a mode that the check sees whole."""
+
+
+@pytest.mark.parametrize(("force", "word"), STRONG.items())
+def test_every_force_is_bounded_by_the_script_alone_as_by_the_spectrum(tmp_path, force, word):
+    """Two masses: what is told before anything is built is the bound of the assembled Jacobian."""
+    graph = loaded(tmp_path, PAIR + f"forces: {{f: {{{force}}}}}\nsolvers: {{main: {{{word}: {{step: 0.1 s}}}}}}\n")
+    (island,) = Run(graph).islands
+    bound = stability(island.march, island.solver).step
+    told = re.fullmatch(r"dt = 0.1 s exceeds (\S+) (ms|us), set by force 'f' \(scene.yaml:5\)", warnings(graph)[0])
+    assert float(told[1]) * {"ms": 1e-3, "us": 1e-6}[told[2]] == pytest.approx(bound, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    "force",
+    [
+        "force: {components: '[exp(700*x), 0, 0]'}",
+        "attractor: {exponent: -10, position: 1e200 0 0 m}",
+        "attractor: {exponent: 10, position: 1.00000000000001 0 0 m}",
+        "force: {components: '[1/(x - 1), 0, 0]'}",
+    ],
+)
+def test_forces_beyond_all_numbers_are_left_to_the_run(tmp_path, force):
+    graph = loaded(tmp_path, PAIR + f"forces: [{{{force}}}]\nsolvers: {{main: {{rk4: {{step: 0.1 s}}}}}}\n")
+    assert not [found for found in graph.warnings if not re.search(r"exceeds \S+ (s|ms|us|ns), set by", found.message)]
+
+
+def test_equations_are_bounded_by_the_script_alone(tmp_path):
+    """Van der Pol's, whose fast mode at the start is -3e6; a system of second order; one that turns."""
+    script = "clock: {end: 1 s}\nmodels: {e: {equations: {start: {y: 2, z: 0}, rate: RATE}}}\n"
+    script += "outputs: {table: {record: {of: [e.y]}}}\nsolvers: {main: {rk4: {step: 1 ms}}}\n"
+    stiff = script.replace("RATE", '{y: z, z: "((1-y^2)*z-y)/1e-6"}')
+    assert warnings(loaded(tmp_path, stiff)) == ["dt = 1 ms exceeds 0.928 us, set by 'e' (scene.yaml:2)"]
+    swing = script.replace("{y: 2, z: 0}", "{y: 2, y': 0}").replace("RATE", "{y'': -1e8*y}").replace("rk4", "verlet")
+    assert warnings(loaded(tmp_path, swing)) == ["dt = 1 ms exceeds 0.2 ms, set by 'e' (scene.yaml:2)"]
+    turning = script.replace("RATE", "{y: z, z: -1e4*y}").replace("rk4", "semi_implicit_euler")
+    assert "stable at no step" in warnings(loaded(tmp_path, turning))[0]
+    assert warnings(loaded(tmp_path, script.replace("RATE", "{y: z, z: -y}"))) == []
+
+
+@pytest.mark.parametrize("shape", ["{cells: 12 9, size: 1.2 0.8 m, stretch: 4e5 N/m, damping: 0.1}", "{bend: 300 N/m}"])
+def test_the_bound_of_a_cloth_is_told_by_the_script_alone(tmp_path, shape):
+    script = f"models: {{net: {{cloth: {shape}}}}}\n" + TAIL
+    graph = loaded(tmp_path, script)
+    (island,) = Run(graph).islands
+    told = re.search(r"exceeds (\S+) (ms|us), set by the springs of 'net'", warnings(graph)[0])
+    sharp = stability(island.march, island.solver).step
+    assert 0.75 * sharp < float(told[1]) * {"ms": 1e-3, "us": 1e-6}[told[2]] < 1.001 * sharp
+
+
+BODY = """\
+clock: {end: 1 s}
+models: {p: {particles: {list: {a: {position: 1 0 0 m, velocity: 0 1 0 m/s, mass: 2 kg}}}}}
+outputs: {table: {record: {of: [p.velocities]}}}
+"""
+SPLIT = ["semi_implicit_euler", "verlet", "blanes_moan", "boris"]
+"""Methods that advance positions by velocities."""
+
+
+def bound_of(tmp_path, script, word):
+    graph = loaded(tmp_path, script + f"solvers: {{main: {{{word}: {{step: 1 ms}}}}}}\n")
+    (island,) = Run(graph).islands
+    return stability(island.march, island.solver).step
+
+
+def test_charges_that_run_round_are_no_oscillations_of_a_place(tmp_path):
+    """Only Boris' method turns velocities exactly; the others take them along explicitly, which grows at any step."""
+    turning = BODY + "forces: [{magnetic: {charge: 2 C, field: 0 0 100 T}}]\n"
+    assert [bound_of(tmp_path, turning, word) for word in SPLIT] == [0.0, 0.0, 0.0, math.inf]
+    slow = turning + "solvers: {main: {verlet: {step: 15 ms}}}\n"
+    with pytest.raises(RunFailure, match="unstable"):
+        list(Run(loaded(tmp_path, slow)).moments([1.0]))
+
+
+def test_states_that_turn_without_velocities_do_so_explicitly(tmp_path):
+    round_ = "models: {e: {equations: {start: {y: 1, z: 0}, rate: {y: z, z: -1e4*y}}}}\nclock: {end: 1 s}\n"
+    round_ += "outputs: {table: {record: {of: [e.y]}}}\n"
+    assert [bound_of(tmp_path, round_, word) for word in SPLIT] == [0.0, 0.0, 0.0, 0.0]
+    second = round_.replace("{y: 1, z: 0}", "{y: 1, y': 0}").replace("{y: z, z: -1e4*y}", "{y'': -1e4*y}")
+    assert bound_of(tmp_path, second, "verlet") == pytest.approx(0.02, rel=1e-3)
+
+
+def test_what_grows_by_itself_bounds_no_step_and_hides_no_bound(tmp_path):
+    """The saddle of a quadrupole: swings across, grows along."""
+    saddle = BODY + "forces: [{force: {potential: 1e6*(x^2 + y^2 - 2*z^2)}}]\n"
+    bounds = [bound_of(tmp_path, saddle, word) * 1e3 for word in SPLIT]
+    assert bounds == pytest.approx([2.0, 2.0, bounds[2], 2.0], rel=1e-3)
+    assert bounds[2] == pytest.approx(bound_of(tmp_path, saddle.replace("- 2*z^2", "+ z^2"), "blanes_moan") * 1e3)
+
+
+@pytest.mark.parametrize("force", ["vortex: {circulation: 3 m^2/s,", "turbulence: {", "wind: {velocity: 1 0 0 m/s,"])
+def test_air_that_carries_away_is_bounded_by_its_drag(tmp_path, force):
+    blown = BODY + f"forces: [{{{force} linear: 2e4 N*s/m}}}}]\n"
+    bounds = [bound_of(tmp_path, blown, word) * 1e3 for word in ("euler", "semi_implicit_euler", "boris", "verlet")]
+    assert bounds == pytest.approx([0.2, 0.2, 0.2, 0.1], rel=2e-3)
+
+
+def test_the_bound_of_a_large_cloth_is_as_sharp_as_that_of_a_small_one(tmp_path):
+    """The same cloth: its fastest waves are as long as its cells, and k/m goes with the square of their number."""
+    script = "clock: {end: 1 s}\nforces: [gravity]\nmodels: {c: {cloth: {cells: N N, pins: [top]}}}\n"
+    script += "outputs: {table: {record: {of: [c.energy]}}}\n"
+    small, large = (bound_of(tmp_path, script.replace("N", str(n)), "semi_implicit_euler") * n for n in (40, 62))
+    assert large == pytest.approx(small, rel=2e-3)
