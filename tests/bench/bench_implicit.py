@@ -5,7 +5,8 @@ and a shadow ray where the light is faced. A pixel is wrong where its center dis
 Nothing is compiled for a scene: tapes are interpreted in lanes, and where one is a polynomial or a density of points
 its exact form along each ray is used besides; with ``--tape`` the interpreter works alone, beside half of each bar.
 POV-Ray is run where it is installed; its figures from another machine are given else, and fidget's always. Times are
-medians of rounds in which each is run once. Beside them stands the processor time of `trace` on that picture: what a film pays for shading.
+medians of rounds in which each is run once. Beside them stands the processor time of `trace` on that picture: what a
+film pays for shading.
 """
 
 from __future__ import annotations
