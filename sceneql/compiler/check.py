@@ -24,7 +24,7 @@ from sceneql.language.scope import Entry
 from sceneql.language.script import Script
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, unsure, whole, written
-from sceneql.quantities.diagnostic import Diagnostics, suggestion
+from sceneql.quantities.diagnostic import Diagnostics, nearest, suggestion
 from sceneql.quantities.expression import Link, Type, walk
 
 SETTINGS = tuple(Settings.model_fields)
@@ -218,8 +218,10 @@ class _Checker:
             return
         self._done.add(name)
         entry = self.entries[name]
-        cls = self.kind(family, entry)
-        if cls is None:
+        known = self.kind(family, entry)
+        meant = nearest(entry.word, self.catalogue.choices(family)) if known is None else None
+        cls = known if meant is None else self.catalogue.load(family, meant)
+        if cls is None or (known is None and entry.fields is None):
             return
         needs: list[str] = []
         names = replace(self.names, scope=entry.scope)
@@ -234,6 +236,8 @@ class _Checker:
         try:
             kind = reader.record(entry.fields, cls, entry.word_span, entry.word)
         except Unreadable:
+            return
+        if known is None:  # read for what is wrong in its fields alone
             return
         needs += [link.task for value in values_of(kind) for link in value.links]
         self.tasks[name] = Task(name, entry.word, kind, entry.span, tuple(dict.fromkeys(needs)))

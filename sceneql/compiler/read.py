@@ -68,6 +68,8 @@ class Reader:
         written: Mapping[str, Node] = {}
         if isinstance(node, MappingNode):
             written = node.entries
+        elif node is not None and broken(node):
+            raise Unreadable
         elif node is not None and not (isinstance(node, Scalar) and node.kind == "null"):
             fields = ", ".join(map(written_name, cls.model_fields))
             raise self._fail("wrong-shape", f"{title} takes fields, `{{name: value}}`", node.span, f"it has {fields}")

@@ -10,6 +10,7 @@ from typing import Any, Final, NoReturn, cast
 
 import yaml
 
+from sceneql.language.lines import lacking, left_out
 from sceneql.language.mend import blanked, cut_short, joined, mended
 from sceneql.language.plain import cut_off, kind_of
 from sceneql.language.syntax import explain, place, unprintable
@@ -141,12 +142,16 @@ class _Composer:
         try:
             self.document(start)
         except yaml.YAMLError as error:
-            near = torn_near(self.source, self.text, place(self.source, error), self.flow_start())
+            flow = self.flow_start()
+            near = torn_near(self.source, self.text, place(self.source, error), flow)
+            if not near and flow is None and (line := left_out(self.source, self.text, error)) is not None:
+                near = [line]
             if not near:
-                self.found.add(explain(self.source, error, self.flow_start()))
+                self.found.add(explain(self.source, error, flow))
             self.cut_short(place(self.source, error))
         except _StopError:
             self.cut_short(len(self.text))
+        lacking(self.root, [*self.faults.values()])
         torn = joined([*torn_halves(self.halves[:MOST_ERRORS], self.text), *self.colors], near)
         for mapping in self.odd:
             mapping.partial = True

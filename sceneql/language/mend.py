@@ -11,7 +11,6 @@ from sceneql.quantities.diagnostic import ScriptError
 from sceneql.quantities.parser import parse_value
 from sceneql.quantities.span import Source, Span
 
-_BLANK: Final = "x"
 _LAID_FLAT: Final = str.maketrans("[],\r\n\t", "      ")
 
 
@@ -23,11 +22,11 @@ def joined(faults: Iterable[Fault], more: Iterable[Fault]) -> list[Fault]:
 
 
 def blanked(text: str, faults: Iterable[Fault]) -> str:
-    """The text with a plain word of the same length in place of each fault, so that YAML reads all around it."""
+    """The text with a plain word or blanks of the same length in place of each fault: YAML reads all around it."""
     parts, at = [], 0
     for fault in faults:
         if fault.start >= at:
-            parts += [text[at : fault.start], _BLANK * (fault.end - fault.start)]
+            parts += [text[at : fault.start], fault.blank * (fault.end - fault.start)]
             at = fault.end
     return "".join([*parts, text[at:]])
 
@@ -38,7 +37,7 @@ def mended(fault: Fault, source: Source) -> Node:
     if fault.code == "unit-after-bracket":
         inside = Span(source, fault.start, source.text.rindex("]", fault.start, fault.caret) + 1)
         return _with_unit(inside, source.text[fault.caret : fault.end]) or hole(span)
-    if fault.code == "torn-expression" and not _sound(span.text, span):
+    if fault.diagnostic is not None or (fault.code == "torn-expression" and not _sound(span.text, span)):
         return hole(span)
     return Scalar(" ".join(span.text.split()), "text", False, source, fault.start, fault.end)
 

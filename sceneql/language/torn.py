@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from sceneql.language.tree import Scalar
-from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
 from sceneql.quantities.span import Source, Span
 
 _MOST_SCANNED: Final = 20_000
@@ -31,13 +31,19 @@ _BLOCK_VALUE = re.compile(r"\s*(?:- +)*(?:[^\s\[{\"'#][^\[{\"'#]*?:\s+)?(?=[\[{]
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """Characters ``start`` to ``end`` should read ``fixed``; the caret stands from ``caret`` on."""
+    """Characters ``start`` to ``end`` should read ``fixed``; the caret stands from ``caret`` on.
+
+    Where nothing can be told in its place there is a ``diagnostic`` instead, and ``blank`` is what is read: a word, or
+    nothing at all.
+    """
 
     code: str
     start: int
     end: int
     caret: int
     fixed: str
+    diagnostic: Diagnostic | None = None
+    blank: str = "x"
 
 
 def swallowed(value: Scalar, text: str) -> Fault | None:
@@ -86,6 +92,9 @@ def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
         lines.setdefault(source.position(fault.start)[0], []).append(fault)
     for together in lines.values():
         for fault in together:
+            if fault.diagnostic is not None:
+                found.add(fault.diagnostic)
+                continue
             written = source.text[fault.caret : fault.end]
             line = _corrected(source, fault, together)
             match fault.code:
