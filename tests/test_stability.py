@@ -305,3 +305,13 @@ def test_an_island_that_a_method_refuses_is_mapped_by_the_others(tmp_path, few):
         tmp_path, script + "outputs: {data: {record: {of: [net.energy]}}}\n", sweep="step=1e-3..2e-3", points=2
     )
     assert {cell["outcome"] for cell in cells if cell["solver"] == "rk4"} == {"stable"}
+
+
+def test_many_masses_in_free_flight_have_no_step_to_bound(tmp_path):
+    """More than their spectrum is worked out for whole: nothing that iterates finds a mode of what only falls."""
+    rain = "models: {rain: {particles: {emit: {rate: 1 kHz, from: 0 5 0 m, lifetime: 1 s}}}}\nforces: [gravity]\n"
+    rain += "clock: {end: 1 s}\noutputs: {table: {record: {of: [rain.energy]}}}\n"
+    (island,) = Run(loaded(tmp_path, rain)).islands
+    found = stability(island.march, island.solver)
+    assert found.step == math.inf
+    assert "any step is stable" in found.text
