@@ -296,6 +296,40 @@ def test_momentum_is_told_where_nothing_outside_acts(tmp_path):
     assert "momentum" not in line
 
 
+@pytest.mark.parametrize(
+    "force",
+    [
+        "mutual_gravity: {constant: 1 m^3/kg/s^2}",
+        "repulsion: {range: 3 m}",
+        "electrostatic: {charge: 1 uC}",
+        "spring: {from: p.a.position, to: p.b.position}",
+    ],
+)
+def test_momentum_is_told_where_masses_move_each_other_alone(tmp_path, force):
+    script = "clock: {end: 1 s}\noutputs: {table: {record: {of: [p.energy]}}}\nmodels: {p: {particles: {list: {"
+    script += f"a: {{velocity: 0 1 0 m/s}}, b: {{position: 1 0.2 0 m, mass: 2 kg}}}}}}}}}}\nforces: [{{{force}}}]\n"
+    (line,) = pipeline.render(loaded(tmp_path, script), folder=tmp_path, account=True).conserved
+    assert float(re.search(r"momentum drift (\S+)", line)[1]) < 1e-12
+    held = (
+        script.replace("to: p.b.position", "to: 1 1 0 m") if "spring" in force else script.replace("[{", "[gravity, {")
+    )
+    (line,) = pipeline.render(loaded(tmp_path, held), folder=tmp_path, account=True).conserved
+    assert "momentum" not in line
+
+
+def test_invariants_of_equations_are_told(tmp_path):
+    """A swing by Euler's method, whose energy grows by 1 + h^2 a step."""
+    script = "clock: {end: 1 s, fps: 10}\nsolvers: {main: {euler: {step: 0.1 s}}}\nmodels: {e: {equations: {"
+    script += "start: {y: 1, y': 0}, rate: {y'': -y}, invariants: {energy: (y^2 + y'^2)/2, nothing: 0*y}}}}\n"
+    script += "outputs: {table: {record: {of: [e.y]}}}\n"
+    energy, nothing = pipeline.render(loaded(tmp_path, script), folder=tmp_path, account=True).conserved
+    assert energy == f"e: energy drift {1.01**9 - 1:.2e} at the end, {1.01**9 - 1:.2e} at most"
+    assert nothing == "e: nothing drift 0.00e+00 at the end, 0.00e+00 at most"
+    lost = pipeline.render(loaded(tmp_path, script, "clock.end=6 s"), folder=tmp_path).warnings
+    assert [found.code for found in lost] == ["invariant-lost"]
+    assert pipeline.render(loaded(tmp_path, script, "clock.end=3 s"), folder=tmp_path).warnings == ()
+
+
 def test_an_island_that_a_method_refuses_is_mapped_by_the_others(tmp_path, few):
     """More states than full matrices are factored for."""
     script = "clock: {end: 0.1 s}\nforces: [gravity]\nsolvers: {main: {rk4: {step: 1 ms}}}\n" + ONE_NET.format(

@@ -62,6 +62,10 @@ class Model(Kind):
         """Whether its bodies are there all the time: births bring energy, and deaths take it."""
         return True
 
+    def conserves(self) -> tuple[str, ...]:
+        """Outputs besides energy and momentum that an exact solution would keep."""
+        return ()
+
     def formula(self, output: str) -> Expr:
         """An output of a kinematic model as an expression of time."""
         raise TypeError(f"{type(self).__name__} is not a function of time")
@@ -115,6 +119,10 @@ class Force(Kind):
         ``on``: by model what is told of the masses that it acts on.
         """
         return ()
+
+    def internal(self) -> bool:
+        """Whether it acts between masses alone, each on the other as much: then their momentum stays."""
+        return False
 
     def remark(self, state: ModelState) -> str:
         """What `explain` says of a `mutual` force at the start of the run, as how far it is from exact."""

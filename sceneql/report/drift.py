@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from sceneql.failure import RunFailure
 from sceneql.graph import Island, SimulationGraph
 from sceneql.kinds import Solver
 from sceneql.report.work_precision import LONGEST, prepared, setting_of
 
+if TYPE_CHECKING:
+    from sceneql.simulation.invariants import Invariant
+    from sceneql.simulation.watch import Balance
+
 MOMENTS = 200
 
 
 @dataclass(frozen=True, slots=True)
 class Drift:
-    """The energy of one run, relative to the largest of its kinetic energy and that of the start."""
+    """The energy of one run, relative to the largest of its kinetic energy and that of the start; else an invariant."""
 
     island: str
     solver: str
@@ -26,13 +31,14 @@ class Drift:
 
 
 def drift(graph: SimulationGraph, island: Island, word: str, solver: Solver) -> Drift | None:
-    """The drift up to the end, or to where the run fails; None where no model tells its energy."""
+    """The drift up to the end, or to where the run fails; None where no model tells its energy or an invariant."""
     from sceneql.simulation.run import Run
     from sceneql.simulation.watch import Watch
 
     run = Run(prepared(graph, island, solver))
     watch = Watch(run, always=True)
-    if not watch.balances:
+    conserved: list[Balance | Invariant] = [*watch.balances, *watch.invariants]
+    if not conserved:
         return None
     end = graph.settings.clock.end
     try:
@@ -42,5 +48,5 @@ def drift(graph: SimulationGraph, island: Island, word: str, solver: Solver) -> 
                 break
     except RunFailure:
         pass
-    balance = watch.balances[0]
-    return Drift(", ".join(island.models), word, setting_of(solver), tuple(balance.times), tuple(balance.drifts))
+    first = conserved[0]
+    return Drift(", ".join(island.models), word, setting_of(solver), tuple(first.times), tuple(first.drifts))

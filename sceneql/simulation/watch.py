@@ -12,6 +12,7 @@ from sceneql.kinds import Force, Model
 from sceneql.quantities.diagnostic import Diagnostic
 from sceneql.simulation.grids.extremes import watched
 from sceneql.simulation.grids.ringing import ringing
+from sceneql.simulation.invariants import invariants_of
 from sceneql.simulation.turns import MOST
 
 if TYPE_CHECKING:
@@ -67,7 +68,9 @@ class Balance:
             bodies is None or (self.island.march.floats[bodies.inverse_at : bodies.inverse_at + bodies.count] > 0).all()
             for bodies in self.island.bodies.values()
         )
-        return free and not island.forces and not island.contacts
+        tasks = self.island.graph.tasks
+        within = all(cast(Force, tasks[force].kind).internal() for force, _ in island.forces)
+        return free and within and not any(objects for _, _, objects in island.contacts)
 
     @property
     def closed(self) -> bool:
@@ -84,6 +87,7 @@ class Watch:
         self.always = always
         islands = [island for island in run.islands if always or _cheap(island)]
         self.balances = [Balance(island, models) for island in islands if (models := _telling(island))]
+        self.invariants = [one for island in islands for one in invariants_of(island)]
         self._ringing = [found for island in run.islands if (found := ringing(island)) is not None]
         self._fields = [(island, fields) for island in run.islands if (fields := watched(island))]
         self._turning = [span for island in run.islands if _adaptive(island) for span in island.assembly.turns.beyond]
@@ -96,9 +100,11 @@ class Watch:
         for balance in self.balances:
             if free or not balance.times:
                 _note(balance, moment)
+        for one in self.invariants if free else ():
+            one.look(moment)
         for island, fields in self._fields if free else ():
-            for one in fields:
-                one.look(moment.time, island.y)
+            for extremes in fields:
+                extremes.look(moment.time, island.y)
         self._spent += time.perf_counter() - started
 
     def warnings(self) -> tuple[Diagnostic, ...]:
@@ -109,8 +115,10 @@ class Watch:
             help = "choose a solver of given steps, or bound its `largest_step`"
             found.append(Diagnostic("many-turns", message, span, help, severity="warning"))
         for island, fields in self._fields:
-            for one in fields:
-                found += one.warnings(island)
+            for extremes in fields:
+                found += extremes.warnings(island)
+        for one in self.invariants:
+            found += one.warnings()
         for balance in self.balances:
             tasks, title = balance.island.graph.tasks, ", ".join(balance.models)
             span = tasks[balance.models[0]].span
@@ -136,8 +144,10 @@ class Watch:
         return tuple(found)
 
     def account(self) -> list[str]:
-        """A line for each island that tells an energy: its drift, and that of momentum where that is conserved."""
-        lines = []
+        """A line for each island that tells an energy: its drift, and that of momentum where that is conserved; and for
+        each invariant of equations.
+        """
+        lines = [one.account() for one in self.invariants if one.times]
         for balance in self.balances:
             drifts = balance.drifts
             if not drifts:

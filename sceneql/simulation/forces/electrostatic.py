@@ -34,6 +34,10 @@ class Electrostatic(Force):
     )
     softening: FixedLength = field("Length below which the force no longer grows.", "0 m", at_least=0)
 
+    def internal(self) -> bool:
+        """Between masses alone."""
+        return True
+
     def fastest(self, name: str, on: On) -> Iterator[Oscillation]:
         """Two charges, as if each pair was alone: round each other, or along their line where they repel."""
         charge, constant = number(self.charge), number(self.constant)

@@ -43,6 +43,10 @@ class MutualGravity(Force):
         "Angle [rad] from which on the tree opens a group; 0.65 gives errors of some 1e-3.", "0.65", above=0, at_most=1
     )
 
+    def internal(self) -> bool:
+        """Between masses alone."""
+        return True
+
     def fastest(self, name: str, on: On) -> Iterator[Oscillation]:
         """Two masses round each other, as if each pair was alone."""
         constant = number(self.constant)

@@ -31,6 +31,10 @@ class Repulsion(Force):
     range: FixedLength = field("Distance at which it ends.", "0.1 m", above=0)
     exponent: FixedScalar = field("How it fades: 1 linearly, more the softer.", "1", at_least=1, at_most=20)
 
+    def internal(self) -> bool:
+        """Between masses alone."""
+        return True
+
     def fastest(self, name: str, on: On) -> Iterator[Oscillation]:
         """Two masses along their line, as if each pair was alone."""
         strength = number(self.strength)

@@ -44,6 +44,10 @@ class Spring(Force):
         links = (end.expr for end in (self.from_, self.to))
         return tuple(dict.fromkeys(link.task for link in links if isinstance(link, Link)))
 
+    def internal(self) -> bool:
+        """Where there is a mass at both of its ends."""
+        return all(isinstance(end.expr, Link) for end in (self.from_, self.to))
+
     def fastest(self, name: str, on: On) -> Iterator[Oscillation]:
         """The spring with the masses at its ends."""
         inverses = [self._inverse(end, on) for end in (self.from_, self.to)]

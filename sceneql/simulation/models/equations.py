@@ -118,6 +118,10 @@ class Equations(Model):
             if not isfinite(evaluate(expr, look_up))
         ]
 
+    def conserves(self) -> tuple[str, ...]:
+        """Its invariants."""
+        return tuple(self.invariants)
+
     def fastest(self, name: str) -> Iterator[Oscillation]:
         """The modes at the start of the first copy, by central differences, where nothing is read from other parts."""
         rows = self.rows
