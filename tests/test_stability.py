@@ -17,6 +17,7 @@ from sceneql.kinds.stable_step import stable_step
 from sceneql.report.stability import stability as report
 from sceneql.report.stability_map import default_sweep
 from sceneql.report.stability_sweep import parse_sweep
+from sceneql.simulation import watch
 from sceneql.simulation.models.mass_spring import MassSpring
 from sceneql.simulation.run import Run
 from sceneql.simulation.stability import stability
@@ -294,6 +295,22 @@ def test_momentum_is_told_where_nothing_outside_acts(tmp_path):
     assert float(re.search(r"momentum drift (\S+)", line)[1]) < 1e-12
     (line,) = pipeline.render(loaded(tmp_path, PENDULUM), folder=tmp_path).conserved
     assert "momentum" not in line
+
+
+def test_large_nets_are_watched_when_a_look_is_cheap_beside_the_run(tmp_path, monkeypatch):
+    """Runs of no time at all cannot afford one; of 10 s between two pictures can."""
+    script = "clock: {end: 0.1 s, fps: 100}\nforces: [{gravity: {strength: 1e3 m/s^2}}]\n"
+    script += "models: {c: {cloth: {cells: 64 64, stretch: 4 N/m, shear: 0.4 N/m, bend: 0.04 N/m, pins: [top]}}}\n"
+    script += "solvers: {main: {semi_implicit_euler: {step: 1 ms}}}\noutputs: {table: {record: {of: [c.center]}}}\n"
+    for seconds, codes in ((0.0, []), (10.0, ["over-stretched"])):
+        clock = [0.0]
+        monkeypatch.setattr(watch.time, "perf_counter", lambda clock=clock: clock[0])
+        run = Run(loaded(tmp_path, script))
+        seen = watch.Watch(run)
+        for k in range(11):
+            clock[0] += seconds
+            seen.look(run.at(k / 100))
+        assert [found.code for found in seen.warnings()] == codes
 
 
 @pytest.mark.parametrize(

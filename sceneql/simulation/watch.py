@@ -22,7 +22,9 @@ if TYPE_CHECKING:
 COST, AT_LEAST = 0.008, 0.005
 """Part of the time of the run that looking may take, and seconds that it may take in any case."""
 MOST_STATES = 20_000
-"""Of an island that is looked at without being asked: the first and the last look are not free."""
+"""Of an island that is looked at from the start to the end in any case; a larger one when the run can afford it."""
+FIRST = 4e-7
+"""Seconds that the first look takes for each number of the state, at most; the next are foretold by the last."""
 MOST_PAIRED = 256
 """Bodies of one with forces between all of them."""
 GAINED = 0.5
@@ -47,6 +49,8 @@ class Balance:
     """Largest change so far [kg m/s]."""
     impulse: float = 0.0
     """Largest sum of the magnitudes of the masses' momenta [kg m/s]."""
+    cost: float = 0.0
+    """Seconds that a look must be afforded; 0 of what is looked at in any case."""
     stretch: dict[str, tuple[float, float]] = field(default_factory=dict)
     """Of each model's springs, the largest (L - L0)/L0 at the start and of all times."""
     at_start: Floats | None = None
@@ -85,8 +89,12 @@ class Watch:
 
     def __init__(self, run: Run, *, always: bool = False) -> None:
         self.always = always
-        islands = [island for island in run.islands if always or _cheap(island)]
-        self.balances = [Balance(island, models) for island in islands if (models := _telling(island))]
+        islands = [island for island in run.islands if always or _alone(island)]
+        self.balances = [
+            Balance(island, models, cost=0.0 if always else _foretold(island))
+            for island in islands
+            if (models := _telling(island))
+        ]
         self.invariants = [one for island in islands for one in invariants_of(island)]
         self._ringing = [found for island in run.islands if (found := ringing(island)) is not None]
         self._fields = [(island, fields) for island in run.islands if (fields := watched(island))]
@@ -98,7 +106,12 @@ class Watch:
         started = time.perf_counter()
         free = self.always or last or self._spent < AT_LEAST + COST * (started - self._started)
         for balance in self.balances:
-            if free or not balance.times:
+            if balance.cost > 0.0:
+                begun = time.perf_counter()
+                if self._spent + balance.cost < COST * (begun - self._started):
+                    _note(balance, moment)
+                    balance.cost = time.perf_counter() - begun
+            elif free or not balance.times:
                 _note(balance, moment)
         for one in self.invariants if free else ():
             one.look(moment)
@@ -163,12 +176,17 @@ class Watch:
         return lines
 
 
-def _cheap(island: IslandRun) -> bool:
-    """Whether its energy is told in no time: forces between very many masses take their own."""
+def _alone(island: IslandRun) -> bool:
+    """Whether no energies of very many pairs are to be summed, which takes as long as their forces."""
     forces = (cast(Force, island.graph.tasks[force].kind) for force, _ in island.island.forces)
     bodies = sum(0 if one is None else one.count for one in island.bodies.values())
-    paired = bodies > MOST_PAIRED and any(force.mutual for force in forces)
-    return len(island.march.system.y) <= MOST_STATES and not paired
+    return bodies <= MOST_PAIRED or not any(force.mutual for force in forces)
+
+
+def _foretold(island: IslandRun) -> float:
+    """Seconds that a first look takes; 0 where they do not matter."""
+    states = len(island.march.system.y)
+    return FIRST * states if states > MOST_STATES else 0.0
 
 
 def _adaptive(island: IslandRun) -> bool:
