@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.check import check, values_of
+from sceneql.compiler.passes.bounds import warn_of_bounds
 from sceneql.compiler.passes.circles import report_circles
 from sceneql.compiler.passes.expand import expand
 from sceneql.compiler.passes.fillings import check_fillings
@@ -44,6 +45,7 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
         _check_outputs(tasks, drawn, checked.settings.clock, None if clock is None else clock.span, found)
     found.raise_errors()
     check_fillings(tasks, found)
+    warn_of_bounds(tasks, found)
     warn_of_steps(script, tasks, groups, checked.settings.clock.end, found)
     found.raise_errors()
     order, needed_by, left_out = prune(tasks, groups, drawn, cameras)

@@ -87,6 +87,10 @@ class Object(Kind):
         """Lists that are too long for it, and why; ``count`` tells how many items one has where that is known."""
         return ()
 
+    def cut_by_default(self) -> str:
+        """By what it is cut where it goes on and the script does not say so; nothing where it does, or is whole."""
+        return ""
+
     def members(self) -> tuple[Ref, ...]:
         """Objects that are drawn by this one, and so not by themselves."""
         return ()

@@ -4,19 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from math import cos, inf, pi, sin, sqrt
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import field_validator
 
 from sceneql.kinds import Axis, FieldBuilder, FixedLength, FixedScalar, Formula, Moment, Problem, Record, Symbols
 from sceneql.kinds import field as described
-from sceneql.quantities.expression import Expr
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Expr, Symbol
 from sceneql.simulation.formula import in_coordinates, written_out
 from sceneql.simulation.placement import inverse
 from sceneql.simulation.solid import Solid, block, length, less, traced
 
 if TYPE_CHECKING:
     from sceneql import frame
+
+PLACES = 200
+"""Of the default bounds, at which a formula is looked at."""
 
 
 class Within(Record):
@@ -42,6 +47,14 @@ class Within(Record):
         return (-r, -r, -r), (r, r, r)
 
 
+def _on_a_ball(count: int) -> Iterator[tuple[float, float, float]]:
+    """Points on the unit ball, evenly: on the spiral of Fibonacci (Gonzalez 2010)."""
+    for k in range(count):
+        z, turn = 1.0 - (2 * k + 1) / count, pi * (3.0 - sqrt(5.0)) * k
+        aside = sqrt(1.0 - z * z)
+        yield aside * cos(turn), aside * sin(turn), z
+
+
 class Implicit(Solid):
     """The solid {field < level} within its bounds, or the surface {field = level}.
 
@@ -56,7 +69,9 @@ class Implicit(Solid):
     field: Annotated[Formula, Symbols(("x", "y", "z", "t"))] = described("The formula.")
     level: FixedScalar = described("The value that the formula has on the surface.", "0")
     unit: FixedLength = described("The length that x = 1 stands for.", "1 m", above=0)
-    bounds: Within = described("Where the formula is looked at, in units of the formula.", Within(ball=1.0))
+    bounds: Within = described(
+        "Where the formula is looked at, in units of the formula; by default the ball of radius 1.", Within(ball=1.0)
+    )
     mode: Literal["solid", "surface"] = described(
         "`solid`: all that is below the level; `surface`: a sheet where it is reached.", "solid"
     )
@@ -66,6 +81,26 @@ class Implicit(Solid):
     def _is_scalar(cls, given: Formula) -> Formula:
         in_coordinates(given.expr)
         return given
+
+    def cut_by_default(self) -> str:
+        """The ball about the origin, where no bounds are given and the solid or surface goes on there at the start."""
+        if "bounds" in self.model_fields_set:
+            return ""
+        low, high = inf, -inf
+        known: dict[str, float] = {}
+
+        def look_up(node: Symbol) -> float:
+            return known[node.name]
+
+        for place in _on_a_ball(PLACES):
+            known |= zip("xyzt", (*place, 0.0), strict=True)
+            try:
+                value = evaluate(self.field.expr, look_up)
+            except (AttributeError, KeyError):  # what only a run knows stands in it
+                return ""
+            low, high = min(low, value), max(high, value)
+        goes_on = low < self.level and (self.mode == "solid" or high > self.level)
+        return "the ball x^2 + y^2 + z^2 = 1" if goes_on else ""
 
     def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
         """The formula and its bounds, in meters."""

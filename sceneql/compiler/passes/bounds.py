@@ -1,0 +1,18 @@
+"""A warning of objects that go on where nothing says that they are cut."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from sceneql.graph import Task
+from sceneql.kinds import Object
+from sceneql.quantities.diagnostic import Diagnostics
+
+
+def warn_of_bounds(tasks: Mapping[str, Task], found: Diagnostics) -> None:
+    """Warn of each object that its own default bounds cut."""
+    for task in tasks.values():
+        if isinstance(task.kind, Object) and (where := task.kind.cut_by_default()):
+            help = "give it `bounds`, these or others"
+            message = f"'{task.name}' is cut by {where}, where it goes on: nothing says how far"
+            found.warning("unset-bounds", message, task.span, help=help)
