@@ -69,6 +69,12 @@ def nowhere_finite(tape: Tape, low: Corner, high: Corner) -> bool:
     return not np.isfinite(field_values(tape, lattice(low, high))).any()
 
 
+def bottomless(tape: Tape, low: Corner, high: Corner) -> bool:
+    """Whether f is finite at no place of a lattice in the box low..high [m], and at some is minus infinity."""
+    values = field_values(tape, lattice(low, high))
+    return not np.isfinite(values).any() and bool((values == -np.inf).any())
+
+
 def _depth(tape: Tape, low: Corner, high: Corner) -> float:
     """The size [m] of the box low..high, or the median of |f| in it where that is less."""
     values = np.abs(field_values(tape, lattice(low, high)))

@@ -125,12 +125,17 @@ class Implicit(Solid):
 
     def _leveling(self, formula: Expr) -> float:
         """The power of two that the formula less the level is multiplied by."""
-        from sceneql.field.builder import TapeBuilder
         from sceneql.field.magnitude import leveling
+
+        return leveling(self._alone(formula), *self.bounds.corners)
+
+    def _alone(self, formula: Expr) -> frame.Tape:
+        """The tape of the formula less the level, in units and without bounds."""
+        from sceneql.field.builder import TapeBuilder
 
         alone = TapeBuilder()
         value = alone.expression(formula, {"x": alone.x, "y": alone.y, "z": alone.z})
-        return leveling(alone.finish(less(alone, value, self.level)), *self.bounds.corners)
+        return alone.finish(less(alone, value, self.level))
 
     def reach(self, moment: Moment) -> tuple[Any, Any]:
         """The box around its bounds."""
@@ -138,14 +143,22 @@ class Implicit(Solid):
         return tuple(self.unit * c for c in low), tuple(self.unit * c for c in high)
 
     def lower(self, name: str, place: frame.Floats, moment: Moment) -> Iterable[frame.Shape]:
-        """Its tape in the box around its bounds. Raises RunFailure where it is nowhere defined there, at any time."""
+        """Its tape in the box around its bounds.
+
+        Raises RunFailure where the formula is nowhere defined there, or nowhere finite and yet inside, at any time.
+        """
         from sceneql.failure import RunFailure
-        from sceneql.field.emptiness import nowhere_defined
+        from sceneql.field.emptiness import bottomless, nowhere_defined
 
         for solid in traced(self, name, place, moment):
             shape = solid if self.mode == "solid" else self._sheet(solid, place, moment)
             if self.field.constant and nowhere_defined(shape.tape, shape.low, shape.high):
                 message = "the formula is defined nowhere in its bounds, so there is nothing to draw"
+                raise RunFailure(message, part="field", time=moment.time, span=self.field.span)
+            if self.field.constant and bottomless(
+                self._alone(written_out(self.field.expr, moment)), *self.bounds.corners
+            ):
+                message = "the formula is nowhere finite in its bounds, so there is no surface to draw"
                 raise RunFailure(message, part="field", time=moment.time, span=self.field.span)
             yield shape
 
