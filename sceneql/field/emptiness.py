@@ -69,10 +69,10 @@ def nowhere_finite(tape: Tape, low: Corner, high: Corner) -> bool:
     return not np.isfinite(field_values(tape, lattice(low, high))).any()
 
 
-def bottomless(tape: Tape, low: Corner, high: Corner) -> bool:
+def bottomless(tape: Tape, low: tuple[float, ...], high: tuple[float, ...]) -> bool:
     """Whether f is finite at no place of a lattice in the box low..high [m], and at some is minus infinity."""
     values = field_values(tape, lattice(low, high))
-    return not np.isfinite(values).any() and bool((values == -np.inf).any())
+    return bool((values == -np.inf).any() and not np.isfinite(values).any())
 
 
 def _depth(tape: Tape, low: Corner, high: Corner) -> float:
