@@ -292,3 +292,42 @@ def test_only_what_is_a_line_in_the_time_goes_evenly():
     uneven = [call("mul", TIME, TIME), call("div", number(1), TIME), call("sin", TIME), call("min", TIME, number(2))]
     for expr in [*uneven, keys(), linked]:
         assert not goes_evenly(expr, lambda link: None)
+
+
+def dragged():
+    """x(1) of x'' = s^2 - 1e6 x' - 1e6 x from rest."""
+    fast, slow = np.roots([1.0, 1e6, 1e6])
+    c, b, a = 2e-6 - 2e-12, -2e-6, 1e-6
+    first, second = np.linalg.solve([[1.0, 1.0], [fast, slow]], [-c, -b])
+    return a + b + c + first * math.exp(fast) + second * math.exp(slow)
+
+
+@pytest.mark.parametrize("solver", ["radau: {}", "rodas5p: {}", "radau: {tolerance: 1e-9}"])
+@pytest.mark.parametrize(
+    ("force", "end"),
+    [
+        ("max(0, 3*(t - 1))", 0.5),
+        ("max(0, t - 1)^2", 1 / 12),
+        ("max(0, t - 1)^3", 1 / 20),
+        ("1e-9*max(0, t - 1)^5", 1e-9 / 42),
+        ("where(t < 1, 0, 1e6*(t - 1)^2)", 1e6 / 12),
+    ],
+)
+def test_stiff_solvers_follow_a_force_that_sets_in_on_a_state_at_rest(tmp_path, solver, force, end):
+    """x'' = (t - 1)^n from t = 1 on, so that x = (t - 1)^(n + 2)/((n + 1)(n + 2))."""
+    assert set_in(tmp_path, solver, force) == pytest.approx(end, rel=2e-6)
+
+
+@pytest.mark.parametrize("word", ["radau", "rodas5p"])
+def test_stiff_solvers_follow_a_force_that_sets_in_on_what_drags(tmp_path, word):
+    """A free mass would be moved a million times as far, which is what is foreseen: so a tighter tolerance."""
+    found = set_in(tmp_path, word + ": {tolerance: 1e-9}", "max(0, t - 1)^2 - 1e6*v - 1e6*x")
+    assert found == pytest.approx(dragged(), rel=1e-6)
+
+
+def set_in(tmp_path, solver, force):
+    """x(2) from rest."""
+    script = "clock: {end: 2 s}\nmodels: {e: {equations: {start: {x: 0, v: 0}, rate: {x: v, v: 'FORCE'}}}}\n"
+    script += f"solvers: {{main: {{{solver}}}}}\noutputs: {{t: {{record: {{of: [e.x]}}}}}}\n"
+    ((x,),) = watch(tmp_path, script.replace("FORCE", force), [2.0], "e.x")
+    return x

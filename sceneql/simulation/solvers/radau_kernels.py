@@ -59,7 +59,7 @@ from sceneql.simulation.solvers.radau_stages_kernels import (
     iterate,
 )
 from sceneql.simulation.solvers.radau_systems_kernels import factor_at, filter_at
-from sceneql.simulation.solvers.scales_kernels import weigh
+from sceneql.simulation.solvers.scales_kernels import foresee, weigh
 from sceneql.system_kernels import DENSE, STEP, A, F, I
 
 FINISH = types.void(I, F, F, A, A, I, A, I, A, A)
@@ -214,7 +214,9 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     last = HEAD + numbers[TALLIES]
     plan, rows = numbers[last + numbers[SCALED] :], settings[numbers[ROWS_AT] :]
     if numbers[SCALED] > 0:
-        weigh(new, settings[RELATIVE], h, y0, rate0, settings[MEASURES:], numbers[last:], weights)
+        later, moved, scales = f[:n], f[n : 2 * n], settings[MEASURES:]
+        foresee(functions, t, h, y0, rate0, scales, numbers[last:], later, moved, floats, ints)
+        weigh(new, settings[RELATIVE], h, y0, rate0, later, scales, numbers[last:], weights)
     else:
         for k in range(n):
             weights[k] = 1.0 / (settings[MEASURES + k] + settings[RELATIVE] * abs(y0[k]))

@@ -18,7 +18,7 @@ from sceneql.kernels import lean, lean_inlined
 from sceneql.simulation.linear.newton_kernels import fail
 from sceneql.simulation.linear.stage_kernels import TALLIES, TALLIES_AT, factor_stage, solve_stage
 from sceneql.simulation.pointers_kernels import AT_JACOBIAN, AT_RATE, jacobian_at, rate_at
-from sceneql.simulation.solvers.scales_kernels import weigh_anew
+from sceneql.simulation.solvers.scales_kernels import foresee, weigh_anew
 from sceneql.system_kernels import DENSE, STEP
 
 STAGES, SCALES_AT, ROOM, SIZES_AT, SCALED, HEAD = range(6)
@@ -125,7 +125,9 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     for k in range(n):
         y1[k] += u[k]
     if numbers[SCALED] > 0:
-        weigh_anew(t, settings[0], h, y0, rate0, settings[numbers[SIZES_AT] :], numbers[HEAD:], weights)
+        sizes, groups = settings[numbers[SIZES_AT] :], numbers[HEAD:]
+        foresee(functions, t, h, y0, rate0, sizes, groups, sample, drift, floats, ints)
+        weigh_anew(t, settings[0], h, y0, rate0, sample, sizes, groups, weights)
     else:
         for k in range(n):
             weights[k] = 1.0 / (settings[1] + settings[0] * max(abs(y0[k]), abs(y1[k])))
