@@ -10,7 +10,7 @@ from sceneql.kinds import Gives
 from sceneql.language.scope import Broken, Given, Scope
 from sceneql.language.tree import Node
 from sceneql.quantities.bind import component
-from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, suggestion
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, nearest, suggestion
 from sceneql.quantities.dimension import PLAIN, TIME
 from sceneql.quantities.expression import Call, Expr, Key, Keys, Link, Number, Symbol, Type, Vector
 from sceneql.quantities.operations import CONSTANTS
@@ -140,6 +140,8 @@ class Names:
             hint = f"write one of its outputs, such as '{self._some_output(wanted)}'"
         else:
             hint = suggestion(wanted, [*self._inside(), *self.defines, *parts_known, "time"])
+            if hint is None and len(parts) > 1 and (part := nearest(parts[0], parts_known)) is not None:
+                hint = f"did you mean '{'.'.join((part, *parts[1:]))}'?"
         self.found.error("unknown-name", message, span, help=hint)
 
     def _inside(self) -> list[str]:
