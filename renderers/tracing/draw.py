@@ -10,10 +10,12 @@ from renderers.tracing import TOLERANCE
 from renderers.tracing.filter_kernels import deepen, widen
 from renderers.tracing.pack import pack
 from renderers.tracing.picture import Picture, over_rows
+from renderers.tracing.planes_kernels import KEYS, LANES, WIDE, lay_out
 from renderers.tracing.record_kernels import COLUMNS
 from renderers.tracing.refine_kernels import shade_rows
 from renderers.tracing.sampling_kernels import subpixels
 from renderers.tracing.scene_kernels import LIGHT_COUNT
+from renderers.tracing.spread_kernels import ROOM, spread_sky
 from renderers.tracing.sprites import over
 from renderers.tracing.together import lender, packets_for
 from renderers.tracing.visibility_kernels import FIRST_LIGHT
@@ -28,23 +30,25 @@ if TYPE_CHECKING:
 class Buffers:
     """Working memory of a picture: layer 0 is of what the camera sees, layer 1 of what is seen in that."""
 
-    def __init__(self, count: int, columns: int) -> None:
-        self.shape = count, columns
+    def __init__(self, width: int, height: int, columns: int) -> None:
+        self.shape, count = (width, height, columns), width * height
         self.records = np.zeros((2, count, COLUMNS), dtype=np.float32)
         self.radiance = np.empty((count, 3), dtype=np.float32)
         self.visibility = np.zeros((2, count, columns), dtype=np.float32)
         self.fine = np.zeros((2, count, columns), dtype=np.float32)
-        self.sums = np.zeros((count, columns + 1), dtype=np.float32)
-        self.means = np.zeros((count, columns + 1), dtype=np.float32)
+        chunks = -(-width // LANES)
+        self.planes = np.zeros((height, chunks * (KEYS + columns * WIDE)), dtype=np.float32)
+        self.sums = np.zeros((height, chunks * (1 + columns) * LANES), dtype=np.float32)
+        self.means = np.zeros((height, chunks * (1 + columns) * WIDE), dtype=np.float32)
 
 
 _kept: list[Buffers] = []
 """The last picture's: fresh memory costs the system a tenth of a frame's time."""
 
 
-def _buffers(count: int, columns: int) -> Buffers:
+def _buffers(*shape: int) -> Buffers:
     kept = _kept.pop() if _kept else None
-    return kept if kept is not None and kept.shape == (count, columns) else Buffers(count, columns)
+    return kept if kept is not None and kept.shape == shape else Buffers(*shape)
 
 
 def draw(frame: Frame, samples: int = 8, tolerance: float = TOLERANCE, march: int = 0) -> Picture:
@@ -59,7 +63,7 @@ def draw(frame: Frame, samples: int = 8, tolerance: float = TOLERANCE, march: in
     scene, rows = pack(frame, tolerance, march)
     width, height = frame.view.size
     columns = FIRST_LIGHT + 2 * int(scene.ints[LIGHT_COUNT])
-    buffers = _buffers(width * height, columns)
+    buffers = _buffers(width, height, columns)
     counts: list[tuple[int, int]] = []
     together = None if march else packets_for(frame, tolerance)
     with_waves = lender(lambda: Waves(scene, together and together(), rows, columns))
@@ -75,7 +79,7 @@ def draw(frame: Frame, samples: int = 8, tolerance: float = TOLERANCE, march: in
     over_rows(height, gather)
     undecided, seconds = map(sum, zip(*counts, strict=True))
     for layer in range(2 if seconds else 1):
-        _filter(refine, buffers, layer, width, height)
+        _filter(refine, buffers, layer)
 
     def shade(start: int, stop: int) -> None:
         shade_rows(scene, start, stop, buffers.records, buffers.fine, buffers.visibility, buffers.radiance)
@@ -94,10 +98,22 @@ def draw(frame: Frame, samples: int = 8, tolerance: float = TOLERANCE, march: in
     return Picture(linear.reshape(height, width, 3), undecided)
 
 
-def _filter(refine_rows: Callable[..., None], buffers: Buffers, layer: int, width: int, height: int) -> None:
+def _filter(refine_rows: Callable[..., None], buffers: Buffers, layer: int) -> None:
     """The filtered visibility of a layer's records, in buffers.fine."""
+    width, height, columns = buffers.shape
     records, visibility, fine = buffers.records[layer], buffers.visibility[layer], buffers.fine[layer]
-    sums, means = buffers.sums, buffers.means
-    over_rows(height, lambda start, stop: widen(start, stop, width, records, visibility, sums))
-    over_rows(height, lambda start, stop: deepen(start, stop, width, height, records, sums, means))
-    over_rows(height, lambda start, stop: refine_rows(start * width, stop * width, records, visibility, fine))
+    planes, sums, means = buffers.planes, buffers.sums, buffers.means
+
+    def along(start: int, stop: int) -> None:
+        lay_out(start, stop, width, records, visibility, planes)
+        widen(start, stop, columns, planes, sums, np.empty(LANES, dtype=np.float32))
+
+    def down(start: int, stop: int) -> None:
+        deepen(start, stop, columns, planes, sums, means, np.empty(LANES, dtype=np.float32))
+
+    def at_last(start: int, stop: int) -> None:
+        spread_sky(start, stop, width, columns, planes, means, fine, np.empty(ROOM, dtype=np.float32))
+        refine_rows(start * width, stop * width, records, visibility, fine)
+
+    for stage in (along, down, at_last):
+        over_rows(height, stage)

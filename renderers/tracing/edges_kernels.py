@@ -4,8 +4,8 @@
 from numba import types
 
 from renderers.tracing.camera_kernels import place_of
-from renderers.tracing.filter_kernels import SLACK
 from renderers.tracing.gather_kernels import DOUBTED, GATHERED, begin
+from renderers.tracing.planes_kernels import SLACK
 from renderers.tracing.record_kernels import OWNER, TRACED, UNSURE, alike
 from renderers.tracing.sampling_kernels import sample_of
 from renderers.tracing.scene_kernels import ASKED, ASKING, HEIGHT, LIGHT_COUNT, MODE, NEXT, SCENE, SCRATCH, WIDTH, part

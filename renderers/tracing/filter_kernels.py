@@ -3,55 +3,94 @@
 
 from numba import types
 
-from renderers.tracing.record_kernels import OWNER, alike
+from renderers.tracing.planes_kernels import (
+    HALO,
+    KEYS,
+    LANES,
+    LINE,
+    PLANES,
+    WIDE,
+    ZERO,
+    F,
+    alike_lanes,
+    itself,
+    known,
+)
 from renderers.tracing.sampling_kernels import SIDE
+from renderers.tracing.scene_kernels import part
 from sceneql.kernels import kernel
 
 _i = types.int64
-_rows = types.float32[:, ::1]
 REACH = SIDE // 2
-SLACK = 3.0
-"""Distance off a plane [pixel radii] up to which a neighbor counts as of the same surface."""
 
 
-@kernel(types.void(_i, _i, _i, _rows, _rows, _rows), _nrt=False)
-def widen(start, stop, width, records, visibility, sums):
-    """Rows of ``sums`` (n, 1 + V) from one row of pixels each: weight and weighted visibility, along x."""
-    columns = visibility.shape[1]
+@part
+def add_lanes(same, share, values, apart, sums, own_apart, columns):
+    """Add ``share`` times planes of ``values``, so far apart, to those of ``sums``, in lanes that are the ``same``."""
+    for column in range(columns):
+        value, total = values[column * apart :], sums[column * own_apart :]
+        for i in range(LANES):
+            total[i] += share * same[i] * value[i]
+
+
+@kernel(types.void(_i, _i, _i, PLANES, PLANES, LINE), _nrt=False)
+def widen(start, stop, columns, planes, sums, same):
+    """Rows start..stop of ``sums`` from one row of pixels each: weight and weighted visibility, along x.
+
+    ``planes`` are those of planes_kernels with the visibility (V columns) behind the keys, ``sums`` has 1 + V planes of
+    LANES a chunk. ``same`` (LANES,) is working memory.
+    """
+    size, own = KEYS + columns * WIDE, (1 + columns) * LANES
     for y in range(start, stop):
-        for x in range(width):
-            k = y * width + x
-            for c in range(columns + 1):
-                sums[k, c] = 0.0
-            if records[k, OWNER] == 0.0:
+        for chunk in range(sums.shape[1] // own):
+            a, out = planes[y, chunk * size + HALO :], sums[y, chunk * own :]
+            for i in range(own):
+                out[i] = ZERO
+            if not known(a):
                 continue
-            for j in range(max(-REACH, -x), min(REACH, width - 1 - x) + 1):
-                m = k + j
-                if j != 0 and not alike(records[k], records[m], SLACK):
-                    continue
-                share = 0.5 if abs(j) == REACH else 1.0
-                sums[k, 0] += share
-                for c in range(columns):
-                    sums[k, 1 + c] += share * visibility[m, c]
+            for j in range(-REACH, REACH + 1):
+                b = planes[y, chunk * size + HALO + j :]
+                if j == 0:
+                    itself(a, same)
+                else:
+                    alike_lanes(a, b, same)
+                share = F(0.5) if abs(j) == REACH else F(1.0)
+                for i in range(LANES):
+                    out[i] += share * same[i]
+                add_lanes(same, share, b[KEYS:], WIDE, out[LANES:], LANES, columns)
 
 
-@kernel(types.void(_i, _i, _i, _i, _rows, _rows, _rows), _nrt=False)
-def deepen(start, stop, width, height, records, sums, means):
-    """Rows of ``means`` (n, 1 + V): number of pixels joined, and their mean visibility, from ``sums`` along y."""
-    columns = sums.shape[1]
+@kernel(types.void(_i, _i, _i, PLANES, PLANES, PLANES, LINE), _nrt=False)
+def deepen(start, stop, columns, planes, sums, means, same):
+    """Rows start..stop of ``means``: number of pixels joined, and their mean visibility, from ``sums`` along y.
+
+    1 + V planes of WIDE a chunk, with the neighbors' at both its ends.
+    """
+    size, of_sums, of_means = KEYS + columns * WIDE, (1 + columns) * LANES, (1 + columns) * WIDE
+    chunks = sums.shape[1] // of_sums
     for y in range(start, stop):
-        for x in range(width):
-            k = y * width + x
-            for c in range(columns):
-                means[k, c] = 0.0
-            if records[k, OWNER] == 0.0:
+        for i in range(means.shape[1]):
+            means[y, i] = ZERO
+        for chunk in range(chunks):
+            a, out = planes[y, chunk * size + HALO :], means[y, chunk * of_means + HALO :]
+            if not known(a):
                 continue
-            for j in range(max(-REACH, -y), min(REACH, height - 1 - y) + 1):
-                m = k + j * width
-                if j != 0 and not alike(records[k], records[m], SLACK):
-                    continue
-                share = 0.5 if abs(j) == REACH else 1.0
-                for c in range(columns):
-                    means[k, c] += share * sums[m, c]
-            for c in range(1, columns):
-                means[k, c] /= means[k, 0]
+            for j in range(max(-REACH, -y), min(REACH, planes.shape[0] - 1 - y) + 1):
+                if j == 0:
+                    itself(a, same)
+                else:
+                    alike_lanes(a, planes[y + j, chunk * size + HALO :], same)
+                share = F(0.5) if abs(j) == REACH else F(1.0)
+                add_lanes(same, share, sums[y + j, chunk * of_sums :], LANES, out, WIDE, 1 + columns)
+            for column in range(1, 1 + columns):
+                total = out[column * WIDE :]
+                for i in range(LANES):
+                    total[i] = total[i] / out[i] if out[i] > ZERO else ZERO
+        for chunk in range(chunks):
+            for plane in range(1 + columns):
+                at = chunk * of_means + plane * WIDE
+                for i in range(HALO):
+                    if chunk > 0:
+                        means[y, at + i] = means[y, at - of_means + LANES + i]
+                    if chunk + 1 < chunks:
+                        means[y, at + HALO + LANES + i] = means[y, at + of_means + HALO + i]

@@ -13,6 +13,8 @@ UNSURE = 21
 index + 1 (0: no record), radius of the pixel's cone there, lift of shadow rays, share of the reflection that is
 traced, item; whether a root on the pixel's path is undecided (of the first record alone, be there one or not)."""
 COLUMNS = 22
+FLATTEST = 0.9
+"""Cosine between normals from which on two records may lie on one smooth piece of surface."""
 
 
 @part
@@ -29,7 +31,7 @@ def alike(a, b, reach):
     """Whether two records lie on one smooth piece of surface, ``reach`` pixel radii apart at the most off its plane."""
     if a[OWNER] != b[OWNER]:
         return False
-    if a[NORMAL] * b[NORMAL] + a[NORMAL + 1] * b[NORMAL + 1] + a[NORMAL + 2] * b[NORMAL + 2] < 0.9:
+    if a[NORMAL] * b[NORMAL] + a[NORMAL + 1] * b[NORMAL + 1] + a[NORMAL + 2] * b[NORMAL + 2] < FLATTEST:
         return False
     off = (
         (b[PLACE] - a[PLACE]) * a[NORMAL]

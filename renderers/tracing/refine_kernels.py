@@ -3,7 +3,8 @@
 
 from numba import types
 
-from renderers.tracing.filter_kernels import REACH, SLACK
+from renderers.tracing.filter_kernels import REACH
+from renderers.tracing.planes_kernels import HALO, LANES, SLACK, WIDE
 from renderers.tracing.record_kernels import OWNER, RADIUS, alike
 from renderers.tracing.sampling_kernels import COUNT, SIDE, sample_of
 from renderers.tracing.scene_kernels import ASKED, ASKING, HEIGHT, LIGHT_COUNT, MODE, NEXT, SCENE, SCRATCH, WIDTH, part
@@ -35,80 +36,46 @@ def mixed(records, visibility, k, x, y, width, height, column, reach):
 
 
 @part
-def join(records, means, k, i, j, width, height, share, fine):
-    """Add ``share`` times the sky's loss over 8 x 8 pixels about (i, j), if it is like pixel k; the weight of that."""
-    if i < 0 or j < 0 or i >= width or j >= height:
-        return 0.0
-    m = j * width + i
-    if m != k and not alike(records[k], records[m], SLACK):
-        return 0.0
-    weight = share * means[m, 0]
-    for c in range(FIRST_LIGHT):
-        fine[c] += weight * means[m, 1 + c]
-    return weight
-
-
-@part
-def spread_sky(records, means, k, x, y, width, height, fine):
-    """The sky's loss over 24 x 24 pixels, from nine means over 8 x 8 of weights 1 2 1, 2 4 2, 1 2 1.
-
-    Each of its samples, one in 16 x 16 pixels, has the same weight in all, and those that come in and go out where the
-    window moves have half of what they have in a plain window, so that stripes are fainter. Where other things are so
-    near: a plain window of 16 x 16 pixels, from four means.
-    """
-    weight = 0.0
-    for c in range(FIRST_LIGHT):
-        fine[c] = 0.0
-    for place in range(9):
-        across, down = place % 3 - 1, place // 3 - 1
-        share = float((2 - abs(across)) * (2 - abs(down)))
-        weight += join(records, means, k, x + SIDE * across, y + SIDE * down, width, height, share, fine)
-    if weight < 16.0 * SIDE * SIDE:
-        weight = 0.0
-        for c in range(FIRST_LIGHT):
-            fine[c] = 0.0
-        for corner in range(4):
-            i, j = x + REACH * (2 * (corner & 1) - 1), y + REACH * ((corner & 2) - 1)
-            weight += join(records, means, k, i, j, width, height, 1.0, fine)
-        if weight < 4.0 * SIDE * SIDE:  # a window cut by an edge: its middle stands in
-            weight += join(records, means, k, x, y, width, height, 1.0, fine)
-    for c in range(FIRST_LIGHT):
-        fine[c] /= weight
+def mean_of(means, columns, x, y, plane):
+    """What the planes of filter_kernels.deepen tell of a pixel."""
+    return means[y, (x // LANES * (1 + columns) + plane) * WIDE + HALO + x % LANES]
 
 
 @kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _rows, _rows, _rows, _rows), _nrt=False)
 def refine(scene, scratch, asked, start, stop, records, visibility, means, fine):
-    """Rows of ``fine`` (n, V): the sky's loss; of each light its share, and whether that wants smoothing (0 or 1).
+    """Rows of ``fine`` (n, V): of each light its share, and whether that wants smoothing (0 or 1).
 
-    Of pixels start..stop, or as many as ``asked`` has room for the rays of; returns where it ends.
+    The sky's loss, which is there, is better told where few pixels join. Of pixels start..stop, or as many as ``asked``
+    has room for the rays of; returns where it ends.
     """
     width, height = int(scene.reals[WIDTH]), int(scene.reals[HEIGHT])
+    columns = visibility.shape[1]
     room = asked.shape[0] - OWN * (1 + scene.ints[LIGHT_COUNT])
     for k in range(start, stop):
-        if records[k, OWNER] == 0.0:
+        x, y = k % width, k // width
+        pixels = mean_of(means, columns, x, y, 0)
+        if pixels == 0.0:
             continue
         if asked[0, MODE] == ASKING and asked[0, NEXT] > room:
             return k
-        x, y = k % width, k // width
-        if means[k, 0] < FEW:
-            samples = OWN if means[k, 0] < 0.5 * FEW else OWN // 2
+        if pixels < FEW:
+            samples = OWN if pixels < 0.5 * FEW else OWN // 2
             look_around(scene, scratch, asked, records[k], sample_of(x, y), samples, 0, fine[k])
             for c in range(FIRST_LIGHT):
-                joined = samples * fine[k, c] + means[k, 0] * means[k, 1 + c]
-                fine[k, c] = joined / (samples + means[k, 0])
-        else:
-            spread_sky(records, means, k, x, y, width, height, fine[k])
+                joined = samples * fine[k, c] + pixels * mean_of(means, columns, x, y, 1 + c)
+                fine[k, c] = joined / (samples + pixels)
         for l in range(int(scene.ints[LIGHT_COUNT])):
             column = FIRST_LIGHT + 2 * l
-            share = means[k, 1 + column]
+            share = mean_of(means, columns, x, y, 1 + column)
             fine[k, column + 1] = 0.0
             fine[k, column] = share
             if share > 0.9999 or share < 0.0001:
                 continue
-            pixels = means[k, 2 + column] / (1.0 - share) / (2.0 * records[k, RADIUS])
-            if pixels >= SIDE:
+            breadth = mean_of(means, columns, x, y, 2 + column)
+            edge = breadth / (1.0 - share) / (2.0 * records[k, RADIUS])
+            if edge >= SIDE:
                 continue
-            reach = 1 if pixels < CRISP else (2 if pixels < FINE else REACH)
+            reach = 1 if edge < CRISP else (2 if edge < FINE else REACH)
             if reach < REACH and not mixed(records, visibility, k, x, y, width, height, column, reach):
                 fine[k, column] = visibility[k, column]
                 continue
