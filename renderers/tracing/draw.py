@@ -78,8 +78,8 @@ def draw(frame: Frame, samples: int = 8, tolerance: float = TOLERANCE, march: in
 
     over_rows(height, gather)
     undecided, seconds = map(sum, zip(*counts, strict=True))
-    for layer in range(2 if seconds else 1):
-        _filter(refine, buffers, layer)
+    for layer in (1, 0) if seconds else (0,):
+        _filter(refine, buffers, layer)  # what comes last leaves its planes to the edges
 
     def shade(start: int, stop: int) -> None:
         shade_rows(scene, start, stop, buffers.records, buffers.fine, buffers.visibility, buffers.radiance)
@@ -90,7 +90,7 @@ def draw(frame: Frame, samples: int = 8, tolerance: float = TOLERANCE, march: in
 
     def smooth(start: int, stop: int) -> None:
         light = buffers.records, buffers.radiance, buffers.visibility
-        with_waves(lambda w: w.smooth(start, stop, points, *light, linear))
+        with_waves(lambda w: w.smooth(start, stop, points, undecided, buffers.planes, *light, linear))
 
     over_rows(height, smooth)
     over(frame, buffers.records[0], buffers.radiance, linear)

@@ -5,7 +5,7 @@ from numba import types
 
 from renderers.tracing.camera_kernels import place_of
 from renderers.tracing.gather_kernels import DOUBTED, GATHERED, begin
-from renderers.tracing.planes_kernels import SLACK
+from renderers.tracing.planes_kernels import HALO, LANES, LINE, ONE, OWN, SLACK, ZERO, alike_lanes
 from renderers.tracing.record_kernels import OWNER, TRACED, UNSURE, alike
 from renderers.tracing.sampling_kernels import sample_of
 from renderers.tracing.scene_kernels import ASKED, ASKING, HEIGHT, LIGHT_COUNT, MODE, NEXT, SCENE, SCRATCH, WIDTH, part
@@ -38,21 +38,34 @@ def contrast(radiance, k, red, green, blue):
 
 
 @part
-def jagged(records, radiance, k, x, y, width, height):
-    """Whether a pixel's neighbors show something else than it does, or may: where a root of theirs is undecided."""
+def mark_edges(y, planes, size, chunk, same, marks):
+    """Mark (1, else 0) the pixels of a chunk in row y whose neighbors show something else than they do."""
+    a = planes[y, chunk * size + HALO :]
+    for i in range(LANES):
+        marks[i] = ZERO
+    for place in range(9):
+        row, off = y + place // 3 - 1, place % 3 - 1
+        if place == 4 or row < 0 or row >= planes.shape[0]:
+            continue
+        b = planes[row, chunk * size + HALO + off :]
+        alike_lanes(a, b, same)
+        for i in range(LANES):
+            nothing = (a[OWN + i] == ZERO) & (b[OWN + i] == ZERO)
+            marks[i] = marks[i] if nothing | (same[i] > ZERO) | (b[OWN + i] < ZERO) else ONE
+
+
+@part
+def unlike(records, radiance, k, x, y, width, height):
+    """Whether a pixel's neighbors have an undecided root or, where it mirrors, other light."""
     glossy = records[0, k, TRACED] > 0.0
     for j in range(max(y - 1, 0), min(y + 1, height - 1) + 1):
         for i in range(max(x - 1, 0), min(x + 1, width - 1) + 1):
             m = j * width + i
             if records[0, m, UNSURE] != 0.0:
                 return True
-            if m == k:
+            if m == k or not glossy:
                 continue
-            if records[0, m, OWNER] != records[0, k, OWNER]:
-                return True
-            if records[0, k, OWNER] > 0.0 and not alike(records[0, k], records[0, m], SLACK):
-                return True
-            if glossy and contrast(radiance, k, radiance[m, 0], radiance[m, 1], radiance[m, 2]) > CONTRAST:
+            if contrast(radiance, k, radiance[m, 0], radiance[m, 1], radiance[m, 2]) > CONTRAST:
                 return True
     return False
 
@@ -75,10 +88,16 @@ def borrow(records, visibility, record, x, y, width, height, found):
     return count > 0
 
 
-@kernel(_i(SCENE, _i, _i, _stack, _rows, _rows, _many), _nrt=False)
-def list_edges(scene, start, stop, records, radiance, picture, edges):
-    """The pixels of rows start..stop, no more than TILE, that are to be drawn anew; the others go to the picture."""
-    width, height = int(scene.reals[WIDTH]), int(scene.reals[HEIGHT])
+@kernel(_i(_i, _i, _i, _i, _i, _rows, _stack, _rows, _rows, _rows, LINE, _many), _nrt=False)
+def list_edges(start, stop, width, size, undecided, planes, records, radiance, picture, marks, same, edges):
+    """The pixels of rows start..stop, no more than TILE, that are to be drawn anew; the others go to the picture.
+
+    ``size`` of a chunk of ``planes``, those of the first records. How many roots are ``undecided``: there, too, pixels
+    are drawn anew. ``marks`` (TILE, chunks LANES) and ``same`` (LANES,) are working memory.
+    """
+    for y in range(start, stop):
+        for chunk in range(planes.shape[1] // size):
+            mark_edges(y, planes, size, chunk, same, marks[y - start, chunk * LANES :])
     n = 0
     for i in range(len(edges)):
         x, y = place_of(i)
@@ -86,7 +105,10 @@ def list_edges(scene, start, stop, records, radiance, picture, edges):
         if x >= width or y >= stop:
             continue
         k = y * width + x
-        if jagged(records, radiance, k, x, y, width, height):
+        edge = marks[y - start, x] > 0.0
+        if not edge and (undecided > 0 or records[0, k, TRACED] > 0.0):
+            edge = unlike(records, radiance, k, x, y, width, planes.shape[0])
+        if edge:
             edges[n] = k
             n += 1
         else:

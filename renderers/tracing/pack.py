@@ -17,6 +17,7 @@ from renderers.tracing.scene_kernels import (
     IMPLICIT,
     ITEMS,
     KIND,
+    LIGHT,
     LIGHTS,
     MIXED,
     PAINT,
@@ -273,10 +274,10 @@ def _lights(lights: tuple[Light, ...]) -> Floats:
     for light in lights:
         if isinstance(light, Sun):
             direction = np.array(light.direction) / np.linalg.norm(light.direction)
-            rows.append([SUN, *direction, *light.irradiance, light.angle])
+            rows.append([SUN, *direction, *light.irradiance, light.angle, math.tan(0.5 * light.angle)])
         elif not isinstance(light, Sky):
-            rows.append([POINT, *light.position, *light.intensity, light.radius])
-    return np.array(rows, dtype=np.float64).reshape(-1, 8)
+            rows.append([POINT, *light.position, *light.intensity, light.radius, light.radius])
+    return np.array(rows, dtype=np.float64).reshape(-1, LIGHT)
 
 
 def _sky(lights: tuple[Light, ...]) -> Floats:

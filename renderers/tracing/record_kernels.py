@@ -55,9 +55,8 @@ def start_of(record):
 
 @part
 def erase(record):
-    """No record: what was there is of another picture."""
-    for column in range(COLUMNS):
-        record[column] = 0.0
+    """No record: the columns that are asked where there is none; the others stay as they were."""
+    record[OWNER] = record[TRACED] = record[UNSURE] = 0.0
 
 
 @part

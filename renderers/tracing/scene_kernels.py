@@ -92,8 +92,9 @@ CAMERA = 16
 WIDTH, HEIGHT = CAMERA + 14, CAMERA + 15
 LIGHTS = 32
 """First light."""
-LIGHT = 8
-"""Reals of a light: kind, direction to it or position, irradiance or intensity, angular diameter or radius."""
+LIGHT = 9
+"""Reals of a light: kind, direction to it or position, irradiance or intensity, angular diameter or radius; radius of
+its disk, of a sun at distance 1."""
 SUN, POINT = range(2)
 
 COLOR, ROUGHNESS, METALLIC, SPECULAR, TRANSMISSION = 0, 3, 4, 5, 6

@@ -7,6 +7,7 @@ from renderers.tracing.ranges_kernels import is_sheet, tape_of
 from renderers.tracing.scene_kernels import PAINT, SKIN, part
 from renderers.tracing.surface_kernels import unit
 from sceneql.field.gradient_kernels import gradient
+from sceneql.field.tape_kernels import value
 from sceneql.kernels import kernel
 
 BESIDE = 1e-5
@@ -52,7 +53,7 @@ def painted(scene, scratch, k, x, y, z):
     last = code.shape[0] - 1
     if last < 0:
         return np.nan, np.nan, np.nan
-    gradient(code, constants, parts, scratch, x, y, z)
+    value(code, constants, parts, scratch, x, y, z)
     return scratch[last - 2, 0], scratch[last - 1, 0], scratch[last, 0]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from typing import TYPE_CHECKING, TypeVar
 
 from renderers.tracing import TOLERANCE
@@ -28,13 +29,12 @@ def packets_for(frame: Frame, tolerance: float) -> Callable[[], Packets] | None:
 
 
 def lender(make: Callable[[], Made]) -> Callable[[Callable[[Made], Result]], Result]:
-    """Does work with one of the things made, which nobody else has meanwhile."""
-    idle: list[Made] = []
+    """Does work with the thing made for a thread: memory that changes threads goes from one core's cache to another."""
+    own = threading.local()
 
     def lend(work: Callable[[Made], Result]) -> Result:
-        made = idle.pop() if idle else make()
-        result = work(made)
-        idle.append(made)
-        return result
+        if not hasattr(own, "made"):
+            own.made = make()
+        return work(own.made)
 
     return lend

@@ -53,10 +53,9 @@ def seen(scene, scratch, asked, l, x, y, z, disk_x, disk_y):
     """(share, distance of what hides it) of the point (disk_x, disk_y) of light l's disk from a place."""
     dx, dy, dz, far, _, _, _ = light_at(scene.reals, l, x, y, z)
     ax, ay, az, bx, by, bz = across(dx, dy, dz)
-    if far == np.inf:
-        size = np.tan(0.5 * scene.reals[LIGHTS + LIGHT * l + 7])
-    else:
-        size = min(scene.reals[LIGHTS + LIGHT * l + 7] / far, 1.0)
+    size = scene.reals[LIGHTS + LIGHT * l + 8]
+    if far < np.inf:
+        size = min(size / far, 1.0)
     u, v = size * disk_x, size * disk_y
     dx, dy, dz = dx + u * ax + v * bx, dy + u * ay + v * by, dz + u * az + v * bz
     if far == np.inf:

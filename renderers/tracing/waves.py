@@ -15,6 +15,7 @@ from renderers.tracing.camera_kernels import TILE
 from renderers.tracing.edges_kernels import TRIAL, add_samples, begin_samples, list_edges, look_from_samples
 from renderers.tracing.gather_kernels import PATH
 from renderers.tracing.pack import scratch
+from renderers.tracing.planes_kernels import KEYS, LANES, WIDE
 from renderers.tracing.record_kernels import COLUMNS
 from renderers.tracing.refine_kernels import refine
 from renderers.tracing.scene_kernels import ANSWERS, ASKING, MODE, NEXT, SHAPE_COUNT, TELLING, WIDTH
@@ -52,6 +53,7 @@ class Waves:
         pixels = -(-int(scene.reals[WIDTH]) // TILE) * TILE * TILE
         self.asked = np.zeros((1 + pixels, ANSWERS)) if packets is None else packets.asked(max(pixels, ROOM))
         self.paths, self.at = np.zeros((pixels, PATH)), np.arange(pixels, dtype=np.int64)
+        self.marks, self.same = np.zeros((TILE, pixels // TILE + LANES), np.float32), np.zeros(LANES, np.float32)
         self.edges, self.sums = np.zeros(pixels, dtype=np.int64), np.zeros((pixels, 4))
         self.own = np.zeros((2, pixels, COLUMNS), dtype=np.float32)
         self.found = np.zeros((2, pixels, columns), dtype=np.float32)
@@ -77,11 +79,13 @@ class Waves:
         self._ask(start, stop, lambda i, end: refine(self.scene, self.scratch, self.asked, i, end, *more))
 
     def smooth(
-        self, start: int, stop: int, points: Array, records: Array, radiance: Array, visibility: Array,
-        picture: Array,
+        self, start: int, stop: int, points: Array, undecided: int, planes: Array, records: Array, radiance: Array,
+        visibility: Array, picture: Array,
     ) -> None:  # fmt: skip
         """Fill rows start..stop of ``picture`` (n, 3): as ``radiance``; edges by one ray a point (s, 2)."""
-        count = list_edges(self.scene, start, stop, records, radiance, picture, self.edges)
+        width, size = int(self.scene.reals[WIDTH]), KEYS + visibility.shape[2] * WIDE
+        light, own = (records, radiance), (self.marks, self.same, self.edges)
+        count = list_edges(start, stop, width, size, undecided, planes, *light, picture, *own)
         some = len(self.paths) // TRIAL
         for first in range(0, count, some):
             edges = self.edges[first : min(first + some, count)]
