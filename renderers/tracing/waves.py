@@ -38,8 +38,10 @@ if TYPE_CHECKING:
 
     Array = NDArray[Any]
 
-ROOM = 16384
-"""Rays that are asked at a time, at the least."""
+ROOM = 10 * TILE * TILE
+"""Paths that go together: few enough that what they work in stays in a core's cache."""
+RAYS = 4 * ROOM
+"""Rays that are asked at a time."""
 
 
 class Waves:
@@ -50,14 +52,15 @@ class Waves:
         self.scene, self.packets = scene, packets
         self.scratch = scratch(rows)
         self.scratch[-1 - int(scene.ints[SHAPE_COUNT]) : -1, 0] = np.nan
-        pixels = -(-int(scene.reals[WIDTH]) // TILE) * TILE * TILE
-        self.asked = np.zeros((1 + pixels, ANSWERS)) if packets is None else packets.asked(max(pixels, ROOM))
-        self.paths, self.at = np.zeros((pixels, PATH)), np.arange(pixels, dtype=np.int64)
-        self.marks, self.same = np.zeros((TILE, pixels // TILE + LANES), np.float32), np.zeros(LANES, np.float32)
-        self.edges, self.sums = np.zeros(pixels, dtype=np.int64), np.zeros((pixels, 4))
-        self.own = np.zeros((2, pixels, COLUMNS), dtype=np.float32)
-        self.found = np.zeros((2, pixels, columns), dtype=np.float32)
-        self.spares = np.zeros((pixels, COLUMNS), dtype=np.float32)
+        width = -(-int(scene.reals[WIDTH]) // TILE) * TILE
+        self.pixels = width * TILE
+        self.asked = np.zeros((1 + RAYS, ANSWERS)) if packets is None else packets.asked(RAYS)
+        self.paths, self.at = np.zeros((ROOM, PATH)), np.arange(ROOM, dtype=np.int64)
+        self.marks, self.same = np.zeros((TILE, width + LANES), np.float32), np.zeros(LANES, np.float32)
+        self.edges, self.sums = np.zeros(self.pixels, dtype=np.int64), np.zeros((ROOM, 4))
+        self.own = np.zeros((2, ROOM, COLUMNS), dtype=np.float32)
+        self.found = np.zeros((2, ROOM, columns), dtype=np.float32)
+        self.spares = np.zeros((ROOM, COLUMNS), dtype=np.float32)
         self.spare = np.empty(columns, dtype=np.float32)
 
     def gather(self, start: int, stop: int, records: Array, radiance: Array, visibility: Array) -> tuple[int, int]:
@@ -66,8 +69,18 @@ class Waves:
         Returns how many pixels have an undecided root, and how many a second record. Radiance holds what needs no
         visibility.
         """
+        undecided = seconds = 0
+        for first in range(0, self.pixels, ROOM):
+            doubted, more = self._gather(start, stop, first, records, radiance, visibility)
+            undecided, seconds = undecided + doubted, seconds + more
+        return undecided, seconds
+
+    def _gather(
+        self, start: int, stop: int, first: int, records: Array, radiance: Array, visibility: Array
+    ) -> tuple[int, int]:
+        """As ``gather``, of ROOM pixels from the ``first`` on."""
         scene, asked, at = self.scene, self.asked, np.empty_like(self.at)
-        count = begin_paths(scene, start, stop, records, self.paths, at)
+        count = begin_paths(scene, start, stop, first, records, self.paths, at)
         self._follow(self.paths[:count], at, records)
         self._ask(0, count, lambda i, end: look_from(scene, self.scratch, asked, i, end, at, records, visibility))
         counts: tuple[int, int] = end_paths(self.paths[:count], at, records, radiance)

@@ -30,12 +30,15 @@ _paths = types.float64[:, ::1]
 _many = types.int64[::1]
 
 
-@kernel(_i(SCENE, _i, _i, _stack, _paths, _many), _nrt=False)
-def begin_paths(scene, start, stop, records, paths, at):
-    """Begin the paths of rows start..stop, no more than TILE of them; how many, and ``at`` which pixel each is."""
+@kernel(_i(SCENE, _i, _i, _i, _stack, _paths, _many), _nrt=False)
+def begin_paths(scene, start, stop, first, records, paths, at):
+    """Begin paths of rows start..stop, no more than TILE of them, from their ``first`` pixel on in the order of tiles.
+
+    As many as there is room for; how many, and ``at`` which pixel each is.
+    """
     width = int(scene.reals[WIDTH])
     n = 0
-    for i in range(paths.shape[0]):
+    for i in range(first, first + paths.shape[0]):
         x, y = place_of(i)
         if x < width and start + y < stop:
             k = (start + y) * width + x
