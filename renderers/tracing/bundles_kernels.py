@@ -4,7 +4,7 @@
 import numpy as np
 from numba import types
 
-from renderers.tracing.scene_kernels import ANYWHERE, ASKED, FAR, FIRST, NEXT, WANT, part
+from renderers.tracing.scene_kernels import ANYWHERE, ASKED, FAR, FIRST, NEXT, NOTHING, WANT, part
 from renderers.tracing.solids_kernels import box_span, inverse
 from sceneql.field.packet_roots_kernels import ARGUMENTS, GROUP, first_roots
 from sceneql.field.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS
@@ -122,13 +122,16 @@ def meet_asked(
     for row in range(1, rows + 2):
         # Behind the last ray what waits is met, be it a whole bundle or not.
         want = int(asked[row, WANT]) if row < rows else (FIRST if row == rows else ANYWHERE)
-        waiting, own = chosen[want], spans[want]
-        n = waiting[RAYS]
         if row < rows:
             asked[row, column] = np.inf
+            if want == NOTHING:
+                continue
             enter, leave = in_solid(asked, row, box, clips, sizes)
             if not enter < leave:
                 continue
+        waiting, own = chosen[want], spans[want]
+        n = waiting[RAYS]
+        if row < rows:
             waiting[n], own[0, n], own[1, n] = row, enter, leave
             n += 1
             waiting[RAYS] = n

@@ -72,19 +72,17 @@ def unlike(records, radiance, k, x, y, width, height):
 
 @part
 def borrow(records, visibility, record, x, y, width, height, found):
-    """Fill ``found`` with the mean visibility of pixels around (x, y) that are like a record; whether there is one."""
+    """Fill ``found`` with the mean visibility of pixels around (x, y) that are like a record, if there is one."""
     count = 0
-    for c in range(len(found)):
-        found[c] = 0.0
     for j in range(max(y - 1, 0), min(y + 1, height - 1) + 1):
         for i in range(max(x - 1, 0), min(x + 1, width - 1) + 1):
             m = j * width + i
             if records[m, OWNER] > 0.0 and alike(record, records[m], SLACK):
-                count += 1
                 for c in range(len(found)):
-                    found[c] += visibility[m, c]
-    for c in range(len(found)):
-        found[c] /= max(count, 1)
+                    found[c] = visibility[m, c] + (found[c] if count > 0 else 0.0)
+                count += 1
+    for c in range(len(found) if count > 0 else 0):
+        found[c] /= count
     return count > 0
 
 

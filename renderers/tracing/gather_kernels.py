@@ -169,9 +169,14 @@ def advance(scene, scratch, path, first, second, spare):
 
 @part
 def light_behind(scene, scratch, asked, path, record, visibility):
-    """Add the light of what a path sees behind its records to what it has GATHERED, by QUICK samples."""
-    look_around(scene, scratch, asked, record, 0, QUICK, QUICK, visibility)
+    """Add the light of what a path sees behind its records to what it has GATHERED, by QUICK samples, once it is told.
+
+    Returns whether it is.
+    """
+    if not look_around(scene, scratch, asked, record, 0, QUICK, QUICK, visibility):
+        return False
     r, g, b = shade(scene, record, visibility)
     path[GATHERED] += r
     path[GATHERED + 1] += g
     path[GATHERED + 2] += b
+    return True

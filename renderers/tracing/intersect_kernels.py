@@ -14,15 +14,20 @@ from renderers.tracing.scene_kernels import (
     HALF_SPACE,
     ITEMS,
     KIND,
+    KNOWN,
     LINK,
     LINKS_AT,
     MODE,
     NEXT,
     NODE_COUNT,
     NODES_AT,
+    NOTHING,
+    OPEN,
     PLAIN,
+    PROBING,
     QUADRIC,
     RAY,
+    REACHED,
     REALS_AT,
     ROUND,
     SCENE,
@@ -54,9 +59,12 @@ def meet(scene, scratch, item, ox, oy, oz, dx, dy, dz, near, far, anywhere):
         return round_solid(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
     if kind == QUADRIC:
         return quadric(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
+    last = scratch.shape[0] - 1
+    if scratch[last, TOLD] >= PROBING:
+        scratch[last, TOLD] = REACHED
+        return near
     if kind == GRID:
         return crossing_at(scene.grid)(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere)
-    last = scratch.shape[0] - 1
     if scratch[last, TOLD] != 0.0:
         t = scratch[last - 1 - scene.ints[ITEMS + 4 * item + SHAPE], 0]
         if t == t:
@@ -124,35 +132,44 @@ def walk(scene, scratch, ox, oy, oz, dx, dy, dz, near, far, anywhere):
 
 
 @part
-def put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, anywhere):
+def put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, want):
     """Write a ray down, to be met in packets."""
     asked[row, 0], asked[row, 1], asked[row, 2] = ox, oy, oz
     asked[row, 3], asked[row, 4], asked[row, 5] = dx, dy, dz
     asked[row, FAR] = far
-    asked[row, WANT] = ANYWHERE if anywhere else FIRST
+    asked[row, WANT] = want
 
 
 @part
 def tell(scratch, asked, row):
     """Let the next walk know what is told of a ray."""
     last = scratch.shape[0] - 1
-    scratch[last, TOLD] = 1.0
+    scratch[last, TOLD] = KNOWN
     for column in range(ANSWERS, asked.shape[1]):
         scratch[last - 1 - int(asked[0, column]), 0] = asked[row, column]
 
 
 @kernel(MET(SCENE, SCRATCH, ASKED, *RAY[1:], types.boolean), _nrt=False, inner=True)
 def ask(scene, scratch, asked, ox, oy, oz, dx, dy, dz, far, anywhere):
-    """As ``walk`` from the ray's origin on, in the mode of ``asked``: a ray that is only asked meets nothing."""
+    """As ``walk`` from the ray's origin on, in the mode of ``asked``: a ray that is only asked and open meets nothing."""
     mode = asked[0, MODE]
     if mode == PLAIN:
         return walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, far, anywhere)
     row = int(asked[0, NEXT])
     asked[0, NEXT] = row + 1
+    last = scratch.shape[0] - 1
     if mode == ASKING:
-        put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, anywhere)
+        scratch[last, TOLD] = PROBING
+        t, item, light = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, far, anywhere)
+        reached = scratch[last, TOLD] == REACHED
+        scratch[last, TOLD] = 0.0
+        if not reached:
+            asked[row, WANT] = NOTHING
+            return t, item, light
+        asked[0, OPEN] = 1.0
+        put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, ANYWHERE if anywhere else FIRST)
         return NONE, -1, 1.0
     tell(scratch, asked, row)
     t, item, light = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, far, anywhere)
-    scratch[scratch.shape[0] - 1, TOLD] = 0.0
+    scratch[last, TOLD] = 0.0
     return t, item, light

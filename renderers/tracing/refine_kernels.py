@@ -60,8 +60,8 @@ def refine(scene, scratch, asked, start, stop, records, visibility, means, fine)
             return k
         if pixels < FEW:
             samples = OWN if pixels < 0.5 * FEW else OWN // 2
-            look_around(scene, scratch, asked, records[k], sample_of(x, y), samples, 0, fine[k])
-            for c in range(FIRST_LIGHT):
+            told = look_around(scene, scratch, asked, records[k], sample_of(x, y), samples, 0, fine[k])
+            for c in range(FIRST_LIGHT if told else 0):
                 joined = samples * fine[k, c] + pixels * mean_of(means, columns, x, y, 1 + c)
                 fine[k, c] = joined / (samples + pixels)
         for l in range(int(scene.ints[LIGHT_COUNT])):

@@ -40,17 +40,20 @@ ROW = types.float32[::1]
 SCRATCH = types.float64[:, ::1]
 """Working memory of one thread: what root isolation needs, a row for each shape, the last shape's first, and a last row
 whose first entry counts the undecided. Where its entry TOLD is set, the rows of implicit shapes begin with their first
-crossing on the ray at hand, or with NaN."""
+crossing on the ray at hand, or with NaN. TOLD may be KNOWN; PROBING: what has no formula of its own counts as met
+where a ray reaches its box, and TOLD is REACHED then."""
 TOLD = 1
+KNOWN, PROBING, REACHED = 1.0, 2.0, 3.0
 ASKED = types.float64[:, ::1]
 """Rays that are to be met in packets, a row each: origin, direction, how far, WANT, from ANSWERS on where it first
 meets the implicit solids that packets know (inf: nowhere; NaN: not told). Row 0 is the head: MODE, which row is NEXT,
-from ANSWERS on the indices of those shapes. PLAIN: rays are traced where they arise; ASKING: they are written down,
-and meet nothing; TELLING: they are traced with the answers, in the order in which they were asked."""
+whether one is still OPEN, from ANSWERS on the indices of those shapes. PLAIN: rays are traced where they arise; ASKING:
+they are written down, and those that may reach what has no formula of its own are open, and meet nothing; TELLING: they
+are traced with the answers, in the order in which they were asked."""
 FAR, WANT, ANSWERS = 6, 7, 8
-FIRST, ANYWHERE = range(2)
-"""What is wanted of a ray: what it meets first, or whether it meets anything."""
-MODE, NEXT = range(2)
+FIRST, ANYWHERE, NOTHING = range(3)
+"""What is wanted of a ray: what it meets first, whether it meets anything, or nothing: it passes all boxes by."""
+MODE, NEXT, OPEN = range(3)
 PLAIN, ASKING, TELLING = range(3)
 SCENE = types.NamedTuple((types.float64[::1], types.int32[::1], _i, _i, _i, _i, _i), Scene)
 RAY = (_f,) * 8

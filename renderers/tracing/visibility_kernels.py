@@ -10,17 +10,22 @@ from renderers.tracing.record_kernels import NORMAL, PLACE, RADIUS, start_of
 from renderers.tracing.sampling_kernels import COUNT, DISK, JITTER, SKY_COUNT, SKY_DISK, across
 from renderers.tracing.scene_kernels import (
     ASKED,
+    ASKING,
     EMISSION,
     HAS_SKY,
     ITEMS,
     LIGHT,
     LIGHT_COUNT,
     LIGHTS,
+    MODE,
+    NEXT,
+    OPEN,
     ROW,
     SCENE,
     SCRATCH,
     SUN,
     SURFACE_AT,
+    TELLING,
     part,
 )
 from renderers.tracing.surface_kernels import color_at, normal_at
@@ -111,6 +116,9 @@ def sky_loss(scene, scratch, asked, record, sample):
     t, item, _ = ask(scene, scratch, asked, x, y, z, dx, dy, dz, np.inf, False)
     if item < 0:
         return 0.0, 0.0, 0.0
+    if asked[0, MODE] == ASKING:  # what lights it is found when all is told
+        asked[0, OPEN] = 1.0
+        return 0.0, 0.0, 0.0
     radius = record[RADIUS] + 0.05 * t
     r, g, b = bounced(scene, scratch, item, x + t * dx, y + t * dy, z + t * dz, dx, dy, dz, radius)
     hr, hg, hb = sky_radiance(scene.reals, dy)
@@ -142,12 +150,17 @@ def shadow_sample(scene, scratch, asked, record, l, sample, jitter):
     return share, width
 
 
-@kernel(types.void(SCENE, SCRATCH, ASKED, ROW, _i, _i, _i, ROW), _nrt=False, inner=True)
+@kernel(types.boolean(SCENE, SCRATCH, ASKED, ROW, _i, _i, _i, ROW), _nrt=False, inner=True)
 def look_around(scene, scratch, asked, record, number, of_sky, of_lights, visibility):
     """Fill a row of visibility with means of nets of so many samples (powers of two), those of pixel ``number``.
 
-    Several samples cover the pixel's area, one stands for its center.
+    Several samples cover the pixel's area, one stands for its center. Returns whether the row has just become what it
+    shall be: where rays are asked it may be at once, and then it stays when they are told; else it is NaN until then.
     """
+    mode, begin = asked[0, MODE], asked[0, NEXT]
+    if mode == TELLING and visibility[0] == visibility[0]:
+        return False
+    asked[0, OPEN] = 0.0
     for column in range(FIRST_LIGHT + 2 * scene.ints[LIGHT_COUNT]):
         visibility[column] = 0.0
     if scene.reals[HAS_SKY] != 0.0:
@@ -163,3 +176,10 @@ def look_around(scene, scratch, asked, record, number, of_sky, of_lights, visibi
             share, width = shadow_sample(scene, scratch, asked, record, l, (number * of_lights + k) % COUNT, jitter)
             visibility[column] += share / of_lights
             visibility[column + 1] = max(visibility[column + 1], width)
+    if mode != ASKING:
+        return True
+    if asked[0, OPEN] == 0.0 and visibility[0] == visibility[0]:
+        asked[0, NEXT] = begin
+        return True
+    visibility[0] = np.nan
+    return False

@@ -61,7 +61,6 @@ class Waves:
         self.own = np.zeros((2, ROOM, COLUMNS), dtype=np.float32)
         self.found = np.zeros((2, ROOM, columns), dtype=np.float32)
         self.spares = np.zeros((ROOM, COLUMNS), dtype=np.float32)
-        self.spare = np.empty(columns, dtype=np.float32)
 
     def gather(self, start: int, stop: int, records: Array, radiance: Array, visibility: Array) -> tuple[int, int]:
         """Fill rows start..stop: records (2, h w, COLUMNS), radiance (h w, 3), visibility (2, h w, V).
@@ -132,7 +131,7 @@ class Waves:
 
     def _light(self, start: int, stop: int, paths: Array) -> int:
         """Light what paths start..stop see behind their records; where it ends."""
-        end: int = light_paths(self.scene, self.scratch, self.asked, start, stop, paths, self.spares, self.spare)
+        end: int = light_paths(self.scene, self.scratch, self.asked, start, stop, paths, self.spares, self.found[0])
         return end
 
     def _ask(self, start: int, stop: int, work: Callable[[int, int], int]) -> None:

@@ -12,10 +12,10 @@ from renderers.tracing.sampling_kernels import sample_of
 from renderers.tracing.scene_kernels import (
     ASKED,
     ASKING,
+    FIRST,
     LIGHT_COUNT,
     MODE,
     NEXT,
-    ROW,
     SCENE,
     SCRATCH,
     WIDTH,
@@ -55,7 +55,7 @@ def ask_paths(paths, asked):
     for i in range(paths.shape[0]):
         if paths[i, LIVE] != 0.0:
             path = paths[i]
-            put_ray(asked, row, path[0], path[1], path[2], path[3], path[4], path[5], np.inf, False)
+            put_ray(asked, row, path[0], path[1], path[2], path[3], path[4], path[5], np.inf, FIRST)
             row += 1
     asked[0, NEXT] = row
     return row - 1
@@ -79,25 +79,22 @@ def advance_paths(scene, scratch, asked, paths, at, records, spares):
     return dark
 
 
-@kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _paths, _rows, ROW), _nrt=False)
+@kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _paths, _rows, _rows), _nrt=False)
 def light_paths(scene, scratch, asked, first, last, paths, spares, visibility):
     """Light what paths first..last see behind their records; of as many as ``asked`` has room for the rays of.
 
-    Returns where it ends. ``visibility`` is working memory.
+    Returns where it ends. ``visibility`` (n, V) is working memory.
     """
     room = asked.shape[0] - QUICK * (1 + scene.ints[LIGHT_COUNT])
     counter = scratch.shape[0] - 1
     for i in range(first, last):
         if paths[i, DARK] == 0.0:
             continue
-        if asked[0, MODE] == ASKING:
-            if asked[0, NEXT] > room:
-                return i
-            look_around(scene, scratch, asked, spares[i], 0, QUICK, QUICK, visibility)
-            continue
+        if asked[0, MODE] == ASKING and asked[0, NEXT] > room:
+            return i
         scratch[counter, 0] = 0.0
-        light_behind(scene, scratch, asked, paths[i], spares[i], visibility)
-        paths[i, DARK] = 0.0
+        if light_behind(scene, scratch, asked, paths[i], spares[i], visibility[i]):
+            paths[i, DARK] = 0.0
         if scratch[counter, 0] > 0.0:
             paths[i, DOUBTED] = 1.0
     return last
