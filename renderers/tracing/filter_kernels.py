@@ -17,14 +17,13 @@ from renderers.tracing.planes_kernels import (
     known,
 )
 from renderers.tracing.sampling_kernels import SIDE
-from renderers.tracing.scene_kernels import part
 from sceneql.kernels import kernel
 
 _i = types.int64
 REACH = SIDE // 2
 
 
-@part
+@kernel(types.void(LINE, types.float32, LINE, _i, LINE, _i, _i), _nrt=False, inner=True)
 def add_lanes(same, share, values, apart, sums, own_apart, columns):
     """Add ``share`` times planes of ``values``, so far apart, to those of ``sums``, in lanes that are the ``same``."""
     for column in range(columns):

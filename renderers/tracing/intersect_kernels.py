@@ -151,7 +151,7 @@ def tell(scratch, asked, row):
 
 @kernel(MET(SCENE, SCRATCH, ASKED, *RAY[1:], types.boolean), _nrt=False, inner=True)
 def ask(scene, scratch, asked, ox, oy, oz, dx, dy, dz, far, anywhere):
-    """As ``walk`` from the ray's origin on, in the mode of ``asked``: a ray that is only asked and open meets nothing."""
+    """As ``walk`` from the ray's origin on, in the mode of ``asked``: one that is asked and open meets nothing."""
     mode = asked[0, MODE]
     if mode == PLAIN:
         return walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, far, anywhere)

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Pictures of records as planes of float32 in chunks of pixels: what neighbors are asked is asked in many lanes at once.
+"""Records as planes of float32 in chunks of pixels: what neighbors are asked is asked in many lanes at once.
 
 A chunk is LANES pixels of a row, with HALO more on both sides, so that neighbors in the row stand in the same chunk.
 """
@@ -32,7 +32,7 @@ PLANES = types.float32[:, ::1]
 
 @kernel(types.void(_i, _i, _i, PLANES, PLANES, PLANES), _nrt=False)
 def lay_out(start, stop, width, records, visibility, planes):
-    """Lay rows start..stop of records (n, COLUMNS) and their visibility (n, V) out in planes (h, chunks (8 + V) WIDE)."""
+    """Lay rows of records (n, COLUMNS) and their visibility (n, V) out in planes (h, chunks (8 + V) WIDE)."""
     columns = visibility.shape[1]
     size = KEYS + columns * WIDE
     for y in range(start, stop):
@@ -56,7 +56,7 @@ def lay_out(start, stop, width, records, visibility, planes):
                     out[KEYS + column * WIDE + i] = visibility[y * width + x, column]
 
 
-@part
+@kernel(types.void(LINE, LINE, LINE), _nrt=False, inner=True)
 def alike_lanes(a, b, same):
     """Whether LANES pixels ``a`` and ``b`` (slices of planes) lie on one smooth piece of surface: 1 in ``same``, or 0.
 
