@@ -55,8 +55,9 @@ def start_of(record):
 
 @part
 def erase(record):
-    """No record: the columns that are asked where there is none; the others stay as they were."""
+    """No record, and like none: the columns that are asked where there is none; the others stay as they were."""
     record[OWNER] = record[TRACED] = record[UNSURE] = 0.0
+    record[NORMAL] = record[NORMAL + 1] = record[NORMAL + 2] = 0.0
 
 
 @part
