@@ -18,8 +18,8 @@ from sceneql.field import (
 )
 from sceneql.field.packet_kernels import LANES, WIDTH
 from sceneql.field.packet_roots_kernels import GROUP
-from sceneql.field.plans import degrees_of, density_of, without_factor
-from sceneql.field.polynomial_kernels import DEGREES, POLYNOMIAL
+from sceneql.field.plans import degrees_of, density_of, places_of, without_factor
+from sceneql.field.polynomial_kernels import ABREAST, DEGREES, POLYNOMIAL
 from sceneql.field.polynomial_steps_kernels import ROWS, C
 from sceneql.field.ray_rows import FOUND_ROOT, FOUND_STATUS, LANE_ROWS, RAY
 from sceneql.field.slab_kernels import BEAM
@@ -74,8 +74,8 @@ def plan_of(tape: Tape) -> NDArray[int64]:
             return np.array([*found, other, -1], dtype=np.int64)
     for row, other in turns:
         if (degrees := degrees_of(tape, row)) is not None:
-            starts = ROWS // LANES + np.concatenate([[0], np.cumsum(np.array(degrees) + 1)])
-            return np.array([-1, 0, other, row, *degrees, *starts[: len(degrees) - 1], C // LANES], dtype=np.int64)
+            starts = [ROWS // ABREAST + place for place in places_of(tape, degrees)[0]]
+            return np.array([-1, 0, other, row, *degrees, *starts, C // ABREAST], dtype=np.int64)
     return np.array([-1, 0, -1, -1], dtype=np.int64)
 
 
@@ -110,8 +110,8 @@ def tape_up_to(tape: Tape, row: int) -> NDArray[int32]:
 def room_for(plan: NDArray[int64]) -> int:
     """How many numbers polynomials of a plan work in: see polynomial_steps_kernels."""
     rows = int(plan[POLYNOMIAL]) + 1
-    numbers = int((plan[DEGREES : DEGREES + rows] + 1).sum()) * LANES
-    return ROWS + max(numbers, 2 * rows)
+    ends = plan[DEGREES : DEGREES + rows] + plan[DEGREES + rows :] + 1
+    return max(int(ends.max(initial=0)) * ABREAST, ROWS + 2 * rows)
 
 
 CACHE_LINE = 64

@@ -80,6 +80,29 @@ def degrees_of(tape: Tape, row: int) -> list[int] | None:
     return degrees if 1 < degrees[row] <= MOST_DEGREE else None
 
 
+def places_of(tape: Tape, degrees: list[int]) -> tuple[list[int], int]:
+    """(Where the coefficients of each row but the last begin, how many places that takes): what is no longer needed
+    makes room."""
+    last_use = dict.fromkeys(range(len(degrees)), -1)
+    for k, degree in enumerate(degrees):
+        if degree >= 0 and tape.code[k, 0] not in (CONSTANT, X, Y, Z):
+            last_use |= dict.fromkeys(map(int, tape.code[k, 1:3]), k)
+    places, most = [0] * (len(degrees) - 1), 0
+    held: list[tuple[int, int, int]] = []  # (begin, end, last use)
+    for k, degree in enumerate(degrees[:-1]):
+        if degree < 0:
+            continue
+        begin = 0
+        for start, end, _ in sorted(held):
+            if begin + degree + 1 <= start:
+                break
+            begin = end
+        places[k] = begin
+        most = max(most, begin + degree + 1)
+        held = [*(piece for piece in held if piece[2] > k), (begin, begin + degree + 1, last_use[k])]
+    return places, most
+
+
 NO_FORM, POLYNOMIAL = range(2)
 """What a plan for single rays begins with."""
 OWN, CLIP, RADIUS, DEGREES = range(1, 5)

@@ -18,8 +18,8 @@ from sceneql.field.polynomial_hunt_kernels import (
     settle_lanes,
     take,
 )
-from sceneql.field.polynomial_kernels import DEGREES, POLYNOMIAL, coefficients, rounding
-from sceneql.field.polynomial_steps_kernels import HALF_WAY, LIVE, MIDDLE, C, step
+from sceneql.field.polynomial_kernels import ABREAST, DEGREES, POLYNOMIAL, coefficients, rounding
+from sceneql.field.polynomial_steps_kernels import HALF_WAY, LIVE, MIDDLE, MOST, C, step
 from sceneql.field.slab_kernels import left_of_slabs
 from sceneql.kernels import lean
 
@@ -55,21 +55,23 @@ def polynomial_roots(
     off = rounding(code, constants, plan, (x[0], y[0], z[0], x[1], y[1], z[1]), lanes)
     rows = plan[POLYNOMIAL] + 1
     degree = plan[DEGREES + rows - 1]
-    kept = C + (max(degree + degree % 2, 4) + 1) * LANES  # coefficients up to the next even degree from 4 on
+    kept = C + (max(degree + degree % 2, 4) + 1) * ABREAST  # coefficients up to the next even degree from 4 on
     spare = order[rays.shape[1] :]
     spent = LANES
     queued = 0
-    for first in range(0, n, LANES):
-        width = min(LANES, n - first)
+    for first in range(0, n, ABREAST):
+        width = min(ABREAST, n - first)
         m = (width + 15) // 16 * 16
         take(wide, first, width, m, begin, run_end, end, lanes)
         coefficients(code, constants, plan, wide, first, lanes[MIDDLE:], lanes[HALF_WAY:], m, lanes)
-        for i in range(C + (degree + 1) * LANES, kept):
+        for i in range(C + (degree + 1) * ABREAST, kept):
             lanes[i] = 0.0
         live = count_lanes(lanes, m, LIVE)
+        tries = 0
         while width > 0:
             while 2 * live > width:
-                step(lanes, degree, m, off, anywhere)
+                tries += 1
+                step(lanes, degree, m, off, anywhere, tries > MOST)
                 spent += live
                 live = count_lanes(lanes, m, LIVE)
             queued = settle_lanes(

@@ -12,6 +12,7 @@ from sceneql.compiling.late import late
 from sceneql.field.affine_kernels import GROW, HALF, PAD, ZERO, F
 from sceneql.field.extent_kernels import extent
 from sceneql.field.packet_kernels import C1, ENCLOSE, LANES, E, place
+from sceneql.field.polynomial_kernels import ABREAST
 from sceneql.field.polynomial_steps_kernels import (
     CHANGE,
     END,
@@ -21,7 +22,6 @@ from sceneql.field.polynomial_steps_kernels import (
     RAY,
     ROOT,
     STATE,
-    TRIES,
     A,
     B,
     polish,
@@ -119,7 +119,6 @@ def take(wide, first, width, n, begin, run, end, lanes):
         lanes[A + i] = -1.0
         lanes[B + i] = stop if stop < 1.0 else 1.0
         lanes[END + i] = 1.0
-        lanes[TRIES + i] = 0.0
         lanes[STATE + i] = LIVE if some else float(MISS)
 
 
@@ -175,7 +174,7 @@ def settle_lanes(lanes, rows, degree, ids, kept, width, live, rays, anywhere, fo
         for i in range(width):
             kept[np.uint64(n)] = i
             n += 1 if lanes[STATE + i] == LIVE else 0
-        for start in range(A, rows, LANES):
+        for start in range(A, rows, ABREAST):
             row = lanes[start:]
             for i in range(live):
                 row[i] = row[np.uint64(kept[i])]

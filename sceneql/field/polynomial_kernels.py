@@ -1,21 +1,22 @@
 # mypy: ignore-errors
 """Polynomials along rays: a tape of sums and products alone is, on a ray, a polynomial whose coefficients it gives.
 
-Coefficients are float64, in tau of [-1, 1] over the searched piece of a ray; ``lanes`` has LANES numbers for each
-coefficient of each operation, one behind the other. Their rounding is bounded once for a bundle: with |x|, |y|, |z| at
+Coefficients are float64, in tau of [-1, 1] over the searched piece of a ray; ``lanes`` has ABREAST numbers for each
+coefficient of an operation, one behind the other. Their rounding is bounded once for a bundle: with |x|, |y|, |z| at
 most some sizes, the absolute values of an operation's coefficients add up to no more than the operation on sizes with
 all signs positive.
 """
 
-from sceneql.field.packet_kernels import LANES
 from sceneql.field.tape_ops import ADD, CONSTANT, MUL, NEG, SQUARE, SUB, X, Z
 from sceneql.kernels import inlined
 
 POLYNOMIAL, DEGREES = 3, 4
 """Of a plan: the row of the polynomial p of a field p or max(p, g), -1 where there is none; then, for each row up to
-that, its degree (-1: it is not needed), and where in ``lanes`` its coefficients begin, in LANES."""
+that, its degree (-1: it is not needed), and where in ``lanes`` its coefficients begin, in ABREAST."""
+ABREAST = 128
+"""Rays that are looked at together."""
 UNIT = 1.2e-16
-ONE, TWO, THREE, FOUR = LANES, 2 * LANES, 3 * LANES, 4 * LANES
+ONE, TWO, THREE, FOUR = ABREAST, 2 * ABREAST, 3 * ABREAST, 4 * ABREAST
 
 
 @inlined
@@ -43,7 +44,7 @@ def parabola(a, b, out, n):
 @inlined
 def scale(a, number, degree, out):
     """A polynomial times a number, in all lanes."""
-    for i in range((degree + 1) * LANES):
+    for i in range((degree + 1) * ABREAST):
         out[i] = number * a[i]
 
 
@@ -60,20 +61,20 @@ def multiply(a, da, b, db, out, n):
         scale(b if da == 0 else a, a[0] if da == 0 else b[0], max(da, db), out)
         return
     for k in range(da + db + 1):
-        row = out[k * LANES :]
+        row = out[k * ABREAST :]
         first = max(k - db, 0)
-        left, right = a[first * LANES :], b[(k - first) * LANES :]
+        left, right = a[first * ABREAST :], b[(k - first) * ABREAST :]
         for i in range(n):
             row[i] = left[i] * right[i]
         m = first + 1
         last = min(k, da)
         while m < last:
-            left, right = a[m * LANES :], b[(k - m - 1) * LANES :]
+            left, right = a[m * ABREAST :], b[(k - m - 1) * ABREAST :]
             for i in range(n):
                 row[i] += left[i] * right[ONE + i] + left[ONE + i] * right[i]
             m += 2
         if m == last:
-            left, right = a[m * LANES :], b[(k - m) * LANES :]
+            left, right = a[m * ABREAST :], b[(k - m) * ABREAST :]
             for i in range(n):
                 row[i] += left[i] * right[i]
 
@@ -81,7 +82,7 @@ def multiply(a, da, b, db, out, n):
 @inlined
 def add(a, da, b, db, sign, out):
     """a + sign b, in all lanes."""
-    both = (min(da, db) + 1) * LANES
+    both = (min(da, db) + 1) * ABREAST
     for i in range(both):
         out[i] = a[i] + sign * b[i]
     if da > db:
@@ -99,10 +100,10 @@ def coefficients(code, constants, plan, rays, first, middle, half, n, lanes):
         if degree < 0:
             continue
         op, left, right = code[k, 0], code[k, 1], code[k, 2]
-        out = lanes[plan[DEGREES + rows + k] * LANES :]
+        out = lanes[plan[DEGREES + rows + k] * ABREAST :]
         if op == CONSTANT:
             number = constants[left]
-            for i in range(LANES):
+            for i in range(ABREAST):
                 out[i] = number
         elif op >= X and op <= Z:
             place, way = rays[op - X, first:], rays[op - X + 3, first:]
@@ -110,7 +111,7 @@ def coefficients(code, constants, plan, rays, first, middle, half, n, lanes):
                 out[i] = place[i] + middle[i] * way[i]
                 out[ONE + i] = half[i] * way[i]
         else:
-            a, b = lanes[plan[DEGREES + rows + left] * LANES :], lanes[plan[DEGREES + rows + right] * LANES :]
+            a, b = lanes[plan[DEGREES + rows + left] * ABREAST :], lanes[plan[DEGREES + rows + right] * ABREAST :]
             da, db = plan[DEGREES + left], plan[DEGREES + right]
             if op == MUL or op == SQUARE:
                 multiply(a, da, b, db, out, n)

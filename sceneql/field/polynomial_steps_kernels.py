@@ -1,136 +1,115 @@
 # mypy: ignore-errors
-"""Steps towards the first roots of polynomials on pieces of rays, in lanes: quadratic enclosures and Newton's method.
+"""Steps towards the first roots of polynomials on pieces of rays, in lanes: Bernstein's basis and Newton's method.
 
 ``lanes`` is one array, what is told of all lanes one behind the other; places are tau of [-1, 1] on the ray's piece.
-On a segment a polynomial is enclosed by a parabola +- e in sigma of [-1, 1], of which the higher powers take their
-share. A segment without a root of the lower bound is rejected, the next one is twice as long; else it begins anew at
-the first root of the lower bound.
+A segment whose coefficients are all positive is rejected, and all that is left is the next one; else it begins anew
+where the line from its first coefficient, down the steepest way to another, is zero: all coefficients are above that,
+and so is the polynomial (first steps of the clipping of Sederberg & Nishita 1990, at one end).
 """
 
-import numpy as np
-
-from sceneql.field.moved_kernels import moved_4, moved_6, moved_8
-from sceneql.field.packet_kernels import LANES
-from sceneql.field.powers_kernels import enclosed_4, enclosed_6, enclosed_8
+from sceneql.field.hull_kernels import hull_4, hull_6, hull_8
+from sceneql.field.polynomial_kernels import ABREAST
 from sceneql.field.single_kernels import lane
 from sceneql.field.tape_ops import HIT, MISS, UNDECIDED
 from sceneql.kernels import inlined
 
-ROOT, CHANGE, A, B, END, TRIES, STATE, MIDDLE, HALF_WAY, RAY, C = range(0, 11 * LANES, LANES)
-"""Root and its change at the last step of the polish, segment, where the search ends, steps so far, outcome (LIVE until
-there is one), middle and half length of the piece, which ray it is of, then coefficients from the lowest on."""
-C1, C2, C3, C4, C5, C6, C7, C8, ROWS = range(C + LANES, C + 10 * LANES, LANES)
+ROOT, CHANGE, A, B, END, STATE, MIDDLE, HALF_WAY, RAY, C = range(0, 10 * ABREAST, ABREAST)
+"""Root and its change at the last step of the polish, segment, where the search ends, outcome (LIVE until there is
+one), middle and half length of the piece, which ray it is of, then coefficients from the lowest on."""
+C1, C2, C3, C4, C5, C6, C7, C8, ROWS = range(C + ABREAST, C + 10 * ABREAST, ABREAST)
 LIVE = -1.0
-MOST = 48.0
+MOST = 48
 """Steps after which a ray is left to the certified routine."""
 LEAST = 1.0e-8
 """Width of a segment that is left to it."""
 BLUR, LESS = 4.0e-16, 1.0 - 1.0e-14
-SHORTER = 0.25
-"""Part of a segment that is looked at next where its begin is not enough nearer to a root."""
-BEFORE = 1.0e-5
-"""How far before the end of a segment, relative to half of it, a place inside is looked for."""
+GAIN, SHORTER = 0.7, 0.3
+"""Part of a segment that may be left of it, and what part of that is looked at next where more is."""
+LATE = 5.0e-6
+"""How far before the end of a segment, relative to it, a place inside is looked for."""
 TURNS, MOST_TURNS = 3, 9
 """Newton's steps, and as many where they have not settled."""
-UNSETTLED = 2.0e-7
+UNSETTLED = 2.0e-8
 """Change of a root at the last step, on a piece of length 2, that asks for another one."""
 
 
 @lane
-def advance(lanes, i, q0, q1, q2, e, steep, off, anywhere):
-    """Reject or cut the segment of a lane, p in q0 + q1 sigma + q2 sigma^2 +- e there, or tell its outcome."""
-    a, b, end, tries = lanes[A + i], lanes[B + i], lanes[END + i], lanes[TRIES + i]
+def advance(lanes, i, first, last, lowest, highest, steepest, rise, off, before, late, last_try):
+    """Reject or cut the segment of a lane, or tell its outcome, by what ``hull_4`` tells of p - off there.
+
+    ``late`` is how far before the end of a segment a place inside is looked for, ``before`` the degree times that.
+    """
+    a, b, end = lanes[A + i], lanes[B + i], lanes[END + i]
     width = b - a
-    e += off
-    low, high = q0 - e, q0 + e
-    flat = abs(q1)
-    # The parabola's least value stands at an end, or between them at low - q1^2/(4 q2).
-    dips = (q2 + q2 > flat) & (4.0 * q2 * low * LESS <= q1 * q1)
-    clear = (low + q2 - flat > 0.0) & (~dips)
-    left = low - q1 + q2
-    slope = q1 - 2.0 * q2
-    part = 4.0 * q2 * left
-    square = slope * slope - part
-    square += 1.0e-14 * (slope * slope + abs(part))
-    down = np.sqrt(square if square > 0.0 else 0.0) - slope
-    ahead = (left > 0.0) & (down > 0.0)
-    start = a + width * (left / (down if ahead else 1.0)) * LESS - BLUR
+    clear = lowest > 0.0
+    # No coefficient lies below the line of the steepest way.
+    ahead = (first > 0.0) & (steepest > 0.0)
+    start = a + width * (first / (steepest if ahead else 1.0)) * LESS - BLUR
     start = start if ahead & (start > a) else a
     start = start if start < b else b
+    begun = first + 2.0 * off < 0.0
     # A place inside stands before the segment's end: on the end of a ray another field may vanish.
-    late = BEFORE if anywhere else 0.0
-    sigma = 1.0 - late
-    inside = high + sigma * (q1 + sigma * q2) < 0.0
-    begun = high - q1 + q2 < 0.0
-    hit = begun | (inside & (anywhere | (steep + off < 0.0)))
+    inside = last + before * (highest - last) + 2.0 * off < 0.0
+    hit = begun | (inside & ((late > 0.0) | (rise + off < 0.0)))
     narrow = b - start
-    cut = start + SHORTER * narrow if inside | (narrow > 0.5 * width) else b
-    on = b + 2.0 * width
-    on = on if on < end else end
-    stuck = (narrow <= LEAST) | (tries > MOST)
+    cut = start + SHORTER * narrow if inside | (narrow > GAIN * width) else b
+    stuck = (narrow <= LEAST) | last_try
     outcome = HIT if hit else (UNDECIDED if stuck else LIVE)
     outcome = (MISS if b >= end else LIVE) if clear else outcome
     live = lanes[STATE + i] == LIVE
     start = a if begun else start
-    stop = (a if begun else b - 0.5 * late * width) if hit else cut
+    stop = (a if begun else b - late * width) if hit else cut
     lanes[STATE + i] = float(outcome) if live else lanes[STATE + i]
     lanes[A + i] = (b if clear else start) if live else a
-    lanes[B + i] = (on if clear else stop) if live else b
+    lanes[B + i] = (end if clear else stop) if live else b
     lanes[END + i] = b if live & inside & (~clear) else end
-    lanes[TRIES + i] = tries + 1.0
 
 
 @inlined
-def step_4(lanes, n, off, anywhere):
+def step_4(lanes, n, off, late, last_try):
     """A step of n lanes, degrees up to 4."""
     for i in range(n):
         m, h = 0.5 * (lanes[A + i] + lanes[B + i]), 0.5 * (lanes[B + i] - lanes[A + i]) + BLUR
-        c0, c1, c2, c3, c4 = moved_4(lanes[C + i], lanes[C1 + i], lanes[C2 + i], lanes[C3 + i], lanes[C4 + i], m)
-        h2 = h * h
-        q0, q1, q2, e, steep = enclosed_4(c0, h * c1, h2 * c2, h * h2 * c3, h2 * h2 * c4)
-        advance(lanes, i, q0, q1, q2, e, steep, off, anywhere)
+        first, last, lowest, highest, steepest, rise = hull_4(
+            lanes[C + i], lanes[C1 + i], lanes[C2 + i], lanes[C3 + i], lanes[C4 + i], m, h, off
+        )  # fmt: skip
+        advance(lanes, i, first, last, lowest, highest, steepest, rise, off, 4.0 * late, late, last_try)
 
 
 @inlined
-def step_6(lanes, n, off, anywhere):
+def step_6(lanes, n, off, late, last_try):
     """Up to 6."""
     for i in range(n):
         m, h = 0.5 * (lanes[A + i] + lanes[B + i]), 0.5 * (lanes[B + i] - lanes[A + i]) + BLUR
-        c0, c1, c2, c3, c4, c5, c6 = moved_6(
-            lanes[C + i], lanes[C1 + i], lanes[C2 + i], lanes[C3 + i], lanes[C4 + i], lanes[C5 + i], lanes[C6 + i], m
+        first, last, lowest, highest, steepest, rise = hull_6(
+            lanes[C + i], lanes[C1 + i], lanes[C2 + i], lanes[C3 + i], lanes[C4 + i], lanes[C5 + i], lanes[C6 + i],
+            m, h, off,
         )  # fmt: skip
-        h2 = h * h
-        h3, h4 = h * h2, h2 * h2
-        q0, q1, q2, e, steep = enclosed_6(c0, h * c1, h2 * c2, h3 * c3, h4 * c4, h2 * h3 * c5, h3 * h3 * c6)
-        advance(lanes, i, q0, q1, q2, e, steep, off, anywhere)
+        advance(lanes, i, first, last, lowest, highest, steepest, rise, off, 6.0 * late, late, last_try)
 
 
 @inlined
-def step_8(lanes, n, off, anywhere):
+def step_8(lanes, n, off, late, last_try):
     """Up to 8."""
     for i in range(n):
         m, h = 0.5 * (lanes[A + i] + lanes[B + i]), 0.5 * (lanes[B + i] - lanes[A + i]) + BLUR
-        c0, c1, c2, c3, c4, c5, c6, c7, c8 = moved_8(
+        first, last, lowest, highest, steepest, rise = hull_8(
             lanes[C + i], lanes[C1 + i], lanes[C2 + i], lanes[C3 + i], lanes[C4 + i], lanes[C5 + i], lanes[C6 + i],
-            lanes[C7 + i], lanes[C8 + i], m,
+            lanes[C7 + i], lanes[C8 + i], m, h, off,
         )  # fmt: skip
-        h2 = h * h
-        h3, h4 = h * h2, h2 * h2
-        q0, q1, q2, e, steep = enclosed_8(
-            c0, h * c1, h2 * c2, h3 * c3, h4 * c4, h2 * h3 * c5, h3 * h3 * c6, h3 * h4 * c7, h4 * h4 * c8
-        )
-        advance(lanes, i, q0, q1, q2, e, steep, off, anywhere)
+        advance(lanes, i, first, last, lowest, highest, steepest, rise, off, 8.0 * late, late, last_try)
 
 
 @inlined
-def step(lanes, degree, n, off, anywhere):
+def step(lanes, degree, n, off, anywhere, last_try):
     """A step of n lanes."""
+    late = LATE if anywhere else 0.0
     if degree <= 4:
-        step_4(lanes, n, off, anywhere)
+        step_4(lanes, n, off, late, last_try)
     elif degree <= 6:
-        step_6(lanes, n, off, anywhere)
+        step_6(lanes, n, off, late, last_try)
     else:
-        step_8(lanes, n, off, anywhere)
+        step_8(lanes, n, off, late, last_try)
 
 
 @lane
