@@ -40,8 +40,9 @@ def test_what_is_still_needed_is_never_overwritten(name):
     tape = tape_of(SCENES[name]["f"], SCENES[name].get("where", {}))
     last = len(tape.code) - 1
     degrees = degrees_of(tape, last)
+    assert degrees is not None
     places, most = places_of(tape, degrees)
-    holder = {}
+    holder: dict[int, int] = {}
     for k, degree in enumerate(degrees[:-1]):
         if degree < 0:
             continue

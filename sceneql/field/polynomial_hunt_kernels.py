@@ -1,17 +1,14 @@
 # mypy: ignore-errors
 """First roots of polynomials along a bundle of rays: what ``hunt_kernels`` does, from exact coefficients.
 
-The rays that have a length are packed; slabs of the beam around them all that an enclosure of the tape proves to be
-outside are left out at both ends.
+The rays that have a length are packed, and go through lanes together.
 """
 
 import numpy as np
 from numba import types
 
 from sceneql.compiling.late import late
-from sceneql.field.affine_kernels import GROW, HALF, PAD, ZERO, F
-from sceneql.field.extent_kernels import extent
-from sceneql.field.packet_kernels import C1, ENCLOSE, LANES, E, place
+from sceneql.field.packet_kernels import ENCLOSE
 from sceneql.field.polynomial_kernels import ABREAST
 from sceneql.field.polynomial_steps_kernels import (
     CHANGE,
@@ -30,10 +27,8 @@ from sceneql.field.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STAT
 from sceneql.field.tape_ops import HIT, MISS, UNDECIDED
 from sceneql.kernels import inlined
 
-SHORTEST = -0.98
-"""Where the first segment ends at least."""
-T0, T1, SPOT = 6, 7, 8
-"""Rows of packed rays, of which the first are those of rays; the last is working memory."""
+T0, T1 = 6, 7
+"""Rows of packed rays, as of rays: begin and end."""
 _f, _i, _ids, _wide = types.float64, types.int64, types.int64[::1], types.float64[:, ::1]
 POLYNOMIAL_ROOTS = types.Tuple((_i, _i, _f, _f))(
     *ENCLOSE.args[:-1], _wide, _i, types.boolean, _wide, _ids, _ids, _ids, _wide, _f[::1]
@@ -64,60 +59,33 @@ def pack(rays, count, ids, wide):
 
 
 @inlined
-def place_beam(wide, n, begin, end, axis, spot, point):
-    """Enclose a coordinate in the slabs of the beam around n rays; (bound of it, of its error in units of that).
-
-    ``spot`` (n,) is working memory.
-    """
-    o, d = wide[axis], wide[3 + axis]
+def reach(wide, n, axis):
+    """(Bound of a coordinate on n rays, of its error in units of that)."""
+    o, d, t0, t1 = wide[axis], wide[3 + axis], wide[T0], wide[T1]
+    most, way = np.int64(0), np.int64(0)
     for i in range(n):
-        spot[i] = o[i] + begin * d[i]
-    low, high = extent(spot, n)
-    d_low, d_high = extent(d, n)
-    way, way_off = 0.5 * (d_low + d_high), 0.5 * (d_high - d_low)
-    depth = F((end - begin) / LANES)
-    off = F(0.5 * (high - low) + (end - begin) * way_off) * GROW
-    middle, along = F(0.5 * (low + high)), F(way)
-    for k in range(LANES):
-        place(point, k, middle, along, (F(k) + HALF) * depth, HALF * depth * GROW)
-    for k in range(LANES):
-        point[E + k] += off
-    speed = max(abs(d_low), abs(d_high))
-    size = max(abs(low), abs(high)) + (end - begin) * speed
-    return size, 8.0 + 8.0 * max(abs(begin), abs(end)) * speed / max(size, 1e-300)
+        # Numbers that are not negative are in the order of their bits; loops over integers vectorize.
+        near, far = abs(o[i] + t0[i] * d[i]).view(np.int64), abs(o[i] + t1[i] * d[i]).view(np.int64)
+        near = near if near > far else far
+        most = near if near > most else most
+        first, last = abs(t0[i] * d[i]).view(np.int64), abs(t1[i] * d[i]).view(np.int64)
+        first = first if first > last else last
+        way = first if first > way else way
+    size = most.view(np.float64)
+    return size, 8.0 + 8.0 * way.view(np.float64) / max(size, 1e-300)
 
 
 @inlined
-def negative_slabs(row):
-    """(first, end) of the longest run of slabs in which what a register encloses is negative."""
-    first, end, begun = 0, 0, 0
-    for k in range(LANES):
-        m = abs(row[C1 + k])
-        e = row[E + k] * GROW + PAD * (abs(row[k]) + m)
-        if not row[k] + m + e < ZERO:
-            begun = k + 1
-        elif k + 1 - begun > end - first:
-            first, end = begun, k + 1
-    return first, end
-
-
-@inlined
-def take(wide, first, width, n, begin, run, end, lanes):
-    """Put packed rays into lanes; those beyond ``width``, or nowhere within begin..end, have nothing to look for."""
+def take(wide, first, width, n, lanes):
+    """Put packed rays into lanes; those beyond ``width`` have nothing to look for."""
     t0, t1 = wide[T0, first:], wide[T1, first:]
     for i in range(n):
-        low = t0[i] if t0[i] > begin else begin
-        high = t1[i] if t1[i] < end else end
-        some = (low < high) & (i < width)
-        middle = 0.5 * (low + high)
-        half = 0.5 * (high - low) if some else 1.0
-        stop = (run - middle) / half
-        stop = stop if stop > SHORTEST else SHORTEST
-        lanes[MIDDLE + i] = middle
-        lanes[HALF_WAY + i] = half
+        some = i < width
+        lanes[MIDDLE + i] = 0.5 * (t0[i] + t1[i])
+        lanes[HALF_WAY + i] = 0.5 * (t1[i] - t0[i]) if some else 1.0
         lanes[RAY + i] = float(first + i)
         lanes[A + i] = -1.0
-        lanes[B + i] = stop if stop < 1.0 else 1.0
+        lanes[B + i] = 1.0
         lanes[END + i] = 1.0
         lanes[STATE + i] = LIVE if some else float(MISS)
 

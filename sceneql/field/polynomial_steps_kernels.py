@@ -35,7 +35,7 @@ UNSETTLED = 2.0e-8
 
 @lane
 def advance(lanes, i, first, last, lowest, highest, steepest, rise, off, before, late, last_try):
-    """Reject or cut the segment of a lane, or tell its outcome, by what ``hull_4`` tells of p - off there.
+    """Reject or cut a lane's segment, or tell its outcome, by what ``hull_4`` tells of p - off there; 1 while it lives.
 
     ``late`` is how far before the end of a segment a place inside is looked for, ``before`` the degree times that.
     """
@@ -63,53 +63,59 @@ def advance(lanes, i, first, last, lowest, highest, steepest, rise, off, before,
     lanes[A + i] = (b if clear else start) if live else a
     lanes[B + i] = (end if clear else stop) if live else b
     lanes[END + i] = b if live & inside & (~clear) else end
+    return 1 if live & (outcome == LIVE) else 0
 
 
 @inlined
 def step_4(lanes, n, off, late, last_try):
     """A step of n lanes, degrees up to 4."""
+    count = 0
     for i in range(n):
         m, h = 0.5 * (lanes[A + i] + lanes[B + i]), 0.5 * (lanes[B + i] - lanes[A + i]) + BLUR
         first, last, lowest, highest, steepest, rise = hull_4(
             lanes[C + i], lanes[C1 + i], lanes[C2 + i], lanes[C3 + i], lanes[C4 + i], m, h, off
         )  # fmt: skip
-        advance(lanes, i, first, last, lowest, highest, steepest, rise, off, 4.0 * late, late, last_try)
+        count += advance(lanes, i, first, last, lowest, highest, steepest, rise, off, 4.0 * late, late, last_try)
+    return count
 
 
 @inlined
 def step_6(lanes, n, off, late, last_try):
     """Up to 6."""
+    count = 0
     for i in range(n):
         m, h = 0.5 * (lanes[A + i] + lanes[B + i]), 0.5 * (lanes[B + i] - lanes[A + i]) + BLUR
         first, last, lowest, highest, steepest, rise = hull_6(
             lanes[C + i], lanes[C1 + i], lanes[C2 + i], lanes[C3 + i], lanes[C4 + i], lanes[C5 + i], lanes[C6 + i],
             m, h, off,
         )  # fmt: skip
-        advance(lanes, i, first, last, lowest, highest, steepest, rise, off, 6.0 * late, late, last_try)
+        count += advance(lanes, i, first, last, lowest, highest, steepest, rise, off, 6.0 * late, late, last_try)
+    return count
 
 
 @inlined
 def step_8(lanes, n, off, late, last_try):
     """Up to 8."""
+    count = 0
     for i in range(n):
         m, h = 0.5 * (lanes[A + i] + lanes[B + i]), 0.5 * (lanes[B + i] - lanes[A + i]) + BLUR
         first, last, lowest, highest, steepest, rise = hull_8(
             lanes[C + i], lanes[C1 + i], lanes[C2 + i], lanes[C3 + i], lanes[C4 + i], lanes[C5 + i], lanes[C6 + i],
             lanes[C7 + i], lanes[C8 + i], m, h, off,
         )  # fmt: skip
-        advance(lanes, i, first, last, lowest, highest, steepest, rise, off, 8.0 * late, late, last_try)
+        count += advance(lanes, i, first, last, lowest, highest, steepest, rise, off, 8.0 * late, late, last_try)
+    return count
 
 
 @inlined
 def step(lanes, degree, n, off, anywhere, last_try):
-    """A step of n lanes."""
+    """A step of n lanes; how many live on."""
     late = LATE if anywhere else 0.0
     if degree <= 4:
-        step_4(lanes, n, off, late, last_try)
-    elif degree <= 6:
-        step_6(lanes, n, off, late, last_try)
-    else:
-        step_8(lanes, n, off, late, last_try)
+        return step_4(lanes, n, off, late, last_try)
+    if degree <= 6:
+        return step_6(lanes, n, off, late, last_try)
+    return step_8(lanes, n, off, late, last_try)
 
 
 @lane
