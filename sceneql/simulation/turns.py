@@ -1,7 +1,8 @@
 """Where expressions of the time turn: keys, comparisons and whatever else a smooth step must not go over.
 
 What goes evenly with the time is met in closed form. All else is sampled over the run, and each change is closed in on;
-what turns inside a formula is found before it and sampled at both its sides: so a pulse is seen however short it is.
+what turns inside a formula is found before it and sampled at both its sides: so a pulse is seen however short it is. So
+are smooth ones: bells, where the argument of an exponential is largest or a divisor least, and poles.
 """
 
 from __future__ import annotations
@@ -25,6 +26,10 @@ MOST = 10_000
 """Instants of a run; of what turns more often none are kept."""
 SAMPLES = (8192, 65536)
 """Steps of the grid over the run; the second where every other sample of the first tells of other changes."""
+FALLEN = (1.0, 4.0, 12.0, 30.0)
+"""Of the logarithm of a pulse, where steps that are to see its sides end."""
+MOST_BELLS = 1000
+"""Of a formula that are stopped at: steps see by themselves what swings so often."""
 PARTS = 32
 """Into which a piece that holds a change is divided, again and again."""
 
@@ -65,6 +70,7 @@ class Turns:
                 continue  # it reads what is solved
             self._even[id(node)] = self._evenly(node)
             found = [instant for number, cells in _turning(node) for instant in self._instants(number, cells)]
+            found += [stop for number in _bells(node) for stop in self._bell(number)]
             if isinstance(node, Keys) and (table := known_table(node)) is not None:
                 found += self._keys(node.argument, table)
             found = [stop for stop in found if stop[1] > 0.0 or APART * self.end < stop[0] < self.end]
@@ -188,7 +194,40 @@ class Turns:
             at, way = at[way * values[at] > 0.0], way[way * values[at] > 0.0]
         if len(at) == 0 or len(at) > MOST:
             return grid[:0]
-        low, high, rows = grid[at - 1], grid[at + 1], np.arange(len(at))
+        return self._closed_in(number, grid[at - 1], grid[at + 1], way)
+
+    def _bell(self, number: Expr) -> list[Stop]:
+        """Where a number is largest of those around, and has fallen by FALLEN from it to both sides, or does begin."""
+        if self._evenly(number) is not None:
+            return []
+        grid = np.linspace(0.0, self.end, SAMPLES[0] + 1)
+        values = self._values(number, grid)
+        rise = np.sign(np.diff(np.zeros(2) if values is None else values))
+        at = np.flatnonzero((rise[:-1] > 0.0) & (rise[1:] <= 0.0)) + 1
+        if not 0 < len(at) <= MOST_BELLS:
+            return []
+        tops = self._closed_in(number, grid[at - 1], grid[at + 1], -1.0)
+        stops = tops.tolist()
+        valleys = np.concatenate([[0.0], 0.5 * (tops[1:] + tops[:-1]), [self.end]])
+
+        def at_times(times: Floats) -> Floats:
+            found = self._values(number, times)
+            assert found is not None
+            return found
+
+        highest = at_times(tops)
+        for fallen in FALLEN:
+            for low, high in ((valleys[:-1].copy(), tops.copy()), (valleys[1:].copy(), tops.copy())):
+                for _ in range(60):  # bisection, from the foot up
+                    middle = 0.5 * (low + high)
+                    below = at_times(middle) < highest - fallen
+                    low, high = np.where(below, middle, low), np.where(below, high, middle)
+                stops += high[np.abs(high - tops) > APART * self.end].tolist()
+        return [(after(time, 2), 0.0) for time in stops]
+
+    def _closed_in(self, number: Expr, low: Floats, high: Floats, way: Any) -> Floats:
+        """The instants (k,) between low and high (k,) at which a number is least (way 1) or most (-1)."""
+        way, rows = np.broadcast_to(way, low.shape), np.arange(len(low))
         for _ in range(9):  # to 2^-27 of a step: beyond, a smooth number is flat
             pieces = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, 17)
             found = self._values(number, pieces.ravel())
@@ -217,6 +256,12 @@ def _turning(node: Expr) -> list[tuple[Expr, Cells]]:
             return [(Call("sub", (args[0], bound)), np.sign) for bound in args[1:]]
         case "ease":
             return [(args[0], np.sign), (Call("sub", (args[0], Number(1.0))), np.sign)]
+        case "div":
+            return [(args[1], np.sign)]
+        case "tan":
+            return [(Call("cos", args), np.sign)]
+        case "log":
+            return [(args[0], np.sign)]
         case "smoothstep":
             return [(Call("sub", (args[2], bound)), np.sign) for bound in args[:2]]
         case "floor" | "ceil" | "random":
@@ -225,6 +270,18 @@ def _turning(node: Expr) -> list[tuple[Expr, Cells]]:
             return [(Call("add", (args[0], Number(0.5))), np.floor)]
         case "mod":
             return [(Call("div", args), np.floor)]
+    return []
+
+
+def _bells(node: Expr) -> list[Expr]:
+    """Logarithms of what an operation gives, where that may be a pulse as narrow as you like."""
+    if not isinstance(node, Call) or any(arg.type.shape for arg in node.args):
+        return []
+    match node:
+        case Call(op="exp", args=(argument,)):
+            return [argument]
+        case Call(op="div", args=(_, divisor)) | Call(op="pow", args=(divisor, Number(value=-1.0 | -2.0))):
+            return [Call("neg", (Call("log", (Call("abs", (divisor,)),)),))]
     return []
 
 
