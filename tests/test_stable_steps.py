@@ -6,6 +6,7 @@ import re
 import pytest
 
 from sceneql.failure import RunFailure
+from sceneql.report.explain import explain, text
 from sceneql.simulation.run import Run
 from sceneql.simulation.stability import stability
 from steps import loaded, warnings
@@ -140,3 +141,17 @@ def test_the_bound_of_a_large_cloth_is_as_sharp_as_that_of_a_small_one(tmp_path)
     script += "outputs: {table: {record: {of: [c.energy]}}}\n"
     small, large = (bound_of(tmp_path, script.replace("N", str(n)), "semi_implicit_euler") * n for n in (40, 62))
     assert large == pytest.approx(small, rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("solver", "measure"),
+    [
+        ("radau: {}", "1e-06 of how large entries have been"),
+        ("rodas5p: {absolute: 1e-9}", "1e-06 of an entry plus 1e-09 in SI units"),
+        ("dopri5: {tolerance: 1e-4}", "0.0001 of an entry plus 0.0001 in SI units"),
+        ("gauss_radau15: {}", "1e-09;"),
+    ],
+)
+def test_explain_says_what_a_tolerance_is_a_part_of(tmp_path, solver, measure):
+    script = PAIR + f"forces: [{{spring: {{from: p.a.position, to: p.b.position}}}}]\nsolvers: {{main: {{{solver}}}}}\n"
+    assert f"steps by the tolerance {measure}" in text(explain(loaded(tmp_path, script)))

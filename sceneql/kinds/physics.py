@@ -173,6 +173,13 @@ class Solver(Kind):
         """What it chose to do and why, where it chooses a method by itself."""
         return ""
 
+    def measure(self) -> str:
+        """What its tolerance is a part of, for `explain`, where that chooses its steps."""
+        tolerance, absolute = (getattr(self, name, None) for name in ("tolerance", "absolute"))
+        if tolerance is None or "absolute" not in type(self).model_fields:
+            return ""
+        return f"of an entry plus {tolerance if absolute is None else absolute} in SI units"
+
     def stepper(self) -> Stepper:
         """Its compiled step and control."""
         raise NotImplementedError

@@ -91,6 +91,7 @@ def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
         "adaptive": stepper.adaptive,
         "step": None if stepper.adaptive else stepper.first_step,
         "tolerance": stepper.tolerance if stepper.adaptive else None,
+        "measure": run.solver.measure() if stepper.adaptive and run.march.system.grid is None else "",
         "step_bound": bound.step if math.isfinite(bound.step) else None,
         "bound_text": bound.text,
     }
@@ -134,6 +135,7 @@ def _control(island: dict[str, Any]) -> str:
     if island["order"] == 0:
         return ""
     steps = f"steps by the tolerance {island['tolerance']:g}" if island["adaptive"] else f"step {island['step']:g} s"
+    steps += f" {island['measure']}" if island["measure"] else ""
     return f" of order {island['order']}, {steps}"
 
 

@@ -58,6 +58,10 @@ class Auto(Solver):
             return Exact()
         return TrBdf2(tolerance=min(100.0 * self.tolerance, 0.1))
 
+    def measure(self) -> str:
+        """Those of its two methods."""
+        return f"of an entry plus {self.tolerance} in SI units; by radau of how large entries have been"
+
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """That of dopri5."""
         return DORMAND_PRINCE.growth(jacobian, step)

@@ -68,6 +68,10 @@ class Radau(Solver):
             controls=True,
         )
 
+    def measure(self) -> str:
+        """Scales of its own, where no absolute error is given."""
+        return "of how large entries have been" if self.absolute is None else super().measure()
+
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """max |R(h lambda)| with R(z) = (1 + 2z/5 + z^2/20) / (1 - 3z/5 + 3z^2/20 - z^3/60)."""
         import numpy as np
