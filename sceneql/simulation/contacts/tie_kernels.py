@@ -16,6 +16,8 @@ from sceneql.simulation.contacts.shape_kernels import OBJECT, surface, velocity
 
 SWEEPS = 50
 """Over the objects that a body rests on at once."""
+CLOSE = 1e-12
+"""Change of a sweep that ends them, in parts of what accelerates the body."""
 
 
 @lean_inlined
@@ -50,6 +52,7 @@ def tie(k, y, rate, floats, ints):
     """Tie body k to all that it rests on."""
     to = ints[VELOCITY] + 3 * k
     objects = ints[OBJECTS]
+    size = abs(rate[to]) + abs(rate[to + 1]) + abs(rate[to + 2])
     for _ in range(SWEEPS):
         change = 0.0
         for j in range(objects):
@@ -62,7 +65,7 @@ def tie(k, y, rate, floats, ints):
             rate[to + 1] -= press * ny
             rate[to + 2] -= press * nz
             change = max(change, abs(press))
-        if change < 1e-12:
+        if change <= CLOSE * size:
             break
     px, py, pz, _, _, _ = body_of(ints, k, y)
     for j in range(objects):
