@@ -1,6 +1,7 @@
 """Laws of polygonising: closed, oriented, on the surface, of the right topology and order, honest about the rest."""
 
 import math
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -28,6 +29,7 @@ from sceneql.mesh.flips import facing
 from sceneql.mesh.folds import folds, winding
 from sceneql.mesh.hausdorff import hausdorff
 from sceneql.mesh.measures import area, curved_volume, edge_counts, euler_characteristic, volume
+from sceneql.mesh.passing import passing
 from sceneql.mesh.polygonise import polygonise
 from sceneql.mesh.polygons import Polygons
 from sceneql.mesh.refine import refined
@@ -199,6 +201,63 @@ def test_triangles_across_a_crease_part_inside_from_outside_though_the_gradient_
         against += (facing(whole, found.vertices[found.triangles]) < 0.0).sum()
         assert not len(folds(whole, found))
     assert against > 0
+
+
+SELF_CROSSING = {
+    "steiner": (STEINER, 0.6),
+    "barth sextic": (
+        "max(4.23606797749979*(x^2 + y^2 + z^2 - 1)^2 - 4*(2.618033988749895*x^2 - y^2)"
+        "*(2.618033988749895*y^2 - z^2)*(2.618033988749895*z^2 - x^2), sqrt(x^2 + y^2 + z^2) - 2)",
+        2.04,
+    ),
+    "lattice": (
+        "max(abs(sin(9*x)*cos(9*y) + sin(9*y)*cos(9*z) + sin(9*z)*cos(9*x)) - 0.3, sqrt(x^2 + y^2 + z^2) - 1)",
+        1.0,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", [*CREASED, *SELF_CROSSING])
+def test_sharp_polygons_fold_nowhere_though_sheets_are_nearer_than_cells(name):
+    text, half = (CREASED | SELF_CROSSING)[name]
+    whole = bounded(tape_of(text), (-half,) * 3, (half,) * 3)
+    for cells in (48, 64):
+        found = cut_sharp(text, half, cells)
+        assert_closed_manifold(found)
+        assert not len(folds(whole, found))
+
+
+def test_corners_that_pass_one_another_on_an_edge_are_put_in_order_along_it():
+    # Turned so, 3 of the cube's edges cut corners off cells whose planes put vertices on them in the wrong order.
+    whole = bounded(tape_of(TURNED), (-1.3,) * 3, (1.3,) * 3)
+    for cells in (20, 33, 48, 51, 64, 96):
+        found = cut_sharp(TURNED, 1.3, cells)
+        assert not len(folds(whole, found))
+        assert ((np.abs(np.abs(found.vertices @ TURN.T) - 0.7) < 1e-6).sum(axis=1) >= 1).all()
+        assert volume(found.vertices, found.triangles) == pytest.approx(1.4**3, abs=1e-9)
+
+
+def test_many_rays_through_a_mesh_take_little_memory():
+    found = cut(TORUS, 1.5, 24)
+    points = np.random.default_rng(0).uniform(-1.5, 1.5, (40_000, 3))
+    tracemalloc.start()
+    around = winding(points, found.vertices[found.triangles])
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert set(around) == {0, 1}
+    assert most < 2**26
+
+
+def test_triangles_that_pass_through_others_are_found_with_them():
+    # A triangle across one side of another, one beside it, and one that shares a corner with the first.
+    places = np.array(
+        [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.2, 0.2, -1], [0.2, 0.2, 1], [-1, -1, 0], [5, 5, 5], [6, 5, 5], [5, 6, 5],
+         [0.3, 0.1, 1.0], [0.1, 0.3, -1.0]], dtype=float,
+    )  # fmt: skip
+    triangles = np.array([[0, 1, 2], [3, 4, 5], [6, 7, 8], [0, 9, 10]])
+    first, other = passing(places, triangles, np.array([0]))
+    assert set(first) == {0}
+    assert set(other) == {1, 3}
 
 
 def test_a_corner_pushed_through_the_mesh_is_found_folded():

@@ -23,6 +23,8 @@ OFF = 1.0e-4
 """How far from a triangle's middle its outer side is looked at, in square roots of its area."""
 TILT = 0.7548776662466927, 0.5698402909980532
 """Of the rays, against the axes that meshes follow: none passes along a side of a triangle."""
+AT_ONCE = 2**18
+"""Pairs of rays and triangles that are looked at together: so much memory is enough for a field of noise, too."""
 
 
 def doubtful(polygons: Polygons) -> Rows:
@@ -35,19 +37,31 @@ def doubtful(polygons: Polygons) -> Rows:
     return np.flatnonzero(np.minimum.reduce(along) <= 0.0)
 
 
+def against(tape: Tape, polygons: Polygons) -> Rows:
+    """(n,) rows of triangles that do not face as their corners do and face against the gradient in their middle."""
+    rows = doubtful(polygons)
+    found: Rows = rows[facing(tape, polygons.vertices[polygons.triangles[rows]]) < 0.0]
+    return found
+
+
 def folds(tape: Tape, polygons: Polygons) -> Rows:
     """(n,) rows of triangles against the gradient whose outer side is not outside of the closed mesh."""
+    return inverted(polygons, against(tape, polygons))
+
+
+def inverted(polygons: Polygons, rows: Rows) -> Rows:
+    """Those of the rows (n,) of triangles whose outer side is not outside of the closed mesh."""
     import numpy as np
 
+    if not len(rows):
+        return rows
     corners = polygons.vertices[polygons.triangles]
-    rows = doubtful(polygons)
-    rows = rows[facing(tape, corners[rows]) < 0.0]
     a, b, c = (corners[rows, k] for k in range(3))
     across = np.cross(b - a, c - a)
     sizes = np.linalg.norm(across, axis=1, keepdims=True)
     around = winding((a + b + c) / 3.0 + OFF * across / np.sqrt(sizes), corners)
-    folded: Rows = rows[around != 0]
-    return folded
+    found: Rows = rows[around != 0]
+    return found
 
 
 def winding(points: Floats, corners: Floats) -> Rows:
@@ -66,8 +80,8 @@ def winding(points: Floats, corners: Floats) -> Rows:
         np.stack([p[..., 0], p[..., 1] - TILT[0] * p[..., 0], p[..., 2] - TILT[1] * p[..., 0]], axis=-1)
         for p in (points, corners)
     )
-    least = corners[:, :, 1:].min(axis=1)
-    width = (corners[:, :, 1:].max(axis=1) - least).max()
+    least, most = extents(corners[:, :, 1:])
+    width = (most - least).max()
     first = least.min(axis=0) - width
     squares, wanted = (np.floor((p - first) / width).astype(np.int64) for p in (least, points[:, 1:]))
     row = max(squares[:, 1].max(), wanted[:, 1].max()) + 2
@@ -75,13 +89,30 @@ def winding(points: Floats, corners: Floats) -> Rows:
     around = [(wanted - [i, j]) @ [row, 1] for i in (0, 1) for j in (0, 1)]
     near = np.flatnonzero(np.isin(numbers, np.concatenate(around)))
     near = near[np.argsort(numbers[near], kind="stable")]
+    corners, numbers = corners[near], numbers[near]
+    least, most = extents(corners)
     for sought in around:
-        begin, end = (np.searchsorted(numbers[near], sought, side) for side in ("left", "right"))
-        counts = end - begin
-        of = np.repeat(np.arange(len(points)), counts)
-        at = np.arange(counts.sum()) + np.repeat(begin - np.cumsum(counts) + counts, counts)
-        np.add.at(found, of, _passed(points[of], corners[near[at]]))
+        begin, end = (np.searchsorted(numbers, sought, side) for side in ("left", "right"))
+        pairs = np.concatenate([[0], np.cumsum(end - begin)])
+        start = 0
+        while start < len(points):
+            stop = max(start + 1, int(np.searchsorted(pairs, pairs[start] + AT_ONCE, "right")) - 1)
+            counts = (end - begin)[start:stop]
+            of = np.repeat(np.arange(start, stop), counts)
+            at = np.arange(pairs[start], pairs[stop]) + np.repeat((begin - pairs[:-1])[start:stop], counts)
+            ahead = (most[at] >= points[of]).all(axis=1) & (least[at, 1:] <= points[of, 1:]).all(axis=1)
+            of, at = of[ahead], at[ahead]
+            np.add.at(found, of, _passed(points[of], corners[at]))
+            start = stop
     return found
+
+
+def extents(corners: Floats) -> tuple[Floats, Floats]:
+    """(least, most), each (t, k), of the coordinates of triangles (t, 3, k)."""
+    import numpy as np
+
+    a, b, c = (corners[:, k] for k in range(3))
+    return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
 
 
 def _passed(points: Floats, corners: Floats) -> Rows:

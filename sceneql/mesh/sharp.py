@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from sceneql.field.solid import field_values
 from sceneql.mesh.bounded import Corner, bounded
 from sceneql.mesh.cases import cases
 from sceneql.mesh.dual_kernels import dual
-from sceneql.mesh.folds import doubtful
 from sceneql.mesh.grid import grid_around
-from sceneql.mesh.moves import turned_outward
+from sceneql.mesh.halves import halved
 from sceneql.mesh.pinched import pinched
 from sceneql.mesh.polygons import Polygons
+from sceneql.mesh.unfold import Dual, turned_unfolded, unfolded
 from sceneql.mesh.workshop import Found, Room, Workshop
 
 if TYPE_CHECKING:
@@ -40,10 +39,14 @@ def polygonise_sharp(tape: Tape, low: Corner, high: Corner, cell: float) -> Poly
     quads = corners[:, AROUND]
     quads[outward == 0] = quads[outward == 0, ::-1]
     plain, more_places, more = pinched(quads, rings, found.place, len(places))
-    triangles = np.concatenate([_halved(whole, places, quads[plain]), more]).astype(np.int32)
+    ways = np.where(outward == 0, -1, 1) * (found.keys % 3 + 1)
+    quads, ways = quads[plain], ways[plain]
+    triangles = np.concatenate([halved(whole, places, quads, ways), more]).astype(np.int32)
     places, normals = np.concatenate([places, more_places]), np.concatenate([normals, np.zeros_like(more_places)])
-    polygons = Polygons(places, triangles, normals)
-    return turned_outward(whole, polygons, doubtful(polygons))
+    means = _means(rings, found.place)
+    lows = shop.grid.low + np.floor((means - shop.grid.low) / cell) * cell
+    dual = Dual(whole, quads, ways, rings, found.place, found.normal, means, lows, cell)
+    return turned_unfolded(whole, unfolded(dual, Polygons(places, triangles, normals)))
 
 
 def _vertices(shop: Workshop, found: Found) -> tuple[Floats, Floats, Ints, Ints, NDArray[np.int8]]:
@@ -69,14 +72,13 @@ def _vertices(shop: Workshop, found: Found) -> tuple[Floats, Floats, Ints, Ints,
     return places, normals, rings, corners, outward
 
 
-def _halved(tape: Tape, places: Floats, quads: Ints) -> Ints:
-    """Two triangles for each of the quads (n, 4), along the diagonal whose middle is nearer to the surface.
-
-    So a diagonal follows an edge where it can.
-    """
+def _means(rings: Ints, crossings: Floats) -> Floats:
+    """(v, 3) [m] the means of the crossings (e, 3) around each corner."""
     import numpy as np
 
-    with np.errstate(all="ignore"):
-        off = [np.abs(field_values(tape, 0.5 * (places[quads[:, k]] + places[quads[:, k + 2]]))) for k in (0, 1)]
-    turned = np.where((off[1] < off[0])[:, None], np.roll(quads, -1, axis=1), quads)
-    return np.stack([turned[:, [0, 1, 2]], turned[:, [0, 2, 3]]], axis=1).reshape(-1, 3)
+    given = rings >= 0
+    total = np.zeros((len(rings), 3))
+    for k in range(rings.shape[1]):
+        total[given[:, k]] += crossings[rings[given[:, k], k]]
+    found: Floats = total / given.sum(axis=1)[:, None]
+    return found
