@@ -34,9 +34,7 @@ def prepared(scene: Scene, rows: int, places: list[int], *, sheets: bool, march:
         from renderers.tracing import sheet_kernels
 
         scene = scene._replace(sheet=address(sheet_kernels.crossing, CROSSING))
-    slabs = CELLS // BLOCK
-    over_tiles(
-        len(places) * slabs,
-        lambda tile: occupy(scene, scratch(rows), places[tile // slabs], tile % slabs),
-    )
+    sides = [int(scene.ints[int(scene.reals[place + 6]) + CELLS]) for place in places]
+    slabs = [(place, slab) for place, side in zip(places, sides, strict=True) for slab in range(side // BLOCK)]
+    over_tiles(len(slabs), lambda tile: occupy(scene, scratch(rows), *slabs[tile]))
     return scene

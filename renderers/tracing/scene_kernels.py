@@ -78,8 +78,9 @@ HALF_SPACE (a quadric that is nothing else): unit normal, height of its face alo
 GRID: as grid_kernels says.
 IMPLICIT and SHEET: low, high, place of its ranges: 7. The ranges, in ints: place of the code, its rows, place of the
 constants, their number, place of the parts, their rows; place of the cells; the same six of its paint and of what a
-sheet lies within (no rows: it has none); place of the plan for single rays (sceneql.field.plans), its length."""
-CELLS_AT, PAINT, WITHIN, PLAN, RANGES = 6, 7, 13, 19, 21
+sheet lies within (no rows: it has none); place of the plan for single rays (sceneql.field.plans), its length; cells
+along each axis."""
+CELLS_AT, PAINT, WITHIN, PLAN, CELLS, RANGES = 6, 7, 13, 19, 21, 22
 """Columns of the ranges, and how many there are."""
 
 LINK = 3
@@ -105,7 +106,5 @@ INDEX, EMISSION, CHECKER, CHECKER_COLOR = 7, 8, 11, 12
 SURFACE_SIZE = 15
 """Reals of a surface, and how many there are."""
 
-CELLS = 32
-"""Occupancy cells along each axis of an implicit object's box."""
 EMPTY, MIXED, FULL = range(3)
 """What an occupancy cell is proved to be: outside, nothing, inside."""
