@@ -315,10 +315,11 @@ def test_other_fields_than_densities_of_points_have_no_plan():
     segment[0, 3:6] = segment[0, :3] + [0.1, 0.0, 0.0]
     point[0, 3:6] = point[0, :3]
 
-    def minus(parts, scale=1.0):
-        return implicit(lambda b, op, c: op("sub", c(0.3), b.density(parts, op("mul", b.x, c(scale)), b.y, b.z)))
+    def minus(parts, scale=1.0, threshold=0.3):
+        return implicit(lambda b, op, c: op("sub", c(threshold), b.density(parts, op("mul", b.x, c(scale)), b.y, b.z)))
 
     assert plan_of(minus(point))[0] >= 0
+    assert plan_of(minus(point, threshold=-0.05))[0] < 0  # inside is what no part reaches, too
     assert plan_of(minus(segment))[0] < 0
     assert plan_of(minus(point, 2.0))[0] < 0
     turned = implicit(

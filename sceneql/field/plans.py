@@ -47,9 +47,14 @@ def without_factor(tape: Tape, row: int) -> int:
 
 
 def density_of(tape: Tape, row: int) -> tuple[int, int] | None:
-    """(row of the density D, index of the constant c) where a row is c - D, D of lone points with Wyvill's kernel."""
+    """(row of the density D, index of the constant c) where a row is c - D, D of lone points with Wyvill's kernel.
+
+    What no part reaches is outside: c is more than 0.
+    """
     op, left, right, _ = tape.code[row]
     if op != SUB or tape.code[left, 0] != CONSTANT or tape.code[right, 0] not in OF_PARTS:
+        return None
+    if not tape.constants[tape.code[left, 1]] > 0.0:
         return None
     kind, start, stop, at = tape.code[right]
     place = [tape.code[row[1], 0] if row[0] == COPY else row[0] for row in tape.code[at : at + 3]]
