@@ -3,13 +3,15 @@
 
 import numpy as np
 
+from sceneql.field.extent_kernels import extent
 from sceneql.field.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS, SETTLED
 from sceneql.field.tape_ops import UNDECIDED
 from sceneql.kernels import inlined
 
-X, DX, ROOT, SPEED, DENSITY, SLOPE, BEND = 0, 3, 6, 7, 8, 9, 10
+X, DX, ROOT, SPEED, DENSITY, SLOPE, BEND, BEGIN, END, SEARCH, BOX = 0, 3, 6, 7, 8, 9, 10, 11, 12, 13, 14
 """Rows of ``room``: places, directions, places along the rays from their own starts, squares of the directions, D there
-and its first two derivatives."""
+and its first two derivatives, between which places the root is, how far it is searched; see ``polish``."""
+HAIR = 1.0e-12
 
 
 @inlined
@@ -39,22 +41,46 @@ def sum_up(parts, kept, room, n):
 @inlined
 def polish(parts, kept, threshold, rays, queue, count, room, found):
     """A step of Chebyshev's method, whose error falls with the third power, for the first ``count`` rays of the
-    ``queue``, which are hits."""
+    ``queue``, which are hits. A box around where they hit, and SETTLED of their searches behind, into row BOX of
+    ``room``: least and largest x, y and z."""
+    roots, lows, highs, searches = room[ROOT], room[BEGIN], room[END], room[SEARCH]
+    begins, ends = rays[6], rays[7]
+    found_root, found_low, found_high = found[FOUND_ROOT], found[FOUND_LOW], found[FOUND_HIGH]
     for i in range(count):
         j = np.uint64(queue[i])
-        t = rays[6, j] + found[FOUND_ROOT, j]
+        roots[i], lows[i], highs[i] = found_root[j], found_low[j], found_high[j]
+        t = begins[j] + roots[i]
+        searches[i] = ends[j] - begins[j]
         for axis in range(3):
             room[X + axis, i] = rays[axis, j] + t * rays[3 + axis, j]
             room[DX + axis, i] = rays[3 + axis, j]
     sum_up(parts, kept, room, count)
+    x, y, z, dx, dy, dz = room[X], room[X + 1], room[X + 2], room[DX], room[DX + 1], room[DX + 2]
+    speed, density, slope, bend = room[SPEED], room[DENSITY], room[SLOPE], room[BEND]
+    for i in range(count):
+        step = (threshold - density[i]) / slope[i]
+        bent = 0.5 * step * step * bend[i] / slope[i]
+        root = roots[i] + step - bent
+        root = root if root > lows[i] else lows[i]
+        root = root if root < highs[i] else highs[i]
+        # What the second derivative gives is far more than what the third would.
+        settled = (abs(bent) <= SETTLED * searches[i]) & (root < searches[i])
+        bend[i] = 1.0 if settled else 0.0
+        step = root - roots[i]
+        x[i], y[i], z[i] = x[i] + step * dx[i], y[i] + step * dy[i], z[i] + step * dz[i]
+        roots[i] = root
+        dx[i] = searches[i] * searches[i] * speed[i]
+    outcomes = found[FOUND_STATUS]
     for i in range(count):
         j = np.uint64(queue[i])
-        first = found[FOUND_ROOT, j]
-        step = (threshold - room[DENSITY, i]) / room[SLOPE, i]
-        bent = 0.5 * step * step * room[BEND, i] / room[SLOPE, i]
-        root = min(max(first + step - bent, found[FOUND_LOW, j]), found[FOUND_HIGH, j])
-        search = rays[7, j] - rays[6, j]
-        # What the second derivative gives is far more than what the third would.
-        if not (abs(bent) <= SETTLED * search and rays[6, j] + root < rays[7, j]):
-            found[FOUND_STATUS, j] = UNDECIDED
-        found[FOUND_ROOT, j] = root
+        found_root[j] = roots[i]
+        outcomes[j] = outcomes[j] if bend[i] > 0.0 else UNDECIDED
+    box = room[BOX]
+    if count > 0:
+        for row in range(4):
+            box[2 * row], box[2 * row + 1] = extent(room[X + row], count)
+        late = SETTLED * np.sqrt(box[7])
+        for row in range(3):
+            low, high = box[2 * row], box[2 * row + 1]
+            hair = late + HAIR * (abs(low) + abs(high))
+            box[2 * row], box[2 * row + 1] = low - hair, high + hair

@@ -7,17 +7,25 @@ routine.
 """
 
 import numpy as np
+from numba import types
 from numba.core.sigutils import normalize_signature
 
+from sceneql.compiling.late import late
+from sceneql.field.density_polish_kernels import BOX
 from sceneql.field.density_roots_kernels import ROW_OF, density_roots
 from sceneql.field.isolation_kernels import isolate
 from sceneql.field.packet_kernels import BUNDLE, MEMORY, check_inside, has, tape_roots
 from sceneql.field.polynomial_hunt_kernels import polynomial_roots
 from sceneql.field.polynomial_kernels import POLYNOMIAL
 from sceneql.field.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS, SETTLED
-from sceneql.field.tape_ops import MISS, SKELETON, UNDECIDED
+from sceneql.field.tape_ops import MISS, SKELETON, UNDECIDED, WHOLE
 from sceneql.kernels import inlined, lean
 
+_rows, _side = types.float64[:, ::1], types.float64
+BOX_OF = types.Tuple((_side, _side, types.int64))(
+    types.int32[:, ::1], types.float64[::1], _rows, _rows, _side, _side, _side, _side, _side, _side
+)  # fmt: skip
+box = late("sceneql.field.interval_kernels:box", BOX_OF)
 GROUP = 16
 TOLERANCE = 1e-9
 """Of the certified routine, relative to the searched piece of the ray."""
@@ -58,6 +66,15 @@ def leave_safe(rays, queue, count, row, late, safe, unsafe, found, doubtful):
         doubtful[np.uint64(n)] = queue[k]
         n += 0 if (t > safe) & (t < unsafe) else 1
     return n
+
+
+@inlined
+def box_inside(code, constants, parts, scratch, sides):
+    """Whether a box, of which ``sides`` has the least and largest x, y and z, is inside a tape."""
+    _, high, status = box(
+        code, constants, parts, scratch, sides[0], sides[1], sides[2], sides[3], sides[4], sides[5]
+    )  # fmt: skip
+    return status == WHOLE and high < 0.0
 
 
 FOUND = f"{MEMORY}, int64[::1], int64[::1], float64[:, ::1], float32[:, ::1], float64[::1], int32[:, ::1]"
@@ -129,7 +146,9 @@ def first_roots(
             code, parts = short[length : length + rows], near_parts
         else:
             end = np.inf
-    if other.shape[0] > 0:
+    if other.shape[0] > 0 and not (
+        plan[ROW_OF] >= 0 and not anywhere and queued > 0 and box_inside(other, constants, parts, scratch, room[BOX])
+    ):
         row, late = (FOUND_HIGH, 0.0) if anywhere else (FOUND_ROOT, SETTLED)
         doubtful = leave_safe(rays, queue, queued, row, late, safe, unsafe, found, order)
         check_inside(other, constants, parts, doubles, points, rays, order, doubtful, row, late, found)
