@@ -2,7 +2,8 @@
 """Beams: capsules around pieces of neighboring rays, and the parts of a density field that reach into one.
 
 A bundle's rays stand in ``wide`` (WIDE, n), those with nothing to search left out: where each begins, its unit
-direction, how far it goes [m], how much of t makes a meter, and its share of a beam.
+direction, how far it goes [m], how much of t makes a meter, and its share of a beam. Behind the last the row goes on
+with it: see ``padded``.
 """
 
 import numpy as np
@@ -21,7 +22,11 @@ BEAM = 10
 and how much of the radius is due to how the rays part."""
 RUN = 4
 """Columns that are gathered together: as many rays as follow each other in the rows."""
+PADDED = 32
+"""Rays are looked at in multiples of so many."""
 HAIR = 1.0e-9
+UNIT = 1.0e-15
+"""Directions so near to unit length are taken as they are."""
 DEEP = 1.0
 """Depth of a slice, relative to what a part takes of the beam on average."""
 
@@ -64,6 +69,12 @@ def gather_some(rays, count, groups, wide, ids):
 
 
 @inlined
+def padded(n):
+    """Up to where n rays stand, the last of them again and again: loops over whole vectors leave nothing over."""
+    return (n + PADDED - 1) // PADDED * PADDED
+
+
+@inlined
 def gather(rays, count, groups, wide, ids):
     """Put the rays that have a length into ``wide``, those of neighboring columns of ``rays`` together; how many there
     are."""
@@ -75,11 +86,26 @@ def gather(rays, count, groups, wide, ids):
         gather_whole(rays, count, groups, wide, ids)
     else:
         gather_some(rays, count, groups, wide, ids)
+    given = n
+    n = padded(n)
+    for row in range(8):
+        line = wide[row]
+        for i in range(given, n):
+            line[i] = line[given - 1]
     t0, t1, dx, dy, dz = wide[FAR], wide[INVERSE_SPEED], wide[DX], wide[DY], wide[DZ]
     for axis in range(3):
         place, way = wide[PX + axis], wide[DX + axis]
         for i in range(n):
             place[i] += t0[i] * way[i]
+    long = np.int64(0)
+    for i in range(n):
+        off = dx[i] * dx[i] + dy[i] * dy[i] + dz[i] * dz[i] - 1.0
+        long += np.int64(0) if abs(off) < UNIT else np.int64(1)
+    if long == 0:
+        for i in range(n):
+            t0[i] = t1[i] - t0[i]
+            t1[i] = 1.0
+        return given
     for i in range(n):
         speed = np.sqrt(dx[i] * dx[i] + dy[i] * dy[i] + dz[i] * dz[i])
         far = (t1[i] - t0[i]) * speed
@@ -87,30 +113,29 @@ def gather(rays, count, groups, wide, ids):
         dx[i], dy[i], dz[i] = dx[i] * inverse, dy[i] * inverse, dz[i] * inverse
         t0[i] = far
         t1[i] = inverse
-    return n
+    return given
 
 
 @inlined
-def beam_around(wide, first, stop, beam, spare):
-    """The beam around rays first..stop-1; their BEHIND and STRETCH are set. Returns the least cosine between
+def beam_around(wide, count, beam, spare):
+    """The beam around the first rays; their BEHIND and STRETCH are set. Returns the least cosine between
     a ray and the axis.
 
     ``spare`` (5, n) is working memory.
     """
-    last = stop - 1
+    last = count - 1
     for axis in range(3):
         p, d = wide[PX + axis], wide[DX + axis]
-        beam[ORIGIN + axis] = 0.5 * (p[first] + p[last])
-        beam[WAY + axis] = d[first] + d[last]
+        beam[ORIGIN + axis] = 0.5 * (p[0] + p[last])
+        beam[WAY + axis] = d[0] + d[last]
     length = np.sqrt(beam[3] * beam[3] + beam[4] * beam[4] + beam[5] * beam[5])
     for axis in range(3):
         beam[WAY + axis] = beam[WAY + axis] / length if length > HAIR else 1.0 * (axis == 0)
     ox, oy, oz, ax, ay, az = beam[0], beam[1], beam[2], beam[3], beam[4], beam[5]
-    n = stop - first
-    px, py, pz = wide[PX, first:stop], wide[PY, first:stop], wide[PZ, first:stop]
-    vx, vy, vz = wide[DX, first:stop], wide[DY, first:stop], wide[DZ, first:stop]
-    fars, behinds, stretches = wide[FAR, first:stop], wide[BEHIND, first:stop], wide[STRETCH, first:stop]
-    off_x, off_y, off_z = wide[OFF, first:stop], wide[OFF + 1, first:stop], wide[OFF + 2, first:stop]
+    n = padded(count)
+    px, py, pz, vx, vy, vz = wide[PX], wide[PY], wide[PZ], wide[DX], wide[DY], wide[DZ]
+    fars, behinds, stretches = wide[FAR], wide[BEHIND], wide[STRETCH]
+    off_x, off_y, off_z = wide[OFF], wide[OFF + 1], wide[OFF + 2]
     off2, spread2, lows, highs, cosines = spare[0], spare[1], spare[2], spare[3], spare[4]
     for i in range(n):
         ex, ey, ez = px[i] - ox, py[i] - oy, pz[i] - oz
@@ -147,11 +172,13 @@ def beam_around(wide, first, stop, beam, spare):
 @inlined
 def beam_within(wide, first, stop, beam, spare, own):
     """The beam around rays first..stop-1 of a beam, with an axis parallel to its, into ``own``."""
-    off_x, off_y, off_z = wide[OFF, first:stop], wide[OFF + 1, first:stop], wide[OFF + 2, first:stop]
     last = stop - first - 1
+    n = padded(stop - first)
+    stop = first + n
+    off_x, off_y, off_z = wide[OFF, first:stop], wide[OFF + 1, first:stop], wide[OFF + 2, first:stop]
     cx, cy, cz = 0.5 * (off_x[0] + off_x[last]), 0.5 * (off_y[0] + off_y[last]), 0.5 * (off_z[0] + off_z[last])
     off2 = spare[0]
-    for i in range(stop - first):
+    for i in range(n):
         ex, ey, ez = off_x[i] - cx, off_y[i] - cy, off_z[i] - cz
         off2[i] = ex * ex + ey * ey + ez * ez
     for j in range(BEAM):
@@ -159,21 +186,24 @@ def beam_within(wide, first, stop, beam, spare, own):
     own[0] += cx
     own[1] += cy
     own[2] += cz
-    _, off = extent(off2, stop - first)
+    _, off = extent(off2, n)
     own[RADIUS_OF] = np.sqrt(off) + beam[SPREAD]
 
 
 @inlined
 def reached(beam, x, y, z, radius):
-    """(enter, leave) along the axis of a beam of what is within ``radius`` of a point; enter > leave: nothing."""
+    """(enter, leave) along the axis of a beam of what is within ``radius`` of a point; enter > leave: nothing. And how
+    much less the square of its distance is than that of the radius."""
     ex, ey, ez = x - beam[0], y - beam[1], z - beam[2]
     along = ex * beam[3] + ey * beam[4] + ez * beam[5]
     ex, ey, ez = ex - along * beam[3], ey - along * beam[4], ez - along * beam[5]
-    off = max(np.sqrt(ex * ex + ey * ey + ez * ez) - beam[RADIUS_OF], 0.0)
-    if off >= radius:
-        return np.inf, -np.inf
-    half = np.sqrt(radius * radius - off * off)
-    return max(along - half, beam[LOW]), min(along + half, beam[HIGH])
+    away2, far = ex * ex + ey * ey + ez * ez, radius + beam[RADIUS_OF]
+    if away2 >= far * far:
+        return np.inf, -np.inf, 0.0
+    off = min(max(np.sqrt(away2) - beam[RADIUS_OF], 0.0), radius)
+    half2 = radius * radius - off * off
+    half = np.sqrt(half2)
+    return max(along - half, beam[LOW]), min(along + half, beam[HIGH]), half2
 
 
 @inlined
@@ -181,7 +211,7 @@ def keep_reaching(parts, start, stop, beam, near):
     """Copy the points of density rows start..stop-1 that reach into a beam to ``near`` (p, 8); how many."""
     kept = 0
     for i in range(start, stop):
-        enter, leave = reached(beam, parts[i, 0], parts[i, 1], parts[i, 2], parts[i, RADIUS])
+        enter, leave, _ = reached(beam, parts[i, 0], parts[i, 1], parts[i, 2], parts[i, RADIUS])
         if enter <= leave:
             for j in range(8):
                 near[kept, j] = parts[i, j]
@@ -199,10 +229,10 @@ def keep_reaching_skeleton(parts, start, stop, beam, near):
             hx, hy, hz = parts[i, 3] - parts[i, 0], parts[i, 4] - parts[i, 1], parts[i, 5] - parts[i, 2]
             half = 0.5 * np.sqrt(hx * hx + hy * hy + hz * hz) * (1.0 + HAIR)
             x, y, z = parts[i, 0] + 0.5 * hx, parts[i, 1] + 0.5 * hy, parts[i, 2] + 0.5 * hz
-            enter, leave = reached(beam, x, y, z, half)
+            enter, leave, _ = reached(beam, x, y, z, half)
             i += STRIDE + (int(parts[i, RADIUS]) if enter > leave else 0)
             continue
-        enter, leave = reached(beam, parts[i, 0], parts[i, 1], parts[i, 2], parts[i, RADIUS])
+        enter, leave, _ = reached(beam, parts[i, 0], parts[i, 1], parts[i, 2], parts[i, RADIUS])
         if enter <= leave:
             for j in range(8):
                 near[kept, j] = parts[i, j]
@@ -213,12 +243,15 @@ def keep_reaching_skeleton(parts, start, stop, beam, near):
 
 @inlined
 def list_parts(near, kept, beam, spans, order):
-    """Those parts that reach into a beam into ``order``, and where they do into ``spans``; how many."""
+    """Those parts that reach into a beam into ``order``, where they do and the most that each gives there into
+    ``spans``; how many."""
     m = 0
     for k in range(kept):
-        enter, leave = reached(beam, near[k, 0], near[k, 1], near[k, 2], near[k, 6])
+        radius = near[k, 6]
+        enter, leave, half2 = reached(beam, near[k, 0], near[k, 1], near[k, 2], radius)
         if enter <= leave:
-            spans[0, m], spans[1, m] = enter, leave
+            u = half2 / (radius * radius)
+            spans[0, m], spans[1, m], spans[2, m] = enter, leave, max(near[k, 7], 0.0) * u * u * u
             order[m] = k
             m += 1
     return m

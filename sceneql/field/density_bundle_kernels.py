@@ -28,7 +28,7 @@ def density_roots(
     if n == 0:
         return 0, 0
     beam = room[BEAM_ROW, :BEAM]
-    lowest = beam_around(room, 0, n, beam, room[SPARE:])
+    lowest = beam_around(room, n, beam, room[SPARE:])
     if code[k, 0] == DENSITY:
         kept = keep_reaching(parts, code[k, 1], code[k, 2], beam, near)
     else:

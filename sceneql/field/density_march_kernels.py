@@ -5,6 +5,7 @@ Along a ray of unit direction a point has u(t) = P - (t - T)^2/R^2 and the densi
 Q = T - H/sqrt(5), H the half chord, falls through 0 at T to a least value, and rises to 0 where the chord ends. So its
 largest value between a and b stands at b or at the place in [a, b] nearest to Q, and with the sum S of these the ray is
 outside up to a + (c - D(a))/S: Newton's step, which no root escapes (Kalra & Barr 1989, with the slope of one sign).
+Where no part falls between a place outside and one inside, D rises, and the root there is the only one.
 
 ``table`` (k, COLUMNS) has P, T and Q of each part in lanes, then its weight and 1/R^2; ``state`` (ROWS,) is float32
 too, what is told of all lanes one behind the other; places are counted from where the table begins.
@@ -20,21 +21,24 @@ F = np.float32
 LANES, VECTOR = 64, 16
 T, Q, WEIGHT, INVERSE = LANES, 2 * LANES, 3 * LANES, 3 * LANES + 1
 COLUMNS = 3 * LANES + 8
-A, B, END, AT_A, AT_B, SLOPE, STATE, TRIES, FINE, ROOT, TOP, DEEP, HOLLOW = range(0, 13 * LANES, LANES)
-"""Where in state there is: a segment, where the search ends, densities at the segment's ends, a sixth of the largest
-slope of D, then the least of f, outcome (LIVE until there is one; UNDECIDED at the first step: the ray begins inside),
-steps so far, width of a bracket that is good enough, the root; no less than the largest density of the slice, the
-first place where one part alone has the threshold; of how many parts D's share is perhaps not convex."""
+A, B, END, TRIES, FINE, AT_A, AT_B, SLOPE, STATE, ROOT, TOP, DEEP, FALLING = range(0, 13 * LANES, LANES)
+"""Where in state there is: a segment, where the search ends, steps so far, width of a bracket that is good enough; then
+densities at the segment's ends, a sixth of the largest slope of D, outcome (LIVE until there is one; UNDECIDED at the
+first step: the ray begins inside), the root; no less than the largest density of the slice, the first place where one
+part alone has the threshold; how many parts perhaps fall between the ends."""
 ROWS = 13 * LANES
 LIVE, MOST = F(-1.0), F(40.0)
-ZERO, HALF, ONE, TWO, SIX, SIXTEEN, TENTH = F(0.0), F(0.5), F(1.0), F(2.0), F(6.0), F(16.0), F(0.1)
+ZERO, HALF, ONE, TWO, FOUR, SIX, TENTH = F(0.0), F(0.5), F(1.0), F(2.0), F(4.0), F(6.0), F(0.1)
 LESS, MORE = F(1.0 - 1.0e-5), F(1.0 + 1.0e-5)
 TINY, HUGE = F(1.0e-30), F(1.0e30)
 
 
 @lane
-def risen(p, t, q, a, b, inverse):
-    """(u^3 at a, at b, largest u^2 (t - .) in [a, b], 1 where u^3 is not surely convex there, else 0) of a point."""
+def risen(p, t, q, a, b, inverse, blur):
+    """(u^3 at a, at b, largest u^2 (t - .) in [a, b], 1 where u^3 does not surely rise there, else 0) of a point.
+
+    Places are off by no more than half of ``blur``.
+    """
     sa = t - a
     sb = t - b
     c = q if q > a else a
@@ -48,34 +52,37 @@ def risen(p, t, q, a, b, inverse):
     uc = uc if uc > ZERO else ZERO
     gb = ub * ub * sb
     gc = uc * uc * sc
-    hollow = ONE if (uc > ZERO) & (q * LESS < b) else ZERO
-    return ua * ua * ua, ub * ub * ub, gc if gc > gb else gb, hollow
+    # Where a part falls it is densest at t, or where the segment begins behind t.
+    falling = ONE if (t < b + blur) & ((ua > ZERO) | ((p > ZERO) & (a < t + blur))) else ZERO
+    return ua * ua * ua, ub * ub * ub, gc if gc > gb else gb, falling
 
 
 @inlined
-def sum_up(table, kept, state, n):
-    """Densities at both ends of n lanes' segments, a sixth of the largest slope between, and whether D is convex."""
+def sum_up(table, kept, state, n, blur):
+    """Densities at both ends of n lanes' segments, a sixth of the largest slope between, and how many parts fall."""
     for i in range(n):
-        state[AT_A + i] = state[AT_B + i] = state[SLOPE + i] = state[HOLLOW + i] = ZERO
+        state[AT_A + i] = state[AT_B + i] = state[SLOPE + i] = state[FALLING + i] = ZERO
     for k in range(kept):
         row = table[k]
         weight, inverse = row[WEIGHT], row[INVERSE]
         steep = weight * inverse
         if weight > ZERO:
             for i in range(n):
-                da, db, g, hollow = risen(row[i], row[T + i], row[Q + i], state[A + i], state[B + i], inverse)
+                a, b = state[A + i], state[B + i]
+                da, db, g, falling = risen(row[i], row[T + i], row[Q + i], a, b, inverse, blur)
                 state[AT_A + i] += weight * da
                 state[AT_B + i] += weight * db
                 state[SLOPE + i] += steep * g
-                state[HOLLOW + i] += hollow
+                state[FALLING + i] += falling
         else:  # the slope of a negative part is that of a positive one met from behind
             for i in range(n):
                 t = row[T + i]
-                db, da, g, _ = risen(row[i], t, row[Q + i], t + t - state[B + i], t + t - state[A + i], inverse)
+                a, b = t + t - state[B + i], t + t - state[A + i]
+                db, da, g, falling = risen(row[i], t, row[Q + i], a, b, inverse, blur)
                 state[AT_A + i] += weight * da
                 state[AT_B + i] += weight * db
                 state[SLOPE + i] -= steep * g
-                state[HOLLOW + i] = ONE
+                state[FALLING + i] += falling
 
 
 @inlined
@@ -83,10 +90,8 @@ def advance(state, n, threshold, close, drift, off_slope, bend, anywhere):
     """The next segment of each lane, or its outcome; ``close`` + ``drift`` t and ``off_slope`` bound the rounding of D
     at t and of its slope, ``bend`` its second derivative.
 
-    Returns how many lanes have no outcome. A bracket is good enough where D surely rises all along it, and the secant
-    is so near the root that one step of polish is enough.
+    Returns how many lanes have no outcome. A ray is met where D is surely below c, then above, and rises between.
     """
-    straight = SIXTEEN * bend
     looking = np.int32(0)
     for i in range(n):
         a, b, end = state[A + i], state[B + i], state[END + i]
@@ -103,19 +108,14 @@ def advance(state, n, threshold, close, drift, off_slope, bend, anywhere):
         full = (clear > ZERO) & (slope * width * MORE < clear)
         start = b if full else a + step
         inside = fb + off < ZERO
-        # Where D is convex, it lies below its chord; from behind, Newton's step stays behind the root.
-        convex = inside & (clear > ZERO) & (state[HOLLOW + i] == ZERO)
-        fall = width / (fa - fb if fa > fb else ONE)
-        chord = a + clear * LESS * fall
-        start = chord if convex & (chord > start) else start
         start = start if start < b else b
         begun = fa + off < ZERO
         fine = state[FINE + i]
+        narrow = b - start
         # Where the root may be: by the secant, or Newton's way on.
-        r = a + fa * fall
+        r = a + fa * (width / (fa - fb if fa > fb else ONE))
         past = r + HALF * (r - start if r > start else ZERO) + HALF * fine
-        past = b + fb * flat + HALF * fine if convex else past
-        past = past if past > start else start + HALF * (b - start)
+        past = past if past > start else start + HALF * narrow
         past = past if past < b else b
         on = start + F(2.5) * step
         on = on if on > start + HALF * width else start + HALF * width
@@ -124,10 +124,10 @@ def advance(state, n, threshold, close, drift, off_slope, bend, anywhere):
         then = then if then > start + fine else start + fine
         then = b + TWO * width if full else then
         then = then if then < end else end
-        narrow = b - start
         tries = state[TRIES + i] + ONE
-        rising = straight * width * width < fa - fb - TWO * off
-        hit = (inside & (anywhere | rising | (narrow <= fine * TWO)) & (~begun)) | (begun & anywhere)
+        rising = (state[FALLING + i] == ZERO) | (bend * width * width < fa - fb - TWO * off)
+        rising = (clear > ZERO) & rising | (narrow <= fine * TWO)
+        hit = (inside & (anywhere | rising) & (~begun)) | (begun & anywhere)
         done = full & (b >= end)
         stuck = begun | (tries > MOST) | (~full) & (~inside) & (width <= fine * TWO) & (step < TENTH * fine)
         outcome = F(HIT) if hit else (F(MISS) if done else (F(UNDECIDED) if stuck else LIVE))
@@ -140,7 +140,38 @@ def advance(state, n, threshold, close, drift, off_slope, bend, anywhere):
         # Where a ray begins inside, what is known to be inside is its begin.
         stop = (start if begun else b) if hit else then
         state[B + i] = stop if live else b
-        state[ROOT + i] = r if live else state[ROOT + i]
+        # From behind, Newton's step with the largest slope stays behind the root.
+        state[ROOT + i] = b + fb * flat if live else state[ROOT + i]
         state[TRIES + i] = tries
-        state[SLOPE + i] = -slope
     return looking
+
+
+@inlined
+def refine(table, kept, state, n, threshold):
+    """Bring the roots of n lanes, each the only one between A and B, near enough for one step of polish: by two of
+    Halley's method."""
+    for _ in range(2):
+        for i in range(n):
+            state[AT_A + i] = state[AT_B + i] = state[SLOPE + i] = ZERO
+        for k in range(kept):
+            row = table[k]
+            weight, inverse = row[WEIGHT], row[INVERSE]
+            steep, twist = SIX * weight * inverse, FOUR * inverse
+            for i in range(n):
+                s = row[T + i] - state[ROOT + i]
+                square = s * s
+                u = row[i] - inverse * square
+                u = u if u > ZERO else ZERO
+                rise = steep * u
+                state[AT_A + i] += weight * (u * u * u)
+                state[SLOPE + i] += rise * (u * s)
+                state[AT_B + i] += rise * (twist * square - u)
+        for i in range(n):
+            low, high = state[A + i], state[B + i]
+            slope = state[SLOPE + i]
+            slope = slope if slope > TINY else TINY
+            off = (state[AT_A + i] - threshold) / slope
+            bent = HALF * off * state[AT_B + i]
+            root = state[ROOT + i] - off * slope / (slope - bent if slope > bent + bent else HALF * slope)
+            root = root if root > low else low
+            state[ROOT + i] = root if root < high else high

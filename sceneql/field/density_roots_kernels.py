@@ -21,20 +21,18 @@ from sceneql.field.beam_kernels import (
     next_slice,
 )
 from sceneql.field.density_march_kernels import (
-    END,
-    FINE,
+    AT_A,
     LANES,
     LIVE,
     ROOT,
     STATE,
-    TRIES,
     VECTOR,
+    WEIGHT,
     A,
     B,
     F,
-    Q,
-    T,
     advance,
+    refine,
     sum_up,
 )
 from sceneql.field.density_slice_kernels import (
@@ -46,13 +44,18 @@ from sceneql.field.density_slice_kernels import (
     SPARE,
     SPOT,
     place_lanes,
+    reach_threshold,
     set_part,
     start_lanes,
+    tighten,
 )
 from sceneql.field.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS
 from sceneql.field.tape_ops import HIT, MISS, UNDECIDED
 from sceneql.kernels import inlined
 
+LOST, KEPT, ENDED = LANES, 2 * LANES, 3 * LANES
+"""Where in ``live`` (4 LANES,), behind the lanes' rays, there are rays left for the next slice and lanes that go on or
+have an outcome."""
 MOST_PARTS = 512
 """Rows of ``table``; where more parts reach into a slice, its rays are left to the certified routine."""
 ROW_OF, THRESHOLD, OTHER = range(3)
@@ -63,6 +66,8 @@ STEEPEST = 1.72
 """R times the largest slope of a density of weight 1, a little more than 96/(25 sqrt(5))."""
 NEARLY = 1.1
 """Only of densities up to so many times the threshold may rounding change on which side of it they are."""
+SURELY = 1.0 - 1.0e-9
+"""Of the threshold: less is below it whatever the rounding in float64."""
 UNIT = 1.2e-7
 """Two half units in the last place."""
 _ids, _wide = types.int64[::1], types.float64[:, ::1]
@@ -76,7 +81,7 @@ density_roots = late("sceneql.field.density_bundle_kernels:density_roots", DENSI
 @inlined
 def rounding(rows, bulk, bend, stiff, stiffer, negative, reach, threshold):
     """How far the computed density about c may be off where the lane begins, how much more for a meter from there, and
-    how far the computed slope, where places are off by UNIT reach.
+    how far the computed slope, where places are off by UNIT reach; and twice this.
 
     ``bulk``, ``stiff`` and ``stiffer`` are the sums of |w|, |w|/R and |w|/R^2, ``bend`` is the largest 1/R.
     Of positive parts sum w u^2 <= (sum w u^3)^(2/3) (sum w)^(1/3) by Hoelder's inequality, with |du/dt| <= 2/R; of a
@@ -91,18 +96,19 @@ def rounding(rows, bulk, bend, stiff, stiffer, negative, reach, threshold):
         F(unit * (3.0 + 2.0 * turns) + UNIT * (0.5 * rows + 4.0) * level),
         F(unit * turns * bend),
         F(STEEPEST * (30.0 * off * stiffer + (rows + 40) * UNIT * stiff)),
+        F(2.0 * off),
     )
 
 
 @inlined
-def note(room, state, lanes, count, live, rays, found, queue, met, doubted):
-    """Note the outcomes of some lanes, and put their rays into the queue: hits from its begin on, the undecided from
-    its end. How many of both there are then."""
+def note(room, state, count, live, rays, found, queue, met, doubted):
+    """Note the outcomes of the lanes in ``live`` from ENDED on, and put their rays into the queue: hits from its begin
+    on, the undecided from its end. How many of both there are then."""
     bases, inverse = room[SPOT + BASE], room[INVERSE_SPEED]
     outcomes, lows, highs, roots = found[FOUND_STATUS], found[FOUND_LOW], found[FOUND_HIGH], found[FOUND_ROOT]
     last = len(queue) - 1
     for k in range(count):
-        i = np.uint64(lanes[np.uint64(k)])
+        i = np.uint64(live[np.uint64(ENDED + k)])
         j = np.uint64(live[i])
         ray = np.uint64(rays[j])
         base, unit = bases[i], inverse[j]
@@ -121,39 +127,38 @@ def note(room, state, lanes, count, live, rays, found, queue, met, doubted):
 
 
 @inlined
-def move_lanes(row, kept, n):
-    """Put n lanes of a row, those ``kept``, together."""
+def move_lanes(row, first, live, n):
+    """Put n lanes, those in ``live`` from KEPT on, of what begins in a row at ``first`` together."""
     for i in range(n):
-        row[i] = row[np.uint64(kept[i])]
+        row[first + i] = row[np.uint64(first + live[KEPT + i])]
 
 
 @inlined
 def settle_lanes(table, rows, state, room, live, width, looking, left, later, rays, found, queue, met, doubted):
     """Note the outcomes of lanes, and put those ``looking`` on together: (rays left for the next slice, hits,
     undecided). Where no slice is ``later``, no ray is left for it."""
-    lost, kept, ended = live[LANES:], live[2 * LANES :], live[3 * LANES :]
     settled = 0
     for i in range(width):
         outcome = state[STATE + i]
-        ended[np.uint64(settled)] = i
+        live[np.uint64(ENDED + settled)] = i
         settled += 0 if (outcome == LIVE) | (outcome == F(MISS)) else 1
-    met, doubted = note(room, state, ended, settled, live, rays, found, queue, met, doubted)
+    met, doubted = note(room, state, settled, live, rays, found, queue, met, doubted)
     if later:
         for i in range(width):
-            lost[np.uint64(left)] = live[i]
+            live[np.uint64(LOST + left)] = live[i]
             left += 1 if state[STATE + i] == F(MISS) else 0
     if 0 < looking < width:
         n = 0
         for i in range(width):
-            kept[np.uint64(n)] = i
+            live[np.uint64(KEPT + n)] = i
             n += 1 if state[STATE + i] == LIVE else 0
         for k in range(rows):
-            for part in (0, T, Q):
-                move_lanes(table[k, part:], kept, n)
-        for start in (A, B, END, TRIES, FINE):
-            move_lanes(state[start:], kept, n)
-        move_lanes(room[SPOT + BASE], kept, n)
-        move_lanes(live, kept, n)
+            for part in range(0, WEIGHT, LANES):
+                move_lanes(table[k], part, live, n)
+        for row in range(A, AT_A, LANES):
+            move_lanes(state, row, live, n)
+        move_lanes(room[SPOT + BASE], 0, live, n)
+        move_lanes(live, 0, live, n)
         for i in range(width):
             state[STATE + i] = LIVE if i < n else F(MISS)
     return left, met, doubted
@@ -161,8 +166,8 @@ def settle_lanes(table, rows, state, room, live, width, looking, left, later, ra
 
 @inlined
 def search_slice(
-    table, kept, state, room, live, n, looking, later, threshold, off, drift, off_slope, bend, anywhere, rays,
-    found, queue, met, doubted,
+    table, kept, state, room, live, n, looking, later, threshold, off, drift, off_slope, blur, bend, anywhere,
+    rays, found, queue, met, doubted,
 ):  # fmt: skip
     """March all lanes, so many of which are ``looking``: (how many still are at the end of the slice, put first into
     ``live``, segments, hits, undecided)."""
@@ -172,17 +177,19 @@ def search_slice(
     while width > 0:
         whole = (width + VECTOR - 1) // VECTOR * VECTOR
         # Fewer than go into one vector take as long as one.
-        enough = width // 2 if width > VECTOR else 0
+        enough = width // 4 if width > VECTOR else 0
         while looking > enough:
-            sum_up(table, kept, state, whole)
+            sum_up(table, kept, state, whole, blur)
             spent += looking
             looking = advance(state, whole, threshold, off, drift, off_slope, bend, anywhere)
+        if not anywhere and looking < width:
+            refine(table, kept, state, whole, threshold)
         left, met, doubted = settle_lanes(
             table, kept, state, room, live, width, looking, left, later, rays, found, queue, met, doubted
         )
         width = looking
     for i in range(left):
-        live[i] = live[LANES + i]
+        live[i] = live[LOST + i]
     return left, spent, met, doubted
 
 
@@ -196,6 +203,15 @@ def leave_undecided(room, live, n, rays, found, queue, doubted):
         found[FOUND_LOW, rays[j]] = room[SPOT + BASE, i] * room[INVERSE_SPEED, j]
         queue[last - i] = rays[j]
     return doubted + n
+
+
+@inlined
+def densest(spans, m, start, end):
+    """No less than the largest density in a slice of a beam."""
+    most = 0.0
+    for i in range(m):
+        most += spans[2, i] if spans[0, i] < end and spans[1, i] > start else 0.0
+    return most
 
 
 @inlined
@@ -214,17 +230,23 @@ def search_packet(
     spent = 0
     fresh = True
     begin = beam[LOW]
+    leveled, level = 0.0, INFINITE
     while n > 0:
         start, end = next_slice(spans, m, begin)
         if start == np.inf:
             return spent, met, doubted
         if lowest <= 0.5:
             end = np.inf
-        place_lanes(room, live, state, n, fresh, start, end, lowest)
+        if densest(spans, m, start, end) < threshold * SURELY:
+            if end == np.inf:
+                return spent, met, doubted
+            begin = end
+            continue
+        whole = (n + VECTOR - 1) // VECTOR * VECTOR
+        place_lanes(room, live, state, n, whole, fresh, start, end, lowest)
         fresh = False
         rows = 0
-        bulk = bend = stiff = stiffer = leveled = 0.0
-        level = INFINITE
+        bulk = bend = stiff = stiffer = 0.0
         negative = False
         for i in range(m):
             if spans[0, i] < end and spans[1, i] > start:
@@ -232,7 +254,7 @@ def search_packet(
                 if part[7] != leveled:
                     leveled = part[7]
                     level = F((CLEARLY * threshold / leveled) ** (1.0 / 3.0)) if leveled > threshold > 0.0 else INFINITE
-                if set_part(part, room, table[rows], state, n, level) == 0:
+                if set_part(part, room, table[rows], state, whole, level) == 0:
                     continue
                 rows += 1
                 weight, steep = abs(part[7]), 1.0 / part[6]
@@ -244,11 +266,13 @@ def search_packet(
                 if rows == table.shape[0]:
                     return spent, met, leave_undecided(room, live, n, rays, found, queue, doubted)
         reach = min(end, beam[HIGH]) - start + 2.0 * own[RADIUS_OF]
-        off, drift, off_slope = rounding(rows, bulk, bend, stiff, stiffer, negative, reach, threshold)
-        looking = start_lanes(state, n, F(threshold), off, drift, negative, anywhere)
+        off, drift, off_slope, blur = rounding(rows, bulk, bend, stiff, stiffer, negative, reach, threshold)
+        if reach_threshold(state, whole, F(threshold), off, drift):
+            tighten(table, rows, state, whole, F(threshold), off, drift)
+        looking = start_lanes(state, whole, F(threshold), off, drift, negative, anywhere)
         n, more, met, doubted = search_slice(
             table, rows, state, room, live, n, looking, end < np.inf, F(threshold), off, drift,
-            off_slope, F(BENT * stiffer), anywhere, rays, found, queue, met, doubted,
+            off_slope, blur, F(BENT * stiffer), anywhere, rays, found, queue, met, doubted,
         )  # fmt: skip
         spent += more
         if end == np.inf:

@@ -10,9 +10,12 @@ from sceneql.field.density_march_kernels import (
     DEEP,
     END,
     FINE,
+    HALF,
     INVERSE,
     LANES,
+    LESS,
     LIVE,
+    MORE,
     ONE,
     ROOT,
     STATE,
@@ -26,15 +29,18 @@ from sceneql.field.density_march_kernels import (
     Q,
     T,
 )
+from sceneql.field.single_kernels import lane
 from sceneql.field.tape_ops import HIT, MISS
 from sceneql.kernels import inlined
 
-SPOT, SPANS, BEAM_ROW, OWN_ROW, SPARE, ROOM = WIDE, WIDE + 7, WIDE + 9, WIDE + 10, WIDE + 11, WIDE + 17
+SPOT, SPANS, BEAM_ROW, OWN_ROW, SPARE, ROOM = WIDE, WIDE + 7, WIDE + 10, WIDE + 11, WIDE + 12, WIDE + 18
 BASE = 6
 """Rows of ``room`` (ROOM, n): rays, lanes (place, direction, where the slice begins on the ray), where parts are
-entered and left along the axis of a beam, the bundle's beam and a packet's, and working memory of theirs."""
+entered and left along the axis of a beam and how dense they are in it at most, the bundle's beam and a packet's, and
+working memory of theirs."""
 NARROW, HAIR = F(2.0e-5), F(1.0e-6)
 """Width of a bracket, and what is searched beyond the parts, relative to the ray's piece."""
+TWO, THREE = F(2.0), F(3.0)
 CLEARLY = F(1.001)
 """Densities so many times the threshold tell the inside, where rounding is less than what is beyond it."""
 INFINITE = F(np.inf)
@@ -50,8 +56,9 @@ def pick(source, live, n, target):
 
 
 @inlined
-def place_lanes(room, live, state, n, fresh, begin, end, lowest):
-    """Set the lanes' rays at the begin of a slice, and where on them it ends."""
+def place_lanes(room, live, state, given, n, fresh, begin, end, lowest):
+    """Set the rays of n lanes at the begin of a slice, and where on them it ends; those behind the ``given`` reach
+    nothing."""
     bases = room[SPOT + BASE]
     far, behind, stretch = room[SPARE], room[SPARE + 1], room[SPARE + 2]
     if fresh:
@@ -76,6 +83,8 @@ def place_lanes(room, live, state, n, fresh, begin, end, lowest):
         state[AT_B + i] = -INFINITE
         state[TOP + i] = ZERO
         state[DEEP + i] = INFINITE
+    for i in range(given, n):
+        state[END + i] = -INFINITE
     for axis in range(3):
         spot, way = room[SPOT + axis], room[SPOT + 3 + axis]
         if fresh:
@@ -89,6 +98,15 @@ def place_lanes(room, live, state, n, fresh, begin, end, lowest):
             pick(room[DX + axis], live, n, way)
             for i in range(n):
                 spot[i] += bases[i] * way[i]
+
+
+@lane
+def densest(p, t, inverse, end):
+    """The largest u of a point between 0 and ``end``."""
+    s = t if t < end else end
+    s = t - (s if s > ZERO else ZERO)
+    u = p - inverse * (s * s)
+    return u if u > ZERO else ZERO
 
 
 @inlined
@@ -109,6 +127,7 @@ def set_part(part, room, row, state, n, level):
     reach = F(radius)
     weight = F(part[7])
     most = weight if weight > ZERO else ZERO
+    inverse_single = F(inverse)
     lanes = np.int32(0)
     for i in range(n):
         p, t = row[i], row[T + i]
@@ -121,20 +140,60 @@ def set_part(part, room, row, state, n, level):
         state[AT_A + i] = first if near else entry
         state[AT_B + i] = last if near else exit
         lanes = np.int32(lanes + (np.int32(1) if near else np.int32(0)))
-        state[TOP + i] += most * (p * p * p) if near else ZERO
+        top = densest(p, t, inverse_single, state[END + i])
+        state[TOP + i] += most * (top * top * top) if near else ZERO
         lift = p - level
         inner = t - reach * np.sqrt(lift if lift > ZERO else ZERO)
         deep = state[DEEP + i]
         inside = (lift > ZERO) & (inner > ZERO) & (inner < state[END + i]) & (inner < deep)
         state[DEEP + i] = inner if inside else deep
     row[WEIGHT] = weight
-    row[INVERSE] = F(inverse)
+    row[INVERSE] = inverse_single
     return lanes
 
 
 @inlined
+def reach_threshold(state, n, threshold, close, drift):
+    """Whether all parts together may in some lane."""
+    lanes = np.int32(0)
+    for i in range(n):
+        off = close + drift * state[END + i]
+        lanes = np.int32(lanes + (np.int32(1) if state[TOP + i] > threshold - off else np.int32(0)))
+    return lanes > 0
+
+
+@inlined
+def tighten(table, rows, state, n, threshold, close, drift):
+    """Bring AT_A and AT_B of n lanes together, to where all parts are dense enough for the threshold.
+
+    Where all others are densest, a part still has to give what they lack. At densities above the threshold ``close`` +
+    ``drift`` t bounds the rounding of a sum, and of a share, as many times as they are denser.
+    """
+    scale = TWO / threshold if threshold > ZERO else ZERO
+    for k in range(rows):
+        row = table[k]
+        weight, inverse = row[WEIGHT], row[INVERSE]
+        if not weight > ZERO:
+            continue
+        share, reach = ONE / weight, ONE / np.sqrt(inverse)
+        for i in range(n):
+            p, t, end = row[i], row[T + i], state[END + i]
+            top = densest(p, t, inverse, end)
+            excess = (state[TOP + i] * (MORE + scale * (close + drift * end)) - threshold) * share
+            least = top * top * top - excess
+            # No more than the cube root: 1 + z + z >= 3 z^(2/3) for z = least/top^3.
+            level = THREE * LESS * least * top / (top * top * top + TWO * least if least > ZERO else ONE)
+            half = reach * np.sqrt(p - level if p > level else ZERO)
+            entry, exit = state[AT_A + i], state[AT_B + i]
+            first = entry if entry > t - half else t - half
+            last = exit if exit < t + half else t + half
+            state[AT_A + i] = first if least > ZERO else entry
+            state[AT_B + i] = last if least > ZERO else exit
+
+
+@inlined
 def start_lanes(state, n, threshold, close, drift, negative, anywhere):
-    """Begin the search in each lane, between where the parts of the slice are entered and left; in how many.
+    """Begin the search in each lane, where the parts of the slice are dense enough; in how many.
 
     Where all parts together cannot reach the threshold, nothing is met. Where no part is negative, a place is inside
     if one part alone tells. ``close`` + ``drift`` t: see ``density_march_kernels.advance``.
@@ -151,7 +210,7 @@ def start_lanes(state, n, threshold, close, drift, negative, anywhere):
         off = close + drift * high
         known = positive & (off < (CLEARLY - ONE) * threshold) & (deep < high) & (deep > low)
         state[A + i] = low
-        state[B + i] = deep if known else high
+        state[B + i] = deep if known else (high if anywhere else HALF * (low + high))
         state[END + i] = high
         state[FINE + i] = NARROW * way
         state[TRIES + i] = ZERO

@@ -118,6 +118,10 @@ CACHE_LINE = 64
 """Bytes: vectors that lie across two of these are read and written at half the speed."""
 
 
+STAGGER = 8
+"""Columns that no ray has: rows whose begins are powers of two apart push each other out of the nearest cache."""
+
+
 def lined(shape: tuple[int, ...] | int, dtype: Any = np.float64) -> NDArray[Any]:
     """Zeros from the begin of a cache line on."""
     size = int(np.prod(shape)) * np.dtype(dtype).itemsize
@@ -149,7 +153,7 @@ class Memory:
         beams, doubles = lined((BEAM, -(-count // GROUP) + 1)), lined((rows, LANES))
         near = np.zeros((2 * rows, 4), dtype=np.int32), lined(self.singles.shape, single), lined(tape.parts.shape)
         plan = plan_of(tape)
-        whole = -(-max(count, density_march_kernels.LANES, len(tape.parts)) // LANES) * LANES
+        whole = STAGGER + -(-max(count, density_march_kernels.LANES, len(tape.parts)) // LANES) * LANES
         march = (
             plan,
             lined(4 * density_march_kernels.LANES + count + len(tape.parts), np.int64),
