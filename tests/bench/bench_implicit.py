@@ -90,7 +90,7 @@ class Picture:
     def __init__(self, name: str) -> None:
         self.tape, self.view, self.clip = scene_tape(name), view(name), SCENES[name]["clip"]
         self.picture = np.zeros((HEIGHT, WIDTH), dtype=np.float32)
-        self.depth = np.zeros((HEIGHT, WIDTH))
+        self.depth = np.zeros((HEIGHT, WIDTH), dtype=np.float32)
         self.pixels = tile_pixels()
         x, y = self.pixels.astype(np.int64)
         turns = np.arange(256).reshape(16, 16).T.ravel()

@@ -5,7 +5,8 @@ import numpy as np
 
 from sceneql.field.batch_gradient_kernels import differentiate
 from sceneql.field.batch_kernels import evaluate
-from sceneql.field.packet_kernels import LANES, PACKET
+from sceneql.field.density_roots_kernels import ROW_OF
+from sceneql.field.packet_kernels import LANES, PACKET, has
 from sceneql.field.packet_roots_kernels import first_roots
 from sceneql.field.ray_rows import FOUND_ROOT, FOUND_STATUS
 from sceneql.field.tape_ops import DENSITY, HIT, UNDECIDED
@@ -45,12 +46,15 @@ def aim(rays, n, pixels, x, y, view):
 
 
 @inlined
-def shade(code, constants, parts, doubles, points, slopes, view, n):
-    """Lambert's law at n points into the first row of the last of ``slopes``: 0, where the light is not faced."""
-    evaluate(code, constants, parts, doubles, points, n)
+def shade(code, known, sign, constants, parts, doubles, points, slopes, view, n):
+    """Lambert's law at n points into the first row of the last of ``slopes``: 0, where the light is not faced.
+
+    ``sign`` times the tape grows outward; its gradient asks for the values of the first ``known`` rows.
+    """
+    evaluate(code[:known], constants, parts, doubles, points, n)
     differentiate(code, constants, parts, doubles, slopes, n)
     last = code.shape[0] - 1
-    lx, ly, lz = view[3, 0], view[3, 1], view[3, 2]
+    lx, ly, lz = sign * view[3, 0], sign * view[3, 1], sign * view[3, 2]
     gx, gy, gz = slopes[last, 0], slopes[last, 1], slopes[last, 2]
     for i in range(n):
         x, y, z = gx[i], gy[i], gz[i]
@@ -63,7 +67,7 @@ def shade(code, constants, parts, doubles, points, slopes, view, n):
     " int64[::1], float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1],"
     " float64[:, ::1], int32[:, ::1], float32[:, ::1], float64[:, ::1], int64[::1], int64[::1], float64[:, ::1],"
     " float32[:, ::1], float64[::1], int32[:, ::1], float64[:, :, ::1], float64[:, ::1], int64[:, ::1],"
-    " float64[:, ::1], float64[:, ::1], float64, int64, int64, float32[::1], float64[::1])",
+    " float64[:, ::1], float64[:, ::1], float64, int64, int64, float32[::1], float32[::1])",
 )
 def draw_row(
     code,
@@ -117,13 +121,9 @@ def draw_row(
     certified = 0
     undecided = 0
     top = row * TILE
-    light = slopes[code.shape[0] - 1, 0]
     offsets, turns, hits, faced, spots = numbers[0], numbers[1], numbers[2], numbers[3], numbers[4]
     # Of a density field, a bundle that hits something has left the parts that matter to it.
-    near, near_of = code, parts
-    for k in range(code.shape[0]):
-        if code[k, 0] == DENSITY or plan[0] >= 0:
-            near, near_of = short[: code.shape[0]], near_parts
+    near_of = near_parts if has(code, DENSITY) or plan[ROW_OF] >= 0 else parts
     rows = slice(top * width, (top + TILE) * width)
     picture[rows] = 0.0
     depth[rows] = -1.0
@@ -146,6 +146,14 @@ def draw_row(
         )  # fmt: skip
         spent += a
         certified += b
+        near = short if has(code, DENSITY) or plan[ROW_OF] >= 0 else code
+        length, sign = code.shape[0], 1.0
+        known = length
+        if plan[ROW_OF] >= 0 and b == 0:  # all hits are roots of c - D: D alone tells their slopes
+            known, sign = plan[ROW_OF], -1.0
+            length = known + 1
+        near = near[:length]
+        light = slopes[length - 1, 0]
         base = top * width + left
         met = 0
         outcomes, roots = found[FOUND_STATUS], found[FOUND_ROOT]
@@ -172,7 +180,7 @@ def draw_row(
                     for i in range(some):
                         j = np.uint64(own[i])
                         p[i] = place[i] = o[j] + roots[j] * d[j]
-            shade(near, constants, near_of, doubles, points, slopes, view, some)
+            shade(near, known, sign, constants, near_of, doubles, points, slopes, view, some)
             for i in range(some):
                 j = np.uint64(own[i])
                 at = np.uint64(base + offsets[j])
