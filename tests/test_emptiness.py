@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from meshes import tape_of as plain_tape
 from moment import IDENTITY, FakeMoment, const, formula
 from sceneql import pipeline
 from sceneql.failure import RunFailure
@@ -14,7 +15,6 @@ from sceneql.field.emptiness import nowhere_defined, proved_empty
 from sceneql.field.solid import field_values
 from sceneql.simulation.objects.implicit import Implicit, Within
 from sceneql.simulation.solid import traced
-from test_mesh import tape_of as plain_tape
 
 LEVEL = st.floats(-2.0, 2.0)
 

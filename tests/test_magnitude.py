@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from PIL import Image
 
+from meshes import tape_of
 from moment import IDENTITY, FakeMoment, formula
 from sceneql import pipeline
 from sceneql.field.magnitude import ORDINARY, leveling
@@ -14,7 +15,6 @@ from sceneql.mesh.measures import volume
 from sceneql.mesh.polygonise import polygonise
 from sceneql.simulation.objects.implicit import Implicit, Within
 from sceneql.simulation.solid import traced
-from test_mesh import tape_of
 
 QUARTIC = "x^4 + y^4 + z^4 - 0.1"
 WAVES = "x^2 + y^2 - 0.3 + sin(3*z)/5"

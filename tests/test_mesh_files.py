@@ -5,6 +5,7 @@ import pytest
 import trimesh
 from click.testing import CliRunner
 
+from meshes import tape_of
 from sceneql import pipeline
 from sceneql.cli import cli
 from sceneql.field.solid import paint_values
@@ -12,7 +13,6 @@ from sceneql.mesh.polygonise import polygonise
 from sceneql.mesh.polygons import Polygons
 from sceneql.mesh.tolerance import distance
 from sceneql.report.mesh import mesh
-from test_mesh import tape_of
 
 SCENE = """
 objects:

@@ -1,0 +1,66 @@
+"""Evaluators of many points agree with those of one; bounds of slopes hold."""
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sceneql.field.batch_gradient_kernels import differentiate
+from sceneql.field.batch_kernels import LANES, evaluate
+from sceneql.field.interval_kernels import box
+from sceneql.field.simplify_kernels import simplify
+from sceneql.field.solid import field_gradients, field_values, many_gradients, scratch
+from sceneql.field.steepness_kernels import steepness
+from sceneql.field.tape_ops import WHOLE
+from sceneql.frame import Tape
+from test_field import tapes
+
+
+def program(tape):
+    return tape.code, tape.constants, tape.parts
+
+
+@st.composite
+def boxes(draw):
+    low = np.array([draw(st.floats(-2.0, 2.0)) for _ in range(3)])
+    return low, low + draw(st.sampled_from([1e-3, 0.1, 0.5, 2.0]))
+
+
+@settings(max_examples=150)
+@given(tape=tapes(), place=boxes(), seed=st.integers(0, 9))
+def test_evaluators_of_many_points_agree_to_the_bit_also_when_simplified(tape, place, seed):
+    low, high = place
+    points = np.zeros((3, LANES))
+    points[:, :40] = np.random.default_rng(seed).uniform(low, high, (40, 3)).T
+    room = scratch(tape)
+    sides = [float(c) for pair in zip(low, high, strict=True) for c in pair]
+    status = box(*program(tape), room, *sides)[2]
+    short, near = np.empty_like(tape.code), np.empty_like(tape.parts)
+    rows, used = simplify(tape.code, tape.parts, room, status == WHOLE, short, near)
+    expected = field_values(tape, points[:, :40].T)
+    slopes = field_gradients(tape, points[:, :40].T)
+    with np.errstate(all="ignore"):
+        assert np.array_equal(many_gradients(tape, points.T), field_gradients(tape, points.T), equal_nan=True)
+    for shorter in (tape, Tape(short[:rows], tape.constants, near[:used])):
+        registers, slope = np.zeros((len(shorter.code), LANES)), np.zeros((len(shorter.code), 3, LANES))
+        evaluate(*program(shorter), registers, points, 40)
+        assert np.array_equal(registers[len(shorter.code) - 1, :40], expected, equal_nan=True)
+        with np.errstate(all="ignore"):
+            differentiate(*program(shorter), registers, slope, 40)
+        assert np.array_equal(slope[-1, :, :40].T, slopes, equal_nan=True)
+
+
+@settings(max_examples=300)
+@given(tape=tapes(), place=boxes(), seed=st.integers(0, 9))
+def test_steepness_bounds_how_fast_any_tape_changes(tape, place, seed):
+    low, high = place
+    room = scratch(tape)
+    sides = [float(c) for pair in zip(low, high, strict=True) for c in pair]
+    if box(*program(tape), room, *sides)[2] != WHOLE:
+        return
+    bounds = np.array(steepness(*program(tape), room))
+    if not np.isfinite(bounds).all():
+        return
+    ends = np.random.default_rng(seed).uniform(low, high, (2, 40, 3))
+    f = [field_values(tape, end) for end in ends]
+    most = (np.abs(ends[1] - ends[0]) * bounds).sum(axis=1)
+    assert (np.abs(f[1] - f[0]) <= most * (1 + 1e-9) + 1e-9 * (1 + np.abs(f[0]))).all()

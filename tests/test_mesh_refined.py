@@ -1,0 +1,109 @@
+"""Laws of refined cells: closed beside coarse ones, and honest about what they do not resolve."""
+
+import math
+
+import numpy as np
+import pytest
+
+from meshes import (
+    BALL,
+    PART,
+    STEINER,
+    TANGLECUBE,
+    TORUS,
+    TURNED,
+    WALL,
+    assert_closed_manifold,
+    cut,
+    cut_finer,
+    tape_of,
+)
+from sceneql.field.solid import field_gradients, field_values
+from sceneql.mesh import moves
+from sceneql.mesh.measures import euler_characteristic, volume
+from sceneql.mesh.unresolved import unresolved
+
+
+def test_resolved_shapes_hide_next_to_nothing():
+    found = unresolved(tape_of(TORUS), (-1.5,) * 3, (1.5,) * 3, 0.05)
+    assert found.volume < 1e-6
+    assert unresolved(tape_of(BALL), (-1.1,) * 3, (1.1,) * 3, 0.05).cells == 0
+
+
+def test_what_passes_between_the_samples_is_told():
+    drop = "min(sqrt(x^2 + y^2 + z^2) - 0.5, sqrt((x - 0.83)^2 + (y - 0.04)^2 + (z - 0.03)^2) - 0.01)"
+    with_drop = unresolved(tape_of(drop), (-1.0,) * 3, (1.0,) * 3, 0.125)
+    alone = unresolved(tape_of("sqrt(x^2 + y^2 + z^2) - 0.5"), (-1.0,) * 3, (1.0,) * 3, 0.125)
+    assert with_drop.cells > alone.cells
+    assert with_drop.volume - alone.volume > 4 / 3 * math.pi * 0.01**3
+    wall = "abs(sqrt(x^2 + y^2 + z^2) - 0.7) - 0.0005"
+    assert unresolved(tape_of(wall), (-1.0,) * 3, (1.0,) * 3, 0.125).volume > 0.0061575226482
+
+
+FAR_DROP = "min(sqrt(x^2 + y^2 + z^2) - 0.5, sqrt((x - 0.83)^2 + (y - 0.04)^2 + (z - 0.03)^2) - 0.04)"
+
+
+@pytest.mark.parametrize(
+    ("text", "half", "cells"),
+    [(PART, 1.0, 20), (STEINER, 0.6, 40), (WALL, 1.0, 16), (TURNED, 1.3, 20), (TANGLECUBE, 3.0, 16)],
+    ids=["part", "steiner", "wall", "cube", "tanglecube"],
+)
+def test_refined_cells_meet_the_others_without_gaps(text, half, cells):
+    found, _ = cut_finer(text, half, cells)
+    assert_closed_manifold(found)
+    assert len(np.unique(found.triangles)) == len(found.vertices)
+    assert len(found.triangles) > len(cut(text, half, cells).triangles)
+    slopes = np.linalg.norm(field_gradients(tape_of(text), found.vertices), axis=1)
+    steep = slopes > 1e-3
+    assert (np.abs(field_values(tape_of(text), found.vertices))[steep] / slopes[steep]).max() < 1e-6
+
+
+@pytest.mark.parametrize("cells", [48, 96])
+def test_no_triangle_faces_inward_where_fine_cells_meet_coarse_ones(cells):
+    found, _ = cut_finer(TANGLECUBE, 3.0, cells)
+    a, b, c = (found.vertices[found.triangles[:, k]] for k in range(3))
+    inward = (np.cross(b - a, c - a) * field_gradients(tape_of(TANGLECUBE), (a + b + c) / 3)).sum(axis=1) < 0
+    assert inward.sum() == 0
+    assert euler_characteristic(found.triangles) == -8
+
+
+def test_no_corner_is_tried_again_before_something_near_it_has_moved(monkeypatch):
+    tried = []
+
+    def noted(tape, places, normals, star, vertex):
+        tried.append((vertex, places[star].tobytes()))
+        return moved(tape, places, normals, star, vertex)
+
+    moved = moves._moved
+    monkeypatch.setattr(moves, "_moved", noted)
+    gyroid = "sin(9*x)*cos(9*y) + sin(9*y)*cos(9*z) + sin(9*z)*cos(9*x)"
+    found, _ = cut_finer(f"max({gyroid}, sqrt(x^2 + y^2 + z^2) - 1)", 1.0, 40)
+    assert_closed_manifold(found)
+    assert len(tried) == len(set(tried)) > 10
+
+
+def test_what_passes_between_the_samples_is_found_by_finer_ones():
+    assert euler_characteristic(cut(FAR_DROP, 1.0, 16).triangles) == 2
+    found, left = cut_finer(FAR_DROP, 1.0, 16)
+    assert euler_characteristic(found.triangles) == 4
+    assert left.volume < 1e-2 * unresolved(tape_of(FAR_DROP), (-1.0,) * 3, (1.0,) * 3, 0.125).volume
+    assert euler_characteristic(cut_finer(TANGLECUBE, 3.0, 16)[0].triangles) == -8
+
+
+def test_faces_that_hold_nodes_hide_nothing():
+    # Cells of 0.1 m cut in four have nodes at 0.7 m, where f is exactly zero.
+    assert cut_finer("max(abs(x), abs(y), abs(z)) - 0.7", 1.0, 20)[1].volume == 0.0
+
+
+def test_refined_walls_that_stay_too_thin_are_told():
+    before = unresolved(tape_of(WALL), (-1.0,) * 3, (1.0,) * 3, 0.125)
+    _, left = cut_finer(WALL, 1.0, 16)
+    assert 0.0061575226482 < left.volume < 0.3 * before.volume
+
+
+def test_refined_edges_are_cut_less():
+    errors = [
+        1.4**3 - volume(found.vertices, found.triangles)
+        for found in (cut(TURNED, 1.3, 32), cut_finer(TURNED, 1.3, 32)[0])
+    ]
+    assert 0.0 < errors[1] < errors[0] / 12  # cells of a quarter, so a sixteenth of what is cut off
