@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from islands import TETHER, assembly, balls, final, fixed, simple, springs
 from runs import watch
 from sceneql.failure import LimitRefused, RunFailure
-from sceneql.pipeline import load
+from sceneql.pipeline import load, render
 from sceneql.simulation import jacobian as layout
 from sceneql.simulation import springs as springs_module
 from sceneql.simulation.linear import stage, stage_kernels
@@ -158,17 +158,38 @@ def test_short_steps_swing_like_a_rod_on_a_very_stiff_spring(tmp_path, word, sti
     assert error < (2e-3 if word == "implicit_euler" else 1e-5)
 
 
+def test_a_step_without_a_solution_is_halved_until_it_has_one_and_that_is_told(tmp_path):
+    """y1 = y0 + h y1^2 has a real solution as long as 4 h y0 < 1: not from 1 in 0.45 s, nor from there in 0.225 s."""
+    script = """models: {blow: {equations: {start: {y: 1}, rate: {y: y^2}}}}
+solvers: {main: {implicit_euler: {step: 0.45 s}}}
+clock: {end: 0.45 s}
+outputs: {table: {record: {of: [blow.y]}}}
+"""
+    y = 1.0
+    for h in (0.225, 0.1125, 0.1125):
+        y = (1.0 - math.sqrt(1.0 - 4.0 * h * y)) / (2.0 * h)
+    path = tmp_path / "scene.yaml"
+    path.write_text(script, encoding="utf-8")
+    graph = load(path, pruned=False)
+    march = IslandRun(graph, graph.islands[0]).march
+    assert march.advance(0.45)[0] == pytest.approx(y, rel=1e-8)
+    assert (march.statistics.steps, march.statistics.rejected) == (3, 2)
+    (told,) = render(load(path), folder=tmp_path).warnings
+    assert (told.code, told.span.line) == ("steps-halved", 2)
+    assert "no solution 2 times: steps of 0.45 s" in told.message
+
+
 def test_a_step_that_newton_finds_no_solution_of_says_so(tmp_path):
-    """y1 = 1 + y1^2 / 2 has no real solution."""
+    """y = 1/(1 - t) ends at 1 s: no step over that instant has a solution, however often it is halved."""
     blow_up = "{equations: {start: {y: 1}, rate: {y: y^2}}}"
     script = (
-        f"models: {{blow: {blow_up}}}\nsolvers: {{main: {{implicit_euler: {{step: 0.5 s}}}}}}\nclock: {{end: 1 s}}\n"
+        f"models: {{blow: {blow_up}}}\nsolvers: {{main: {{implicit_euler: {{step: 0.5 s}}}}}}\nclock: {{end: 2 s}}\n"
     )
     path = tmp_path / "scene.yaml"
     path.write_text(script, encoding="utf-8")
     graph = load(path, pruned=False)
     with pytest.raises(RunFailure, match="Newton's method finds no solution") as caught:
-        IslandRun(graph, graph.islands[0]).march.advance(1.0)
+        IslandRun(graph, graph.islands[0]).march.advance(2.0)
     assert caught.value.span is not None
 
 

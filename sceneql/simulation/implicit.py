@@ -17,7 +17,7 @@ KERNELS = "sceneql.simulation.solvers.implicit_runge_kutta_kernels"
 ON_GRIDS = "sceneql.simulation.grids.stage_kernels"
 NEWTON = 1e-10
 """Relative and absolute tolerance of Newton's method where steps are fixed."""
-UNSOLVED = "Newton's method finds no solution of this step: take a shorter one"
+UNSOLVED = "Newton's method finds no solution, not even of a thousandth of this step: take shorter ones"
 UNSOLVED_ON_GRID = f"{UNSOLVED}, or with a drift `linear: auto`"
 SHARE = 0.02
 """Part of the tolerance that Newton's method may leave as its own error."""

@@ -34,9 +34,13 @@ STEPS, REJECTED, EVENTS, REPEATS, LEFT, INDEX, GRID, PENDING = range(8)
 """Tallies; impacts since time moved; steps left in this call; the entry that a failure names; grid points passed; the
 pair whose impact is due (-1: none)."""
 
-ADAPTIVE, ORDER, LOCAL, LAST_STAGE, CONTROLS, HELD, SWAPPED, COUNTS = range(8, 16)
-"""What solver and island are (system.Stepper); whether a local contact holds something (CHANGED_AT); whether the arrays
-of a step's start and end have changed places, for the end of a step is the next one's start."""
+ADAPTIVE, ORDER, LOCAL, LAST_STAGE, CONTROLS, HALVES, HELD, SWAPPED, COUNTS = range(8, 17)
+"""What solver and island are (system.Stepper; HALVES: it is `implicit, and nothing takes its place); whether a local
+contact holds something (CHANGED_AT); whether the arrays of a step's start and end have changed places, for the end of a
+step is the next one's start."""
+
+SHORTEST = 1e-3
+"""Part of a step of given length below which it is not halved any more."""
 
 REACHED, PAUSED, NOT_FINITE, GROWTH, STEP_TOO_SMALL, STUCK = range(6)
 
@@ -142,7 +146,8 @@ def next_factor(error, previous, order, rejected):
 
 @lean_inlined
 def try_steps(step, functions, t0, t1, y0, rate0, y1, work, settings, numbers, floats, ints, clock, counts):
-    """Step until the error is accepted: (end of the step, status). A fixed step is tried once."""
+    """Step until the error is accepted: (end of the step, status). A fixed step is tried once, but halved where its
+    equations have no solution: contacts let steps end before the grid's next point, too."""
     adaptive = counts[ADAPTIVE] > 0
     rejected = False
     while True:
@@ -165,9 +170,11 @@ def try_steps(step, functions, t0, t1, y0, rate0, y1, work, settings, numbers, f
         if counts[CONTROLS] > 0:
             h = min(work[0], 0.9 * h)
         else:
-            h *= next_factor(error, 1.0, counts[ORDER], True)
-        if not adaptive or t0 + 0.1 * h <= t0:
-            return t1, STEP_TOO_SMALL if adaptive else NOT_FINITE
+            h *= next_factor(error, 1.0, counts[ORDER], True) if adaptive else 0.5
+        if adaptive and t0 + 0.1 * h <= t0:
+            return t1, STEP_TOO_SMALL
+        if not adaptive and (counts[HALVES] == 0 or h < SHORTEST * clock[STEP]):
+            return t1, NOT_FINITE
         rejected = True
         t1 = t0 + h
 

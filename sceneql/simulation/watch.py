@@ -98,6 +98,7 @@ class Watch:
         self.invariants = [one for island in islands for one in invariants_of(island)]
         self._ringing = [found for island in run.islands if (found := ringing(island)) is not None]
         self._fields = [(island, fields) for island in run.islands if (fields := watched(island))]
+        self._islands = run.islands
         self._turning = [span for island in run.islands if _adaptive(island) for span in island.assembly.turns.beyond]
         self._started, self._spent = time.perf_counter(), 0.0
 
@@ -127,6 +128,7 @@ class Watch:
             message = f"this turns more than {MOST:,} times in the run: steps that a tolerance chooses go over some"
             help = "choose a solver of given steps, or bound its `largest_step`"
             found.append(Diagnostic("many-turns", message, span, help, severity="warning"))
+        found += [warning for island in self._islands if (warning := _halved(island)) is not None]
         for island, fields in self._fields:
             for extremes in fields:
                 found += extremes.warnings(island)
@@ -192,6 +194,17 @@ def _foretold(island: IslandRun) -> float:
 def _adaptive(island: IslandRun) -> bool:
     """Whether a tolerance chooses its steps."""
     return island.solver.stepper().adaptive
+
+
+def _halved(island: IslandRun) -> Diagnostic | None:
+    """What is told of a solver that was given one length of step and took shorter ones where it found no solution."""
+    stepper, tries = island.solver.stepper(), island.march.statistics.rejected
+    if stepper.adaptive or not stepper.unsolved or tries == 0:
+        return None
+    times = "once" if tries == 1 else f"{tries:,} times"
+    message = f"Newton's method found no solution {times}: steps of {stepper.first_step:.4g} s were halved there"
+    span = island.graph.tasks[island.island.solver].span
+    return Diagnostic("steps-halved", message, span, "shorter steps are more exact there", severity="warning")
 
 
 def _telling(island: IslandRun) -> tuple[str, ...]:
