@@ -4,7 +4,7 @@
 from numba import types
 
 from sceneql.kernels import lean, lean_inlined
-from sceneql.simulation.lanes_kernels import fma, folded, guess, load, spread, store
+from sceneql.lanes_kernels import below, bits_below, first_bit, fma, folded, guess, least, load, most, spread, store
 
 S = types.float32[::1]
 A = types.float64[::1]
@@ -29,3 +29,27 @@ def doubles(a, b, number, out):
 @lean(types.float32(S, S, types.float32, S))
 def singles(a, b, number, out):
     return calculated(a, b, number, out, 16)
+
+
+@lean_inlined
+def compared(a, b, out, single):
+    x, y = load(a, 0), load(b, 0)
+    store(out, 0, below(x, y, x, 2.0))
+    store(out, len(a), abs(x - y))
+    store(single, 0, x)
+    return bits_below(x, y), least(x), most(x)
+
+
+@lean(types.Tuple((types.int64, types.float64, types.float64))(A, A, A, S))
+def doubles_compared(a, b, out, single):
+    return compared(a, b, out, single)
+
+
+@lean(types.Tuple((types.int64, types.float32, types.float32))(S, S, S, S))
+def singles_compared(a, b, out, single):
+    return compared(a, b, out, single)
+
+
+@lean("int64(int64)")
+def first_of(bits):
+    return first_bit(bits)

@@ -5,7 +5,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from lanes_of_numbers_kernels import doubles, singles
+from lanes_of_numbers_kernels import doubles, doubles_compared, first_of, singles, singles_compared
 
 KINDS = pytest.mark.parametrize(("kernel", "kind"), [(doubles, np.float64), (singles, np.float32)])
 
@@ -55,3 +55,22 @@ def test_sum_goes_half_by_half(kernel, kind):
     while len(total) > 1:
         total = total[: len(total) // 2] + total[len(total) // 2 :]
     assert kernel(a, b, number, out) == total[0]
+
+
+@pytest.mark.parametrize(("kernel", "kind"), [(doubles_compared, np.float64), (singles_compared, np.float32)])
+def test_comparisons_are_those_of_single_numbers(kernel, kind):
+    a, b, _, out = given(kind)
+    a[1] = np.nan
+    single = np.zeros(len(a), dtype=np.float32)
+    bits, _, _ = kernel(a, b, out, single)
+    assert [bool(bits >> i & 1) for i in range(len(a))] == (a < b).tolist()
+    assert np.array_equal(out[: len(a)], np.where(a < b, a, kind(2.0)))
+    assert np.array_equal(out[len(a) : 2 * len(a)], np.abs(a - b), equal_nan=True)
+    assert np.array_equal(single, a.astype(np.float32), equal_nan=True)
+    a[1] = -1.0
+    _, low, high = kernel(a, b, out, single)
+    assert (low, high) == (a.min(), a.max())
+
+
+def test_the_first_bit():
+    assert [first_of(n) for n in (1, 12, 1 << 40)] == [0, 2, 40]

@@ -5,8 +5,8 @@ See fronts_solve_kernels; of a module of its own, so that two processes compile 
 """
 
 from sceneql.kernels import lean, lean_inlined
+from sceneql.lanes_kernels import BYTES, fma, folded, load, spread
 from sceneql.simulation.arithmetic_kernels import widest
-from sceneql.simulation.lanes_kernels import BYTES, fma, folded, load, spread
 from sceneql.simulation.linear.fronts_plan_kernels import FIELDS, HEAD, PAD, PASS, ROWS, at_front
 
 

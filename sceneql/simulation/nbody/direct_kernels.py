@@ -12,8 +12,8 @@ import numpy as np
 from numba import types
 
 from sceneql.kernels import inlined, kernel, lean, lean_inlined
+from sceneql.lanes_kernels import aligned, fma, folded, guess, load, spread, store
 from sceneql.simulation.arithmetic_kernels import widest
-from sceneql.simulation.lanes_kernels import aligned, fma, folded, guess, load, spread, store
 from sceneql.simulation.nbody.weights_kernels import (
     CONSTANT,
     FLOOR,

@@ -10,8 +10,8 @@ import numpy as np
 from numba import types
 
 from sceneql.kernels import kernel, lean, lean_inlined
+from sceneql.lanes_kernels import aligned, fma, folded, guess, load, spread, store
 from sceneql.simulation.arithmetic_kernels import widest
-from sceneql.simulation.lanes_kernels import aligned, fma, folded, guess, load, spread, store
 from sceneql.simulation.nbody.direct_kernels import FORCES, FX, FY, FZ, LANES, PARTS, W, X, Y, Z
 from sceneql.simulation.nbody.weights_kernels import POINTS, ROOM, SOFTENING, WEIGHTS
 from sceneql.simulation.threads_kernels import TILE

@@ -82,6 +82,22 @@ for _one in ((operator.add, "fadd"), (operator.sub, "fsub"), (operator.mul, "fmu
     _operate(*_one)
 
 
+@infer_global(abs)
+class _Absolute(AbstractTemplate):
+    def generic(self, args, keywords):
+        return signature(args[0], *args) if isinstance(args[0], Lanes) else None
+
+
+def _declared(builder, name, result, *args):
+    return builder.module.globals.get(name) or ir.Function(builder.module, ir.FunctionType(result, args), name)
+
+
+@lower_builtin(abs, Lanes)
+def _absolute(context, builder, signature, args):
+    vector, bits = args[0].type, signature.return_type.dtype.bitwidth
+    return builder.call(_declared(builder, f"llvm.fabs.v{vector.count}f{bits}", vector, vector), args)
+
+
 def _place(context, builder, array, value, at, index):
     data = context.make_array(array)(context, builder, value).data
     spot = builder.gep(data, [context.cast(builder, at, index, types.intp)])
@@ -101,7 +117,12 @@ def _load(typing, array, at):
 def _store(typing, array, at, value):
     def code(context, builder, signature, args):
         place, size = _place(context, builder, array, *args[:2], at)
-        builder.store(args[2], place, align=size)
+        found = args[2]
+        if value.dtype != array.dtype:
+            kind = ir.VectorType(context.get_value_type(array.dtype), value.count)
+            found = builder.fptrunc(found, kind)
+            place = builder.bitcast(place, kind.as_pointer())
+        builder.store(found, place, align=size)
         return context.get_dummy_value()
 
     return types.none(array, at, value), code
@@ -115,11 +136,40 @@ def _fma(typing, a, b, c):
         values = [_as_lanes(context, builder, kind, *one) for one in zip(signature.args, args, strict=True)]
         vector = values[0].type
         name = f"llvm.fma.v{vector.count}f{kind.dtype.bitwidth}"
-        found = builder.module.globals.get(name)
-        found = found or ir.Function(builder.module, ir.FunctionType(vector, [vector] * 3), name)
-        return builder.call(found, values)
+        return builder.call(_declared(builder, name, vector, *[vector] * 3), values)
 
     return kind(a, b, c), code
+
+
+@intrinsic
+def _below(typing, a, b, x, y):
+    kind = _kind((a, b, x, y))
+
+    def code(context, builder, signature, args):
+        a, b, x, y = (_as_lanes(context, builder, kind, *one) for one in zip(signature.args, args, strict=True))
+        return builder.select(builder.fcmp_ordered("<", a, b), x, y)
+
+    return kind(a, b, x, y), code
+
+
+@intrinsic
+def _bits_below(typing, a, b):
+    kind = _kind((a, b))
+
+    def code(context, builder, signature, args):
+        a, b = (_as_lanes(context, builder, kind, *one) for one in zip(signature.args, args, strict=True))
+        bits = builder.bitcast(builder.fcmp_ordered("<", a, b), ir.IntType(kind.count))
+        return builder.zext(bits, ir.IntType(64))
+
+    return types.int64(a, b), code
+
+
+@intrinsic
+def _first_bit(typing, bits):
+    def code(context, builder, signature, args):
+        return builder.cttz(args[0], ir.Constant(ir.IntType(1), 1))
+
+    return types.int64(types.int64), code
 
 
 @intrinsic
@@ -140,18 +190,26 @@ def _guess(typing, s):
     return s(s), code
 
 
-@intrinsic
-def _folded(typing, value):
-    def code(context, builder, signature, args):
-        (found,) = args
-        count = value.count
-        while count > 1:
-            count //= 2
-            halves = [ir.Constant(ir.VectorType(INDEX, count), list(range(at, at + count))) for at in (0, count)]
-            found = builder.fadd(*(builder.shuffle_vector(found, found, half) for half in halves))
-        return builder.extract_element(found, ir.Constant(INDEX, 0))
+def _fold(join):
+    @intrinsic
+    def fold(typing, value):
+        def code(context, builder, signature, args):
+            (found,) = args
+            count = value.count
+            while count > 1:
+                count //= 2
+                halves = [ir.Constant(ir.VectorType(INDEX, count), list(range(at, at + count))) for at in (0, count)]
+                found = join(builder, *(builder.shuffle_vector(found, found, half) for half in halves))
+            return builder.extract_element(found, ir.Constant(INDEX, 0))
 
-    return value.dtype(value), code
+        return value.dtype(value), code
+
+    return fold
+
+
+_folded = _fold(lambda builder, a, b: builder.fadd(a, b))
+_least = _fold(lambda builder, a, b: builder.select(builder.fcmp_ordered("<", a, b), a, b))
+_most = _fold(lambda builder, a, b: builder.select(builder.fcmp_ordered(">", a, b), a, b))
 
 
 def _load_in_python(array, at):
@@ -159,7 +217,7 @@ def _load_in_python(array, at):
 
 
 def _store_in_python(array, at, value):
-    array[at : at + BYTES // array.itemsize] = value
+    array[at : at + len(value)] = value
 
 
 def _fma_in_python(a, b, c):
@@ -178,14 +236,37 @@ def _folded_in_python(value):
     return value[0]
 
 
+def _bits_below_in_python(a, b):
+    return sum(1 << i for i, found in enumerate(np.asarray(a < b)) if found)
+
+
+def _first_bit_in_python(bits):
+    return (bits & -bits).bit_length() - 1
+
+
+def _below_in_python(a, b, x, y):
+    kind = next(one.dtype for one in (a, b, x, y) if isinstance(one, np.ndarray))
+    return np.where(a < b, x, y).astype(kind)
+
+
 load = _load_in_python if PLAIN else _load
 """load(array, at): the lanes at array[at:]."""
 store = _store_in_python if PLAIN else _store
-"""store(array, at, lanes)."""
-spread = (lambda number: np.full(BYTES // number.itemsize, number)) if PLAIN else _spread
+"""store(array, at, lanes): float64 may be rounded to float32."""
+spread = (lambda number: np.full(BYTES // np.asarray(number).itemsize, number)) if PLAIN else _spread
 """A number in all lanes."""
 fma = _fma_in_python if PLAIN else _fma
 """a b + c, rounded once."""
+below = _below_in_python if PLAIN else _below
+"""below(a, b, x, y): x where a < b, else y."""
+bits_below = _bits_below_in_python if PLAIN else _bits_below
+"""bits_below(a, b): the bits of an integer, the first for the first lane, that are set where a < b."""
+first_bit = _first_bit_in_python if PLAIN else _first_bit
+"""The place of the first bit that is set, of an integer that is not 0."""
+least = np.min if PLAIN else _least
+"""The least of all lanes, none of which is NaN."""
+most = np.max if PLAIN else _most
+"""The largest of all lanes, none of which is NaN."""
 guess = _guess_in_python if PLAIN else _guess
 """s^(-1/2) for s > 0, within some 4 %, by halving the exponent (Lomont 2003)."""
 folded = _folded_in_python if PLAIN else _folded
