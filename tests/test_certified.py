@@ -19,7 +19,7 @@ from sceneql.field.enclosure_kernels import segment
 from sceneql.field.gradient_kernels import gradient
 from sceneql.field.interval_kernels import box
 from sceneql.field.isolation_kernels import any_root, exit_root
-from sceneql.field.packets import cast_together, tape_up_to
+from sceneql.field.packets import cast_together, tape_of_rows
 from sceneql.field.simplify_kernels import simplify
 from sceneql.field.slope_kernels import on_ray
 from sceneql.field.solid import cast, field_values, scratch
@@ -310,7 +310,7 @@ def test_angles_in_shorter_tapes_have_no_cut_either(angle):
 
 def test_the_tape_of_a_row_knows_of_which_angles_whole_turns_do_not_matter():
     whole = tape_of("max(cos(5*atan2(z, y)), x)")
-    wave = tape_up_to(whole, int(whole.code[-1, 1:3].max()))
+    wave = tape_of_rows(whole, [int(whole.code[-1, 1:3].max())])
     assert wave[wave[:, 0] == ATAN2, 3].tolist() == [1]
 
 

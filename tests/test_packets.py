@@ -10,7 +10,9 @@ from hypothesis import strategies as st
 from extremes_kernels import extremes
 from moment import IDENTITY, FakeMoment, const, formula
 from renderers.tracing.bundles import solids_in_lanes
+from sceneql.field.clips import clip_rows
 from sceneql.field.packets import Memory, cast_together, enclosures, plan_of
+from sceneql.field.ray_rows import FOUND_ROOT, FOUND_STATUS
 from sceneql.field.skeleton import Skeleton
 from sceneql.field.solid import cast, field_values
 from sceneql.field.tape_ops import (
@@ -151,16 +153,16 @@ def test_blobs_in_packets_have_the_certified_roots(centers, radius):
     assert ((cast_together(tape, origins, directions, near, far, anywhere=True)[0] == HIT) == hit).all()
 
 
-def agree_with_the_certified(tape, origins, directions, t0, t1, within):
+def agree_with_the_certified(tape, origins, directions, t0, t1, within, cut=()):
     """First places, and whether there is any, as the certified routine has them, wherever both decide."""
-    status, t = cast_together(tape, origins, directions, t0, t1)
+    status, t = cast_together(tape, origins, directions, t0, t1, cut=cut)
     exact, places = cast(tape, origins, directions, t0, t1)
     told = (status != UNDECIDED) & (exact != UNDECIDED)
     assert told.mean() > 0.9
     met, truly = np.isin(status, [HIT, INSIDE]), np.isin(exact, [HIT, INSIDE])
     assert (met == truly)[told].all()
     assert t[met & told] == pytest.approx(places[met & told], abs=within)
-    blocked, _ = cast_together(tape, origins, directions, t0, t1, anywhere=True)
+    blocked, _ = cast_together(tape, origins, directions, t0, t1, anywhere=True, cut=cut)
     told &= blocked != UNDECIDED
     assert (np.isin(blocked, [HIT, INSIDE]) == truly)[told].all()
 
@@ -244,6 +246,64 @@ def test_polynomials_are_met_where_the_certified_routine_meets_them(text, seed, 
     origins, directions = bundle(aim - way, way, generator, 150, spread)
     t0, t1 = np.full(150, 0.1), np.full(150, 2.0)
     agree_with_the_certified(tape, origins, directions, t0, t1, within=1e-5)
+
+
+WAVES = "sin(9*x)*cos(8*y) + sin(7*y)*cos(9*z) + 0.3"
+BALL = "sqrt(x^2 + y^2 + z^2) - 1"
+CUT = {
+    f"max({WAVES}, {BALL})": 1,
+    f"0.5*max(x^2 + y^2 + z^2 - 1, {WAVES})": 1,
+    f"max(max({WAVES}, z - 0.3), max({BALL}, 0.2*(x + y)))": 3,
+    f"max(min({WAVES}, {BALL}), max({BALL}, z - 0.3))": 2,
+    f"max({WAVES}, 0.5 - sqrt(x^2 + y^2 + z^2))": 0,  # a hollow is not convex: rays are not cut by it
+    f"min({WAVES}, {BALL})": 0,
+    "max(z - x, x - 0.5)": 1,
+}
+
+
+@pytest.mark.parametrize("text", CUT)
+@settings(max_examples=6)
+@given(seed=st.integers(0, 999), spread=st.sampled_from([0.02, 1.0]))
+def test_rows_that_rays_are_cut_by_are_looked_at_where_a_root_is_found(text, seed, spread):
+    tape = tape_of(text)
+    rows = clip_rows(tape)
+    assert len(rows) == CUT[text]
+    generator = np.random.default_rng(seed)
+    origins, directions = bundle(np.array([0.1, 0.2, 3.0]), np.array([0.0, 0.1, -2.0]), generator, 200, spread)
+    # Rays of all lengths: those that pass all of the solid, begin inside of it, and end before it.
+    t0, t1 = generator.uniform(0.3, 1.2, 200), generator.uniform(1.3, 3.0, 200)
+    agree_with_the_certified(tape, origins, directions, t0, t1, within=1e-5, cut=rows)
+
+
+def test_rays_that_begin_where_they_are_cut_need_no_certified_routine():
+    generator = np.random.default_rng(3)
+    tape = tape_of(f"max(sin(x + 2*y) - 0.9 + z, {BALL})")
+    memory = Memory(tape, 256, clip_rows(tape))
+    origins, directions = bundle(np.array([0.1, 0.2, -3.0]), np.array([0.0, 0.05, 1.0]), generator, 256, 0.02)
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    along = -(origins * directions).sum(axis=1)
+    reach = np.sqrt(along**2 + 1.0 - (origins**2).sum(axis=1))
+    memory.rays[:3], memory.rays[3:6] = origins.T, directions.T
+    memory.rays[6], memory.rays[7] = along - reach, along + reach
+    for anywhere in (False, True):
+        _, certified = memory.settle(256, anywhere)
+        assert certified == 0
+        assert (memory.found[FOUND_STATUS] == HIT).all()
+        if not anywhere:
+            assert memory.found[FOUND_ROOT] == pytest.approx(along - reach, abs=1e-9)
+
+
+@pytest.mark.parametrize("text", ["max({}, sin(x) - 2)", "min(exp(x), {})", "-min(-({}), 2 - sin(x))*3"])
+def test_branches_that_do_not_change_the_sign_cost_no_enclosures(text):
+    spent = []
+    for one in (WAVES, text.format(WAVES)):
+        generator = np.random.default_rng(1)
+        memory = Memory(tape_of(one), 256)
+        origins, directions = bundle(np.array([0.1, 0.2, -3.0]), np.array([0.0, 0.05, 1.0]), generator, 256, 0.02)
+        memory.rays[:3], memory.rays[3:6], memory.rays[6], memory.rays[7] = origins.T, directions.T, 0.1, 4.0
+        spent.append((memory.settle(256, False), memory.found[FOUND_ROOT].copy()))
+    assert spent[0][0] == spent[1][0]
+    assert np.abs(spent[0][1] - spent[1][1]).max() < 1e-9
 
 
 def test_shadow_rays_that_end_on_the_ball_inside_a_polynomial_need_no_certified_routine():

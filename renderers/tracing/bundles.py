@@ -8,7 +8,7 @@ import numpy as np
 
 from renderers.tracing.bundles_kernels import RAYS, meet_asked
 from renderers.tracing.scene_kernels import ANSWERS
-from sceneql.field.clips import clips_of
+from sceneql.field.clips import clip_rows, clips_of
 from sceneql.field.packets import Memory, in_lanes
 from sceneql.frame import Implicit
 
@@ -26,7 +26,7 @@ class Packets:
         for i in self.solids:
             shape = shapes[i]
             assert isinstance(shape, Implicit)
-            self.memories.append(Memory(shape.tape, RAYS))
+            self.memories.append(Memory(shape.tape, RAYS, clip_rows(shape.tape)))
             box, clips = np.array([shape.low, shape.high], dtype=np.float64), clips_of(shape.tape)
             reach = float(np.abs(box).max()) ** np.array([2.0] * 6 + [1.0] * 3 + [0.0])
             self.bounds.append((box, clips, np.abs(clips) @ reach))

@@ -38,6 +38,22 @@ PI = F(3.14159274)
 
 
 @lane
+def total(a0, a1, ea, b0, b1, eb):
+    """Enclosure of a sum."""
+    c0 = a0 + b0
+    c1 = a1 + b1
+    return c0, c1, (ea + eb) * GROW + PAD * (abs(c0) + abs(c1))
+
+
+@lane
+def difference(a0, a1, ea, b0, b1, eb):
+    """Enclosure of a difference."""
+    c0 = a0 - b0
+    c1 = a1 - b1
+    return c0, c1, (ea + eb) * GROW + PAD * (abs(c0) + abs(c1))
+
+
+@lane
 def product(a0, a1, ea, b0, b1, eb):
     """Enclosure of a product: a1 b1 tau^2 lies in a1 b1 [0, 1]."""
     second = HALF * (a1 * b1)
@@ -54,6 +70,15 @@ def squared(a0, a1, ea):
     size = abs(a0) + abs(a1)
     e = second + ea * (size + size + ea)
     return a0 * a0 + second, TWO * (a0 * a1), e * GROW + (PAD * size * size + TINY)
+
+
+@lane
+def scaled(a0, a1, ea, s, es):
+    """Enclosure of a product with the constant s +- es."""
+    c0 = a0 * s
+    c1 = a1 * s
+    e = ea * (abs(s) + es) + (abs(a0) + abs(a1)) * es
+    return c0, c1, e * GROW + (PAD * (abs(c0) + abs(c1)) + TINY)
 
 
 @lane

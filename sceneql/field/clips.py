@@ -26,21 +26,53 @@ def clips_of(tape: Tape) -> Floats:
 
     They are those of x^2, y^2, z^2, xy, yz, zx, x, y, z and 1, rounded a little.
     """
+    return np.array([quadric for quadric, _ in _clips(tape)]).reshape(-1, LAST + 1)
+
+
+def clip_rows(tape: Tape) -> list[int]:
+    """Rows of convex clips: rays that are cut by ``clips_of`` are below zero there, but for rounding at their ends.
+
+    At least one other row is left of what the tape is the largest of.
+    """
+    branches = _branches(tape)
+    rows = [row for quadric, row in _clips(tape) if _convex(quadric)]
+    return rows if len(rows) < len(branches) else rows[1:]
+
+
+def _branches(tape: Tape) -> list[int]:
+    """Rows of which the tape, or a positive multiple, is the largest."""
     found = []
     rows = [len(tape.code) - 1]
     while rows:
-        row = without_factor(tape, rows.pop())
-        if tape.code[row, 0] == MAX:
-            rows += map(int, tape.code[row, 1:3])
-            continue
-        row, radius = root_of(tape, row)
+        row = rows.pop()
+        inner = without_factor(tape, row)
+        if tape.code[inner, 0] == MAX:
+            rows += map(int, tape.code[inner, 1:3])
+        else:
+            found.append(row)
+    return found
+
+
+def _clips(tape: Tape) -> list[tuple[Floats, int]]:
+    """Polynomials as of ``clips_of``, each with the row that it has the sign of."""
+    found = []
+    for branch in _branches(tape):
+        row, radius = root_of(tape, without_factor(tape, branch))
         quadric = _expanded(tape, row)
         if quadric is not None:
             if radius >= 0:
                 quadric[LAST] -= tape.constants[radius] ** 2
             if quadric[:LAST].any():
-                found.append(quadric)
-    return np.array(found).reshape(-1, LAST + 1)
+                found.append((quadric, branch))
+    return found
+
+
+def _convex(quadric: Floats) -> bool:
+    """Whether a polynomial of degree 2 is below zero in a convex region."""
+    form = np.diag(quadric[:3])
+    form[[0, 1, 2], [1, 2, 0]] = form[[1, 2, 0], [0, 1, 2]] = 0.5 * quadric[3:LINEAR]
+    values = np.linalg.eigvalsh(form)
+    return bool(values[0] >= -1e-12 * abs(values).max())
 
 
 def _expanded(tape: Tape, row: int) -> Floats | None:

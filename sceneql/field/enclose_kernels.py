@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from sceneql.field.affine_kernels import GROW, PAD, ZERO, F, product, squared
+from sceneql.field.affine_kernels import ZERO, F
 from sceneql.field.forms_kernels import row_never_negative
 from sceneql.field.packet_density_kernels import density_lanes
 from sceneql.field.packet_kernels import (
@@ -12,6 +12,7 @@ from sceneql.field.packet_kernels import (
     LANES,
     E,
     binary_lanes,
+    common_lanes,
     scale_lanes,
     turn_lanes,
     unary_lanes,
@@ -54,25 +55,9 @@ def enclose(code, constants, parts, registers, point, status, n):
             elif code[right, 0] == CONSTANT:
                 scale_lanes(a, b, out, n)
             else:
-                for i in range(n):
-                    out[i], out[C1 + i], out[E + i] = product(a[i], a[C1 + i], a[E + i], b[i], b[C1 + i], b[E + i])
-        elif op == ADD:
-            for i in range(n):
-                c0 = a[i] + b[i]
-                c1 = a[C1 + i] + b[C1 + i]
-                out[i] = c0
-                out[C1 + i] = c1
-                out[E + i] = (a[E + i] + b[E + i]) * GROW + PAD * (abs(c0) + abs(c1))
-        elif op == SUB:
-            for i in range(n):
-                c0 = a[i] - b[i]
-                c1 = a[C1 + i] - b[C1 + i]
-                out[i] = c0
-                out[C1 + i] = c1
-                out[E + i] = (a[E + i] + b[E + i]) * GROW + PAD * (abs(c0) + abs(c1))
-        elif op == SQUARE:
-            for i in range(n):
-                out[i], out[C1 + i], out[E + i] = squared(a[i], a[C1 + i], a[E + i])
+                common_lanes(op, a, b, out, n)
+        elif op == ADD or op == SUB or op == SQUARE:
+            common_lanes(op, a, b, out, n)
         elif op == NEG:
             for i in range(n):
                 out[i] = -a[i]

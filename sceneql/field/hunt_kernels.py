@@ -9,7 +9,7 @@ Places along a ray are counted from its own start, so that float32 numbers them 
 import numpy as np
 
 from sceneql.field.affine_kernels import GROW, HALF, ONE, PAD, TINY, TWO, ZERO, F
-from sceneql.field.packet_kernels import C1, LANES, PACKET, E, enclose, place
+from sceneql.field.packet_kernels import C1, LANES, PACKET, VECTOR, E, enclose, placed, put
 from sceneql.field.ray_rows import (
     FAR,
     FOUND_HIGH,
@@ -17,17 +17,21 @@ from sceneql.field.ray_rows import (
     FOUND_ROOT,
     FOUND_SLOPE,
     FOUND_STATUS,
+    LONG,
     NEAR,
     RUN,
+    START,
     SURE,
+    WAY_OF,
 )
 from sceneql.field.tape_ops import HIT, MISS, NOWHERE, UNDECIDED, WHOLE
 from sceneql.kernels import inlined, lean
+from sceneql.lanes_kernels import load
 
-OX, OY, OZ, DX, DY, DZ, A, B, END, CUT_FROM, CUT_TO, HELD, TRIES, LENGTH, STATE, ROOT, SLOPE = range(17)
+OX, OY, OZ, DX, DY, DZ, A, B, END, CUT_FROM, CUT_TO, HELD, TRIES, LENGTH, STATE, ROOT, CHANGE, HALF_WAY = range(18)
 """Rows of ``lanes``, each of LANES, one behind the other: ray, segment, where the search ends, a piece cut out, whether
-the inside is proved at the end, enclosures so far, length of the search, outcome (LIVE until there is one), root and
-slope [1/t] of the last enclosure."""
+the inside is proved at the end, enclosures so far, length of the search, outcome (LIVE until there is one); of the
+last enclosure its root, how far it changes in half of its length, and that half."""
 LIVE = F(-1.0)
 LARGE = F(1.0e36)
 FINE, ROUGH, LEAST = F(2.0e-5), F(1.0e-4), F(2.0e-6)
@@ -46,12 +50,11 @@ def place_of(row, i):
 
 
 @inlined
-def load(lanes, i, rays, j, asked):
+def enter(lanes, i, asked, j):
     """Put ray j into lane i."""
-    t0 = rays[6, j]
     for axis in range(3):
-        lanes[place_of(OX + axis, i)] = rays[axis, j] + t0 * rays[3 + axis, j]
-        lanes[place_of(DX + axis, i)] = rays[3 + axis, j]
+        lanes[place_of(OX + axis, i)] = asked[START + axis, j]
+        lanes[place_of(DX + axis, i)] = asked[WAY_OF + axis, j]
     far = asked[FAR, j]
     lanes[place_of(A, i)] = asked[NEAR, j]
     lanes[place_of(B, i)] = asked[RUN, j]
@@ -60,7 +63,7 @@ def load(lanes, i, rays, j, asked):
     lanes[place_of(CUT_TO, i)] = far
     lanes[place_of(HELD, i)] = asked[SURE, j]
     lanes[place_of(TRIES, i)] = ZERO
-    lanes[place_of(LENGTH, i)] = rays[7, j] - t0
+    lanes[place_of(LENGTH, i)] = asked[LONG, j]
     lanes[place_of(STATE, i)] = LIVE
 
 
@@ -71,18 +74,19 @@ def note(lanes, i, j, found):
     found[FOUND_LOW, j] = lanes[place_of(A, i)]
     found[FOUND_HIGH, j] = lanes[place_of(B, i)]
     found[FOUND_ROOT, j] = lanes[place_of(ROOT, i)]
-    found[FOUND_SLOPE, j] = lanes[place_of(SLOPE, i)]
+    found[FOUND_SLOPE, j] = lanes[place_of(CHANGE, i)] / lanes[place_of(HALF_WAY, i)]
 
 
 @inlined
 def place_lanes(lanes, point, n):
     """Enclose the segments of n lanes."""
-    for axis in range(3):
-        row = point[axis]
-        o, d = (OX + axis) * LANES, (DX + axis) * LANES
-        for i in range(n):
-            a, b = lanes[A * LANES + i], lanes[B * LANES + i]
-            place(row, i, lanes[o + i], lanes[d + i], HALF * (a + b), HALF * (b - a))
+    for i in range(0, n, VECTOR):
+        a, b = load(lanes, A * LANES + i), load(lanes, B * LANES + i)
+        middle, half = HALF * (a + b), HALF * (b - a)
+        for axis in range(3):
+            o, d = load(lanes, (OX + axis) * LANES + i), load(lanes, (DX + axis) * LANES + i)
+            c0, c1, e = placed(o, d, middle, half)
+            put(point[axis], i, c0, c1, e)
 
 
 @inlined
@@ -132,10 +136,12 @@ def advance(lanes, last, status, n, anywhere):
         # How far all is outside from where the field is f on, if the enclosure widens with the square of the length.
         f = c0 + c1 if outside else c0 - c1
         fall = c1 if c1 < ZERO else ZERO
-        far = SAFE * f / (np.sqrt(fall * fall + e * f) - fall + TINY) if f > ZERO else ZERO
-        share = HALF * m / (e + TINY)  # where the slope tells most
-        share = far if far > share else share
-        share = share if share > SHORTEST else SHORTEST
+        f = f if f > ZERO else ZERO
+        way, per = SAFE * f, np.sqrt(fall * fall + e * f) - fall + TINY
+        steep, wide = HALF * m, e + TINY  # their ratio is where the slope tells most
+        either = (not outside) & (steep * per > way * wide)
+        far = (steep if either else way) / (wide if either else per)
+        share = far if far > SHORTEST else SHORTEST
         now = start + (share if share < HALF else HALF) * narrow if slow & (~hit) else now
         # What follows a rejected segment.
         passed = b == cut_from
@@ -152,9 +158,11 @@ def advance(lanes, last, status, n, anywhere):
         lanes[STATE * LANES + i] = rejected if outside else state
         lanes[A * LANES + i] = after if outside else (a if inside else start)
         met = b if anywhere & (c1 < ZERO) else a
+        met = HALF * (a + b) if anywhere & (c0 + m < -e) else met
         lanes[B * LANES + i] = then if outside else (met if inside else now)
         lanes[ROOT * LANES + i] = x
-        lanes[SLOPE * LANES + i] = c1 / half
+        lanes[CHANGE * LANES + i] = c1
+        lanes[HALF_WAY * LANES + i] = half
         lanes[END * LANES + i] = end if outside else last_end
         lanes[CUT_FROM * LANES + i] = cut_from if outside else from_now
         lanes[CUT_TO * LANES + i] = cut_to if outside else to_now
@@ -163,14 +171,14 @@ def advance(lanes, last, status, n, anywhere):
 
 
 @lean(
-    f"int64({PACKET}, float32[::1], float32[::1], int64[::1], float64[:, ::1], float32[:, ::1], int64[::1], int64,"
+    f"int64({PACKET}, float32[::1], float32[::1], int64[::1], float32[:, ::1], int64[::1], int64,"
     " boolean, float64[:, ::1])",
     inner=True,
 )
-def hunt(code, constants, parts, registers, point, status, lanes, ids, rays, asked, queue, count, anywhere, found):
+def hunt(code, constants, parts, registers, point, status, lanes, ids, asked, queue, count, anywhere, found):
     """Settle the first ``count`` rays of the ``queue``; returns the enclosures spent.
 
-    ``rays`` (RAY, n), ``asked`` (4, n) and ``found`` (5, n) are by ray. A HIT has a bracket low..high with all before
+    ``asked`` (ASK, n) and ``found`` (5, n) are by ray. A HIT has a bracket low..high with all before
     it outside and the inside at its end; with ``anywhere`` (shadow rays) high is any place inside. MISS: all outside.
     """
     last = registers[code.shape[0] - 1]
@@ -178,7 +186,7 @@ def hunt(code, constants, parts, registers, point, status, lanes, ids, rays, ask
     upcoming = live
     for i in range(live):
         ids[i] = queue[i]
-        load(lanes, i, rays, np.uint64(ids[i]), asked)
+        enter(lanes, i, asked, np.uint64(ids[i]))
     spent = 0
     while live > 0:
         n = (live + 15) // 16 * 16
@@ -196,7 +204,7 @@ def hunt(code, constants, parts, registers, point, status, lanes, ids, rays, ask
             note(lanes, i, np.uint64(ids[i]), found)
             if upcoming < count:
                 ids[i] = queue[np.uint64(upcoming)]
-                load(lanes, i, rays, np.uint64(ids[i]), asked)
+                enter(lanes, i, asked, np.uint64(ids[i]))
                 upcoming += 1
             else:
                 live -= 1

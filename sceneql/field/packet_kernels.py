@@ -18,6 +18,7 @@ from sceneql.field.affine_kernels import (
     ZERO,
     F,
     absolute,
+    difference,
     floored,
     fraction,
     grown,
@@ -26,14 +27,18 @@ from sceneql.field.affine_kernels import (
     power,
     product,
     reciprocal,
+    scaled,
     signed,
     square_root,
+    squared,
+    total,
     turned,
     wave,
 )
 from sceneql.field.single_kernels import lane, sine_cosine
 from sceneql.field.tape_ops import (
     ABS,
+    ADD,
     CONSTANT,
     DIV,
     EXP,
@@ -41,16 +46,19 @@ from sceneql.field.tape_ops import (
     LOG,
     MAX,
     MIN,
+    MUL,
     NOWHERE,
     PARTIAL,
     POW,
     SIN,
     SQRT,
+    SUB,
     WHOLE,
 )
 from sceneql.kernels import inlined
+from sceneql.lanes_kernels import load, store
 
-LANES = 64
+LANES, VECTOR = 64, 16
 C1, E, SINE, COSINE, WIDTH = LANES, 2 * LANES, 3 * LANES, 4 * LANES, 5 * LANES
 """Columns of a register."""
 PACKET = "int32[:, ::1], float64[::1], float32[:, ::1], float32[:, ::1], float32[:, ::1]"
@@ -61,8 +69,9 @@ BUNDLE = f"{PACKET}, float32[::1], float32[::1], int64[::1], float64[:, ::1], fl
 MEMORY = "float64[:, ::1]," * 6 + "int32[:, ::1], float32[:, ::1], float64[:, ::1]"
 """Types of a bundle of rays, and of what a tape works in: see ``packets.Memory``."""
 _many, _wide = types.int64[::1], types.float64[:, ::1]
-TAPE_ROOTS = types.Tuple((types.int64, types.int64, types.int64, types.float64))(
-    *normalize_signature(f"void({BUNDLE}, int64, int64, boolean, {MEMORY})")[0]
+_place = types.float64
+TAPE_ROOTS = types.Tuple((types.int64, types.int64, types.int64, _place, _place, _place))(
+    *normalize_signature(f"void({BUNDLE}, int64, int64, boolean, {MEMORY}, int64[::1])")[0]
 )
 tape_roots = late("sceneql.field.tape_bundle_kernels:tape_roots", TAPE_ROOTS)
 CHECK_INSIDE = types.void(
@@ -102,13 +111,35 @@ def load_constants(code, constants, registers):
                 registers[k, E + i] = e
 
 
-@lane
-def scaled(a0, a1, ea, s, es):
-    """Enclosure of a product with the constant s +- es."""
-    c0 = a0 * s
-    c1 = a1 * s
-    e = ea * (abs(s) + es) + (abs(a0) + abs(a1)) * es
-    return c0, c1, e * GROW + (PAD * (abs(c0) + abs(c1)) + TINY)
+@inlined
+def taken(row, i):
+    """c0, c1 and e of VECTOR lanes of a register from the ith on."""
+    return load(row, i), load(row, C1 + i), load(row, E + i)
+
+
+@inlined
+def put(row, i, c0, c1, e):
+    """Write c0, c1 and e of VECTOR lanes of a register from the ith on."""
+    store(row, i, c0)
+    store(row, C1 + i, c1)
+    store(row, E + i, e)
+
+
+@inlined
+def common_lanes(op, a, b, out, n):
+    """Sums, differences, products and squares."""
+    for i in range(0, n, VECTOR):
+        a0, a1, ea = taken(a, i)
+        b0, b1, eb = taken(b, i)
+        if op == MUL:
+            c0, c1, e = product(a0, a1, ea, b0, b1, eb)
+        elif op == ADD:
+            c0, c1, e = total(a0, a1, ea, b0, b1, eb)
+        elif op == SUB:
+            c0, c1, e = difference(a0, a1, ea, b0, b1, eb)
+        else:
+            c0, c1, e = squared(a0, a1, ea)
+        put(out, i, c0, c1, e)
 
 
 @inlined
@@ -116,8 +147,10 @@ def scale_lanes(a, b, out, n):
     """A product with the constant in b."""
     s = b[0]
     es = b[E]
-    for i in range(n):
-        out[i], out[C1 + i], out[E + i] = scaled(a[i], a[C1 + i], a[E + i], s, es)
+    for i in range(0, n, VECTOR):
+        a0, a1, ea = taken(a, i)
+        c0, c1, e = scaled(a0, a1, ea, s, es)
+        put(out, i, c0, c1, e)
 
 
 @inlined
@@ -202,12 +235,17 @@ def wave_lanes(op, a, out, twin, n):
 
 
 @lane
-def place(row, i, o, d, middle, half):
-    """Enclose o + t d in lane i, t = middle + half tau, where each of the numbers may be off by half a unit."""
+def placed(o, d, middle, half):
+    """Enclosure of o + t d, t = middle + half tau, where each of the numbers may be off by half a unit."""
     c1 = half * d
-    row[i] = o + middle * d
-    row[C1 + i] = c1
-    row[E + i] = PAD * (abs(o) + abs(middle * d) + abs(c1)) + TINY
+    way = middle * d
+    return o + way, c1, PAD * (abs(o) + abs(way) + abs(c1)) + TINY
+
+
+@lane
+def place(row, i, o, d, middle, half):
+    """The same, into lane i."""
+    row[i], row[C1 + i], row[E + i] = placed(o, d, middle, half)
 
 
 @inlined

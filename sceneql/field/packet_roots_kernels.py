@@ -18,7 +18,7 @@ from sceneql.field.packet_kernels import BUNDLE, MEMORY, check_inside, has, tape
 from sceneql.field.polynomial_hunt_kernels import polynomial_roots
 from sceneql.field.polynomial_kernels import POLYNOMIAL
 from sceneql.field.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS, SETTLED
-from sceneql.field.tape_ops import MISS, SKELETON, UNDECIDED, WHOLE
+from sceneql.field.tape_ops import HIT, MISS, SKELETON, UNDECIDED, WHOLE
 from sceneql.kernels import inlined, lean
 
 _rows, _side = types.float64[:, ::1], types.float64
@@ -40,7 +40,21 @@ def certify_ray(code, constants, parts, scratch, rays, j, end, anywhere, found):
         code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, begin, min(rays[7, j], end), TOLERANCE, 1.0, anywhere
     )
     found[FOUND_STATUS, j] = outcome
-    found[FOUND_ROOT, j] = t
+    found[FOUND_ROOT, j] = t - rays[6, j]
+    if anywhere:
+        found[FOUND_HIGH, j] = t - rays[6, j]
+
+
+@inlined
+def certify_queued(code, constants, parts, scratch, rays, queue, count, end, anywhere, found):
+    """Settle the queued rays that are undecided, which behind ``end`` are outside. Returns their number."""
+    certified = 0
+    for k in range(count):
+        j = np.uint64(queue[k])
+        if found[FOUND_STATUS, j] == UNDECIDED:
+            certified += 1
+            certify_ray(code, constants, parts, scratch, rays, j, end, anywhere, found)
+    return certified
 
 
 @inlined
@@ -51,20 +65,21 @@ def certify(code, constants, parts, scratch, rays, count, anywhere, found):
         found[FOUND_LOW, j] = 0.0
         if rays[6, j] < rays[7, j]:
             certify_ray(code, constants, parts, scratch, rays, j, np.inf, anywhere, found)
+            found[FOUND_ROOT, j] += rays[6, j]
             certified += 1
     return certified
 
 
 @inlined
 def leave_safe(rays, queue, count, row, late, safe, unsafe, found, doubtful):
-    """Put those queued rays into ``doubtful`` that ``check_inside`` must look at; how many."""
-    begins, ends, places = rays[6], rays[7], found[row]
+    """Put those queued rays that hit into ``doubtful`` that ``check_inside`` must look at; how many."""
+    begins, ends, places, outcomes = rays[6], rays[7], found[row], found[FOUND_STATUS]
     n = 0
     for k in range(count):
         j = np.uint64(queue[k])
         t = begins[j] + places[j] + late * (ends[j] - begins[j])
         doubtful[np.uint64(n)] = queue[k]
-        n += 0 if (t > safe) & (t < unsafe) else 1
+        n += 0 if (t > safe) & (t < unsafe) | (outcomes[j] != HIT) else 1
     return n
 
 
@@ -122,7 +137,10 @@ def first_roots(
     for j in range(count):
         found[FOUND_STATUS, j] = MISS
     groups = (count + GROUP - 1) // GROUP
-    safe = unsafe = end = np.inf
+    safe = unsafe = np.inf
+    certified = left = 0
+    near_settled = False
+    cut = other.shape[0] > 0
     if plan[ROW_OF] >= 0:
         spent, queued = density_roots(
             code, constants, parts, plan, rays, count, groups, anywhere, found, queue, order, room, table, lanes,
@@ -137,27 +155,29 @@ def first_roots(
     elif has(code, SKELETON):
         return 0, certify(code, constants, parts, scratch, rays, count, anywhere, found)
     else:
-        spent, queued, rows, end = tape_roots(
+        spent, queued, rows, end, safe, unsafe = tape_roots(
             code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, count, groups,
             anywhere, found, parts, scratch, beams, doubles, points, short, near_singles, near_parts,
+            plan[POLYNOMIAL + 1 :],
         )  # fmt: skip
-        if rows > 0:
+        near_settled = rows > 0
+        cut = cut and near_settled
+        if near_settled:
             length = code.shape[0]
-            code, parts = short[length : length + rows], near_parts
-        else:
-            end = np.inf
-    if other.shape[0] > 0 and not (
+            near = short[length : length + rows]
+            certified = certify_queued(near, constants, near_parts, scratch, rays, queue, queued, end, anywhere, found)
+    if cut and not (
         plan[ROW_OF] >= 0 and not anywhere and queued > 0 and box_inside(other, constants, parts, scratch, room[BOX])
     ):
         row, late = (FOUND_HIGH, 0.0) if anywhere else (FOUND_ROOT, SETTLED)
-        doubtful = leave_safe(rays, queue, queued, row, late, safe, unsafe, found, order)
-        check_inside(other, constants, parts, doubles, points, rays, order, doubtful, row, late, found)
-    certified = 0
+        left = leave_safe(rays, queue, queued, row, late, safe, unsafe, found, order)
+        check_inside(other, constants, parts, doubles, points, rays, order, left, row, late, found)
+    if near_settled:  # but for what is cut away
+        certified += certify_queued(code, constants, parts, scratch, rays, order, left, np.inf, anywhere, found)
+    else:
+        certified += certify_queued(code, constants, parts, scratch, rays, queue, queued, np.inf, anywhere, found)
+    begins, roots = rays[6], found[FOUND_ROOT]
     for k in range(queued):
         j = np.uint64(queue[k])
-        if found[FOUND_STATUS, j] == UNDECIDED:
-            certified += 1
-            certify_ray(code, constants, parts, scratch, rays, j, end, anywhere, found)
-        else:
-            found[FOUND_ROOT, j] += rays[6, j]
+        roots[j] += begins[j]
     return spent, certified

@@ -16,17 +16,19 @@ from sceneql.field import (
     packet_density_kernels,
     packet_roots_kernels,
 )
-from sceneql.field.packet_kernels import LANES, WIDTH
+from sceneql.field.packet_kernels import LANES, VECTOR, WIDTH
 from sceneql.field.packet_roots_kernels import GROUP
 from sceneql.field.plans import degrees_of, density_of, places_of, without_factor
 from sceneql.field.polynomial_kernels import ABREAST, DEGREES, POLYNOMIAL
 from sceneql.field.polynomial_steps_kernels import ROWS, C
-from sceneql.field.ray_rows import FOUND_ROOT, FOUND_STATUS, LANE_ROWS, RAY
-from sceneql.field.slab_kernels import BEAM
+from sceneql.field.ray_rows import ASK, FOUND_ROOT, FOUND_STATUS, LANE_ROWS, RAY
+from sceneql.field.slab_kernels import BEAM, OCTET
 from sceneql.field.solid import scratch
 from sceneql.field.tape_ops import ATAN2, CONSTANT, MAX, OF_PARTS, SKELETON, X, Y, Z
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy import float32, int32, int64
     from numpy.typing import NDArray
 
@@ -35,7 +37,8 @@ if TYPE_CHECKING:
 
 def single_parts(tape: Tape) -> NDArray[float32]:
     """The parts of a tape as packets read them."""
-    out = np.empty((len(tape.parts), packet_density_kernels.PART), dtype=np.float32)
+    columns = len(tape.parts) + packet_density_kernels.SPARE_PARTS
+    out = lined((packet_density_kernels.PART, columns), np.float32)
     packet_density_kernels.pack_parts(tape.parts, out)
     return out
 
@@ -60,7 +63,8 @@ def plan_of(tape: Tape) -> NDArray[int64]:
     """How packets look for roots of a tape f or max(f, g), or a positive multiple, as its kernels read it.
 
     (row of D, index of c, row of g, row of p), -1 for the rows where f has not the form; then of a polynomial p the
-    degrees of the rows up to it and where their coefficients begin.
+    degrees of the rows up to it and where their coefficients begin. Of a tape without such a form, ``Memory`` adds the
+    rows by which rays are cut.
     """
     last = without_factor(tape, len(tape.code) - 1)
     rows = [last]
@@ -79,6 +83,13 @@ def plan_of(tape: Tape) -> NDArray[int64]:
     return np.array([-1, 0, -1, -1], dtype=np.int64)
 
 
+def others_of(plan: NDArray[int64]) -> list[int]:
+    """The rows of a tape at which places are looked at where its plan has found a root."""
+    if plan[density_roots_kernels.ROW_OF] < 0 and plan[POLYNOMIAL] < 0:
+        return [int(row) for row in plan[POLYNOMIAL + 1 :]]
+    return [int(row) for row in plan[[density_roots_kernels.OTHER]] if row >= 0]
+
+
 def in_lanes(tape: Tape) -> bool:
     """Whether a bundle's rays go through lanes: those of other tapes are certified one by one."""
     plan = plan_of(tape)
@@ -86,10 +97,10 @@ def in_lanes(tape: Tape) -> bool:
     return known or SKELETON not in tape.code[:, 0]
 
 
-def tape_up_to(tape: Tape, row: int) -> NDArray[int32]:
-    """Code (k, 4) of a row and what it needs of the tape alone; empty for row -1."""
-    needed = {row} if row >= 0 else set()
-    for k in range(row, -1, -1):
+def tape_of_rows(tape: Tape, rows: list[int]) -> NDArray[int32]:
+    """Code (k, 4) of the largest of some rows and what it needs of the tape alone; empty for none."""
+    needed = set(rows)
+    for k in range(max(rows, default=-1), -1, -1):
         op, left, right, point = map(int, tape.code[k])
         if k in needed and op in OF_PARTS:
             needed |= {point, point + 1, point + 2}
@@ -104,14 +115,20 @@ def tape_up_to(tape: Tape, row: int) -> NDArray[int32]:
             # The third operand of an angle is no row: see turns.
             third = line[3] if line[0] == ATAN2 else place.get(line[3], 0)
             line[1:] = place[line[1]], place[line[2]], third
+    last = [place[row] for row in rows]
+    for row in last[1:]:
+        code.append([MAX, last[0], row, 0])
+        last[0] = len(code) - 1
     return np.array(code, dtype=np.int32).reshape(-1, 4)
 
 
 def room_for(plan: NDArray[int64]) -> int:
     """How many numbers polynomials of a plan work in: see polynomial_steps_kernels."""
     rows = int(plan[POLYNOMIAL]) + 1
+    if rows == 0:
+        return ROWS
     ends = plan[DEGREES : DEGREES + rows] + plan[DEGREES + rows :] + 1
-    return max(int(ends.max(initial=0)) * ABREAST, ROWS + 2 * rows)
+    return max(int(ends.max()) * ABREAST, ROWS + 2 * rows)
 
 
 CACHE_LINE = 64
@@ -132,10 +149,15 @@ def lined(shape: tuple[int, ...] | int, dtype: Any = np.float64) -> NDArray[Any]
 
 
 class Memory:
-    """What one thread works in for bundles of up to ``count`` rays against a tape."""
+    """What one thread works in for bundles of up to ``count`` rays against a tape.
 
-    def __init__(self, tape: Tape, count: int) -> None:
-        count = -(-count // LANES) * LANES  # lanes beyond the rays are looked at, too
+    Rays are cut by the rows ``cut`` of the tape already (see ``clips.clip_rows``), but for rounding: it is looked at
+    these where a root is found. Rays that are not are met as well, but by the certified routine.
+    """
+
+    def __init__(self, tape: Tape, count: int, cut: Sequence[int] = ()) -> None:
+        whole = OCTET * GROUP
+        count = -(-count // whole) * whole  # lanes beyond the rays are looked at, too
         rows = len(tape.code)
         self.tape = tape
         self.rays = lined((RAY, count))
@@ -148,19 +170,21 @@ class Memory:
             lined(max(LANE_ROWS * LANES, density_march_kernels.ROWS), single),
             lined(2 * LANES, np.int64),
         )
-        self.asked, self.queue = lined((4, count), single), lined(count, np.int64)
+        self.asked, self.queue = lined((ASK, count), single), lined(count, np.int64)
         self.singles = single_parts(tape)
-        beams, doubles = lined((BEAM, -(-count // GROUP) + 1)), lined((rows, LANES))
+        beams, doubles = lined((BEAM, -(-count // GROUP) + VECTOR)), lined((rows, LANES))
         near = np.zeros((2 * rows, 4), dtype=np.int32), lined(self.singles.shape, single), lined(tape.parts.shape)
         plan = plan_of(tape)
-        whole = STAGGER + -(-max(count, density_march_kernels.LANES, len(tape.parts)) // LANES) * LANES
+        if plan[density_roots_kernels.ROW_OF] < 0 and plan[POLYNOMIAL] < 0:
+            plan = np.array([*plan, *cut], dtype=np.int64)
+        most = STAGGER + -(-max(count, density_march_kernels.LANES, len(tape.parts)) // LANES) * LANES
         march = (
             plan,
             lined(4 * density_march_kernels.LANES + count + len(tape.parts), np.int64),
-            lined((density_slice_kernels.ROOM, whole)),
+            lined((density_slice_kernels.ROOM, most)),
             lined((density_roots_kernels.MOST_PARTS, density_march_kernels.COLUMNS), single),
             lined(room_for(plan)),
-            tape_up_to(tape, int(plan[density_roots_kernels.OTHER])),
+            tape_of_rows(tape, others_of(plan)),
         )
         self.rest = tape.parts, lined(scratch(tape).shape), beams, doubles, lined((3, LANES)), *near, *march
 
@@ -179,11 +203,17 @@ class Memory:
 
 
 def cast_together(
-    tape: Tape, origins: Floats, directions: Floats, t0: Floats, t1: Floats, anywhere: bool = False
+    tape: Tape,
+    origins: Floats,
+    directions: Floats,
+    t0: Floats,
+    t1: Floats,
+    anywhere: bool = False,
+    cut: Sequence[int] = (),
 ) -> tuple[NDArray[np.int64], Floats]:
     """(status, t), each (n,): as ``solid.cast``, of rays that pass near each other, in bundles of 256."""
     size = min(256, len(t0))
-    memory = Memory(tape, size)
+    memory = Memory(tape, size, cut)
     status, t = np.empty(len(t0), dtype=np.int64), np.empty(len(t0))
     for start in range(0, len(t0), size):
         stop = min(start + size, len(t0))

@@ -7,8 +7,9 @@ RAY = 8
 """Rows of rays: origin, direction, begin and end."""
 FOUND_STATUS, FOUND_LOW, FOUND_HIGH, FOUND_ROOT, FOUND_SLOPE = range(5)
 """Rows of what is found, by ray; places from the ray's own start."""
-NEAR, FAR, RUN, SURE = range(4)
-"""Rows of what is asked, by ray: where to begin and to end, where the first segment ends, 1 where the end is known to
-be inside."""
-LANE_ROWS = 17
+START, WAY_OF, NEAR, RUN, FAR, SURE, LONG = 0, 3, 6, 7, 8, 9, 10
+ASK = 11
+"""Rows of what is asked, by ray, places counted from its own start: that start (3), direction (3), where to begin,
+where the first segment ends, where to end, 1 where the end is known to be inside; the length of the ray."""
+LANE_ROWS = 18
 """Rows of lanes that rays are hunted in: see ``hunt_kernels``."""

@@ -3,9 +3,10 @@
 
 import numpy as np
 
+from sceneql.field.affine_kernels import GROW, ONE, PAD, ZERO, F
 from sceneql.field.batch_kernels import evaluate
 from sceneql.field.hunt_kernels import hunt
-from sceneql.field.packet_kernels import LANES, TAPE_ROOTS, enclose, has, load_constants
+from sceneql.field.packet_kernels import C1, LANES, TAPE_ROOTS, VECTOR, E, enclose, has, load_constants
 from sceneql.field.ray_rows import (
     FAR,
     FOUND_HIGH,
@@ -13,51 +14,53 @@ from sceneql.field.ray_rows import (
     FOUND_ROOT,
     FOUND_SLOPE,
     FOUND_STATUS,
-    NEAR,
-    RUN,
     SETTLED,
     SURE,
 )
 from sceneql.field.shorten_kernels import shorten
-from sceneql.field.slab_kernels import BEGIN, STOP, bundle, first_inside, join, left_of_slabs, place_slabs
+from sceneql.field.slab_kernels import SETTLED as SETTLED_INSIDE
+from sceneql.field.slab_kernels import (
+    STOP,
+    ask,
+    ask_places,
+    bundle,
+    cut_beams,
+    first_inside,
+    join,
+    left_of_beams,
+    left_of_slabs,
+    note_beams,
+    place_beams,
+    place_slabs,
+    single_beams,
+)
 from sceneql.field.tape_ops import DENSITY, HIT, MAX, MIN, UNDECIDED
 from sceneql.kernels import inlined, lean
+from sceneql.lanes_kernels import spread
 
-SLABS, VECTOR = 8, 16
-BEAMS = LANES // SLABS
+SLABS = 8
+"""Of a beam."""
+FEW = 8
+"""Up to so many beams are not looked at together."""
 
 
 @inlined
-def ask(rays, j, begin, depth, first, final, deep, anywhere, asked, found):
-    """Set where the search on ray j begins and ends; False where nothing is left of it.
-
-    It ends in slab ``deep``, which is inside (-1: none is known to be), where the ray comes through it.
-    """
-    t0 = rays[6, j]
-    t1 = rays[7, j]
-    if not t0 < t1:
-        return False
-    hair = 1e-6 * depth
-    low = max(begin + first * depth - hair - t0, 0.0)
-    high = min(begin + (final + 1) * depth + hair, t1) - t0
-    if not low < high:
-        return False
-    low *= 1.0 - 2e-7
-    high *= 1.0 + 2e-7
-    inside = begin + (deep + 0.5) * depth
-    sure = deep >= 0 and t0 + low < inside < t1
-    if sure:
-        high = inside - t0
-        if anywhere:
-            found[FOUND_STATUS, j] = HIT
-            found[FOUND_LOW, j] = found[FOUND_HIGH, j] = high
-            found[FOUND_ROOT, j] = inside
-            return False
-    asked[NEAR, j] = low
-    asked[FAR, j] = high
-    asked[RUN, j] = min(max(begin + (first + 1) * depth - t0, low + 0.01 * (high - low)), high)
-    asked[SURE, j] = 1.0 if sure else 0.0
-    return True
+def enqueue(rays, count, groups, asked, found, queue):
+    """Queue the rays of which something is left, beam by beam; how many. What is settled is noted."""
+    queued = 0
+    states = asked[SURE]
+    for g in range(groups):
+        for ray in range(g, count, groups):
+            j = np.uint64(ray)
+            queue[np.uint64(queued)] = ray
+            if states[j] == SETTLED_INSIDE:
+                far = asked[FAR, j]
+                found[FOUND_STATUS, j] = HIT
+                found[FOUND_LOW, j] = found[FOUND_HIGH, j] = far
+                found[FOUND_ROOT, j] = rays[6, j] + far
+            else:
+                queued += 1 if states[j] >= 0.0 else 0
+    return queued
 
 
 @inlined
@@ -66,24 +69,42 @@ def polish(code, constants, parts, registers, points, rays, queue, count, found)
     width = points.shape[1]
     for start in range(0, count, width):
         n = min(width, count - start)
+        own, times = queue[start:], registers[0]
         for turn in range(2):
+            begins, roots = rays[6], found[FOUND_ROOT]
             for i in range(n):
-                j = np.uint64(queue[start + i])
-                t = rays[6, j] + found[FOUND_ROOT, j]
-                points[0, i] = rays[0, j] + t * rays[3, j]
-                points[1, i] = rays[1, j] + t * rays[4, j]
-                points[2, i] = rays[2, j] + t * rays[5, j]
+                j = np.uint64(own[i])
+                times[i] = begins[j] + roots[j]
+            for axis in range(3):
+                o, d, place = rays[axis], rays[3 + axis], points[axis]
+                for i in range(n):
+                    j = np.uint64(own[i])
+                    place[i] = o[j] + times[i] * d[j]
             evaluate(code, constants, parts, registers, points, n)
             last = registers[code.shape[0] - 1]
             for i in range(n):
                 j = np.uint64(queue[start + i])
                 step = last[i] / found[FOUND_SLOPE, j]
                 root = min(max(found[FOUND_ROOT, j] - step, found[FOUND_LOW, j]), found[FOUND_HIGH, j])
-                if turn == 1 and not (
-                    abs(step) <= SETTLED * (rays[7, j] - rays[6, j]) and rays[6, j] + root < rays[7, j]
-                ):
+                left = min(abs(step), found[FOUND_HIGH, j] - found[FOUND_LOW, j])
+                if turn == 1 and not (left <= SETTLED * (rays[7, j] - rays[6, j]) and rays[6, j] + root < rays[7, j]):
                     found[FOUND_STATUS, j] = UNDECIDED
                 found[FOUND_ROOT, j] = root
+
+
+@inlined
+def uncut(registers, clips):
+    """(first, end) of the longest run of slabs that all rows ``clips`` leave whole."""
+    first, end, begun = 0, 0, 0
+    for i in range(LANES):
+        for k in range(clips.shape[0]):
+            row = registers[clips[k]]
+            m = abs(row[C1 + i])
+            if not row[i] + m + (row[E + i] * GROW + PAD * (abs(row[i]) + m)) < ZERO:
+                begun = i + 1
+        if i + 1 - begun > end - first:
+            first, end = begun, i + 1
+    return first, end
 
 
 @inlined
@@ -99,31 +120,31 @@ def all_through(rays, count, low, high):
 @lean(TAPE_ROOTS, inner=True)
 def tape_roots(
     code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, count, groups, anywhere, found,
-    parts, scratch, beams, doubles, points, short, near_singles, near_parts,
+    parts, scratch, beams, doubles, points, short, near_singles, near_parts, clips,
 ):  # fmt: skip
-    """Settle a bundle as ``packet_roots_kernels.first_roots`` does.
+    """Settle a bundle as ``packet_roots_kernels.first_roots`` does, but for what the rows ``clips`` cut away.
 
     Returns (enclosures, rays that may be met, in ``queue``, rows of ``short`` that hold up to where all is looked at,
-    that place).
+    that place; from where to where no ray is cut).
     """
     load_constants(code, constants, registers)
     length = code.shape[0]
     last = registers[length - 1]
     spent = 0
-    queued = 0
     rows = 0
+    safe, unsafe = -np.inf, np.inf
     base = bundle(rays, count, groups, beams)
     if base == np.inf:
-        return 0, 0, 0, np.inf
+        return 0, 0, 0, np.inf, np.inf, np.inf
     join(beams, groups, groups)
     begin, end = base, beams[STOP, groups]
-    if groups > BEAMS:
-        place_slabs(beams, groups, base, begin, end, point, 0, LANES)
+    if groups > FEW:
+        place_slabs(beams, groups, base, begin, end, point)
         enclose(code, constants, singles, registers, point, status, LANES)
         spent += LANES
         first, final, _ = left_of_slabs(last, status, 0, LANES)
         if first == LANES:
-            return spent, 0, 0, np.inf
+            return spent, 0, 0, np.inf, np.inf, np.inf
         depth = (end - begin) / LANES
         deep = first_inside(last, status, 0, LANES)
         if deep >= 0 and all_through(rays, count, base + deep * depth, base + (deep + 1) * depth):
@@ -131,39 +152,31 @@ def tape_roots(
         begin, end = base + (first - 1e-6) * depth, base + (final + 1 + 1e-6) * depth
         if has(code, DENSITY) or has(code, MAX) or has(code, MIN):
             rows = shorten(
-                code, registers, status, first, final, singles, parts, scratch, short, near_singles, near_parts
+                code, registers, status, first, final, clips, singles, parts, scratch, short, near_singles, near_parts
             )
+            from_slab, to_slab = uncut(registers, clips)
+            if clips.shape[0] > 0:
+                safe, unsafe = base + from_slab * depth, base + to_slab * depth
             code = short[length : length + rows]
             if has(code, DENSITY):
                 singles = near_singles
             last = registers[rows - 1]
             load_constants(code, constants, registers)
-    waiting = 0
-    for g in range(groups):
-        low, high = max(beams[BEGIN, g], begin), min(beams[STOP, g], end)
-        if low < high:
-            place_slabs(beams, g, base, low, high, point, SLABS * waiting, SLABS)
-            ids[waiting] = g
-            waiting += 1
-        if waiting == 0 or (waiting < BEAMS and g + 1 < groups):
-            continue
-        enclose(code, constants, singles, registers, point, status, (SLABS * waiting + VECTOR - 1) // VECTOR * VECTOR)
-        spent += SLABS * waiting
-        for b in range(waiting):
-            first, final, _ = left_of_slabs(last, status, SLABS * b, SLABS)
-            if first == SLABS:
-                continue
-            deep = first_inside(last, status, SLABS * b, SLABS)
-            low, high = max(beams[BEGIN, ids[b]], begin), min(beams[STOP, ids[b]], end)
-            depth = (high - low) / SLABS
-            for j in range(ids[b], count, groups):
-                if ask(rays, j, low, depth, first, final, deep, anywhere, asked, found):
-                    queue[queued] = j
-                    queued += 1
-        waiting = 0
-    spent += hunt(
-        code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, queued, anywhere, found
-    )
+    cut_beams(beams, groups, begin, end)
+    for at in range(0, groups, VECTOR):
+        # The memory of the lanes is free till the hunt.
+        single_beams(beams, at, base, SLABS, lanes)
+        left, final_slab, deep_slab = spread(F(SLABS)), spread(-ONE), spread(-ONE)
+        for begun in range(0, SLABS, LANES // VECTOR):
+            place_beams(lanes, begun, point)
+            enclose(code, constants, singles, registers, point, status, LANES)
+            left, final_slab, deep_slab = left_of_beams(last, status, begun, left, final_slab, deep_slab)
+        spent += SLABS * min(VECTOR, groups - at)
+        note_beams(beams, at, SLABS, left, final_slab, deep_slab, lanes)
+    ask(rays, count, groups, beams, anywhere, safe, unsafe, asked)
+    ask_places(rays, count, asked)
+    queued = enqueue(rays, count, groups, asked, found, queue)
+    spent += hunt(code, constants, singles, registers, point, status, lanes, ids, asked, queue, queued, anywhere, found)
     if not anywhere:
         hits = 0
         for k in range(queued):  # hits to the front of the queue
@@ -171,4 +184,4 @@ def tape_roots(
                 queue[hits], queue[k] = queue[k], queue[hits]
                 hits += 1
         polish(code, constants, near_parts if rows > 0 else parts, doubles, points, rays, queue, hits, found)
-    return spent, queued, rows, end
+    return spent, queued, rows, end, safe, unsafe

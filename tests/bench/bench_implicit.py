@@ -89,6 +89,7 @@ class Picture:
 
     def __init__(self, name: str) -> None:
         self.tape, self.view, self.clip = scene_tape(name), view(name), SCENES[name]["clip"]
+        self.ball = self.tape.code[-1:, 2]  # the row of the ball, by which rays are cut
         self.picture = np.zeros((HEIGHT, WIDTH), dtype=np.float32)
         self.depth = np.zeros((HEIGHT, WIDTH), dtype=np.float32)
         self.pixels = tile_pixels()
@@ -112,7 +113,7 @@ class Picture:
             row = rows[tile]
             if not hasattr(own, "arrays"):
                 slopes = lined((len(self.tape.code), 3, 64))
-                own.arrays = Memory(self.tape, 256), slopes, self.numbers.copy(), lined((3, 256))
+                own.arrays = Memory(self.tape, 256, self.ball), slopes, self.numbers.copy(), lined((3, 256))
             memory, slopes, numbers, starts = own.arrays
             rest = slopes, self.pixels, numbers, starts, self.view, self.clip, row, WIDTH
             arrays = self.picture.reshape(-1), self.depth.reshape(-1)
