@@ -2,111 +2,23 @@
 
 from __future__ import annotations
 
-import json
-from functools import cache
-from pathlib import Path
-
 import numpy as np
 import pytest
 from flint import fmpq_poly
 from hypothesis import given, settings
 
+from common_scenes import COMMON, SCENES, TOLERANCE, certified, check, chords, rays, scene, tape_of
 from exact_rays import along, blob_entry, exact, first_entry, real_roots, roots_of
-from moment import IDENTITY, FakeMoment, const
-from sceneql.field.builder import TapeBuilder
-from sceneql.field.certified_kernels import certify
+from random_tapes import SMOOTH, tapes
+from random_tapes import rays as some_rays
 from sceneql.field.enclosure_kernels import segment
 from sceneql.field.gradient_kernels import gradient
-from sceneql.field.interval_kernels import box
-from sceneql.field.isolation_kernels import any_root, exit_root
-from sceneql.field.packets import cast_together, tape_of_rows
-from sceneql.field.simplify_kernels import simplify
+from sceneql.field.isolation_kernels import any_root
 from sceneql.field.slope_kernels import on_ray
 from sceneql.field.solid import cast, field_values, scratch
-from sceneql.field.tape_ops import ATAN2, HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
-from sceneql.quantities.bind import bind
-from sceneql.quantities.diagnostic import Diagnostics
-from sceneql.quantities.expression import Symbol
-from sceneql.quantities.parser import parse_expression
-from sceneql.quantities.span import Source, Span
-from sceneql.simulation.objects.torus import Torus
-from test_field import SMOOTH, tapes
-from test_field import rays as some_rays
+from sceneql.field.tape_ops import HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
 
-FILE = Path(__file__).parent / "bench" / "scenes" / "implicit.json"
-COMMON = json.loads(FILE.read_text(encoding="utf-8"))
-SCENES = COMMON["scenes"]
-RAYS = 1000
-TOLERANCE = 1e-9
-NAMES = {MISS: "miss", HIT: "hit", INSIDE: "inside", UNDECIDED: "undecided"}
 POLYNOMIALS = ("barth_sextic", "kummer", "steiner", "double_root")
-
-
-def tape_of(text, where=()):
-    """The tape of a formula of x, y, z; ``where`` gives its constants."""
-    build = TapeBuilder()
-    known = {"x": build.x, "y": build.y, "z": build.z}
-    for name, formula in (dict(where) | {"": text}).items():
-        found = Diagnostics()
-        tree = parse_expression(formula, Span(Source("scene", formula), 0, len(formula)))
-        expr = bind(tree, lambda parts, span: Symbol(".".join(parts)) if parts[0] in known else None, found)
-        found.raise_errors()
-        known[name] = build.expression(expr, known)
-    return build.finish(known[""])
-
-
-@cache
-def scene(name):
-    """(tape of a common scene, without its ball; radius of the ball)."""
-    found = SCENES[name]
-    if "parts" not in found:
-        return tape_of(found["f"], found.get("where", {})), found["clip"]
-    build = TapeBuilder()
-    parts = np.array([[*row[:3], *row[:3], row[3], 1.0] for row in found["parts"]])
-    density = build.density(parts, build.x, build.y, build.z)
-    return build.finish(build.op("sub", build.constant(found["threshold"]), density)), found["clip"]
-
-
-def rays(clip, count=RAYS, seed=3):
-    """(origins, directions, t0, t1) of random rays, from and to where they meet a ball."""
-    generator = np.random.default_rng(seed)
-    origins, targets = generator.normal(size=(2, count, 3))
-    origins *= 2.0 * clip / np.linalg.norm(origins, axis=1)[:, None]
-    targets *= clip * generator.random((count, 1)) ** (1 / 3) / np.linalg.norm(targets, axis=1)[:, None]
-    return (origins, *chords(origins, targets - origins, clip))
-
-
-def chords(origins, directions, clip):
-    directions = directions / np.linalg.norm(directions, axis=1)[:, None]
-    nearest = -np.einsum("ij,ij->i", origins, directions)
-    half = np.sqrt(np.maximum(clip**2 - np.einsum("ij,ij->i", origins, origins) + nearest**2, 1e-30))
-    return directions, nearest - half, nearest + half
-
-
-def certified(tape, origins, directions, t0, t1, sign=1.0, anywhere=False, touching=False):
-    """(status, t) by the intervals alone."""
-    room = scratch(tape)
-    program = tape.code, tape.constants, tape.parts, room
-    found = [
-        certify(*program, *o, *d, a, b, TOLERANCE * (b - a), sign, anywhere, touching)
-        for o, d, a, b in zip(origins, directions, t0, t1, strict=True)
-    ]
-    return np.array([status for status, _ in found]), np.array([t for _, t in found])
-
-
-def check(status, t, expected, t0, t1, inside_is_hit=False):
-    """What was found is what is there; how many rays were left undecided."""
-    undecided = 0
-    for k, (outcome, place) in enumerate(expected):
-        if status[k] == UNDECIDED:
-            undecided += 1
-            continue
-        if outcome == "inside" and inside_is_hit:
-            outcome = "hit"
-        assert NAMES[status[k]] == outcome, k
-        if outcome != "miss":
-            assert abs(t[k] - place) <= TOLERANCE * (t1[k] - t0[k]), k
-    return undecided
 
 
 def solid_entries(tape, origins, directions, t0, t1):
@@ -249,78 +161,6 @@ def test_poles_and_jumps_are_no_part_of_a_surface():
             assert t[0] == pytest.approx(1.0 - places[0], abs=1e-9)
 
 
-def test_the_cut_of_an_angle_is_a_jump():
-    """From pi to -pi: the mean value form must not reach over it."""
-    for aside in (-1.0, -0.3, -1e-6):
-        segments = [[aside, 1.0, 0.2]], [[0.0, -1.0, 0.1]], np.zeros(1), np.full(1, 2.5)
-        for status, t in (
-            cast(tape_of("atan2(y, x)"), *segments, TOLERANCE),
-            certified(tape_of("atan2(y, x)"), *segments),
-        ):
-            assert status[0] == HIT
-            assert t[0] == pytest.approx(1.0, abs=1e-8)
-
-
-ROUND = ["5*atan2(y, x)", "z - 3*atan2(y, x)", "8*hypot(x, y) + 2*atan2(y, x)", "3*acos(x/hypot(x, y))"]
-
-
-def over_the_cut(count):
-    """(origins, ways) of rays across the half plane y = 0 > x."""
-    generator = np.random.default_rng(1)
-    sides = generator.uniform(-1.0, -0.3, count), generator.uniform(-0.3, 0.3, count)
-    origins = np.column_stack([*sides, np.ones(count)])
-    return origins, np.column_stack([generator.uniform(-0.2, 0.2, count), -3.0 * sides[1], np.full(count, -0.3)])
-
-
-@pytest.mark.parametrize("angle", ROUND)
-def test_angles_in_waves_have_no_cut(angle):
-    tape = tape_of(f"hypot(x, y) - 0.6 - 0.2*cos({angle})")
-    origins, ways = over_the_cut(100)
-    status, t = cast(tape, origins, ways, 0.0, 3.0, TOLERANCE)
-    assert (status != UNDECIDED).all()
-    places = np.linspace(0.0, 3.0, 1001)
-    inside = field_values(tape, (origins[:, None] + places[:, None] * ways[:, None]).reshape(-1, 3)) < -1e-9
-    inside = inside.reshape(100, -1)
-    assert not (inside.any(axis=1) & (status == MISS)).any()
-    assert not (inside & (places < t[:, None] - 1e-6)).any()
-    program = tape.code, tape.constants, tape.parts, scratch(tape)
-    for o, d in zip(origins[:20], ways[:20], strict=True):
-        for t0, t1 in ((0.0, 3.0), (0.32, 0.35), (0.333333, 0.333334)):
-            low, high, least, most, _ = on_ray(*program, *o, *d, t0, t1, 1.0)
-            f = field_values(tape, o + np.linspace(t0, t1, 21)[:, None] * d)
-            assert ((f >= low) & (f <= high)).all()
-            assert (np.diff(f) >= least * (t1 - t0) / 20 - 1e-14).all()
-            assert (np.diff(f) <= most * (t1 - t0) / 20 + 1e-14).all()
-
-
-@pytest.mark.parametrize("angle", ROUND)
-def test_angles_in_shorter_tapes_have_no_cut_either(angle):
-    whole = tape_of(f"max(hypot(x, y) - 0.6 - 0.2*cos({angle}), z - 9)")
-    origins, ways = over_the_cut(1000)
-    order = np.argsort(origins[:, 0])
-    status, _ = cast_together(whole, origins[order], ways[order], np.zeros(1000), np.full(1000, 3.0))
-    assert (status != UNDECIDED).all()
-    room, place = scratch(whole), (-1.0, -0.99, -0.001, 0.001, 0.1, 0.101)
-    expected = box(whole.code, whole.constants, whole.parts, room, *place)
-    short = np.zeros_like(whole.code)
-    rows, _ = simplify(whole.code, whole.parts, room, True, short, np.zeros((1, 8)))
-    assert rows < len(whole.code)
-    assert box(short[:rows], whole.constants, whole.parts, room, *place) == expected
-
-
-def test_the_tape_of_a_row_knows_of_which_angles_whole_turns_do_not_matter():
-    whole = tape_of("max(cos(5*atan2(z, y)), x)")
-    wave = tape_of_rows(whole, [int(whole.code[-1, 1:3].max())])
-    assert wave[wave[:, 0] == ATAN2, 3].tolist() == [1]
-
-
-@pytest.mark.parametrize(
-    "formula", ["cos(2.5*atan2(y, x))", "atan2(y, x)", "atan2(y, x)*cos(atan2(y, x))", "atan2(y, x)^2"]
-)
-def test_angles_of_which_whole_turns_matter_keep_their_cut(formula):
-    assert not (tape_of(formula).code[:, 3] * (tape_of(formula).code[:, 0] == ATAN2)).any()
-
-
 @pytest.mark.parametrize(
     "formula",
     [
@@ -436,64 +276,3 @@ def test_no_pixel_of_a_common_scene_is_wrong(name):
             any_root(*program, *origins[k], *segments[1][k], segments[2][k], segments[3][k], TOLERANCE) for k in some
         ]
         assert all((found == MISS) == (truth[k] == MISS) for found, k in zip(blocked, some, strict=True))
-
-
-def torus_rays(radius, tube, kind, count=200):
-    """(origins, directions, t0, t1) of rays at a torus about the y axis."""
-    generator = np.random.default_rng(11)
-    angle, around = generator.uniform(0.0, 2.0 * np.pi, (2, count))
-    outward = np.stack([np.cos(angle), np.zeros(count), np.sin(angle)], axis=-1)
-    up = np.array([0.0, 1.0, 0.0])
-    normal = np.cos(around)[:, None] * outward + np.sin(around)[:, None] * up
-    place = radius * outward + tube * normal
-    side = generator.normal(size=(count, 3))
-    if kind == "grazing":  # in the tangent plane, moved by little along the normal
-        tangent = np.cross(normal, side)
-        off = tube * generator.choice([-1.0, 1.0], count) * 10.0 ** -generator.uniform(1, 9, count)
-        aims = place + off[:, None] * normal
-        origins = aims + 3.0 * tangent / np.linalg.norm(tangent, axis=1)[:, None]
-    elif kind == "inside":
-        origins = radius * outward + 0.5 * tube * normal
-        aims = origins + side
-    else:
-        aims = place - tube * generator.uniform(0.0, 3.0, count)[:, None] * normal
-        origins = aims + (1e4 if kind == "far" else 3.0) * side / np.linalg.norm(side, axis=1)[:, None]
-    directions = aims - origins
-    lengths = np.linalg.norm(directions, axis=1)
-    reach = 2.0 * (radius + tube)
-    starts = np.zeros(count) if kind == "inside" else lengths - min(2.9, reach)
-    return origins, directions / lengths[:, None], starts, np.where(kind == "inside", 0.0, lengths) + reach
-
-
-@pytest.mark.parametrize("kind", ["random", "grazing", "far", "inside"])
-@pytest.mark.parametrize(("radius", "tube"), [(1.0, 0.4), (1.0, 1e-3), (0.3, 0.29)])
-def test_roots_of_a_torus_are_those_of_its_quartic(radius, tube, kind):
-    (shape,) = Torus(radius=const(radius), tube=const(tube)).lower("a", IDENTITY, FakeMoment())
-    segments = torus_rays(radius, tube, kind)
-    big, small = exact(radius), exact(tube)
-    expected = []
-    for o, d, a, b in zip(*segments, strict=True):
-        x, y, z = (fmpq_poly([exact(p), exact(q)]) for p, q in zip(o, d, strict=True))
-        flat = x * x + z * z
-        total = flat + y * y + big * big - small * small
-        quartic = total * total - 4 * big * big * flat
-        expected.append(first_entry(lambda t, q=quartic: q(t) < 0, roots_of(quartic), a, b))
-    outcomes = {outcome for outcome, _ in expected}
-    assert outcomes == ({"inside"} if kind == "inside" else {"hit", "miss"})
-    assert check(*cast(shape.tape, *segments, TOLERANCE), expected, *segments[2:]) == 0
-    if kind == "inside":
-        check_exits(shape.tape, *segments, big, small)
-
-
-def check_exits(tape, origins, directions, t0, t1, big, small):
-    """The ways out are the first places where the quartic is not negative."""
-    program = tape.code, tape.constants, tape.parts, scratch(tape)
-    for o, d, a, b in zip(origins, directions, t0, t1, strict=True):
-        x, y, z = (fmpq_poly([exact(p), exact(q)]) for p, q in zip(o, d, strict=True))
-        flat = x * x + z * z
-        total = flat + y * y + big * big - small * small
-        quartic = total * total - 4 * big * big * flat
-        outcome, place = first_entry(lambda t, q=quartic: q(t) > 0, roots_of(quartic), a, b)
-        status, t = exit_root(*program, *o, *d, a, b, TOLERANCE)
-        assert (NAMES[status], outcome) == ("hit", "hit")
-        assert abs(t - place) <= TOLERANCE * (b - a)

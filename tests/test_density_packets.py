@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from plain_tapes import kernels
 from sceneql.field.packets import Memory, cast_together
 from sceneql.field.tape_ops import HIT
-from test_field import kernels
 
 RADIUS, THRESHOLD = 0.4, 0.3
 

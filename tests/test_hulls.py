@@ -6,10 +6,10 @@ from math import comb
 import numpy as np
 import pytest
 
+from common_scenes import SCENES, tape_of
 from hulls_kernels import hull
 from sceneql.field.plans import degrees_of, places_of
 from sceneql.field.tape_ops import CONSTANT, X, Y, Z
-from test_certified import SCENES, tape_of
 
 
 def bernstein(c, m, h):

@@ -21,6 +21,7 @@ from meshes import (
     cut_sharp,
     tape_of,
 )
+from random_tapes import tapes
 from sceneql.field.solid import field_gradients, field_values
 from sceneql.mesh.bounded import bounded
 from sceneql.mesh.flips import facing
@@ -31,7 +32,6 @@ from sceneql.mesh.polygonise import polygonise
 from sceneql.mesh.polygons import Polygons
 from sceneql.mesh.refine import refined
 from sceneql.mesh.sharp import polygonise_sharp
-from test_field import tapes
 
 
 @pytest.mark.parametrize("name", CLOSED)

@@ -4,6 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from random_tapes import tapes
 from sceneql.field.batch_gradient_kernels import differentiate
 from sceneql.field.batch_kernels import LANES, evaluate
 from sceneql.field.interval_kernels import box
@@ -12,7 +13,6 @@ from sceneql.field.solid import field_gradients, field_values, many_gradients, s
 from sceneql.field.steepness_kernels import steepness
 from sceneql.field.tape_ops import WHOLE
 from sceneql.frame import Tape
-from test_field import tapes
 
 
 def program(tape):

@@ -7,8 +7,11 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from common_scenes import tape_of
 from extremes_kernels import extremes
 from moment import IDENTITY, FakeMoment, const, formula
+from plain_tapes import implicit, kernels
+from random_tapes import NAMES, PARTS, of_one, rays, tapes
 from renderers.tracing.bundles import solids_in_lanes
 from sceneql.field.clips import clip_rows
 from sceneql.field.packets import Memory, cast_together, enclosures, plan_of
@@ -36,8 +39,6 @@ from sceneql.simulation.objects.blobby import Blobby
 from sceneql.simulation.objects.implicit import Implicit as Formula
 from sceneql.simulation.objects.implicit import Within
 from sceneql.simulation.solid import traced
-from test_certified import tape_of
-from test_field import NAMES, PARTS, implicit, kernels, of_one, rays, tapes
 
 
 def check_enclosures(tape, origin, direction, t0, t1):
