@@ -148,10 +148,7 @@ def first_roots(
         )  # fmt: skip
         code, parts = short[: code.shape[0]], near_parts
     elif plan[POLYNOMIAL] >= 0:
-        spent, queued, safe, unsafe = polynomial_roots(
-            code, constants, singles, registers, point, status, rays, count, anywhere, found, queue, plan, order,
-            room, flat,
-        )  # fmt: skip
+        spent, queued = polynomial_roots(code, constants, rays, count, anywhere, found, queue, plan, order, room, flat)
     elif has(code, SKELETON):
         return 0, certify(code, constants, parts, scratch, rays, count, anywhere, found)
     else:

@@ -1,8 +1,6 @@
 # mypy: ignore-errors
 """First roots along a whole bundle of rays of a polynomial: see ``polynomial_hunt_kernels``."""
 
-import numpy as np
-
 from sceneql.field.polynomial_hunt_kernels import (
     POLYNOMIAL_ROOTS,
     pack,
@@ -17,16 +15,16 @@ from sceneql.kernels import lean
 
 @lean(POLYNOMIAL_ROOTS, inner=True)
 def polynomial_roots(
-    code, constants, singles, registers, point, status, rays, count, anywhere, found, queue, plan, order, room, lanes
+    code, constants, rays, count, anywhere, found, queue, plan, order, room, lanes
 ):  # fmt: skip
     """Settle a bundle as ``packet_roots_kernels.first_roots`` does.
 
-    Returns (steps, rays that may be met, in ``queue``, and inf twice: nowhere is the other field known to be negative).
-    Enclosures of the tape would empty some bundles, but cost all of them what they save in steps.
+    Returns (steps, rays that may be met, in ``queue``). Enclosures of the tape would empty some bundles, but cost all
+    of them what they save in steps.
     """
     n = pack(rays, count, order, room)
     if n == 0:
-        return 0, 0, np.inf, np.inf
+        return 0, 0
     wide = rays if n == count else room
     x, y, z = reach(wide, n, 0), reach(wide, n, 1), reach(wide, n, 2)
     off = rounding(code, constants, plan, (x[0], y[0], z[0], x[1], y[1], z[1]), lanes)
@@ -53,4 +51,4 @@ def polynomial_roots(
             )  # fmt: skip
             width = live
             m = (width + 15) // 16 * 16
-    return spent, queued, np.inf, np.inf
+    return spent, queued

@@ -8,7 +8,6 @@ import numpy as np
 from numba import types
 
 from sceneql.compiling.late import late
-from sceneql.field.packet_kernels import ENCLOSE
 from sceneql.field.polynomial_kernels import ABREAST
 from sceneql.field.polynomial_steps_kernels import (
     CHANGE,
@@ -30,8 +29,8 @@ from sceneql.kernels import inlined
 T0, T1 = 6, 7
 """Rows of packed rays, as of rays: begin and end."""
 _f, _i, _ids, _wide = types.float64, types.int64, types.int64[::1], types.float64[:, ::1]
-POLYNOMIAL_ROOTS = types.Tuple((_i, _i, _f, _f))(
-    *ENCLOSE.args[:-1], _wide, _i, types.boolean, _wide, _ids, _ids, _ids, _wide, _f[::1]
+POLYNOMIAL_ROOTS = types.UniTuple(_i, 2)(
+    types.int32[:, ::1], _f[::1], _wide, _i, types.boolean, _wide, _ids, _ids, _ids, _wide, _f[::1]
 )
 polynomial_roots = late("sceneql.field.polynomial_bundle_kernels:polynomial_roots", POLYNOMIAL_ROOTS)
 
