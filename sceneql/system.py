@@ -372,8 +372,9 @@ class Stepper:
     last_stage: int = -1
     """Array of ``work`` that after a step holds the rate at its end (first same as last); -1: none does."""
     unsolved: str = ""
-    """What it means where a step of a given length has no finite end, though it was halved and halved again; "": that
-    the step is unstable."""
+    """What it means where a step of a given length has no finite end; else that the step is unstable."""
+    halves: bool = False
+    """Whether such a step is halved first, and halved again."""
     extend: str | None = None
     """Compiled function of the step's signature, for what `dense` needs beyond the step (more stages, into `work`):
     called once before a frame is read off a step. Where contacts are exact, `dense` is read after every step without

@@ -18,7 +18,8 @@ ON_GRIDS = "sceneql.simulation.grids.stage_kernels"
 NEWTON = 1e-10
 """Relative and absolute tolerance of Newton's method where steps are fixed."""
 UNSOLVED = "Newton's method finds no solution, not even of a thousandth of this step: take shorter ones"
-UNSOLVED_ON_GRID = f"{UNSOLVED}, or with a drift `linear: auto`"
+UNSOLVED_ON_GRID = "Newton's method finds no solution of this step: take a shorter one"
+UNSOLVED_AS_NAMED = f"{UNSOLVED_ON_GRID}, or with a drift `linear: auto`"
 SHARE = 0.02
 """Part of the tolerance that Newton's method may leave as its own error."""
 
@@ -131,6 +132,7 @@ class ImplicitTableau:
             linear=linear,
             by_scale=by_scale,
             unsolved=UNSOLVED,
+            halves=not adaptive,
         )
         on_grid = replace(
             whole,
@@ -139,7 +141,8 @@ class ImplicitTableau:
             jacobian=False,
             newton=False,
             prepare="sceneql.simulation.grids.implicit:prepare",
-            unsolved=UNSOLVED if linear == "auto" else UNSOLVED_ON_GRID,
+            unsolved=UNSOLVED_ON_GRID if linear == "auto" else UNSOLVED_AS_NAMED,
+            halves=False,
         )
         return replace(whole, on_grid=on_grid)
 

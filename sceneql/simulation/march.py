@@ -127,7 +127,7 @@ class March:
         self._counts[kernels.ORDER] = stepper.order
         self._counts[kernels.LAST_STAGE] = -1 if local and between else stepper.last_stage
         self._counts[kernels.CONTROLS] = stepper.controls
-        self._counts[kernels.HALVES] = stepper.unsolved != "" and stepper.otherwise is None
+        self._counts[kernels.HALVES] = stepper.halves
 
     def _look_for_stop(self, time: float) -> None:
         """Find what turns next after an instant: a step of chosen length ends before it, by as little as can be."""

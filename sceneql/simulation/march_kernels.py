@@ -35,9 +35,8 @@ STEPS, REJECTED, EVENTS, REPEATS, LEFT, INDEX, GRID, PENDING = range(8)
 pair whose impact is due (-1: none)."""
 
 ADAPTIVE, ORDER, LOCAL, LAST_STAGE, CONTROLS, HALVES, HELD, SWAPPED, COUNTS = range(8, 17)
-"""What solver and island are (system.Stepper; HALVES: it is `implicit, and nothing takes its place); whether a local
-contact holds something (CHANGED_AT); whether the arrays of a step's start and end have changed places, for the end of a
-step is the next one's start."""
+"""What solver and island are (system.Stepper); whether a local contact holds something (CHANGED_AT); whether the arrays
+of a step's start and end have changed places, for the end of a step is the next one's start."""
 
 SHORTEST = 1e-3
 """Part of a step of given length below which it is not halved any more."""

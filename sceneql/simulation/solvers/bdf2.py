@@ -59,6 +59,7 @@ class Bdf2(Solver):
             controls=adaptive,
             last_stage=1,
             unsolved=UNSOLVED,
+            halves=not adaptive,
         )
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
