@@ -313,6 +313,19 @@ def test_large_nets_are_watched_when_a_look_is_cheap_beside_the_run(tmp_path, mo
         assert [found.code for found in seen.warnings()] == codes
 
 
+def test_the_start_of_large_nets_is_looked_at_whatever_it_costs(tmp_path):
+    """Springs drawn out within the first picture are so beside the start, though no run affords a look there."""
+    script = "clock: {end: 0.1 s, fps: 100}\nforces: [{gravity: {strength: 1e3 m/s^2}}]\n"
+    script += "models: {c: {cloth: {cells: 64 64, stretch: 4 N/m, shear: 0.4 N/m, bend: 0.04 N/m, pins: [top]}}}\n"
+    script += "solvers: {main: {semi_implicit_euler: {step: 1 ms}}}\noutputs: {table: {record: {of: [c.center]}}}\n"
+    run = Run(loaded(tmp_path, script))
+    seen = watch.Watch(run)
+    seen.look(run.at(0.0))
+    (balance,) = seen.balances
+    assert balance.times == [0.0]
+    assert balance.stretch["c"][0] == pytest.approx(0.0, abs=1e-9)
+
+
 @pytest.mark.parametrize(
     "force",
     [
@@ -345,6 +358,18 @@ def test_invariants_of_equations_are_told(tmp_path):
     lost = pipeline.render(loaded(tmp_path, script, "clock.end=6 s"), folder=tmp_path).warnings
     assert [found.code for found in lost] == ["invariant-lost"]
     assert pipeline.render(loaded(tmp_path, script, "clock.end=3 s"), folder=tmp_path).warnings == ()
+
+
+def test_an_invariant_that_begins_with_nothing_but_rounding_is_not_lost(tmp_path):
+    """A pendulum let go from 90 degrees: cos(pi/2) is 6e-17, and every error much more than that."""
+    script = "clock: {end: 2 s, fps: 10}\nsolvers: {main: {rk4: {step: 10 ms}}}\nmodels: {e: {equations: {"
+    script += "start: {a: 90 deg, a': 0}, rate: {a'': -9.81*sin(a)}, invariants: {energy: a'^2/2 - 9.81*cos(a)}}}}\n"
+    script += "outputs: {table: {record: {of: [e.a]}}}\n"
+    assert pipeline.render(loaded(tmp_path, script), folder=tmp_path).warnings == ()
+    coarse = script.replace("{rk4: {step: 10 ms}}", "{euler: {step: 50 ms}}").replace("end: 2 s", "end: 6 s")
+    assert [found.code for found in pipeline.render(loaded(tmp_path, coarse), folder=tmp_path).warnings] == [
+        "invariant-lost"
+    ]
 
 
 def test_an_island_that_a_method_refuses_is_mapped_by_the_others(tmp_path, few):

@@ -66,6 +66,10 @@ class Model(Kind):
         """Outputs besides energy and momentum that an exact solution would keep."""
         return ()
 
+    def size_of(self, output: str, state: ModelState) -> Any:
+        """How large the terms are that such an output is a sum of: float or (count,)."""
+        raise TypeError(f"{type(self).__name__} conserves no {output}")
+
     def formula(self, output: str) -> Expr:
         """An output of a kinematic model as an expression of time."""
         raise TypeError(f"{type(self).__name__} is not a function of time")

@@ -103,15 +103,18 @@ class Watch:
         self._started, self._spent = time.perf_counter(), 0.0
 
     def look(self, moment: Instant, *, last: bool = False) -> None:
-        """Note energies and momenta at a moment, unless looking has taken its part of the time; at the last always."""
+        """Note energies and momenta at a moment, unless looking has taken its part of the time.
+
+        The start is noted of all, as what is gained is gained over it; the last moment of all but the largest.
+        """
         started = time.perf_counter()
         free = self.always or last or self._spent < AT_LEAST + COST * (started - self._started)
         for balance in self.balances:
             if balance.cost > 0.0:
                 begun = time.perf_counter()
-                if self._spent + balance.cost < COST * (begun - self._started):
+                if not balance.times or self._spent + balance.cost < COST * (begun - self._started):
                     _note(balance, moment)
-                    balance.cost = time.perf_counter() - begun
+                    balance.cost = time.perf_counter() - begun or balance.cost
             elif free or not balance.times:
                 _note(balance, moment)
         for one in self.invariants if free else ():
@@ -199,7 +202,7 @@ def _adaptive(island: IslandRun) -> bool:
 def _halved(island: IslandRun) -> Diagnostic | None:
     """What is told of a solver that was given one length of step and took shorter ones where it found no solution."""
     stepper, tries = island.solver.stepper(), island.march.statistics.rejected
-    if stepper.adaptive or not stepper.unsolved or tries == 0:
+    if not stepper.halves or tries == 0:
         return None
     times = "once" if tries == 1 else f"{tries:,} times"
     message = f"Newton's method found no solution {times}: steps of {stepper.first_step:.4g} s were halved there"

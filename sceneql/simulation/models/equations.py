@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
 from math import isfinite
 from typing import TYPE_CHECKING, Any
@@ -13,7 +13,7 @@ from sceneql.quantities import dimension as dim
 from sceneql.quantities.derivative import components
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import Expr, Link, Symbol
+from sceneql.quantities.expression import Call, Expr, Link, Symbol
 from sceneql.simulation.formula_rows import TIMES, Rows, states
 
 if TYPE_CHECKING:
@@ -200,6 +200,24 @@ class Equations(Model):
         """An output: float or (3,); with copies (count,) or (count, 3)."""
         import numpy as np
 
+        rows, column = self.rows, self._columns(state)
+        if output in rows.gives:
+            expr = rows.gives[output]
+            parts = [column(part) for part in components(expr)]
+            result = np.stack(parts, axis=1) * self.unit if expr.type.shape else parts[0]
+        else:
+            result = column(rows.invariants[output] if output in rows.invariants else Symbol(output))
+        return result if self.copies is not None else result[0]
+
+    def size_of(self, output: str, state: ModelState) -> Any:
+        """The sum of the magnitudes of the terms of an invariant's formula."""
+        column = self._columns(state)
+        return sum(abs(column(term)) for term in _terms(self.rows.invariants[output]))
+
+    def _columns(self, state: ModelState) -> Callable[[Expr], Floats]:
+        """What evaluates a formula for every copy (count,)."""
+        import numpy as np
+
         rows = self.rows
         at, *links = state.ints
         size = len(rows.states)
@@ -215,17 +233,16 @@ class Equations(Model):
             return state.floats[first : first + 3] if link.type.shape else state.floats[first]
 
         look_up = rows.look_up(known, linked, arrays=True)
+        return lambda expr: np.array(np.broadcast_to(evaluate(expr, look_up, arrays=True), self.count))
 
-        def column(expr: Expr) -> Floats:
-            return np.array(np.broadcast_to(evaluate(expr, look_up, arrays=True), self.count))
 
-        if output in rows.gives:
-            expr = rows.gives[output]
-            parts = [column(part) for part in components(expr)]
-            result = np.stack(parts, axis=1) * self.unit if expr.type.shape else parts[0]
-        else:
-            result = column(rows.invariants[output] if output in rows.invariants else Symbol(output))
-        return result if self.copies is not None else result[0]
+def _terms(expr: Expr) -> Iterator[Expr]:
+    """What a formula is a sum or difference of."""
+    if isinstance(expr, Call) and expr.op in ("add", "sub", "neg"):
+        for arg in expr.args:
+            yield from _terms(arg)
+    else:
+        yield expr
 
 
 def _slopes(system: RateSystem, at: int, count: int, assembly: Assembly) -> Slopes | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from math import cos, inf, pi, sin, sqrt
+from math import cos, inf, isfinite, pi, sin, sqrt
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import field_validator
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 PLACES = 200
 """Of the default bounds, at which a formula is looked at."""
+ROUNDING = 1e-9
+"""Part of what a formula is half way to them, below which it may be 0 there."""
 
 
 class Within(Record):
@@ -86,20 +88,24 @@ class Implicit(Solid):
         """The ball about the origin, where no bounds are given and the solid or surface goes on there at the start."""
         if "bounds" in self.model_fields_set:
             return ""
-        low, high = inf, -inf
+        low, high, size = inf, -inf, 0.0
         known: dict[str, float] = {}
 
         def look_up(node: Symbol) -> float:
             return known[node.name]
 
         for place in _on_a_ball(PLACES):
-            known |= zip("xyzt", (*place, 0.0), strict=True)
             try:
+                known |= zip("xyzt", (*(0.5 * x for x in place), 0.0), strict=True)
+                within = evaluate(self.field.expr, look_up)
+                known |= zip("xyzt", (*place, 0.0), strict=True)
                 value = evaluate(self.field.expr, look_up)
             except (AttributeError, KeyError):  # what only a run knows stands in it
                 return ""
             low, high = min(low, value), max(high, value)
-        goes_on = low < self.level and (self.mode == "solid" or high > self.level)
+            size = max(size, abs(within - self.level) if isfinite(within) else 0.0)
+        # The ball itself, written as a formula, is below the level there by rounding alone.
+        goes_on = low < self.level - ROUNDING * size and (self.mode == "solid" or high > self.level + ROUNDING * size)
         return "the ball x^2 + y^2 + z^2 = 1" if goes_on else ""
 
     def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
