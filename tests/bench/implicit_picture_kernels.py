@@ -8,6 +8,7 @@ from sceneql.field.batch_kernels import evaluate
 from sceneql.field.density_roots_kernels import ROW_OF
 from sceneql.field.packet_kernels import LANES, PACKET, has
 from sceneql.field.packet_roots_kernels import first_roots
+from sceneql.field.polynomial_kernels import POLYNOMIAL
 from sceneql.field.ray_rows import FOUND_ROOT, FOUND_STATUS
 from sceneql.field.tape_ops import DENSITY, HIT, UNDECIDED
 from sceneql.kernels import inlined, lean
@@ -146,17 +147,9 @@ def draw_row(
         )  # fmt: skip
         spent += a
         certified += b
-        near = short if has(code, DENSITY) or plan[ROW_OF] >= 0 else code
-        length, sign = code.shape[0], 1.0
-        known = length
-        if plan[ROW_OF] >= 0 and b == 0:  # all hits are roots of c - D: D alone tells their slopes
-            known, sign = plan[ROW_OF], -1.0
-            length = known + 1
-        near = near[:length]
-        light = slopes[length - 1, 0]
         base = top * width + left
         met = 0
-        outcomes, roots = found[FOUND_STATUS], found[FOUND_ROOT]
+        outcomes, roots, begins = found[FOUND_STATUS], found[FOUND_ROOT], rays[6]
         for i in range(n):
             j = np.uint64(turns[i])
             hits[np.uint64(met)] = turns[i]
@@ -165,6 +158,22 @@ def draw_row(
         if met == n:  # as they stand
             for i in range(n):
                 hits[i] = i
+        near = short if has(code, DENSITY) or plan[ROW_OF] >= 0 else code
+        length, sign = code.shape[0], 1.0
+        known = length
+        if b == 0:  # all hits are roots of what has an exact form, which alone tells their slopes
+            if plan[ROW_OF] >= 0:
+                known, sign = plan[ROW_OF], -1.0
+                length = known + 1
+            elif plan[POLYNOMIAL] >= 0:
+                inner = 0
+                for i in range(met):
+                    j = np.uint64(hits[i])
+                    inner += 1 if roots[j] > begins[j] else 0
+                if inner == met:  # none begins inside, at the ball
+                    known = length = plan[POLYNOMIAL] + 1
+        near = near[:length]
+        light = slopes[length - 1, 0]
         facing = 0
         for start in range(0, met, LANES):
             some = min(LANES, met - start)
