@@ -5,7 +5,9 @@ import re
 
 import pytest
 
+from sceneql.compiler.passes import stable_steps
 from sceneql.failure import RunFailure
+from sceneql.kinds.stable_step import stable_step
 from sceneql.report.explain import explain, text
 from sceneql.simulation.run import Run
 from sceneql.simulation.stability import stability
@@ -76,6 +78,44 @@ def test_equations_are_bounded_by_the_script_alone(tmp_path):
     turning = script.replace("RATE", "{y: z, z: -1e4*y}").replace("rk4", "semi_implicit_euler")
     assert "stable at no step" in warnings(loaded(tmp_path, turning))[0]
     assert warnings(loaded(tmp_path, script.replace("RATE", "{y: z, z: -y}"))) == []
+
+
+ALONE = """\
+clock: {end: 1 s}
+models: {e: {equations: {start: {y: 0, v: 0}, rate: {y: v, v: "-4*y - 0.2*u"}, where: {u: "JUMP"}}}}
+outputs: {table: {record: {of: [e.y]}}}
+"""
+AT_REST = PAIR.replace("velocity: 0 1 0 m/s, ", "").replace(", velocity: 0 1 0 m/s", "")
+ALONG_X = AT_REST + "forces: {f: {force: {components: ['-4*x - 0.2*JUMP', '0', '0']}}}\n"
+STEP = "solvers: {main: {euler: {step: 5 ms}}}\n"
+
+
+@pytest.mark.parametrize("jump", ["sign(v)", "floor(v + 1)", "ceil(1e3*v)", "where(v > 0, 1, -1)", "mod(v, 1)"])
+def test_a_jump_at_the_start_is_no_slope(tmp_path, jump):
+    """Friction of Coulomb and its like at rest: what is left is a swing of 2/s."""
+    classic = STEP.replace("euler", "rk4")
+    assert warnings(loaded(tmp_path, ALONE.replace("JUMP", jump) + classic)) == []
+    assert warnings(loaded(tmp_path, ALONG_X.replace("JUMP", jump.replace("v", "vx")) + classic)) == []
+
+
+def test_a_steep_slope_at_the_start_is_no_jump(tmp_path):
+    """Smoothed friction that rises within a ten-millionth of the unit of speed decays at 0.2e7/s there."""
+    assert warnings(loaded(tmp_path, ALONE.replace("JUMP", "tanh(1e7*v)") + STEP)) == [
+        "dt = 5 ms exceeds 1 us, set by 'e' (scene.yaml:2)"
+    ]
+    force = ALONG_X.replace("JUMP", "tanh(1e7*vx)").replace("-4*x", "0")
+    assert warnings(loaded(tmp_path, force + STEP)) == ["dt = 5 ms exceeds 1 us, set by force 'f' (scene.yaml:5)"]
+
+
+def test_masses_that_swing_alike_are_looked_at_once(tmp_path, monkeypatch):
+    """Two hundred masses, each with a frequency and a decay of its own, are two searches of stable steps, not 400."""
+    searched = []
+    monkeypatch.setattr(stable_steps, "stable_step", lambda growth: searched.append(growth) or stable_step(growth))
+    bodies = ", ".join(f"b{k}: {{position: {k + 1} 0 0 m, velocity: {k + 1} 0 0 m/s}}" for k in range(200))
+    script = f"clock: {{end: 1 s}}\nmodels: {{p: {{particles: {{list: {{{bodies}}}}}}}}}\n"
+    script += "forces: [{force: {components: ['-x^2 - vx^2', 0, 0]}}]\nsolvers: {main: {rk4: {step: 1 ms}}}\n"
+    assert warnings(loaded(tmp_path, script + "outputs: {table: {record: {of: [p.positions]}}}\n")) == []
+    assert len(searched) == 2
 
 
 @pytest.mark.parametrize("shape", ["{cells: 12 9, size: 1.2 0.8 m, stretch: 4e5 N/m, damping: 0.1}", "{bend: 300 N/m}"])

@@ -9,15 +9,15 @@ from typing import Any
 
 from sceneql.kinds import Value
 from sceneql.kinds.stable_step import Oscillation, Told, oscillations
+from sceneql.quantities.derivative import differentiate
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import TIME_SYMBOL, Expr, Link, Symbol
+from sceneql.quantities.expression import TIME_SYMBOL, Expr, Link, Symbol, Type, Vector, walk
 
 On = Mapping[str, Mapping[str, Told]]
 """Masses by model and name."""
 MOST = 200
 """Masses of which every one, or every pair, is looked at."""
-MOVE = 1e-5
-"""Differences, as a part of the larger of a coordinate and 1."""
+MOTION = ("x", "y", "z", "vx", "vy", "vz")
 
 
 def number(value: Value) -> Any:
@@ -49,15 +49,20 @@ def by_formulas(
     rows: Sequence[Expr], on: On, what: str, at: str, others: Mapping[str, float] | None = None
 ) -> Iterator[Oscillation]:
     """What a force [N] of three formulas makes of the masses at told places; nothing where these read other parts."""
-    fastest: list[Oscillation] = []
+    if any(isinstance(node, Link) for row in rows for node in walk(row)):
+        return
+    slopes = [[differentiate(row, Symbol(name)) for name in MOTION] for row in rows]
+    formulas = Vector(tuple(Vector(tuple(row), Type((6,))) for row in slopes), Type((len(rows), 6)))
+    matrices: dict[tuple[tuple[float, ...], ...], None] = {}
     for one in each(on):
-        if one.position is None:
-            continue
-        known = {**(others or {}), "m": one.mass, TIME_SYMBOL: 0.0, "time": 0.0}
-        try:
-            place, motion = (_derivative(rows, names, one, known) for names in (("x", "y", "z"), ("vx", "vy", "vz")))
-        except (LookupError, ArithmeticError, ValueError, TypeError):
-            return
+        if one.position is not None:
+            start = zip(MOTION, (*one.position, *(one.velocity or (0.0, 0.0, 0.0))), strict=True)
+            known = {**(others or {}), "m": one.mass, TIME_SYMBOL: 0.0, "time": 0.0, **dict(start)}
+            found = evaluate(formulas, {Symbol(name): value for name, value in known.items()})
+            matrices[tuple(tuple(told_slope(slope) / one.mass for slope in row) for row in found)] = None
+    fastest: list[Oscillation] = []
+    for matrix in matrices:  # masses that are alike have the same
+        place, motion = ([row[part] for row in matrix] for part in (slice(3), slice(3, 6)))
         if any(map(any, motion)):
             fastest += oscillations(motion, what, (at,))
         if any(map(any, place)):
@@ -65,24 +70,6 @@ def by_formulas(
     yield from sorted((one for one in fastest if one.size > 0.0), key=lambda one: -one.size)
 
 
-def _derivative(rows: Sequence[Expr], names: Sequence[str], one: Told, known: Mapping[str, float]) -> list[list[float]]:
-    """(3, 3) of the acceleration by the place or the velocity, by central differences."""
-    start = dict(zip(("x", "y", "z"), one.position or (), strict=True))
-    start |= dict(zip(("vx", "vy", "vz"), one.velocity or (0.0, 0.0, 0.0), strict=True))
-
-    def accelerations(name: str, move: float) -> list[float]:
-        moved = {**known, **start, name: start[name] + move}
-
-        def look_up(node: Symbol | Link) -> float:
-            if isinstance(node, Link):
-                raise LookupError(node)
-            return moved[node.name]
-
-        return [float(evaluate(row, look_up)) / one.mass for row in rows]
-
-    columns = []
-    for name in names:
-        move = MOVE * max(1.0, abs(start[name]))
-        ends = zip(accelerations(name, move), accelerations(name, -move), strict=True)
-        columns.append([(above - below) / (2.0 * move) for above, below in ends])
-    return [list(row) for row in zip(*columns, strict=True)]
+def told_slope(value: float) -> float:
+    """A derivative at the start; 0 of one without a value, as at the tip of a root: the run says more."""
+    return value if math.isfinite(value) else 0.0

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import cache
 from typing import cast
 
 from sceneql.graph import Island, Task
@@ -16,6 +17,8 @@ from sceneql.language.tree import Node, Sequence
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.span import Span
 
+Growth = Callable[[float, float, float, float], float | None]
+"""`Solver.oscillation`."""
 SLACK = 1.0 + 1e-6
 MOST_STEPS = 1e11
 """Of a run: those of a single mass would take half an hour."""
@@ -46,11 +49,13 @@ def warn_of_steps(
             message = f"{end / step:.2g} steps of {duration(step)} are more than {MOST_STEPS:.0e}"
             found.error("limit-refused", message, at, help="take a longer step, or let auto march it")
             continue
+        growth = cast(Solver, solver.kind).oscillation
+        stable = _stable_steps(growth)
         damped = any(type(cast(Force, tasks[force].kind)).potential is Force.potential for force, _ in island.forces)
         for name, modes in _modes(island, tasks):
             entry = script.sections.get(tasks[name].family, {}).get(name)
             for fastest in _known(modes):
-                wrong = _wrong(cast(Solver, solver.kind), solver.word, step, fastest, end, damped)
+                wrong = _wrong(growth, stable, solver.word, step, fastest, end, damped)
                 if wrong is not None:
                     message, smaller = wrong
                     place = (None if entry is None else _place(entry, fastest.at)) or tasks[name].span
@@ -80,8 +85,24 @@ def _known(modes: Iterable[Oscillation]) -> tuple[Oscillation, ...]:
         return ()
 
 
+def _stable_steps(growth: Growth) -> Callable[[float, float, float], float]:
+    """The stable step of a method by frequency, decay and turn [1/s], looked for once of any."""
+
+    @cache
+    def stable(frequency: float, decay: float, turn: float) -> float:
+        return stable_step(lambda step: cast(float, growth(frequency, decay, step, turn)))
+
+    return stable
+
+
 def _wrong(
-    solver: Solver, word: str, step: float, fastest: Oscillation, end: float, damped: bool
+    growth: Growth,
+    stable: Callable[[float, float, float], float],
+    word: str,
+    step: float,
+    fastest: Oscillation,
+    end: float,
+    damped: bool,
 ) -> tuple[str, bool] | None:
     """What is wrong with the step, if anything, and whether a smaller one is right.
 
@@ -90,18 +111,16 @@ def _wrong(
     scale = fastest.size
     if scale == 0.0 or not math.isfinite(scale):
         return None
-    if solver.oscillation(fastest.frequency, fastest.decay, step, fastest.turn) is None:
+    grown = growth(fastest.frequency, fastest.decay, step, fastest.turn)
+    if grown is None:
         return None
-
-    def growth(scaled: float) -> float:
-        return cast(float, solver.oscillation(fastest.frequency, fastest.decay, scaled / scale, fastest.turn))
-
-    bound = stable_step(growth) / scale
+    # Per unit of the largest rate: many masses that differ in how fast they are, not in how, are one mode.
+    bound = stable(fastest.frequency / scale, fastest.decay / scale, fastest.turn / scale) / scale
     if bound > 0.0:
         if step <= bound * SLACK:
             return None
         return f"dt = {duration(step)} exceeds {duration(bound)}, set by {{what}}", True
-    logarithm = math.log10(growth(step * scale)) * end / step
+    logarithm = math.log10(grown) * end / step
     if damped or logarithm < math.log10(NOTABLE):
         return None
     swing = f"{{what}} swings 1e{logarithm:.0f} times as far after {duration(end)}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from functools import cached_property
 from math import isfinite
 from typing import TYPE_CHECKING, Any
@@ -15,6 +16,7 @@ from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Expr, Link, Symbol
 from sceneql.simulation.formula_rows import TIMES, Rows, states
+from sceneql.simulation.told import told_slope
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -24,8 +26,6 @@ if TYPE_CHECKING:
 
 MOST_STATES = 32
 """Of a system whose modes `check` looks at."""
-MOVE = 1e-5
-"""Relative size of its differences."""
 
 
 class Copies(Record):
@@ -123,26 +123,22 @@ class Equations(Model):
         return tuple(self.invariants)
 
     def fastest(self, name: str) -> Iterator[Oscillation]:
-        """The modes at the start of the first copy, by central differences, where nothing is read from other parts."""
+        """The modes at the start of the first copy, where nothing is read from other parts."""
+        from sceneql.simulation.rate_program import derivatives
+
         rows = self.rows
-        if rows.links() or len(rows.states) > MOST_STATES:
+        size = len(rows.states)
+        if rows.links() or size > MOST_STATES:
             return
-        index = {} if rows.index is None else {rows.index: 0.0}
-        look_up = rows.look_up({**dict.fromkeys(TIMES, 0.0), **index}, _no_link)
-        start = {state: float(evaluate(rows.start[state], look_up)) for state in rows.states}
-
-        def rates(state: str, move: float) -> list[float]:
-            at = {**dict.fromkeys(TIMES, 0.0), **index, **start, state: start[state] + move}
-            look_up = rows.look_up(at, _no_link)
-            return [float(evaluate(expr, look_up)) for expr in rows.rates()]
-
-        columns = []
-        for state in rows.states:
-            move = MOVE * max(abs(start[state]), 1e-2 * max(map(abs, start.values())) or 1.0)
-            ends = zip(rates(state, move), rates(state, -move), strict=True)
-            columns.append([(above - below) / (2.0 * move) for above, below in ends])
-        matrix = list(zip(*columns, strict=True))
-        half = len(matrix) // 2
+        known = {**dict.fromkeys(TIMES, 0.0), **({} if rows.index is None else {rows.index: 0.0})}
+        look_up = rows.look_up(known, _no_link)
+        known |= {state: float(evaluate(rows.start[state], look_up)) for state in rows.states}
+        meanings = {helper: components(expr)[0] for helper, expr in rows.where.items()}
+        entries, derived = derivatives(rows.states, meanings, [components(row)[0] for row in rows.rates()])
+        look_up = replace(rows, where=meanings | derived).look_up(known, _no_link)
+        slopes = [told_slope(float(evaluate(entry, look_up))) for entry in entries]
+        matrix = [slopes[k : k + size] for k in range(0, len(slopes), size)]
+        half = size // 2
         if all(row.endswith("''") for row in rows.rate) and not any(any(row[half:]) for row in matrix[half:]):
             yield from oscillations([row[:half] for row in matrix[half:]], f"'{name}'", ("rate",), paired=True)
         else:
