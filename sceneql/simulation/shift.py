@@ -71,8 +71,11 @@ def goes_evenly(expr: Expr, follow: Callable[[Link], Expr | None]) -> bool:
     return degree(expr) <= 1.0
 
 
-def rate_of_change(expr: Expr) -> Expr:
-    """d expr / d time as a central difference, for expressions and keyframes alike. Raises ValueError for links."""
+def rate_of_change(expr: Expr, follow: Callable[[Link], Expr | None] = lambda link: None) -> Expr:
+    """d expr / d time as a central difference, for expressions and keyframes alike; ``follow`` as in `later`.
+
+    Raises ValueError for a link to something that is not a function of time.
+    """
     dimension = PLAIN if expr.type.dimension is None else expr.type.dimension
-    difference = Call("sub", (later(expr, APART), later(expr, -APART)), expr.type)
+    difference = Call("sub", (later(expr, APART, follow), later(expr, -APART, follow)), expr.type)
     return Call("div", (difference, Number(2 * APART, Type((), TIME), False)), Type(expr.type.shape, dimension / TIME))

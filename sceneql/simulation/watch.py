@@ -73,7 +73,8 @@ class Balance:
             for bodies in self.island.bodies.values()
         )
         tasks = self.island.graph.tasks
-        within = all(cast(Force, tasks[force].kind).internal() for force, _ in island.forces)
+        forces = [cast(Force, tasks[force].kind) for force, _ in island.forces]
+        within = all(force.internal() and {*(force.targets() or ())} <= {*island.models} for force in forces)
         return free and within and not any(objects for _, _, objects in island.contacts)
 
     @property

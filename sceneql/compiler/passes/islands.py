@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import cast
 
 from sceneql.compiler.passes.reads import reads
 from sceneql.compiler.passes.touchable import touchable
@@ -33,7 +32,7 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
 
     forces = {t.name: acts_on(t, models) for t in tasks.values() if isinstance(t.kind, Force)}
     for force, targets in forces.items():
-        if targets and not any(cast(Model, tasks[name].kind).has_bodies for name in targets):
+        if targets and not any(getattr(tasks[name].kind, "has_bodies", False) for name in targets):
             text = f"{tasks[force].word} acts on masses, and there are none in {' and '.join(targets)}"
             found.error("no-mass", text, tasks[force].span)
     contacts = {t.name: _touching(t, tasks, names, found) for t in tasks.values() if isinstance(t.kind, Contact)}

@@ -9,10 +9,10 @@ from sceneql.system_kernels import TERM
 
 @kernel(TERM, inner=True)
 def spring(t, y, rate, floats, ints):
-    """Adds the pull to both ends, and what the damping takes to the work (half to each).
+    """Adds the pull to both ends, and to the work what the damping takes (half to each) and what holds a place.
 
     ints: for each end position_at, velocity_at, work_at (or -1, the place in the floats, -1); stiffness_at,
-    damping_at, rest_at.
+    damping_at, rest_at; for each end -1 (or its velocity in the floats).
     """
     a, b = ints[0], ints[3]
     va, vb = ints[1], ints[4]
@@ -23,11 +23,16 @@ def spring(t, y, rate, floats, ints):
     if length == 0.0:
         return
     dx, dy, dz = dx / length, dy / length, dz / length
-    opening = 0.0
+    ua, ub = ints[9], ints[10]
     if a >= 0:
-        opening -= dx * y[va] + dy * y[va + 1] + dz * y[va + 2]
+        leading = dx * y[va] + dy * y[va + 1] + dz * y[va + 2]
+    else:
+        leading = dx * floats[ua] + dy * floats[ua + 1] + dz * floats[ua + 2]
     if b >= 0:
-        opening += dx * y[vb] + dy * y[vb + 1] + dz * y[vb + 2]
+        following = dx * y[vb] + dy * y[vb + 1] + dz * y[vb + 2]
+    else:
+        following = dx * floats[ub] + dy * floats[ub + 1] + dz * floats[ub + 2]
+    opening = following - leading
     damping = floats[ints[7]]
     pull = floats[ints[6]] * (length - floats[ints[8]]) + damping * opening
     lost = damping * opening * opening
@@ -35,9 +40,9 @@ def spring(t, y, rate, floats, ints):
         rate[va] += pull * dx
         rate[va + 1] += pull * dy
         rate[va + 2] += pull * dz
-        rate[ints[2]] += 0.5 * lost if b >= 0 else lost
+        rate[ints[2]] += 0.5 * lost if b >= 0 else lost - pull * following
     if b >= 0:
         rate[vb] -= pull * dx
         rate[vb + 1] -= pull * dy
         rate[vb + 2] -= pull * dz
-        rate[ints[5]] += 0.5 * lost if a >= 0 else lost
+        rate[ints[5]] += 0.5 * lost if a >= 0 else lost + pull * leading

@@ -10,7 +10,7 @@ from sceneql.system_kernels import TERM
 
 FORESEEN_AT = 2
 """floats[2]: whether the force is that foreseen, and how far slopes are to be definite (system.Slopes)."""
-INVERSES_AT = 9
+SPEEDS_AT, INVERSES_AT = 9, 11
 
 
 @lean_inlined
@@ -21,7 +21,7 @@ def between(y, floats, ints, d, v):
         for end in range(2):
             sign, at, velocity = 2.0 * end - 1.0, ints[3 * end], ints[3 * end + 1]
             d[c] += sign * (y[at + c] if at >= 0 else floats[velocity + c])
-            v[c] += sign * (y[velocity + c] if at >= 0 else 0.0)
+            v[c] += sign * (y[velocity + c] if at >= 0 else floats[ints[SPEEDS_AT + end] + c])
 
 
 @kernel(TERM, inner=True)
