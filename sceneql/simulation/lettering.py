@@ -59,6 +59,11 @@ class Letterer:
         """A text at a place [pixels], anchored as Pillow names it: ``lm`` is the middle of its left end."""
         self.draw.text(place, text, ink or self.look.ink, font=self.font, anchor=anchor)
 
+    def edged(self, seen: tuple[float, float], text: str) -> None:
+        """A text about a point, on no panel: an edge of paper around its letters keeps it legible on any ground."""
+        ink, paper, edge = self.look.ink, self.look.paper, max(1, round(self.em / 10))
+        self.draw.text(seen, text, ink, font=self.font, anchor="mm", stroke_width=edge, stroke_fill=paper)
+
     def line(self, corner: tuple[int, int], text: str, opacity: float, ink: Ink = None) -> None:
         """A text on a panel of its own, whose left and top are the corner [pixels], or as near as it is seen whole."""
         (wide, high), room = self.extent(text), round(0.4 * self.em)

@@ -82,7 +82,7 @@ def draw_labels(
         for point, text in found:
             seen = projected(point, view)
             if seen is not None:
-                letters.text(seen, text, "mm")
+                letters.edged(seen, text)
         letters.done()
 
 
