@@ -79,8 +79,9 @@ def derivatives(
     derived: dict[str, Expr] = {}
 
     def total(expr: Expr, state: str) -> Expr:
-        result = differentiate(expr, Symbol(state))
-        for name in dict.fromkeys(node.name for node in walk(expr) if isinstance(node, Symbol)):
+        names = dict.fromkeys(node.name for node in walk(expr) if isinstance(node, Symbol))
+        result = differentiate(expr, Symbol(state)) if state in names else ZERO
+        for name in names:
             if name in meanings:
                 part = Call("mul", (differentiate(expr, Symbol(name)), slope(name, state)))
                 result = simplify(Call("add", (result, part)))
