@@ -11,7 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sceneql.language import compose as composer
-from sceneql.language.compose import compose, compose_node, source_of
+from sceneql.language.compose import compose, compose_node
+from sceneql.language.encoded import MOST_BYTES, source_of
 from sceneql.language.plain import kind_of
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
@@ -254,7 +255,7 @@ BOMBS = {
         + "".join(f"a{n}: &a{n} {{<<: [{', '.join([f'*a{n - 1}'] * 9)}]}}\n" for n in range(1, 11)),
         "merge-key",
     ),
-    "large": ("a: " + "x" * composer.MOST_BYTES, "too-large"),
+    "large": ("a: " + "x" * MOST_BYTES, "too-large"),
     "duplicates": ("a: 1\n" * 20_000, "duplicate-key"),
     "colors": ("".join(f"a{n}: #fff\n" for n in range(20_000)), "comment-color"),
     "halves": ("a: [" + "f(x, y), " * 20_000 + "]", "torn-expression"),

@@ -197,13 +197,12 @@ class _Checker:
         return self.family_of[name] if cls is None else cls.family
 
     def outputs_of(self, name: str) -> Mapping[str, Gives] | None:
-        """The outputs of a part, without reading its fields; None if nothing is called so or its word is unknown."""
+        """The outputs of a part, without reading its fields; None if nothing is called so, or they cannot be known."""
         if name not in self.entries:
             return None
-        cls = self.catalogue.load(self.family_of[name], self.entries[name].word)
-        if cls is None:
+        cls, fields = self.catalogue.load(self.family_of[name], self.entries[name].word), self.entries[name].fields
+        if cls is None or (fields is not None and unsure(fields)):
             return None
-        fields = self.entries[name].fields
         outputs = dict(cls.outputs(written(fields) if isinstance(fields, MappingNode) else {}))
         if issubclass(cls, Object):
             for field_name, info in cls.model_fields.items():
@@ -219,9 +218,8 @@ class _Checker:
         self._done.add(name)
         entry = self.entries[name]
         known = self.kind(family, entry)
-        meant = nearest(entry.word, self.catalogue.choices(family)) if known is None else None
-        cls = known if meant is None else self.catalogue.load(family, meant)
-        if cls is None or (known is None and entry.fields is None):
+        cls = known or self.meant(family, entry)
+        if cls is None:
             return
         needs: list[str] = []
         names = replace(self.names, scope=entry.scope)
@@ -241,6 +239,17 @@ class _Checker:
             return
         needs += [link.task for value in values_of(kind) for link in value.links]
         self.tasks[name] = Task(name, entry.word, kind, entry.span, tuple(dict.fromkeys(needs)))
+
+    def meant(self, family: str, entry: Entry) -> type[Kind] | None:
+        """The class of the word that one which is none is most like, where its fields are such as that word takes."""
+        near, fields = nearest(entry.word, self.catalogue.choices(family)), entry.fields
+        cls = None if near is None else self.catalogue.load(family, near)
+        if cls is None or not isinstance(fields, MappingNode):
+            return None
+        known = {written_name(name): info for name, info in cls.model_fields.items()}
+        required = {name for name, info in known.items() if info.is_required()}
+        fits = known.keys() >= fields.entries.keys() and (fields.partial or required <= fields.entries.keys())
+        return cls if fits else None
 
     def refer(self, node: Node, mark: Refers, anonymous: str, entry: Entry) -> Ref | None:
         """The part that a field names; one that is written in place becomes a part of its own first."""

@@ -21,6 +21,7 @@ from sceneql.compiler.studies import check_studies
 from sceneql.graph import SimulationGraph, Task
 from sceneql.kinds import Camera, Clock, Exceeds, Model, Object, Output, Picture
 from sceneql.language.script import Script
+from sceneql.language.tree import unsure
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.span import Span
 
@@ -40,7 +41,8 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
     drawn = _drawn(tasks)
     cameras = _cameras(tasks)
     clock = script.settings.get("clock")
-    check_layouts(tasks, script.variants, found)
+    known = not unsure(script.root.entries.get("variants", script.root))
+    check_layouts(tasks, script.variants if known else None, found)
     if checked.timed:
         _check_outputs(tasks, drawn, checked.settings.clock, None if clock is None else clock.span, found)
     found.raise_errors()

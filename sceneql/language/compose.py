@@ -10,16 +10,16 @@ from typing import Any, Final, NoReturn, cast
 
 import yaml
 
-from sceneql.language.lines import lacking, left_out
+from sceneql.language.encoded import MOST_BYTES, too_large
+from sceneql.language.lines import doubled, lacking, left_out, marked, unparted
 from sceneql.language.mend import blanked, cut_short, joined, mended
 from sceneql.language.plain import cut_off, kind_of
 from sceneql.language.syntax import explain, place, unprintable
 from sceneql.language.torn import Fault, report, swallowed, torn_halves, torn_near
-from sceneql.language.tree import Mapping, Node, Scalar, Sequence, broken, hole
+from sceneql.language.tree import Mapping, Node, Scalar, Sequence, broken, extent, hole
 from sceneql.quantities.diagnostic import LIMITS, Diagnostic, Diagnostics, Note, ScriptError
 from sceneql.quantities.span import Source, Span
 
-MOST_BYTES: Final = 32_000_000
 MOST_DEPTH: Final = 64
 MOST_NODES: Final = 3_000_000
 MOST_EXPANDED: Final = 1_000_000
@@ -32,26 +32,6 @@ _TAG = re.compile(r"!\S*")
 
 _LARGE: Final = "keep large tables in data files of their own"
 _DEEP: Final = "give the inner parts names of their own, and refer to them by name"
-
-
-def source_of(name: str, data: bytes) -> Source:
-    """A source from a file's bytes, which are UTF-8, with or without a byte order mark. Raises ScriptError."""
-    if len(data) > MOST_BYTES:
-        raise _too_large(Source(name, ""))
-    try:
-        return Source(name, data.decode("utf-8-sig"))
-    except UnicodeDecodeError as error:
-        source = Source(name, data.decode("utf-8", errors="replace"))
-        at = len(data[: error.start].decode("utf-8"))
-        found = Diagnostics()
-        message = f"the byte {data[error.start]:#04x} is not UTF-8"
-        found.error("not-utf8", message, Span(source, at, at + 1), help="save the file as UTF-8")
-        raise ScriptError(found.errors) from None
-
-
-def _too_large(source: Source) -> ScriptError:
-    message = f"the script is larger than {MOST_BYTES // 1_000_000} MB"
-    return ScriptError([Diagnostic("too-large", message, Span(source, 0, 1), _LARGE)])
 
 
 def compose(source: Source, found: Diagnostics | None = None) -> Mapping:
@@ -77,7 +57,7 @@ def compose_node(source: Source, start: int = 0, found: Diagnostics | None = Non
     if source.text.startswith("\ufeff"):
         source = Source(source.name, source.text[1:])
     if len(source.text) > MOST_BYTES:
-        raise _too_large(source)
+        raise too_large(source)
     if (at := unprintable(source.text)) is not None:
         message = f"the control character U+{ord(source.text[at]):04X} cannot stand in a script"
         span = Span(source, at, at + 1)
@@ -127,6 +107,7 @@ class _Composer:
         self.found = Diagnostics()
         self.halves: list[Scalar] = []
         self.colors: list[Fault] = []
+        self.unparted: list[Fault] = []
         self.nameless: dict[int, Node] = {}
         self.odd: list[Mapping] = []
         self.root: Node | None = None
@@ -152,7 +133,7 @@ class _Composer:
         except _StopError:
             self.cut_short(len(self.text))
         lacking(self.root, [*self.faults.values()])
-        torn = joined([*torn_halves(self.halves[:MOST_ERRORS], self.text), *self.colors], near)
+        torn = joined([*torn_halves(self.halves[:MOST_ERRORS], self.text), *self.colors, *self.unparted], near)
         for mapping in self.odd:
             mapping.partial = True
             for name in [name for name in ("", "<<") if name in mapping.keys and not mapping.keys[name].quoted]:
@@ -218,6 +199,9 @@ class _Composer:
                             self.empty(node)
                         elif faults and text[0] == "x":
                             node = self.meant(event, node)
+                            if type(node) is Sequence and key is None and type(here) is Mapping:
+                                node = hole(node.span)  # no key is a list
+                            text = node.text if type(node) is Scalar else text
                         elif "(" in text and text.count("(") > text.count(")") and here is not None and here.flow:
                             self.halves.append(node)
                 elif kind is open_mapping:
@@ -255,8 +239,8 @@ class _Composer:
                 elif key is None:
                     if kind is scalar_event:
                         key = node
-                        if (text == "<<" or not text) and not key.quoted:
-                            self.odd_key(key, here)
+                        if not key.quoted and (text in ("", "<<") or text[-1] == ":" or "{" in text or "[" in text):
+                            key = self.odd_key(key, here)
                         continue
                     self.nameless_key(node, here)
                     if kind is alias_event:
@@ -326,6 +310,8 @@ class _Composer:
     def alias(self, name: str, span: Span) -> Node:
         """The node of an anchor, shared; counted as if it stood there in full."""
         node = self.anchors.get(name)
+        if node is None and marked(name, self.source, self.faults.values()):
+            return hole(span)
         if node is None:
             message = f"*{name} is an alias, and no value above is marked &{name}"
             help = f"write `{name}` without the star for a define; a text that begins with * goes in quotes"
@@ -337,7 +323,7 @@ class _Composer:
             message = f"*{name} stands inside the value that it names"
             self.error("alias-cycle", message, span, help="a value cannot hold itself; remove the alias")
             return hole(span)
-        depth, size = self.measure(node)
+        depth, size = extent(node, self.measured)
         self.expanded += size
         if self.expanded > MOST_EXPANDED:
             message = f"aliases repeat more than {MOST_EXPANDED:,} values"
@@ -346,18 +332,6 @@ class _Composer:
             message = f"with what *{name} names, more than {MOST_DEPTH} levels of lists and mappings"
             self.stop("too-deep", message, span.start, span.end, _DEEP)
         return node
-
-    def measure(self, node: Node) -> tuple[int, int]:
-        """Levels and number of nodes of a finished tree, a shared node counted wherever it stands."""
-        if isinstance(node, Scalar):
-            return 0, 1
-        known = self.measured.get(id(node))
-        if known is None:
-            inner = [self.measure(n) for n in (node.items if isinstance(node, Sequence) else node.entries.values())]
-            keys = 0 if isinstance(node, Sequence) else len(node.keys)
-            known = 1 + max((d for d, _ in inner), default=0), 1 + keys + sum(s for _, s in inner)
-            self.measured[id(node)] = known
-        return known
 
     def nameless_key(self, node: Node, mapping: Mapping) -> None:
         """Report a key that is no text, unless it stands in one; what it names is left out."""
@@ -368,14 +342,28 @@ class _Composer:
         if not isinstance(node, Scalar):
             self.nameless[id(node)] = node
 
-    def odd_key(self, key: Scalar, mapping: Mapping) -> None:
-        """Report a missing key or a merge key; what it names is left out."""
+    def odd_key(self, key: Scalar, mapping: Mapping) -> Scalar:
+        """Report a missing key or a merge key, what it names is left out, or a colon that a key has too many or lacks.
+
+        Returns the key that is meant.
+        """
+        if key.text.rstrip(":") and key.text[-1] == ":":
+            key, diagnostic = doubled(key)
+            self.add(diagnostic)
+            return key
+        if key.text not in ("", "<<"):
+            if not mapping.flow and len(self.unparted) < MOST_ERRORS and (line := unparted(key)) is not None:
+                self.unparted.append(line)
+            return key
         self.odd.append(mapping)
+        if broken(key):
+            return key
         if key.text:
             help = "use `defaults` for fields that many parts share, or `templates` for a part made several times"
             self.error("merge-key", "merge keys (<<) are not part of the language", key.span, help=help)
         else:
             self.error("key-not-text", "a key is missing before this colon", key.span, help="write `name: value`")
+        return key
 
     def duplicate(self, key: Scalar, mapping: Mapping) -> None:
         """Report a key that its mapping holds already; the first stays."""
@@ -387,7 +375,11 @@ class _Composer:
 
     def error(self, code: str, message: str, span: Span, *, help: str, notes: list[Note] | None = None) -> None:
         """Record an error and go on, unless there are too many already."""
-        self.found.error(code, message, span, help=help, notes=notes or ())
+        self.add(Diagnostic(code, message, span, help, tuple(notes or ())))
+
+    def add(self, diagnostic: Diagnostic) -> None:
+        """Record an error as `error` does."""
+        self.found.add(diagnostic)
         if len(self.found.found) >= MOST_ERRORS:
             raise _StopError
 

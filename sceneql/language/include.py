@@ -6,7 +6,8 @@ import posixpath
 from collections.abc import Callable
 from pathlib import Path, PureWindowsPath
 
-from sceneql.language.compose import MOST_BYTES, compose, source_of
+from sceneql.language.compose import compose
+from sceneql.language.encoded import MOST_BYTES, source_of
 from sceneql.language.tree import Mapping, Scalar, Sequence, broken
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, Note, ScriptError
 from sceneql.quantities.span import Source, Span

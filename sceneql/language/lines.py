@@ -1,14 +1,18 @@
-"""Lines in which a colon is missing or one too many: they are left out, and all around them is read."""
+"""Lines in which a colon is missing or one too many: they are left out, and all around them is read.
+
+A second colon directly behind a key (``name::``) is no matter of lines: `doubled` reads the key without it.
+"""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from typing import Final
 
 import yaml
 
 from sceneql.language.torn import Fault
-from sceneql.language.tree import Mapping, Node
+from sceneql.language.tree import Mapping, Node, Scalar, Sequence, hole
 from sceneql.quantities.diagnostic import Diagnostic
 from sceneql.quantities.span import Source, Span
 
@@ -16,6 +20,7 @@ _HEAD = re.compile(r"[ ]*(?:- +)*")
 _NAME: Final = r"[^\s:#\[\]{},\"']+"
 _NO_SPACE = re.compile(rf"({_NAME}):(?=[\[{{])")
 _NO_COLON = re.compile(rf"({_NAME})[ ]*(?=[\[{{])")
+_GLUED = re.compile(r"([\w.'-]+):(?=\S)")
 _COLON = re.compile(r":(?=\s|\Z)")
 
 
@@ -31,16 +36,61 @@ def left_out(source: Source, text: str, error: yaml.YAMLError) -> Fault | None:
     number = source.position(mark.index)[0]
     line = source.line(number)
     if "expected key" in problem or "<block end>" in problem:
-        return _bracketed(source, number, line)
+        return _bracketed(source, number, line) or _ended(source, number)
     if "could not find expected :" in problem:
         return _without(source, number)
     if "mapping values are not allowed" in problem:
+        if (bracketed := _bracketed(source, number, line)) is not None:
+            return bracketed
         before = line[: mark.index - source.line_starts[number - 1]]
         if (first := _COLON.search(before)) is not None:
             return _second(source, number, first.end(), mark.index)
         top = _top(source, number)
         return None if top == number else _without(source, top)
     return None
+
+
+def unparted(key: Scalar) -> Fault | None:
+    """What is to be left out where YAML takes all up to the colon inside the brackets for a key: ``name {a: 1}``."""
+    number, column = key.source.position(key.start)
+    line = key.source.line(number)
+    return _bracketed(key.source, number, line) if column == _head(line) + 1 else None
+
+
+def doubled(key: Scalar) -> tuple[Scalar, Diagnostic]:
+    """A key that ends with a colon of its own (``name::``) without it, and what is told of it."""
+    text = key.text.rstrip(":")
+    end = key.start + len(text)
+    help = f"write `{text}:`; a name that holds a colon goes in quotes"
+    diagnostic = Diagnostic("yaml-syntax", f"a second colon behind '{text}'", Span(key.source, end, key.end), help)
+    return Scalar(text, key.kind, False, key.source, key.start, end), diagnostic
+
+
+def marked(anchor: str, source: Source, faults: Iterable[Fault]) -> bool:
+    """Whether an anchor stands in what is left out, so that its alias means nothing that is known."""
+    mark = re.compile(rf"&{re.escape(anchor)}(?![^\s,\[\]{{}}])")
+    return any(mark.search(source.text, fault.start, fault.end) is not None for fault in faults)
+
+
+def _ended(source: Source, number: int) -> Fault | None:
+    """The line above, where it is a name or more without a colon, and a comment ends it."""
+    above = number - 1
+    while above > 0 and _bare(source.line(above)):
+        above -= 1
+    line = source.line(above) if above > 0 else ""
+    if " #" not in line or _COLON.search(line.split(" #")[0]) is not None:
+        return None
+    top = above - 1
+    while top > 0 and _bare(source.line(top)):
+        top -= 1
+    opening = source.line(top).split(" #")[0].rstrip() if top > 0 else ":"
+    # Else it may go on with the text of the key above.
+    return _without(source, above) if opening.endswith(":") or _head(opening) >= _head(line) else None
+
+
+def _bare(line: str) -> bool:
+    """Whether it is blank, or holds a comment alone."""
+    return not line.strip() or line.lstrip().startswith("#")
 
 
 def _bracketed(source: Source, number: int, line: str) -> Fault | None:
@@ -59,6 +109,9 @@ def _without(source: Source, number: int) -> Fault:
     """A line that is a name or more without a colon."""
     line = source.line(number)
     head = _head(line)
+    if (glued := _GLUED.match(line, head)) is not None:
+        message, help = "a space is missing behind this colon", f"write `{glued[1]}: {line[glued.end() :].strip()}`"
+        return _line(source, number, head, glued.end() - 1, glued.end(), message, help)
     written = line[head:].split(" #")[0].rstrip()
     name, _, rest = written.partition(" ")
     help = f"write `{name}: {rest.strip()}`" if rest else f"write `{name}:` with what belongs to it below, indented"
@@ -111,15 +164,46 @@ def _head(line: str) -> int:
 
 
 def lacking(root: Node | None, faults: list[Fault]) -> None:
-    """Mark what lacks the entry of a line that is left out: nothing is said of what seems to be missing there."""
+    """Mark what lacks the entry of a line that is left out: nothing is said of what seems to be missing there.
+
+    Where it was all that a key or an item had, a hole takes its place.
+    """
     for fault in faults:
-        if fault.blank != " " or not isinstance(root, Mapping) or fault.diagnostic is None:
+        if fault.blank != " " or root is None or fault.diagnostic is None:
             continue
-        here: Mapping | None = root
+        here: Node | None = root
         column = root.source.position(fault.start)[1]
-        while here is not None:
-            here.partial = True
-            if any(root.source.position(key.start)[1] == column for key in here.keys.values()):
-                break
-            above = [node for node in here.entries.values() if isinstance(node, Mapping) and node.start < fault.start]
-            here = max(above, key=lambda node: node.start, default=None)
+        while here is not None and not isinstance(here, Scalar):
+            if isinstance(here, Mapping):
+                here.partial = True
+                before = [name for name, key in here.keys.items() if key.start < fault.start]
+                if not before or any(_column(key) == column for key in here.keys.values()):
+                    break
+                inner = here.entries[before[-1]]
+                if _empty(inner):
+                    here.entries[before[-1]] = hole(inner.span)
+            else:
+                at = _item(here, fault)
+                inner = here.items[at]
+                if _empty(inner):
+                    here.items[at] = hole(inner.span)
+            here = inner
+
+
+def _item(list_: Sequence, fault: Fault) -> int:
+    """The number of the item that a line is left out of: the one around it, or whose first line it was."""
+    source = list_.source
+    line, _ = source.position(fault.start)
+    behind = next((number for number, item in enumerate(list_.items) if item.start > fault.start), len(list_.items))
+    begins = source.line(line).lstrip().startswith("- ")
+    if begins and behind > 0 and source.position(list_.items[behind - 1].start)[0] == line:  # nothing more was in it
+        begins = False
+    return min(max(behind if begins else behind - 1, 0), len(list_.items) - 1)
+
+
+def _column(node: Node) -> int:
+    return node.source.position(node.start)[1]
+
+
+def _empty(node: Node) -> bool:
+    return isinstance(node, Scalar) and node.kind == "null" and not node.text

@@ -165,8 +165,9 @@ class _Path:
     def put_below(self, node: Node, at: int) -> Node:
         """A mapping or list with the value below one of its items."""
         step, before = self.steps[at], ".".join(self.steps[:at])
-        if broken(node):
-            raise _LostError
+        section = at == 1 and self.steps[0] in (*self.families, "define", "parts")
+        if broken(node) or (section and isinstance(node, Scalar)):
+            raise _LostError  # it is reported where it stands
         if isinstance(node, Scalar):
             raise self.fail(at, f"there is nothing called '{step}' here", f"'{before}' is a single value")
         if isinstance(node, Sequence):

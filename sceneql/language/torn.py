@@ -26,6 +26,7 @@ _UNIT = re.compile(r"[^\W\d_]|[%°]")
 NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _ITEM = r"(?:[^(),]|\([^(),]*\))+"
 _PARENTHESES = re.compile(rf"\(({_ITEM}(?:,{_ITEM})+)\)[ \t]*([^\W\d_][^()\[\]{{}},\s]*)?")
+_UNPARTED = re.compile(r"([^\W\d]\w*)(?:[ ]+|(:))(?=\[)")
 _BLOCK_VALUE = re.compile(r"\s*(?:- +)*(?:[^\s\[{\"'#][^\[{\"'#]*?:\s+)?(?=[\[{])")
 
 
@@ -61,7 +62,7 @@ def torn_halves(halves: Iterable[Scalar], text: str) -> list[Fault]:
         if faults and half.start < faults[-1].end:
             continue
         with suppress(_LostError):
-            scan = _Scan(text, half.source.text, min(len(text), half.start + _MOST_SCANNED))
+            scan = _Scan(text, half.source, min(len(text), half.start + _MOST_SCANNED))
             end, torn = scan.plain(half.start, nested=True)
             if torn:
                 faults.append(scan.torn(half.start, end))
@@ -79,7 +80,7 @@ def torn_near(source: Source, text: str, at: int, opening: int | None) -> list[F
         if value is None:
             return []
         opening = value.end()
-    scan = _Scan(text, source.text, min(len(text), opening + _MOST_SCANNED))
+    scan = _Scan(text, source, min(len(text), opening + _MOST_SCANNED))
     with suppress(_LostError):
         scan.value(opening, 0)
     return scan.faults
@@ -132,11 +133,11 @@ class _LostError(Exception):
 class _Scan:
     """Reads flow syntax as it was meant: with parentheses, and with brackets inside expressions.
 
-    ``text`` has blanks where ``written`` has what is mended already.
+    ``text`` has blanks where the source, ``written``, has what is mended already.
     """
 
-    def __init__(self, text: str, written: str, end: int) -> None:
-        self.text, self.written = text, written
+    def __init__(self, text: str, source: Source, end: int) -> None:
+        self.text, self.source, self.written = text, source, source.text
         self.end = end
         self.faults: list[Fault] = []
 
@@ -144,8 +145,8 @@ class _Scan:
         """The character at a place, empty behind the end."""
         return self.text[at] if at < self.end else ""
 
-    def value(self, at: int, depth: int) -> int:
-        """Read a value; returns where it ends."""
+    def value(self, at: int, depth: int, *, key: bool = False) -> int:
+        """Read a value, or a ``key``; returns where it ends."""
         while (named := _PROPERTY.match(self.text, at, self.end)) is not None:
             at = named.end()
         character = self.peek(at)
@@ -162,12 +163,18 @@ class _Scan:
             return color.end()
         end, torn = self.plain(at, nested=depth > 0)
         if torn:
-            self.faults.append(self.torn(at, end))
+            self.faults.append(self.torn(at, end, key=key))
         return end
 
-    def torn(self, start: int, end: int) -> Fault:
-        """An expression that YAML cuts."""
+    def torn(self, start: int, end: int, *, key: bool = False) -> Fault:
+        """An expression that YAML cuts, or a list whose ``key`` lacks its colon, or the space behind that."""
         written = self.written[start:end]
+        if key and (unparted := _UNPARTED.match(written)) is not None:
+            name, glued = unparted[1], unparted[2] is not None
+            missing = "a space is missing behind this colon" if glued else f"a colon is missing behind '{name}'"
+            caret = Span(self.source, start, end).part(*unparted.span(2 if glued else 1))
+            diagnostic = Diagnostic("yaml-syntax", missing, caret, f"write `{name}: {written[unparted.end() :]}`")
+            return Fault("yaml-syntax", start, end, caret.start, "", diagnostic)
         vector = _PARENTHESES.fullmatch(written)  # as other languages write one
         fixed = _quote(written) if vector is None else _with_unit(vector[1], vector[2] or "")
         return Fault("torn-expression", start, end, start, fixed)
@@ -178,6 +185,7 @@ class _Scan:
             raise _LostError
         closing = _CLOSES[self.text[at]]
         at += 1
+        key = closing == "}"
         while True:
             at = self.space(at)
             character = self.peek(at)
@@ -185,7 +193,11 @@ class _Scan:
                 return at + 1
             if character in ("", "]", "}"):
                 raise _LostError
-            at = at + 1 if character in (",", ":", "?") else self.value(at, depth + 1)
+            if character in (",", ":", "?"):
+                key = closing == "}" and character != ":"
+                at += 1
+            else:
+                at = self.value(at, depth + 1, key=key)
             if len(self.faults) >= _MOST_FAULTS:
                 raise _LostError
 

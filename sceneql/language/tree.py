@@ -103,6 +103,20 @@ def whole(node: Node) -> bool:
     return True
 
 
+def extent(node: Node, known: dict[int, tuple[int, int]]) -> tuple[int, int]:
+    """Levels and number of nodes of a finished tree, a shared node counted wherever it stands.
+
+    ``known`` keeps those of collections, by id.
+    """
+    if isinstance(node, Scalar):
+        return 0, 1
+    if id(node) not in known:
+        inner = [extent(n, known) for n in (node.items if isinstance(node, Sequence) else node.entries.values())]
+        keys = 0 if isinstance(node, Sequence) else len(node.keys)
+        known[id(node)] = 1 + max((d for d, _ in inner), default=0), 1 + keys + sum(s for _, s in inner)
+    return known[id(node)]
+
+
 def hole(span: Span) -> Scalar:
     """What stands where something cannot be read."""
     return Scalar("", "broken", False, span.source, span.start, span.end)
