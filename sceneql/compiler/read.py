@@ -82,7 +82,7 @@ class Reader:
         if isinstance(node, MappingNode):
             known = [written_name(name) for name in cls.model_fields]
             ok = report_unknown(node, known, title, self.found) and not node.partial
-            mistaken = {nearest(name, known) for name in node.entries if name not in known}
+            mistaken = {_meant(name, known) for name in node.entries if name not in known}
         for python_name, info in cls.model_fields.items():
             name = written_name(python_name)
             if name not in written:
@@ -311,8 +311,16 @@ def report_unknown(node: MappingNode, known: Collection[str], title: str, found:
     unknown = [name for name in node.entries if name not in known]
     for name in unknown:
         help = suggestion(name, known) or "it has " + ", ".join(known)
+        if (meant := _meant(name, known)) is not None and name.startswith(f"{meant} "):
+            help = f"write `{meant}: {name.removeprefix(meant).strip()}`"
         found.error("unknown-field", f"{title} has no field '{name}'", node.keys[name].span, help=help)
     return not unknown
+
+
+def _meant(name: str, known: Collection[str]) -> str | None:
+    """The field that is meant by what is none: the first word where a colon is missing behind that, or the nearest."""
+    first = name.partition(" ")[0]
+    return first if first in known else nearest(name, known)
 
 
 def _unwrap(annotation: Any) -> tuple[Any, tuple[Any, ...]]:
