@@ -11,7 +11,7 @@ from numba import types
 from numba.core.sigutils import normalize_signature
 
 from sceneql.compiling.late import late
-from sceneql.field.density_polish_kernels import BOX
+from sceneql.field.density_polish_kernels import BOX, X, extent
 from sceneql.field.density_roots_kernels import ROW_OF, density_roots
 from sceneql.field.isolation_kernels import isolate
 from sceneql.field.packet_kernels import BUNDLE, MEMORY, check_inside, has, tape_roots
@@ -29,6 +29,8 @@ box = late("sceneql.field.interval_kernels:box", BOX_OF)
 GROUP = 16
 TOLERANCE = 1e-9
 """Of the certified routine, relative to the searched piece of the ray."""
+MANY = 64
+"""Hits of a bundle from which on a box around them costs less than to look at each."""
 
 
 @inlined
@@ -90,6 +92,24 @@ def box_inside(code, constants, parts, scratch, sides):
         code, constants, parts, scratch, sides[0], sides[1], sides[2], sides[3], sides[4], sides[5]
     )  # fmt: skip
     return status == WHOLE and high < 0.0
+
+
+@inlined
+def enclose_hits(rays, count, found, row, late, room):
+    """Put a box around the places that ``check_inside`` would look at into row BOX of ``room``."""
+    begins, ends, places, outcomes = rays[6], rays[7], found[row], found[FOUND_STATUS]
+    sides = room[BOX]
+    for axis in range(3):
+        o, d, x = rays[axis], rays[3 + axis], room[X + axis]
+        some = 0.0
+        for j in range(count):
+            if outcomes[j] == HIT:
+                some = o[j] + (begins[j] + places[j]) * d[j]
+                break
+        for j in range(count):
+            place = o[j] + (begins[j] + places[j] + late * (ends[j] - begins[j])) * d[j]
+            x[j] = place if outcomes[j] == HIT else some
+        sides[2 * axis], sides[2 * axis + 1] = extent(x, count)
 
 
 FOUND = f"{MEMORY}, int64[::1], int64[::1], float64[:, ::1], float32[:, ::1], float64[::1], int32[:, ::1]"
@@ -163,10 +183,12 @@ def first_roots(
             length = code.shape[0]
             near = short[length : length + rows]
             certified = certify_queued(near, constants, near_parts, scratch, rays, queue, queued, end, anywhere, found)
-    if cut and not (
-        plan[ROW_OF] >= 0 and not anywhere and queued > 0 and box_inside(other, constants, parts, scratch, room[BOX])
-    ):
-        row, late = (FOUND_HIGH, 0.0) if anywhere else (FOUND_ROOT, SETTLED)
+    row, late = (FOUND_HIGH, 0.0) if anywhere else (FOUND_ROOT, SETTLED)
+    boxed = plan[ROW_OF] >= 0 and not anywhere and queued > 0
+    if cut and plan[POLYNOMIAL] >= 0 and queued > MANY:
+        enclose_hits(rays, count, found, row, late, room)
+        boxed = True
+    if cut and not (boxed and box_inside(other, constants, parts, scratch, room[BOX])):
         left = leave_safe(rays, queue, queued, row, late, safe, unsafe, found, order)
         check_inside(other, constants, parts, doubles, points, rays, order, left, row, late, found)
     if near_settled:  # but for what is cut away
