@@ -11,6 +11,7 @@ import os
 import re
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -223,28 +224,33 @@ def _pool(threads: int) -> ThreadPoolExecutor:
 
 
 def over_tiles(count: int, work: Callable[[int], object]) -> None:
-    """Call ``work(tile)`` for every tile 0..count-1 on the pool; tiles must write to places of their own.
+    """Call ``work(tile)`` for every tile 0..count-1 here and on the pool; tiles must write to places of their own.
 
     Which thread takes which tile does not matter to the result, so the bytes are the same for any thread count.
-    The first exception is raised after all threads have stopped.
+    The first exception is raised after all threads have stopped, and after it no tile is begun.
     """
-    threads = min(thread_count(), count)
-    if threads <= 1:
-        for tile in range(count):
-            work(tile)
-        return
     upcoming = iter(range(count))
     lock = threading.Lock()
 
     def drain() -> None:
-        while True:
+        try:
+            while True:
+                with lock:
+                    tile = next(upcoming, None)
+                if tile is None:
+                    return
+                work(tile)
+        except BaseException:
             with lock:
-                tile = next(upcoming, None)
-            if tile is None:
-                return
-            work(tile)
+                deque(upcoming, maxlen=0)
+            raise
 
-    futures = [_pool(threads).submit(drain) for _ in range(threads)]
-    errors = [error for error in (future.exception() for future in futures) if error is not None]
+    # This thread works, too: one that sleeps would leave its core to be found again by those that it has woken.
+    others = min(thread_count(), count) - 1
+    futures = [_pool(others).submit(drain) for _ in range(others)]
+    try:
+        drain()
+    finally:
+        errors = [error for error in (future.exception() for future in futures) if error is not None]
     if errors:
         raise errors[0]
