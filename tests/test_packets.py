@@ -1,4 +1,4 @@
-"""Laws of packets: float32 enclosures contain what they claim, and roots found in packets are the certified ones."""
+"""Laws of packets: roots found in packets are the certified ones."""
 
 from dataclasses import replace
 
@@ -8,13 +8,13 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from common_scenes import tape_of
-from extremes_kernels import extremes
 from moment import IDENTITY, FakeMoment, const, formula
 from plain_tapes import implicit, kernels
-from random_tapes import NAMES, PARTS, of_one, rays, tapes
+from random_tapes import PARTS, rays, tapes
+from ray_bundles import agree_with_the_certified, bundle
 from renderers.tracing.bundles import solids_in_lanes
 from sceneql.field.clips import clip_rows
-from sceneql.field.packets import Memory, cast_together, enclosures, plan_of
+from sceneql.field.packets import Memory, cast_together, plan_of
 from sceneql.field.ray_rows import FOUND_ROOT, FOUND_STATUS
 from sceneql.field.skeleton import Skeleton
 from sceneql.field.solid import cast, field_values
@@ -25,13 +25,11 @@ from sceneql.field.tape_ops import (
     HIT,
     INSIDE,
     MISS,
-    NOWHERE,
     POW,
     SQRT,
     SQUARE,
     SUB,
     UNDECIDED,
-    WHOLE,
     X,
 )
 from sceneql.frame import Implicit, Surface
@@ -39,65 +37,6 @@ from sceneql.simulation.objects.blobby import Blobby
 from sceneql.simulation.objects.implicit import Implicit as Formula
 from sceneql.simulation.objects.implicit import Within
 from sceneql.simulation.solid import traced
-
-
-def check_enclosures(tape, origin, direction, t0, t1):
-    """Many segments of a ray at once: all of [t0, t1] and its halves, quarters, eighths."""
-    pieces = [(k / n, (k + 1) / n) for n in (1, 2, 4, 8, 64) for k in range(n)]
-    ends = t0 + (t1 - t0) * np.array(pieces)
-    origins, directions = np.tile(origin, (len(ends), 1)), np.tile(direction, (len(ends), 1))
-    found = enclosures(tape, origins, directions, np.ascontiguousarray(ends[:, 0]), np.ascontiguousarray(ends[:, 1]))
-    tau = np.linspace(-1.0, 1.0, 17)
-    t = ends.mean(axis=1)[:, None] + 0.5 * (ends[:, 1] - ends[:, 0])[:, None] * tau
-    f = field_values(tape, (origin + t[:, :, None] * direction).reshape(-1, 3)).reshape(t.shape)
-    c0, c1, e, status = found
-    claimed = np.isfinite(found[:3]).all(axis=0)
-    assert (e[claimed] >= 0.0).all()
-    defined = ~np.isnan(f)
-    assert defined[claimed & (status == WHOLE)].all()
-    assert not defined[status == NOWHERE].any()
-    with np.errstate(invalid="ignore", over="ignore"):
-        off = np.abs(f - (c0[:, None] + c1[:, None] * tau))
-    # The point's own value is rounded in float64.
-    wrong = defined & (claimed & (status != NOWHERE))[:, None] & ~(off <= e[:, None] * (1 + 1e-12) + 1e-300)
-    assert not wrong.any(), (found[:, wrong.any(axis=1)].T[:3], f[wrong][:3])
-
-
-@pytest.mark.parametrize("name", NAMES)
-@settings(max_examples=40)
-@given(ray=rays())
-def test_enclosures_of_every_operation_contain_its_values(name, ray):
-    check_enclosures(of_one(name), *ray)
-
-
-@settings(max_examples=500)
-@given(tape=tapes(), ray=rays())
-def test_enclosures_of_any_tape_contain_its_values(tape, ray):
-    check_enclosures(tape, *ray)
-
-
-@pytest.mark.parametrize("text", ["abs(x)^2.5 - 0.1", "(x^2)^0.7 - y", "exp(x)^1.5 - 3", "sqrt(x + 2)^0.3 - 1"])
-def test_powers_of_what_is_never_negative_are_defined_all_over(text):
-    """Also where the enclosure of the base goes below 0."""
-    tape, origin, direction = tape_of(text), np.array([-1.0, 0.1, 0.2]), np.array([1.0, 0.1, -0.1])
-    check_enclosures(tape, origin, direction, 0.0, 2.0)
-    halves = np.array([0.0, 0.9]), np.array([2.0, 1.2])
-    *_, status = enclosures(tape, np.tile(origin, (2, 1)), np.tile(direction, (2, 1)), *halves)
-    assert (status == WHOLE).all()
-
-
-@settings(max_examples=150)
-@given(tape=tapes(), ray=rays(), size=st.sampled_from([1e-20, 1e-6, 1e3, 1e8, 1e20, 1e30, 1e300]))
-def test_enclosures_far_from_one_claim_nothing_wrong(tape, ray, size):
-    origin, direction, t0, t1 = ray
-    check_enclosures(tape, size * origin, size * direction, t0, t1)
-
-
-def bundle(origin, direction, generator, count, spread):
-    """Rays near one another."""
-    return origin + spread * generator.uniform(-1, 1, (count, 3)), direction + spread * generator.uniform(
-        -1, 1, (count, 3)
-    )
 
 
 @settings(max_examples=150)
@@ -152,20 +91,6 @@ def test_blobs_in_packets_have_the_certified_roots(centers, radius):
     assert hit.sum() > 100
     assert t[hit] == pytest.approx(places[hit], abs=1e-7)
     assert ((cast_together(tape, origins, directions, near, far, anywhere=True)[0] == HIT) == hit).all()
-
-
-def agree_with_the_certified(tape, origins, directions, t0, t1, within, cut=()):
-    """First places, and whether there is any, as the certified routine has them, wherever both decide."""
-    status, t = cast_together(tape, origins, directions, t0, t1, cut=cut)
-    exact, places = cast(tape, origins, directions, t0, t1)
-    told = (status != UNDECIDED) & (exact != UNDECIDED)
-    assert told.mean() > 0.9
-    met, truly = np.isin(status, [HIT, INSIDE]), np.isin(exact, [HIT, INSIDE])
-    assert (met == truly)[told].all()
-    assert t[met & told] == pytest.approx(places[met & told], abs=within)
-    blocked, _ = cast_together(tape, origins, directions, t0, t1, anywhere=True, cut=cut)
-    told &= blocked != UNDECIDED
-    assert (np.isin(blocked, [HIT, INSIDE]) == truly)[told].all()
 
 
 @settings(max_examples=60)
@@ -346,11 +271,6 @@ def test_roots_of_polynomials_are_polished_to_float64(seed, far):
     assert t[clear] == pytest.approx((middle - np.sqrt(np.maximum(left, 0.0)))[clear], abs=1e-14 * far)
 
 
-@given(st.lists(st.floats(allow_nan=False), min_size=1, max_size=70))
-def test_least_and_largest_by_bits(numbers):
-    assert extremes(np.array(numbers)) == (min(numbers), max(numbers))
-
-
 LOWERED = {
     "blobby": Blobby(
         points=const(np.array([[-0.5, 0, 0], [0.4, 0.1, 0], [0.5, 0.6, 0.1]])), radius=const(0.6), threshold=0.2
@@ -423,16 +343,6 @@ def test_a_thin_shell_has_no_holes_in_packets():
     assert ((status == HIT) == (off < 0.7005**2)).all()
     hit = status == HIT
     assert t[hit] == pytest.approx(2.0 - np.sqrt(0.7005**2 - off[hit]), abs=1e-6)
-
-
-def test_nothing_is_claimed_of_an_operation_without_lanes():
-    def formula(b, op, c):
-        return op("sub", c(0.3), b.density(PARTS, b.x, b.y, b.z))
-
-    tape = implicit(formula)
-    unknown = replace(tape, code=np.where(tape.code == DENSITY, 99, tape.code))
-    origins, ends = np.zeros((2, 3)), np.ones(2)
-    assert np.isnan(enclosures(unknown, origins, origins + 1.0, 0.0 * ends, ends)[0]).all()
 
 
 def test_solids_that_packets_know_nothing_of_are_not_looked_for_in_bundles():
