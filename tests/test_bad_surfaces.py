@@ -32,6 +32,22 @@ def rendered(tmp_path, entry):
         ('implicit: {field: "x + 1/0"}', "not finite"),
         ('implicit: {field: "1e400*x"}', "too large"),
         ('implicit: {field: "x", bounds: {ball: 1e308}}', "unbounded"),
+        ('implicit: {field: "x", bounds: {ball: 1e300}}', "more than 1e.100 m"),
+        ('implicit: {field: "x - 0.1", mode: surface, unit: 4e180 m}', "more than 1e.100 m"),
+        ('implicit: {field: "x", position: 0 -2e120 0 m, unit: 1e110 m}', "more than 1e.100 m"),
+        ('implicit: {field: "x^2 + y^2 + z^2 - 1", unit: 1e-200 m}', "less than 1e-100 m"),
+        ("sphere: {radius: 1e160 m}", "more than 1e.100 m"),
+        ("box: {size: 1e-200 1e-200 1e-200 m}", "less than 1e-100 m"),
+        ("torus: {radius: 1e200 m}", "more than 1e.100 m"),
+        ("blobby: {points: [0 0 0 m], radius: 1e150 m}", "more than 1e.100"),
+        ("blobby: {points: [1e200 0 0 m, -1e200 0 0 m]}", "more than 1e.100"),
+        ("blobby: {points: [0 0 0 m, 1 0 0 m], weight: [1e308, 1e308]}", "more than 1e.100"),
+        ("blobby: {points: [0 0 0 m], threshold: 1e-300}", "at least 1e-09"),
+        ("blobby: {skeleton: [{radius: 1 m}]}", "one of point, points"),
+        ("blobby: {skeleton: [{point: 0 0 0 m, points: [0 0 0 m]}]}", "not point and points"),
+        ("blobby: {skeleton: [{points: [0 0 0 m, 1 0 0 m, 0 1 0 m], triangles: [0 1 1.5]}]}", "a whole one"),
+        ("blobby: {points: [0 0 m]}", "a list of points, not a list of vectors of 2"),
+        ("blobby: {skeleton: [{segments: [[0 0 0 m]]}]}", "pairs of points, not a list of lists of 1 vectors"),
         ("union: {of: [{sphere: {radius: 1 m}}, {plane: {}}]}", "unbounded"),
         ("intersection: {of: [{plane: {}}, {plane: {position: 0 1 0}}]}", "unbounded"),
     ],
@@ -62,6 +78,21 @@ def test_what_is_nowhere_is_told_with_its_place(tmp_path, entry, message):
     assert message in warning.message
     assert warning.span is not None
     assert warning.span.line == 3
+
+
+@pytest.mark.parametrize("renderer", ["trace", "normals"])
+@pytest.mark.parametrize(
+    "formula",
+    [
+        "(1e200*x)^2 + (1e200*y)^2 + (1e200*z)^2 - 1e300",
+        "max(x^2 + y^2 + z^2 - 0.9, (1e200*x)*(1e200*y))",
+        "max(x^2 + y^2 + z^2 - 0.9, 1e160*x^2 - 1e160)",
+    ],
+)
+def test_coefficients_that_overflow_are_no_clips(tmp_path, formula, renderer):
+    path = tmp_path / "scene.yaml"
+    path.write_text((SCENE % f'implicit: {{field: "{formula}"}}').replace("normals", renderer))
+    assert pipeline.render(pipeline.load(path), output=tmp_path / "still.png").frames == 1
 
 
 def test_values_that_overflow_in_a_part_of_the_bounds_do_no_harm(tmp_path):

@@ -214,4 +214,6 @@ def _shape_text(shape: Shape) -> str:
         return "a single value"
     if len(shape) == 1:
         return "a list of values" if shape[0] is None else f"a vector of {shape[0]}"
-    return "a list of points"
+    if len(shape) == 2:
+        return "a list of points" if shape[1] in (3, None) else f"a list of vectors of {shape[1]}"
+    return "a list of pairs of points" if shape[1] in (2, None) else f"a list of lists of {shape[1]} vectors"

@@ -19,6 +19,8 @@ PRODUCTS = (0, 1, 2, 0, 1, 2), (0, 1, 2, 1, 2, 0)
 """Axes whose products the first coefficients are of: squares, then xy, yz and zx."""
 LINEAR, LAST = 6, 9
 """First of those of x, y and z; the constant."""
+LARGEST = 1e100
+"""Coefficient of a clip, so that its values are numbers wherever solids can be."""
 
 
 def clips_of(tape: Tape) -> Floats:
@@ -58,12 +60,12 @@ def _clips(tape: Tape) -> list[tuple[Floats, int]]:
     found = []
     for branch in _branches(tape):
         row, radius = root_of(tape, without_factor(tape, branch))
-        quadric = _expanded(tape, row)
-        if quadric is not None:
-            if radius >= 0:
+        with np.errstate(over="ignore", invalid="ignore"):  # what overflows is no clip
+            quadric = _expanded(tape, row)
+            if quadric is not None and radius >= 0:
                 quadric[LAST] -= tape.constants[radius] ** 2
-            if quadric[:LAST].any():
-                found.append((quadric, branch))
+        if quadric is not None and quadric[:LAST].any() and np.abs(quadric).max() <= LARGEST:
+            found.append((quadric, branch))
     return found
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 from sceneql.failure import RunFailure
 from sceneql.kinds import Color, Moment, Points, Position, Problem, Quantity, Record, Value, field
 from sceneql.quantities import dimension as dim
+from sceneql.simulation.solid import LARGEST
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -74,11 +75,10 @@ class Part(Record):
         if self.closed and self.polyline is None and self.spline is None:
             yield Problem("only a polyline or a spline can be closed", ("closed",), at_key=True)
 
-    def place(self) -> Value:
-        """Where it is."""
-        (given,) = (value for name in self.KINDS if (value := getattr(self, name)) is not None)
-        found: Value = given
-        return found
+    def place(self) -> Value | None:
+        """Where it is; None where it says so in several ways, or not at all."""
+        given = [value for name in self.KINDS if (value := getattr(self, name)) is not None]
+        return given[0] if len(given) == 1 else None
 
     def now(self, moment: Moment) -> Shape:
         """Its parts now; none of a line or a polygon that gets its points with time and has too few of them yet.
@@ -91,7 +91,7 @@ class Part(Record):
             value: Value | None = getattr(self, name)
             if value is None:
                 continue
-            places = np.asarray(moment.at(value), dtype=float)
+            places = numbers(value, moment)
             if places.size > 6 * MOST:
                 raise failure(f"a skeleton has at most {MOST:,} parts, not {len(places):,}", value, moment)
             if name == "point":
@@ -151,7 +151,10 @@ class Part(Record):
         import numpy as np
 
         assert self.triangles is not None
-        corners = np.asarray(moment.at(self.triangles)).reshape(-1, 3).astype(np.int64)
+        given = numbers(self.triangles, moment).reshape(-1, 3)
+        corners = given.astype(np.int64)
+        if (corners != given).any():
+            raise failure("the number of a point is a whole one", self.triangles, moment)
         if corners.size and not 0 <= corners.min() <= corners.max() < len(places):
             raise failure(f"the {len(places)} points are 0 to {len(places) - 1}", self.triangles, moment)
         return self._triangles(places[corners], moment)
@@ -166,7 +169,7 @@ class Part(Record):
         """(weights, groups) of n pieces of one part."""
         import numpy as np
 
-        weight = np.asarray(moment.at(self.weight), dtype=float)
+        weight = numbers(self.weight, moment)
         if weight.ndim:
             raise failure("a line or a polygon has one weight", self.weight, moment)
         return np.full(n, float(weight)), np.zeros(n)
@@ -176,12 +179,23 @@ def each(value: Value, n: int, what: str, moment: Moment) -> Floats:
     """(n,) one number for all or one for each. Raises RunFailure for another number of them."""
     import numpy as np
 
-    numbers = np.asarray(moment.at(value), dtype=float)
-    if numbers.ndim == 0:
-        return np.full(n, float(numbers))
-    if numbers.shape != (n,):
-        raise failure(f"there are {n} {what}, but {len(numbers)} values here", value, moment)
-    return numbers
+    given = numbers(value, moment)
+    if given.ndim == 0:
+        return np.full(n, float(given))
+    if given.shape != (n,):
+        raise failure(f"there are {n} {what}, but {len(given)} values here", value, moment)
+    return given
+
+
+def numbers(value: Value, moment: Moment) -> Floats:
+    """What a value is now. Raises RunFailure where products of a few such numbers would overflow."""
+    import numpy as np
+
+    given = np.asarray(moment.at(value), dtype=float)
+    most = float(np.abs(given).max(initial=0.0))
+    if most > LARGEST:
+        raise failure(f"a number is {most:.3g} here, more than {LARGEST:g}", value, moment)
+    return given
 
 
 def failure(message: str, value: Value, moment: Moment) -> RunFailure:

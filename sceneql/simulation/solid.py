@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from sceneql.kinds import FieldBuilder, Moment, Object
 
 INFINITY = float("inf")
+LARGEST, SMALLEST = 1e100, 1e-100
+"""[m] Of solids that can be drawn: the products of a few of their lengths are numbers, and no zeros."""
 MARGIN = 1e-6
 """By how much the box around a traced field is larger than the solid, in parts of its size."""
 CELLS = 96
@@ -60,7 +62,7 @@ class Solid(Placed):
 def traced(solid: Object, name: str, place: Floats, moment: Moment) -> Iterable[frame.Implicit]:
     """Any object with a field, as a tape in a box a little larger than itself; nothing where the box is empty.
 
-    Raises TypeError where it is unbounded.
+    Raises TypeError where it is unbounded, ValueError where numbers cannot tell its size.
     """
     import numpy as np
 
@@ -74,6 +76,7 @@ def traced(solid: Object, name: str, place: Floats, moment: Moment) -> Iterable[
         finite = np.isfinite(high - low).all()
     if not finite:
         raise TypeError(f"{name} is unbounded, and cannot be drawn: intersect it with a box")
+    told_by_numbers(low, high)
     build = TapeBuilder()
     value = solid.implicit(build, *build.affine(inverse(place), build.x, build.y, build.z), moment)
     room = MARGIN * float(np.max(high - low))
@@ -83,6 +86,17 @@ def traced(solid: Object, name: str, place: Floats, moment: Moment) -> Iterable[
     at = colored.affine(inverse(place), colored.x, colored.y, colored.z)
     hues = solid.hues(colored, *at, surface, moment)
     yield frame.Implicit(name, surface, build.finish(value), *box, None if hues is None else colored.finish(*hues))
+
+
+def told_by_numbers(low: Floats, high: Floats) -> None:
+    """Raise ValueError where a solid in a box is so far from 1 m that its squares overflow or vanish."""
+    import numpy as np
+
+    farthest, size = float(np.abs([low, high]).max()), float((high - low).max())
+    if farthest > LARGEST:
+        raise ValueError(f"it reaches {farthest:.3g} m away from the origin, more than {LARGEST:g} m")
+    if size < SMALLEST:
+        raise ValueError(f"its size is {size:.3g} m, less than {SMALLEST:g} m")
 
 
 def measure(solid: Object, output: str, moment: Moment) -> Any:
@@ -114,10 +128,15 @@ def quadric(
     constant: float,
     half: tuple[float, float, float] = (INFINITY, INFINITY, INFINITY),
 ) -> frame.Quadric:
-    """A convex quadric solid within -half..half, both in the coordinates that ``place`` maps to the world."""
+    """A convex quadric solid within -half..half, both in the coordinates that ``place`` maps to the world.
+
+    Raises ValueError where numbers cannot tell its size.
+    """
     from sceneql import frame
 
     low = (-half[0], -half[1], -half[2])
+    if max(half) < INFINITY:
+        told_by_numbers(*mapped_box(place, low, half))
     return frame.Quadric(name, surface, inverse(place), squares, linear, constant, low, half)
 
 

@@ -15,6 +15,7 @@ from sceneql.simulation.skeleton_parts import (
     Shape,
     each,
     failure,
+    numbers,
 )
 from sceneql.simulation.solid import MEASURES, measure, traced
 
@@ -54,7 +55,7 @@ class Blobby(Object):
         "How far the density of `points` reaches: one for all, or one for each.", "0.3 m", above=0
     )
     weight: NumberOrNumbers = field("Factor of a point's density, one or one each; below 0 it hollows out.", "1")
-    threshold: FixedScalar = field("The density at the surface.", "0.3", above=0, below=1)
+    threshold: FixedScalar = field("The density at the surface.", "0.3", at_least=1e-9, below=1)
     kernel: Kernel = field("How the density falls off with the distance.", "wyvill")
 
     def problems(self) -> Iterator[Problem]:
@@ -75,7 +76,8 @@ class Blobby(Object):
 
     def excess(self, count: Callable[[Value], int | None]) -> Iterator[tuple[Value, str]]:
         """More parts than a skeleton can have; a segment takes at most two points' places."""
-        values = [part.place() for part in self.skeleton] + ([] if self.points is None else [self.points])
+        places = [part.place() for part in self.skeleton] + [self.points]
+        values = [place for place in places if place is not None]
         counts = [1 if len(value.expr.type.shape) == 1 else count(value) or 1 for value in values]
         total = sum(counts) - len(self.segments)
         if total > MOST:
@@ -86,7 +88,7 @@ class Blobby(Object):
         """Its skeleton in its parent's coordinates: that of `points`, then those of its entries.
 
         Raises RunFailure for a segment to a point that is not there, lists of other lengths than the points', radii
-        that are not above 0, and too many parts.
+        that are not above 0, numbers whose products overflow, and too many parts.
         """
         import numpy as np
 
@@ -125,7 +127,7 @@ class Blobby(Object):
         """The parts of `points` and `segments`."""
         import numpy as np
 
-        points = np.asarray(moment.at(value), dtype=float).reshape(-1, 3)
+        points = numbers(value, moment).reshape(-1, 3)
         n = len(points)
         pairs = np.array(self.segments, dtype=int).reshape(-1, 2)
         if pairs.size and pairs.max() >= n:
