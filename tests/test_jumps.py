@@ -22,6 +22,7 @@ FIELDS = [
     "x^2 + y^2 + z^2 - 0.4 + 0.2*sign(x)*sign(y - 0.1)",
     "abs(x - 0.3*floor(2*y) - 0.1*sign(z)) - 0.1",
     "1/abs(x) + 1/(y - 0.2)^3 + z",
+    "max(x^2 + y^2 + z^2 - 1, 0.5*(-1)^(floor(3*x) + floor(3*y)))",
 ]
 """Steps of every operation that has some, alone and together."""
 TIMES = np.linspace(0, 1, 4001)

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 Row = tuple[int, int, int, int]
 COMMUTATIVE = {ops.ADD, ops.MUL, ops.MIN, ops.MAX}
+WHOLE_OF_WHOLE = {ops.ADD, ops.SUB, ops.MUL, ops.MIN, ops.MAX, ops.NEG, ops.ABS, ops.SQUARE}
+"""Operations that make whole numbers of whole numbers."""
 LARGEST_POWER = 1024
 """Integer powers up to this one become multiplications."""
 FEW = 128
@@ -59,7 +61,8 @@ class TapeBuilder:
         """Register of a scalar operation on registers. ValueError for a name that no tape can compute.
 
         `min` and `max` take any number. The comparisons, `step` and `where` are made by arithmetic, hence undefined
-        where any of their arguments is, also in the branch not taken.
+        where any of their arguments is, also in the branch not taken. `a^b` with an exponent that varies is defined
+        where a > 0, for a < 0 too if only whole numbers can be its exponent.
         """
         if name in LOWERED:
             return LOWERED[name](self, *registers)
@@ -73,7 +76,10 @@ class TapeBuilder:
             return self.op(name, first, self.op(name, *others)) if others else first
         a, b = registers
         if name == "pow":
-            lowered = self._power(a, self._known(b))
+            exponent = self._known(b)
+            if exponent is None and not self._whole(b):
+                return self.op("exp", self.op("mul", b, self.op("log", a)))
+            lowered = self._power(a, exponent)
             if lowered is not None:
                 return lowered
         simpler = self._folded(name, (a, b)) or self._simplified(name, a, b)
@@ -83,6 +89,21 @@ class TapeBuilder:
         if code in COMMUTATIVE and b < a:
             a, b = b, a
         return self._emit((code, a, b, 0))
+
+    def _whole(self, register: int) -> bool:
+        """Whether a register holds whole numbers wherever it is defined."""
+        left, seen = [register], set()
+        while left:
+            k = left.pop()
+            op, first, second, _ = self._rows[k]
+            if op == ops.CONSTANT and self._constants[first].is_integer():
+                continue
+            if op in WHOLE_OF_WHOLE and k not in seen:
+                left += first, second
+            elif op not in (ops.FLOOR, ops.SIGN) and k not in seen:
+                return False
+            seen.add(k)
+        return True
 
     def _folded(self, name: str, registers: tuple[int, ...]) -> int | None:
         """The constant register of an operation on constants, where it has a finite value."""

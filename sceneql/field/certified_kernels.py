@@ -8,7 +8,7 @@ first (Moore 1966; Hansen and Walster 2004, chapter 9). Rounding is outward all 
 
 import numpy as np
 
-from sceneql.field.bracket_kernels import lowest, polished
+from sceneql.field.bracket_kernels import FINE, lowest, polished
 from sceneql.field.slope_kernels import on_ray
 from sceneql.field.tape_ops import HIT, MISS, NOWHERE, TAPE, UNDECIDED, WHOLE
 from sceneql.kernels import lean, woven
@@ -19,8 +19,13 @@ SPLIT = 0.4609375
 """Where pieces are halved: off the middle, so that a root at the end of a piece is not at an end again."""
 WIDEST = 1.0e-3
 """Half of the widest piece, relative to the ray, that a root of even multiplicity may be spread over by rounding."""
-CROSSES, TOUCHES, JUMPS, UNKNOWN = range(4)
-"""What may be hidden: a change of sign, a root without one, a pole or an edge of where f is defined; or unknown."""
+CROSSES, TOUCHES, JUMPS, ABSENT, UNKNOWN = range(5)
+"""What may be hidden: a change of sign, a root without one, a pole or an edge of where f is defined, little or nothing
+since f is undefined at both ends; or unknown."""
+SHORTEST = 4.0e-15
+"""Piece, relative to its place on the ray, that is not cut any more."""
+NEARBY = 64.0
+"""How far an edge is looked for behind a piece that is undefined at both ends, in the shortest steps."""
 UNDEFINED = 2
 SURE = 1.0 - 1.0e-14
 
@@ -59,7 +64,8 @@ def hidden(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, t0, t1
 
     from..to is the piece with a..b in it, grown fourfold until sign f is proved < 0 at an end, or undefined, or > 0 and
     on its way down at the first or up at the last. It CROSSES zero from > 0 to < 0, or it TOUCHES it, > 0 at both ends.
-    It JUMPS where it is undefined at one end, or goes from > 0 to < 0 on its way from zero at both: at a pole.
+    It JUMPS where it is undefined at one end, or goes from > 0 to < 0 on its way from zero at both: at a pole. Where
+    it is undefined at the first and about the last, so that an edge is not near, it is ABSENT.
     """
     reach = WIDEST * (t1 - t0) + 2.0 * least
     step = least
@@ -72,7 +78,9 @@ def hidden(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, t0, t1
     step = least
     after = b
     last, rising, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, after, sign)
-    while (last == 0 or (last == 1 and not rising > 0.0)) and after < t1 and step < reach:
+    while after < t1 and step < (NEARBY * least if first == UNDEFINED == last else reach):
+        if last == -1 or (last == 1 and rising > 0.0) or (last == UNDEFINED and first != UNDEFINED):
+            break
         after = min(b + step, t1)
         last, rising, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, after, sign)
         step *= 4.0
@@ -83,9 +91,15 @@ def hidden(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, t0, t1
         kind = JUMPS if first == UNDEFINED or (gone > 0.0 and rising > 0.0) else CROSSES
     elif first == 1 and last == 1 and falling < 0.0 and rising > 0.0:
         place = lowest(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, before, after, sign)
-        kind = TOUCHES
+        near = 4.0 * FINE * abs(place)
+        low, _, _, _, _ = on_ray(
+            code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, place - near, place + near, sign
+        )
+        kind = UNKNOWN if low > 0.0 else TOUCHES
     elif (first == UNDEFINED and last == 1) or (first == 1 and last == UNDEFINED):
         kind = JUMPS
+    elif first == UNDEFINED and last == UNDEFINED:
+        kind = ABSENT
     return kind, last, place, before, after
 
 
@@ -156,6 +170,9 @@ def certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, fin
             kind, behind, place, before, after = hidden(
                 code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, first, last, t0, t1, 0.125 * least, sign
             )
+            if (kind == ABSENT or (kind == JUMPS and behind > 0)) and width > SHORTEST * (abs(a) + abs(b)):
+                b = middle
+                continue
             if width <= least or kind != UNKNOWN:
                 if kind == JUMPS and (touching or behind > 0):
                     if behind < 0:

@@ -153,6 +153,8 @@ def binary_box(op, a, b, c, d):
             return -np.inf, np.inf, PARTIAL
         low, high = quotients(a, b, c, d)
     elif op == POW:
+        if c < d:  # the builder has other ways for exponents that vary but not by whole numbers
+            c, d = np.ceil(c), np.floor(d)
         if a > 0.0:
             low, high = hull4(a**c, a**d, b**c, b**d)
         elif c == d and c > 0.0 and c != np.floor(c):
@@ -160,6 +162,10 @@ def binary_box(op, a, b, c, d):
                 return 0.0, 0.0, NOWHERE
             low, high = outward(0.0, b**c)
             return max(low, 0.0), high, PARTIAL if a < 0.0 else WHOLE
+        elif c == d == np.floor(c) and (c >= 0.0 or b < 0.0):
+            low, high = hull4(a**c, a**c, b**c, b**c)
+            if c > 0.0 and 0.5 * c == np.floor(0.5 * c):
+                low = 0.0 if b >= 0.0 else max(low, 0.0)
         elif a == 0.0 and c >= 0.0:
             low, high = outward(0.0, max(1.0, max(b**c, b**d)))
             return 0.0, high, WHOLE

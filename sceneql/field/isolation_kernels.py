@@ -13,6 +13,7 @@ from sceneql.compiling.late import late
 from sceneql.field.bracket_kernels import FINE, along
 from sceneql.field.certified_kernels import certify
 from sceneql.field.enclosure_kernels import segment
+from sceneql.field.slope_kernels import on_ray
 from sceneql.field.tape_ops import HIT, INSIDE, MISS, NOWHERE, TAPE, UNDECIDED, WHOLE
 from sceneql.kernels import kernel, woven
 
@@ -105,11 +106,19 @@ def search(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tole
 
 
 @woven
+def begin_of_proof(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t0, t1):
+    """Where the certified intervals begin on [t0, t1], of which enclosures told the piece up to t: there, at an edge of
+    where f is defined, from the undefined side; else BACK, so that f can be told from zero."""
+    _, _, _, _, status = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t, 1.0)
+    return t if status == NOWHERE else max(t - BACK * (t1 - t0), t0)
+
+
+@woven
 def isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, sign, anywhere):
     """As ``search``, by the certified intervals from where that could not go on, and past jumps where these cannot."""
     status, t = search(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, sign, anywhere)
     if status == UNDECIDED:
-        t = max(t - BACK * (t1 - t0), t0)
+        t = begin_of_proof(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t0, t1)
         finest = tolerance * (t1 - t0)
         status, t = certify(
             code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, finest, sign, anywhere, False

@@ -3,7 +3,7 @@
 
 from sceneql.field.certified_kernels import CROSSES, TOUCHES, certify, hidden, told
 from sceneql.field.enclosure_kernels import segment
-from sceneql.field.isolation_kernels import BACK, beyond, leaps, search
+from sceneql.field.isolation_kernels import begin_of_proof, beyond, leaps, search
 from sceneql.field.slope_kernels import on_ray
 from sceneql.field.tape_ops import ATAN2, FLOOR, HIT, MISS, NOWHERE, SIGN, TAPE, UNDECIDED, WHOLE
 from sceneql.kernels import lean, woven
@@ -92,7 +92,7 @@ def surface_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1
                 status = HIT
                 t = place
         if status == UNDECIDED:
-            t = max(t - BACK * (t1 - t0), start)
+            t = begin_of_proof(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, start, t1)
             status, t = certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, near, 1.0, False, True)
             if status == UNDECIDED:
                 status, t = beyond(

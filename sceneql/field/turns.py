@@ -9,14 +9,18 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from sceneql.field import tape_ops as ops
 
+NEVER_BELOW = (ops.SQRT, ops.SQUARE, ops.ABS, ops.EXP)
+"""Operations with no value below zero."""
+
 
 def up_to_whole_turns(
     rows: Sequence[tuple[int, int, int, int]], constants: Mapping[int, float], values: Iterable[int]
 ) -> set[int]:
-    """The rows of ATAN2 to which a whole turn may be added without changing the rows ``values``.
+    """The rows of ATAN2 whose cut is no jump of the rows ``values``.
 
-    They go into sines and cosines alone, added to others, negated or multiplied by whole numbers on their way;
-    ``constants`` are the numbers of rows that are some.
+    To some a whole turn may be added without changing these: they go into sines and cosines alone, added to others,
+    negated or multiplied by whole numbers on their way; ``constants`` are the numbers of rows that are some. Others are
+    angles of what is never below zero: they end at the cut.
     """
     free = set(range(len(rows))) - set(values)
     for k in range(len(rows) - 1, -1, -1):
@@ -30,4 +34,5 @@ def up_to_whole_turns(
             elif k in free and op == ops.MUL:
                 kept = {a for a, b in ((left, right), (right, left)) if constants.get(b, 0.5).is_integer()}
             free -= {left, right} - kept
-    return {k for k in free if rows[k][0] == ops.ATAN2}
+    angles = {k: left for k, (op, left, _, _) in enumerate(rows) if op == ops.ATAN2}
+    return {k for k, left in angles.items() if k in free or rows[left][0] in NEVER_BELOW}
