@@ -250,7 +250,7 @@ class Tools:
         with failing_as(drawn_by.name, moment.time, drawn_by.span):
             picture = renderer.draw(frame)
         asked = solids(self.graph.drawn[self.name], self.graph.tasks)
-        look(frame.shapes, asked, self.report.present)
+        look(frame.shapes, asked, self.graph.tasks, self.report.present)
         if picture.undecided:
             counts = self.report.undecided.setdefault(self.name, {})
             counts[frame.index] = counts.get(frame.index, 0) + picture.undecided

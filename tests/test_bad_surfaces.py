@@ -71,6 +71,8 @@ def test_what_cannot_be_drawn_is_refused_at_its_place(tmp_path, entry, message):
         ('implicit: {field: "exp(1000*x + 2000) - exp(999*x + 2000)"}', "nowhere finite"),
         ('implicit: {field: "1/(x - x)"}', "nowhere finite"),
         ('implicit: {field: "exp(exp(10 + x^2))", mode: surface}', "nowhere zero"),
+        ("polygonised: {of: {sphere: {}}, cell: 10 m}", "smaller than its cells"),
+        ("polygonised: {of: {blobby: {points: [0 0 0 m]}}, cell: 10 m}", "smaller than its cells"),
     ],
 )
 def test_what_is_nowhere_is_told_with_its_place(tmp_path, entry, message):
@@ -78,6 +80,11 @@ def test_what_is_nowhere_is_told_with_its_place(tmp_path, entry, message):
     assert message in warning.message
     assert warning.span is not None
     assert warning.span.line == 3
+
+
+def test_what_is_drawn_as_triangles_is_there(tmp_path):
+    many = "group: {children: [{implicit: {field: 'x^2 + y^2 + z^2 - 0.5'}}, {sphere: {position: 1 0 0 m}}]}"
+    assert rendered(tmp_path, f"polygonised: {{of: {{{many}}}, edges: no}}").warnings == ()
 
 
 @pytest.mark.parametrize("renderer", ["trace", "normals"])

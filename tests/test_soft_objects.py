@@ -166,6 +166,19 @@ objects:
     assert np.linalg.norm(ball.vertices - [3, 0, 0], axis=1) == pytest.approx(0.5)
 
 
+def test_a_sheet_as_triangles_is_its_solid(tmp_path):
+    script = """
+objects:
+  sheet: {polygonised: {of: {implicit: {field: "x - 0.1*y", bounds: {ball: 0.5}, mode: surface}}, cell: 0.1 m}}
+  solid: {polygonised: {of: {implicit: {field: "x - 0.1*y", bounds: {ball: 0.5}}}, cell: 0.1 m}}
+"""
+    (moment,) = moments(tmp_path, script, [0.0])
+    sheet, solid = (moment.lower([name])[0] for name in ("sheet", "solid"))
+    assert np.linalg.norm(sheet.vertices, axis=1).max() < 0.5 + 1e-9
+    assert (sheet.vertices == solid.vertices).all()
+    assert (sheet.triangles == solid.triangles).all()
+
+
 @pytest.mark.parametrize(
     ("kind", "points", "match"),
     [

@@ -47,6 +47,9 @@ class Object(Kind):
     traced: ClassVar[str] = ""
     """What field it may be drawn by, whose roots rays have to find (frame.Implicit): "formula", "density"; or none."""
 
+    unseen: ClassVar[str] = ""
+    """Of one that draws its members as something else: why nothing of it is there where it draws nothing."""
+
     decorates: ClassVar[bool] = False
     """Whether a model that it reads draws itself all the same."""
 

@@ -16,12 +16,12 @@ NO_SHAPE = "it was empty whenever it was drawn"
 
 
 def solids(names: Iterable[str], tasks: Mapping[str, Task]) -> Iterator[str]:
-    """Those of the named parts, and of what these draw, that are drawn by their fields."""
+    """Those of the named parts, and of what these draw, that are drawn by their fields, or by triangles of them."""
     for name in names:
         kind = tasks[name].kind
         if not isinstance(kind, Object):
             continue
-        if kind.traced:
+        if kind.traced or kind.unseen:
             yield name
         else:
             yield from solids((ref.name for ref in kind.members() if not _hidden(tasks[ref.name])), tasks)
@@ -31,7 +31,7 @@ def _hidden(task: Task) -> bool:
     return isinstance(task.kind, Object) and task.kind.hidden
 
 
-def look(shapes: Sequence[Shape], asked: Iterable[str], present: dict[str, str]) -> None:
+def look(shapes: Sequence[Shape], asked: Iterable[str], tasks: Mapping[str, Task], present: dict[str, str]) -> None:
     """Note of each solid by name why nothing of it was drawn, or "" where something may have been, now or before.
 
     ``asked`` are the solids (as of ``solids``) that the shapes were made of.
@@ -41,7 +41,8 @@ def look(shapes: Sequence[Shape], asked: Iterable[str], present: dict[str, str])
     shown = {shape.name for shape in shapes}
     for name in asked:
         if name not in shown:
-            present.setdefault(name, NO_SHAPE)
+            kind = tasks[name].kind
+            present.setdefault(name, (isinstance(kind, Object) and kind.unseen) or NO_SHAPE)
     for shape in shapes:
         if not isinstance(shape, Implicit):
             if shape.name in present:

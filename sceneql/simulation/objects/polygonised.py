@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from sceneql.kinds import Color, FieldBuilder, FixedLength, Moment, Object, ObjectRef, Ref, field
 from sceneql.simulation.solid import traced
@@ -23,6 +23,8 @@ class Polygonised(Object):
     The vertices lie on its surface, the topology is that of the trilinear cell. Colors that are mixed in a field are
     those of the vertices. As a member, or to be collided with, it is the object itself.
     """
+
+    unseen: ClassVar[str] = "it was empty, or smaller than its cells, whenever it was drawn"
 
     of: ObjectRef = field("The object, which is drawn by this one.")
     cell: FixedLength = field("Side of the cubes; an `iso_surface` has those of its field.", "50 mm", above=0)
@@ -52,7 +54,7 @@ class Polygonised(Object):
 
         child = self._object(moment)
         shapes = list(child.lower(name, place, moment))
-        if not all(isinstance(shape, frame.Implicit | frame.Grid) for shape in shapes):
+        if not all(map(_has_cells, shapes)):
             shapes = list(traced(child, name, place, moment))
         radius = THICKNESS * self.cell if self.edge_radius is None else self.edge_radius
         for shape in shapes:
@@ -65,7 +67,7 @@ class Polygonised(Object):
                 mesh = faceted(shape, self.cell, self.smooth)
             if not len(mesh.triangles):
                 continue
-            yield mesh
+            yield replace(mesh, name=name)
             if self.edges:
                 ends = edges(mesh.vertices, mesh.triangles)
                 dark = replace(moment.surface(name, None, self.edge_color), roughness=1.0, specular=0.0)
@@ -78,3 +80,10 @@ class Polygonised(Object):
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
         """That of its object."""
         return moment.object(self.of).extent(place, moment)
+
+
+def _has_cells(shape: frame.Shape) -> bool:
+    """Whether triangles are made of a shape itself: a sheet stands for the solid that it is the surface of."""
+    from sceneql import frame
+
+    return isinstance(shape, frame.Grid) or (isinstance(shape, frame.Implicit) and shape.within is None)
