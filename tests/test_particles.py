@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from runs import complaint, watch
+from sceneql import pipeline
 from sceneql.quantities.chance import random
 from sceneql.simulation.models.emitter_kernels import draw
 from sceneql.simulation.winding import winding
@@ -175,3 +176,23 @@ solvers: {main: {semi_implicit_euler: {step: 10 ms}}}
     (one,), (two,), (three,) = watch(tmp_path, script, [0.95, 1.95, 2.95], "splash.hits.count")
     assert one >= 2
     assert (two, three) == (2 * one, 3 * one)
+
+
+@pytest.mark.parametrize("kind", ["csv", "npz"])
+def test_a_table_of_what_is_born_and_dies_keeps_its_columns(tmp_path, kind):
+    script = """
+clock: {end: 1 s, fps: 4}
+models:
+  drip: {particles: {emit: {rate: 2 Hz, start: 0.1 s, lifetime: 0.4 s, velocity: 0 0 0 m/s}, mass: 1 g}}
+outputs: {t: {record: {of: [drip.ages, drip.count, time + 1 s], format: KIND}}}
+"""
+    path = tmp_path / "scene.yaml"
+    path.write_text("sceneql: 1" + script.replace("KIND", kind))
+    (file,) = pipeline.render(pipeline.load(path), folder=tmp_path).files
+    table = np.load(file) if kind == "npz" else np.genfromtxt(file, delimiter=",", names=True, deletechars="")
+    ages, count, later = [
+        table[name].reshape(4, -1) for name in list(table.files if kind == "npz" else table.dtype.names)[1:]
+    ]
+    assert later[:, 0] == pytest.approx([1.0, 1.25, 1.5, 1.75])
+    assert count[:, 0] == pytest.approx([0, 1, 0, 1])
+    assert ages[:, 0] == pytest.approx([np.nan, 0.15, np.nan, 0.15], nan_ok=True)

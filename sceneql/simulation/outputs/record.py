@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from io import StringIO
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from sceneql.files import beside, whole
 from sceneql.kinds import Clock, FixedTime, Measured, Moment, Output, Sink, Tools, bounded_moments, field
 
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+
 
 class Record(Output):
-    """A table of outputs over time, in SI: CSV (one column a component) or NPZ (one array an entry, (frames, ...))."""
+    """A table of outputs over time, in SI: CSV (one column a component) or NPZ (one array an entry, (frames, ...)).
+
+    A list that grows and shrinks has the places of its longest; those behind its end are NaN.
+    """
 
     of: tuple[Measured, ...] = field("What is measured: outputs or expressions of them.")
     every: FixedTime | Literal["frame"] = field("Time between two rows, or `frame` for the film's.", "frame", above=0)
@@ -52,29 +58,41 @@ class _Table:
             if self.record.format == "npz":
                 import numpy as np
 
-                columns = zip(*self.rows, strict=True)
-                arrays = {t: np.array(c) for t, c in zip(("time", *self.titles), columns, strict=True)}
+                arrays = dict(zip(("time", *self.titles), self._columns(), strict=True))
                 np.savez(stream, **arrays)  # type: ignore[arg-type]
             else:
                 stream.write(self._csv().encode())
         return path
 
+    def _columns(self) -> list[Floats]:
+        """Of the time and of each entry an array (rows, ...)."""
+        if not self.rows:
+            import numpy as np
+
+            return [np.empty(0)] * (1 + len(self.titles))
+        return [_stacked(values) for values in zip(*self.rows, strict=True)]
+
     def _csv(self) -> str:
-        from numpy import ndindex, shape
+        import numpy as np
 
         text = StringIO()
         table = csv.writer(text, lineterminator="\n")
-        first = self.rows[0] if self.rows else [0.0] * (1 + len(self.titles))
+        columns = self._columns()
         head = []
-        for title, value in zip(("time", *self.titles), first, strict=True):
-            head += [".".join((title, *map(str, index))) for index in ndindex(shape(value))]
+        for title, column in zip(("time", *self.titles), columns, strict=True):
+            head += [".".join((title, *map(str, index))) for index in np.ndindex(column.shape[1:])]
         table.writerow(head)
-        for row in self.rows:
-            table.writerow([repr(float(x)) for value in row for x in _flat(value)])
+        flat = np.concatenate([column.reshape(len(self.rows), -1) for column in columns], axis=1)
+        table.writerows(map(repr, row) for row in flat.tolist())
         return text.getvalue()
 
 
-def _flat(value: Any) -> Any:
-    from numpy import ravel
+def _stacked(values: Sequence[Any]) -> Floats:
+    """(n, ...) n arrays of one dimension, filled up with NaN where some are longer than others."""
+    import numpy as np
 
-    return ravel(value)
+    shapes = [np.shape(value) for value in values]
+    stack = np.full((len(values), *np.max(np.array(shapes, dtype=int), axis=0)), np.nan)
+    for k, (value, shape) in enumerate(zip(values, shapes, strict=True)):
+        stack[(k, *map(slice, shape))] = value
+    return stack
