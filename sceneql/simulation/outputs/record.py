@@ -94,5 +94,6 @@ def _stacked(values: Sequence[Any]) -> Floats:
     shapes = [np.shape(value) for value in values]
     stack = np.full((len(values), *np.max(np.array(shapes, dtype=int), axis=0)), np.nan)
     for k, (value, shape) in enumerate(zip(values, shapes, strict=True)):
-        stack[(k, *map(slice, shape))] = value
+        within: tuple[int | slice, ...] = (k, *map(slice, shape))
+        stack[within] = value
     return stack
