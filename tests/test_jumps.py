@@ -110,3 +110,19 @@ def test_parts_about_a_place_that_jumps_are_met_where_they_are():
     inside = np.abs(height) < radius
     assert (status == np.where(inside, HIT, MISS)).all()
     assert 7.0 * t[inside] == pytest.approx(0.5 - np.sqrt(radius**2 - height[inside] ** 2), abs=1e-8)
+
+
+@pytest.mark.parametrize("distance", [1.0, 1e4, 1e6])
+@pytest.mark.parametrize(
+    "text", ["atan(x - 0.3)", "atan(max(x - sqrt(x + 0.19) + 0.4, y - 5))", "x - 0.8 + 0.5*sign(y + 4)"]
+)
+def test_a_root_far_along_a_ray_is_no_jump(text, distance):
+    """However short the piece of the ray is that an object leaves to be searched, as a camera's without perspective."""
+    tape = tape_of(text)
+    chance = np.random.default_rng(1)
+    aside = chance.uniform(-0.5, 0.5, (200, 2))
+    before, behind = 10.0 ** chance.uniform(-5, -0.6, (2, 200))
+    origins = np.column_stack([np.full(200, 0.3 + distance), aside])
+    status, t = cast(tape, origins, [[-1.0, 0.0, 0.0]], distance - before, distance + behind, surface=True)
+    assert (status == HIT).all()
+    assert np.abs(t / distance - 1).max() < 2e-12

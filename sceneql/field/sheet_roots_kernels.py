@@ -1,6 +1,7 @@
 # mypy: ignore-errors
 """First roots of a tape along a ray with or without a change of sign: where it meets a sheet."""
 
+from sceneql.field.bracket_kernels import FINE
 from sceneql.field.certified_kernels import CROSSES, TOUCHES, certify, hidden, told
 from sceneql.field.enclosure_kernels import segment
 from sceneql.field.isolation_kernels import begin_of_proof, beyond, leaps, search
@@ -51,13 +52,17 @@ def is_defined(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near)
 
 @woven
 def is_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near, whole):
-    """Whether f goes through zero at t, or to it, and does not leave its domain or jump; ``whole``: it is defined."""
+    """Whether f goes through zero at t, or to it, and does not leave its domain or jump; ``whole``: it is defined.
+
+    A root is looked for as far away as ``search`` may have left it.
+    """
     if not (whole or is_defined(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near)):
         return False
     for k in range(code.shape[0]):
         op = code[k, 0]
         if op == FLOOR or op == SIGN or op == ATAN2:
-            return not leaps(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near)
+            reach = max(near, 4.0 * FINE * abs(t))
+            return not leaps(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, reach)
     return True
 
 
