@@ -126,3 +126,23 @@ def test_a_root_far_along_a_ray_is_no_jump(text, distance):
     status, t = cast(tape, origins, [[-1.0, 0.0, 0.0]], distance - before, distance + behind, surface=True)
     assert (status == HIT).all()
     assert np.abs(t / distance - 1).max() < 2e-12
+
+
+@pytest.mark.parametrize("text", ["acos(1 - abs(x))", "acos(1 - x^2)", "asin(1 - abs(x)) - pi/2", "abs(x)/x*x"])
+def test_a_root_at_an_edge_of_what_is_defined_is_no_miss(text):
+    """They are zero at x = 0 and go on behind it, which rounding lets no interval tell."""
+    origins, directions = rays(3, 200)
+    origins[:, 0] = np.abs(origins[:, 0]) + 0.1
+    directions[:, 0] = -origins[:, 0] - np.linspace(0.01, 0.9, 200)
+    status, t = cast(tape_of(text), origins, directions, 0.0, 1.0, surface=True)
+    assert (status != MISS).all()
+    assert np.abs((origins + t[:, None] * directions)[:, 0]).max() < 1e-7
+
+
+@pytest.mark.parametrize("text", ["1/x", "1/x^2", "atan(1/x)", "tan(2*x + pi/2)", "sqrt(x)", "0.1 + abs(x) + 0/x"])
+def test_an_edge_of_what_is_defined_is_no_root(text):
+    origins, directions = rays(3, 200)
+    origins[:, 0] = 0.1 + 0.3 * (np.abs(origins[:, 0]) % 1.0)
+    directions[:, 0] = -origins[:, 0] - np.linspace(0.01, 0.4, 200)
+    status, _ = cast(tape_of(text), origins, directions, 0.0, 1.0, surface=True)
+    assert (status == MISS).all()

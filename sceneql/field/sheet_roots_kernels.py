@@ -1,6 +1,8 @@
 # mypy: ignore-errors
 """First roots of a tape along a ray with or without a change of sign: where it meets a sheet."""
 
+import numpy as np
+
 from sceneql.field.bracket_kernels import FINE
 from sceneql.field.certified_kernels import CROSSES, TOUCHES, certify, hidden, told
 from sceneql.field.enclosure_kernels import segment
@@ -11,6 +13,8 @@ from sceneql.kernels import lean, woven
 
 POLES = 16
 """Changes of sign without a root that are passed on one ray."""
+STEPS = 16.0
+"""Of Newton's method, as long as what rays cannot tell, in which a root is near."""
 NO_ROOT = -2
 """Beside the sides of f."""
 
@@ -51,13 +55,31 @@ def is_defined(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near)
 
 
 @woven
-def is_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near, whole):
-    """Whether f goes through zero at t, or to it, and does not leave its domain or jump; ``whole``: it is defined.
+def nears_zero(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
+    """Whether f, which is not known to be a number all around t, nears zero there from both sides, where it is one.
+
+    As acos(1 - |x|) does, of which rounding lets no interval tell that it is defined; by its slopes it is there within
+    a few ``near``, so that it does not jump over zero and goes to no pole.
+    """
+    for side in (-1.0, 1.0):
+        place = t + side * near
+        low, high, least, most, status = on_ray(
+            code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, place, place, 1.0
+        )
+        value, away = low + high, side * (least + most)
+        if status == NOWHERE or not abs(value) < np.inf:
+            return False
+        if status == WHOLE and (value * away < 0.0 or not abs(value) <= STEPS * near * abs(away)):
+            return False
+    return True
+
+
+@woven
+def is_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
+    """Whether f, which is a number all around t, goes through zero there, or to it, and does not jump over it.
 
     A root is looked for as far away as ``search`` may have left it.
     """
-    if not (whole or is_defined(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near)):
-        return False
     for k in range(code.shape[0]):
         op = code[k, 0]
         if op == FLOOR or op == SIGN or op == ATAN2:
@@ -105,8 +127,11 @@ def surface_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1
                 )
             if status != HIT:
                 return status, t
-        if is_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near, whole):
-            return HIT, t
+        if whole or is_defined(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
+            if is_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
+                return HIT, t
+        elif nears_zero(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
+            return UNDECIDED, t
         start = t + near
         if not start < t1:
             return MISS, t1

@@ -120,7 +120,10 @@ class Blobby(Object):
                 raise failure(f"a radius must be above 0, but one is {np.min(shape.radii):g} m now", value, moment)
         count = sum(len(shape.weights) for shape in shapes)
         if count > MOST:
-            raise failure(f"a skeleton has at most {MOST:,} parts, not {count:,}", values[0], moment)
+            places = [self.points] * len(own) + [part.place() for part in self.skeleton]
+            most = places[int(np.argmax([len(shape.weights) for shape in shapes]))]
+            assert most is not None
+            raise failure(f"a skeleton has at most {MOST:,} parts, not {count:,}", most, moment)
         return shapes
 
     def _listed(self, value: Points, moment: Moment) -> Shape:
