@@ -15,6 +15,7 @@ import stage
 from renderers.normals import Normals
 from renderers.trace import Trace
 from renderers.tracing.draw import _kept
+from renderers.tracing.edges_kernels import BEYOND
 from renderers.tracing.intersect_kernels import walk
 from renderers.tracing.pack import pack, scratch
 from sceneql.frame import Mesh, PointLight, Points, Segments, Sky, Surface
@@ -61,6 +62,19 @@ def test_a_sphere_looks_the_same_whatever_it_is_made_of():
         assert np.abs(draw(other, lights=lights) - quadric).mean() < 3e-3
 
 
+@pytest.mark.parametrize("quarters", [1, 2, 3])
+def test_edges_of_what_is_brighter_than_white_are_smooth(quarters):
+    # Seen by 1/4, 2/4 or 3/4 of a pixel's rays. Plain means would make 7.5 of 30 and black, which is as white as 30.
+    seen = view(size=(8, 8), half_height=4.0)
+    for brightness, tamed in ((0.8, 0.8), (30.0, 1 + BEYOND * (1 - 1 / 30))):
+        lamp = Surface(color=(0.0, 0.0, 0.0), specular=0.0, emission=(brightness, 0.5 * brightness, 0.0))
+        picture = draw(stage.box(lamp, (quarters / 8, 0, 0), (2 + quarters / 4, 9, 1)), seen=seen)
+        mean = quarters / 4 * tamed
+        exact = mean
+        assert picture[4, 5] == pytest.approx([exact, exact / 2, 0.0], rel=1e-5)
+        assert picture[4, 4] == pytest.approx([brightness, brightness / 2, 0.0], rel=1e-6)
+
+
 @pytest.mark.parametrize("angle", [0.0, 0.05, 0.15])
 def test_a_sphere_throws_a_shadow_of_the_right_size_to_the_right_place(angle):
     # From above; the sun stands 45 degrees high, so the shadow lies 3 m off and is an ellipse of area pi r^2 sqrt(2).
@@ -73,6 +87,18 @@ def test_a_sphere_throws_a_shadow_of_the_right_size_to_the_right_place(angle):
     x = (np.arange(96) + 0.5) * 3 / 96 - 1.5
     assert (dark.sum(axis=0) * x).sum() / dark.sum() == pytest.approx(0.0, abs=0.02)
     assert (dark.sum(axis=1) * x).sum() / dark.sum() == pytest.approx(0.0, abs=0.01)
+
+
+def test_what_shows_a_lamp_throws_no_shadow_in_its_light():
+    seen = view((0, 9, 0), (0, 0, 0), size=(16, 16), half_height=1.0, up=(0, 0, -1))
+    lamp = PointLight((3.0, 2.0, 0.0), (10.0, 10.0, 10.0), 0.3)
+    bare, shown, hidden = (
+        draw(stage.floor(), *more, lights=[lamp], seen=seen)
+        for more in ([], [stage.sphere(GLOW, lamp.position, 0.3)], [stage.sphere(GLOW, lamp.position, 0.31)])
+    )
+    assert bare.min() > 0.05
+    np.testing.assert_array_equal(shown, bare)
+    assert hidden.max() == 0.0
 
 
 def test_a_point_light_falls_with_the_square_of_the_distance():

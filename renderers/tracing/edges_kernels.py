@@ -18,14 +18,38 @@ _rows = types.float32[:, ::1]
 _stack = types.float32[:, :, ::1]
 _reals = types.float64[:, ::1]
 _many = types.int64[::1]
-BRIGHTEST = 16.0
-"""Radiance to which one of a pixel's rays is limited, so that a bright spot's edge does not flicker."""
+BEYOND = 0.25
+"""How much the rays of one pixel may be brighter than white, where they are averaged: about as much as the eye sees."""
 CONTRAST = 0.08
 """Difference of brightness, relative to the sum, at which pixels with reflections count as an edge."""
 TRIAL = 4
 """Rays after which a pixel is left that shows, after all, one smooth thing."""
 ANEW = 8
 """Samples of light and sky for a ray that meets what no neighboring pixel has met."""
+
+
+@part
+def tamed(r, g, b):
+    """A radiance that is brighter than white by its brightest channel p, brought to 1 + BEYOND (1 - 1/p).
+
+    Rays of a pixel are averaged so (after Karis 2013): in a plain mean one of eight that meets a highlight of radiance
+    16 would make the pixel as white as if all met it, and bright edges and lines would be jagged.
+    """
+    peak = max(r, max(g, b))
+    if peak <= 1.0:
+        return r, g, b
+    share = (1.0 + BEYOND * (1.0 - 1.0 / peak)) / peak
+    return share * r, share * g, share * b
+
+
+@part
+def untamed(r, g, b):
+    """The radiance that ``tamed`` makes this of."""
+    peak = max(r, max(g, b))
+    if peak <= 1.0:
+        return r, g, b
+    share = 1.0 / (max(1.0 - (peak - 1.0) / BEYOND, 1e-4) * peak)
+    return share * r, share * g, share * b
 
 
 @part
@@ -148,7 +172,7 @@ def look_from_samples(scene, scratch, asked, first, last, each, edges, records, 
 
 @kernel(_i(SCENE, _i, _i, _i, _many, _stack, _rows, _reals, _stack, _stack, _reals, _rows), _nrt=False)
 def add_samples(scene, each, used, whole, edges, records, radiance, paths, own, found, sums, picture):
-    """Add ``each`` samples of the pixels ``edges`` to ``sums`` (n, 4): radiance, and whether all show one smooth thing.
+    """Add ``each`` samples of the pixels ``edges`` to ``sums`` (n, 4): tamed light, and whether all show one thing.
 
     ``used`` samples there are then, ``whole`` there shall be. Pixels that need no more go to the picture, the others
     to the front of ``edges``; how many these are.
@@ -165,16 +189,16 @@ def add_samples(scene, each, used, whole, edges, records, radiance, paths, own, 
                     dr, dg, db = shade(scene, own[layer, i], found[layer, i])
                     r, g, b = r + dr, g + dg, b + db
             r, g, b = paths[i, GATHERED] + r, paths[i, GATHERED + 1] + g, paths[i, GATHERED + 2] + b
-            r, g, b = min(r, BRIGHTEST), min(g, BRIGHTEST), min(b, BRIGHTEST)
-            red, green, blue = red + r, green + g, blue + b
             plain = (
                 plain
                 and paths[i, DOUBTED] == 0.0
                 and alike(records[0, k], own[0, i], SLACK)
                 and contrast(radiance, k, r, g, b) < 0.5 * CONTRAST
             )
+            r, g, b = tamed(r, g, b)
+            red, green, blue = red + r, green + g, blue + b
         if used == whole or (used == TRIAL and plain):
-            picture[k, 0], picture[k, 1], picture[k, 2] = red / used, green / used, blue / used
+            picture[k, 0], picture[k, 1], picture[k, 2] = untamed(red / used, green / used, blue / used)
         else:
             edges[left] = k
             sums[left, 0], sums[left, 1], sums[left, 2], sums[left, 3] = red, green, blue, 1.0 if plain else 0.0

@@ -36,6 +36,8 @@ SKY = 0
 """First of three columns of visibility: how much less than the open sky's mean radiance comes in (RGB)."""
 FIRST_LIGHT = 3
 """Then two columns for each light: the share of it that is seen, and the width [m] of the half-shadow here."""
+BARELY = 1e-6
+"""Part of its way that a ray to a lamp ends before its ball, so that a sphere of the same radius is not met."""
 AGAIN = 0.5
 """Share of the sky that a place which hides the sky is taken to see itself."""
 
@@ -54,6 +56,17 @@ def light_at(reals, l, x, y, z):
 
 
 @part
+def reach(far, radius, square):
+    """Where a ray, whose direction has a ``square`` >= 1 and the part 1 along ``far``, comes to a lamp's ball.
+
+    ``far``: distance of its middle, which is in the plane of the disk that the ray goes to. What is in the ball, such
+    as a sphere that shows the lamp, throws no shadow in its light.
+    """
+    inside = max(square * radius * radius - (square - 1.0) * far * far, 0.0)
+    return max((1.0 - BARELY) * (far - np.sqrt(inside)) / square, 0.0)
+
+
+@part
 def seen(scene, scratch, asked, l, x, y, z, disk_x, disk_y):
     """(share, distance of what hides it) of the point (disk_x, disk_y) of light l's disk from a place."""
     dx, dy, dz, far, _, _, _ = light_at(scene.reals, l, x, y, z)
@@ -66,6 +79,8 @@ def seen(scene, scratch, asked, l, x, y, z, disk_x, disk_y):
     if far == np.inf:
         length = np.sqrt(dx * dx + dy * dy + dz * dz)
         dx, dy, dz = dx / length, dy / length, dz / length
+    else:
+        far = reach(far, scene.reals[LIGHTS + LIGHT * l + 7], 1.0 + u * u + v * v)
     blocker, _, share = ask(scene, scratch, asked, x, y, z, dx, dy, dz, far, True)
     return share, blocker
 
@@ -94,6 +109,8 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius):
         lx, ly, lz, far, ir, ig, ib = light_at(scene.reals, l, sx, sy, sz)
         cosine = nx * lx + ny * ly + nz * lz
         if cosine > 0.0 and fx * lx + fy * ly + fz * lz > 0.0:
+            if far < np.inf:
+                far = reach(far, scene.reals[LIGHTS + LIGHT * l + 7], 1.0)
             _, _, share = walk(scene, scratch, sx, sy, sz, lx, ly, lz, 0.0, far, True)
             cosine *= share / np.pi
             er += cosine * ir

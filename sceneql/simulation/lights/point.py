@@ -23,7 +23,7 @@ class Point(Illumination):
     position: Position = field("Where it is.", "0 2 0 m")
     power: Power = field("What it shines in all directions together.", "60 W", at_least=0)
     color: Color = field("Color of its light.", "1 1 1")
-    radius: Length = field("Its radius; larger gives softer shadows.", "50 mm", at_least=0)
+    radius: Length = field("Its radius; larger: softer shadows. What is within throws none.", "50 mm", at_least=0)
 
     def lower(self, moment: Moment) -> Iterable[frame.Light]:
         """One point light."""

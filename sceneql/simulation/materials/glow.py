@@ -12,7 +12,10 @@ if TYPE_CHECKING:
 
 
 class Glow(Material):
-    """A black body that shines evenly to all sides: embers, sparks, lamps. It is seen, but lights nothing else."""
+    """A black body that shines evenly to all sides: embers, sparks, lamps. It is seen, but lights nothing else.
+
+    A sphere of it shows a lamp where a `point` light stands that is as large: it throws no shadow in that light.
+    """
 
     color: Color = field("The color of its light.", "1 1 1")
     strength: FixedScalar = field("Its radiance; 1 is as bright as a white surface in full light.", "1", at_least=0)
