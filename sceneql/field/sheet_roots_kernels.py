@@ -13,8 +13,8 @@ from sceneql.kernels import lean, woven
 
 POLES = 16
 """Changes of sign without a root that are passed on one ray."""
-STEPS = 16.0
-"""Of Newton's method, as long as what rays cannot tell, in which a root is near."""
+NEARER = 0.95
+"""Part of f that is left half as far from a root, at the most: of |x|^k it is 1/2^k."""
 NO_ROOT = -2
 """Beside the sides of f."""
 
@@ -58,18 +58,17 @@ def is_defined(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near)
 def nears_zero(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
     """Whether f, which is not known to be a number all around t, nears zero there from both sides, where it is one.
 
-    As acos(1 - |x|) does, of which rounding lets no interval tell that it is defined; by its slopes it is there within
-    a few ``near``, so that it does not jump over zero and goes to no pole.
+    As acos(1 - |x|) does, of which rounding lets no interval tell that it is defined. A jump leaves f nearly what it is
+    half as far away, and a pole makes it larger.
     """
+    reach = max(near, 4.0 * FINE * abs(t))
     for side in (-1.0, 1.0):
-        place = t + side * near
-        low, high, least, most, status = on_ray(
-            code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, place, place, 1.0
-        )
-        value, away = low + high, side * (least + most)
-        if status == NOWHERE or not abs(value) < np.inf:
+        a, b = t + side * reach, t + 2.0 * side * reach
+        low, high, _, _, first = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, a, 1.0)
+        least, most, _, _, last = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, b, b, 1.0)
+        if first == NOWHERE or last == NOWHERE or not abs(low + high) < np.inf:
             return False
-        if status == WHOLE and (value * away < 0.0 or not abs(value) <= STEPS * near * abs(away)):
+        if first == WHOLE and last == WHOLE and not abs(low + high) < NEARER * abs(least + most):
             return False
     return True
 
