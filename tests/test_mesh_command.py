@@ -66,7 +66,7 @@ objects:
   undefined: {implicit: {field: sqrt(-1 - x^2), bounds: {ball: 1}}}
   speck: {implicit: {field: (x - 0.31)^2 + y^2 + z^2 - 1e-6, bounds: {ball: 1}}}
   pointer: {arrow: {vector: 0 1 0 m}}
-  endless: {sphere: {radius: 1e300 m}}
+  endless: {sphere: {radius: 1e90 m}}
   vast: {implicit: {field: "exp(exp(10 + x^2)) - exp(exp(9 + x^2))"}}
 """
 
@@ -78,7 +78,7 @@ objects:
         ("undefined", 5, "its field is nowhere defined in its bounds"),
         ("speck", 6, "no surface was met by cells of 1 m; a smaller --cell finds smaller things"),
         ("pointer", 7, "`arrow` has no inside"),
-        ("endless", 8, "cells of 1 m are too many for a box of 2e+300 m"),
+        ("endless", 8, "cells of 1 m are too many for a box of 2e+90 m"),
         ("vast", 9, "its field is nowhere finite in its bounds"),
     ],
 )

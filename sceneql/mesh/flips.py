@@ -66,29 +66,51 @@ def _flipped(tape: Tape, places: Floats, triangles: Rows, turned: Rows) -> dict[
     """
     import numpy as np
 
-    rows = triangles.tolist()
-    owner = {(row[k], row[(k + 1) % 3]): at for at, row in enumerate(rows) for k in range(3)}
-    choices = []
-    for at in turned.tolist():
-        for k in range(3):
-            a, b, c = rows[at][k], rows[at][(k + 1) % 3], rows[at][(k + 2) % 3]
-            other = owner.get((b, a))
-            if other is not None:
-                (d,) = set(rows[other]) - {a, b}
-                if c != d and (c, d) not in owner and (d, c) not in owner:
-                    choices.append((at, other, (c, a, d), (d, b, c)))
-    if not choices:
+    # What is flipped, of all sides of the triangles turned: the third corners c and d of the two triangles at a side.
+    a, b, c = (np.roll(triangles[turned], -k, axis=1).ravel() for k in range(3))
+    at = np.repeat(turned, 3)
+    sides = Sides(triangles, len(places))
+    other = sides.owners(b, a)
+    paired = other >= 0
+    a, b, c, at, other = a[paired], b[paired], c[paired], at[paired], other[paired]
+    d = triangles[other].sum(axis=1) - a - b
+    free = (c != d) & (sides.owners(c, d) < 0) & (sides.owners(d, c) < 0)
+    a, b, c, d, at, other = a[free], b[free], c[free], d[free], at[free], other[free]
+    if not len(a):
         return {}
-    old = triangles[np.array([choice[:2] for choice in choices]).ravel()]
-    new = np.array([choice[2:] for choice in choices]).reshape(-1, 3)
+    old = triangles[np.stack([at, other], axis=1).ravel()]
+    new = np.stack([np.stack([c, a, d], axis=1), np.stack([d, b, c], axis=1)], axis=1).reshape(-1, 3)
     least = [facing(tape, places[corners]).reshape(-1, 2).min(axis=1) for corners in (old, new)]
     gains = least[1] - least[0]
     changed: dict[int, tuple[int, int, int]] = {}
     edges: set[frozenset[int]] = set()
-    for k in np.argsort(-gains, kind="stable").tolist():
-        at, other, first, second = choices[k]
+    best = np.argsort(-gains, kind="stable")
+    best = best[gains[best] > 0.0]
+    for rows, first, second in zip(
+        np.stack([at, other], axis=1)[best].tolist(), new[2 * best].tolist(), new[2 * best + 1].tolist(), strict=True
+    ):
         edge = frozenset((first[0], first[2]))
-        if gains[k] > 0.0 and at not in changed and other not in changed and edge not in edges:
-            changed |= {at: first, other: second}
+        if rows[0] not in changed and rows[1] not in changed and edge not in edges:
+            changed |= {rows[0]: tuple(first), rows[1]: tuple(second)}
             edges.add(edge)
     return changed
+
+
+class Sides:
+    """Triangles (t, 3) by their sides, each in the direction in which they go around."""
+
+    def __init__(self, triangles: Rows, vertices: int) -> None:
+        import numpy as np
+
+        keys = (triangles * vertices + np.roll(triangles, -1, axis=1)).ravel()
+        self._order, self._vertices = np.argsort(keys), vertices
+        self._ascending = keys[self._order]
+
+    def owners(self, first: Rows, last: Rows) -> Rows:
+        """(n,) the triangles with sides from vertices (n,) to others (n,); -1 where there is none."""
+        import numpy as np
+
+        keys = first * self._vertices + last
+        at = np.minimum(np.searchsorted(self._ascending, keys), len(self._ascending) - 1)
+        found: Rows = np.where(self._ascending[at] == keys, self._order[at] // 3, -1)
+        return found

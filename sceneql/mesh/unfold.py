@@ -32,8 +32,9 @@ ROUNDS = 24
 RETRIES = 8
 BESIDE = 2
 """Rings of triangles around those that pass through others, in which none is turned: flips go from one to the next."""
-MOST = 2**12
-"""Triangles against the gradient among which folds are looked for; more are of a field too fine for its cells."""
+MOST = 2**18
+"""Triangles against the gradient among which folds are looked for, so that fields much too fine for their cells do not
+take forever."""
 FARTHEST = 0.7
 """Of the corners of triangles that pass through each other those are drawn that are off their means by so many times
 the most of them."""
@@ -76,8 +77,7 @@ def unfolded(dual: Dual, polygons: Polygons) -> Polygons:
     places, normals, triangles = polygons.vertices.copy(), polygons.normals.copy(), polygons.triangles.copy()
     for turn in range(ROUNDS):
         found = Polygons(places, triangles, normals)
-        rows = against(dual.tape, found)
-        if len(rows) > MOST or not len(rows := inverted(found, rows)):
+        if not len(rows := inverted(found, against(dual.tape, found)[:MOST])):
             break
         if turn < SLIDES:
             moved = _slid(dual, found, rows)
