@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sceneql import pipeline
-from sceneql.failure import Unsuitable
+from sceneql.failure import RunFailure, Unsuitable
 from sceneql.mesh.distance import distances, hausdorff, to_triangles
 from sceneql.report import surfaces
 from sceneql.report.bench import bench
@@ -104,3 +104,15 @@ def test_a_scene_of_neither_has_nothing_to_measure(tmp_path):
     (tmp_path / "scene.yaml").write_text("sceneql: 1\nobjects: {ball: sphere}\n")
     with pytest.raises(Unsuitable, match="nothing to measure"):
         bench(pipeline.load(tmp_path / "scene.yaml"), tmp_path)
+
+
+def test_what_is_nowhere_is_told_at_its_line_and_not_measured(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text("""sceneql: 1
+objects:
+  none: {implicit: {field: x^2 + 1}}
+outputs: {still: {image: {size: 16 9}}}
+""")
+    with pytest.raises(RunFailure, match="nothing of it is there to measure: its field is nowhere negative") as failure:
+        bench(pipeline.load(path), tmp_path)
+    assert "scene.yaml:3:3" in str(failure.value)

@@ -114,6 +114,12 @@ def test_a_camera_at_its_own_target_is_refused():
         Perspective(position=const([1, 1, 1]), look_at=const([1, 1, 1])).view((64, 36), FakeMoment())
 
 
+def test_a_camera_too_far_away_for_numbers_is_told_so():
+    camera = Perspective(position=const([1e300, 0, 0]), look_at=const([0, 0, 0]))
+    with pytest.raises(ValueError, match="within 1e.100 m of what it looks at"):
+        camera.view((16, 9), FakeMoment())
+
+
 def test_perspective_follows_an_object_that_moves():
     ball = Sphere(position=link("fall", "position", (3,)))
     moment = FakeMoment(parts={"ball": ball}, given={("fall", "position"): np.array([1.0, 2.0, 3.0])})

@@ -11,6 +11,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
 from sceneql import pipeline
+from sceneql.failure import RunFailure
 from sceneql.kinds import Picture
 
 if TYPE_CHECKING:
@@ -78,13 +79,18 @@ class MeshRun:
 
 
 def pictured(graph: SimulationGraph) -> list[Frame]:
-    """The first picture of a scene with the implicit objects in it alone, in rising sizes; none where it shows none."""
+    """The first picture of a scene with the implicit objects in it alone, in rising sizes; none where it shows none.
+
+    Raises RunFailure where nothing of any of them is there.
+    """
     from sceneql.frame import Implicit
 
     for name, drawn in graph.drawn.items():
         moment = next(pipeline.simulate(graph, [0.0]))
-        if not any(isinstance(shape, Implicit) for shape in moment.lower(drawn)):
+        shapes = [shape for shape in moment.lower(drawn) if isinstance(shape, Implicit)]
+        if not shapes:
             continue  # before a camera is asked, which may run the physics ahead
+        _there(graph, shapes)
         output = cast(Picture, graph.tasks[name].kind)
         width, height = output.pixels
         shares = (min(1.0, math.sqrt(pixels / (width * height))) for pixels in SIZES)
@@ -95,6 +101,17 @@ def pictured(graph: SimulationGraph) -> list[Frame]:
             for frame in frames
         ]
     return []
+
+
+def _there(graph: SimulationGraph, shapes: list[Implicit]) -> None:
+    """Raise RunFailure where nothing of any of some implicit objects is there."""
+    from sceneql.simulation.presence import look
+
+    present: dict[str, str] = {}
+    look(shapes, [], graph.tasks, present)
+    if all(present.values()):
+        name, why = next(iter(present.items()))
+        raise RunFailure(f"nothing of it is there to measure: {why}", part=name, time=0.0, span=graph.tasks[name].span)
 
 
 def timed(work: Callable[[], Any]) -> tuple[Any, float]:

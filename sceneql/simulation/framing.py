@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import Object, Ref, Value
 from sceneql.simulation.placement import apply
-from sceneql.simulation.solid import triple
+from sceneql.simulation.solid import LARGEST, triple
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, View
@@ -27,8 +27,10 @@ def axes_towards(back: Any, up: Any = (0.0, 1.0, 0.0)) -> Floats:
     import numpy as np
 
     b, u = np.asarray(back, dtype=float), np.asarray(up, dtype=float)
+    if np.abs([b, u]).max() > LARGEST:
+        raise ValueError(f"a camera stands within {LARGEST:g} m of what it looks at")
     far = float(np.linalg.norm(b))
-    if not (far > 0 and np.isfinite(far)):
+    if not far > 0:
         raise ValueError("a camera cannot look at its own position")
     b = b / far
     for candidate in (u, np.array([0.0, 0.0, -1.0]), np.array([0.0, 1.0, 0.0])):
