@@ -116,7 +116,7 @@ def test_a_camera_at_its_own_target_is_refused():
 
 def test_a_camera_too_far_away_for_numbers_is_told_so():
     camera = Perspective(position=const([1e300, 0, 0]), look_at=const([0, 0, 0]))
-    with pytest.raises(ValueError, match="within 1e.100 m of what it looks at"):
+    with pytest.raises(ValueError, match=r"within 1e.100 m of what it looks at"):
         camera.view((16, 9), FakeMoment())
 
 
