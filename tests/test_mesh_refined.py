@@ -107,3 +107,20 @@ def test_refined_edges_are_cut_less():
         for found in (cut(TURNED, 1.3, 32), cut_finer(TURNED, 1.3, 32)[0])
     ]
     assert 0.0 < errors[1] < errors[0] / 12  # cells of a quarter, so a sixteenth of what is cut off
+
+
+@pytest.mark.parametrize(
+    "jumps",
+    [
+        "0.17 - 0.96*atan2(y, x - 0.3)",
+        "abs(0.73*floor(7.8*x) + 0.44*log(0.1 + y^2) + 0.21*max(sin(8.7*x), sin(8.7*y))) - 0.1",
+    ],
+)
+@pytest.mark.parametrize("count", [20, 33])
+def test_no_vertex_leaves_its_cells_where_a_field_jumps(jumps, count):
+    """There Newton's method goes anywhere: triangles reached thousands of cells beyond the solid."""
+    mesh, _ = cut_finer(f"max({jumps}, x^2 + y^2 + z^2 - 0.8)", 1.0, count)
+    assert_closed_manifold(mesh)
+    assert np.linalg.norm(mesh.vertices, axis=1).max() < np.sqrt(0.8) + 1e-9
+    corners = mesh.vertices[mesh.triangles]
+    assert np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max() < 4 * 2 / count

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import TYPE_CHECKING
 
 from sceneql.field.solid import field_values, many_gradients
@@ -25,15 +26,21 @@ SHARES = (0.25, 0.5, 0.75, 1.0)
 """Of the way to the middle of its neighbors that a vertex may go."""
 
 
-def settled(tape: Tape, places: Floats) -> tuple[Floats, Floats]:
-    """Places brought to the surface by Newton's method along the gradient, and the unit gradients there."""
+def settled(tape: Tape, begun: Floats, reach: Floats | float = inf) -> tuple[Floats, Floats]:
+    """Places (n, 3) brought to the surface by Newton's method along the gradient, and the unit gradients there.
+
+    Those that would go farther than ``reach`` [m], one or (n,), stay: where f jumps, the method goes anywhere.
+    """
     import numpy as np
 
+    places = begun
     with np.errstate(all="ignore"):
         for _ in range(STEPS):
             slopes = many_gradients(tape, places)
             moves = (field_values(tape, places) / (slopes**2).sum(axis=1))[:, None] * slopes
             places = places - np.where(np.isfinite(moves).all(axis=1)[:, None], moves, 0.0)
+        near = np.linalg.norm(places - begun, axis=1) <= reach
+        places = np.where(near[:, None], places, begun)
         slopes = many_gradients(tape, places)
         slopes /= np.linalg.norm(slopes, axis=1, keepdims=True)
     return places, np.where(np.isfinite(slopes), slopes, 0.0)
@@ -98,7 +105,10 @@ class Stars:
 
 
 def _moved(tape: Tape, places: Floats, normals: Floats, star: Ints, vertex: int) -> bool:
-    """Move a vertex of the triangles ``star`` (n, 3) around it where they gain by it; whether it was."""
+    """Move a vertex of the triangles ``star`` (n, 3) around it where they gain by it; whether it was.
+
+    Newton's method may take it no farther than its triangles reach.
+    """
     import numpy as np
 
     at = places[star]
@@ -106,7 +116,8 @@ def _moved(tape: Tape, places: Floats, normals: Floats, star: Ints, vertex: int)
     if before > 0.0:
         return False
     middle = places[np.setdiff1d(star, [vertex])].mean(axis=0)
-    choices, slopes = settled(tape, places[vertex] + np.array(SHARES)[:, None] * (middle - places[vertex]))
+    reach = np.linalg.norm(at - places[vertex], axis=-1).max()
+    choices, slopes = settled(tape, places[vertex] + np.array(SHARES)[:, None] * (middle - places[vertex]), reach)
     after = np.where((star == vertex)[:, :, None], choices[:, None, None], at)
     gains = facing(tape, after.reshape(-1, 3, 3)).reshape(len(choices), -1).min(axis=1) - before
     best = int(np.argmax(gains))

@@ -51,8 +51,9 @@ def stitched(tape: Tape, coarse: Level, kept: NDArray[np.bool_], fine: Level, si
             middles.append(ring)
             fans += [(a, b, apex) for a, b in zip(ring, [*ring[1:], ring[0]], strict=True)]
     places, normals = np.concatenate([coarse.places, fine.places]), np.concatenate([coarse.normals, fine.normals])
-    means = [np.array([places[ring].mean(axis=0) for ring in middles]).reshape(-1, 3)]
-    own, slopes = settled(tape, means[0])
+    means = np.array([places[ring].mean(axis=0) for ring in middles]).reshape(-1, 3)
+    reach = [np.linalg.norm(places[ring] - mean, axis=1).max() for ring, mean in zip(middles, means, strict=True)]
+    own, slopes = settled(tape, means, np.array(reach))
     triangles = np.concatenate(
         [same[coarse.triangles[plain]], np.array(fans, dtype=np.int64).reshape(-1, 3), fine.triangles + offset]
     )
