@@ -83,3 +83,12 @@ def test_grids_that_are_too_fine_are_refused():
         polygonise(tape_of(BALL), (-1.0,) * 3, (1.0,) * 3, 1e-6)
     with pytest.raises(ValueError, match="above 0"):
         polygonise(tape_of(BALL), (-1.0,) * 3, (1.0,) * 3, 0.0)
+
+
+@pytest.mark.parametrize("count", [20, 33])
+def test_where_a_field_is_zero_on_one_side_the_surface_is_where_it_ceases_to_be_negative(count):
+    """As floor is from a whole number on: not where a node behind it happens to stand."""
+    mesh = cut("max(floor(3*x - 0.1), max(abs(x), abs(y), abs(z)) - 0.7)", 1.0, count)
+    middle = mesh.vertices[(np.abs(mesh.vertices) < [0.2, 0.5, 0.5]).all(axis=1)]
+    assert len(middle) > 50
+    assert middle[:, 0] == pytest.approx(1 / 30, abs=1e-9)

@@ -20,8 +20,10 @@ A, FA, B, FB, T, SIDE, DX, DY, DZ, LANE, BUSY = range(11)
 """Rows of a search: bracket [A, B] with f(A) < 0, not f(B) < 0, and their values; guess; last side; the edge [m]; the
 lane that it began in; and whether it goes on, 1 or 0.
 
-The side is -1 for A and 1 for B, twice that where |f| did not fall to half of what it was at that end.
+The side is -1 for A and 1 for B, twice that where |f| did not fall to half of what it was at that end; LEVEL for B
+where f is zero at more than one place.
 """
+LEVEL = 3.0
 ROWS = 11
 
 
@@ -35,11 +37,15 @@ def guess(search, points, starts, turn, n):
         b = search[B, i]
         fa = search[FA, i]
         fb = search[FB, i]
-        share = 0.5 if halve or fb >= UNDEFINED or fa <= -UNDEFINED else fa / (fa - fb)
+        level = search[SIDE, i] == LEVEL
+        share = 0.5 if halve or level or fb >= UNDEFINED or fa <= -UNDEFINED else fa / (fa - fb)
         t = a + (b - a) * share
         near = abs(t - search[T, i]) <= CLOSE
         wide = abs(b - a) > CLOSE
-        if near and wide and abs(search[SIDE, i]) == 2.0:
+        if near and wide and fb == 0.0 and t == b:  # where f < 0 ends is what is looked for: also just before b?
+            t = b + 0.5 * (CLOSE if a > b else -CLOSE)
+            near = False
+        elif near and wide and abs(search[SIDE, i]) == 2.0:
             ahead = CLOSE if (search[SIDE, i] < 0.0) == (b > a) else -CLOSE
             t = search[T, i] + ahead
             near = False
@@ -98,7 +104,8 @@ def polish(code, constants, parts, registers, points, search, starts, place, fir
                 search[FA, i] = f
                 search[FB, i] *= 0.5 if side < 0.0 else 1.0
             else:
-                search[SIDE, i] = 1.0 if f <= 0.5 * search[FB, i] else 2.0
+                level = f == 0.0 and search[FB, i] == 0.0 and search[T, i] != search[B, i]
+                search[SIDE, i] = LEVEL if level else 1.0 if f <= 0.5 * search[FB, i] else 2.0
                 search[B, i] = search[T, i]
                 search[FB, i] = f if f == f else UNDEFINED
                 search[FA, i] *= 0.5 if side > 0.0 else 1.0
