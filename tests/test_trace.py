@@ -165,6 +165,17 @@ def test_soft_shadow_and_sky_light_have_no_grain():
     assert np.sqrt((bumps[inner] ** 2).mean()) < 0.004
 
 
+def test_a_spark_that_few_samples_meet_leaves_no_blotches():
+    spark = Surface(color=(0.0, 0.0, 0.0), specular=0.0, emission=(400.0, 400.0, 400.0))
+    seen = view((0, 9, 0), (0, 0, 0), up=(0, 0, -1))
+    dusk = Sky((0.1,) * 3, (0.1,) * 3, (0.1,) * 3)
+    picture = draw(stage.floor(), stage.sphere(spark, (0, 0.6, 0), 0.03), lights=[dusk], seen=seen)[..., 0]
+    beside = picture[:40]
+    assert picture[48, 48] > 1
+    assert np.abs(np.diff(beside, axis=0)).max() < 0.02
+    assert np.abs(np.diff(beside, axis=1)).max() < 0.02
+
+
 def scene_of_all_kinds():
     clay = Surface(color=(0.7, 0.5, 0.3), roughness=0.2)
     glass = Surface(color=(1, 1, 1), roughness=0.0, transmission=1.0)

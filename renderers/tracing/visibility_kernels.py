@@ -38,6 +38,8 @@ FIRST_LIGHT = 3
 """Then two columns for each light: the share of it that is seen, and the width [m] of the half-shadow here."""
 BARELY = 1e-6
 """Part of its way that a ray to a lamp ends before its ball, so that a sphere of the same radius is not met."""
+BRIGHTEST = 4.0
+"""Radiance to which what hides the sky is limited: small spots near a lamp, which few samples meet, left blotches."""
 AGAIN = 0.5
 """Share of the sky that a place which hides the sky is taken to see itself."""
 
@@ -118,7 +120,9 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius):
             eb += cosine * ib
     s = scene.ints[ITEMS + 4 * item + SURFACE_AT]
     u = scene.reals
-    return r * er + u[s + EMISSION], g * eg + u[s + EMISSION + 1], b * eb + u[s + EMISSION + 2]
+    r, g, b = r * er + u[s + EMISSION], g * eg + u[s + EMISSION + 1], b * eb + u[s + EMISSION + 2]
+    share = min(1.0, BRIGHTEST / max(max(r, g), max(b, BRIGHTEST)))
+    return share * r, share * g, share * b
 
 
 @part
