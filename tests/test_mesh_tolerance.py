@@ -1,6 +1,7 @@
 """Distances between meshes and surfaces are those of geometry; a tolerance on them is kept, or it is told."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from meshes import (
     BALL,
     TORUS,
     TURNED,
+    assert_closed_manifold,
     cut,
     cut_sharp,
     tape_of,
@@ -16,6 +18,7 @@ from meshes import (
 from sceneql import pipeline
 from sceneql.mesh import tolerance as tolerance_module
 from sceneql.mesh.bounded import bounded
+from sceneql.mesh.folds import folds
 from sceneql.mesh.hausdorff import hausdorff
 from sceneql.mesh.measures import euler_characteristic
 from sceneql.mesh.polygons import Polygons
@@ -56,6 +59,28 @@ def test_a_tolerance_is_kept(tolerance):
     assert distance(bounded(tape, low, high), made.polygons) <= tolerance
     assert made.missed <= tolerance
     assert made.cell <= 0.5
+
+
+CREASED = {  # of which all cells were shortened, and how many triangles are enough
+    "lens": ("max(sqrt((x - 0.3)^2 + y^2 + z^2) - 0.8, sqrt((x + 0.3)^2 + y^2 + z^2) - 0.8)", 1.0, 60_000),
+    "cube without a corner": (
+        "max(max(abs(x), abs(y), abs(z)) - 0.8, 0.5 - max(abs(x - 0.8), abs(y - 0.8), abs(z - 0.8)))",
+        1.0,
+        300_000,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CREASED)
+def test_creases_shorten_the_cells_along_them_alone(name):
+    text, half, most = CREASED[name]
+    box = tape_of(text), (-half,) * 3, (half,) * 3
+    made = polygonise_within(*box, 1e-3, half / 8, partial(refined, tolerance=1e-3))
+    assert_closed_manifold(made.polygons)
+    assert not len(folds(bounded(*box), made.polygons))
+    assert distance(bounded(*box), made.polygons) <= 1e-3
+    assert hausdorff(made.polygons, box[0], 20_000).to_surface <= 1.05e-3
+    assert len(made.polygons.triangles) < most
 
 
 SHELL = "abs(x^2 + y^2 + z^2 - 0.5) - 2e-2"  # walls of 28 mm

@@ -31,7 +31,7 @@ def doubtful(polygons: Polygons) -> Rows:
     """(n,) rows of triangles that do not face as the normals of all their corners do."""
     import numpy as np
 
-    from sceneql.mesh.fold_kernels import unlike_corners
+    from sceneql.mesh.triangle_kernels import unlike_corners
 
     rows = np.empty(len(polygons.triangles), dtype=np.int64)
     return rows[: unlike_corners(polygons.vertices, polygons.triangles, polygons.normals, rows)].copy()
@@ -67,7 +67,7 @@ def winding(points: Floats, places: Floats, triangles: Ints) -> Rows:
     """(n,) how often a closed surface of triangles (t, 3) goes around points (n, 3): 1 inside, 0 outside."""
     import numpy as np
 
-    from sceneql.mesh.fold_kernels import count_passed
+    from sceneql.mesh.triangle_kernels import count_passed
 
     if not len(points):
         return np.zeros(0, dtype=np.int64)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import cKDTree
 
-from sceneql.mesh.fold_kernels import in_cubes
 from sceneql.mesh.folds import INSIDE, extents
+from sceneql.mesh.triangle_kernels import in_cubes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -12,7 +12,7 @@ from sceneql.mesh.polygons import Polygons
 from sceneql.mesh.unresolved import Unresolved
 
 if TYPE_CHECKING:
-    from sceneql.frame import Tape
+    from sceneql.frame import Floats, Tape
 
 Method = Callable[["Tape", Corner, Corner, float], tuple[Polygons, Unresolved]]
 PROBES = 10_000
@@ -48,17 +48,20 @@ def distance(tape: Tape, polygons: Polygons) -> float:
     to second order, one with an edge or a corner there may be farther. What has no triangle near it, as a piece that
     cells do not see, is for ``missed``. Where there are more than PROBES triangles, every so many-th is looked at.
     """
+    triangles = polygons.triangles[:: max(1, len(polygons.triangles) // PROBES)]
+    return float(distances_off(tape, polygons.vertices[triangles]).max(initial=0.0))
+
+
+def distances_off(tape: Tape, corners: Floats) -> Floats:
+    """(t,) [m] of triangles (t, 3, 3) as of ``distance``."""
     import numpy as np
 
-    triangles = polygons.triangles[:: max(1, len(polygons.triangles) // PROBES)]
-    if not len(triangles):
-        return 0.0
-    corners = polygons.vertices[triangles]
     middles = 0.5 * (corners + np.roll(corners, 1, axis=1))
-    places = np.concatenate([corners.mean(axis=1), middles.reshape(-1, 3)])
+    places = np.concatenate([corners.mean(axis=1)[:, None], middles], axis=1).reshape(-1, 3)
     slopes = np.linalg.norm(many_gradients(tape, places), axis=1)
-    steep = slopes > 0.0
-    return BETWEEN * float(np.max(np.abs(field_values(tape, places[steep])) / slopes[steep], initial=0.0))
+    off = np.divide(np.abs(field_values(tape, places)), slopes, out=np.zeros(len(places)), where=slopes > 0.0)
+    found: Floats = BETWEEN * off.reshape(-1, 4).max(axis=1)
+    return found
 
 
 def missed(tape: Tape, polygons: Polygons, hidden: Unresolved) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 from sceneql import pipeline
@@ -125,6 +126,7 @@ def _of_solid(
 ) -> Within:
     """Polygons of a solid, the cells that they are of, and what they do not resolve."""
     from sceneql.mesh.grid import grid_around
+    from sceneql.mesh.refine import refined
     from sceneql.mesh.tolerance import Within, polygonise_within
 
     box = solid.tape, solid.low, solid.high
@@ -134,7 +136,7 @@ def _of_solid(
     with failing_as(name, time, task.span):
         grid_around(solid.low, solid.high, cell)
         least = cell
-        method = _kept_sharp if sharp else _refined
+        method = _kept_sharp if sharp else partial(refined, tolerance=tolerance)
         if tolerance is None:
             made = Within(*method(*box, cell), cell, 0.0)
         else:
@@ -191,13 +193,6 @@ def _kept_sharp(tape: Tape, low: Corner, high: Corner, cell: float) -> tuple[Pol
     from sceneql.mesh.unresolved import unresolved
 
     return polygonise_sharp(tape, low, high, cell), unresolved(tape, low, high, cell)
-
-
-def _refined(tape: Tape, low: Corner, high: Corner, cell: float) -> tuple[Polygons, Unresolved]:
-    """``refined``, whose kernels are loaded once they are needed."""
-    from sceneql.mesh.refine import refined
-
-    return refined(tape, low, high, cell)
 
 
 def _why_empty(tape: Tape, low: Corner, high: Corner, cell: float) -> str:

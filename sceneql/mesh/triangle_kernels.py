@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""What the search for folds asks of every triangle of a mesh, one after the other."""
+"""What is asked of every triangle of a mesh, one after the other."""
 
 from sceneql.kernels import inlined, lean
 
@@ -24,6 +24,21 @@ def unlike_corners(places, triangles, normals, rows):
             rows[count] = t
             count += 1
     return count
+
+
+@inlined
+def turn(places, normals, a, b):
+    """How much the normals of two vertices differ along the way from one to the other [m]."""
+    x, y, z = places[b, 0] - places[a, 0], places[b, 1] - places[a, 1], places[b, 2] - places[a, 2]
+    return abs(along(normals, b, x, y, z) - along(normals, a, x, y, z))
+
+
+@lean("void(float64[:, ::1], int32[:, ::1], float64[:, ::1], float64[::1])")
+def most_turn(places, triangles, normals, out):
+    """The largest ``turn`` along a side of each triangle into ``out`` (t,)."""
+    for t in range(triangles.shape[0]):
+        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        out[t] = max(max(turn(places, normals, a, b), turn(places, normals, b, c)), turn(places, normals, c, a))
 
 
 @inlined
