@@ -32,8 +32,13 @@ class Trace(Renderer):
             return ("renderers.tracing.draw",)
         together: tuple[str, ...] = ()
         if self.tolerance == TOLERANCE:
-            own = {"formula": ("tape_bundle", "enclose"), "density": ("density_bundle",)}
-            names = (name for kind in sorted(traced) for name in own[kind])
+            tape = ("tape_bundle", "enclose")
+            own = {
+                "formula": tape,
+                "density": ("density_bundle",),
+                "skeleton": (*tape, "packet_skeleton", "packet_near"),
+            }
+            names = dict.fromkeys(name for kind in sorted(traced) for name in own[kind])
             together = (*(f"sceneql.field.{name}_kernels" for name in names), "renderers.tracing.bundles")
         return (*together, *certified("renderers.tracing.draw"))
 

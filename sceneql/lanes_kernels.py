@@ -78,7 +78,7 @@ def _operate(operation, instruction):
         lower_builtin(operation, *pair)(code)
 
 
-for _one in ((operator.add, "fadd"), (operator.sub, "fsub"), (operator.mul, "fmul")):
+for _one in ((operator.add, "fadd"), (operator.sub, "fsub"), (operator.mul, "fmul"), (operator.truediv, "fdiv")):
     _operate(*_one)
 
 
@@ -190,6 +190,15 @@ def _guess(typing, s):
     return s(s), code
 
 
+@intrinsic
+def _root(typing, s):
+    def code(context, builder, signature, args):
+        vector = args[0].type
+        return builder.call(_declared(builder, f"llvm.sqrt.v{s.count}f{s.dtype.bitwidth}", vector, vector), args)
+
+    return s(s), code
+
+
 def _fold(join):
     @intrinsic
     def fold(typing, value):
@@ -267,6 +276,8 @@ least = np.min if PLAIN else _least
 """The least of all lanes, none of which is NaN."""
 most = np.max if PLAIN else _most
 """The largest of all lanes, none of which is NaN."""
+root = np.sqrt if PLAIN else _root
+"""The square root."""
 guess = _guess_in_python if PLAIN else _guess
 """s^(-1/2) for s > 0, within some 4 %, by halving the exponent (Lomont 2003)."""
 folded = _folded_in_python if PLAIN else _folded

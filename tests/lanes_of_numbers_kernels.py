@@ -4,7 +4,20 @@
 from numba import types
 
 from sceneql.kernels import lean, lean_inlined
-from sceneql.lanes_kernels import below, bits_below, first_bit, fma, folded, guess, least, load, most, spread, store
+from sceneql.lanes_kernels import (
+    below,
+    bits_below,
+    first_bit,
+    fma,
+    folded,
+    guess,
+    least,
+    load,
+    most,
+    root,
+    spread,
+    store,
+)
 
 S = types.float32[::1]
 A = types.float64[::1]
@@ -13,7 +26,7 @@ A = types.float64[::1]
 @lean_inlined
 def calculated(a, b, number, out, width):
     x, y = load(a, 0), load(b, 0)
-    results = x + y, x - y, x * y, number - x, x * number, fma(x, y, number), spread(number), guess(x)
+    results = x + y, x - y, x * y, number - x, x * number, x / y, root(x), fma(x, y, number), spread(number), guess(x)
     at = 0
     for one in results:
         store(out, at, one)

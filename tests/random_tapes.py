@@ -5,16 +5,17 @@ from hypothesis import strategies as st
 
 from sceneql.field.builder import TapeBuilder
 from sceneql.field.lowering import LOWERED
+from sceneql.field.skeleton import KERNELS, Skeleton
 from sceneql.field.solid import scratch
 from sceneql.field.tape_ops import (
     BINARY,
     UNARY,
 )
 
-NAMES = sorted([*UNARY, *BINARY, "density", *LOWERED])
+NAMES = sorted([*UNARY, *BINARY, "density", "skeleton", *LOWERED])
 ARGUMENTS = dict.fromkeys(UNARY, 1) | dict.fromkeys(BINARY, 2)
 TWO = ("mod", "hypot", "gt", "lt", "ge", "le", "eq", "step")
-THREE = ("clamp", "mix", "smoothstep", "where", "density")
+THREE = ("clamp", "mix", "smoothstep", "where", "density", "skeleton")
 ARGUMENTS |= dict.fromkeys(LOWERED, 1) | dict.fromkeys(TWO, 2) | dict.fromkeys(THREE, 3)
 JUMPS = ("floor", "sign", "ceil", "mod", "round", "step", "where", "gt", "lt", "ge", "le", "eq")
 NUMBERS = st.floats(-3.0, 3.0).map(lambda number: round(number, 3) + 0.0)
@@ -22,6 +23,32 @@ COORDINATES = st.floats(-2.0, 2.0).map(lambda number: round(number, 6) + 0.0)
 PARTS = np.array(
     [[0.2, 0.1, 0.0, 0.2, 0.1, 0.0, 0.9, 1.0], [-0.5, 0, 0.3, 0.6, 0.4, -0.3, 0.5, 0.7], [0, 0, 1, 0, 1, 1, 1.5, -0.5]]
 )
+
+
+MIXED = Skeleton(
+    np.array(
+        [
+            [[0.2, 0.1, 0.0], [0.2, 0.1, 0.0], [0.2, 0.1, 0.0]],
+            [[-0.5, 0.0, 0.3], [0.6, 0.4, -0.3], [-0.5, 0.0, 0.3]],
+            [[0.6, 0.4, -0.3], [1.0, -0.2, 0.2], [0.6, 0.4, -0.3]],
+            [[-0.8, -0.6, 0.1], [-0.3, 0.2, 0.6], [0.2, -0.7, 0.0]],
+            [[0.0, 1.0, 0.4], [1.0, 0.2, 0.8], [0.3, 0.1, 1.2]],
+        ]
+    ),
+    np.array([[0.7, 0.7], [0.5, 0.9], [0.9, 0.4], [0.6, 0.6], [0.8, 0.3]]),
+    np.array([1.0, 0.7, 0.7, -0.5, 0.9]),
+    np.array([0.0, 1.0, 1.0, 2.0, 3.0]),
+    KERNELS.index("metaball"),
+    np.array([np.nan, np.nan, np.nan, np.nan, 0.5]),
+)
+"""A point, two cones that follow each other, a triangle and a curve."""
+
+
+def operation(builder, name, chosen):
+    """The register of a named operation."""
+    if name == "density":
+        return builder.density(PARTS, *chosen)
+    return builder.skeleton(MIXED, *chosen) if name == "skeleton" else builder.op(name, *chosen)
 
 
 def arguments(tape):
@@ -36,8 +63,7 @@ def tapes(draw, most=8, names=tuple(NAMES)):
     for _ in range(draw(st.integers(1, most))):
         name = draw(st.sampled_from(names))
         chosen = [draw(st.sampled_from(registers)) for _ in range(ARGUMENTS[name])]
-        made = builder.density(PARTS, *chosen) if name == "density" else builder.op(name, *chosen)
-        registers.append(made)
+        registers.append(operation(builder, name, chosen))
     return builder.finish(registers[-1])
 
 
@@ -58,8 +84,7 @@ def of_one(name):
     """A tape of one operation, on arguments that move unequally."""
     builder = TapeBuilder()
     chosen = [builder.x, builder.y, builder.z][: ARGUMENTS[name]]
-    made = builder.density(PARTS, *chosen) if name == "density" else builder.op(name, *chosen)
-    return builder.finish(made)
+    return builder.finish(operation(builder, name, chosen))
 
 
 SMOOTH = ("add", "sub", "mul", "square", "sin", "cos", "density", "min", "max", "abs", "neg")

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from lane_checks import check_enclosures
 from sceneql.field.batch_gradient_kernels import differentiate
 from sceneql.field.batch_kernels import LANES, evaluate
 from sceneql.field.skeleton import KERNELS, Skeleton
@@ -91,6 +92,7 @@ def test_enclosures_contain_every_value(kind, origin, direction, size, radii, we
     tape = tape_of(curves([CURVES[kind]], [radii], weight, kernel))
     origin, direction = np.array(origin), np.array(direction)
     check_segment(tape, origin, direction, -size, size)
+    check_enclosures(tape, origin, direction, -size, size)
     check_box(tape, origin, origin + size * np.abs(direction))
 
 
@@ -133,6 +135,7 @@ def test_enclosures_of_a_spline_contain_every_value(origin, direction, size):
     tape = tape_of(curves(corners, radii))
     origin, direction = np.array(origin), np.array(direction)
     check_segment(tape, origin, direction, -size, size)
+    check_enclosures(tape, origin, direction, -size, size)
     check_box(tape, origin, origin + size * np.abs(direction))
 
 

@@ -12,7 +12,6 @@ from moment import IDENTITY, FakeMoment, const, formula
 from plain_tapes import implicit, kernels
 from random_tapes import PARTS, rays, tapes
 from ray_bundles import agree_with_the_certified, bundle
-from renderers.tracing.bundles import solids_in_lanes
 from sceneql.field.clips import clip_rows
 from sceneql.field.packets import Memory, cast_together, plan_of
 from sceneql.field.ray_rows import FOUND_ROOT, FOUND_STATUS
@@ -32,7 +31,6 @@ from sceneql.field.tape_ops import (
     UNDECIDED,
     X,
 )
-from sceneql.frame import Implicit, Surface
 from sceneql.simulation.objects.blobby import Blobby
 from sceneql.simulation.objects.implicit import Implicit as Formula
 from sceneql.simulation.objects.implicit import Within
@@ -343,14 +341,3 @@ def test_a_thin_shell_has_no_holes_in_packets():
     assert ((status == HIT) == (off < 0.7005**2)).all()
     hit = status == HIT
     assert t[hit] == pytest.approx(2.0 - np.sqrt(0.7005**2 - off[hit]), abs=1e-6)
-
-
-def test_solids_that_packets_know_nothing_of_are_not_looked_for_in_bundles():
-    tapered = Skeleton(np.eye(3)[None], np.array([[0.5, 0.7]]), np.ones(1), np.zeros(1))
-    pointed = Skeleton(np.zeros((1, 3, 3)), np.ones((1, 2)), np.ones(1), np.zeros(1))
-    tapes = [
-        implicit(lambda b, op, c, s=skeleton: op("sub", c(0.3), b.skeleton(s, b.x, b.y, b.z)))
-        for skeleton in (tapered, pointed)
-    ]
-    shapes = tuple(Implicit("blob", Surface(), tape, (-1.0,) * 3, (1.0,) * 3) for tape in tapes)
-    assert solids_in_lanes(shapes) == [1]

@@ -8,6 +8,7 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from lane_checks import check_enclosures
 from sceneql.field.batch_gradient_kernels import differentiate
 from sceneql.field.batch_kernels import LANES, evaluate
 from sceneql.field.builder import TapeBuilder
@@ -166,6 +167,7 @@ def test_enclosures_contain_every_value(kernel, kind, origin, direction, size, r
     tape = tape_of(skeleton(KINDS[kind], radii, weight, kernel=kernel))
     origin, direction = np.array(origin), np.array(direction)
     check_segment(tape, origin, direction, -size, size)
+    check_enclosures(tape, origin, direction, -size, size)
     check_box(tape, origin, origin + size * np.abs(direction))
 
 
@@ -176,6 +178,7 @@ def test_enclosures_of_a_crowd_contain_every_value(kernel, origin, direction, si
     tape = tape_of(crowd(kernel))
     origin, direction = np.array(origin), np.array(direction)
     check_segment(tape, origin, direction, -size, size)
+    check_enclosures(tape, origin, direction, -size, size)
     check_box(tape, origin, origin + size * np.abs(direction))
 
 

@@ -9,7 +9,8 @@ import numpy as np
 from renderers.tracing.bundles_kernels import RAYS, meet_asked
 from renderers.tracing.scene_kernels import ANSWERS
 from sceneql.field.clips import clip_rows, clips_of
-from sceneql.field.packets import Memory, in_lanes
+from sceneql.field.own_coordinates import in_own_coordinates
+from sceneql.field.packets import Memory
 from sceneql.frame import Implicit
 
 if TYPE_CHECKING:
@@ -22,14 +23,15 @@ class Packets:
     def __init__(self, shapes: tuple[Shape, ...], solids: list[int]) -> None:
         self.solids = solids
         self.memories: list[Memory] = []
-        self.bounds: list[tuple[Floats, Floats, Floats]] = []
+        self.bounds: list[tuple[Floats, ...]] = []
         for i in self.solids:
             shape = shapes[i]
             assert isinstance(shape, Implicit)
-            self.memories.append(Memory(shape.tape, RAYS, clip_rows(shape.tape)))
+            tape, matrix = in_own_coordinates(shape.tape)
+            self.memories.append(Memory(tape, RAYS, clip_rows(tape)))
             box, clips = np.array([shape.low, shape.high], dtype=np.float64), clips_of(shape.tape)
             reach = float(np.abs(box).max()) ** np.array([2.0] * 6 + [1.0] * 3 + [0.0])
-            self.bounds.append((box, clips, np.abs(clips) @ reach))
+            self.bounds.append((box, clips, np.abs(clips) @ reach, matrix))
         self.chosen, self.spans = np.empty((2, 1 + RAYS), dtype=np.int64), np.empty((2, 2, RAYS))
 
     def asked(self, rays: int) -> Floats:
@@ -47,8 +49,4 @@ class Packets:
 
 def solids_in_lanes(shapes: tuple[Shape, ...]) -> list[int]:
     """Indices of the shapes that packets know: implicit solids of operations that have lanes."""
-    return [
-        i
-        for i, shape in enumerate(shapes)
-        if isinstance(shape, Implicit) and shape.within is None and in_lanes(shape.tape)
-    ]
+    return [i for i, shape in enumerate(shapes) if isinstance(shape, Implicit) and shape.within is None]

@@ -75,17 +75,20 @@ def in_solid(asked, row, box, clips, sizes):
 
 
 @part
-def place(rays, asked, chosen, spans, n):
+def place(rays, asked, chosen, spans, matrix, n):
     """Put n asked rays into a bundle, those that follow each other in columns of GROUP; how many there are then.
 
-    What fills the last column up has no length.
+    They are told in the coordinates ``matrix`` (3, 4) (x, y, z, 1). What fills the last column up has no length.
     """
     groups = (n + GROUP - 1) // GROUP
     for i in range(groups * GROUP):
         j = i % GROUP * groups + i // GROUP
         row = chosen[min(i, n - 1)]
-        for axis in range(6):
-            rays[axis, j] = asked[row, axis]
+        x, y, z, dx, dy, dz = asked[row, 0], asked[row, 1], asked[row, 2], asked[row, 3], asked[row, 4], asked[row, 5]
+        for axis in range(3):
+            a, b, c = matrix[axis, 0], matrix[axis, 1], matrix[axis, 2]
+            rays[axis, j] = a * x + b * y + c * z + matrix[axis, 3]
+            rays[3 + axis, j] = a * dx + b * dy + c * dz
         rays[6, j] = spans[0, i] if i < n else 0.0
         rays[7, j] = spans[1, i] if i < n else 0.0
     return groups * GROUP
@@ -106,14 +109,15 @@ def answer(rays, found, j, anywhere):
     return t if t0 > 0.0 or t > t0 + FINE * (t1 - t0) else np.nan
 
 
-@lean(types.void(*ARGUMENTS, _rows, _rows, types.float64[::1], ASKED, types.int64, _lists, _spans))
+@lean(types.void(*ARGUMENTS, _rows, _rows, types.float64[::1], _rows, ASKED, types.int64, _lists, _spans))
 def meet_asked(
     code, constants, singles, registers, point, status, lanes, ids, rays, asked_from, queue, found, parts, scratch,
     beams, doubles, points, short, near_singles, near_parts, plan, order, room, table, flat, other, box, clips,
-    sizes, asked, column, chosen, spans,
+    sizes, matrix, asked, column, chosen, spans,
 ):  # fmt: skip
     """Where all rays of ``asked`` meet {f < 0} in ``box`` (2, 3) and ``clips`` (k, 10), into a column of it.
 
+    ``code`` and what belongs to it is f in the coordinates of ``place``; box and clips are in the world's.
     ``chosen`` (2, 1 + RAYS) and ``spans`` (2, 2, RAYS) are working memory: rows and spans of rays that wait, by what is
     wanted of them, and behind the rows their number.
     """
@@ -136,7 +140,7 @@ def meet_asked(
             n += 1
             waiting[RAYS] = n
         if n == RAYS or (row >= rows and n > 0):
-            count = place(rays, asked, waiting, own, n)
+            count = place(rays, asked, waiting, own, matrix, n)
             first_roots(
                 code, constants, singles, registers, point, status, lanes, ids, rays, asked_from, queue, count,
                 want == ANYWHERE, found, parts, scratch, beams, doubles, points, short, near_singles, near_parts,

@@ -39,7 +39,7 @@ from renderers.tracing.scene_kernels import (
 )
 from renderers.tracing.scene_kernels import TOLERANCE as ROOT_TOLERANCE
 from sceneql.field.plans import ray_plan
-from sceneql.field.tape_ops import SCRATCH_COLUMNS, SKELETON, scratch_rows
+from sceneql.field.tape_ops import SCRATCH_COLUMNS, scratch_rows
 from sceneql.frame import Frame, Grid, Implicit, Mesh, Mist, Points, Quadric, Segments, Sky, Sun, Surface, View
 
 if TYPE_CHECKING:
@@ -48,9 +48,8 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints, Light, Tape
 
 
-PLAIN_CELLS, FINE_CELLS = 32, 64
-"""Occupancy cells along each axis of an implicit object's box: more where each ray goes alone by long ways, along the
-distances to skeletons."""
+CELLS = 32
+"""Occupancy cells along each axis of an implicit object's box, by which single rays go."""
 UNBOUNDED = np.repeat([-np.inf, np.inf], 3)
 
 
@@ -192,12 +191,11 @@ class Rows:
         self.implicits.append(self._size)
         self._items(index, IMPLICIT if shape.within is None else SHEET, box[:, :6], box)
         ranges = self._tape(shape.tape)
-        cells = FINE_CELLS if SKELETON in shape.tape.code[:, 0] else PLAIN_CELLS
-        ranges.append(self._code(np.full(cells**3, MIXED, dtype=np.int32)))
+        ranges.append(self._code(np.full(CELLS**3, MIXED, dtype=np.int32)))
         for other in (shape.paint, shape.within):
             ranges += [0] * (WITHIN - PAINT) if other is None else self._tape(other)
         plan = ray_plan(shape.tape)
-        ranges += [self._code(plan), len(plan), cells]
+        ranges += [self._code(plan), len(plan), CELLS]
         self.ranges.append(np.array(ranges))
 
     def _grid(self, index: int, shape: Grid) -> None:

@@ -14,11 +14,28 @@ from sceneql.field.packet_kernels import (
     binary_lanes,
     common_lanes,
     scale_lanes,
+    skeleton_lanes,
     turn_lanes,
     unary_lanes,
     wave_lanes,
 )
-from sceneql.field.tape_ops import ADD, ATAN2, CONSTANT, COPY, COS, DENSITY, MUL, NEG, SIGN, SIN, SQUARE, SUB, X, Z
+from sceneql.field.tape_ops import (
+    ADD,
+    ATAN2,
+    CONSTANT,
+    COPY,
+    COS,
+    DENSITY,
+    MUL,
+    NEG,
+    SIGN,
+    SIN,
+    SKELETON,
+    SQUARE,
+    SUB,
+    X,
+    Z,
+)
 from sceneql.kernels import lean
 
 
@@ -26,8 +43,7 @@ from sceneql.kernels import lean
 def enclose(code, constants, parts, registers, point, status, n):
     """Enclose f in n lanes, into the last operation's register; ``status`` (LANES,) gets WHOLE, PARTIAL or NOWHERE.
 
-    Nothing is claimed of a lane in which c0, c1 or e is not finite. ``parts`` are those of
-    ``packet_density_kernels``.
+    Nothing is claimed of a lane in which c0, c1 or e is not finite. ``parts`` are those of packet_parts.
     """
     for i in range(n):
         status[i] = ZERO
@@ -46,6 +62,10 @@ def enclose(code, constants, parts, registers, point, status, n):
         if op == DENSITY:
             p = code[k, 3]
             density_lanes(parts, left, right, registers[p], registers[p + 1], registers[p + 2], out, n)
+            continue
+        if op == SKELETON:
+            p = code[k, 3]
+            skeleton_lanes(parts, left, right, registers[p], registers[p + 1], registers[p + 2], out, n)
             continue
         a = registers[left]
         b = registers[right]

@@ -8,7 +8,25 @@ up before they are bounded, too.
 
 import numpy as np
 
-from sceneql.kernels import inlined, lean
+from sceneql.field.packet_rows import (
+    AX,
+    AY,
+    AZ,
+    BLUR,
+    INVERSE,
+    LOW_X,
+    LOW_Y,
+    LOW_Z,
+    PART,
+    RADIUS,
+    REACH,
+    SHRINK,
+    SX,
+    SY,
+    SZ,
+    WEIGHT,
+)
+from sceneql.kernels import inlined
 from sceneql.lanes_kernels import below, bits_below, first_bit, fma, least, load, most, spread, store
 
 F = np.float32
@@ -21,41 +39,10 @@ GROW = F(1.0 + 4.0e-6)
 TINY = F(1.0e-37)
 ZERO, HALF, ONE, TWO, THREE = F(0.0), F(0.5), F(1.0), F(2.0), F(3.0)
 INFINITE = F(np.inf)
-ROUGH, ROUND = F(4.0e-6), F(5.0e-7)
+THRICE = F(1.8e-7)
+"""Three half units in the last place."""
+ROUGH, ROUND = F(2.0e-6), F(2.0e-7)
 """Rounding of one part's density, and of adding it to the others', relative to the largest it may have."""
-(
-    AX, AY, AZ, SX, SY, SZ, INVERSE, WEIGHT, SHRINK, RADIUS, BLUR, LOW_X, HIGH_X, LOW_Y, HIGH_Y, LOW_Z, HIGH_Z, REACH,
-) = range(18)  # fmt: skip
-"""Rows of ``parts`` (PART, p): end a, axis b - a, 1/R^2, weight, 1/|axis|^2 (0: a point), R, rounding of the place; the
-box around both ends and the square of the distance from it beyond which there is no density."""
-PART = 18
-SPARE_PARTS = VECTOR
-"""Columns behind the last part: vectors are loaded whole."""
-
-
-@inlined
-def pack_part(part, out, k):
-    """One part (8,) of a tape in float32, into column k of ``out`` (PART, p)."""
-    size = 0.0
-    length2 = 0.0
-    for j in range(3):
-        s = part[3 + j] - part[j]
-        out[AX + j, k] = part[j]
-        out[SX + j, k] = s
-        size += abs(part[j]) + abs(s)
-        length2 += s * s
-    radius, blur = F(part[6]), F(size * 1.0e-6)
-    out[INVERSE, k] = 1.0 / (part[6] * part[6])
-    out[WEIGHT, k] = part[7]
-    out[SHRINK, k] = 1.0 / length2 if length2 > 0.0 else 0.0
-    out[RADIUS, k] = radius
-    out[BLUR, k] = blur
-    for j in range(3):
-        end = out[AX + j, k] + out[SX + j, k]
-        out[LOW_X + 2 * j, k] = min(out[AX + j, k], end)
-        out[HIGH_X + 2 * j, k] = max(out[AX + j, k], end)
-    reach = radius * GROW + TWO * blur
-    out[REACH, k] = reach * reach * GROW
 
 
 @inlined
@@ -108,6 +95,49 @@ def beside(parts, k, wx, wy, wz, ux, uy, uz, speed):
 
 
 @inlined
+def around(parts, k, px, py, pz, ux, uy, uz, speed, way, loose):
+    """1 - d^2/R^2 at p + u tau +- loose, tau in [-1, 1], for part k: a0 + a1 tau - a2 tau^2 +- the last of the four."""
+    inverse = parts[INVERSE, k]
+    wx, wy, wz = px - parts[AX, k], py - parts[AY, k], pz - parts[AZ, k]
+    curl, bent = speed, spread(ZERO)
+    if parts[SHRINK, k] > ZERO:
+        wx, wy, wz, curl, bent = beside(parts, k, wx, wy, wz, ux, uy, uz, speed)
+    a0 = fma(fma(wz, wz, fma(wy, wy, wx * wx)), -inverse, ONE)
+    a1 = fma(wz, uz, fma(wy, uy, wx * ux)) * (-TWO * inverse)
+    a2 = curl * inverse
+    off = loose + parts[BLUR, k]
+    # |d^2 - D| <= off (2 d + off) wherever one of the two is within reach, where |a0| <= 1 + |a1|, too.
+    error = fma(off, fma(TWO, parts[RADIUS, k] + way, THREE * off), bent) * inverse
+    return a0, a1, a2, fma(PAD, abs(a1) + a2 + ONE, error)
+
+
+@inlined
+def looked_at(x, y, z, i):
+    """Of VECTOR lanes of the point x, y, z from the ith on: (c0 of each, c1 of each, box, how far it may be off)."""
+    px, py, pz = load(x, i), load(y, i), load(z, i)
+    ux, uy, uz = load(x, C1 + i), load(y, C1 + i), load(z, C1 + i)
+    ex, ey, ez = load(x, E + i), load(y, E + i), load(z, E + i)
+    bx, cx = extent(px, ux, ex)
+    by, cy = extent(py, uy, ey)
+    bz, cz = extent(pz, uz, ez)
+    way = abs(ux) + abs(uy) + abs(uz)
+    loose = ex + ey + ez + THRICE * (abs(px) + abs(py) + abs(pz) + way)
+    return px, py, pz, ux, uy, uz, (bx, cx, by, cy, bz, cz), way, loose
+
+
+@inlined
+def summed(out, i, c0, c1, c2, e, size, added, loose):
+    """Write the sum of polynomials c0 + 3 c1 tau + 3 c2 tau^2 +- e as an enclosure in VECTOR lanes of ``out``."""
+    c1 = THREE * c1
+    c2 = F(1.5) * c2  # half of the term in tau^2, which lies between it and 0
+    c0 = c0 + c2 + ZERO * loose  # nothing is known where the place is not
+    e = (e + abs(c2)) * GROW + (ROUGH + added * ROUND) * size
+    store(out, i, c0)
+    store(out, C1 + i, c1)
+    store(out, E + i, e + PAD * (abs(c0) + abs(c1)) + TINY)
+
+
+@inlined
 def cubed(a0, a1, a2, error):
     """max(u, 0)^3 for u = a0 + a1 tau - a2 tau^2 +- error, a2 >= 0, as (c0, c1/3, c2/3, e) of a polynomial in tau, and
     the cube of the largest u.
@@ -139,16 +169,8 @@ def cubed(a0, a1, a2, error):
 def density_lanes(parts, start, stop, x, y, z, out, n):
     """Enclosure of the density of parts start..stop-1 at the point with enclosures x, y, z, into ``out``."""
     for i in range(0, n, VECTOR):
-        px, py, pz = load(x, i), load(y, i), load(z, i)
-        ux, uy, uz = load(x, C1 + i), load(y, C1 + i), load(z, C1 + i)
-        ex, ey, ez = load(x, E + i), load(y, E + i), load(z, E + i)
-        bx, cx = extent(px, ux, ex)
-        by, cy = extent(py, uy, ey)
-        bz, cz = extent(pz, uz, ez)
-        box = bx, cx, by, cy, bz, cz
+        px, py, pz, ux, uy, uz, box, way, loose = looked_at(x, y, z, i)
         speed = ux * ux + uy * uy + uz * uz
-        way = abs(ux) + abs(uy) + abs(uz)
-        loose = ex + ey + ez + PAD * (abs(px) + abs(py) + abs(pz) + way)  # how far the point may be off
         c0 = c1 = c2 = e = size = spread(ZERO)
         added = ZERO
         for first in range(start, stop, VECTOR):
@@ -156,18 +178,8 @@ def density_lanes(parts, start, stop, x, y, z, out, n):
             while bits != 0:
                 k = first + first_bit(bits)
                 bits &= bits - 1
-                inverse, weight = parts[INVERSE, k], parts[WEIGHT, k]
-                wx, wy, wz = px - parts[AX, k], py - parts[AY, k], pz - parts[AZ, k]
-                curl, bent = speed, spread(ZERO)
-                if parts[SHRINK, k] > ZERO:
-                    wx, wy, wz, curl, bent = beside(parts, k, wx, wy, wz, ux, uy, uz, speed)
-                a0 = fma(fma(wz, wz, fma(wy, wy, wx * wx)), -inverse, ONE)
-                a1 = fma(wz, uz, fma(wy, uy, wx * ux)) * (-TWO * inverse)
-                a2 = curl * inverse
-                off = loose + parts[BLUR, k]
-                # |d^2 - D| <= off (2 d + off) wherever one of the two is within reach, where |a0| <= 1 + |a1|, too.
-                error = fma(off, fma(TWO, parts[RADIUS, k] + way, THREE * off), bent) * inverse
-                error = fma(PAD, fma(TWO, abs(a1) + ONE, a2), error)
+                weight = parts[WEIGHT, k]
+                a0, a1, a2, error = around(parts, k, px, py, pz, ux, uy, uz, speed, way, loose)
                 d0, d1, d2, d, m = cubed(a0, a1, a2, error)
                 c0 = fma(weight, d0, c0)
                 c1 = fma(weight, d1, c1)
@@ -175,14 +187,7 @@ def density_lanes(parts, start, stop, x, y, z, out, n):
                 e = fma(abs(weight), d, e)
                 size = fma(abs(weight), m, size)
                 added += ONE
-        unknown = ZERO * loose
-        c1 = THREE * c1
-        c2 = F(1.5) * c2  # half of the term in tau^2, which lies between it and 0
-        c0 = c0 + c2 + unknown
-        e = (e + abs(c2)) * GROW + (ROUGH + added * ROUND) * size
-        store(out, i, c0)
-        store(out, C1 + i, c1)
-        store(out, E + i, e + PAD * (abs(c0) + abs(c1)) + TINY)
+        summed(out, i, c0, c1, c2, e, size, added, loose)
 
 
 @inlined
@@ -230,10 +235,3 @@ def keep_near(code, k, registers, first, stop, singles, parts, kept, near_single
                 near_parts[kept, j] = parts[part, j]
             kept += 1
     return kept
-
-
-@lean("void(float64[:, ::1], float32[:, ::1])")
-def pack_parts(parts, out):
-    """The parts (p, 8) of a tape as (PART, p)."""
-    for i in range(parts.shape[0]):
-        pack_part(parts[i], out, i)

@@ -61,14 +61,23 @@ from sceneql.lanes_kernels import load, store
 LANES, VECTOR = 64, 16
 C1, E, SINE, COSINE, WIDTH = LANES, 2 * LANES, 3 * LANES, 4 * LANES, 5 * LANES
 """Columns of a register."""
+TWICE, FIVE_TIMES = F(1.2e-7), F(3.0e-7)
+"""Half units in the last place."""
 PACKET = "int32[:, ::1], float64[::1], float32[:, ::1], float32[:, ::1], float32[:, ::1]"
 """Types of (code, constants, parts, registers, point)."""
 ENCLOSE = types.void(*normalize_signature(f"void({PACKET}, float32[::1], int64)")[0])
 enclose = late("sceneql.field.enclose_kernels:enclose", ENCLOSE)
+_singles, _row, _many = types.float32[:, ::1], types.float32[::1], types.int64
+SKELETON_LANES = types.void(_singles, _many, _many, _row, _row, _row, _row, _many)
+skeleton_lanes = late("sceneql.field.packet_skeleton_kernels:skeleton_lanes", SKELETON_LANES)
 BUNDLE = f"{PACKET}, float32[::1], float32[::1], int64[::1], float64[:, ::1], float32[:, ::1], int64[::1]"
 MEMORY = "float64[:, ::1]," * 6 + "int32[:, ::1], float32[:, ::1], float64[:, ::1]"
 """Types of a bundle of rays, and of what a tape works in: see ``packets.Memory``."""
-_many, _wide = types.int64[::1], types.float64[:, ::1]
+_wide = types.float64[:, ::1]
+KEEP_SKELETON = types.UniTuple(_many, 2)(
+    _many, _many, _row, _row, _row, _row, _many, _many, _singles, _wide, _many, _singles, _wide
+)  # fmt: skip
+keep_skeleton = late("sceneql.field.packet_near_kernels:keep_skeleton", KEEP_SKELETON)
 _place = types.float64
 TAPE_ROOTS = types.Tuple((types.int64, types.int64, types.int64, _place, _place, _place))(
     *normalize_signature(f"void({BUNDLE}, int64, int64, boolean, {MEMORY}, int64[::1])")[0]
@@ -81,9 +90,9 @@ CHECK_INSIDE = types.void(
     _wide,
     _wide,
     _wide,
+    types.int64[::1],
     _many,
-    types.int64,
-    types.int64,
+    _many,
     types.float64,
     _wide,
 )
@@ -104,7 +113,7 @@ def load_constants(code, constants, registers):
         if code[k, 0] == CONSTANT:
             number = constants[code[k, 1]]
             c0 = F(number)
-            e = ZERO if float(c0) == number else abs(c0) * PAD + TINY
+            e = ZERO if float(c0) == number else abs(c0) * TWICE + TINY
             for i in range(LANES):
                 registers[k, i] = c0
                 registers[k, C1 + i] = ZERO
@@ -239,7 +248,7 @@ def placed(o, d, middle, half):
     """Enclosure of o + t d, t = middle + half tau, where each of the numbers may be off by half a unit."""
     c1 = half * d
     way = middle * d
-    return o + way, c1, PAD * (abs(o) + abs(way) + abs(c1)) + TINY
+    return o + way, c1, TWICE * abs(o) + FIVE_TIMES * (abs(way) + abs(c1)) + TINY
 
 
 @lane

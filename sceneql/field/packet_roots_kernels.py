@@ -14,11 +14,11 @@ from sceneql.compiling.late import late
 from sceneql.field.density_polish_kernels import BOX, X, extent
 from sceneql.field.density_roots_kernels import ROW_OF, density_roots
 from sceneql.field.isolation_kernels import isolate
-from sceneql.field.packet_kernels import BUNDLE, MEMORY, check_inside, has, tape_roots
+from sceneql.field.packet_kernels import BUNDLE, MEMORY, check_inside, tape_roots
 from sceneql.field.polynomial_hunt_kernels import polynomial_roots
 from sceneql.field.polynomial_kernels import POLYNOMIAL
 from sceneql.field.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS, SETTLED
-from sceneql.field.tape_ops import HIT, MISS, SKELETON, UNDECIDED, WHOLE
+from sceneql.field.tape_ops import HIT, MISS, UNDECIDED, WHOLE
 from sceneql.kernels import inlined, lean
 
 _rows, _side = types.float64[:, ::1], types.float64
@@ -56,19 +56,6 @@ def certify_queued(code, constants, parts, scratch, rays, queue, count, end, any
         if found[FOUND_STATUS, j] == UNDECIDED:
             certified += 1
             certify_ray(code, constants, parts, scratch, rays, j, end, anywhere, found)
-    return certified
-
-
-@inlined
-def certify(code, constants, parts, scratch, rays, count, anywhere, found):
-    """Settle all rays one at a time: for operations that packets do not know. Returns their number."""
-    certified = 0
-    for j in range(count):
-        found[FOUND_LOW, j] = 0.0
-        if rays[6, j] < rays[7, j]:
-            certify_ray(code, constants, parts, scratch, rays, j, np.inf, anywhere, found)
-            found[FOUND_ROOT, j] += rays[6, j]
-            certified += 1
     return certified
 
 
@@ -169,8 +156,6 @@ def first_roots(
         code, parts = short[: code.shape[0]], near_parts
     elif plan[POLYNOMIAL] >= 0:
         spent, queued = polynomial_roots(code, constants, rays, count, anywhere, found, queue, plan, order, room, flat)
-    elif has(code, SKELETON):
-        return 0, certify(code, constants, parts, scratch, rays, count, anywhere, found)
     else:
         spent, queued, rows, end, safe, unsafe = tape_roots(
             code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, count, groups,

@@ -13,33 +13,37 @@ from sceneql.field import (
     density_march_kernels,
     density_roots_kernels,
     density_slice_kernels,
-    packet_density_kernels,
     packet_roots_kernels,
 )
+from sceneql.field.own_coordinates import in_own_coordinates
 from sceneql.field.packet_kernels import LANES, VECTOR, WIDTH
+from sceneql.field.packet_parts import density_columns, skeleton_columns
 from sceneql.field.packet_roots_kernels import GROUP
-from sceneql.field.plans import degrees_of, density_of, places_of, without_factor
+from sceneql.field.packet_rows import PART
+from sceneql.field.plans import degrees_of, density_of, places_of, tape_of_rows, without_factor
 from sceneql.field.polynomial_kernels import ABREAST, DEGREES, POLYNOMIAL
 from sceneql.field.polynomial_steps_kernels import ROWS, C
 from sceneql.field.ray_rows import ASK, FOUND_ROOT, FOUND_STATUS, LANE_ROWS, RAY
 from sceneql.field.slab_kernels import BEAM, OCTET
 from sceneql.field.solid import scratch
-from sceneql.field.tape_ops import ATAN2, CONSTANT, MAX, OF_PARTS, SKELETON, X, Y, Z
+from sceneql.field.tape_ops import DENSITY, MAX, OF_PARTS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy import float32, int32, int64
+    from numpy import float32, int64
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats, Tape
 
 
 def single_parts(tape: Tape) -> NDArray[float32]:
-    """The parts of a tape as packets read them."""
-    columns = len(tape.parts) + packet_density_kernels.SPARE_PARTS
-    out = lined((packet_density_kernels.PART, columns), np.float32)
-    packet_density_kernels.pack_parts(tape.parts, out)
+    """The parts of a tape as packets read them, and some columns more: vectors are loaded whole."""
+    out = lined((PART, len(tape.parts) + VECTOR), np.float32)
+    for op, start, stop, _ in tape.code.tolist():
+        if op in OF_PARTS:
+            columns = density_columns if op == DENSITY else skeleton_columns
+            out[:, start:stop] = columns(tape.parts[start:stop])
     return out
 
 
@@ -88,38 +92,6 @@ def others_of(plan: NDArray[int64]) -> list[int]:
     if plan[density_roots_kernels.ROW_OF] < 0 and plan[POLYNOMIAL] < 0:
         return [int(row) for row in plan[POLYNOMIAL + 1 :]]
     return [int(row) for row in plan[[density_roots_kernels.OTHER]] if row >= 0]
-
-
-def in_lanes(tape: Tape) -> bool:
-    """Whether a bundle's rays go through lanes: those of other tapes are certified one by one."""
-    plan = plan_of(tape)
-    known = bool(plan[density_roots_kernels.ROW_OF] >= 0 or plan[POLYNOMIAL] >= 0)
-    return known or SKELETON not in tape.code[:, 0]
-
-
-def tape_of_rows(tape: Tape, rows: list[int]) -> NDArray[int32]:
-    """Code (k, 4) of the largest of some rows and what it needs of the tape alone; empty for none."""
-    needed = set(rows)
-    for k in range(max(rows, default=-1), -1, -1):
-        op, left, right, point = map(int, tape.code[k])
-        if k in needed and op in OF_PARTS:
-            needed |= {point, point + 1, point + 2}
-        elif k in needed and op not in (CONSTANT, X, Y, Z):
-            needed |= {left, right}
-    place = {k: i for i, k in enumerate(sorted(needed))}
-    code = [[int(n) for n in tape.code[k]] for k in place]
-    for line in code:
-        if line[0] in OF_PARTS:
-            line[3] = place[line[3]]
-        elif line[0] not in (CONSTANT, X, Y, Z):
-            # The third operand of an angle is no row: see turns.
-            third = line[3] if line[0] == ATAN2 else place.get(line[3], 0)
-            line[1:] = place[line[1]], place[line[2]], third
-    last = [place[row] for row in rows]
-    for row in last[1:]:
-        code.append([MAX, last[0], row, 0])
-        last[0] = len(code) - 1
-    return np.array(code, dtype=np.int32).reshape(-1, 4)
 
 
 def room_for(plan: NDArray[int64]) -> int:
@@ -171,11 +143,13 @@ class Memory:
             lined(2 * LANES, np.int64),
         )
         self.asked, self.queue = lined((ASK, count), single), lined(count, np.int64)
-        self.singles = single_parts(tape)
+        plan = plan_of(tape)
+        enclosed = plan[density_roots_kernels.ROW_OF] < 0 and plan[POLYNOMIAL] < 0
+        # An exact form does without enclosures.
+        self.singles = single_parts(tape) if enclosed else lined((PART, VECTOR), single)
         beams, doubles = lined((BEAM, -(-count // GROUP) + VECTOR)), lined((rows, LANES))
         near = np.zeros((2 * rows, 4), dtype=np.int32), lined(self.singles.shape, single), lined(tape.parts.shape)
-        plan = plan_of(tape)
-        if plan[density_roots_kernels.ROW_OF] < 0 and plan[POLYNOMIAL] < 0:
+        if enclosed:
             plan = np.array([*plan, *cut], dtype=np.int64)
         most = STAGGER + -(-max(count, density_march_kernels.LANES, len(tape.parts)) // LANES) * LANES
         march = (
@@ -211,8 +185,13 @@ def cast_together(
     anywhere: bool = False,
     cut: Sequence[int] = (),
 ) -> tuple[NDArray[np.int64], Floats]:
-    """(status, t), each (n,): as ``solid.cast``, of rays that pass near each other, in bundles of 256."""
+    """(status, t), each (n,): as ``solid.cast``, of rays that pass near each other, in bundles of 256.
+
+    They are cut by the rows ``cut`` of the tape already: see Memory.
+    """
     size = min(256, len(t0))
+    tape, matrix = (tape, np.eye(3, 4)) if len(cut) > 0 else in_own_coordinates(tape)
+    origins, directions = origins @ matrix[:, :3].T + matrix[:, 3], directions @ matrix[:, :3].T
     memory = Memory(tape, size, cut)
     status, t = np.empty(len(t0), dtype=np.int64), np.empty(len(t0))
     for start in range(0, len(t0), size):

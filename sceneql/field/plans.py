@@ -12,6 +12,7 @@ import numpy as np
 from sceneql.field.skeleton import plain_points
 from sceneql.field.tape_ops import (
     ADD,
+    ATAN2,
     CONSTANT,
     COPY,
     DENSITY,
@@ -30,6 +31,9 @@ from sceneql.field.tape_ops import (
 )
 
 if TYPE_CHECKING:
+    from numpy import int32
+    from numpy.typing import NDArray
+
     from sceneql.frame import Ints, Tape
 
 MOST_DEGREE = 8
@@ -150,3 +154,28 @@ def ray_plan(tape: Tape) -> Ints:
         return none
     starts = ends - needed - 1 - BESIDE
     return np.array([POLYNOMIAL, own, *(clips or [(-1, -1)])[0], *needed, *starts], dtype=np.int32)
+
+
+def tape_of_rows(tape: Tape, rows: list[int]) -> NDArray[int32]:
+    """Code (k, 4) of the largest of some rows and what it needs of the tape alone; empty for none."""
+    needed = set(rows)
+    for k in range(max(rows, default=-1), -1, -1):
+        op, left, right, point = map(int, tape.code[k])
+        if k in needed and op in OF_PARTS:
+            needed |= {point, point + 1, point + 2}
+        elif k in needed and op not in (CONSTANT, X, Y, Z):
+            needed |= {left, right}
+    place = {k: i for i, k in enumerate(sorted(needed))}
+    code = [[int(n) for n in tape.code[k]] for k in place]
+    for line in code:
+        if line[0] in OF_PARTS:
+            line[3] = place[line[3]]
+        elif line[0] not in (CONSTANT, X, Y, Z):
+            # The third operand of an angle is no row: see turns.
+            third = line[3] if line[0] == ATAN2 else place.get(line[3], 0)
+            line[1:] = place[line[1]], place[line[2]], third
+    last = [place[row] for row in rows]
+    for row in last[1:]:
+        code.append([MAX, last[0], row, 0])
+        last[0] = len(code) - 1
+    return np.array(code, dtype=np.int32).reshape(-1, 4)

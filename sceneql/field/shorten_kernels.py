@@ -6,13 +6,16 @@ import numpy as np
 
 from sceneql.field.affine_kernels import GROW, PAD
 from sceneql.field.packet_density_kernels import keep_near
-from sceneql.field.packet_kernels import C1, LANES, E
+from sceneql.field.packet_kernels import C1, LANES, SINE, E, keep_skeleton
 from sceneql.field.short_rows_kernels import ALIAS, LIVE, write_row
+from sceneql.field.skeleton_parts_kernels import STRIDE
 from sceneql.field.tape_ops import CONSTANT, COPY, DENSITY, MAX, MIN, MUL, NEG, SKELETON, WHOLE, X, Y, Z
 from sceneql.kernels import inlined
 
 BY_SIGN, BY_VALUE = 1.0, 2.0
 """What matters of a row: its sign alone, as of f, or its value."""
+MANY, FEW = 6, 96
+"""So many times as many parts as are near a ray, and so many more, may be near a bundle."""
 CLIPS = 7
 """Column of scratch: whether a row is a clip."""
 
@@ -108,7 +111,10 @@ def whole_in(status, first, stop):
 
 @inlined
 def shorten(code, registers, status, first, final, clips, singles, parts, scratch, short, near_singles, near_parts):
-    """Write what matters in slabs first..final into ``short``, behind as many rows as ``code`` has; how many rows.
+    """Write what matters in slabs first..final into ``short``, behind as many rows as ``code`` has.
+
+    Returns (how many rows, whether the bundle is near so much more of a skeleton than a ray that these are better
+    looked at alone).
 
     Before those, the whole tape with the parts alone that are near. ``registers`` and ``status`` are those of all slabs
     in lanes; a branch must win in their neighbors, too, so that it does wherever a ray is looked at. What is written
@@ -118,7 +124,7 @@ def shorten(code, registers, status, first, final, clips, singles, parts, scratc
     low, stop = max(first - 1, 0), min(final + 2, LANES)
     whole = whole_in(status, low, stop)
     mark_needed(code, registers, scratch, clips, whole, low, stop)
-    rows, kept = length, 0
+    rows, kept, parted = length, 0, False
     for k in range(length):
         for j in range(4):
             short[k, j] = code[k, j]
@@ -126,9 +132,17 @@ def shorten(code, registers, status, first, final, clips, singles, parts, scratc
         if code[k, 0] == DENSITY:
             kept = keep_near(code, k, registers, first, final + 1, singles, parts, kept, near_singles, near_parts)
             short[k, 1], short[k, 2] = begin, kept
+        elif code[k, 0] == SKELETON:
+            p = code[k, 3]
+            kept, own = keep_skeleton(
+                code[k, 1], code[k, 2], registers[p], registers[p + 1], registers[p + 2], registers[k, SINE:], first,
+                final + 1, singles, parts, kept, near_singles, near_parts,
+            )  # fmt: skip
+            short[k, 1], short[k, 2] = begin, kept
+            parted = parted or kept - begin > STRIDE * (MANY * own + FEW)
         if scratch[k, LIVE] != 0.0:
             write_row(code, k, scratch, short[length:], rows - length)
-            if code[k, 0] == DENSITY:
+            if code[k, 0] == DENSITY or code[k, 0] == SKELETON:
                 short[rows, 1], short[rows, 2] = begin, kept
             rows += 1
-    return rows - length
+    return rows - length, parted

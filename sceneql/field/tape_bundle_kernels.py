@@ -14,6 +14,8 @@ from sceneql.field.ray_rows import (
     FOUND_ROOT,
     FOUND_SLOPE,
     FOUND_STATUS,
+    NEAR,
+    RUN,
     SETTLED,
     SURE,
 )
@@ -34,7 +36,7 @@ from sceneql.field.slab_kernels import (
     place_slabs,
     single_beams,
 )
-from sceneql.field.tape_ops import DENSITY, HIT, MAX, MIN, UNDECIDED
+from sceneql.field.tape_ops import DENSITY, HIT, MAX, MIN, SKELETON, UNDECIDED
 from sceneql.kernels import inlined, lean
 from sceneql.lanes_kernels import spread
 
@@ -64,8 +66,12 @@ def enqueue(rays, count, groups, asked, found, queue):
 
 
 @inlined
-def polish(code, constants, parts, registers, points, rays, queue, count, found):
-    """Newton's steps on all hits among the queued rays, in float64, with the slope of the last enclosure."""
+def polish(code, constants, parts, registers, points, rays, queue, count, found, values, ways):
+    """A step of Newton's method on all hits among the queued rays, in float64, and one of the secant method.
+
+    The first has the slope of the last enclosure, which may be a mean of what is enclosed. ``values`` and ``ways``
+    (n,) are memory.
+    """
     width = points.shape[1]
     for start in range(0, count, width):
         n = min(width, count - start)
@@ -85,7 +91,11 @@ def polish(code, constants, parts, registers, points, rays, queue, count, found)
             for i in range(n):
                 j = np.uint64(queue[start + i])
                 step = last[i] / found[FOUND_SLOPE, j]
+                rise = last[i] - values[j]
+                if turn == 1 and ways[j] != ZERO and rise * ways[j] * found[FOUND_SLOPE, j] > 0.0:
+                    step = last[i] * ways[j] / rise
                 root = min(max(found[FOUND_ROOT, j] - step, found[FOUND_LOW, j]), found[FOUND_HIGH, j])
+                values[j], ways[j] = last[i], root - found[FOUND_ROOT, j]
                 left = min(abs(step), found[FOUND_HIGH, j] - found[FOUND_LOW, j])
                 if turn == 1 and not (left <= SETTLED * (rays[7, j] - rays[6, j]) and rays[6, j] + root < rays[7, j]):
                     found[FOUND_STATUS, j] = UNDECIDED
@@ -115,6 +125,18 @@ def all_through(rays, count, low, high):
     for j in range(count):
         others += 1 if (begins[j] < ends[j]) & ~((begins[j] < low) & (ends[j] > high)) else 0
     return others == 0
+
+
+@inlined
+def leave_all(rays, count, found, queue):
+    """Leave all rays that have a length to the certified routine; how many."""
+    queued = 0
+    for j in range(count):
+        if rays[6, j] < rays[7, j]:
+            queue[np.uint64(queued)] = j
+            found[FOUND_STATUS, j], found[FOUND_LOW, j] = UNDECIDED, 0.0
+            queued += 1
+    return queued
 
 
 @lean(TAPE_ROOTS, inner=True)
@@ -150,15 +172,18 @@ def tape_roots(
         if deep >= 0 and all_through(rays, count, base + deep * depth, base + (deep + 1) * depth):
             final = deep
         begin, end = base + (first - 1e-6) * depth, base + (final + 1 + 1e-6) * depth
-        if has(code, DENSITY) or has(code, MAX) or has(code, MIN):
-            rows = shorten(
+        of_parts = has(code, DENSITY) or has(code, SKELETON)
+        if of_parts or has(code, MAX) or has(code, MIN):
+            rows, parted = shorten(
                 code, registers, status, first, final, clips, singles, parts, scratch, short, near_singles, near_parts
             )
+            if parted:
+                return spent, leave_all(rays, count, found, queue), 0, np.inf, -np.inf, np.inf
             from_slab, to_slab = uncut(registers, clips)
             if clips.shape[0] > 0:
                 safe, unsafe = base + from_slab * depth, base + to_slab * depth
             code = short[length : length + rows]
-            if has(code, DENSITY):
+            if of_parts:
                 singles = near_singles
             last = registers[rows - 1]
             load_constants(code, constants, registers)
@@ -183,5 +208,17 @@ def tape_roots(
             if found[FOUND_STATUS, queue[k]] == HIT:
                 queue[hits], queue[k] = queue[k], queue[hits]
                 hits += 1
-        polish(code, constants, near_parts if rows > 0 else parts, doubles, points, rays, queue, hits, found)
+        polish(
+            code,
+            constants,
+            near_parts if rows > 0 else parts,
+            doubles,
+            points,
+            rays,
+            queue,
+            hits,
+            found,
+            asked[NEAR],
+            asked[RUN],
+        )
     return spent, queued, rows, end, safe, unsafe

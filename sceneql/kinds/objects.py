@@ -44,9 +44,6 @@ class Object(Kind):
     collides: ClassVar[bool] = False
     """Whether contacts that name no surface take it as one even where more of it varies in time than its place."""
 
-    traced: ClassVar[str] = ""
-    """What field it may be drawn by, whose roots rays have to find (frame.Implicit): "formula", "density"; or none."""
-
     unseen: ClassVar[str] = ""
     """Of one that draws its members as something else: why nothing of it is there where it draws nothing."""
 
@@ -56,6 +53,14 @@ class Object(Kind):
     material: MaterialRef | None = field("How it looks; by default glossy, in a color by order.", None)
     color: Color | None = field("Color in place of the material's.", None)
     hidden: bool = field("Not drawn (but may be used by others).", False)
+
+    @property
+    def traced(self) -> str:
+        """What field it may be drawn by, whose roots rays have to find (frame.Implicit).
+
+        "formula"; "density" of points; "skeleton", of other parts; or "" for none.
+        """
+        return ""
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Drawn]:
         """Closed-set shapes of this instant; ``place`` (3, 4) maps the parent's coordinates to the world."""

@@ -75,6 +75,11 @@ class Part(Record):
         if self.closed and self.polyline is None and self.spline is None:
             yield Problem("only a polyline or a spline can be closed", ("closed",), at_key=True)
 
+    @property
+    def lone(self) -> bool:
+        """Whether it is points or segments, each alone."""
+        return not (self.polyline or self.spline or self.polygon or self.triangles)
+
     def place(self) -> Value | None:
         """Where it is; None where it says so in several ways, or not at all."""
         given = [value for name in self.KINDS if (value := getattr(self, name)) is not None]

@@ -32,7 +32,11 @@ class Solid(Placed):
     """An object with a field in its own coordinates."""
 
     gives: ClassVar[Mapping[str, Gives]] = MEASURES
-    traced: ClassVar[str] = "formula"
+
+    @property
+    def traced(self) -> str:
+        """A field of its own."""
+        return "formula"
 
     def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
         """Register of its field, negative inside; (x, y, z) are registers of a point in its own coordinates."""

@@ -46,7 +46,6 @@ class Blobby(Object):
     """
 
     gives: ClassVar[Mapping[str, Gives]] = MEASURES
-    traced: ClassVar[str] = "density"
 
     skeleton: tuple[Part, ...] = field("Parts of any kind, each with its radius, weight and color.", ())
     points: Points | None = field("The points of the skeleton, or more of them.", None)
@@ -57,6 +56,13 @@ class Blobby(Object):
     weight: NumberOrNumbers = field("Factor of a point's density, one or one each; below 0 it hollows out.", "1")
     threshold: FixedScalar = field("The density at the surface.", "0.3", at_least=1e-9, below=1)
     kernel: Kernel = field("How the density falls off with the distance.", "wyvill")
+
+    @property
+    def traced(self) -> str:
+        """By another field where it has more than points, or another kernel than Wyvill's."""
+        if self.kernel != "wyvill" or not all(part.lone for part in self.skeleton):
+            return "skeleton"
+        return "formula" if self.segments or any(part.segments is not None for part in self.skeleton) else "density"
 
     def problems(self) -> Iterator[Problem]:
         """Lists of values that do not go with the points, no points, and ends that are none."""

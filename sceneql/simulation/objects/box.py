@@ -25,9 +25,13 @@ class Box(Solid):
     """
 
     collides: ClassVar[bool] = True
-    traced: ClassVar[str] = ""
 
     size: Position = field("Its sides along its own x, y and z.", "1 1 1 m", above=0)
+
+    @property
+    def traced(self) -> str:
+        """It is met exactly."""
+        return ""
 
     def _half(self, moment: Moment) -> tuple[float, float, float]:
         half = triple(0.5 * moment.at(self.size))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import FieldBuilder, Length, Moment, field
 from sceneql.simulation.placement import compose
@@ -21,10 +21,13 @@ class Cylinder(Solid):
     than the distance in front of its rims.
     """
 
-    traced: ClassVar[str] = ""
-
     radius: Length = field("Its radius.", "0.5 m", above=0)
     height: Length = field("Its length along its own y.", "1 m", above=0)
+
+    @property
+    def traced(self) -> str:
+        """It is met exactly."""
+        return ""
 
     def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
         """Signed distance in the maximum norm of side and ends."""

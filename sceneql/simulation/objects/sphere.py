@@ -19,9 +19,13 @@ class Sphere(Solid):
     """The ball |p| <= radius about its position. Its field is the signed distance |p| - radius."""
 
     collides: ClassVar[bool] = True
-    traced: ClassVar[str] = ""
 
     radius: Length = field("Its radius.", "0.5 m", above=0)
+
+    @property
+    def traced(self) -> str:
+        """It is met exactly."""
+        return ""
 
     def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
         """Signed distance."""
