@@ -24,6 +24,7 @@ from sceneql.field.skeleton_parts_kernels import (
     STRIDE,
     TRIANGLE,
     WEIGHT,
+    largest_radius,
 )
 from sceneql.kernels import inlined
 
@@ -134,6 +135,21 @@ def outside_node(parts, i, x0, x1, y0, y1, z0, z1):
 
 
 @inlined
+def passed_by(parts, i, x, y, z):
+    """Whether a point is surely out of reach of the curve at row i: of the box around its control points."""
+    if parts[i + 1, SHAPE] != CURVE:
+        return False
+    away2 = 0.0
+    p = (x, y, z)
+    for k in range(3):
+        a, b, c = parts[i, k], parts[i, k + 3], parts[i + 1, k]
+        off = max(max(min(min(a, b), c) - p[k], p[k] - max(max(a, b), c)), 0.0)
+        away2 += off * off
+    reach = largest_radius(parts, i)
+    return away2 > reach * reach * (1.0 + 1.0e-9)
+
+
+@inlined
 def skeleton_value(parts, start, stop, x, y, z):
     """Sum of the densities of the groups in rows start..stop-1 at a point; NaN at a point that is not finite."""
     if not np.isfinite(x + y + z):
@@ -144,6 +160,9 @@ def skeleton_value(parts, start, stop, x, y, z):
     while i < stop:
         if parts[i + 1, SHAPE] == NODE:
             i += STRIDE + (int(parts[i, RADIUS]) if outside_node(parts, i, x, x, y, y, z, z) else 0)
+            continue
+        if passed_by(parts, i, x, y, z):
+            i += STRIDE
             continue
         wx, wy, wz, q = to_part(parts, i, x, y, z)
         radius = radius_at(parts, i, q)
@@ -183,6 +202,9 @@ def skeleton_gradient(parts, start, stop, x, y, z):
     while i < stop:
         if parts[i + 1, SHAPE] == NODE:
             i += STRIDE + (int(parts[i, RADIUS]) if outside_node(parts, i, x, x, y, y, z, z) else 0)
+            continue
+        if passed_by(parts, i, x, y, z):
+            i += STRIDE
             continue
         density, ux, uy, uz = part_gradient(parts, i, x, y, z)
         if parts[i + 1, GROUP] != group:
