@@ -24,6 +24,18 @@ objects:
   floor: plane
   ball: {sphere: {position: 1 1 0 m, radius: 0.5 m, material: {glass: {}}}}
   drops: {blobby: {points: [-1 0.5 0 m, -0.7 0.6 0.2 m, -1.2 0.8 0 m], radius: 0.4 m, color: tomato}}
+  worm:
+    group:
+      position: -0.3 1.3 0.4 m
+      rotation: {about: 1 1 0, angle: 50 deg}
+      children:
+        skin:
+          blobby:
+            kernel: gaussian
+            skeleton:
+              - {spline: [-0.5 0 0 m, -0.2 0.2 0 m, 0.2 -0.1 0.2 m, 0.6 0.1 0 m], radius: [0.2 m, 0.3 m, 0.25 m, 0.15 m]}
+              - {polyline: [-0.4 0 0 m, -0.4 -0.4 0 m], radius: [0.25 m, 0.15 m]}
+              - {polygon: [0.3 0 -0.3 m, 0.6 0.3 -0.3 m, 0.2 0.4 -0.2 m], radius: 0.15 m, weight: 0.8}
   quartic:
     implicit: {field: x^4 + y^4 + z^4 - x^2 - y^2 - z^2 + 0.4, bounds: {ball: 1.6}, unit: 0.4 m, position: 0 0.5 1 m}
 outputs: {still: {image: {size: 96 54, time: 0 s, renderer: {trace: {tolerance: TOLERANCE}}}}}
