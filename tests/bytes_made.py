@@ -33,7 +33,7 @@ objects:
           blobby:
             kernel: gaussian
             skeleton:
-              - {spline: [-0.5 0 0 m, -0.2 0.2 0 m, 0.2 -0.1 0.2 m, 0.6 0.1 0 m], radius: [0.2 m, 0.3 m, 0.25 m, 0.15 m]}
+              - {spline: [-0.5 0 0 m, -0.2 0.2 0 m, 0.2 -0.1 0.2 m, 0.6 0 0 m], radius: [0.2 m, 0.3 m, 0.25 m, 0.2 m]}
               - {polyline: [-0.4 0 0 m, -0.4 -0.4 0 m], radius: [0.25 m, 0.15 m]}
               - {polygon: [0.3 0 -0.3 m, 0.6 0.3 -0.3 m, 0.2 0.4 -0.2 m], radius: 0.15 m, weight: 0.8}
   quartic:
