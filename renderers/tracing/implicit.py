@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from typing import TYPE_CHECKING
 
 from renderers.tracing.pack import scratch
@@ -34,7 +35,6 @@ def prepared(scene: Scene, rows: int, places: list[int], *, sheets: bool, march:
         from renderers.tracing import sheet_kernels
 
         scene = scene._replace(sheet=address(sheet_kernels.crossing, CROSSING))
-    sides = [int(scene.ints[int(scene.reals[place + 6]) + CELLS]) for place in places]
-    slabs = [(place, slab) for place, side in zip(places, sides, strict=True) for slab in range(side // BLOCK)]
+    slabs = list(product(places, range(CELLS // BLOCK)))
     over_tiles(len(slabs), lambda tile: occupy(scene, scratch(rows), *slabs[tile]))
     return scene

@@ -4,8 +4,9 @@
 import numpy as np
 from numba import types
 
-from renderers.tracing.ranges_kernels import box_part, cells_along, cells_at, plan_at, tape_of
+from renderers.tracing.ranges_kernels import box_part, cells_at, plan_at, tape_of
 from renderers.tracing.scene_kernels import (
+    CELLS,
     CROSSING,
     EMPTY,
     FULL,
@@ -30,8 +31,6 @@ RETRIES = 8
 """Undecided places passed on one ray before it counts as a miss."""
 FARTHER = 10.0
 """By how much farther each of them is passed than the one before."""
-BLOCK = 4
-"""Cells along a side of the coarse blocks that are tried before their cells."""
 PAD = 1e-7
 """By which a cell is enlarged, relative to its side, so that rounding in the walk does no harm."""
 
@@ -50,13 +49,12 @@ def occupied(scene, k, ox, oy, oz, dx, dy, dz, start, stop):
     """
     b = scene.reals
     base = cells_at(scene, k)
-    cells = cells_along(scene, k)
-    hx = (b[k + 3] - b[k]) / cells
-    hy = (b[k + 4] - b[k + 1]) / cells
-    hz = (b[k + 5] - b[k + 2]) / cells
-    i = int(min(max((ox + start * dx - b[k]) / hx, 0.0), cells - 1.0))
-    j = int(min(max((oy + start * dy - b[k + 1]) / hy, 0.0), cells - 1.0))
-    l = int(min(max((oz + start * dz - b[k + 2]) / hz, 0.0), cells - 1.0))
+    hx = (b[k + 3] - b[k]) / CELLS
+    hy = (b[k + 4] - b[k + 1]) / CELLS
+    hz = (b[k + 5] - b[k + 2]) / CELLS
+    i = int(min(max((ox + start * dx - b[k]) / hx, 0.0), CELLS - 1.0))
+    j = int(min(max((oy + start * dy - b[k + 1]) / hy, 0.0), CELLS - 1.0))
+    l = int(min(max((oz + start * dz - b[k + 2]) / hz, 0.0), CELLS - 1.0))
     ix = inverse(dx)
     iy = inverse(dy)
     iz = inverse(dz)
@@ -69,7 +67,7 @@ def occupied(scene, k, ox, oy, oz, dx, dy, dz, start, stop):
     begin = NONE
     t = start
     while t < stop:
-        state = scene.ints[base + (i * cells + j) * cells + l]
+        state = scene.ints[base + (i * CELLS + j) * CELLS + l]
         if state == EMPTY:
             if begin < NONE:
                 return begin, t, False
@@ -81,17 +79,17 @@ def occupied(scene, k, ox, oy, oz, dx, dy, dz, start, stop):
         if tx <= ty and tx <= tz:
             i += 1 if dx >= 0.0 else -1
             tx += wx
-            if i < 0 or i >= cells:
+            if i < 0 or i >= CELLS:
                 break
         elif ty <= tz:
             j += 1 if dy >= 0.0 else -1
             ty += wy
-            if j < 0 or j >= cells:
+            if j < 0 or j >= CELLS:
                 break
         else:
             l += 1 if dz >= 0.0 else -1
             tz += wz
-            if l < 0 or l >= cells:
+            if l < 0 or l >= CELLS:
                 break
         t = leave
     return begin, stop, False
@@ -101,7 +99,7 @@ def occupied(scene, k, ox, oy, oz, dx, dy, dz, start, stop):
 def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """Crossing of implicit object k behind ``near``; with ``anywhere`` of any place inside, not the first."""
     b = scene.reals
-    side = min(b[k + 3] - b[k], b[k + 4] - b[k + 1], b[k + 5] - b[k + 2]) / cells_along(scene, k)
+    side = min(b[k + 3] - b[k], b[k + 4] - b[k + 1], b[k + 5] - b[k + 2]) / CELLS
     enter, stop = box_part(scene, k, ox, oy, oz, dx, dy, dz, near, far)
     if not enter < stop:
         return NONE

@@ -4,8 +4,8 @@
 from numba import types
 
 from renderers.tracing.implicit_kernels import PAD
-from renderers.tracing.ranges_kernels import cells_along, cells_at, is_sheet, tape_of
-from renderers.tracing.scene_kernels import EMPTY, FULL, MIXED, SCENE, SCRATCH, WITHIN, part
+from renderers.tracing.ranges_kernels import cells_at, is_sheet, tape_of
+from renderers.tracing.scene_kernels import CELLS, EMPTY, FULL, MIXED, SCENE, SCRATCH, WITHIN, part
 from sceneql.field.interval_kernels import box
 from sceneql.field.tape_ops import NOWHERE, WHOLE
 from sceneql.kernels import kernel
@@ -19,8 +19,7 @@ def bounds(scene, scratch, k, first, i, j, l, side):
     """(low, high, status) of a tape of implicit object k in the cells (i..i+side, ...)."""
     b = scene.reals
     code, constants, parts = tape_of(scene, k, first)
-    n = cells_along(scene, k)
-    h = ((b[k + 3] - b[k]) / n, (b[k + 4] - b[k + 1]) / n, (b[k + 5] - b[k + 2]) / n)
+    h = ((b[k + 3] - b[k]) / CELLS, (b[k + 4] - b[k + 1]) / CELLS, (b[k + 5] - b[k + 2]) / CELLS)
     return box(
         code,
         constants,
@@ -49,9 +48,9 @@ def region(scene, scratch, k, i, j, l, side):
 @kernel(types.void(SCENE, SCRATCH, types.int64, types.int64), _nrt=False)
 def occupy(scene, scratch, k, slab):
     """Fill a slab (BLOCK layers of cells along x) of implicit object k: coarse blocks first, then their cells."""
-    base, cells = cells_at(scene, k), cells_along(scene, k)
-    for bj in range(0, cells, BLOCK):
-        for bl in range(0, cells, BLOCK):
+    base = cells_at(scene, k)
+    for bj in range(0, CELLS, BLOCK):
+        for bl in range(0, CELLS, BLOCK):
             coarse = region(scene, scratch, k, slab * BLOCK, bj, bl, BLOCK)
             for i in range(slab * BLOCK, slab * BLOCK + BLOCK):
                 for j in range(bj, bj + BLOCK):
@@ -59,4 +58,4 @@ def occupy(scene, scratch, k, slab):
                         found = coarse
                         if coarse == MIXED:
                             found = region(scene, scratch, k, i, j, l, 1)
-                        scene.ints[base + (i * cells + j) * cells + l] = found
+                        scene.ints[base + (i * CELLS + j) * CELLS + l] = found

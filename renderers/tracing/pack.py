@@ -10,6 +10,7 @@ import numpy as np
 from renderers.tracing import TOLERANCE, hierarchy_kernels
 from renderers.tracing.scene_kernels import (
     CAMERA,
+    CELLS,
     CELLS_AT,
     GRID,
     HALF_SPACE,
@@ -48,8 +49,6 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints, Light, Tape
 
 
-CELLS = 32
-"""Occupancy cells along each axis of an implicit object's box, by which single rays go."""
 UNBOUNDED = np.repeat([-np.inf, np.inf], 3)
 
 
@@ -195,7 +194,7 @@ class Rows:
         for other in (shape.paint, shape.within):
             ranges += [0] * (WITHIN - PAINT) if other is None else self._tape(other)
         plan = ray_plan(shape.tape)
-        ranges += [self._code(plan), len(plan), CELLS]
+        ranges += [self._code(plan), len(plan)]
         self.ranges.append(np.array(ranges))
 
     def _grid(self, index: int, shape: Grid) -> None:

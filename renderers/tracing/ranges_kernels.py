@@ -1,7 +1,7 @@
 # mypy: ignore-errors
 """Where what is known of an implicit object lies in the scene's arrays."""
 
-from renderers.tracing.scene_kernels import CELLS, CELLS_AT, PLAN, WITHIN, part
+from renderers.tracing.scene_kernels import CELLS_AT, PLAN, WITHIN, part
 from renderers.tracing.solids_kernels import box_span, inverse
 
 
@@ -25,12 +25,6 @@ def tape_of(scene, k, first=0):
 def cells_at(scene, k):
     """Place of the occupancy cells of the implicit object whose reals begin at k."""
     return scene.ints[int(scene.reals[k + 6]) + CELLS_AT]
-
-
-@part
-def cells_along(scene, k):
-    """How many cells implicit object k has along each axis."""
-    return scene.ints[int(scene.reals[k + 6]) + CELLS]
 
 
 @part

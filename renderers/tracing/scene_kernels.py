@@ -78,10 +78,11 @@ HALF_SPACE (a quadric that is nothing else): unit normal, height of its face alo
 GRID: as grid_kernels says.
 IMPLICIT and SHEET: low, high, place of its ranges: 7. The ranges, in ints: place of the code, its rows, place of the
 constants, their number, place of the parts, their rows; place of the cells; the same six of its paint and of what a
-sheet lies within (no rows: it has none); place of the plan for single rays (sceneql.field.plans), its length; cells
-along each axis."""
-CELLS_AT, PAINT, WITHIN, PLAN, CELLS, RANGES = 6, 7, 13, 19, 21, 22
+sheet lies within (no rows: it has none); place of the plan for single rays (sceneql.field.plans), its length."""
+CELLS_AT, PAINT, WITHIN, PLAN, RANGES = 6, 7, 13, 19, 21
 """Columns of the ranges, and how many there are."""
+CELLS = 32
+"""Occupancy cells along each axis of an implicit object's box, by which single rays go."""
 
 LINK = 3
 """Ints of a node: the node to go on with when this one is missed, first item, number of items (0: an inner node)."""

@@ -4,8 +4,8 @@
 import numpy as np
 
 from renderers.tracing.implicit_kernels import FARTHER, PAD, RETRIES, occupied
-from renderers.tracing.ranges_kernels import box_part, cells_along, tape_of
-from renderers.tracing.scene_kernels import CROSSING, TOLERANCE, WITHIN
+from renderers.tracing.ranges_kernels import box_part, tape_of
+from renderers.tracing.scene_kernels import CELLS, CROSSING, TOLERANCE, WITHIN
 from renderers.tracing.solids_kernels import NONE
 from sceneql.field.sheet_roots_kernels import surface_root
 from sceneql.field.tape_kernels import value
@@ -19,7 +19,7 @@ def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     code, constants, parts = tape_of(scene, k)
     code_within, constants_within, parts_within = tape_of(scene, k, WITHIN)
     b = scene.reals
-    side = min(b[k + 3] - b[k], b[k + 4] - b[k + 1], b[k + 5] - b[k + 2]) / cells_along(scene, k)
+    side = min(b[k + 3] - b[k], b[k + 4] - b[k + 1], b[k + 5] - b[k + 2]) / CELLS
     t, stop = box_part(scene, k, ox, oy, oz, dx, dy, dz, near, far)
     past = 0.1 * PAD * side / np.sqrt(dx * dx + dy * dy + dz * dz)
     tolerance = b[TOLERANCE]

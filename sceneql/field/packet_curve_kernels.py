@@ -146,7 +146,8 @@ def stationary(curve, wx, wy, wz):
     h3 = (TWO * n4 * r0 + uv * r1) - m1 * r2
     h4 = n4 * r1 - uv * r2
     size = abs(wx) + abs(wy) + abs(wz) + (abs(ux) + abs(uy) + abs(uz) + abs(vx) + abs(vy) + abs(vz))
-    return h0, h1, h2, h3, h4, size * size * (F(16.0) * PAD * (abs(r0) + abs(r1) + abs(r2))) + TINY
+    blur = size * size * (F(16.0) * PAD * (abs(r0) + abs(r1) + abs(r2))) + TINY
+    return h0, h1, h2, h3, h4, blur + ZERO * (h0 + h1 + h2 + h3 + h4)  # nothing is known of what is too large
 
 
 @inlined

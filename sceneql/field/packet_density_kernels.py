@@ -56,12 +56,17 @@ def extent(c0, c1, e):
 
 
 @inlined
-def gap(parts, row, k, low, high):
-    """How far the boxes of VECTOR parts from the kth on stay off low..high along one coordinate."""
-    before = low - load(parts[row + 1], k)
-    behind = load(parts[row], k) - high
+def apart(low, high, first, last):
+    """How far low..high and first..last are apart, 0 where they meet."""
+    before, behind = low - last, first - high
     off = below(before, behind, behind, before)
     return below(off, ZERO, ZERO, off)
+
+
+@inlined
+def gap(parts, row, k, low, high):
+    """How far the boxes of VECTOR parts from the kth on stay off low..high along one coordinate."""
+    return apart(low, high, load(parts[row], k), load(parts[row + 1], k))
 
 
 @inlined
@@ -126,8 +131,18 @@ def looked_at(x, y, z, i):
 
 
 @inlined
-def summed(out, i, c0, c1, c2, e, size, added, loose):
+def weighed(weight, part, sums):
+    """Sums of polynomials c0, c1, c2, errors and sizes with that of a part more."""
+    d0, d1, d2, d, m = part
+    c0, c1, c2, e, size = sums
+    much = abs(weight)
+    return fma(weight, d0, c0), fma(weight, d1, c1), fma(weight, d2, c2), fma(much, d, e), fma(much, m, size)
+
+
+@inlined
+def summed(out, i, sums, added, loose):
     """Write the sum of polynomials c0 + 3 c1 tau + 3 c2 tau^2 +- e as an enclosure in VECTOR lanes of ``out``."""
+    c0, c1, c2, e, size = sums
     c1 = THREE * c1
     c2 = F(1.5) * c2  # half of the term in tau^2, which lies between it and 0
     c0 = c0 + c2 + ZERO * loose  # nothing is known where the place is not
@@ -171,23 +186,18 @@ def density_lanes(parts, start, stop, x, y, z, out, n):
     for i in range(0, n, VECTOR):
         px, py, pz, ux, uy, uz, box, way, loose = looked_at(x, y, z, i)
         speed = ux * ux + uy * uy + uz * uz
-        c0 = c1 = c2 = e = size = spread(ZERO)
+        none = spread(ZERO)
+        sums = none, none, none, none, none
         added = ZERO
         for first in range(start, stop, VECTOR):
             bits = near_box(parts, first, stop, box)
             while bits != 0:
                 k = first + first_bit(bits)
                 bits &= bits - 1
-                weight = parts[WEIGHT, k]
                 a0, a1, a2, error = around(parts, k, px, py, pz, ux, uy, uz, speed, way, loose)
-                d0, d1, d2, d, m = cubed(a0, a1, a2, error)
-                c0 = fma(weight, d0, c0)
-                c1 = fma(weight, d1, c1)
-                c2 = fma(weight, d2, c2)
-                e = fma(abs(weight), d, e)
-                size = fma(abs(weight), m, size)
+                sums = weighed(parts[WEIGHT, k], cubed(a0, a1, a2, error), sums)
                 added += ONE
-        summed(out, i, c0, c1, c2, e, size, added, loose)
+        summed(out, i, sums, added, loose)
 
 
 @inlined

@@ -1,26 +1,20 @@
 # mypy: ignore-errors
 """Which parts of skeletons are near what many ray segments enclose, in float32: those of a bundle are kept."""
 
-from sceneql.field.packet_density_kernels import C1, GROW, INFINITE, TINY, VECTOR, ZERO, looked_at, near_box, sizes
+from sceneql.field.packet_density_kernels import C1, GROW, INFINITE, TINY, VECTOR, apart, looked_at, near_box, sizes
 from sceneql.field.packet_kernels import KEEP_SKELETON
 from sceneql.field.packet_rows import FAR, LOW_X, LOW_Y, LOW_Z, PART
 from sceneql.field.skeleton_parts_kernels import NODE, SHAPE, STRIDE
 from sceneql.kernels import inlined, lean
-from sceneql.lanes_kernels import below, bits_below, load
-
-
-@inlined
-def off_side(parts, row, k, x):
-    """How far places are off the box around part k along one coordinate."""
-    before, behind = parts[row, k] - x, x - parts[row + 1, k]
-    off = below(before, behind, behind, before)
-    return below(off, ZERO, ZERO, off)
+from sceneql.lanes_kernels import bits_below, load
 
 
 @inlined
 def off_box(parts, k, x, y, z):
     """The square of how far places are off the box around part k."""
-    gx, gy, gz = off_side(parts, LOW_X, k, x), off_side(parts, LOW_Y, k, y), off_side(parts, LOW_Z, k, z)
+    gx = apart(x, x, parts[LOW_X, k], parts[LOW_X + 1, k])
+    gy = apart(y, y, parts[LOW_Y, k], parts[LOW_Y + 1, k])
+    gz = apart(z, z, parts[LOW_Z, k], parts[LOW_Z + 1, k])
     return gx * gx + gy * gy + gz * gz
 
 

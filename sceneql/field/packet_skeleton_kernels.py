@@ -23,6 +23,7 @@ from sceneql.field.packet_density_kernels import (
     looked_at,
     near_box,
     summed,
+    weighed,
 )
 from sceneql.field.packet_falloff_kernels import fallen
 from sceneql.field.packet_kernels import SKELETON_LANES
@@ -46,7 +47,7 @@ from sceneql.field.packet_rows import (
 from sceneql.field.packet_triangle_kernels import triangle
 from sceneql.field.skeleton_parts_kernels import CURVE, TRIANGLE
 from sceneql.kernels import inlined, lean
-from sceneql.lanes_kernels import below, bits_below, first_bit, fma, root, spread
+from sceneql.lanes_kernels import below, bits_below, first_bit, root, spread
 
 COARSE = F(8.0)
 """|u|^2 relative to R times what a simpler part is off, from which on that is good enough."""
@@ -147,11 +148,12 @@ def skeleton_lanes(parts, start, stop, x, y, z, out, n):
     for i in range(0, n, VECTOR):
         px, py, pz, ux, uy, uz, box, way, loose = looked_at(x, y, z, i)
         speed = ux * ux + uy * uy + uz * uz
-        c0 = c1 = c2 = e = size = spread(ZERO)
-        g0 = g1 = g2 = ge = spread(ZERO)
+        none = spread(ZERO)
+        sums = none, none, none, none, none
+        best = none, none, none, none
         added = ZERO
         ball = way + loose
-        nobody = spread(ZERO), spread(ZERO), spread(ZERO), spread(ONE), spread(INFINITE)
+        nobody = none, none, none, spread(ONE), spread(INFINITE)
         rival, fresh = nobody, True
         group, kernel, weight = NONE, ZERO, ZERO
         first = start
@@ -165,15 +167,11 @@ def skeleton_lanes(parts, start, stop, x, y, z, out, n):
             k = 0 if last else first + first_bit(bits)
             if last or parts[GROUP, k + 1] != group:
                 if group != NONE:
+                    g0, g1, g2, ge = best
                     if kernel == F(WYVILL):
-                        d0, d1, d2, d, m = cubed(g0, g1, g2, ge)
+                        sums = weighed(weight, cubed(g0, g1, g2, ge), sums)
                     else:
-                        d0, d1, d2, d, m = fallen(kernel, g0, g1, g2, ge)
-                    c0 = fma(weight, d0, c0)
-                    c1 = fma(weight, d1, c1)
-                    c2 = fma(weight, d2, c2)
-                    e = fma(abs(weight), d, e)
-                    size = fma(abs(weight), m, size)
+                        sums = weighed(weight, fallen(kernel, g0, g1, g2, ge), sums)
                     added += ONE
                     group = NONE
             if last:
@@ -190,8 +188,6 @@ def skeleton_lanes(parts, start, stop, x, y, z, out, n):
                 found = coarse(parts, k, off, ball)
             else:
                 found = part_parabola(parts, k, px, py, pz, ux, uy, uz, speed, way, loose)
-            if group != NONE:
-                found = larger(found, (g0, g1, g2, ge))
-            g0, g1, g2, ge = found
+            best = found if group == NONE else larger(found, best)
             group, kernel, weight = parts[GROUP, k + 1], parts[KERNEL, k + 1], parts[WEIGHT, k]
-        summed(out, i, c0, c1, c2, e, size, added, loose)
+        summed(out, i, sums, added, loose)
