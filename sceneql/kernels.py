@@ -6,9 +6,11 @@ Imports numba; only ``*_kernels.py`` files and those that run them import this m
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import os
 import re
+import sys
 import threading
 import time
 from collections import deque
@@ -16,7 +18,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import cache
-from importlib.util import find_spec
+from importlib.util import find_spec, resolve_name
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +35,10 @@ from numba.extending import intrinsic
 from sceneql.compiling import HelperCompiler, KernelCompiler, WayInCompiler, call_by_name, collecting_later
 
 OURS = ("sceneql", "renderers", "sceneql_generated")
-IMPORTED = re.compile(r"^from ([\w.]+) import", re.MULTILINE)
+_IMPORTS = re.compile(r"^[ \t]*((?:from|import)\b[^\n(]*(?:\([^)]*\))?)", re.MULTILINE)
+"""Statements that import, and lines of text that look like them."""
+_HIDDEN_IMPORTS = re.compile(r"[;:][ \t]*(?:from|import)\b|\\\n")
+"""Where a file may import in the middle of a line, or over lines without brackets."""
 
 
 def _cache_home() -> Path:
@@ -48,27 +53,83 @@ def _cache_home() -> Path:
 CACHE = _cache_home()
 
 
+def _spec(module: str) -> Any:
+    """Where a module lies; None where there is none of this name, or a package that only Python made."""
+    try:
+        return find_spec(module)
+    except (ImportError, ValueError):
+        return None
+
+
+def _has_modules(name: str) -> bool:
+    """Whether a name is that of a package."""
+    if name in sys.modules:
+        return hasattr(sys.modules[name], "__path__")
+    spec = _spec(name)
+    return spec is not None and spec.submodule_search_locations is not None
+
+
 @cache
+def _imported(path: Path, package: str, changed: int) -> frozenset[str]:
+    """Names of the modules that a file may import: of ``from a import b`` both ``a`` and ``a.b``.
+
+    ``changed``: when it was last written to; other contents are read anew.
+    """
+    text = path.read_text(encoding="utf-8")
+    parts = [text] if _HIDDEN_IMPORTS.search(text) else _IMPORTS.findall(text)
+    found = set()
+    for part in parts:
+        try:
+            tree = ast.parse(part)
+        except SyntaxError:  # a line of text
+            continue
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Import):
+                found |= {alias.name for alias in node.names}
+            elif isinstance(node, ast.ImportFrom):
+                name = f"{'.' * node.level}{node.module or ''}"
+                source = resolve_name(name, package) if node.level else name
+                found |= {source, *(f"{source}.{alias.name}" for alias in node.names)}
+    return frozenset(found)
+
+
 def _sources(module: str) -> frozenset[Path]:
     """The files that compiled code of a module is made of: its own, and those of ours that they import."""
-    found: dict[str, Path] = {}
-    todo = [module]
+    found: dict[str, Path | None] = {}
     tops = {*OURS, module.partition(".")[0]}
+    todo = [module]
     while todo:
         name = todo.pop()
-        spec = None if name in found or name.partition(".")[0] not in tops else find_spec(name)
-        if spec is not None and spec.origin is not None:
-            found[name] = Path(spec.origin)
-            todo += IMPORTED.findall(found[name].read_text(encoding="utf-8"))
-    return frozenset(found.values())
+        if name in found or name.partition(".")[0] not in tops:
+            continue
+        found[name] = None
+        package = name.rpartition(".")[0]
+        if package:
+            todo.append(package)
+            if not _has_modules(package):
+                continue  # what a module defines, not a module
+        spec = _spec(name)
+        if spec is not None and spec.has_location:
+            path = found[name] = Path(spec.origin)
+            todo += _imported(path, spec.parent, path.stat().st_mtime_ns)
+    return frozenset(path for path in found.values() if path is not None)
 
 
-@cache
 def cache_folder(module: str) -> Path:
     """Folder of a module's compiled code, named by a hash of all that it is made of.
 
-    numba's own cache does not notice a change in a function imported from another file; the hash does.
+    numba's own cache does not notice a change in a function imported from another file; the hash does. Files of ours
+    do not change while a process runs; those of a ``--words`` folder may.
     """
+    return _folder_of_ours(module) if module.partition(".")[0] in OURS else _folder(module)
+
+
+@cache
+def _folder_of_ours(module: str) -> Path:
+    return _folder(module)
+
+
+def _folder(module: str) -> Path:
     digest = hashlib.sha256()
     for text in sorted(path.read_bytes() for path in _sources(module)):
         digest.update(text)

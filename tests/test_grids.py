@@ -157,10 +157,12 @@ def test_the_explicit_limit_holds_on_a_lake(tmp_path, edges):
 
 @given(st.lists(st.floats(-1, 1), min_size=3, max_size=3), st.floats(-1.5, 1.5))
 @example([0.0, 0.0, 2.225073858507e-311], 0.0)
+@example([0.0, 0.0, 5e-324], 0.0)
 @settings(max_examples=60)
 def test_what_lies_below_a_plane_is_what_is_counted_there(slopes, phi):
     points = (np.stack(np.meshgrid(*[np.arange(40)] * 3), axis=-1).reshape(-1, 3) + 0.5) / 40 - 0.5
-    counted = np.mean(phi + points @ slopes < 0)
+    largest = max(abs(phi), *map(abs, slopes)) or 1.0  # by which the count is scaled, or products would underflow
+    counted = np.mean(phi / largest + points @ np.divide(slopes, largest) < 0)
     found = below(np.array([phi]), np.array([slopes]), np.ones(3))[0]
     assert found == pytest.approx(counted, abs=0.03)
 

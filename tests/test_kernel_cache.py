@@ -1,0 +1,87 @@
+"""Compiled code is made anew when any file that it is made of has changed, however that file is imported."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from sceneql.kernels import _sources
+
+FORCE = '''
+"""even: the same force on every mass."""
+
+from sceneql.kinds import Force
+
+
+class Even(Force):
+    """F = 1 N times a factor, along x."""
+
+    def assemble(self, name, assembly, bodies):
+        """Add it to every mass."""
+        from sceneql.system import Slopes
+
+        kernel = "sceneql_words.forces.even_kernels:even"
+        assembly.term("force", kernel, (bodies.velocity_at, bodies.count), Slopes("", (), ()), apart=True)
+'''
+KERNEL = '''
+"""The force of even."""
+
+from sceneql.kernels import lean
+from sceneql.system_kernels import TERM
+IMPORT
+
+
+@lean(TERM, inner=True)
+def even(t, y, rate, floats, ints):
+    """Adds it. ints: velocity_at, count."""
+    for k in range(ints[1]):
+        rate[ints[0] + 3 * k] += NAME.FACTOR
+'''
+SCRIPT = """
+models: {ball: {particles: {list: {a: {mass: 1 kg, position: 0 0 0 m}}}}}
+forces: [even]
+solvers: {main: {rk4: {step: 10 ms}}}
+clock: {end: 1 s}
+outputs: {data: {record: {of: [ball.a.position]}}}
+"""
+RUN = """
+import sys
+from sceneql import pipeline
+from pathlib import Path
+(moment,) = pipeline.simulate(pipeline.load(Path(sys.argv[1]), words=Path(sys.argv[2])), [1.0])
+print(moment.read("ball", "a.position")[0])
+"""
+
+
+@pytest.mark.parametrize(
+    ("statement", "name"),
+    [
+        ("from sceneql_words.forces import shared_law", "shared_law"),
+        ("from . import shared_law", "shared_law"),
+        ("import sceneql_words.forces.shared_law as law", "law"),
+        ("import math; from sceneql_words.forces import shared_law", "shared_law"),
+        ("from sceneql_words.forces import (\n    shared_law as law,\n)", "law"),
+    ],
+)
+def test_a_kernel_of_a_words_folder_follows_the_modules_that_it_imports(tmp_path, statement, name):
+    forces = tmp_path / "forces"
+    forces.mkdir()
+    (forces / "even.py").write_text(FORCE)
+    (forces / "even_kernels.py").write_text(KERNEL.replace("IMPORT", statement).replace("NAME", name))
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(SCRIPT)
+    environment = {**os.environ, "SCENEQL_CACHE": str(tmp_path / "cache"), "PYTHONDONTWRITEBYTECODE": "1"}
+    for factor in (1.0, 2.0):
+        (forces / "shared_law.py").write_text(f"FACTOR = {factor}\n")
+        run = [sys.executable, "-c", RUN, str(scene), str(tmp_path)]
+        said = subprocess.run(run, env=environment, capture_output=True, text=True, check=True).stdout
+        assert float(said) == pytest.approx(factor / 2)
+
+
+def test_a_kernel_is_made_of_its_file_and_of_all_that_this_imports():
+    files = {path.name for path in _sources("sceneql.simulation.forces.gravity_kernels")}
+    assert files >= {"gravity_kernels.py", "kernels.py", "system_kernels.py", "shortcuts.py"}
+    assert not files & {"gravity.py", "drag_kernels.py", "cli.py"}
+    assert all(Path(path).is_file() for path in _sources("sceneql.simulation.march_kernels"))
