@@ -32,14 +32,16 @@ class Trace(Renderer):
             return ("renderers.tracing.draw",)
         together: tuple[str, ...] = ()
         if self.tolerance == TOLERANCE:
-            tape = ("tape_bundle", "enclose")
+            tape = ("sceneql.field.tape_bundle_kernels", "sceneql.field.enclose_kernels")
             own = {
                 "formula": tape,
-                "density": ("density_bundle",),
-                "skeleton": (*tape, "packet_skeleton", "packet_near"),
+                "density": ("sceneql.field.density_bundle_kernels",),
+                "skeleton": (*tape, "sceneql.field.packet_skeleton_kernels", "sceneql.field.packet_near_kernels"),
             }
-            names = dict.fromkeys(name for kind in sorted(traced) for name in own[kind])
-            together = (*(f"sceneql.field.{name}_kernels" for name in names), "renderers.tracing.bundles")
+            together = (
+                *dict.fromkeys(name for kind in sorted(traced) for name in own[kind]),
+                "renderers.tracing.bundles",
+            )
         return (*together, *certified("renderers.tracing.draw"))
 
     def draw(self, frame: Any) -> Any:

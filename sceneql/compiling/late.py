@@ -24,7 +24,7 @@ expected = {}
 failures: dict[str, BaseException] = {}
 """By the name of a kernel: why it could not be brought."""
 _one_by_one = threading.RLock()
-_ASK = "sceneql.compiling.late.ask"
+_ASK = f"{__name__}.ask"
 
 
 class NotBrought(Exception):
@@ -46,7 +46,7 @@ def late(name, signature):
 
     if config.DISABLE_JIT:
         return stub
-    symbol = f"sceneql.compiling.late.{name}"
+    symbol = f"{__name__}.{name}"
     place = ctypes.c_void_p()
     places[ctypes.addressof(place)] = name, place
     expected[ctypes.addressof(place)] = signature

@@ -15,7 +15,7 @@ from numba.core.imputils import impl_ret_new_ref, lower_builtin
 from numba.cpython.builtins import do_minmax
 from numba.np import arrayobj
 
-LEAST, MOST, EMPTY, ZEROS = (f"sceneql.compiling.words.{word}" for word in ("least", "most", "empty", "zeros"))
+LEAST, MOST, EMPTY, ZEROS = (f"{__name__}.{word}" for word in ("least", "most", "empty", "zeros"))
 
 
 def _of_numbers(typing_context, args, keywords):

@@ -126,15 +126,18 @@ class Object(Kind):
 
 @dataclass(frozen=True, slots=True)
 class Collider:
-    """A surface for contacts: ``shape`` names its kernels' file in simulation/contacts/shapes; offsets into the floats.
+    """A surface for contacts: the module of its kernels (contacts/shape_kernels.py), and offsets into the floats.
 
     ``position_at``: 3 floats, center; ``rotation_at``: 4 floats, quaternion; ``size_at``: as the shape's file says;
     ``depth_at``: how deep [m] a point can be inside, or less; ``data``: further integers for the shape.
     """
 
-    shape: str
+    kernels: str
+    """``"package.module"``."""
     position_at: int
     rotation_at: int
     size_at: int
     depth_at: int
     data: tuple[int, ...] = ()
+    flat: bool = False
+    """Whether it is a whole plane."""

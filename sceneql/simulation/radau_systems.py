@@ -18,7 +18,6 @@ FULL = 100
 """Unknowns up to which full matrices are factored: at so many both ways take as long."""
 LARGEST = 100_000
 """Unknowns up to which `auto` thinks of radau: a Jacobian, its factors and the stages take some 10 kB each."""
-_SOLVERS = "sceneql.simulation.solvers"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,8 +59,8 @@ def likely_kernels(system: System) -> tuple[str, ...]:
     if system.pattern is None:
         return ()
     if _unknowns(system) <= FULL:
-        return (f"{_SOLVERS}.radau_full_kernels",)
-    return (f"{_SOLVERS}.radau_sparse_kernels", *likely(system))
+        return ("sceneql.simulation.solvers.radau_full_kernels",)
+    return ("sceneql.simulation.solvers.radau_sparse_kernels", *likely(system))
 
 
 def _unknowns(system: System) -> int:

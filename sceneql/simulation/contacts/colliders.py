@@ -75,14 +75,14 @@ def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, 
         help = f"name under `between` what may touch, without '{ref.name}'"
         place = ref.span or assembly.line()
         raise ScriptError([Diagnostic("no-collider", f"'{ref.name}': {error}", place, help)]) from None
-    shape = import_module(f"sceneql.simulation.contacts.shapes.{here.shape}_kernels")
+    shape = import_module(here.kernels)
     signatures = {"surface": SURFACE_TYPE, "bend": BEND_TYPE, "clear": CLEAR_TYPE}
     numbers = [number_of(getattr(shape, name), signature) for name, signature in signatures.items()]
     if not hasattr(shape, "near"):
         shape = import_module("sceneql.simulation.contacts.near_kernels")
     numbers.append(number_of(shape.near, NEAR_TYPE))
     places = (here.position_at, here.rotation_at, here.size_at, here.depth_at)
-    flat = int(here.shape == "plane" and not is_moving(kind))
+    flat = int(here.flat and not is_moving(kind))
     return (*numbers, *places, *poses, flat), here.data
 
 

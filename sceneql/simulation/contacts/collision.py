@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
 TALLY = ("hits.count", "hits.first.time", "hits.last.time", "hits.last.speed", "rest.time")
 MOST_EXACT = 8
+EXACT = "sceneql.simulation.contacts.collision_kernels"
+LOCAL = "sceneql.simulation.contacts.settle_kernels"
+SHAPES = "sceneql.simulation.contacts.shapes"
 MOST_CUT = 4096
 """Bodies above which no step is cut at an impact: looking costs more than it gives."""
 
@@ -82,16 +85,16 @@ class Collision(Contact):
         if not others:
             return
         exact = self.mode == "exact" or (self.mode == "auto" and assembly.body_count() <= MOST_EXACT)
-        found = f"sceneql.simulation.contacts.{'collision' if exact else 'settle'}_kernels"
-        compile_ahead((found,))  # the largest of the island, while what the objects are looked at with compiles here
+        compile_ahead(
+            (EXACT if exact else LOCAL,)
+        )  # the largest of the island, while what the objects are looked at with compiles here
         from sceneql.simulation.contacts.memory_kernels import PAIR
 
         written = {ref.name: ref for ref in self.between or ()}
         touched = [written.get(ref.name, ref) for ref in others]
         objects = surfaces(touched, assembly, HEAD)
         if exact:
-            shapes = "sceneql.simulation.contacts.shapes."
-            compile_ahead(one for one in late.modules() if one.startswith(shapes))  # every gap asks for them
+            compile_ahead(one for one in late.modules() if one.startswith(f"{SHAPES}."))  # every gap asks for them
         nan = float("nan")
         cuts = (0.0, 0.0, 0.0) if assembly.body_count() <= MOST_CUT else (float("inf"), 0.0, MOST_CUTS)
         tally_at = assembly.floats([0.0, nan, nan, 0.0, nan])
@@ -113,12 +116,13 @@ class Collision(Contact):
         ints = (*masses, bodies.radius_at, bodies.count, *numbers, *objects)
         must_be_outside(bodies.model, touched, ints, assembly)
         if exact:
-            assembly.contact("exact", (f"{found}:gap", f"{found}:impact"), ints, pairs)
+            assembly.contact("exact", (f"{EXACT}:gap", f"{EXACT}:impact"), ints, pairs)
         else:
             assembly.step_at_most(OFTEN)
-            assembly.contact("local", (f"{found}:settle",), ints, pairs, apart=True)
+            assembly.contact("local", (f"{LOCAL}:settle",), ints, pairs, apart=True)
         held = None if exact else lambda: _held(bodies)
-        assembly.term("constrain", f"{found}:constrain", ints, held, apart=not exact)
+        constrain = f"{EXACT}:constrain" if exact else f"{LOCAL}:constrain"
+        assembly.term("constrain", constrain, ints, held, apart=not exact)
         assembly.remember(tally_at)
 
     def read(self, output: str, state: ModelState) -> Any:

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies, ModelState
 
 MOST_EXACT = 8
+EXACT = "sceneql.simulation.contacts.sphere_events_kernels"
+LOCAL = "sceneql.simulation.contacts.sphere_settle_kernels"
 FEW = 300
 """Of so few masses all pairs are looked at, which takes less time than the import of scipy's trees."""
 
@@ -96,13 +98,12 @@ class MutualCollision(Contact):
             *objects,
         )
         ints = (*ints, *_partners(tied, n, len(ints)))
-        folder = "sceneql.simulation.contacts"
         if exact:
-            kernels = (f"{folder}.sphere_events_kernels:gap", f"{folder}.sphere_events_kernels:impact")
+            kernels = (f"{EXACT}:gap", f"{EXACT}:impact")
             assembly.contact("exact", kernels, ints, n * (n - 1) // 2)
         else:
             assembly.step_at_most(OFTEN)
-            assembly.contact("local", (f"{folder}.sphere_settle_kernels:settle",), ints, 0)
+            assembly.contact("local", (f"{LOCAL}:settle",), ints, 0)
         assembly.remember(tally)
 
     def read(self, output: str, state: ModelState) -> Any:

@@ -49,7 +49,12 @@ support = late("sceneql.simulation.contacts.support_kernels:support", SUPPORT)
 hold = late("sceneql.simulation.contacts.hold_kernels:hold", HOLD)
 settle_held = late("sceneql.simulation.contacts.settle_held_kernels:settle_held", SETTLE_HELD)
 
-LATE_FIRST = tuple(f"sceneql.simulation.contacts.{name}_kernels" for name in ("resting", "slide", "support", "search"))
+LATE_FIRST = (
+    "sceneql.simulation.contacts.resting_kernels",
+    "sceneql.simulation.contacts.slide_kernels",
+    "sceneql.simulation.contacts.support_kernels",
+    "sceneql.simulation.contacts.search_kernels",
+)
 """Of what is compiled late, modules that a process beside does best to begin with (driver.late_first)."""
 
 

@@ -30,12 +30,12 @@ MOST = {
 }
 """Iterations for one system; 1: it is solved to rounding."""
 KERNELS = {
-    "multigrid": "multigrid_kernels:solve",
-    "conjugate_gradient": "relaxation_kernels:solve_conjugate_gradient",
-    "gauss_seidel": "relaxation_kernels:solve_gauss_seidel",
-    "sor": "relaxation_kernels:solve_sor",
-    "direct": "direct_kernels:solve",
-    "fast_transform": "transform_kernels:solve",
+    "multigrid": "sceneql.simulation.grids.multigrid_kernels:solve",
+    "conjugate_gradient": "sceneql.simulation.grids.relaxation_kernels:solve_conjugate_gradient",
+    "gauss_seidel": "sceneql.simulation.grids.relaxation_kernels:solve_gauss_seidel",
+    "sor": "sceneql.simulation.grids.relaxation_kernels:solve_sor",
+    "direct": "sceneql.simulation.grids.direct_kernels:solve",
+    "fast_transform": "sceneql.simulation.grids.transform_kernels:solve",
 }
 FIRST = {"direct": ("sceneql.simulation.linear.fronts_symmetric_kernels",)}
 """What of a solver's own the second process begins with, while this one begins with another part."""
@@ -84,7 +84,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     name, why = _choice(grid, stepper.linear, separated is not None)
     cells = grid.shape[0] * grid.shape[1] * grid.shape[2]
     plan = _PLANS[name](grid) if separated is None or name != "fast_transform" else _transform(grid, separated)
-    solver = number_of(function(f"sceneql.simulation.grids.{KERNELS[name]}"), linear.SOLVE)
+    solver = number_of(function(KERNELS[name]), linear.SOLVE)
     exact = int(MOST[name] == 1)
     offsets = (grid.volumes_at, grid.sink_at, *grid.faces_at)
     head = [solver, exact, *grid.shape, grid.at, *offsets, int(grid.varying), MOST[name], grid.fed_at]

@@ -211,9 +211,14 @@ def likely_kernels(system: System) -> tuple[str, ...]:
     if system.pattern is None or system.grids:
         return ()
     few = (system.partner < 0).sum() <= SMALL
-    # The process beside begins with the first, this one with the last.
-    names = ("dense_systems",) if few else ("fronts_forward", "fronts", "fronts_backward", "fronts_symmetric")
-    return tuple(f"{__package__}.{name}_kernels" for name in names)
+    if few:
+        return ("sceneql.simulation.linear.dense_systems_kernels",)
+    return (  # the process beside begins with the first, this one with the last
+        "sceneql.simulation.linear.fronts_forward_kernels",
+        "sceneql.simulation.linear.fronts_kernels",
+        "sceneql.simulation.linear.fronts_backward_kernels",
+        "sceneql.simulation.linear.fronts_symmetric_kernels",
+    )
 
 
 def _factored(pattern: Any, unit: int, points: Floats | None, exact: bool) -> _Solver | None:

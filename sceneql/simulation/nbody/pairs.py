@@ -51,7 +51,7 @@ class Pairs:
         count = bodies[0]
         few = self.opening == 0 and count <= MOST_SLOPES
         slopes = (lambda: blocks(everyone)) if few else None
-        assembly.term("force", f"sceneql.simulation.nbody.{kernel}", ints, slopes)
+        assembly.term("force", kernel, ints, slopes)
         assembly.remember(int(self.opening > 0), *ints)
 
     def _direct(self, assembly: Assembly, n: int) -> tuple[str, tuple[int, ...]]:
@@ -68,7 +68,7 @@ class Pairs:
             *threads(),
             tile_address(fast_tile if self.fast else direct_tile),
         )
-        return "direct_kernels:direct", ints
+        return "sceneql.simulation.nbody.direct_kernels:direct", ints
 
     def _tree(self, assembly: Assembly, n: int) -> tuple[str, tuple[int, ...]]:
         """Kernel and integers up to the bodies (tree_kernels)."""
@@ -82,7 +82,7 @@ class Pairs:
             *(_scratch(assembly, count) for count in (3 * n, n, n, n + 2, n)),
             *(*threads(), tile_address(tree_tile)),
         )
-        return "tree_kernels:tree", ints
+        return "sceneql.simulation.nbody.tree_kernels:tree", ints
 
     def _numbers(self, assembly: Assembly, room: int) -> tuple[int, ...]:
         """What both kernels have first."""

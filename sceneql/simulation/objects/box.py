@@ -59,7 +59,7 @@ class Box(Solid):
         half = Call("mul", (Number(0.5), self.size.expr), Type((3,), LENGTH))
         least = Call("min", (half,), Type((), LENGTH))
         return Collider(
-            "box",
+            "sceneql.simulation.contacts.shapes.box_kernels",
             assembly.value(self.position),
             assembly.value(self.rotation),
             assembly.value(Value(half, self.size.span)),

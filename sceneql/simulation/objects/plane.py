@@ -80,11 +80,12 @@ class Plane(Object):
         shift = Call("mul", (self.height.expr, normal), Type((3,), LENGTH))
         place = Value(Call("add", (self.position.expr, shift), Type((3,), LENGTH)), self.position.span)
         return Collider(
-            "plane",
+            "sceneql.simulation.contacts.shapes.plane_kernels",
             assembly.value(place),
             assembly.floats([1.0, 0.0, 0.0, 0.0]),
             assembly.value(Value(normal, self.normal.span)),
             assembly.floats([INFINITY]),
+            flat=True,
         )
 
 

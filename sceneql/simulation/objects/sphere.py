@@ -54,4 +54,10 @@ class Sphere(Solid):
     def collider(self, assembly: Assembly) -> Collider:
         """Center, rotation and radius."""
         radius = assembly.value(self.radius)
-        return Collider("sphere", assembly.value(self.position), assembly.value(self.rotation), radius, radius)
+        return Collider(
+            "sceneql.simulation.contacts.shapes.sphere_kernels",
+            assembly.value(self.position),
+            assembly.value(self.rotation),
+            radius,
+            radius,
+        )

@@ -56,7 +56,11 @@ def collider(kind: Object, assembly: Assembly) -> Collider:
         *packed(tape).tolist(),
     )
     return Collider(
-        "implicit", *place(kind, assembly), assembly.floats([size]), assembly.floats([SMALLEST * size]), data
+        "sceneql.simulation.contacts.shapes.implicit_kernels",
+        *place(kind, assembly),
+        assembly.floats([size]),
+        assembly.floats([SMALLEST * size]),
+        data,
     )
 
 

@@ -35,4 +35,11 @@ def collider(vertices: Floats, triangles: Ints, position_at: int, rotation_at: i
     depth = max(1e-3 * THINNEST * size, min(THINNEST * size, 0.25 * float(edges.min())))
     data = (assembly.floats(mesh.boxes), assembly.floats(mesh.rows), len(mesh.boxes), *mesh.tree.ravel().tolist())
     size_at = assembly.floats([size])
-    return Collider("mesh", position_at, rotation_at, size_at, assembly.floats([depth]), data)
+    return Collider(
+        "sceneql.simulation.contacts.shapes.mesh_kernels",
+        position_at,
+        rotation_at,
+        size_at,
+        assembly.floats([depth]),
+        data,
+    )
