@@ -27,7 +27,7 @@ def develop(linear: NDArray[float32], exposure: float = 0.0, *, data: bool = Fal
         levels: NDArray[uint8] = np.rint(np.clip(np.nan_to_num(linear), 0.0, 1.0) * 255.0).astype(np.uint8)
         return levels
     from renderers.develop_kernels import develop_rows
-    from sceneql.kernels import over_tiles
+    from sceneql.compiled.kernels import over_tiles
 
     light = np.ascontiguousarray(linear, dtype=np.float32)
     height = len(light)

@@ -4,7 +4,7 @@
 import numpy as np
 from numba import types
 
-from sceneql.kernels import inlined, kernel
+from sceneql.compiled.kernels import inlined, kernel
 
 SHOULDER = 0.6
 """Where the tone curve leaves the straight line."""

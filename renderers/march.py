@@ -22,7 +22,8 @@ class March(Renderer):
     def kernels(self, traced: Collection[str]) -> tuple[str, ...]:
         """Of the tracer."""
         own = "renderers.tracing.draw"
-        return (own, "renderers.tracing.implicit", "renderers.tracing.march_kernels") if traced else (own,)
+        also = ("renderers.tracing.solids.implicit", "renderers.tracing.solids.fixed_samples_kernels")
+        return (own, *also) if traced else (own,)
 
     def draw(self, frame: Any) -> Any:
         """The Picture of a frame: linear (h, w, 3), with nothing undecided."""

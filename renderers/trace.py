@@ -32,15 +32,19 @@ class Trace(Renderer):
             return ("renderers.tracing.draw",)
         together: tuple[str, ...] = ()
         if self.tolerance == TOLERANCE:
-            tape = ("sceneql.field.tape_bundle_kernels", "sceneql.field.enclose_kernels")
+            tape = ("sceneql.field.packets.tape_bundle_kernels", "sceneql.field.packets.enclose_kernels")
             own = {
                 "formula": tape,
-                "density": ("sceneql.field.density_bundle_kernels",),
-                "skeleton": (*tape, "sceneql.field.packet_skeleton_kernels", "sceneql.field.packet_near_kernels"),
+                "density": ("sceneql.field.packets.density_bundle_kernels",),
+                "skeleton": (
+                    *tape,
+                    "sceneql.field.packets.packet_skeleton_kernels",
+                    "sceneql.field.packets.packet_near_kernels",
+                ),
             }
             together = (
                 *dict.fromkeys(name for kind in sorted(traced) for name in own[kind]),
-                "renderers.tracing.bundles",
+                "renderers.tracing.solids.bundles",
             )
         return (*together, *certified("renderers.tracing.draw"))
 

@@ -27,8 +27,8 @@ from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
 
 if TYPE_CHECKING:
     from sceneql.frame import Light, View
-    from sceneql.simulation.layout import Panel
-    from sceneql.simulation.run import Instant
+    from sceneql.pictures.layout import Panel
+    from sceneql.run.run import Instant
 
 
 def load(
@@ -79,7 +79,7 @@ def simulate(
     graph: SimulationGraph, times: Iterable[float], outputs: Sequence[Output] | None = None
 ) -> Iterator[Instant]:
     """The moments of a run at increasing instants [s], for some outputs or for any use. Raises RunFailure."""
-    from sceneql.simulation.run import Run
+    from sceneql.run.run import Run
 
     marching = outputs is None or any(_shows_script(graph, kind) for kind in outputs)
     return Run(graph, marching=marching).moments(times)
@@ -125,9 +125,9 @@ def render(
         for name, kind in outputs.items():
             sinks[name] = kind.open(tools[name])
         wanted = {name: set(at) for name, at in times.items()}
-        from sceneql.simulation.presence import missing
-        from sceneql.simulation.run import Run
-        from sceneql.simulation.watch import Watch
+        from sceneql.run.never_drawn import missing
+        from sceneql.run.run import Run
+        from sceneql.run.watch import Watch
 
         run = Run(graph, marching=any(_shows_script(graph, kind) for kind in outputs.values()))
         watch = Watch(run, always=account)
@@ -191,7 +191,7 @@ def _compiled() -> tuple[float, int]:
     """Seconds and number of the process's compilations."""
     import sys
 
-    kernels = sys.modules.get("sceneql.kernels")
+    kernels = sys.modules.get("sceneql.compiled.kernels")
     return (0.0, 0) if kernels is None else (kernels.compiled.seconds, kernels.compiled.count)
 
 
@@ -239,7 +239,7 @@ class Tools:
     def _seen(self, output: Picture, moment: Any, camera: str | None = None, part: int = 0, parts: int = 1) -> Any:
         """The scene from a camera, by default the output's own; None before the last part of an exposure."""
         from renderers.develop import develop
-        from sceneql.simulation.presence import look, solids
+        from sceneql.run.never_drawn import look, solids
 
         shot = output.seen_from(moment.time)
         eye = camera if camera is not None or shot is None else shot.name
@@ -268,7 +268,7 @@ class Tools:
 
     def _composed(self, output: Picture, moment: Any) -> Any:
         """The panels of a layout."""
-        from sceneql.simulation.layout import boxes, page
+        from sceneql.pictures.layout import boxes, page
 
         pixels = page(output.pixels)
         for item, (left, top, wide, high) in boxes(output.layout, self.graph.variants, output.pixels):
@@ -286,7 +286,7 @@ class Tools:
 
     def _variant(self, name: str, size: tuple[int, int], time: float, scale: float) -> Any:
         """The panel (h, w, 3) of a variant; one whose run has failed stays as it was, under the message."""
-        from sceneql.simulation.layout import Panel, label
+        from sceneql.pictures.layout import Panel, label
 
         if name not in self.panels:
             panel = self.panels[name] = Panel(self.graph.variant(name))
@@ -304,7 +304,7 @@ class Tools:
         self, pixels: Any, view: View, moment: Any, develop: Callable[[Any], Any], without: set[str]
     ) -> None:
         """What is drawn on a developed picture: labels of objects, and overlays but those of the layout."""
-        from sceneql.simulation.overlays.labels import draw_labels
+        from sceneql.words.overlays.labels import draw_labels
 
         draw_labels(pixels, view, self.graph.tasks, self.graph.drawn[self.name], moment)
         for task in self.graph.tasks.values():
@@ -344,7 +344,7 @@ class Tools:
 @cache
 def _compile_ahead(modules: tuple[str, ...]) -> Callable[[], None]:
     """Start compiling a renderer's kernels, once for all outputs that it draws."""
-    from sceneql.ahead import compile_ahead
+    from sceneql.compiled.compile_beside import compile_ahead
 
     return compile_ahead(modules)
 
@@ -354,7 +354,7 @@ def frame_of(
 ) -> Any:
     """The Frame that a renderer gets for an output at a moment; by default of the output's own camera."""
     from sceneql.frame import Frame, Sky
-    from sceneql.simulation.color import linear
+    from sceneql.shapes.color import linear
 
     shapes = tuple(moment.lower(graph.drawn[output]))  # first: what cannot be drawn is no failure of the camera's
     eye = graph.tasks[camera or graph.cameras[output]]

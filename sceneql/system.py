@@ -21,7 +21,7 @@ Kernel signatures (numba; the types are in system_kernels.py), all ``-> None`` u
     jacobian(functions, t, y, values, floats, ints)   the derivative of the island's rate (see Pattern)
 
 A step gets what it may call as addresses: ``rate = rate_at(functions[AT_RATE])`` and, of a Stepper with ``jacobian``,
-``jacobian = jacobian_at(functions[AT_JACOBIAN])`` (simulation/pointers_kernels.py); pass `functions` on to jacobian.
+``jacobian = jacobian_at(functions[AT_JACOBIAN])`` (compiled/pointers_kernels.py); pass `functions` on to jacobian.
 It may be called again from the same start with another h (a rejected step; the search for an event), and `dense`
 belongs to the latest call. After an event y0 is not the y1 of the step before.
 
@@ -359,7 +359,7 @@ class Stepper:
     for what depends on the island, such as the ordering of a factorization."""
     likely: str | None = None
     """``"package.module:function"``, called with the System: modules of kernels that `prepare` will ask for, to be
-    compiled early; None: those of simulation/linear/stage.py."""
+    compiled early; None: those of linear/stage.py."""
     controls: bool = False
     """Whether an adaptive step leaves in work[0] the length [s] to try next, after acceptance or rejection; else
     the march controls by the error."""
@@ -385,8 +385,8 @@ class Stepper:
     """What takes its place from the first step of a given length on that it finds no solution of."""
     by_scale: bool = False
     """Whether the absolute tolerance, on a grid, counts in units of the largest value at the start, and the errors of
-    radau and rodas5p in units of how large entries are (solvers/scales_kernels.py)."""
+    radau and rodas5p in units of how large entries are (stepping/error_scales_kernels.py)."""
     march: str | None = None
     """``"package.module:class"``, a march.March of its own, in place of compiled steps."""
     linear: str = "auto"
-    """How its linear systems are solved on a grid (simulation/grids/implicit.py)."""
+    """How its linear systems are solved on a grid (grids/prepare_stages.py)."""

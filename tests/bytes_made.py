@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from sceneql import pipeline
-from sceneql.field.builder import TapeBuilder
+from sceneql.field.tape.builder import TapeBuilder
 from sceneql.frame import Tape
-from sceneql.mesh.polygonise import polygonise
+from sceneql.mesh.cubes.polygonise import polygonise
 
 PARTS = [[0.1, 0, 0, 0.1, 0, 0, 0.5, 1.0], [-0.3, 0, 0, 0.2, 0.3, 0, 0.4, 0.7]]
 SCENE = """\

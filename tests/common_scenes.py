@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from sceneql.field.builder import TapeBuilder
-from sceneql.field.certified_kernels import certify
-from sceneql.field.solid import scratch
-from sceneql.field.tape_ops import HIT, INSIDE, MISS, UNDECIDED
+from sceneql.field.roots.certified_kernels import certify
+from sceneql.field.tape.builder import TapeBuilder
+from sceneql.field.tape.tape_ops import HIT, INSIDE, MISS, UNDECIDED
+from sceneql.field.tape.tape_solid import scratch
 from sceneql.quantities.bind import bind
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.expression import Symbol

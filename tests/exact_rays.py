@@ -13,7 +13,7 @@ from itertools import pairwise
 
 from flint import arb, ctx, fmpq, fmpq_poly
 
-from sceneql.field import tape_ops as ops
+from sceneql.field.tape import tape_ops as ops
 from sceneql.frame import Tape
 
 BITS = 256

@@ -1,8 +1,8 @@
 # mypy: ignore-errors
 """Least and largest numbers as kernels find them."""
 
-from sceneql.field.extent_kernels import extent
-from sceneql.kernels import lean
+from sceneql.compiled.kernels import lean
+from sceneql.field.enclose.extent_kernels import extent
 
 
 @lean("UniTuple(float64, 2)(float64[::1])")

@@ -1,10 +1,10 @@
 # mypy: ignore-errors
 """Affine enclosures of single operations, for tests to call."""
 
-from sceneql.field.enclosure_kernels import binary, unary
-from sceneql.field.forms_kernels import TINY, WIDER, product
-from sceneql.field.tape_ops import ATAN2, MUL
-from sceneql.kernels import kernel
+from sceneql.compiled.kernels import kernel
+from sceneql.field.enclose.enclosure_kernels import binary, unary
+from sceneql.field.enclose.forms_kernels import TINY, WIDER, product
+from sceneql.field.tape.tape_ops import ATAN2, MUL
 
 
 @kernel("UniTuple(float64, 3)(int64, float64[::1], float64[::1])")

@@ -1,8 +1,8 @@
 # mypy: ignore-errors
 """What lanes are told of a polynomial on a segment, for tests."""
 
-from sceneql.field.hull_kernels import hull_4, hull_6, hull_8
-from sceneql.kernels import kernel
+from sceneql.compiled.kernels import kernel
+from sceneql.field.roots.hull_kernels import hull_4, hull_6, hull_8
 
 
 @kernel("UniTuple(float64, 6)(float64[::1], int64, float64, float64, float64)")

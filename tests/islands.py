@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from sceneql.island.island import IslandAssembly, System
 from sceneql.kinds import Object, Ref
+from sceneql.march.march import March
 from sceneql.quantities.expression import Expr, Link
 from sceneql.quantities.span import Source, Span
-from sceneql.simulation.island import IslandAssembly, System
-from sceneql.simulation.march import March
 from sceneql.system import Stepper
 
 SOURCE = Source("scene.yaml", "springs:\n  weak: 1\n  tether: 2\n")

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from sceneql.field.packets import enclosures
-from sceneql.field.solid import field_values
-from sceneql.field.tape_ops import NOWHERE, WHOLE
+from sceneql.field.packets.packets import enclosures
+from sceneql.field.tape.tape_ops import NOWHERE, WHOLE
+from sceneql.field.tape.tape_solid import field_values
 
 
 def check_enclosures(tape, origin, direction, t0, t1):

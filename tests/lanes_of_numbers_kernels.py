@@ -3,8 +3,8 @@
 
 from numba import types
 
-from sceneql.kernels import lean, lean_inlined
-from sceneql.lanes_kernels import (
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.lanes_kernels import (
     below,
     bits_below,
     first_bit,

@@ -3,7 +3,7 @@
 
 from numba import types
 
-from sceneql.kernels import lean
+from sceneql.compiled.kernels import lean
 
 F = types.float64
 

@@ -3,8 +3,8 @@
 
 from numba import types
 
-from sceneql.compiling.late import late
-from sceneql.kernels import lean
+from sceneql.compiled.kernels import lean
+from sceneql.compiled.numba.lazy_kernels import late
 
 F = types.float64
 MISTAKEN = types.UniTuple(F, 2)(F, F)

@@ -3,11 +3,11 @@
 import numpy as np
 
 from expressions import bound
-from sceneql.field.builder import TapeBuilder
+from sceneql.field.tape.builder import TapeBuilder
+from sceneql.mesh.cubes.polygonise import polygonise
+from sceneql.mesh.cubes.refine import refined
+from sceneql.mesh.dual.sharp import polygonise_sharp
 from sceneql.mesh.measures import edge_counts
-from sceneql.mesh.polygonise import polygonise
-from sceneql.mesh.refine import refined
-from sceneql.mesh.sharp import polygonise_sharp
 from sceneql.quantities.expression import Symbol
 
 BALL = "sqrt(x^2 + y^2 + z^2) - 1"

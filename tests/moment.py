@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from sceneql.field.builder import TapeBuilder
-from sceneql.field.solid import field_values
+from sceneql.field.tape.builder import TapeBuilder
+from sceneql.field.tape.tape_solid import field_values
 from sceneql.frame import Implicit, Quadric, Segments, Surface
 from sceneql.kinds import Formula, Ref, Value
 from sceneql.quantities.dimension import PLAIN

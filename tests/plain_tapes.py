@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sceneql.field.builder import TapeBuilder
+from sceneql.field.tape.builder import TapeBuilder
 
 
 def implicit(formula):

@@ -3,14 +3,14 @@
 import numpy as np
 from hypothesis import strategies as st
 
-from sceneql.field.builder import TapeBuilder
-from sceneql.field.lowering import LOWERED
-from sceneql.field.skeleton import KERNELS, Skeleton
-from sceneql.field.solid import scratch
-from sceneql.field.tape_ops import (
+from sceneql.field.skeleton.skeleton import KERNELS, Skeleton
+from sceneql.field.tape.builder import TapeBuilder
+from sceneql.field.tape.lowered_operations import LOWERED
+from sceneql.field.tape.tape_ops import (
     BINARY,
     UNARY,
 )
+from sceneql.field.tape.tape_solid import scratch
 
 NAMES = sorted([*UNARY, *BINARY, "density", "skeleton", *LOWERED])
 ARGUMENTS = dict.fromkeys(UNARY, 1) | dict.fromkeys(BINARY, 2)

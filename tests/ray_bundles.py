@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from sceneql.field.packets import cast_together
-from sceneql.field.solid import cast
-from sceneql.field.tape_ops import (
+from sceneql.field.packets.packets import cast_together
+from sceneql.field.tape.tape_ops import (
     HIT,
     INSIDE,
     UNDECIDED,
 )
+from sceneql.field.tape.tape_solid import cast
 
 
 def bundle(origin, direction, generator, count, spread):

@@ -8,7 +8,7 @@ from typing import Any
 
 from sceneql.pipeline import load
 from sceneql.quantities.diagnostic import ScriptError
-from sceneql.simulation.run import Run
+from sceneql.run.run import Run
 
 
 def watch(folder: Path, script: str, times: Sequence[float], *outputs: str) -> list[list[Any]]:

@@ -1,9 +1,9 @@
 # mypy: ignore-errors
 """A way in to what only kernels call: the search for a ray's first root by enclosures alone."""
 
-from sceneql.field.isolation_kernels import search
-from sceneql.field.tape_ops import TAPE
-from sceneql.kernels import lean
+from sceneql.compiled.kernels import lean
+from sceneql.field.roots.isolation_kernels import search
+from sceneql.field.tape.tape_ops import TAPE
 
 
 @lean(f"Tuple((int64, float64))({TAPE}, float64[::1], float64[::1], float64, float64, float64, boolean)")

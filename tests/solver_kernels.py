@@ -2,7 +2,7 @@
 
 import math
 
-from sceneql.kernels import kernel
+from sceneql.compiled.kernels import kernel
 from sceneql.system_kernels import GAP, IMPACT, SETTLE, TERM
 
 

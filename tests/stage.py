@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from sceneql.field.builder import TapeBuilder
+from sceneql.field.tape.builder import TapeBuilder
 from sceneql.frame import Frame, Implicit, Mesh, Points, Quadric, Segments, Sun, Surface, View
 
 INF = math.inf

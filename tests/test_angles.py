@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from common_scenes import TOLERANCE, certified, tape_of
-from sceneql.field.interval_kernels import box
-from sceneql.field.packets import cast_together, tape_of_rows
-from sceneql.field.simplify_kernels import simplify
-from sceneql.field.slope_kernels import on_ray
-from sceneql.field.solid import cast, field_values, scratch
-from sceneql.field.tape_ops import ATAN2, HIT, MISS, UNDECIDED
+from sceneql.field.enclose.interval_kernels import box
+from sceneql.field.enclose.slope_kernels import on_ray
+from sceneql.field.packets.packets import cast_together, tape_of_rows
+from sceneql.field.tape.simplify_kernels import simplify
+from sceneql.field.tape.tape_ops import ATAN2, HIT, MISS, UNDECIDED
+from sceneql.field.tape.tape_solid import cast, field_values, scratch
 
 
 def test_the_cut_of_an_angle_is_a_jump():

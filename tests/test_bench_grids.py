@@ -14,7 +14,7 @@ from sceneql.report.bench_grids import grid_section, linear_runs, on_grids
 from sceneql.report.bench_schemes import front, scheme_runs
 from sceneql.report.grid_ends import difference, ends_on_grids
 from sceneql.report.work_precision import solvers
-from sceneql.simulation.solvers.exact import Exact
+from sceneql.words.solvers.exact import Exact
 
 PLATE = "size: 1 1 m, cell: 1/16 m, initial: sin(pi*x)*sin(pi*y), boundary: {rest: {value: 0}}"
 

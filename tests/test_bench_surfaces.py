@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from sceneql import pipeline
 from sceneql.failure import RunFailure, Unsuitable
 from sceneql.mesh.distance import distances, hausdorff, to_triangles
-from sceneql.report import surfaces
+from sceneql.report import surface_measures
 from sceneql.report.bench import bench
 
 NUMBERS = st.floats(-2.0, 2.0).map(lambda number: round(number, 3))
@@ -65,10 +65,10 @@ def rows(path):
 
 
 def test_rays_and_meshes_are_measured(tmp_path, monkeypatch):
-    monkeypatch.setattr(surfaces, "SIZES", (1_296, 5_184, 60_000))
-    monkeypatch.setattr(surfaces, "CELLS", (16, 32, 64))
-    monkeypatch.setattr(surfaces, "SAMPLES", (16, 64, 256))
-    monkeypatch.setattr(surfaces, "REPEATS", 1)
+    monkeypatch.setattr(surface_measures, "SIZES", (1_296, 5_184, 60_000))
+    monkeypatch.setattr(surface_measures, "CELLS", (16, 32, 64))
+    monkeypatch.setattr(surface_measures, "SAMPLES", (16, 64, 256))
+    monkeypatch.setattr(surface_measures, "REPEATS", 1)
     (tmp_path / "scene.yaml").write_text(SCENE)
     text = bench(pipeline.load(tmp_path / "scene.yaml"), tmp_path)
     rays, meshes = rows(tmp_path / "scene.bench.rays.csv"), rows(tmp_path / "scene.bench.meshes.csv")

@@ -12,19 +12,19 @@ from hypothesis import strategies as st
 from moment import IDENTITY, FakeMoment, const, fields_of, link
 from sceneql import pipeline
 from sceneql.failure import RunFailure
-from sceneql.field.builder import TapeBuilder
-from sceneql.field.interval_kernels import box as interval
-from sceneql.field.solid import field_gradients, field_values, scratch
+from sceneql.field.enclose.interval_kernels import box as interval
+from sceneql.field.tape.builder import TapeBuilder
+from sceneql.field.tape.tape_solid import field_gradients, field_values, scratch
 from sceneql.kinds import Ref
-from sceneql.simulation.blend import bulge, comparators, largest, least
-from sceneql.simulation.objects.blobby import Blobby
-from sceneql.simulation.objects.box import Box
-from sceneql.simulation.objects.difference import Difference
-from sceneql.simulation.objects.intersection import Intersection
-from sceneql.simulation.objects.plane import Plane
-from sceneql.simulation.objects.sphere import Sphere
-from sceneql.simulation.objects.union import Union
-from sceneql.simulation.placement import affine, apply
+from sceneql.shapes.blend import bulge, comparators, largest, least
+from sceneql.shapes.placement import affine, apply
+from sceneql.words.objects.blobby import Blobby
+from sceneql.words.objects.box import Box
+from sceneql.words.objects.difference import Difference
+from sceneql.words.objects.intersection import Intersection
+from sceneql.words.objects.plane import Plane
+from sceneql.words.objects.sphere import Sphere
+from sceneql.words.objects.union import Union
 
 WIDTHS = st.floats(0.05, 2)
 

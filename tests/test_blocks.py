@@ -5,11 +5,11 @@ import pytest
 
 from runs import watch
 from sceneql.failure import RunFailure
+from sceneql.march import assembled
+from sceneql.march.march_blocks import BlockMarch
 from sceneql.pipeline import load
-from sceneql.simulation import assembled
-from sceneql.simulation.contacts import collision
-from sceneql.simulation.march_blocks import BlockMarch
-from sceneql.simulation.run import Run
+from sceneql.run.run import Run
+from sceneql.words.contacts import collision
 
 SCENE = """
 clock: {{end: 2 s}}

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from runs import watch
-from sceneql.simulation.solvers.boris import Boris
+from sceneql.words.solvers.boris import Boris
 
 SCENE = """
 clock: {{end: {end} s}}

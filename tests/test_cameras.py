@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 
 from moment import FakeMoment, const, link
 from sceneql.kinds import Ref
-from sceneql.simulation import framing
-from sceneql.simulation.cameras.auto import Auto
-from sceneql.simulation.cameras.orthographic import Orthographic
-from sceneql.simulation.cameras.perspective import Perspective
-from sceneql.simulation.cameras.turntable import Turntable
-from sceneql.simulation.objects.sphere import Sphere
+from sceneql.pictures import framing
+from sceneql.words.cameras.auto import Auto
+from sceneql.words.cameras.orthographic import Orthographic
+from sceneql.words.cameras.perspective import Perspective
+from sceneql.words.cameras.turntable import Turntable
+from sceneql.words.objects.sphere import Sphere
 
 SIZES = st.sampled_from([(640, 360), (300, 300), (360, 640)])
 POINT = st.tuples(*[st.floats(-5, 5)] * 3)

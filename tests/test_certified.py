@@ -12,12 +12,12 @@ from exact_rays import along, blob_entry, exact, first_entry, real_roots, roots_
 from plain_tapes import implicit
 from random_tapes import SMOOTH, tapes
 from random_tapes import rays as some_rays
-from sceneql.field.enclosure_kernels import segment
-from sceneql.field.gradient_kernels import gradient
-from sceneql.field.isolation_kernels import any_root
-from sceneql.field.slope_kernels import on_ray
-from sceneql.field.solid import cast, field_values, scratch
-from sceneql.field.tape_ops import HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
+from sceneql.field.enclose.enclosure_kernels import segment
+from sceneql.field.enclose.slope_kernels import on_ray
+from sceneql.field.roots.isolation_kernels import any_root
+from sceneql.field.tape.gradient_kernels import gradient
+from sceneql.field.tape.tape_ops import HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
+from sceneql.field.tape.tape_solid import cast, field_values, scratch
 
 POLYNOMIALS = ("barth_sextic", "kummer", "steiner", "double_root")
 

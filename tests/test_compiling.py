@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 from numba import types
 
-from sceneql.compiling import collecting_later
-from sceneql.kernels import HELPER, KernelCompiler
-from sceneql.simulation.forces.gravity_kernels import acceleration, gravity
+from sceneql.compiled.kernels import HELPER, KernelCompiler
+from sceneql.compiled.numba.kernel_compiler import collecting_later
+from sceneql.words.forces.gravity_kernels import acceleration, gravity
 
 helper = numba.njit(**HELPER)
 
@@ -95,7 +95,7 @@ AHEAD = """
 import sys, threading
 THREAD
 from sceneql import ahead
-from sceneql.kernels import compiled
+from sceneql.compiled.kernels import compiled
 wait = ahead.compile_ahead(sys.argv[1:])
 wait()
 print(compiled.count, ahead._beside.cache_info().currsize)
@@ -112,7 +112,7 @@ print(compiled.count, ahead._beside.cache_info().currsize)
     ],
 )
 def test_what_is_compiled_ahead_is_there_and_asks_for_no_process_again(tmp_path, threads, begun):
-    modules = [f"sceneql.simulation.forces.{word}_kernels" for word in ("gravity", "drag")]
+    modules = [f"sceneql.words.forces.{word}_kernels" for word in ("gravity", "drag")]
     environment = {**os.environ, "SCENEQL_CACHE": str(tmp_path), "SCENEQL_THREADS": str(threads)}
 
     def run():

@@ -150,7 +150,7 @@ def test_reading_every_word_imports_nothing_heavy():
 def test_every_file_of_a_family_is_a_word_or_stands_beside_one():
     """A file whose class is misnamed would otherwise be no word, silently."""
     for family in CATALOGUE.families:
-        folder = ROOT.parent / "renderers" if family == "renderers" else ROOT / "simulation" / family
+        folder = ROOT.parent / "renderers" if family == "renderers" else ROOT / "words" / family
         words = CATALOGUE.words(family)
         for path in folder.glob("*.py"):
             text = path.read_text(encoding="utf-8")

@@ -8,7 +8,7 @@ import pytest
 from runs import watch
 from sceneql.pipeline import load
 from sceneql.quantities.diagnostic import ScriptError
-from sceneql.simulation.run import Run
+from sceneql.run.run import Run
 
 G = 9.81
 

@@ -6,11 +6,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lane_checks import check_enclosures
-from sceneql.field.batch_gradient_kernels import differentiate
-from sceneql.field.batch_kernels import LANES, evaluate
-from sceneql.field.skeleton import KERNELS, Skeleton
-from sceneql.field.solid import field_gradients, field_values
-from sceneql.simulation.spline import OFF, smooth
+from sceneql.field.skeleton.skeleton import KERNELS, Skeleton
+from sceneql.field.tape.batch_gradient_kernels import differentiate
+from sceneql.field.tape.batch_kernels import LANES, evaluate
+from sceneql.field.tape.tape_solid import field_gradients, field_values
+from sceneql.shapes.spline import OFF, smooth
 from test_skeletons import FALLOFF, POINTS, check_box, check_segment, tape_of
 
 CURVES = {

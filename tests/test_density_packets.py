@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from plain_tapes import kernels
-from sceneql.field.packets import Memory, cast_together
-from sceneql.field.tape_ops import HIT
+from sceneql.field.packets.packets import Memory, cast_together
+from sceneql.field.tape.tape_ops import HIT
 
 RADIUS, THRESHOLD = 0.4, 0.3
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from sceneql.failure import LimitRefused, RunFailure
+from sceneql.grids.prepare_stages import report
+from sceneql.march.march import March
 from sceneql.pipeline import load
-from sceneql.simulation.grids.implicit import report
-from sceneql.simulation.march import March
-from sceneql.simulation.run import IslandRun
-from sceneql.simulation.solvers.rk4 import Rk4
+from sceneql.run.run import IslandRun
+from sceneql.words.solvers.rk4 import Rk4
 from test_stiff import dense
 
 SQUARE = "{rest: {value: 0}}"

@@ -11,11 +11,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from sceneql.grids.domain import svg
+from sceneql.grids.domain.mesh import MeshLevel
+from sceneql.grids.domain.polygon import Polygon
+from sceneql.grids.domain.svg_path import curves
 from sceneql.quantities.diagnostic import ScriptError
-from sceneql.simulation.grids import svg
-from sceneql.simulation.grids.mesh import MeshLevel
-from sceneql.simulation.grids.polygon import Polygon
-from sceneql.simulation.grids.svg_path import curves
 from test_grids import Basin
 
 HEAD = '<svg xmlns="http://www.w3.org/2000/svg">'

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from sceneql.failure import LimitRefused, RunFailure
+from sceneql.grids import flow
 from sceneql.quantities.diagnostic import ScriptError
-from sceneql.simulation.grids import flow
 from test_diffusion import Field
 
 AROUND = "{left: {periodic: yes}, bottom: {periodic: yes}}"
@@ -190,8 +190,8 @@ def test_methods_of_second_order_pass_many_cells_too(tmp_path, solver):
 
 @pytest.mark.parametrize("limiter", ["koren", "van_leer", "none"])
 def test_the_jacobian_is_the_derivative_of_the_rate(tmp_path, limiter):
-    from sceneql.simulation.driver import jacobian
-    from sceneql.simulation.modes import jacobian as by_differences
+    from sceneql.march.driver import jacobian
+    from sceneql.march.modes import jacobian as by_differences
 
     drift = f"{{velocity: '[1 + x, sin(5*x) - y]', incompressible: no, limiter: {limiter}}}"
     sides = "{left: {periodic: yes}, bottom: {value: 1}, top: {open: yes}}"

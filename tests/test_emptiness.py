@@ -11,10 +11,10 @@ from meshes import tape_of as plain_tape
 from moment import IDENTITY, FakeMoment, const, formula
 from sceneql import pipeline
 from sceneql.failure import RunFailure
-from sceneql.field.emptiness import nowhere_defined, proved_empty
-from sceneql.field.solid import field_values
-from sceneql.simulation.objects.implicit import Implicit, Within
-from sceneql.simulation.solid import traced
+from sceneql.field.tape.emptiness import nowhere_defined, proved_empty
+from sceneql.field.tape.tape_solid import field_values
+from sceneql.shapes.solid import traced
+from sceneql.words.objects.implicit import Implicit, Within
 
 LEVEL = st.floats(-2.0, 2.0)
 

@@ -15,23 +15,23 @@ from scipy.integrate import solve_ivp
 
 from islands import assembly
 from runs import watch
-from sceneql import kernels, pipeline
+from sceneql import pipeline
+from sceneql.compiled import generated, kernels
+from sceneql.compiled.printer import TEXTS
+from sceneql.formulas.rate_program import RateSystem, jacobian_kernel, rate_kernel
 from sceneql.kinds import Formula
+from sceneql.march.driver import function
+from sceneql.march.march import March
 from sceneql.quantities.bind import bind
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Link, Number, Symbol
 from sceneql.quantities.parser import parse_expression
 from sceneql.quantities.span import Source, Span
-from sceneql.simulation import generated
-from sceneql.simulation.driver import function
-from sceneql.simulation.march import March
-from sceneql.simulation.models.equations import Copies, Equations
-from sceneql.simulation.printer import TEXTS
-from sceneql.simulation.rate_program import RateSystem, jacobian_kernel, rate_kernel
-from sceneql.simulation.solvers.dopri5 import Dopri5
-from sceneql.simulation.solvers.rk4 import Rk4
 from sceneql.system import ModelState
+from sceneql.words.models.equations import Copies, Equations
+from sceneql.words.solvers.dopri5 import Dopri5
+from sceneql.words.solvers.rk4 import Rk4
 
 DOUBLE_PENDULUM = {
     "start": {"a": "90 deg", "b": "90 deg", "a'": "0", "b'": "0"},

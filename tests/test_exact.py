@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from scipy.linalg import expm
 
 from sceneql.failure import LimitRefused
+from sceneql.march.exact_march import ExactMarch
 from sceneql.pipeline import load
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.report.explain import explain, text
-from sceneql.simulation.grids.exact_march import ExactMarch
 from test_diffusion import Field
 
 SIDES = ("left", "right", "bottom", "top", "back", "front")

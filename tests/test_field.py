@@ -13,18 +13,18 @@ from hypothesis import strategies as st
 
 from plain_tapes import fan, implicit
 from random_tapes import ARGUMENTS, COORDINATES, JUMPS, NAMES, NUMBERS, PARTS, arguments, of_one, rays, tapes
-from sceneql.field.builder import TapeBuilder
-from sceneql.field.enclosure_kernels import segment
-from sceneql.field.gradient_kernels import gradient
-from sceneql.field.interval_kernels import box
-from sceneql.field.solid import cast, field_gradients, field_values, scratch
-from sceneql.field.tape_kernels import value
-from sceneql.field.tape_ops import (
+from sceneql.field.enclose.enclosure_kernels import segment
+from sceneql.field.enclose.interval_kernels import box
+from sceneql.field.tape.builder import TapeBuilder
+from sceneql.field.tape.gradient_kernels import gradient
+from sceneql.field.tape.tape_kernels import value
+from sceneql.field.tape.tape_ops import (
     NOWHERE,
     PARTIAL,
     WHOLE,
     scratch_rows,
 )
+from sceneql.field.tape.tape_solid import cast, field_gradients, field_values, scratch
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Number, Symbol, Vector
 from sceneql.quantities.operations import OPERATIONS
@@ -225,10 +225,10 @@ def test_density_parts_of_many_fields_stay_apart():
 
 PLAIN_PYTHON = """
 import numpy as np
-from sceneql.field.builder import TapeBuilder
-from sceneql.field.lowering import LOWERED
-from sceneql.field.solid import cast, field_values, scratch
-from sceneql.field.interval_kernels import box
+from sceneql.field.tape.builder import TapeBuilder
+from sceneql.field.tape.lowered_operations import LOWERED
+from sceneql.field.tape.tape_solid import cast, field_values, scratch
+from sceneql.field.enclose.interval_kernels import box
 b = TapeBuilder()
 parts = np.array([[-0.3, 0, 0, 0.3, 0, 0, 0.6, 1.0], [0, 0.4, 0, 0, 0.4, 0, 0.5, 1.0]])
 wave = b.op("sin", b.op("mul", b.constant(9.0), b.x))

@@ -10,17 +10,17 @@ from hypothesis import strategies as st
 from renderers.tracing.draw import draw
 from runs import complaint
 from sceneql.frame import Mesh, Segments
+from sceneql.grids.maps.colors import CONTROLS, colored, from_oklab, oklab, table
+from sceneql.grids.maps.domains import cut_open, flat, outside, section
+from sceneql.grids.maps.interpolation import Interpolation
+from sceneql.grids.maps.iso import iso_sheet
+from sceneql.grids.maps.iso_mesh import meshed
+from sceneql.grids.maps.sheets import Sheet, contour, kept, lattice
+from sceneql.grids.medium import FieldLayout
 from sceneql.mesh.measures import area, pieces, volume
 from sceneql.pipeline import frame_of, load
-from sceneql.simulation.color import linear
-from sceneql.simulation.grids.medium import FieldLayout
-from sceneql.simulation.maps.colors import CONTROLS, colored, from_oklab, oklab, table
-from sceneql.simulation.maps.domains import cut_open, flat, outside, section
-from sceneql.simulation.maps.interpolation import Interpolation
-from sceneql.simulation.maps.iso import iso_sheet
-from sceneql.simulation.maps.iso_mesh import meshed
-from sceneql.simulation.maps.sheets import Sheet, contour, kept, lattice
-from sceneql.simulation.run import Run
+from sceneql.run.run import Run
+from sceneql.shapes.color import linear
 
 FLAT = FieldLayout((12, 9, 1), 0, 0, (-1.0, 0.5, -0.5), (0.25, 0.2, 1.0))
 DEEP = FieldLayout((6, 5, 4), 0, 0, (-1.0, 0.5, 2.0), (0.25, 0.2, 0.3))

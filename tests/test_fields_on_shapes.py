@@ -6,10 +6,10 @@ import imageio.v3 as iio
 import numpy as np
 import pytest
 
+from sceneql.grids.maps.colors import colored
+from sceneql.grids.maps.iso_mesh import meshed
 from sceneql.pipeline import load
-from sceneql.simulation.maps.colors import colored
-from sceneql.simulation.maps.iso_mesh import meshed
-from sceneql.simulation.run import Run
+from sceneql.run.run import Run
 
 BODY = """
 clock: {end: 1 s, fps: 10}

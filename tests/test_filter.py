@@ -48,10 +48,10 @@ def joined(records, values, x, y, places):
 
 def test_windows_join_the_pixels_of_one_surface(records):
     """Means along x, then y, and the sky's over wider windows, are those of sums pixel by pixel."""
-    from renderers.tracing.filter_kernels import deepen, widen
-    from renderers.tracing.planes_kernels import HALO, KEYS, LANES, WIDE, lay_out
+    from renderers.tracing.filter.filter_kernels import deepen, widen
+    from renderers.tracing.filter.planes_kernels import HALO, KEYS, LANES, WIDE, lay_out
+    from renderers.tracing.filter.spread_kernels import ROOM, spread_sky
     from renderers.tracing.record_kernels import OWNER
-    from renderers.tracing.spread_kernels import ROOM, spread_sky
 
     count, chunks = WIDTH * HEIGHT, -(-WIDTH // LANES)
     visibility = np.random.default_rng(1).uniform(size=(count, COLUMNS)).astype(np.float32)

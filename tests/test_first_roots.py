@@ -8,14 +8,14 @@ from hypothesis import given, settings
 
 from plain_tapes import fan, implicit, kernels, sphere
 from random_tapes import SMOOTH, arguments, rays, tapes
-from sceneql.field.isolation_kernels import any_root, exit_root, first_root
-from sceneql.field.solid import cast, field_values, scratch
-from sceneql.field.tape_ops import (
+from sceneql.field.roots.isolation_kernels import any_root, exit_root, first_root
+from sceneql.field.tape.tape_ops import (
     HIT,
     INSIDE,
     MISS,
     UNDECIDED,
 )
+from sceneql.field.tape.tape_solid import cast, field_values, scratch
 from search_kernels import searched
 
 

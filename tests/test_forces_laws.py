@@ -7,13 +7,13 @@ import pytest
 
 from runs import complaint, watch
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.march.driver import jacobian
+from sceneql.march.march import March
 from sceneql.pipeline import load
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.report.explain import explain
-from sceneql.simulation.driver import jacobian
-from sceneql.simulation.march import March
-from sceneql.simulation.run import IslandRun, Run
-from sceneql.simulation.solvers.rk4 import Rk4
+from sceneql.run.run import IslandRun, Run
+from sceneql.words.solvers.rk4 import Rk4
 
 SCENE = """
 clock: {{end: 0.6 s}}

@@ -11,7 +11,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from form_kernels import enclosed
-from sceneql.field import tape_ops as ops
+from sceneql.field.tape import tape_ops as ops
 
 PRECISE = 600
 """Bits; what is compared differs by far more."""

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from runs import complaint
+from sceneql.pictures.plotting import Scale, scale_for
 from sceneql.pipeline import Report, Tools, load, simulate
-from sceneql.simulation.plotting import Scale, scale_for
 
 SCENE = """
 clock: {{end: 4 s, fps: 5}}

@@ -7,19 +7,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from renderers.tracing.grids import met
-from renderers.tracing.intersect_kernels import walk
 from renderers.tracing.pack import pack, scratch
-from renderers.tracing.surface_kernels import normal_at
+from renderers.tracing.solids.grids import met
+from renderers.tracing.solids.intersect_kernels import walk
+from renderers.tracing.solids.surface_kernels import normal_at
 from sceneql.failure import Unsuitable
 from sceneql.frame import Frame, Grid, Sky, Surface, View
+from sceneql.grids.maps.interpolation import trilinear
+from sceneql.grids.maps.iso_mesh import meshed
 from sceneql.mesh.measures import euler_characteristic
 from sceneql.pipeline import frame_of, load
 from sceneql.report.mesh import mesh
-from sceneql.simulation.bounds import box_of
-from sceneql.simulation.maps.interpolation import trilinear
-from sceneql.simulation.maps.iso_mesh import meshed
-from sceneql.simulation.run import Run
+from sceneql.run.run import Run
+from sceneql.shapes.world_boxes import box_of
 
 VIEW = View((0.0, 0.0, 6.0), np.eye(3), (8, 8), 0.5)
 WHITE = Sky(zenith=(1, 1, 1), horizon=(1, 1, 1), ground=(1, 1, 1))

@@ -11,11 +11,11 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from sceneql.failure import RunFailure
+from sceneql.grids.domain.cut import CROWDED, below, cut, frame
+from sceneql.grids.domain.polygon import Polygon, crossing
+from sceneql.march.stability import stability
 from sceneql.pipeline import load
-from sceneql.simulation.grids.cut import CROWDED, below, cut, frame
-from sceneql.simulation.grids.polygon import Polygon, crossing
-from sceneql.simulation.run import IslandRun
-from sceneql.simulation.stability import stability
+from sceneql.run.run import IslandRun
 
 ROOT = 3.0542369282271403
 """The first zero of J2' (Abramowitz & Stegun 1964, table 9.5)."""

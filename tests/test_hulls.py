@@ -8,8 +8,8 @@ import pytest
 
 from common_scenes import SCENES, tape_of
 from hulls_kernels import hull
-from sceneql.field.plans import degrees_of, places_of
-from sceneql.field.tape_ops import CONSTANT, X, Y, Z
+from sceneql.field.tape.plans import degrees_of, places_of
+from sceneql.field.tape.tape_ops import CONSTANT, X, Y, Z
 
 
 def bernstein(c, m, h):

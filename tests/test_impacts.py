@@ -9,15 +9,15 @@ import pytest
 
 from islands import TETHER, balls, simple
 from sceneql.failure import LimitRefused, RunFailure
-from sceneql.simulation.island import IslandAssembly
-from sceneql.simulation.march import March
-from sceneql.simulation.solvers.blanes_moan import BlanesMoan
-from sceneql.simulation.solvers.dop853 import Dop853
-from sceneql.simulation.solvers.dopri5 import Dopri5
-from sceneql.simulation.solvers.gauss_radau15 import GaussRadau15
-from sceneql.simulation.solvers.heun import Heun
-from sceneql.simulation.solvers.rk4 import Rk4
-from sceneql.simulation.solvers.verlet import Verlet
+from sceneql.island.island import IslandAssembly
+from sceneql.march.march import March
+from sceneql.words.solvers.blanes_moan import BlanesMoan
+from sceneql.words.solvers.dop853 import Dop853
+from sceneql.words.solvers.dopri5 import Dopri5
+from sceneql.words.solvers.gauss_radau15 import GaussRadau15
+from sceneql.words.solvers.heun import Heun
+from sceneql.words.solvers.rk4 import Rk4
+from sceneql.words.solvers.verlet import Verlet
 
 BOUNCERS = [Rk4(step=1e-3).stepper(), Rk4(step=1 / 60).stepper(), Dopri5().stepper()]
 BOUNCERS += [kind.stepper() for kind in (Heun(), Verlet(), BlanesMoan(step=1 / 60), Dop853(), GaussRadau15())]

@@ -6,7 +6,7 @@ import pytest
 
 from runs import watch
 from sceneql.pipeline import load
-from sceneql.simulation.run import IslandRun
+from sceneql.run.run import IslandRun
 
 G = 9.81
 SOLVERS = (

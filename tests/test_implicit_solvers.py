@@ -10,19 +10,19 @@ from scipy.integrate import solve_ivp
 
 from islands import TETHER, assembly, balls, final, fixed, simple, springs
 from runs import watch
+from sceneql.bodies import springs as springs_module
 from sceneql.failure import LimitRefused, RunFailure
+from sceneql.island import jacobian as layout
+from sceneql.linear import stage, stage_kernels
+from sceneql.march.march import March
+from sceneql.march.modes import jacobian
 from sceneql.pipeline import load, render
-from sceneql.simulation import jacobian as layout
-from sceneql.simulation import springs as springs_module
-from sceneql.simulation.linear import stage, stage_kernels
-from sceneql.simulation.march import March
-from sceneql.simulation.modes import jacobian
-from sceneql.simulation.run import IslandRun
-from sceneql.simulation.solvers.bdf2 import Bdf2
-from sceneql.simulation.solvers.implicit_euler import ImplicitEuler
-from sceneql.simulation.solvers.implicit_midpoint import ImplicitMidpoint
-from sceneql.simulation.solvers.rodas5p import Rodas5p
-from sceneql.simulation.solvers.tr_bdf2 import TrBdf2
+from sceneql.run.run import IslandRun
+from sceneql.words.solvers.bdf2 import Bdf2
+from sceneql.words.solvers.implicit_euler import ImplicitEuler
+from sceneql.words.solvers.implicit_midpoint import ImplicitMidpoint
+from sceneql.words.solvers.rodas5p import Rodas5p
+from sceneql.words.solvers.tr_bdf2 import TrBdf2
 
 ALL = (ImplicitEuler, ImplicitMidpoint, TrBdf2, Bdf2, Rodas5p)
 L_STABLE = (ImplicitEuler, TrBdf2, Bdf2, Rodas5p)
@@ -220,7 +220,7 @@ def test_a_stage_without_a_solution_is_a_located_failure():
 def test_a_stage_system_is_solved(tmp_path, count, kind):
     """(1 - a J) d = r for the Jacobian by differences, though positions and fixed masses are eliminated."""
     from sceneql.pipeline import load
-    from sceneql.simulation.run import Run
+    from sceneql.run.run import Run
 
     path = tmp_path / "scene.yaml"
     text = CHAIN.format(length=count, count=count, mass=0.5, stiffness=200, solver="{tr_bdf2: {step: 1 ms}}")
@@ -273,7 +273,7 @@ def test_threads_share_the_slopes_to_the_same_bytes(tmp_path, monkeypatch):
 def test_a_chain_of_springs_has_its_dispersion(tmp_path):
     """omega = 2 sqrt(k/m) sin(q a/2) of standing longitudinal waves (the modes of the assembled Jacobian)."""
     from sceneql.pipeline import load
-    from sceneql.simulation.run import Run
+    from sceneql.run.run import Run
 
     count, mass, stiffness = 22, 0.1, 50.0
     path = tmp_path / "scene.yaml"

@@ -10,16 +10,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from islands import assembly
+from sceneql.island.inputs import places
+from sceneql.island.inputs_kernels import BINARY, CODES, UNARY, refresh
+from sceneql.island.lowering import LOWERINGS
 from sceneql.kinds import Value
+from sceneql.march.march import March
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import SCALAR, Call, Expr, Key, Keys, Link, Number, Symbol, Type, Vector
 from sceneql.quantities.operations import OPERATIONS
-from sceneql.simulation.inputs import places
-from sceneql.simulation.inputs_kernels import BINARY, CODES, UNARY, refresh
-from sceneql.simulation.lowering import LOWERINGS
-from sceneql.simulation.march import March
-from sceneql.simulation.tableau import CLASSIC
+from sceneql.stepping.tableau import CLASSIC
 
 TIME = Symbol("time")
 VECTOR = Type((3,))

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from sceneql import pipeline
-from sceneql.field.solid import paint_values
-from sceneql.simulation.color import linear
+from sceneql.field.tape.tape_solid import paint_values
+from sceneql.shapes.color import linear
 
 RED, BLUE, LIME, GOLD = [1, 0, 0], [0, 0, 1], [0, 1, 0], [1, 215 / 255, 0]
 SCRIPT = """

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from common_scenes import tape_of
-from sceneql.field.builder import TapeBuilder
-from sceneql.field.solid import cast, field_values
-from sceneql.field.tape_ops import HIT, INSIDE, MISS, UNDECIDED
+from sceneql.field.tape.builder import TapeBuilder
+from sceneql.field.tape.tape_ops import HIT, INSIDE, MISS, UNDECIDED
+from sceneql.field.tape.tape_solid import cast, field_values
 
 FIELDS = [
     "max(x^2 + y^2 + z^2 - 1, abs(4*x - floor(4*x) - 0.5) - 0.3)",

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from sceneql.kernels import _sources
+from sceneql.compiled.kernels import _sources
 
 FORCE = '''
 """even: the same force on every mass."""
@@ -28,7 +28,7 @@ class Even(Force):
 KERNEL = '''
 """The force of even."""
 
-from sceneql.kernels import lean
+from sceneql.compiled.kernels import lean
 from sceneql.system_kernels import TERM
 IMPORT
 
@@ -81,7 +81,7 @@ def test_a_kernel_of_a_words_folder_follows_the_modules_that_it_imports(tmp_path
 
 
 def test_a_kernel_is_made_of_its_file_and_of_all_that_this_imports():
-    files = {path.name for path in _sources("sceneql.simulation.forces.gravity_kernels")}
+    files = {path.name for path in _sources("sceneql.words.forces.gravity_kernels")}
     assert files >= {"gravity_kernels.py", "kernels.py", "system_kernels.py", "shortcuts.py"}
     assert not files & {"gravity.py", "drag_kernels.py", "cli.py"}
-    assert all(Path(path).is_file() for path in _sources("sceneql.simulation.march_kernels"))
+    assert all(Path(path).is_file() for path in _sources("sceneql.march.march_kernels"))

@@ -12,8 +12,8 @@ from extremes_kernels import extremes
 from lane_checks import check_enclosures
 from plain_tapes import implicit
 from random_tapes import NAMES, PARTS, of_one, rays, tapes
-from sceneql.field.packets import enclosures
-from sceneql.field.tape_ops import (
+from sceneql.field.packets.packets import enclosures
+from sceneql.field.tape.tape_ops import (
     DENSITY,
     WHOLE,
 )

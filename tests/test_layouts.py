@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from runs import complaint
 from sceneql.failure import RunFailure
 from sceneql.kinds import EachVariant
+from sceneql.pictures.layout import boxes
 from sceneql.pipeline import Report, Tools, load, render, simulate
-from sceneql.simulation.layout import boxes
 
 SCENE = """
 clock: {{end: 2 s, fps: 4}}

@@ -53,8 +53,8 @@ def test_check_imports_nothing_that_only_runs_need(tmp_path):
         + FALL.replace("objects:\n", "objects:\n  floor: plane\n")
     )
     names = modules_after(tmp_path, looks, "check")
-    assert "sceneql.simulation.materials.glossy" in names
-    assert not names & {"sceneql.frame", "sceneql.system", "sceneql.kernels", "sceneql.simulation.run"}
+    assert "sceneql.words.materials.glossy" in names
+    assert not names & {"sceneql.frame", "sceneql.system", "sceneql.compiled.kernels", "sceneql.run.run"}
 
 
 def kinds_of_schema(schema):
@@ -80,24 +80,24 @@ def test_a_picture_without_physics_imports_no_solver_no_mesh_and_no_video(tmp_pa
     names = modules_after(tmp_path, STILL, "render")
     assert (tmp_path / "scene.png").is_file()
     assert not names & {"trimesh", "av", "imageio", "matplotlib"}  # numba itself asks for scipy
-    assert not [name for name in names if name.startswith(("sceneql.simulation.solvers.", "sceneql.simulation.march"))]
+    assert not [name for name in names if name.startswith(("sceneql.words.solvers.", "sceneql.march.march"))]
 
 
 def test_a_picture_without_implicit_objects_compiles_nothing_that_finds_them(tmp_path):
     names = modules_after(tmp_path, STILL, "render")
-    assert "renderers.tracing.intersect_kernels" in names
-    assert not names & {"renderers.tracing.implicit_kernels", "sceneql.field.enclosure_kernels"}
+    assert "renderers.tracing.solids.intersect_kernels" in names
+    assert not names & {"renderers.tracing.solids.implicit_kernels", "sceneql.field.enclose.enclosure_kernels"}
     blob = STILL.replace("objects:\n", "objects:\n  drop: {blobby: {skeleton: [{point: 0 1 0 m, radius: 1 m}]}}\n")
     names = modules_after(tmp_path, blob, "render")
-    assert "renderers.tracing.implicit_kernels" in names
-    assert "renderers.tracing.sheet_kernels" not in names
+    assert "renderers.tracing.solids.implicit_kernels" in names
+    assert "renderers.tracing.solids.sheet_kernels" not in names
 
 
 def test_only_the_words_that_are_needed_are_loaded(tmp_path):
     names = modules_after(tmp_path, FALL, "render")
-    assert "sceneql.simulation.solvers.runge_kutta_kernels" in names
+    assert "sceneql.stepping.runge_kutta_kernels" in names
     assert not [name for name in names if name.startswith("renderers.")]
-    assert not {n for n in names if n.startswith("sceneql.simulation.contacts.")}
+    assert not {n for n in names if n.startswith("sceneql.words.contacts.")}
 
 
 def test_explain_imports_neither_renderer_nor_encoder(tmp_path):

@@ -9,8 +9,8 @@ from scipy.integrate import solve_ivp
 from runs import watch
 from sceneql.pipeline import load
 from sceneql.quantities.diagnostic import ScriptError
-from sceneql.simulation.run import Run
-from sceneql.simulation.watch import Watch
+from sceneql.run.run import Run
+from sceneql.run.watch import Watch
 
 LED = """
 clock: {end: 1 s}

@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 from scipy.sparse import csr_array, kron
 from scipy.sparse.linalg import spsolve
 
-from sceneql.simulation.linear import dense_complex_kernels as dense_complex
-from sceneql.simulation.linear import dense_kernels as dense
-from sceneql.simulation.linear import fronts, fronts_kernels
-from sceneql.simulation.linear import krylov_kernels as krylov
-from sceneql.simulation.linear.fronts_plan_kernels import IN_SINGLE, PIECES, RESTING, TRIED
-from sceneql.simulation.linear.solver_kernels import PRECONDITION
-from sceneql.simulation.numbered_kernels import number_of
+from sceneql.compiled.numbered_kernels import number_of
+from sceneql.linear import dense_complex_kernels as dense_complex
+from sceneql.linear import dense_kernels as dense
+from sceneql.linear import krylov_kernels as krylov
+from sceneql.linear import multifrontal, multifrontal_kernels
+from sceneql.linear.multifrontal_plan_kernels import IN_SINGLE, PIECES, RESTING, TRIED
+from sceneql.linear.solver_kernels import PRECONDITION
 
 UNIT = 2.3e-16
 
@@ -95,12 +95,12 @@ def test_fronts_solve_to_rounding(columns, rows, seed, symmetric, dissected):
     matrix = csr_array(0.5 * (pattern + pattern.T)) if symmetric else pattern.copy()
     matrix.setdiag(matrix.diagonal() + 30.0)
     places = np.stack(np.meshgrid(np.arange(columns), np.arange(rows), [0], indexing="ij"), axis=-1).reshape(-1, 3)
-    plan = fronts.plan(pattern, points=places.repeat(3, axis=0).astype(float) if dissected else None)
+    plan = multifrontal.plan(pattern, points=places.repeat(3, axis=0).astype(float) if dissected else None)
     factors, work, numbers = np.zeros(plan.factors), np.zeros(plan.work), plan.numbers.copy()
     right = np.random.default_rng(seed).standard_normal(matrix.shape[0])
     x = right.copy()
-    assert fronts_kernels.factor_system(numbers, matrix.data, factors, work, symmetric)
-    fronts_kernels.solve_system(numbers, matrix.data, factors, x, work, symmetric)
+    assert multifrontal_kernels.factor_system(numbers, matrix.data, factors, work, symmetric)
+    multifrontal_kernels.solve_system(numbers, matrix.data, factors, x, work, symmetric)
     assert np.abs(matrix @ x - right).max() <= 1e-12
 
 
@@ -115,11 +115,11 @@ def test_fronts_of_blocks_solve_to_rounding(dissected, symmetric):
     blocks.sort_indices()
     graph = csr_array((np.ones(len(blocks.indices)), blocks.indices, blocks.indptr))
     places = np.stack(np.meshgrid(np.arange(13.0), np.arange(11.0), [0], indexing="ij"), axis=-1).reshape(-1, 3)
-    plan = fronts.plan(graph, points=places if dissected else None, unit=3)
+    plan = multifrontal.plan(graph, points=places if dissected else None, unit=3)
     factors, work = np.zeros(plan.factors), np.zeros(plan.work)
     x = np.ones(matrix.shape[0])
-    assert fronts_kernels.factor_system(plan.numbers, blocks.data.ravel(), factors, work, symmetric)
-    fronts_kernels.solve_system(plan.numbers, blocks.data.ravel(), factors, x, work, symmetric)
+    assert multifrontal_kernels.factor_system(plan.numbers, blocks.data.ravel(), factors, work, symmetric)
+    multifrontal_kernels.solve_system(plan.numbers, blocks.data.ravel(), factors, x, work, symmetric)
     assert np.abs(matrix @ x - 1.0).max() <= 1e-12
 
 
@@ -148,15 +148,15 @@ def sheet(columns, rows, stiffness, seed=4):
 @pytest.mark.parametrize("exact", [True, False])
 @pytest.mark.parametrize("stiffness", [1e-3, 1e2, 1e5])
 def test_factors_in_single_precision_solve_to_rounding_when_refined(monkeypatch, stiffness, exact):
-    monkeypatch.setattr(fronts, "WORTH_SINGLE", 0.0)
+    monkeypatch.setattr(multifrontal, "WORTH_SINGLE", 0.0)
     pattern, values, matrix = sheet(14, 11, stiffness)
-    plan = fronts.plan(pattern, unit=3, exact=exact)
+    plan = multifrontal.plan(pattern, unit=3, exact=exact)
     factors, work = np.zeros(plan.factors), np.zeros(plan.work)
-    assert fronts_kernels.factor_system(plan.numbers, values, factors, work, True)
+    assert multifrontal_kernels.factor_system(plan.numbers, values, factors, work, True)
     for size in (1.0, 1e-60, 1e60):
         right = size * np.random.default_rng(1).standard_normal(matrix.shape[0])
         x = right.copy()
-        fronts_kernels.solve_system(plan.numbers, values, factors, x, work, True)
+        multifrontal_kernels.solve_system(plan.numbers, values, factors, x, work, True)
         known = spsolve(matrix.tocsc(), right)
         wrong = np.abs(x - known).max() / np.abs(known).max()
         assert plan.numbers[IN_SINGLE] > 0
@@ -164,30 +164,30 @@ def test_factors_in_single_precision_solve_to_rounding_when_refined(monkeypatch,
 
 
 def test_factors_that_are_too_poor_in_single_precision_are_made_in_double(monkeypatch):
-    monkeypatch.setattr(fronts, "WORTH_SINGLE", 0.0)
+    monkeypatch.setattr(multifrontal, "WORTH_SINGLE", 0.0)
     pattern, values, matrix = sheet(14, 11, 1e11)
-    plan = fronts.plan(pattern, unit=3)
+    plan = multifrontal.plan(pattern, unit=3)
     factors, work = np.zeros(plan.factors), np.zeros(plan.work)
     with np.errstate(all="ignore"):  # where kernels are not compiled, numpy would warn of poor factors
         for _ in range(3):
-            assert fronts_kernels.factor_system(plan.numbers, values, factors, work, True)
+            assert multifrontal_kernels.factor_system(plan.numbers, values, factors, work, True)
             x = np.ones(matrix.shape[0])
-            assert fronts_kernels.solve_system(plan.numbers, values, factors, x, work, True)
+            assert multifrontal_kernels.solve_system(plan.numbers, values, factors, x, work, True)
             assert plan.numbers[IN_SINGLE] == 0
             assert np.abs(matrix @ x - 1.0).max() <= 1e-14 * np.abs(values).max()
         # After some time they are tried again.
         plan.numbers[RESTING] = 0
         easy = sheet(14, 11, 1.0)[1]
-        assert fronts_kernels.factor_system(plan.numbers, easy, factors, work, True)
-        assert fronts_kernels.solve_system(plan.numbers, easy, factors, x, work, True)
+        assert multifrontal_kernels.factor_system(plan.numbers, easy, factors, work, True)
+        assert multifrontal_kernels.solve_system(plan.numbers, easy, factors, x, work, True)
     assert plan.numbers[IN_SINGLE] == TRIED
 
 
 @pytest.mark.parametrize("single", [True, False])
 @pytest.mark.parametrize("dissected", [True, False])
 def test_threads_share_fronts_to_the_same_bytes(monkeypatch, dissected, single):
-    monkeypatch.setattr(fronts, "WORTH_THREADS", 0.0)
-    monkeypatch.setattr(fronts, "WORTH_SINGLE", 0.0 if single else np.inf)
+    monkeypatch.setattr(multifrontal, "WORTH_THREADS", 0.0)
+    monkeypatch.setattr(multifrontal, "WORTH_SINGLE", 0.0 if single else np.inf)
     pattern = net(24, 20, 1)
     matrix = csr_array(0.5 * (pattern + pattern.T))
     matrix.setdiag(matrix.diagonal() + 30.0)
@@ -195,26 +195,26 @@ def test_threads_share_fronts_to_the_same_bytes(monkeypatch, dissected, single):
     made = []
     for threads in (1, 2, 3):
         monkeypatch.setenv("SCENEQL_THREADS", str(threads))
-        plan = fronts.plan(pattern, points=places.repeat(3, axis=0).astype(float) if dissected else None)
+        plan = multifrontal.plan(pattern, points=places.repeat(3, axis=0).astype(float) if dissected else None)
         factors, work = np.zeros(plan.factors), np.zeros(plan.work)
         numbers = plan.numbers.copy()
         assert numbers[PIECES] >= 2
-        assert fronts_kernels.factor_system(numbers, matrix.data, factors, work, True)
+        assert multifrontal_kernels.factor_system(numbers, matrix.data, factors, work, True)
         x = np.ones(matrix.shape[0])
-        fronts_kernels.solve_system(numbers, matrix.data, factors, x, work, True)
+        multifrontal_kernels.solve_system(numbers, matrix.data, factors, x, work, True)
         assert np.abs(matrix @ x - 1.0).max() <= 1e-12
         made.append(x.tobytes())
         assert numbers[IN_SINGLE] == (TRIED if single else 0)
-        assert not fronts_kernels.factor_system(numbers, np.zeros(pattern.nnz), factors, work, True)
+        assert not multifrontal_kernels.factor_system(numbers, np.zeros(pattern.nnz), factors, work, True)
     assert made[0] == made[1] == made[2]
 
 
 def test_fronts_refuse_a_singular_matrix():
     pattern = net(3, 3, 0)
-    plan = fronts.plan(pattern)
+    plan = multifrontal.plan(pattern)
     factors, work = np.zeros(plan.factors), np.zeros(plan.work)
     for symmetric in (True, False):
-        assert not fronts_kernels.factor_system(plan.numbers, np.zeros(pattern.nnz), factors, work, symmetric)
+        assert not multifrontal_kernels.factor_system(plan.numbers, np.zeros(pattern.nnz), factors, work, symmetric)
 
 
 @pytest.mark.parametrize("symmetric", [True, False])

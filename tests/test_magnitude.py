@@ -9,12 +9,12 @@ from PIL import Image
 from meshes import tape_of
 from moment import IDENTITY, FakeMoment, formula
 from sceneql import pipeline
-from sceneql.field.magnitude import ORDINARY, leveling
-from sceneql.field.solid import field_gradients, field_values
+from sceneql.field.tape.magnitude import ORDINARY, leveling
+from sceneql.field.tape.tape_solid import field_gradients, field_values
+from sceneql.mesh.cubes.polygonise import polygonise
 from sceneql.mesh.measures import volume
-from sceneql.mesh.polygonise import polygonise
-from sceneql.simulation.objects.implicit import Implicit, Within
-from sceneql.simulation.solid import traced
+from sceneql.shapes.solid import traced
+from sceneql.words.objects.implicit import Implicit, Within
 
 QUARTIC = "x^4 + y^4 + z^4 - 0.1"
 WAVES = "x^2 + y^2 - 0.3 + sin(3*z)/5"

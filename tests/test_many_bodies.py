@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from sceneql.simulation.forces import repulsion_kernels, turbulence_kernels
-from sceneql.simulation.nbody import direct_kernels, fast_kernels, octree_kernels, tree_kernels
-from sceneql.simulation.neighbors import table
-from sceneql.simulation.threads_kernels import threads, tile_address
-from sceneql.simulation.together import layout
+from sceneql.bodies.neighbors import table
+from sceneql.compiled.threads_kernels import threads, tile_address
+from sceneql.nbody import direct_kernels, fast_kernels, octree_kernels, tree_kernels
+from sceneql.nbody.shared_masses import layout
 from sceneql.system import Bodies
+from sceneql.words.forces import repulsion_kernels, turbulence_kernels
 
 HEAD = 4
 """Numbers before the masses in floats."""

@@ -12,7 +12,7 @@ from renderers.march import March
 from renderers.trace import Trace
 from renderers.undecided import Undecided
 from sceneql import pipeline
-from sceneql.simulation.objects.implicit import Implicit, Within
+from sceneql.words.objects.implicit import Implicit, Within
 from stage import GLOW, WHITE, frame, implicit_sphere, sun, torus, view
 
 BOX = Within(box=((-1, -1, -1), (1, 1, 1)))

@@ -13,14 +13,14 @@ from hypothesis import strategies as st
 
 from moment import IDENTITY, FakeMoment, const
 from sceneql.frame import PointLight, Sky, Sun
-from sceneql.simulation.color import PALETTE, default_color, linear
-from sceneql.simulation.objects.plane import Plane
+from sceneql.shapes.color import PALETTE, default_color, linear
+from sceneql.words.objects.plane import Plane
 
 WORDS = ("matte", "glossy", "metal", "mirror", "checker", "glass")
 
 
 def word(family, name):
-    return getattr(import_module(f"sceneql.simulation.{family}.{name}"), name.capitalize())
+    return getattr(import_module(f"sceneql.words.{family}.{name}"), name.capitalize())
 
 
 def encode(c):

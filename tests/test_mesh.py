@@ -15,9 +15,9 @@ from meshes import (
     cut_sharp,
     tape_of,
 )
-from sceneql.field.solid import field_gradients, field_values
+from sceneql.field.tape.tape_solid import field_gradients, field_values
+from sceneql.mesh.cubes.polygonise import polygonise
 from sceneql.mesh.measures import edge_counts, euler_characteristic, volume
-from sceneql.mesh.polygonise import polygonise
 
 KERNELS = "0.3 - max(1 - (x - {d})^2 - y^2 - z^2, 0)^3 - max(1 - (x + {d})^2 - y^2 - z^2, 0)^3"
 

@@ -3,10 +3,10 @@
 import numpy as np
 
 from meshes import tape_of
-from sceneql.mesh.cases import CENTERS, cases, decisions
-from sceneql.mesh.cube import FACES_OF, segments
+from sceneql.mesh.cubes.cases import CENTERS, cases, decisions
+from sceneql.mesh.cubes.cube import FACES_OF, segments
+from sceneql.mesh.cubes.polygonise import polygonise
 from sceneql.mesh.measures import edge_counts, euler_characteristic
-from sceneql.mesh.polygonise import polygonise
 
 
 def all_variants():

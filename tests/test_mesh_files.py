@@ -8,10 +8,10 @@ from click.testing import CliRunner
 from meshes import tape_of
 from sceneql import pipeline
 from sceneql.cli import cli
-from sceneql.field.solid import paint_values
-from sceneql.mesh.polygonise import polygonise
+from sceneql.field.tape.tape_solid import paint_values
+from sceneql.mesh.cubes.polygonise import polygonise
+from sceneql.mesh.cubes.tolerance import distance
 from sceneql.mesh.polygons import Polygons
-from sceneql.mesh.tolerance import distance
 from sceneql.report.mesh import mesh
 
 SCENE = """

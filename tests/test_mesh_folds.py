@@ -22,16 +22,16 @@ from meshes import (
     tape_of,
 )
 from random_tapes import tapes
-from sceneql.field.solid import field_gradients, field_values
+from sceneql.field.tape.tape_solid import field_gradients, field_values
 from sceneql.mesh.bounded import bounded
-from sceneql.mesh.flips import facing
-from sceneql.mesh.folds import folds, winding
+from sceneql.mesh.cubes.polygonise import polygonise
+from sceneql.mesh.cubes.refine import refined
+from sceneql.mesh.dual.sharp import polygonise_sharp
 from sceneql.mesh.measures import edge_counts, euler_characteristic, volume
-from sceneql.mesh.passing import passing
-from sceneql.mesh.polygonise import polygonise
 from sceneql.mesh.polygons import Polygons
-from sceneql.mesh.refine import refined
-from sceneql.mesh.sharp import polygonise_sharp
+from sceneql.mesh.repair.flips import facing
+from sceneql.mesh.repair.folds import folds, winding
+from sceneql.mesh.repair.self_intersections import passing
 
 
 @pytest.mark.parametrize("name", CLOSED)

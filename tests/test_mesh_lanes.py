@@ -5,13 +5,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from random_tapes import tapes
-from sceneql.field.batch_gradient_kernels import differentiate
-from sceneql.field.batch_kernels import LANES, evaluate
-from sceneql.field.interval_kernels import box
-from sceneql.field.simplify_kernels import simplify
-from sceneql.field.solid import field_gradients, field_values, many_gradients, scratch
-from sceneql.field.steepness_kernels import steepness
-from sceneql.field.tape_ops import WHOLE
+from sceneql.field.enclose.interval_kernels import box
+from sceneql.field.tape.batch_gradient_kernels import differentiate
+from sceneql.field.tape.batch_kernels import LANES, evaluate
+from sceneql.field.tape.simplify_kernels import simplify
+from sceneql.field.tape.steepness_kernels import steepness
+from sceneql.field.tape.tape_ops import WHOLE
+from sceneql.field.tape.tape_solid import field_gradients, field_values, many_gradients, scratch
 from sceneql.frame import Tape
 
 

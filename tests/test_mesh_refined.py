@@ -18,10 +18,10 @@ from meshes import (
     cut_finer,
     tape_of,
 )
-from sceneql.field.solid import field_gradients, field_values
-from sceneql.mesh import moves
+from sceneql.field.tape.tape_solid import field_gradients, field_values
+from sceneql.mesh.cubes.unresolved import unresolved
 from sceneql.mesh.measures import euler_characteristic, volume
-from sceneql.mesh.unresolved import unresolved
+from sceneql.mesh.repair import move_vertices
 
 
 def test_resolved_shapes_hide_next_to_nothing():
@@ -74,8 +74,8 @@ def test_no_corner_is_tried_again_before_something_near_it_has_moved(monkeypatch
         tried.append((vertex, places[star].tobytes()))
         return moved(tape, places, normals, star, vertex)
 
-    moved = moves._moved
-    monkeypatch.setattr(moves, "_moved", noted)
+    moved = move_vertices._moved
+    monkeypatch.setattr(move_vertices, "_moved", noted)
     gyroid = "sin(9*x)*cos(9*y) + sin(9*y)*cos(9*z) + sin(9*z)*cos(9*x)"
     found, _ = cut_finer(f"max({gyroid}, sqrt(x^2 + y^2 + z^2) - 1)", 1.0, 40)
     assert_closed_manifold(found)

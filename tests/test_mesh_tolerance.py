@@ -16,14 +16,14 @@ from meshes import (
     tape_of,
 )
 from sceneql import pipeline
-from sceneql.mesh import tolerance as tolerance_module
 from sceneql.mesh.bounded import bounded
-from sceneql.mesh.folds import folds
+from sceneql.mesh.cubes import tolerance as tolerance_module
+from sceneql.mesh.cubes.refine import refined
+from sceneql.mesh.cubes.tolerance import distance, missed, polygonise_within
 from sceneql.mesh.hausdorff import hausdorff
 from sceneql.mesh.measures import euler_characteristic
 from sceneql.mesh.polygons import Polygons
-from sceneql.mesh.refine import refined
-from sceneql.mesh.tolerance import distance, missed, polygonise_within
+from sceneql.mesh.repair.folds import folds
 from sceneql.report.mesh import mesh
 
 

@@ -12,8 +12,8 @@ from renderers.tracing.mist_kernels import depths
 from runs import complaint
 from sceneql.frame import Frame, Mist, Points, Quadric, Sky, Surface, View
 from sceneql.pipeline import frame_of, load
-from sceneql.simulation.bounds import box_of
-from sceneql.simulation.run import Run
+from sceneql.run.run import Run
+from sceneql.shapes.world_boxes import box_of
 
 SIDE = 24
 WHITE = Sky(zenith=(1, 1, 1), horizon=(1, 1, 1), ground=(1, 1, 1))

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runs import complaint, watch
+from sceneql.bodies import spring_look
+from sceneql.bodies.nets import Cloth, Lattice
 from sceneql.frame import Mesh, Surface
-from sceneql.simulation.models import spring_look
-from sceneql.simulation.models.nets import Cloth, Lattice
 
 SPRING = """
 clock: {{end: 2 s}}

@@ -8,7 +8,7 @@ from sceneql.language.tree import written
 from sceneql.pipeline import load
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.quantities.span import Source
-from sceneql.simulation.run import Run
+from sceneql.run.run import Run
 
 NESTED = """
 templates:

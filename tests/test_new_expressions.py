@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from sceneql import pipeline
-from sceneql.kernels import compiled
+from sceneql.compiled.kernels import compiled
 
 SCENE = """\
 sceneql: 1
@@ -59,7 +59,7 @@ outputs: {still_image: {image: {size: 16 9}}}
 
 
 def test_what_holds_still_is_framed_by_one_look_and_what_moves_by_all_its_places(tmp_path, monkeypatch):
-    from sceneql.simulation.objects.implicit import Implicit
+    from sceneql.words.objects.implicit import Implicit
 
     looks = []
     lower = Implicit.lower

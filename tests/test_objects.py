@@ -11,22 +11,22 @@ from hypothesis import strategies as st
 
 from moment import IDENTITY, FakeMoment, capsule, const, drawn, fields_of, formula, link
 from sceneql.failure import RunFailure
-from sceneql.field.skeleton import Skeleton
+from sceneql.field.skeleton.skeleton import Skeleton
 from sceneql.kinds import Ref
-from sceneql.simulation.density import reaches
-from sceneql.simulation.objects.blobby import Blobby
-from sceneql.simulation.objects.box import Box
-from sceneql.simulation.objects.cylinder import Cylinder
-from sceneql.simulation.objects.difference import Difference
-from sceneql.simulation.objects.group import Group
-from sceneql.simulation.objects.implicit import Implicit, Within
-from sceneql.simulation.objects.intersection import Intersection
-from sceneql.simulation.objects.plane import Plane
-from sceneql.simulation.objects.sphere import Sphere
-from sceneql.simulation.objects.torus import Torus
-from sceneql.simulation.objects.tube import Tube
-from sceneql.simulation.objects.union import Union
-from sceneql.simulation.placement import affine, apply, compose, inverse, mapped_box, rotation_matrix
+from sceneql.shapes.density import reaches
+from sceneql.shapes.placement import affine, apply, compose, inverse, mapped_box, rotation_matrix
+from sceneql.words.objects.blobby import Blobby
+from sceneql.words.objects.box import Box
+from sceneql.words.objects.cylinder import Cylinder
+from sceneql.words.objects.difference import Difference
+from sceneql.words.objects.group import Group
+from sceneql.words.objects.implicit import Implicit, Within
+from sceneql.words.objects.intersection import Intersection
+from sceneql.words.objects.plane import Plane
+from sceneql.words.objects.sphere import Sphere
+from sceneql.words.objects.torus import Torus
+from sceneql.words.objects.tube import Tube
+from sceneql.words.objects.union import Union
 
 TURN = (0.8, 0.3, -0.4, 0.33)
 AT = (0.2, -0.1, 0.3)

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 from runs import complaint
 from sceneql.failure import RunFailure
 from sceneql.frame import View
+from sceneql.grids.maps.colors import colored
 from sceneql.kinds.texts import shown_unit
+from sceneql.pictures.anchors import projected
+from sceneql.pictures.lettering import Letterer, round_numbers
 from sceneql.pipeline import Report, Tools, load, simulate
-from sceneql.simulation.lettering import Letterer, round_numbers
-from sceneql.simulation.maps.colors import colored
-from sceneql.simulation.standing import projected
 
 SCENE = """
 clock: {{end: 1 s, fps: 1}}

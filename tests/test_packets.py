@@ -12,12 +12,11 @@ from moment import IDENTITY, FakeMoment, const, formula
 from plain_tapes import implicit, kernels
 from random_tapes import PARTS, rays, tapes
 from ray_bundles import agree_with_the_certified, bundle
-from sceneql.field.clips import clip_rows
-from sceneql.field.packets import Memory, cast_together, plan_of
-from sceneql.field.ray_rows import FOUND_ROOT, FOUND_STATUS
-from sceneql.field.skeleton import Skeleton
-from sceneql.field.solid import cast, field_values
-from sceneql.field.tape_ops import (
+from sceneql.field.packets.packets import Memory, cast_together, plan_of
+from sceneql.field.packets.ray_rows import FOUND_ROOT, FOUND_STATUS
+from sceneql.field.roots.clips import clip_rows
+from sceneql.field.skeleton.skeleton import Skeleton
+from sceneql.field.tape.tape_ops import (
     CONSTANT,
     COPY,
     DENSITY,
@@ -31,10 +30,11 @@ from sceneql.field.tape_ops import (
     UNDECIDED,
     X,
 )
-from sceneql.simulation.objects.blobby import Blobby
-from sceneql.simulation.objects.implicit import Implicit as Formula
-from sceneql.simulation.objects.implicit import Within
-from sceneql.simulation.solid import traced
+from sceneql.field.tape.tape_solid import cast, field_values
+from sceneql.shapes.solid import traced
+from sceneql.words.objects.blobby import Blobby
+from sceneql.words.objects.implicit import Implicit as Formula
+from sceneql.words.objects.implicit import Within
 
 
 @settings(max_examples=150)

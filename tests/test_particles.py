@@ -7,9 +7,9 @@ import pytest
 
 from runs import complaint, watch
 from sceneql import pipeline
+from sceneql.bodies.emitter_kernels import draw
+from sceneql.bodies.filling.winding import winding
 from sceneql.quantities.chance import random
-from sceneql.simulation.models.emitter_kernels import draw
-from sceneql.simulation.winding import winding
 
 G = 9.81
 FOUNTAIN = """

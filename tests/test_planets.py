@@ -12,7 +12,7 @@ import erfa
 import numpy as np
 
 from sceneql.pipeline import load
-from sceneql.simulation.run import Run
+from sceneql.run.run import Run
 
 SCENE = Path(__file__).parent.parent / "scenes" / "planets.yaml"
 START = 2449600.5

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from islands import final, fixed
+from sceneql.march.march import March
 from sceneql.pipeline import load
 from sceneql.report.explain import explain
-from sceneql.simulation import radau_systems
-from sceneql.simulation.march import March
-from sceneql.simulation.run import IslandRun
-from sceneql.simulation.solvers.radau import Radau
+from sceneql.run.run import IslandRun
+from sceneql.stepping import radau_systems
+from sceneql.words.solvers.radau import Radau
 
 COUNT, MASS, STIFFNESS = 142, 0.1, 50.0
 """Masses on a line, both ends held: 420 unknowns in the linear systems."""

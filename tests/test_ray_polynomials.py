@@ -6,10 +6,10 @@ import pytest
 
 from common_scenes import SCENES, rays, tape_of
 from exact_rays import along, exact, first_entry, roots_of
-from sceneql.field.plans import CLIP, NO_FORM, POLYNOMIAL, RADIUS, ray_plan
-from sceneql.field.ray_polynomial_kernels import polynomial_root
-from sceneql.field.solid import scratch
-from sceneql.field.tape_ops import HIT, INSIDE, MISS, UNDECIDED
+from sceneql.field.roots.ray_polynomial_kernels import polynomial_root
+from sceneql.field.tape.plans import CLIP, NO_FORM, POLYNOMIAL, RADIUS, ray_plan
+from sceneql.field.tape.tape_ops import HIT, INSIDE, MISS, UNDECIDED
+from sceneql.field.tape.tape_solid import scratch
 
 RAYS = 120
 SEXTIC = "(x^2 + 9/4*z^2 + y^2 - 1)^3 - x^2*y^3 - 9/80*z^2*y^3"

@@ -8,7 +8,7 @@ import pytest
 from runs import complaint
 from sceneql.failure import RunFailure
 from sceneql.pipeline import load
-from sceneql.simulation.run import IslandRun
+from sceneql.run.run import IslandRun
 
 FISHER = (
     "{u: {coefficient: 1, initial: '1/(1+exp((x-8)/sqrt(6)))^2', rate: u*(1-u),"
@@ -170,7 +170,7 @@ def test_rates_may_read_place_time_and_other_parts(tmp_path):
 
 
 def test_a_changed_number_compiles_nothing(tmp_path):
-    from sceneql.kernels import compiled
+    from sceneql.compiled.kernels import compiled
 
     Fields(tmp_path, GRAY_SCOTT, "{rk4: {step: 1 s}}", 2, where="{uvv: u*v^2}", cell="1/8 m").at(2)
     before = compiled.count

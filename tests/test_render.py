@@ -10,7 +10,7 @@ from PIL import Image
 
 from sceneql import cli, pipeline
 from sceneql.failure import RunFailure, Unsuitable
-from sceneql.simulation import run as running
+from sceneql.run import run as running
 
 PROBE = '''
 from types import SimpleNamespace

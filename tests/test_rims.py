@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from common_scenes import tape_of
-from sceneql.field.packets import cast_together
-from sceneql.field.solid import cast
-from sceneql.field.tape_ops import HIT, INSIDE, MISS, UNDECIDED
+from sceneql.field.packets.packets import cast_together
+from sceneql.field.tape.tape_ops import HIT, INSIDE, MISS, UNDECIDED
+from sceneql.field.tape.tape_solid import cast
 
 X, Y, Z = np.eye(3)
 RIM, NO_RIM = True, False

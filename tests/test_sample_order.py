@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from renderers.tracing.sampling_kernels import COUNT, DISK, SIDE, SKY_COUNT, SKY_DISK, sample_of
+from renderers.tracing.light.sampling_kernels import COUNT, DISK, SIDE, SKY_COUNT, SKY_DISK, sample_of
 
 ORDER = np.array([[sample_of.py_func(x, y) for x in range(4 * SIDE)] for y in range(4 * SIDE)])
 """By y and x."""

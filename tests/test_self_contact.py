@@ -6,7 +6,7 @@ import pytest
 from runs import watch
 from sceneql.pipeline import load
 from sceneql.quantities.diagnostic import ScriptError
-from sceneql.simulation.run import Run
+from sceneql.run.run import Run
 
 FOLDS = """
 clock: {end: 0.8 s}

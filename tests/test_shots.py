@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from runs import complaint
+from sceneql.pictures.framing import behind
 from sceneql.pipeline import Report, Tools, load, simulate
-from sceneql.simulation.framing import behind
 
 SCENE = """
 clock: {{end: 3 s, fps: 10}}

@@ -9,13 +9,13 @@ from lane_checks import check_enclosures
 from plain_tapes import implicit
 from random_tapes import MIXED
 from ray_bundles import agree_with_the_certified, bundle
-from sceneql.field.clips import clip_rows
-from sceneql.field.own_coordinates import in_own_coordinates
-from sceneql.field.packets import Memory, cast_together, enclosures
-from sceneql.field.skeleton import KERNELS, Skeleton
-from sceneql.field.solid import cast, field_values
-from sceneql.field.tape_ops import HIT, MISS, SKELETON, UNDECIDED
-from sceneql.simulation.spline import smooth
+from sceneql.field.packets.packets import Memory, cast_together, enclosures
+from sceneql.field.roots.clips import clip_rows
+from sceneql.field.skeleton.skeleton import KERNELS, Skeleton
+from sceneql.field.tape.own_coordinates import in_own_coordinates
+from sceneql.field.tape.tape_ops import HIT, MISS, SKELETON, UNDECIDED
+from sceneql.field.tape.tape_solid import cast, field_values
+from sceneql.shapes.spline import smooth
 from test_curved_skeletons import curves
 from test_skeletons import crowd
 

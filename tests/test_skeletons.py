@@ -9,18 +9,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lane_checks import check_enclosures
-from sceneql.field.batch_gradient_kernels import differentiate
-from sceneql.field.batch_kernels import LANES, evaluate
-from sceneql.field.builder import TapeBuilder
-from sceneql.field.enclosure_kernels import segment
-from sceneql.field.interval_kernels import box
-from sceneql.field.simplify_kernels import simplify
-from sceneql.field.skeleton import KERNELS, Skeleton
-from sceneql.field.solid import cast, field_gradients, field_values, scratch
-from sceneql.field.steepness_kernels import steepness
-from sceneql.field.tape_ops import HIT, WHOLE
+from sceneql.field.enclose.enclosure_kernels import segment
+from sceneql.field.enclose.interval_kernels import box
+from sceneql.field.skeleton.skeleton import KERNELS, Skeleton
+from sceneql.field.tape.batch_gradient_kernels import differentiate
+from sceneql.field.tape.batch_kernels import LANES, evaluate
+from sceneql.field.tape.builder import TapeBuilder
+from sceneql.field.tape.simplify_kernels import simplify
+from sceneql.field.tape.steepness_kernels import steepness
+from sceneql.field.tape.tape_ops import HIT, WHOLE
+from sceneql.field.tape.tape_solid import cast, field_gradients, field_values, scratch
+from sceneql.mesh.cubes.polygonise import polygonise
 from sceneql.mesh.measures import euler_characteristic
-from sceneql.mesh.polygonise import polygonise
 
 FALLOFF = {
     "wyvill": lambda r: (1 - r**2) ** 3,

@@ -8,17 +8,17 @@ import pytest
 
 from moment import IDENTITY, FakeMoment, const, link
 from sceneql.failure import RunFailure
-from sceneql.field.solid import field_values, paint_values
+from sceneql.field.tape.tape_solid import field_values, paint_values
 from sceneql.frame import Implicit, Mesh, Segments
 from sceneql.mesh.measures import edge_counts, euler_characteristic, pieces
 from sceneql.pipeline import load
 from sceneql.quantities.arrays import evaluate_arrays
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.quantities.expression import Key, Keys, Number, Symbol, Type
-from sceneql.simulation.ears import ears
-from sceneql.simulation.objects.blobby import Blobby
-from sceneql.simulation.run import Run
-from sceneql.simulation.skeleton_parts import Part
+from sceneql.run.run import Run
+from sceneql.shapes.ears import ears
+from sceneql.shapes.skeleton_parts import Part
+from sceneql.words.objects.blobby import Blobby
 
 
 def moments(folder, script, times):

@@ -10,24 +10,25 @@ import numpy as np
 import pytest
 
 from islands import TETHER, balls, final, fixed, simple, springs
-from sceneql import kernels
+from sceneql.compiled import kernels
 from sceneql.failure import RunFailure
 from sceneql.kinds import Solver
-from sceneql.simulation import dormand_prince_8, solvers, tableau
-from sceneql.simulation.march import March
-from sceneql.simulation.solvers.blanes_moan import BlanesMoan
-from sceneql.simulation.solvers.boris import Boris
-from sceneql.simulation.solvers.dop853 import Dop853
-from sceneql.simulation.solvers.dopri5 import Dopri5
-from sceneql.simulation.solvers.euler import Euler
-from sceneql.simulation.solvers.gauss_radau15 import GaussRadau15
-from sceneql.simulation.solvers.heun import Heun
-from sceneql.simulation.solvers.midpoint import Midpoint
-from sceneql.simulation.solvers.rk4 import Rk4
-from sceneql.simulation.solvers.runge_kutta import RungeKutta
-from sceneql.simulation.solvers.semi_implicit_euler import SemiImplicitEuler
-from sceneql.simulation.solvers.verlet import Verlet
-from sceneql.simulation.stability import stability
+from sceneql.march.march import March
+from sceneql.march.stability import stability
+from sceneql.stepping import dormand_prince_8, tableau
+from sceneql.words import solvers
+from sceneql.words.solvers.blanes_moan import BlanesMoan
+from sceneql.words.solvers.boris import Boris
+from sceneql.words.solvers.dop853 import Dop853
+from sceneql.words.solvers.dopri5 import Dopri5
+from sceneql.words.solvers.euler import Euler
+from sceneql.words.solvers.gauss_radau15 import GaussRadau15
+from sceneql.words.solvers.heun import Heun
+from sceneql.words.solvers.midpoint import Midpoint
+from sceneql.words.solvers.rk4 import Rk4
+from sceneql.words.solvers.runge_kutta import RungeKutta
+from sceneql.words.solvers.semi_implicit_euler import SemiImplicitEuler
+from sceneql.words.solvers.verlet import Verlet
 
 HEUN_3 = {"a": ((), (1 / 3,), (0.0, 2 / 3)), "b": (1 / 4, 0.0, 3 / 4)}
 NEEDED = {"runge_kutta": HEUN_3}
@@ -64,7 +65,7 @@ CLAIMED = {
 
 
 def solver(word: str) -> Solver:
-    module = importlib.import_module(f"sceneql.simulation.solvers.{word}")
+    module = importlib.import_module(f"sceneql.words.solvers.{word}")
     return getattr(module, "".join(part.capitalize() for part in word.split("_")))(**NEEDED.get(word, {}))
 
 

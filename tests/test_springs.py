@@ -10,7 +10,7 @@ from runs import complaint, watch
 from sceneql.failure import LimitRefused
 from sceneql.pipeline import load
 from sceneql.quantities.diagnostic import ScriptError
-from sceneql.simulation.run import Run
+from sceneql.run.run import Run
 
 TETHER = """
 clock: {end: 1 s}

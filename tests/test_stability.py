@@ -14,13 +14,13 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.failure import RunFailure, Unsuitable
 from sceneql.kinds.eigenvalues import eigenvalues
 from sceneql.kinds.stable_step import stable_step
+from sceneql.march.stability import stability
 from sceneql.report.stability import stability as report
 from sceneql.report.stability_map import default_sweep
 from sceneql.report.stability_sweep import parse_sweep
-from sceneql.simulation import watch
-from sceneql.simulation.models.mass_spring import MassSpring
-from sceneql.simulation.run import Run
-from sceneql.simulation.stability import stability
+from sceneql.run import watch
+from sceneql.run.run import Run
+from sceneql.words.models.mass_spring import MassSpring
 from steps import loaded, warnings
 
 PENDULUM = """\
@@ -117,7 +117,7 @@ def test_the_bound_of_the_script_holds_and_is_near_the_spectrum(tmp_path, script
     (island,) = Run(graph).islands
     model = next(task.kind for task in graph.tasks.values() if isinstance(task.kind, MassSpring))
     told = max(fast.frequency for fast in model.fastest("net"))
-    from sceneql.simulation.modes import jacobian
+    from sceneql.march.modes import jacobian
 
     matrix = jacobian(island.march)
     of = island.march.system.partner

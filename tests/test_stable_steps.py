@@ -8,9 +8,9 @@ import pytest
 from sceneql.compiler.passes import stable_steps
 from sceneql.failure import RunFailure
 from sceneql.kinds.stable_step import stable_step
+from sceneql.march.stability import stability
 from sceneql.report.explain import explain, text
-from sceneql.simulation.run import Run
-from sceneql.simulation.stability import stability
+from sceneql.run.run import Run
 from steps import loaded, warnings
 
 TAIL = "solvers: {main: {rk4: {step: 1 s}}}\nclock: {end: 1 s}\noutputs: {data: {record: {of: [net.energy]}}}\n"

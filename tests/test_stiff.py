@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from sceneql.failure import LimitRefused, RunFailure
+from sceneql.march.driver import jacobian
+from sceneql.march.march import March
 from sceneql.pipeline import load
-from sceneql.simulation.driver import jacobian
-from sceneql.simulation.march import March
-from sceneql.simulation.run import IslandRun, Run
-from sceneql.simulation.solvers.rk4 import Rk4
+from sceneql.run.run import IslandRun, Run
+from sceneql.words.solvers.rk4 import Rk4
 
 TRIANGLE = """
   net:
@@ -112,7 +112,7 @@ def lone_spring(folder):
 
 def test_a_term_that_does_not_know_its_slopes_is_differenced(tmp_path):
     run = island(tmp_path, f"models: {TRIANGLE}")
-    run.assembly.term("force", "sceneql.simulation.bodies_kernels:close", (0, 9, 0, 0))
+    run.assembly.term("force", "sceneql.bodies.bodies_kernels:close", (0, 9, 0, 0))
     exact = March(island(tmp_path, f"models: {TRIANGLE}").assembly.finish(jacobian=True), Rk4().stepper(), 1.0)
     march = March(run.assembly.finish(jacobian=True), Rk4().stepper(), 1.0)
     assert not march.system.pattern.exact

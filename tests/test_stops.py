@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from runs import watch
+from sceneql.bodies.time_shift import goes_evenly
+from sceneql.island.breakpoint_table import Stops, next_stop
+from sceneql.island.breakpoints import Turns
 from sceneql.pipeline import load
 from sceneql.quantities.expression import Call, Key, Keys, Link, Number, Symbol, Type
-from sceneql.simulation.run import Run
-from sceneql.simulation.shift import goes_evenly
-from sceneql.simulation.stops import Stops, next_stop
-from sceneql.simulation.turns import Turns
+from sceneql.run.run import Run
 
 G = 9.81
 TIME = Symbol("time", Type())

@@ -8,9 +8,9 @@ import pytest
 from moment import IDENTITY, FakeMoment, const, formula
 from renderers.tracing.normals import draw_normals
 from sceneql import pipeline
-from sceneql.field.emptiness import proved_rootless
+from sceneql.field.tape.emptiness import proved_rootless
 from sceneql.frame import Implicit as Shape
-from sceneql.simulation.objects.implicit import Implicit, Within
+from sceneql.words.objects.implicit import Implicit, Within
 from stage import frame, view
 
 SQUARED = "(x^2 + y^2 + z^2 - 0.49)^2"

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from runs import complaint, watch
+from sceneql.bodies.filling.stuffing import stuffed
+from sceneql.bodies.filling.tetrahedra import boundary, dihedral_angles, edges, volumes
 from sceneql.frame import Mesh
 from sceneql.mesh.measures import edge_counts, euler_characteristic, volume
 from sceneql.pipeline import load
-from sceneql.simulation.run import Run
-from sceneql.simulation.stuffing import stuffed
-from sceneql.simulation.tetrahedra import boundary, dihedral_angles, edges, volumes
+from sceneql.run.run import Run
 
 
 def filled(field, half, spacing):

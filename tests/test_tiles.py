@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from sceneql.kernels import over_tiles
+from sceneql.compiled.kernels import over_tiles
 
 
 @pytest.mark.parametrize("threads", ["1", "2"])

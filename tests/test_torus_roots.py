@@ -9,9 +9,9 @@ from flint import fmpq_poly
 from common_scenes import OUTCOMES, TOLERANCE, check
 from exact_rays import exact, first_entry, roots_of
 from moment import IDENTITY, FakeMoment, const
-from sceneql.field.isolation_kernels import exit_root
-from sceneql.field.solid import cast, scratch
-from sceneql.simulation.objects.torus import Torus
+from sceneql.field.roots.isolation_kernels import exit_root
+from sceneql.field.tape.tape_solid import cast, scratch
+from sceneql.words.objects.torus import Torus
 
 
 def torus_rays(radius, tube, kind, count=200):

@@ -15,9 +15,9 @@ import stage
 from renderers.normals import Normals
 from renderers.trace import Trace
 from renderers.tracing.draw import _kept
-from renderers.tracing.edges_kernels import BEYOND
-from renderers.tracing.intersect_kernels import walk
+from renderers.tracing.filter.edges_kernels import BEYOND
 from renderers.tracing.pack import pack, scratch
+from renderers.tracing.solids.intersect_kernels import walk
 from sceneql.frame import Mesh, PointLight, Points, Segments, Sky, Surface
 from stage import GLOW, WHITE, frame, sun, view
 

@@ -7,7 +7,7 @@ from runs import watch
 from sceneql.failure import RunFailure
 from sceneql.frame import Mesh, Points, Segments
 from sceneql.pipeline import load
-from sceneql.simulation.run import Run
+from sceneql.run.run import Run
 
 SCENE = """
 clock: {end: 2 s}

@@ -11,20 +11,20 @@ from hypothesis import strategies as st
 
 from moment import IDENTITY, FakeMoment, const, drawn, fields_of
 from sceneql import pipeline
-from sceneql.field.builder import TapeBuilder
-from sceneql.field.interval_kernels import box as interval
-from sceneql.field.solid import cast, field_gradients, field_values, scratch
-from sceneql.field.tape_ops import HIT, INSIDE
+from sceneql.field.enclose.interval_kernels import box as interval
+from sceneql.field.tape.builder import TapeBuilder
+from sceneql.field.tape.tape_ops import HIT, INSIDE
+from sceneql.field.tape.tape_solid import cast, field_gradients, field_values, scratch
 from sceneql.kinds import Ref
-from sceneql.simulation.objects.bend import Bend
-from sceneql.simulation.objects.box import Box
-from sceneql.simulation.objects.cylinder import Cylinder
-from sceneql.simulation.objects.plane import Plane
-from sceneql.simulation.objects.sphere import Sphere
-from sceneql.simulation.objects.taper import Taper
-from sceneql.simulation.objects.twist import Twist
-from sceneql.simulation.placement import affine, apply
-from sceneql.simulation.warp import arc, steepest
+from sceneql.shapes.placement import affine, apply
+from sceneql.shapes.warp import arc, steepest
+from sceneql.words.objects.bend import Bend
+from sceneql.words.objects.box import Box
+from sceneql.words.objects.cylinder import Cylinder
+from sceneql.words.objects.plane import Plane
+from sceneql.words.objects.sphere import Sphere
+from sceneql.words.objects.taper import Taper
+from sceneql.words.objects.twist import Twist
 
 SIZE = (0.5, 1.6, 0.3)
 OFF = (0.1, 0.3, -0.05)
@@ -287,7 +287,7 @@ def test_what_cannot_be_warped_is_refused(warp, why):
 
 
 def test_what_is_nowhere_stays_so():
-    from sceneql.simulation.objects.intersection import Intersection
+    from sceneql.words.objects.intersection import Intersection
 
     far = Sphere(position=const([5, 0, 0]))
     parts = {"a": Sphere(), "b": far, "none": Intersection(of=(Ref("a"), Ref("b")))}

@@ -13,14 +13,14 @@ from hypothesis import strategies as st
 import stage
 from renderers.trace import Trace
 from renderers.tracing import TOLERANCE
-from renderers.tracing.bundles import Packets, solids_in_lanes
-from renderers.tracing.intersect_kernels import walk
 from renderers.tracing.pack import pack, scratch
 from renderers.tracing.probe import probe
 from renderers.tracing.scene_kernels import ANSWERS, ANYWHERE, FAR, FIRST, NEXT, WANT
-from sceneql.field.builder import TapeBuilder
-from sceneql.field.clips import clips_of
-from sceneql.field.solid import field_values
+from renderers.tracing.solids.bundles import Packets, solids_in_lanes
+from renderers.tracing.solids.intersect_kernels import walk
+from sceneql.field.roots.clips import clips_of
+from sceneql.field.tape.builder import TapeBuilder
+from sceneql.field.tape.tape_solid import field_values
 from sceneql.frame import Implicit, PointLight, Sky, Surface
 from stage import GLOW, WHITE, frame, sun, view
 

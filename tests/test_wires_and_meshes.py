@@ -8,9 +8,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from moment import IDENTITY, FakeMoment, const
-from sceneql.simulation.objects.coil import Coil
-from sceneql.simulation.objects.mesh import Mesh
-from sceneql.simulation.placement import affine, apply
+from sceneql.shapes.placement import affine, apply
+from sceneql.words.objects.coil import Coil
+from sceneql.words.objects.mesh import Mesh
 
 TURN = (0.8, 0.3, -0.4, 0.33)
 

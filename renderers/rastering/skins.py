@@ -24,9 +24,9 @@ def skin(shape: Implicit, cells: int, sharp: bool) -> Mesh:
     ``cells`` along its longest side, finer where the surface turns much or parts may be thinner. ``sharp``: edges are
     kept instead. Raises ValueError as ``grid_around``.
     """
-    from sceneql.field.solid import paint_values
-    from sceneql.mesh.refine import refined
-    from sceneql.mesh.sharp import polygonise_sharp
+    from sceneql.field.tape.tape_solid import paint_values
+    from sceneql.mesh.cubes.refine import refined
+    from sceneql.mesh.dual.sharp import polygonise_sharp
 
     cell = max(high - low for low, high in zip(shape.low, shape.high, strict=True)) / cells
     if sharp:

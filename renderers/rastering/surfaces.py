@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sceneql.mesh.colors import levels
+from sceneql.mesh.display_colors import levels
 
 if TYPE_CHECKING:
     from renderers.rastering.triangles import Triangles

@@ -7,9 +7,9 @@ TOLERANCE = 1e-9
 def certified(module: str) -> tuple[str, ...]:
     """A module of the tracer and what finds implicit objects by certified roots, in an order for `compile_ahead`."""
     return (
-        "sceneql.field.enclosure_kernels",
+        "sceneql.field.enclose.enclosure_kernels",
         module,
-        "renderers.tracing.occupancy_kernels",
-        "renderers.tracing.implicit",
-        "renderers.tracing.implicit_kernels",
+        "renderers.tracing.solids.occupancy_kernels",
+        "renderers.tracing.solids.implicit",
+        "renderers.tracing.solids.implicit_kernels",
     )

@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from renderers.tracing import TOLERANCE
-from renderers.tracing.filter_kernels import deepen, widen
+from renderers.tracing.filter.filter_kernels import deepen, widen
+from renderers.tracing.filter.planes_kernels import KEYS, LANES, WIDE, lay_out
+from renderers.tracing.filter.refine_kernels import shade_rows
+from renderers.tracing.filter.spread_kernels import ROOM, spread_sky
+from renderers.tracing.light.sampling_kernels import subpixels
+from renderers.tracing.light.visibility_kernels import FIRST_LIGHT
 from renderers.tracing.pack import pack
 from renderers.tracing.picture import Picture, over_rows
-from renderers.tracing.planes_kernels import KEYS, LANES, WIDE, lay_out
 from renderers.tracing.record_kernels import COLUMNS
-from renderers.tracing.refine_kernels import shade_rows
-from renderers.tracing.sampling_kernels import subpixels
 from renderers.tracing.scene_kernels import LIGHT_COUNT
-from renderers.tracing.spread_kernels import ROOM, spread_sky
+from renderers.tracing.solids.packet_choice import lender, packets_for
 from renderers.tracing.sprites import over
-from renderers.tracing.together import lender, packets_for
-from renderers.tracing.visibility_kernels import FIRST_LIGHT
 from renderers.tracing.waves import Waves
 
 if TYPE_CHECKING:

@@ -8,8 +8,9 @@ import numpy as np
 from numba import types
 
 from renderers.tracing.camera_kernels import camera_ray
-from renderers.tracing.intersect_kernels import walk
-from renderers.tracing.light_kernels import backdrop, dielectric, sharpness, sky_radiance, smoothstep
+from renderers.tracing.light.light_kernels import backdrop, dielectric, sharpness, sky_radiance, smoothstep
+from renderers.tracing.light.shade_kernels import facing_ratio, mean_specular, shade
+from renderers.tracing.light.visibility_kernels import look_around
 from renderers.tracing.path_kernels import behind, bend, describe, faded, mirrored, refracted
 from renderers.tracing.record_kernels import TINT, TRACED, WEIGHT, copy_record, erase, start_of
 from renderers.tracing.scene_kernels import (
@@ -25,9 +26,8 @@ from renderers.tracing.scene_kernels import (
     TRANSMISSION,
     part,
 )
-from renderers.tracing.shade_kernels import facing_ratio, mean_specular, shade
-from renderers.tracing.visibility_kernels import look_around
-from sceneql.kernels import kernel
+from renderers.tracing.solids.intersect_kernels import walk
+from sceneql.compiled.kernels import kernel
 
 PLACES = types.float64[::1]
 BOUNCES = 8

@@ -5,7 +5,7 @@ import math
 
 from numba import types
 
-from sceneql.kernels import lean, lean_inlined
+from sceneql.compiled.kernels import lean, lean_inlined
 
 _rows = types.float64[:, ::1]
 _reals = types.float64[::1]

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from renderers.tracing import TOLERANCE
+from renderers.tracing.light.sampling_kernels import subpixels
 from renderers.tracing.normals_kernels import normal_rows, undecided_rows
 from renderers.tracing.pack import pack, scratch
 from renderers.tracing.picture import Picture, over_rows
-from renderers.tracing.sampling_kernels import subpixels
 
 if TYPE_CHECKING:
     from sceneql.frame import Frame

@@ -5,10 +5,10 @@ import numpy as np
 from numba import types
 
 from renderers.tracing.camera_kernels import camera_ray
-from renderers.tracing.intersect_kernels import walk
 from renderers.tracing.scene_kernels import CAMERA, SCENE, SCRATCH, WIDTH, part
-from renderers.tracing.surface_kernels import normal_at
-from sceneql.kernels import kernel
+from renderers.tracing.solids.intersect_kernels import walk
+from renderers.tracing.solids.surface_kernels import normal_at
+from sceneql.compiled.kernels import kernel
 
 UNDECIDED = (1.0, 0.15, 0.0)
 """Color of pixels with an undecided root."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from renderers.tracing import TOLERANCE, hierarchy_kernels
+from renderers.tracing import TOLERANCE
 from renderers.tracing.scene_kernels import (
     CAMERA,
     CELLS,
@@ -39,8 +39,9 @@ from renderers.tracing.scene_kernels import (
     Scene,
 )
 from renderers.tracing.scene_kernels import TOLERANCE as ROOT_TOLERANCE
-from sceneql.field.plans import ray_plan
-from sceneql.field.tape_ops import SCRATCH_COLUMNS, scratch_rows
+from renderers.tracing.solids import hierarchy_kernels
+from sceneql.field.tape.plans import ray_plan
+from sceneql.field.tape.tape_ops import SCRATCH_COLUMNS, scratch_rows
 from sceneql.frame import Frame, Grid, Implicit, Mesh, Mist, Points, Quadric, Segments, Sky, Sun, Surface, View
 
 if TYPE_CHECKING:
@@ -93,12 +94,12 @@ def pack(frame: Frame, tolerance: float = TOLERANCE, samples: int = 0, certain: 
         reals[reals_at + tables.implicits[k] + 6] = place
     scene = Scene(reals, ints, 0, 0, 0, 0, 0)
     if any(isinstance(shape, Grid) for shape in frame.shapes):
-        from renderers.tracing.grids import found_by_cells
+        from renderers.tracing.solids.grids import found_by_cells
 
         scene = found_by_cells(scene)
     rows = tables.rows + len(frame.shapes) + 1
     if tables.implicits:
-        from renderers.tracing.implicit import prepared
+        from renderers.tracing.solids.implicit import prepared
 
         places = [reals_at + place for place in tables.implicits]
         sheets = any(isinstance(shape, Implicit) and shape.within is not None for shape in frame.shapes)
@@ -198,7 +199,7 @@ class Rows:
         self.ranges.append(np.array(ranges))
 
     def _grid(self, index: int, shape: Grid) -> None:
-        from renderers.tracing.grids import box, row
+        from renderers.tracing.solids.grids import box, row
 
         self._items(index, GRID, box(shape), row(shape))
 

@@ -3,6 +3,7 @@
 
 import numpy as np
 
+from renderers.tracing.light.shade_kernels import facing_ratio
 from renderers.tracing.record_kernels import (
     ITEM,
     LIFT,
@@ -17,8 +18,7 @@ from renderers.tracing.record_kernels import (
     start_of,
 )
 from renderers.tracing.scene_kernels import ENDLESS_COUNT, ITEMS, SHAPE, SURFACE_AT, part
-from renderers.tracing.shade_kernels import facing_ratio
-from renderers.tracing.surface_kernels import color_at, normal_at
+from renderers.tracing.solids.surface_kernels import color_at, normal_at
 
 FADE = 0.04
 """Sine of the angle to an endless floor below which it fades into the backdrop: a horizon without an edge."""

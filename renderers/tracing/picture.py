@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from sceneql.kernels import over_tiles
+from sceneql.compiled.kernels import over_tiles
 
 if TYPE_CHECKING:
     from numpy import float32

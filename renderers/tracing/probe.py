@@ -13,13 +13,13 @@ from renderers.tracing.pack import pack, scratch
 from renderers.tracing.picture import over_rows
 from renderers.tracing.probe_kernels import probe_rows
 from renderers.tracing.scene_kernels import ANSWERS, ASKING, MODE, NEXT, SHAPE_COUNT, TELLING, WIDTH
-from renderers.tracing.together import lender, packets_for
+from renderers.tracing.solids.packet_choice import lender, packets_for
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from renderers.tracing.bundles import Packets
     from renderers.tracing.scene_kernels import Scene
+    from renderers.tracing.solids.bundles import Packets
     from sceneql.frame import Floats, Frame
 
 

@@ -5,10 +5,10 @@ import numpy as np
 from numba import types
 
 from renderers.tracing.camera_kernels import TILE, camera_ray, place_of
-from renderers.tracing.intersect_kernels import ask
 from renderers.tracing.scene_kernels import ASKED, ASKING, MODE, SCENE, SCRATCH, WIDTH
-from renderers.tracing.surface_kernels import normal_at
-from sceneql.kernels import kernel
+from renderers.tracing.solids.intersect_kernels import ask
+from renderers.tracing.solids.surface_kernels import normal_at
+from sceneql.compiled.kernels import kernel
 
 
 @kernel(

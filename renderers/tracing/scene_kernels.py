@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import types
 
-from sceneql.kernels import function_at, lean_inlined
+from sceneql.compiled.kernels import function_at, lean_inlined
 
 part = lean_inlined
 """A function called by kernels alone: without reference counts, which threads would fight over."""
@@ -78,7 +78,7 @@ HALF_SPACE (a quadric that is nothing else): unit normal, height of its face alo
 GRID: as grid_kernels says.
 IMPLICIT and SHEET: low, high, place of its ranges: 7. The ranges, in ints: place of the code, its rows, place of the
 constants, their number, place of the parts, their rows; place of the cells; the same six of its paint and of what a
-sheet lies within (no rows: it has none); place of the plan for single rays (sceneql.field.plans), its length."""
+sheet lies within (no rows: it has none); place of the plan for single rays (sceneql.field.tape.plans), its length."""
 CELLS_AT, PAINT, WITHIN, PLAN, RANGES = 6, 7, 13, 19, 21
 """Columns of the ranges, and how many there are."""
 CELLS = 32

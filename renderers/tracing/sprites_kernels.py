@@ -6,7 +6,7 @@ import math
 from numba import types
 
 from renderers.tracing.record_kernels import OWNER, PLACE
-from sceneql.kernels import lean, lean_inlined
+from sceneql.compiled.kernels import lean, lean_inlined
 
 _i = types.int64
 _reals = types.float64[::1]

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from renderers.tracing.camera_kernels import TILE
-from renderers.tracing.edges_kernels import TRIAL, add_samples, begin_samples, list_edges, look_from_samples
+from renderers.tracing.filter.edges_kernels import TRIAL, add_samples, begin_samples, list_edges, look_from_samples
+from renderers.tracing.filter.planes_kernels import KEYS, LANES, WIDE
+from renderers.tracing.filter.refine_kernels import refine
 from renderers.tracing.gather_kernels import PATH
 from renderers.tracing.pack import scratch
-from renderers.tracing.planes_kernels import KEYS, LANES, WIDE
 from renderers.tracing.record_kernels import COLUMNS
-from renderers.tracing.refine_kernels import refine
 from renderers.tracing.scene_kernels import ANSWERS, ASKING, MODE, NEXT, SHAPE_COUNT, TELLING, WIDTH
 from renderers.tracing.waves_kernels import (
     advance_paths,
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from renderers.tracing.bundles import Packets
     from renderers.tracing.scene_kernels import Scene
+    from renderers.tracing.solids.bundles import Packets
 
     Array = NDArray[Any]
 

@@ -6,9 +6,9 @@ from numba import types
 
 from renderers.tracing.camera_kernels import place_of
 from renderers.tracing.gather_kernels import DARK, DOUBTED, GATHERED, LIVE, QUICK, advance, begin, light_behind
-from renderers.tracing.intersect_kernels import put_ray, tell
+from renderers.tracing.light.sampling_kernels import sample_of
+from renderers.tracing.light.visibility_kernels import look_around
 from renderers.tracing.record_kernels import OWNER, UNSURE
-from renderers.tracing.sampling_kernels import sample_of
 from renderers.tracing.scene_kernels import (
     ASKED,
     ASKING,
@@ -20,8 +20,8 @@ from renderers.tracing.scene_kernels import (
     SCRATCH,
     WIDTH,
 )
-from renderers.tracing.visibility_kernels import look_around
-from sceneql.kernels import kernel
+from renderers.tracing.solids.intersect_kernels import put_ray, tell
+from sceneql.compiled.kernels import kernel
 
 _i = types.int64
 _rows = types.float32[:, ::1]

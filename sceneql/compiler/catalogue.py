@@ -52,7 +52,7 @@ class Catalogue:
         if family == "renderers":
             places = [("renderers", ROOT.parent / "renderers")]
         else:
-            places = [(f"sceneql.simulation.{family}", ROOT / "simulation" / family)]
+            places = [(f"sceneql.words.{family}", ROOT / "words" / family)]
         if self._folder is not None:
             places.append((f"{USER_PACKAGE}.{family}", self._folder / family))
         return places

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class FieldBuilder(Protocol):
-    """What an object needs to write its implicit field (sceneql.field.builder.TapeBuilder)."""
+    """What an object needs to write its implicit field (sceneql.field.tape.builder.TapeBuilder)."""
 
     def constant(self, value: float) -> int:
         """Register of a number."""
@@ -34,7 +34,7 @@ class FieldBuilder(Protocol):
         """Registers of a point mapped by a (3, 4) matrix."""
 
     def skeleton(self, skeleton: Any, x: int, y: int, z: int) -> int:
-        """Register of the density of a skeleton (sceneql.field.skeleton.Skeleton) at a point."""
+        """Register of the density of a skeleton (sceneql.field.skeleton.skeleton.Skeleton) at a point."""
 
 
 class Object(Kind):
@@ -80,7 +80,7 @@ class Object(Kind):
         return None
 
     def domain(self) -> Any:
-        """Its inside as a flat domain of fields (simulation.grids.cut.Level with bounds); None: it is none."""
+        """Its inside as a flat domain of fields (grids.domain.cut.Level with bounds); None: it is none."""
         return None
 
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:

@@ -10,12 +10,12 @@ from typing import Any, Final, NoReturn, cast
 
 import yaml
 
+from sceneql.language.broken_values import Fault, report, swallowed, torn_halves, torn_near
 from sceneql.language.encoded import MOST_BYTES, too_large
 from sceneql.language.lines import doubled, lacking, left_out, marked, unparted
-from sceneql.language.mend import blanked, cut_short, joined, mended
 from sceneql.language.plain import cut_off, kind_of
+from sceneql.language.repair import blanked, cut_short, joined, mended
 from sceneql.language.syntax import explain, place, unprintable
-from sceneql.language.torn import Fault, report, swallowed, torn_halves, torn_near
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence, broken, extent, hole
 from sceneql.quantities.diagnostic import LIMITS, Diagnostic, Diagnostics, Note, ScriptError
 from sceneql.quantities.span import Source, Span

@@ -11,7 +11,7 @@ from typing import Final
 
 import yaml
 
-from sceneql.language.torn import Fault
+from sceneql.language.broken_values import Fault
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence, hole
 from sceneql.quantities.diagnostic import Diagnostic
 from sceneql.quantities.span import Source, Span

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from sceneql.field import tape_ops as ops
+from sceneql.field.tape import tape_ops as ops
 
 if TYPE_CHECKING:
     from sceneql.frame import Tape

@@ -13,9 +13,9 @@ def faceted(shape: Implicit, cell: float, smooth: bool) -> Mesh:
 
     A painted shape gives its vertices their colors. Raises ValueError as ``polygonise``.
     """
-    from sceneql.field.solid import paint_values
+    from sceneql.field.tape.tape_solid import paint_values
     from sceneql.frame import Mesh
-    from sceneql.mesh.polygonise import polygonise
+    from sceneql.mesh.cubes.polygonise import polygonise
 
     polygons = polygonise(shape.tape, shape.low, shape.high, cell)
     colors = None if shape.paint is None else paint_values(shape.paint, polygons.vertices)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from sceneql.field.solid import field_values, many_gradients
+from sceneql.field.tape.tape_solid import field_values, many_gradients
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints, Tape

@@ -8,8 +8,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from sceneql.quantities.composites import dot, ease, mix, normalize
 from sceneql.quantities.expression import Expr, Keys
-from sceneql.quantities.formulas import dot, ease, mix, normalize
 
 CURVES = ("step", "linear", "smooth", "cubic")
 Components = tuple[Any, ...]

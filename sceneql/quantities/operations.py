@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
 
-from sceneql.quantities import chance, formulas, partials, real, rules
+from sceneql.quantities import chance, composites, partials, real, rules
 from sceneql.quantities.expression import Expr, Type
 
 MANY = 10_000
@@ -98,7 +98,7 @@ def _reduction(name: str, rule: rules.Rule, formula: Any, numpy: str) -> Operati
 
 
 def _extreme(name: str, python: Any, derivative: Any) -> Operation:
-    formula = formulas.extreme(name)
+    formula = composites.extreme(name)
     rule = rules.least_or_most(name)
     return Operation(name, 1, MANY, rule, python, f"{name}imum", derivative, formula, reduces=True)
 
@@ -153,26 +153,28 @@ _TABLE = (
     _plain("round", real.nearest, "rint", partials.flat),
     Operation("where", 3, 3, rules.some_alike("where", (1, 2), (0,)), real.where, "where", partials.where),
     Operation("random", 1, 3, rules.plain("random"), chance.random, "random", partials.flat),
-    _scalar("step", rules.some_alike("step", (0, 1), (), result_plain=True), formulas.step, 2),
-    _scalar("clamp", rules.some_alike("clamp", (0, 1, 2), ()), formulas.clamp, 3),
-    _scalar("mix", rules.some_alike("mix", (0, 1), (2,)), formulas.mix, 3),
-    _scalar("ease", rules.plain("ease"), formulas.ease, 1),
-    _scalar("smoothstep", rules.some_alike("smoothstep", (0, 1, 2), (), result_plain=True), formulas.smoothstep, 3),
-    _vector("dot", formulas.dot, (0, 0), (), rules.multiplied),
-    _vector("cross", formulas.cross, (3, 3), (3,), rules.multiplied),
-    _vector("length", formulas.length, (0,), (), rules.kept),
-    _vector("distance", formulas.distance, (0, 0), (), rules.some_alike("distance", (0, 1), ())),
-    Operation("normalize", 1, 1, rules.normalized, formula=formulas.normalize, vector_args=(True,), vector_result=True),
+    _scalar("step", rules.some_alike("step", (0, 1), (), result_plain=True), composites.step, 2),
+    _scalar("clamp", rules.some_alike("clamp", (0, 1, 2), ()), composites.clamp, 3),
+    _scalar("mix", rules.some_alike("mix", (0, 1), (2,)), composites.mix, 3),
+    _scalar("ease", rules.plain("ease"), composites.ease, 1),
+    _scalar("smoothstep", rules.some_alike("smoothstep", (0, 1, 2), (), result_plain=True), composites.smoothstep, 3),
+    _vector("dot", composites.dot, (0, 0), (), rules.multiplied),
+    _vector("cross", composites.cross, (3, 3), (3,), rules.multiplied),
+    _vector("length", composites.length, (0,), (), rules.kept),
+    _vector("distance", composites.distance, (0, 0), (), rules.some_alike("distance", (0, 1), ())),
+    Operation(
+        "normalize", 1, 1, rules.normalized, formula=composites.normalize, vector_args=(True,), vector_result=True
+    ),
     Operation("component", 2, 2, rules.chosen),
     Operation("item", 2, 2, rules.picked),
-    Operation("about", 2, 2, _turned, formula=formulas.about, vector_args=(True, False), vector_result=True),
-    *(_vector(f"euler_{o}", formulas.euler(o), (3,), (4,), rules.plain(f"euler_{o}")) for o in _ORDERS),
-    _vector("turn", formulas.turn, (4, 4), (4,), rules.plain("turn")),
-    _vector("hue", formulas.hue, (None,), (3,), rules.plain("hue")),
-    _reduction("sum", rules.reduced, formulas.total, "sum"),
-    _reduction("mean", rules.reduced, formulas.mean, "mean"),
-    _reduction("norm", rules.normed, formulas.norm, "norm"),
-    _reduction("count", rules.counted, formulas.count, "count"),
+    Operation("about", 2, 2, _turned, formula=composites.about, vector_args=(True, False), vector_result=True),
+    *(_vector(f"euler_{o}", composites.euler(o), (3,), (4,), rules.plain(f"euler_{o}")) for o in _ORDERS),
+    _vector("turn", composites.turn, (4, 4), (4,), rules.plain("turn")),
+    _vector("hue", composites.hue, (None,), (3,), rules.plain("hue")),
+    _reduction("sum", rules.reduced, composites.total, "sum"),
+    _reduction("mean", rules.reduced, composites.mean, "mean"),
+    _reduction("norm", rules.normed, composites.norm, "norm"),
+    _reduction("count", rules.counted, composites.count, "count"),
     _series("final", rules.kept),
     _series("initial", rules.kept),
     _series("at", rules.sampled, 2),

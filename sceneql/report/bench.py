@@ -20,12 +20,12 @@ from sceneql.kinds import Solver
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.report.bench_grids import GridSection, grid_section
 from sceneql.report.bench_surfaces import Section, surface_section
-from sceneql.report.drift import Drift, drift
+from sceneql.report.energy_drift import Drift, drift
 from sceneql.report.order import observed_order
 from sceneql.report.page import Table, beside, file_names, write_page
 from sceneql.report.plots import drift_against_time, error_against_step, error_against_time, legend
 from sceneql.report.reference import reference
-from sceneql.report.surfaces import pictured
+from sceneql.report.surface_measures import pictured
 from sceneql.report.work_precision import Measurement, Reference, measurements, solvers, warm
 
 CLEAR = 10.0

@@ -159,9 +159,9 @@ def on_grids(title: str, ends: Sequence[End]) -> tuple[list[GridRun], float | No
 
 def linear_runs(graph: SimulationGraph, island: Island) -> Iterator[LinearRun]:
     """One step of the script's length by every linear solver that applies; what does not converge is left out."""
-    from sceneql.simulation.grids.implicit import report
-    from sceneql.simulation.grids.names import Linear
-    from sceneql.simulation.solvers.implicit_euler import ImplicitEuler
+    from sceneql.grids.multigrid.linear_solvers import Linear
+    from sceneql.grids.prepare_stages import report
+    from sceneql.words.solvers.implicit_euler import ImplicitEuler
 
     step = min(settings(graph, island)[0], graph.settings.clock.end)
     for name in get_args(Linear):

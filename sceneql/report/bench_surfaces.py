@@ -14,7 +14,7 @@ from sceneql.files import whole
 from sceneql.frame import Implicit
 from sceneql.report.page import Table, beside
 from sceneql.report.plots import surface_errors
-from sceneql.report.surfaces import MeshRun, RayRun, mesh_runs, ray_runs
+from sceneql.report.surface_measures import MeshRun, RayRun, mesh_runs, ray_runs
 
 if TYPE_CHECKING:
     from sceneql.frame import Frame

@@ -10,7 +10,7 @@ from sceneql import pipeline
 from sceneql.graph import SimulationGraph
 from sceneql.kinds import Expect, Moment, Value
 from sceneql.quantities.expression import Call, Link, Symbol, walk
-from sceneql.simulation.series import Series, instant_of, measure, plain, wanted
+from sceneql.run.series import Series, instant_of, measure, plain, wanted
 
 
 @dataclass(frozen=True, slots=True)

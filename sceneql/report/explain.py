@@ -12,7 +12,7 @@ from sceneql.graph import SimulationGraph
 from sceneql.kinds import Camera, Force, Output
 
 if TYPE_CHECKING:
-    from sceneql.simulation.run import IslandRun
+    from sceneql.run.run import IslandRun
 
 
 def explain(graph: SimulationGraph) -> dict[str, Any]:
@@ -58,20 +58,21 @@ def _looks_ahead(graph: SimulationGraph, camera: str) -> bool:
 
 
 def _kernels(words: set[tuple[str, str]]) -> set[str]:
-    """Words whose compiled code, in a file beside them, is not loaded."""
-    return {word for family, word in words if (ROOT / "simulation" / family / f"{word}_kernels.py").is_file()}
+    """Words whose compiled code, in a file of their name, is not loaded."""
+    files = (*ROOT.glob("words/*/*_kernels.py"), *ROOT.glob("*/*_kernels.py"))
+    return {word for _, word in words} & {path.stem.removesuffix("_kernels") for path in files}
 
 
 def _islands(graph: SimulationGraph) -> list[dict[str, Any]]:
     if not graph.islands:
         return []
-    from sceneql.simulation.run import Run
+    from sceneql.run.run import Run
 
     return [_island(graph, run) for run in Run(graph).islands]
 
 
 def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
-    from sceneql.simulation.stability import stability
+    from sceneql.march.stability import stability
 
     island = run.island
     stepper = run.march.stepper

@@ -16,8 +16,8 @@ from sceneql.report.work_precision import ENOUGH_SECONDS, LONGEST, run
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.simulation.grids.medium import FieldLayout, Medium
-    from sceneql.simulation.run import IslandRun
+    from sceneql.grids.medium import FieldLayout, Medium
+    from sceneql.run.run import IslandRun
 
 MOST_CELLS = 100_000
 """Of the finest grid, or the script's own where that has more."""
@@ -74,8 +74,8 @@ def ends_on_grids(graph: SimulationGraph, island: Island) -> tuple[list[End], st
 
 def _in_time(graph: SimulationGraph, island: Island) -> tuple[Solver, str]:
     """What solves an island in time without an error to speak of."""
-    from sceneql.simulation.solvers.exact import Exact
-    from sceneql.simulation.solvers.tr_bdf2 import TrBdf2
+    from sceneql.words.solvers.exact import Exact
+    from sceneql.words.solvers.tr_bdf2 import TrBdf2
 
     try:
         island_by(graph, island, Exact())
@@ -86,7 +86,7 @@ def _in_time(graph: SimulationGraph, island: Island) -> tuple[Solver, str]:
 
 def island_by(graph: SimulationGraph, island: Island, solver: Solver) -> IslandRun:
     """An island of a scene at its start, by another solver."""
-    from sceneql.simulation.run import IslandRun
+    from sceneql.run.run import IslandRun
 
     task = replace(graph.tasks[island.solver], kind=solver)
     return IslandRun(replace(graph, tasks={**graph.tasks, island.solver: task}, islands=(island,)), island)

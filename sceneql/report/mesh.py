@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from sceneql.frame import Grid, Implicit, Tape
     from sceneql.graph import SimulationGraph, Task
     from sceneql.mesh.bounded import Corner
+    from sceneql.mesh.cubes.tolerance import Within
+    from sceneql.mesh.cubes.unresolved import Unresolved
     from sceneql.mesh.polygons import Polygons
-    from sceneql.mesh.tolerance import Within
-    from sceneql.mesh.unresolved import Unresolved
-    from sceneql.simulation.run import Instant
+    from sceneql.run.run import Instant
 
 CELLS = 128
 """Cells along the longest side of an object's box, where nothing is said."""
@@ -90,7 +90,7 @@ def mesh(
     Unsuitable for what is no object or file, and RunFailure for what has no inside, is empty or unbounded, or needs too
     many cells.
     """
-    from sceneql.mesh.files import format_of, write
+    from sceneql.mesh.mesh_formats import format_of, write
 
     format_of(output)
     if not 0.0 <= time <= graph.settings.clock.end:
@@ -101,20 +101,20 @@ def mesh(
     if grids := _on_grids(task, name, moment):
         if cell is not None or tolerance is not None or sharp:
             raise Unsuitable(f"'{name}' is meshed between the cells of its field, so nothing can be said of cells here")
-        from sceneql.simulation.maps.iso_mesh import polygons_of
+        from sceneql.grids.maps.iso_mesh import polygons_of
 
         polygons, cell = polygons_of(grids)
         hidden, missed, folded = None, 0.0, 0
     else:
         from sceneql.mesh.bounded import bounded
-        from sceneql.mesh.folds import folds
+        from sceneql.mesh.repair.folds import folds
 
         solid = _solid(task, name, moment)
         polygons, hidden, cell, missed = _of_solid(solid, task, name, moment.time, cell, tolerance, sharp)
         folded = len(folds(bounded(solid.tape, solid.low, solid.high), polygons))
         missed = missed if tolerance is not None and missed > tolerance else 0.0
         if solid.paint is not None:
-            from sceneql.field.solid import paint_values
+            from sceneql.field.tape.tape_solid import paint_values
 
             colors = paint_values(solid.paint, polygons.vertices)
     write(output, polygons, colors)
@@ -125,9 +125,9 @@ def _of_solid(
     solid: Implicit, task: Task, name: str, time: float, cell: float | None, tolerance: float | None, sharp: bool
 ) -> Within:
     """Polygons of a solid, the cells that they are of, and what they do not resolve."""
-    from sceneql.mesh.grid import grid_around
-    from sceneql.mesh.refine import refined
-    from sceneql.mesh.tolerance import Within, polygonise_within
+    from sceneql.mesh.cubes.grid import grid_around
+    from sceneql.mesh.cubes.refine import refined
+    from sceneql.mesh.cubes.tolerance import Within, polygonise_within
 
     box = solid.tape, solid.low, solid.high
     size = max(high - low for low, high in zip(solid.low, solid.high, strict=True))
@@ -189,15 +189,15 @@ def _account(
 
 def _kept_sharp(tape: Tape, low: Corner, high: Corner, cell: float) -> tuple[Polygons, Unresolved]:
     """As ``refined``, but with edges and corners kept."""
-    from sceneql.mesh.sharp import polygonise_sharp
-    from sceneql.mesh.unresolved import unresolved
+    from sceneql.mesh.cubes.unresolved import unresolved
+    from sceneql.mesh.dual.sharp import polygonise_sharp
 
     return polygonise_sharp(tape, low, high, cell), unresolved(tape, low, high, cell)
 
 
 def _why_empty(tape: Tape, low: Corner, high: Corner, cell: float) -> str:
     """Why there is no surface."""
-    from sceneql.field.emptiness import nowhere_defined, nowhere_finite, proved_empty
+    from sceneql.field.tape.emptiness import nowhere_defined, nowhere_finite, proved_empty
 
     if nowhere_defined(tape, low, high):
         return "its field is nowhere defined in its bounds"
@@ -220,8 +220,8 @@ def _object(graph: SimulationGraph, name: str) -> Task:
 
 def _solid(task: Task, name: str, moment: Instant) -> Implicit:
     """An object's field in its box in the world. Raises RunFailure where it has none."""
-    from sceneql.field.builder import TapeBuilder
-    from sceneql.simulation.solid import traced
+    from sceneql.field.tape.builder import TapeBuilder
+    from sceneql.shapes.solid import traced
 
     with failing_as(name, moment.time, task.span):
         assert isinstance(task.kind, Object)

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 from sceneql.files import whole
 
 if TYPE_CHECKING:
-    from sceneql.report.drift import Drift
+    from sceneql.report.energy_drift import Drift
     from sceneql.report.stability_map import Cell
-    from sceneql.report.surfaces import MeshRun, RayRun
+    from sceneql.report.surface_measures import MeshRun, RayRun
     from sceneql.report.work_precision import Measurement
 
 MARKS = "osD^vP*X<>"

@@ -14,14 +14,14 @@ from sceneql.kinds import Expect, Solver
 from sceneql.quantities.expression import Call, Expr, Link, Symbol, walk
 from sceneql.quantities.operations import OPERATIONS
 from sceneql.report.work_precision import LONGEST, Reference, at, run
-from sceneql.simulation.series import measure
+from sceneql.run.series import measure
 
 if TYPE_CHECKING:
     from numpy import bool_
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats
-    from sceneql.simulation.run import Instant, IslandRun
+    from sceneql.run.run import Instant, IslandRun
 
 TOLERANCES = ((1e-13, 1e-12), (1e-10, 1e-9), (1e-7, 1e-6))
 """Of the reference, and of a second run: how far they are apart bounds the error of the first. The next pair is taken
@@ -56,7 +56,7 @@ def reference(
     own = {word: cast(type[Solver], catalogue.load("solvers", word)).model_validate({}) for word in words}
     exact = {name: e for name, e in graph.settings.expect.items() if _tells_the_end(e, island)}
     if exact:
-        from sceneql.simulation.run import Run
+        from sceneql.run.run import Run
 
         start = Run(replace(graph, islands=(island,)))
         (moment,) = start.moments([0.0])

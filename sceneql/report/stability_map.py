@@ -61,8 +61,8 @@ class Cell:
 
 def default_sweep(graph: SimulationGraph) -> Sweep:
     """Steps around the one that belongs to the fastest mode of all islands at their starts."""
-    from sceneql.simulation.modes import modes_of
-    from sceneql.simulation.run import Run
+    from sceneql.march.modes import modes_of
+    from sceneql.run.run import Run
 
     found = [modes_of(island.march) for island in Run(graph).islands]
     fastest = max((modes.fastest for modes in found if modes is not None), default=0.0)
@@ -132,9 +132,9 @@ def _cell(
 
 
 def _bound(graph: SimulationGraph, island: Island, solver: Solver) -> float:
-    from sceneql.simulation.modes import DENSE
-    from sceneql.simulation.run import Run
-    from sceneql.simulation.stability import stability
+    from sceneql.march.modes import DENSE
+    from sceneql.march.stability import stability
+    from sceneql.run.run import Run
 
     if adaptive(solver):
         return math.inf

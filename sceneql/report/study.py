@@ -17,11 +17,11 @@ from sceneql.language.patch import Patch
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.report.expect import moments_of, sample
 from sceneql.report.work_precision import FIRST_LOOK, NEXT_LOOK, TooLong
-from sceneql.simulation.series import Series, measure
+from sceneql.run.series import Series, measure
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.simulation.run import Instant
+    from sceneql.run.run import Instant
 
 REPEATS = 3
 ENOUGH_SECONDS = 0.5
@@ -114,7 +114,7 @@ def _trial(graph: SimulationGraph, name: str, values: tuple[Tried, ...], truth: 
 
 def _run(graph: SimulationGraph, values: Sequence[Value], longest: float) -> tuple[list[float], Series, Instant, float]:
     """Times, what values read at them, the last moment, and the run time [s]. Raises TooLong beyond ``longest`` [s]."""
-    from sceneql.simulation.run import Run
+    from sceneql.run.run import Run
 
     times, run = moments_of(graph, values), Run(graph)
     last: list[Instant] = []

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import renderers
 import sceneql
-from sceneql.kernels import compiled
+from sceneql.compiled.kernels import compiled
 
 
 def warmup() -> str:

@@ -15,7 +15,7 @@ from sceneql.graph import Island, SimulationGraph
 from sceneql.kinds import Model, Solver
 
 if TYPE_CHECKING:
-    from sceneql.simulation.run import Instant, IslandRun
+    from sceneql.run.run import Instant, IslandRun
 
 STEPS = tuple(2**k for k in range(4, 19))
 """Steps of a fixed-step run, until ENOUGH_SECONDS or the reference's own error is reached."""
@@ -129,7 +129,7 @@ def prepared(graph: SimulationGraph, island: Island, solver: Solver) -> Simulati
 
 def run(graph: SimulationGraph, island: Island, solver: Solver, longest: float = math.inf) -> tuple[Instant, IslandRun]:
     """An island's run by a solver, at its end. Raises RunFailure; TooLong after ``longest`` [s] of compiled steps."""
-    from sceneql.simulation.run import Run
+    from sceneql.run.run import Run
 
     whole = Run(prepared(graph, island, solver))
     march, end = whole.islands[0], graph.settings.clock.end
@@ -194,7 +194,7 @@ def measure(
 
 def warm(graph: SimulationGraph, island: Island, solver: Solver) -> float:
     """Compile all that a run needs, before it is timed; the seconds that took."""
-    from sceneql.kernels import compiled
+    from sceneql.compiled.kernels import compiled
 
     before = compiled.seconds
     with suppress(RunFailure):  # what fails has been compiled too

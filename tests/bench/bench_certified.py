@@ -13,9 +13,9 @@ import numpy as np
 from bench_polygonise import SCENES, register, scene_tape
 
 from renderers.tracing.probe import probe
-from sceneql.field.builder import TapeBuilder
+from sceneql.field.tape.builder import TapeBuilder
 from sceneql.frame import Frame, Implicit, Surface, View
-from sceneql.report.surfaces import compared
+from sceneql.report.surface_measures import compared
 
 PITCH, YAW = np.radians([25.0, 35.0])
 SIZE = (640, 360)

@@ -24,9 +24,9 @@ from pathlib import Path
 import numpy as np
 
 from sceneql.failure import RunFailure
+from sceneql.march.march import March
 from sceneql.pipeline import load
-from sceneql.simulation.march import March
-from sceneql.simulation.run import Run
+from sceneql.run.run import Run
 
 SIDE = 10.0
 BOUND = 1e-5

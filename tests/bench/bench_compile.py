@@ -85,9 +85,9 @@ ISLANDS = {
 
 def march(name: str) -> None:
     """Build an island and march it to its first two instants; says what was compiled in this process."""
-    from sceneql.kernels import compiled
+    from sceneql.compiled.kernels import compiled
     from sceneql.pipeline import load
-    from sceneql.simulation.run import Run
+    from sceneql.run.run import Run
 
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "scene.yaml"

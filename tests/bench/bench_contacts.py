@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from sceneql.pipeline import load
-from sceneql.simulation.run import Run
+from sceneql.run.run import Run
 
 ROOT = Path(__file__).parents[2]
 MANY = """

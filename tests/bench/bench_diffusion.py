@@ -27,9 +27,9 @@ from scipy.sparse import diags_array, eye_array, kron
 from scipy.sparse.linalg import splu
 from scipy.special import jv
 
+from sceneql.grids.prepare_stages import report
 from sceneql.pipeline import load
-from sceneql.simulation.grids.implicit import report
-from sceneql.simulation.run import IslandRun
+from sceneql.run.run import IslandRun
 
 END = 0.1
 EXACT = math.exp(-2 * math.pi**2 * END)

@@ -32,13 +32,12 @@ from bench_certified import frame_of
 from bench_polygonise import ELSEWHERE, SCENES, quoted, register, scene_tape
 
 from renderers.trace import Trace
-from sceneql.field import packets
-from sceneql.field.builder import TapeBuilder
-from sceneql.field.packets import Memory, lined
-from sceneql.field.solid import cast, field_values
-from sceneql.field.tape_ops import HIT, INSIDE
+from sceneql.compiled.kernels import over_tiles
+from sceneql.field.packets.packets import Memory, lined, packets
+from sceneql.field.tape.builder import TapeBuilder
+from sceneql.field.tape.tape_ops import HIT, INSIDE
+from sceneql.field.tape.tape_solid import cast, field_values
 from sceneql.frame import Sun
-from sceneql.kernels import over_tiles
 
 FILE = Path(__file__).parent / "scenes" / "implicit.json"
 VIEW = json.loads(FILE.read_text(encoding="utf-8"))["view"]

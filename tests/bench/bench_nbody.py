@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 import pytreegrav
 
-from sceneql.simulation.forces import turbulence_kernels
-from sceneql.simulation.nbody.pairs import Pairs
-from sceneql.simulation.threads_kernels import thread_count, threads, tile_address
+from sceneql.compiled.threads_kernels import thread_count, threads, tile_address
+from sceneql.nbody.pairs import Pairs
 from sceneql.system import Bodies
+from sceneql.words.forces import turbulence_kernels
 
 ROUNDS = 3
 LONG = 8.0
@@ -60,7 +60,7 @@ def plummer(count: int) -> Floats:
 
 def accelerations(places: Floats, opening: float, fast: bool = False) -> Callable[[], Floats]:
     """A call that gives accelerations (count, 3) for a total mass 1."""
-    from sceneql.simulation.driver import function
+    from sceneql.march.driver import function
 
     count = len(places)
     scratch: Any = Scratch(np.full(count, 1.0 / count))

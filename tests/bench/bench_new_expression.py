@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 from sceneql import pipeline
-from sceneql.kernels import compiled
+from sceneql.compiled.kernels import compiled
 from sceneql.report.mesh import mesh
 
 SCENE = """\

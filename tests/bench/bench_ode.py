@@ -21,9 +21,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from sksundae.cvode import CVODE
 
+from sceneql.march.march import March
 from sceneql.pipeline import load
-from sceneql.simulation.march import March
-from sceneql.simulation.run import IslandRun
+from sceneql.run.run import IslandRun
 
 REPEATS = 9
 TOLERANCES = [10.0 ** (-k / 2) for k in range(6, 25)]

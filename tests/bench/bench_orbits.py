@@ -18,9 +18,9 @@ import numpy as np
 import rebound
 from scipy.integrate import solve_ivp
 
+from sceneql.march.march import March
 from sceneql.pipeline import load
-from sceneql.simulation.march import March
-from sceneql.simulation.run import IslandRun
+from sceneql.run.run import IslandRun
 
 REPEATS = 9
 TOLERANCE = 1e-10

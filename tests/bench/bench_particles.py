@@ -15,7 +15,7 @@ from pathlib import Path
 
 from sceneql import pipeline
 from sceneql.pipeline import frame_of
-from sceneql.simulation.run import Run
+from sceneql.run.run import Run
 
 STEP, STEPS, REPEATS = 0.01, 10, 4
 SCENE = """

@@ -20,13 +20,13 @@ from typing import Any
 
 import numpy as np
 
-from sceneql.field.builder import TapeBuilder
-from sceneql.field.skeleton import Skeleton
-from sceneql.field.solid import field_gradients
+from sceneql.field.skeleton.skeleton import Skeleton
+from sceneql.field.tape.builder import TapeBuilder
+from sceneql.field.tape.tape_solid import field_gradients
+from sceneql.mesh.cubes.polygonise import polygonise
+from sceneql.mesh.cubes.refine import refined
+from sceneql.mesh.dual.sharp import polygonise_sharp
 from sceneql.mesh.measures import curved_volume, edge_counts, euler_characteristic, volume
-from sceneql.mesh.polygonise import polygonise
-from sceneql.mesh.refine import refined
-from sceneql.mesh.sharp import polygonise_sharp
 from sceneql.quantities.bind import bind
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.expression import Symbol

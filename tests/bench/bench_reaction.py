@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from sceneql.pipeline import load
-from sceneql.simulation.run import IslandRun
+from sceneql.run.run import IslandRun
 
 FEED, KILL, LENGTH = 0.037, 0.06, 2.5
 SCRIPT = """

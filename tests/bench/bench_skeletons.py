@@ -18,14 +18,14 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from plain_tapes import implicit
-from sceneql.field.own_coordinates import in_own_coordinates
-from sceneql.field.packets import Memory
-from sceneql.field.ray_rows import FOUND_ROOT, FOUND_STATUS
-from sceneql.field.skeleton import KERNELS, Skeleton
-from sceneql.field.solid import cast, field_gradients
-from sceneql.field.tape_ops import HIT, INSIDE, UNDECIDED
+from sceneql.field.packets.packets import Memory
+from sceneql.field.packets.ray_rows import FOUND_ROOT, FOUND_STATUS
+from sceneql.field.skeleton.skeleton import KERNELS, Skeleton
+from sceneql.field.tape.own_coordinates import in_own_coordinates
+from sceneql.field.tape.tape_ops import HIT, INSIDE, UNDECIDED
+from sceneql.field.tape.tape_solid import cast, field_gradients
 from sceneql.frame import Floats, Tape
-from sceneql.simulation.spline import smooth
+from sceneql.shapes.spline import smooth
 from test_curved_skeletons import curves
 
 WIDTH, HEIGHT, TILE, EVERY = 640, 352, 16, 8

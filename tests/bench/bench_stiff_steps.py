@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from sceneql.pipeline import load
-from sceneql.simulation.run import IslandRun
+from sceneql.run.run import IslandRun
 
 END = 0.05
 TOLERANCE = 1e-4

@@ -3,15 +3,15 @@
 
 import numpy as np
 
-from sceneql.field.batch_gradient_kernels import differentiate
-from sceneql.field.batch_kernels import evaluate
-from sceneql.field.density_roots_kernels import ROW_OF
-from sceneql.field.packet_kernels import LANES, PACKET, has
-from sceneql.field.packet_roots_kernels import first_roots
-from sceneql.field.polynomial_kernels import POLYNOMIAL
-from sceneql.field.ray_rows import FOUND_ROOT, FOUND_STATUS
-from sceneql.field.tape_ops import DENSITY, HIT, UNDECIDED
-from sceneql.kernels import inlined, lean
+from sceneql.compiled.kernels import inlined, lean
+from sceneql.field.packets.packet_kernels import LANES, PACKET, has
+from sceneql.field.packets.packet_roots_kernels import first_roots
+from sceneql.field.packets.ray_rows import FOUND_ROOT, FOUND_STATUS
+from sceneql.field.roots.density_roots_kernels import ROW_OF
+from sceneql.field.roots.polynomial_kernels import POLYNOMIAL
+from sceneql.field.tape.batch_gradient_kernels import differentiate
+from sceneql.field.tape.batch_kernels import evaluate
+from sceneql.field.tape.tape_ops import DENSITY, HIT, UNDECIDED
 
 TILE = 16
 AMBIENT = 0.15

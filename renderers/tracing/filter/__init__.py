@@ -1,0 +1,1 @@
+"""Pictures put together of samples: filtered visibility, edges, refinement."""

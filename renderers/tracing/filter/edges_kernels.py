@@ -1,0 +1,206 @@
+# mypy: ignore-errors
+"""Last stage: pixels in which things meet are drawn anew by several rays, lit by the visibility already found."""
+
+from numba import types
+
+from renderers.tracing.camera_kernels import place_of
+from renderers.tracing.filter.planes_kernels import HALO, LANES, LINE, ONE, OWN, SLACK, ZERO, alike_lanes
+from renderers.tracing.gather_kernels import DOUBTED, GATHERED, begin
+from renderers.tracing.light.sampling_kernels import sample_of
+from renderers.tracing.light.shade_kernels import shade
+from renderers.tracing.light.visibility_kernels import look_around
+from renderers.tracing.record_kernels import OWNER, TRACED, UNSURE, alike
+from renderers.tracing.scene_kernels import ASKED, ASKING, HEIGHT, LIGHT_COUNT, MODE, NEXT, SCENE, SCRATCH, WIDTH, part
+from sceneql.compiled.kernels import kernel
+
+_i = types.int64
+_rows = types.float32[:, ::1]
+_stack = types.float32[:, :, ::1]
+_reals = types.float64[:, ::1]
+_many = types.int64[::1]
+BEYOND = 0.25
+"""How much the rays of one pixel may be brighter than white, where they are averaged: about as much as the eye sees."""
+CONTRAST = 0.08
+"""Difference of brightness, relative to the sum, at which pixels with reflections count as an edge."""
+TRIAL = 4
+"""Rays after which a pixel is left that shows, after all, one smooth thing."""
+ANEW = 8
+"""Samples of light and sky for a ray that meets what no neighboring pixel has met."""
+
+
+@part
+def tamed(r, g, b):
+    """A radiance that is brighter than white by its brightest channel p, brought to 1 + BEYOND (1 - 1/p).
+
+    Rays of a pixel are averaged so (after Karis 2013): in a plain mean one of eight that meets a highlight of radiance
+    16 would make the pixel as white as if all met it, and bright edges and lines would be jagged.
+    """
+    peak = max(r, max(g, b))
+    if peak <= 1.0:
+        return r, g, b
+    share = (1.0 + BEYOND * (1.0 - 1.0 / peak)) / peak
+    return share * r, share * g, share * b
+
+
+@part
+def untamed(r, g, b):
+    """The radiance that ``tamed`` makes this of."""
+    peak = max(r, max(g, b))
+    if peak <= 1.0:
+        return r, g, b
+    share = 1.0 / (max(1.0 - (peak - 1.0) / BEYOND, 1e-4) * peak)
+    return share * r, share * g, share * b
+
+
+@part
+def contrast(radiance, k, red, green, blue):
+    """Largest relative difference of a pixel from a radiance over the channels."""
+    r, g, b = min(radiance[k, 0], 4.0), min(radiance[k, 1], 4.0), min(radiance[k, 2], 4.0)
+    red, green, blue = min(red, 4.0), min(green, 4.0), min(blue, 4.0)
+    worst = max(abs(r - red) / (0.1 + r + red), abs(g - green) / (0.1 + g + green))
+    return max(worst, abs(b - blue) / (0.1 + b + blue))
+
+
+@part
+def mark_edges(y, planes, size, chunk, same, marks):
+    """Mark (1, else 0) the pixels of a chunk in row y whose neighbors show something else than they do."""
+    a = planes[y, chunk * size + HALO :]
+    for i in range(LANES):
+        marks[i] = ZERO
+    for place in range(9):
+        row, off = y + place // 3 - 1, place % 3 - 1
+        if place == 4 or row < 0 or row >= planes.shape[0]:
+            continue
+        b = planes[row, chunk * size + HALO + off :]
+        alike_lanes(a, b, same)
+        for i in range(LANES):
+            nothing = (a[OWN + i] == ZERO) & (b[OWN + i] == ZERO)
+            marks[i] = marks[i] if nothing | (same[i] > ZERO) | (b[OWN + i] < ZERO) else ONE
+
+
+@part
+def unlike(records, radiance, k, x, y, width, height):
+    """Whether a pixel's neighbors have an undecided root or, where it mirrors, other light."""
+    glossy = records[0, k, TRACED] > 0.0
+    for j in range(max(y - 1, 0), min(y + 1, height - 1) + 1):
+        for i in range(max(x - 1, 0), min(x + 1, width - 1) + 1):
+            m = j * width + i
+            if records[0, m, UNSURE] != 0.0:
+                return True
+            if m == k or not glossy:
+                continue
+            if contrast(radiance, k, radiance[m, 0], radiance[m, 1], radiance[m, 2]) > CONTRAST:
+                return True
+    return False
+
+
+@part
+def borrow(records, visibility, record, x, y, width, height, found):
+    """Fill ``found`` with the mean visibility of pixels around (x, y) that are like a record, if there is one."""
+    count = 0
+    for j in range(max(y - 1, 0), min(y + 1, height - 1) + 1):
+        for i in range(max(x - 1, 0), min(x + 1, width - 1) + 1):
+            m = j * width + i
+            if records[m, OWNER] > 0.0 and alike(record, records[m], SLACK):
+                for c in range(len(found)):
+                    found[c] = visibility[m, c] + (found[c] if count > 0 else 0.0)
+                count += 1
+    for c in range(len(found) if count > 0 else 0):
+        found[c] /= count
+    return count > 0
+
+
+@kernel(_i(_i, _i, _i, _i, _i, _rows, _stack, _rows, _rows, _rows, LINE, _many), _nrt=False)
+def list_edges(start, stop, width, size, undecided, planes, records, radiance, picture, marks, same, edges):
+    """The pixels of rows start..stop, no more than TILE, that are to be drawn anew; the others go to the picture.
+
+    ``size`` of a chunk of ``planes``, those of the first records. How many roots are ``undecided``: there, too, pixels
+    are drawn anew. ``marks`` (TILE, chunks LANES) and ``same`` (LANES,) are working memory.
+    """
+    for y in range(start, stop):
+        for chunk in range(planes.shape[1] // size):
+            mark_edges(y, planes, size, chunk, same, marks[y - start, chunk * LANES :])
+    n = 0
+    for i in range(len(edges)):
+        x, y = place_of(i)
+        y += start
+        if x >= width or y >= stop:
+            continue
+        k = y * width + x
+        edge = marks[y - start, x] > 0.0
+        if not edge and (undecided > 0 or records[0, k, TRACED] > 0.0):
+            edge = unlike(records, radiance, k, x, y, width, planes.shape[0])
+        if edge:
+            edges[n] = k
+            n += 1
+        else:
+            for c in range(3):
+                picture[k, c] = radiance[k, c]
+    return n
+
+
+@kernel(types.void(SCENE, _reals, _many, _reals, _stack), _nrt=False)
+def begin_samples(scene, points, edges, paths, own):
+    """Begin paths through ``points`` (s, 2) of each of the pixels ``edges``, which have the records ``own``."""
+    width = int(scene.reals[WIDTH])
+    each = len(points)
+    for i in range(each * len(edges)):
+        k, s = edges[i // each], i % each
+        px, py = k % width + points[s, 0], k // width + points[s, 1]
+        begin(scene.reals, px, py, paths[i], own[0, i], own[1, i])
+
+
+@kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _i, _many, _stack, _stack, _stack, _stack), _nrt=False)
+def look_from_samples(scene, scratch, asked, first, last, each, edges, records, visibility, own, found):
+    """The visibility ``found`` of the records ``own`` of samples first..last: that of neighbors alike, else anew.
+
+    Of as many as ``asked`` has room for the rays of; returns where it ends.
+    """
+    width, height = int(scene.reals[WIDTH]), int(scene.reals[HEIGHT])
+    room = asked.shape[0] - 2 * ANEW * (1 + scene.ints[LIGHT_COUNT])
+    for i in range(first, last):
+        if asked[0, MODE] == ASKING and asked[0, NEXT] > room:
+            return i
+        x, y = edges[i // each] % width, edges[i // each] // width
+        for layer in range(2):
+            if own[layer, i, OWNER] == 0.0:
+                continue
+            if not borrow(records[layer], visibility[layer], own[layer, i], x, y, width, height, found[layer, i]):
+                look_around(scene, scratch, asked, own[layer, i], sample_of(x, y), ANEW, ANEW, found[layer, i])
+    return last
+
+
+@kernel(_i(SCENE, _i, _i, _i, _many, _stack, _rows, _reals, _stack, _stack, _reals, _rows), _nrt=False)
+def add_samples(scene, each, used, whole, edges, records, radiance, paths, own, found, sums, picture):
+    """Add ``each`` samples of the pixels ``edges`` to ``sums`` (n, 4): tamed light, and whether all show one thing.
+
+    ``used`` samples there are then, ``whole`` there shall be. Pixels that need no more go to the picture, the others
+    to the front of ``edges``; how many these are.
+    """
+    left = 0
+    for p in range(len(edges)):
+        k = edges[p]
+        red, green, blue = sums[p, 0], sums[p, 1], sums[p, 2]
+        plain = sums[p, 3] != 0.0 and records[0, k, UNSURE] == 0.0
+        for i in range(p * each, (p + 1) * each):
+            r, g, b = 0.0, 0.0, 0.0
+            for layer in range(2):
+                if own[layer, i, OWNER] != 0.0:
+                    dr, dg, db = shade(scene, own[layer, i], found[layer, i])
+                    r, g, b = r + dr, g + dg, b + db
+            r, g, b = paths[i, GATHERED] + r, paths[i, GATHERED + 1] + g, paths[i, GATHERED + 2] + b
+            plain = (
+                plain
+                and paths[i, DOUBTED] == 0.0
+                and alike(records[0, k], own[0, i], SLACK)
+                and contrast(radiance, k, r, g, b) < 0.5 * CONTRAST
+            )
+            r, g, b = tamed(r, g, b)
+            red, green, blue = red + r, green + g, blue + b
+        if used == whole or (used == TRIAL and plain):
+            picture[k, 0], picture[k, 1], picture[k, 2] = untamed(red / used, green / used, blue / used)
+        else:
+            edges[left] = k
+            sums[left, 0], sums[left, 1], sums[left, 2], sums[left, 3] = red, green, blue, 1.0 if plain else 0.0
+            left += 1
+    return left

@@ -1,0 +1,136 @@
+# mypy: ignore-errors
+"""Third stage: edges of shadows finer than the filter's window get samples of their own; then all is shaded."""
+
+from numba import types
+
+from renderers.tracing.filter.filter_kernels import REACH
+from renderers.tracing.filter.planes_kernels import HALO, LANES, SLACK, WIDE
+from renderers.tracing.light.sampling_kernels import COUNT, SIDE, sample_of
+from renderers.tracing.light.shade_kernels import shade
+from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, look_around, shadow_sample
+from renderers.tracing.record_kernels import OWNER, RADIUS, alike
+from renderers.tracing.scene_kernels import ASKED, ASKING, HEIGHT, LIGHT_COUNT, MODE, NEXT, SCENE, SCRATCH, WIDTH, part
+from sceneql.compiled.kernels import kernel
+
+_i = types.int64
+_rows = types.float32[:, ::1]
+_stack = types.float32[:, :, ::1]
+CRISP = 1.5
+FINE = 3.0
+"""Widths [pixels] of half-shadows that are searched for in 3 x 3 and in 5 x 5 pixels."""
+OWN = 16
+"""Samples of a light for each pixel of a fine edge."""
+FEW = 20.0
+"""Pixels in the filter's window below which a pixel takes samples of the sky of its own: small things, thin things."""
+
+
+@part
+def mixed(records, visibility, k, x, y, width, height, column, reach):
+    """Whether the one sample of a light differs within ``reach`` pixels on the same surface."""
+    for j in range(max(y - reach, 0), min(y + reach, height - 1) + 1):
+        for i in range(max(x - reach, 0), min(x + reach, width - 1) + 1):
+            m = j * width + i
+            if visibility[m, column] != visibility[k, column] and alike(records[k], records[m], SLACK):
+                return True
+    return False
+
+
+@part
+def mean_of(means, columns, x, y, plane):
+    """What the planes of filter_kernels.deepen tell of a pixel."""
+    return means[y, (x // LANES * (1 + columns) + plane) * WIDE + HALO + x % LANES]
+
+
+@kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _rows, _rows, _rows, _rows), _nrt=False)
+def refine(scene, scratch, asked, start, stop, records, visibility, means, fine):
+    """Rows of ``fine`` (n, V): of each light its share, and whether that wants smoothing (0 or 1).
+
+    The sky's loss, which is there, is better told where few pixels join. Of pixels start..stop, or as many as ``asked``
+    has room for the rays of; returns where it ends.
+    """
+    width, height = int(scene.reals[WIDTH]), int(scene.reals[HEIGHT])
+    columns = visibility.shape[1]
+    room = asked.shape[0] - OWN * (1 + scene.ints[LIGHT_COUNT])
+    for k in range(start, stop):
+        x, y = k % width, k // width
+        pixels = mean_of(means, columns, x, y, 0)
+        if pixels == 0.0:
+            continue
+        if asked[0, MODE] == ASKING and asked[0, NEXT] > room:
+            return k
+        if pixels < FEW:
+            samples = OWN if pixels < 0.5 * FEW else OWN // 2
+            told = look_around(scene, scratch, asked, records[k], sample_of(x, y), samples, 0, fine[k])
+            for c in range(FIRST_LIGHT if told else 0):
+                joined = samples * fine[k, c] + pixels * mean_of(means, columns, x, y, 1 + c)
+                fine[k, c] = joined / (samples + pixels)
+        for l in range(int(scene.ints[LIGHT_COUNT])):
+            column = FIRST_LIGHT + 2 * l
+            share = mean_of(means, columns, x, y, 1 + column)
+            fine[k, column + 1] = 0.0
+            fine[k, column] = share
+            if share > 0.9999 or share < 0.0001:
+                continue
+            breadth = mean_of(means, columns, x, y, 2 + column)
+            edge = breadth / (1.0 - share) / (2.0 * records[k, RADIUS])
+            if edge >= SIDE:
+                continue
+            reach = 1 if edge < CRISP else (2 if edge < FINE else REACH)
+            if reach < REACH and not mixed(records, visibility, k, x, y, width, height, column, reach):
+                fine[k, column] = visibility[k, column]
+                continue
+            samples = OWN if reach < REACH else OWN // 2
+            total = 0.0
+            first = sample_of(x, y) * samples % COUNT
+            for sample in range(first, first + samples):
+                total += shadow_sample(scene, scratch, asked, records[k], l, sample, 1.0)[0]
+            fine[k, column] = total / samples
+            fine[k, column + 1] = 1.0 if reach == REACH else 0.0
+    return stop
+
+
+@part
+def settle(records, fine, lights, k, x, y, width, height, visibility):
+    """Final visibility of a record: as refined, edges of middling width averaged over 3 x 3 pixels."""
+    for c in range(len(visibility)):
+        visibility[c] = fine[k, c]
+    for l in range(lights):
+        column = FIRST_LIGHT + 2 * l
+        if fine[k, column + 1] == 0.0:
+            continue
+        total = 0.0
+        count = 0
+        for j in range(max(y - 1, 0), min(y + 1, height - 1) + 1):
+            for i in range(max(x - 1, 0), min(x + 1, width - 1) + 1):
+                m = j * width + i
+                if alike(records[k], records[m], SLACK):
+                    total += fine[m, column]
+                    count += 1
+        visibility[column] = total / count
+
+
+@kernel(types.void(SCENE, _i, _i, _stack, _stack, _stack, _rows), _nrt=False)
+def shade_rows(scene, start, stop, records, fine, visibility, radiance):
+    """Write the final visibility (2, n, V) and add both records' light to the radiance (n, 3)."""
+    width, height = int(scene.reals[WIDTH]), int(scene.reals[HEIGHT])
+    for y in range(start, stop):
+        for x in range(width):
+            k = y * width + x
+            for layer in range(2):
+                if records[layer, k, OWNER] == 0.0:
+                    continue
+                settle(
+                    records[layer],
+                    fine[layer],
+                    int(scene.ints[LIGHT_COUNT]),
+                    k,
+                    x,
+                    y,
+                    width,
+                    height,
+                    visibility[layer, k],
+                )
+                r, g, b = shade(scene, records[layer, k], visibility[layer, k])
+                radiance[k, 0] += r
+                radiance[k, 1] += g
+                radiance[k, 2] += b

@@ -1,0 +1,1 @@
+"""Light at a surface point: visibility, sampling, shading."""

@@ -1,0 +1,128 @@
+# mypy: ignore-errors
+"""From a record and its visibility to radiance: Lambert, GGX, the sky's blurred reflection."""
+
+import numpy as np
+from numba import types
+
+from renderers.tracing.light.light_kernels import highlight, mean_reflectance, schlick, sky_ambient, sky_radiance
+from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, SKY, light_at
+from renderers.tracing.record_kernels import NORMAL, PLACE, SURFACE, TINT, TRACED, VIEW, WEIGHT
+from renderers.tracing.scene_kernels import (
+    EMISSION,
+    LIGHT,
+    LIGHT_COUNT,
+    LIGHTS,
+    METALLIC,
+    POINT,
+    ROUGHNESS,
+    ROW,
+    SCENE,
+    SPECULAR,
+    TRANSMISSION,
+    part,
+)
+from sceneql.compiled.kernels import kernel
+
+SHARPEST = 0.02
+"""Least GGX width of a highlight, so that lights of no size do not vanish from mirrors."""
+
+
+@part
+def edge_reflectance(f0):
+    """Reflectance at grazing incidence: 1, but nothing for a surface that reflects nothing at all (specular 0)."""
+    return min(1.0, 50.0 * f0)
+
+
+@part
+def reflectance_at_normal(reals, record):
+    """F0 (3) of a record."""
+    s = int(record[SURFACE])
+    metallic = reals[s + METALLIC]
+    plain = reals[s + SPECULAR] * (1.0 - metallic)
+    return (
+        plain + metallic * record[TINT],
+        plain + metallic * record[TINT + 1],
+        plain + metallic * record[TINT + 2],
+    )
+
+
+@part
+def facing_ratio(record):
+    """Cosine between normal and viewer, kept above zero."""
+    across = record[NORMAL] * record[VIEW] + record[NORMAL + 2] * record[VIEW + 2]
+    return max(float(across + record[NORMAL + 1] * record[VIEW + 1]), 1e-3)
+
+
+@part
+def mean_specular(reals, record, nv):
+    """Share (3) of uniform light that a record's surface reflects by its gloss."""
+    scale, bias = mean_reflectance(reals[int(record[SURFACE]) + ROUGHNESS], nv)
+    r, g, b = reflectance_at_normal(reals, record)
+    return (
+        min(r * scale + edge_reflectance(r) * bias, 1.0),
+        min(g * scale + edge_reflectance(g) * bias, 1.0),
+        min(b * scale + edge_reflectance(b) * bias, 1.0),
+    )
+
+
+@part
+def light_width(reals, k, distance, roughness):
+    """GGX width of the highlight of the light whose reals begin at k: the surface's, widened by the light's size."""
+    size = 0.25 * reals[k + 7]
+    if reals[k] == POINT:
+        size = 0.5 * reals[k + 7] / distance
+    alpha = roughness * roughness
+    return min(np.sqrt(alpha * alpha + size * size + SHARPEST * SHARPEST), 1.0)
+
+
+@kernel(types.UniTuple(types.float64, 3)(SCENE, ROW, ROW), _nrt=False, inner=True)
+def shade(scene, record, visibility):
+    """Radiance (3) of a record times its weight, but for what is traced further."""
+    u = scene.reals
+    s = int(record[SURFACE])
+    nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
+    vx, vy, vz = float(record[VIEW]), float(record[VIEW + 1]), float(record[VIEW + 2])
+    x, y, z = float(record[PLACE]), float(record[PLACE + 1]), float(record[PLACE + 2])
+    roughness = u[s + ROUGHNESS]
+    nv = facing_ratio(record)
+    f0 = reflectance_at_normal(u, record)
+    specular = mean_specular(u, record, nv)
+    body = (1.0 - u[s + METALLIC]) * (1.0 - u[s + TRANSMISSION])
+    open_sky = sky_ambient(u, ny)
+    mirrored_sky = sky_radiance(u, 2.0 * (nx * vx + ny * vy + nz * vz) * ny - vy)
+    sums = (0.0, 0.0, 0.0)  # of matte light, for all channels
+    lobes = (0.0, 0.0, 0.0)
+    for l in range(int(scene.ints[LIGHT_COUNT])):
+        lx, ly, lz, distance, ir, ig, ib = light_at(u, l, x, y, z)
+        nl = nx * lx + ny * ly + nz * lz
+        if nl <= 0.0:
+            continue
+        nl_seen = nl * visibility[FIRST_LIGHT + 2 * l]
+        sums = sums[0] + nl_seen * ir, sums[1] + nl_seen * ig, sums[2] + nl_seen * ib
+        hx, hy, hz = lx + vx, ly + vy, lz + vz
+        length = np.sqrt(hx * hx + hy * hy + hz * hz)
+        if length < 1e-9:
+            continue
+        nh = min(max((nx * hx + ny * hy + nz * hz) / length, 0.0), 1.0)
+        vh = min(max((vx * hx + vy * hy + vz * hz) / length, 0.0), 1.0)
+        lobe = nl_seen * highlight(nl, nv, nh, light_width(u, LIGHTS + LIGHT * l, distance, roughness))
+        lobes = (
+            lobes[0] + lobe * ir * schlick(f0[0], edge_reflectance(f0[0]), vh),
+            lobes[1] + lobe * ig * schlick(f0[1], edge_reflectance(f0[1]), vh),
+            lobes[2] + lobe * ib * schlick(f0[2], edge_reflectance(f0[2]), vh),
+        )
+    for c in range(3):
+        arriving = max(open_sky[c] - visibility[SKY + c], 0.0)
+        blurred = mirrored_sky[c] + roughness * (open_sky[c] - mirrored_sky[c])
+        share = arriving / open_sky[c] if open_sky[c] > 0.0 else 0.0
+        diffuse = body * record[TINT + c] * (1.0 - specular[c])
+        total = diffuse * (arriving + sums[c] / np.pi) + lobes[c] + u[s + EMISSION + c]
+        total += specular[c] * (1.0 - record[TRACED]) * blurred * share
+        total *= record[WEIGHT + c]
+        if c == 0:
+            sums = total, sums[1], sums[2]
+        elif c == 1:
+            sums = sums[0], total, sums[2]
+        else:
+            sums = sums[0], sums[1], total
+    return sums

@@ -1,0 +1,1 @@
+"""Rays against what a frame holds: quadrics, triangles, implicit solids, grids."""

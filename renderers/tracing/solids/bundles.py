@@ -1,0 +1,52 @@
+"""Rays that meet implicit solids in packets: what each asks is told before it is traced."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from renderers.tracing.scene_kernels import ANSWERS
+from renderers.tracing.solids.bundles_kernels import RAYS, meet_asked
+from sceneql.field.packets.packets import Memory
+from sceneql.field.roots.clips import clip_rows, clips_of
+from sceneql.field.tape.own_coordinates import in_own_coordinates
+from sceneql.frame import Implicit
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Shape
+
+
+class Packets:
+    """What one thread needs to meet the implicit solids ``solids`` (indices) among ``shapes``."""
+
+    def __init__(self, shapes: tuple[Shape, ...], solids: list[int]) -> None:
+        self.solids = solids
+        self.memories: list[Memory] = []
+        self.bounds: list[tuple[Floats, ...]] = []
+        for i in self.solids:
+            shape = shapes[i]
+            assert isinstance(shape, Implicit)
+            tape, matrix = in_own_coordinates(shape.tape)
+            self.memories.append(Memory(tape, RAYS, clip_rows(tape)))
+            box, clips = np.array([shape.low, shape.high], dtype=np.float64), clips_of(shape.tape)
+            reach = float(np.abs(box).max()) ** np.array([2.0] * 6 + [1.0] * 3 + [0.0])
+            self.bounds.append((box, clips, np.abs(clips) @ reach, matrix))
+        self.chosen, self.spans = np.empty((2, 1 + RAYS), dtype=np.int64), np.empty((2, 2, RAYS))
+
+    def asked(self, rays: int) -> Floats:
+        """An empty list for so many rays, see scene_kernels.ASKED."""
+        asked = np.zeros((1 + rays, ANSWERS + len(self.solids)))
+        asked[0, ANSWERS:] = self.solids
+        return asked
+
+    def meet(self, asked: Floats) -> None:
+        """Tell of all asked rays where they meet the solids."""
+        for k, (memory, bounds) in enumerate(zip(self.memories, self.bounds, strict=True)):
+            more = *bounds, asked, ANSWERS + k, self.chosen, self.spans
+            meet_asked(*memory.bundle, memory.found, *memory.rest, *more)
+
+
+def solids_in_lanes(shapes: tuple[Shape, ...]) -> list[int]:
+    """Indices of the shapes that packets know: implicit solids of operations that have lanes."""
+    return [i for i, shape in enumerate(shapes) if isinstance(shape, Implicit) and shape.within is None]

@@ -1,0 +1,40 @@
+"""What only frames with implicit objects need of the tracer."""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import TYPE_CHECKING
+
+from renderers.tracing.pack import scratch
+from renderers.tracing.scene_kernels import CELLS, CROSSING, SKIN
+from renderers.tracing.solids.skin_kernels import skin
+from sceneql.compiled.kernels import address, over_tiles
+
+if TYPE_CHECKING:
+    from renderers.tracing.scene_kernels import Scene
+
+
+def prepared(scene: Scene, rows: int, places: list[int], *, sheets: bool, march: bool, certain: bool) -> Scene:
+    """The scene with the addresses of what finds its implicit objects, whose reals begin at ``places``.
+
+    Solids and ``sheets`` by certified roots in the cells that are not proved empty; with ``march`` by samples on the
+    ray, with ``certain`` by certified intervals alone, both without cells.
+    """
+    scene = scene._replace(skin=address(skin, SKIN))
+    if march or certain:
+        if march:
+            from renderers.tracing.solids.fixed_samples_kernels import sampled as other
+        else:
+            from renderers.tracing.solids.certain_kernels import certain as other
+        return scene._replace(solid=address(other, CROSSING), sheet=address(other, CROSSING))
+    from renderers.tracing.solids.implicit_kernels import crossing
+    from renderers.tracing.solids.occupancy_kernels import BLOCK, occupy
+
+    scene = scene._replace(solid=address(crossing, CROSSING))
+    if sheets:
+        from renderers.tracing.solids import sheet_kernels
+
+        scene = scene._replace(sheet=address(sheet_kernels.crossing, CROSSING))
+    slabs = list(product(places, range(CELLS // BLOCK)))
+    over_tiles(len(slabs), lambda tile: occupy(scene, scratch(rows), *slabs[tile]))
+    return scene

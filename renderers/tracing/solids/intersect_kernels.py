@@ -1,0 +1,175 @@
+# mypy: ignore-errors
+"""Rays against the whole scene: what is met first, or how much light comes through; at once, or asked and told."""
+
+from numba import types
+
+from renderers.tracing.scene_kernels import (
+    ANSWERS,
+    ANYWHERE,
+    ASKED,
+    ASKING,
+    FAR,
+    FIRST,
+    GRID,
+    HALF_SPACE,
+    ITEMS,
+    KIND,
+    KNOWN,
+    LINK,
+    LINKS_AT,
+    MODE,
+    NEXT,
+    NODE_COUNT,
+    NODES_AT,
+    NOTHING,
+    OPEN,
+    PLAIN,
+    PROBING,
+    QUADRIC,
+    RAY,
+    REACHED,
+    REALS_AT,
+    ROUND,
+    SCENE,
+    SCRATCH,
+    SHAPE,
+    SHEET,
+    SURFACE_AT,
+    TOLD,
+    TRANSMISSION,
+    TRIANGLE,
+    WANT,
+    crossing_at,
+    part,
+)
+from renderers.tracing.solids.solids_kernels import NONE, half_space, inverse, quadric, round_solid, triangle
+from sceneql.compiled.kernels import kernel
+
+
+@part
+def meet(scene, scratch, item, ox, oy, oz, dx, dy, dz, near, far, anywhere):
+    """First crossing of an item inside (near, far), or inf; ``anywhere``: of an implicit object any inner place."""
+    kind = scene.ints[ITEMS + 4 * item + KIND]
+    k = scene.ints[ITEMS + 4 * item + REALS_AT]
+    if kind == HALF_SPACE:
+        return half_space(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
+    if kind == TRIANGLE:
+        return triangle(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
+    if kind == ROUND:
+        return round_solid(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
+    if kind == QUADRIC:
+        return quadric(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
+    last = scratch.shape[0] - 1
+    if scratch[last, TOLD] >= PROBING:
+        scratch[last, TOLD] = REACHED
+        return near
+    if kind == GRID:
+        return crossing_at(scene.grid)(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere)
+    if scratch[last, TOLD] != 0.0:
+        t = scratch[last - 1 - scene.ints[ITEMS + 4 * item + SHAPE], 0]
+        if t == t:
+            return t if near <= t < far else NONE
+    crossing = scene.sheet if kind == SHEET else scene.solid
+    return crossing_at(crossing)(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere)
+
+
+@part
+def misses(nodes, k, ox, oy, oz, ix, iy, iz, near, far):
+    """Whether a ray (by its inverse direction) passes a node's box by."""
+    a = (nodes[k] - ox) * ix
+    b = (nodes[k + 3] - ox) * ix
+    enter = max(near, min(a, b))
+    leave = min(far, max(a, b))
+    a = (nodes[k + 1] - oy) * iy
+    b = (nodes[k + 4] - oy) * iy
+    enter = max(enter, min(a, b))
+    leave = min(leave, max(a, b))
+    a = (nodes[k + 2] - oz) * iz
+    b = (nodes[k + 5] - oz) * iz
+    return min(leave, max(a, b)) < max(enter, min(a, b))
+
+
+MET = types.Tuple((types.float64, types.int64, types.float64))
+
+
+@kernel(MET(SCENE, SCRATCH, *RAY, types.boolean), _nrt=False)
+def walk(scene, scratch, ox, oy, oz, dx, dy, dz, near, far, anywhere):
+    """(t, item, light) of the ray inside (near, far): where it first meets an item, or (inf, -1, 1).
+
+    With ``anywhere``, for shadow rays, the walk ends as soon as something opaque is met, no matter where; ``light`` is
+    the share that comes through: clear glass dims it, but does not stop it.
+    """
+    ix = inverse(dx)
+    iy = inverse(dy)
+    iz = inverse(dz)
+    nodes = scene.ints[NODES_AT]
+    links = scene.ints[LINKS_AT]
+    best = far
+    where = NONE
+    found = -1
+    light = 1.0
+    n = 0
+    while n < scene.ints[NODE_COUNT]:
+        link = links + LINK * n
+        if misses(scene.reals, nodes + 6 * n, ox, oy, oz, ix, iy, iz, near, best):
+            n = scene.ints[link]
+            continue
+        first = int(scene.ints[link + 1])
+        for item in range(first, first + scene.ints[link + 2]):
+            t = meet(scene, scratch, item, ox, oy, oz, dx, dy, dz, near, best, anywhere)
+            if not t < best:
+                continue
+            where = t
+            found = item
+            if not anywhere:
+                best = t
+                continue
+            light *= 0.95 * scene.reals[scene.ints[ITEMS + 4 * item + SURFACE_AT] + TRANSMISSION]
+            if light == 0.0:
+                return where, found, light
+        n += 1
+    return where, found, light
+
+
+@part
+def put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, want):
+    """Write a ray down, to be met in packets."""
+    asked[row, 0], asked[row, 1], asked[row, 2] = ox, oy, oz
+    asked[row, 3], asked[row, 4], asked[row, 5] = dx, dy, dz
+    asked[row, FAR] = far
+    asked[row, WANT] = want
+
+
+@part
+def tell(scratch, asked, row):
+    """Let the next walk know what is told of a ray."""
+    last = scratch.shape[0] - 1
+    scratch[last, TOLD] = KNOWN
+    for column in range(ANSWERS, asked.shape[1]):
+        scratch[last - 1 - int(asked[0, column]), 0] = asked[row, column]
+
+
+@kernel(MET(SCENE, SCRATCH, ASKED, *RAY[1:], types.boolean), _nrt=False, inner=True)
+def ask(scene, scratch, asked, ox, oy, oz, dx, dy, dz, far, anywhere):
+    """As ``walk`` from the ray's origin on, in the mode of ``asked``: one that is asked and open meets nothing."""
+    mode = asked[0, MODE]
+    if mode == PLAIN:
+        return walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, far, anywhere)
+    row = int(asked[0, NEXT])
+    asked[0, NEXT] = row + 1
+    last = scratch.shape[0] - 1
+    if mode == ASKING:
+        scratch[last, TOLD] = PROBING
+        t, item, light = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, far, anywhere)
+        reached = scratch[last, TOLD] == REACHED
+        scratch[last, TOLD] = 0.0
+        if not reached:
+            asked[row, WANT] = NOTHING
+            return t, item, light
+        asked[0, OPEN] = 1.0
+        put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, ANYWHERE if anywhere else FIRST)
+        return NONE, -1, 1.0
+    tell(scratch, asked, row)
+    t, item, light = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, far, anywhere)
+    scratch[last, TOLD] = 0.0
+    return t, item, light

@@ -1,0 +1,56 @@
+# mypy: ignore-errors
+"""Where what is known of an implicit object lies in the scene's arrays."""
+
+from renderers.tracing.scene_kernels import CELLS_AT, PLAN, WITHIN, part
+from renderers.tracing.solids.solids_kernels import box_span, inverse
+
+
+@part
+def tape_of(scene, k, first=0):
+    """(code, constants, parts) of the implicit object whose reals begin at k.
+
+    Its own are the ranges from the ``first`` on, those of others from PAINT and from WITHIN on.
+    """
+    n = scene.ints
+    r = int(scene.reals[k + 6]) + first
+    code, constants, parts = int(n[r]), int(n[r + 2]), int(n[r + 4])
+    return (
+        n[code : code + 4 * n[r + 1]].reshape(n[r + 1], 4),
+        scene.reals[constants : constants + n[r + 3]],
+        scene.reals[parts : parts + 8 * n[r + 5]].reshape(n[r + 5], 8),
+    )
+
+
+@part
+def cells_at(scene, k):
+    """Place of the occupancy cells of the implicit object whose reals begin at k."""
+    return scene.ints[int(scene.reals[k + 6]) + CELLS_AT]
+
+
+@part
+def plan_at(scene, k):
+    """(begin, end) of how a single ray looks for roots of implicit object k (sceneql.field.tape.plans)."""
+    r = int(scene.reals[k + 6]) + PLAN
+    return scene.ints[r], scene.ints[r] + scene.ints[r + 1]
+
+
+@part
+def is_sheet(scene, k):
+    """Whether implicit object k is a sheet, not a solid."""
+    return scene.ints[int(scene.reals[k + 6]) + WITHIN + 1] > 0
+
+
+@part
+def box_part(scene, k, ox, oy, oz, dx, dy, dz, near, far):
+    """(from, to) of the ray inside the box of implicit object k."""
+    b = scene.reals
+    enter = near
+    leave = far
+    e, f = box_span(b[k], b[k + 3], ox, inverse(dx))
+    enter = max(enter, e)
+    leave = min(leave, f)
+    e, f = box_span(b[k + 1], b[k + 4], oy, inverse(dy))
+    enter = max(enter, e)
+    leave = min(leave, f)
+    e, f = box_span(b[k + 2], b[k + 5], oz, inverse(dz))
+    return max(enter, e), min(leave, f)

@@ -1,0 +1,189 @@
+"""Point masses in an island: reserving their state, and what every model of masses gives."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from sceneql.kinds import Gives, quantity_type
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.expression import Type
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.quantities.span import Span
+    from sceneql.system import Assembly, Bodies, ModelState
+
+ANGULAR_MOMENTUM = dim.MOMENTUM * dim.LENGTH
+
+BODY_OUTPUTS: Mapping[str, Gives] = {
+    "positions": Gives(quantity_type(dim.LENGTH, (None, 3)), "Where the masses are."),
+    "velocities": Gives(quantity_type(dim.VELOCITY, (None, 3)), "How fast they move."),
+    "accelerations": Gives(quantity_type(dim.ACCELERATION, (None, 3)), "How fast that changes."),
+    "radii": Gives(quantity_type(dim.LENGTH, (None,)), "Their radii in contacts."),
+    "kinetic": Gives(quantity_type(dim.ENERGY), "Kinetic energy."),
+    "potential": Gives(quantity_type(dim.ENERGY), "Potential energy in the forces and springs."),
+    "dissipated": Gives(quantity_type(dim.ENERGY), "Energy that damping, drag and impacts have taken out."),
+    "energy": Gives(quantity_type(dim.ENERGY), "Kinetic, potential and dissipated energy: conserved if all is right."),
+    "momentum": Gives(quantity_type(dim.MOMENTUM, (3,)), "Sum of mass times velocity."),
+    "angular_momentum": Gives(quantity_type(ANGULAR_MOMENTUM, (3,)), "About the origin."),
+    "center": Gives(quantity_type(dim.LENGTH, (3,)), "Center of mass."),
+    "count": Gives(Type(), "Number of masses."),
+}
+
+MASS_OUTPUTS: Mapping[str, Gives] = {
+    "position": Gives(quantity_type(dim.LENGTH, (3,)), "Where it is."),
+    "velocity": Gives(quantity_type(dim.VELOCITY, (3,)), "How fast it moves."),
+    "acceleration": Gives(quantity_type(dim.ACCELERATION, (3,)), "How fast that changes."),
+}
+"""What a single mass gives, under its own name: ``bob.position``."""
+
+
+def named_outputs(written: Any) -> dict[str, Gives]:
+    """The outputs of named masses; ``written`` is the field that names them, as plain nested dicts."""
+    names = written if isinstance(written, Mapping) else {}
+    return {f"{name}.{output}": gives for name in names for output, gives in MASS_OUTPUTS.items()}
+
+
+def reserve(
+    name: str,
+    assembly: Assembly,
+    positions: Floats,
+    velocities: Floats,
+    masses: Floats,
+    radii: Floats,
+    fixed: Any,
+    spans: Sequence[Span | None] | None = None,
+) -> Bodies:
+    """Put n masses into the state, with the closing term that turns newtons into accelerations.
+
+    ``positions`` and ``velocities`` (n, 3) [m], [m/s]; ``masses`` (n,) [kg]; ``radii`` (n,) [m]; ``fixed`` (n,) bool.
+    """
+    import numpy as np
+
+    from sceneql.system import Bodies, Slopes
+
+    n = len(masses)
+    start = np.concatenate([np.ravel(positions), np.ravel(velocities), [0.0]])
+    position_at = assembly.state(start, spans)
+    velocity_at = position_at + 3 * n
+    assembly.pair(position_at, velocity_at, 3 * n)
+    bodies = Bodies(
+        model=name,
+        count=n,
+        position_at=position_at,
+        velocity_at=velocity_at,
+        work_at=position_at + 6 * n,
+        mass_at=assembly.floats(masses),
+        inverse_at=assembly.floats(np.divide(1.0, masses, out=np.zeros(n), where=~np.asarray(fixed))),
+        radius_at=assembly.floats(radii),
+    )
+    ints = (position_at, velocity_at, n, bodies.inverse_at)
+    assembly.inertia(velocity_at, bodies.inverse_at, n)
+    places = np.arange(3 * n)
+    slopes = Slopes("sceneql.bodies.bodies_slopes_kernels:close", position_at + places, velocity_at + places)
+    assembly.term("close", "sceneql.bodies.bodies_kernels:close", ints, slopes, apart=True)
+    return bodies
+
+
+def reserve_part(assembly: Assembly, whole: Bodies, state: ModelState, first: int, last: int) -> Bodies:
+    """Put the masses first..last-1 of others into the state of a block (kinds.Model.assemble_part)."""
+    here = slice(first, last)
+    inverse = state.floats[whole.inverse_at : whole.inverse_at + whole.count]
+    return reserve(
+        whole.model,
+        assembly,
+        positions(whole, state)[here],
+        velocities(whole, state)[here],
+        masses(whole, state)[here],
+        radii(whole, state)[here],
+        inverse[here] == 0.0,
+    )
+
+
+def own_blocks(bodies: Bodies, column_at: int) -> tuple[Any, Any]:
+    """First rows and columns (n,) of the 3x3 blocks of each body's force by its own entries at ``column_at``.
+
+    For Slopes of a force that depends on each body alone; ``column_at``: position_at or velocity_at.
+    """
+    import numpy as np
+
+    first = 3 * np.arange(bodies.count)
+    return bodies.velocity_at + first, column_at + first
+
+
+def positions(bodies: Bodies, state: ModelState) -> Floats:
+    """(n, 3) [m], a view of the state."""
+    at = bodies.position_at
+    return state.y[at : at + 3 * bodies.count].reshape(-1, 3)
+
+
+def velocities(bodies: Bodies, state: ModelState) -> Floats:
+    """(n, 3) [m/s], a view of the state."""
+    at = bodies.velocity_at
+    return state.y[at : at + 3 * bodies.count].reshape(-1, 3)
+
+
+def accelerations(bodies: Bodies, state: ModelState) -> Floats:
+    """(n, 3) [m/s^2], a view of the rate."""
+    at = bodies.velocity_at
+    return state.rate[at : at + 3 * bodies.count].reshape(-1, 3)
+
+
+def masses(bodies: Bodies, state: ModelState) -> Floats:
+    """(n,) [kg]."""
+    return state.floats[bodies.mass_at : bodies.mass_at + bodies.count]
+
+
+def moving_masses(bodies: Bodies, state: ModelState) -> Floats:
+    """(n,) [kg], 0 for a fixed one: its place in a field of force is no store of energy."""
+    inverse = state.floats[bodies.inverse_at : bodies.inverse_at + bodies.count]
+    return masses(bodies, state) * (inverse > 0)
+
+
+def radii(bodies: Bodies, state: ModelState) -> Floats:
+    """(n,) [m]."""
+    return state.floats[bodies.radius_at : bodies.radius_at + bodies.count]
+
+
+def read(output: str, bodies: Bodies, state: ModelState, own_potential: float = 0.0) -> Any:
+    """An output of BODY_OUTPUTS; ``own_potential`` [J] is the model's own beside that of the forces."""
+    import numpy as np
+
+    x, v, m = positions(bodies, state), velocities(bodies, state), masses(bodies, state)
+    match output:
+        case "positions":
+            return x.copy()
+        case "velocities":
+            return v.copy()
+        case "accelerations":
+            return accelerations(bodies, state).copy()
+        case "radii":
+            return radii(bodies, state).copy()
+        case "kinetic":
+            return 0.5 * float(np.sum(m * np.sum(v * v, axis=1)))
+        case "potential":
+            return own_potential + state.potential
+        case "dissipated":
+            return float(state.y[bodies.work_at])
+        case "energy":
+            parts = ("kinetic", "potential", "dissipated")
+            return sum(read(part, bodies, state, own_potential) for part in parts)
+        case "momentum":
+            return np.sum(m[:, None] * v, axis=0)
+        case "angular_momentum":
+            return np.sum(m[:, None] * np.cross(x, v), axis=0)
+        case "center":
+            return np.average(x, axis=0, weights=m) if np.sum(m) > 0 else np.zeros(3)
+        case "count":
+            return float(bodies.count)
+    raise KeyError(output)
+
+
+def read_named(output: str, names: Sequence[str], bodies: Bodies, state: ModelState) -> Any:
+    """An output ``name.position``, ``name.velocity`` or ``name.acceleration``: (3,). Raises KeyError."""
+    name, _, what = output.rpartition(".")
+    if name not in names or what not in MASS_OUTPUTS:
+        raise KeyError(output)
+    rows = {"position": positions, "velocity": velocities, "acceleration": accelerations}[what]
+    return rows(bodies, state)[names.index(name)].copy()

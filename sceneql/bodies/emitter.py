@@ -1,0 +1,222 @@
+"""Emitters: particles that are born and die while the scene runs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from sceneql.bodies.filling.fill import Fill, chance_key, draws, filled
+from sceneql.island.memory import bounded
+from sceneql.kinds import (
+    Color,
+    Exceeds,
+    FixedAngle,
+    FixedFrequency,
+    FixedScalar,
+    FixedTime,
+    Length,
+    ObjectRef,
+    Position,
+    Problem,
+    Record,
+    Value,
+    Velocity,
+    field,
+)
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Link, Number, Type, Vector, walk
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.system import Assembly, Bodies, ModelState
+
+SAMPLES, COLORS = 257, 32
+"""Ages at which radii are evaluated, and classes of age with a color each."""
+
+STEPS = 50
+"""Least number of steps in a life, where the solver chooses them: a birth within a step is of third order in it."""
+
+POOL = 4096
+"""Places of an object that births are drawn from."""
+
+
+def _aged(value: Value, age: float) -> Any:
+    """A value whose `time` is an age [s]."""
+    return evaluate(value.expr, lambda node: age, arrays=True)
+
+
+class Aging(Record):
+    """How a particle changes with its age: here `time` counts from its birth, in values and keyframes alike."""
+
+    color: Color | None = field("Its color, in place of the model's.", None)
+    radius: Length | None = field("Its radius in the picture, in place of the model's.", None)
+
+    def problems(self) -> Iterator[Problem]:
+        """Values that are none of an age alone."""
+        for name in ("color", "radius"):
+            value = getattr(self, name)
+            if value is not None and any(isinstance(node, Link) for node in walk(value.expr)):
+                yield Problem(f"the {name} of an age reads no other part", (name,))
+
+    def classes(self, ages: Floats, radii: Floats) -> Iterable[tuple[Value | None, Any, Floats]]:
+        """The particles by classes of like color: the color, the indices of its particles, and their radii.
+
+        ``ages`` [s] and ``radii`` [m], each (n,).
+        """
+        import numpy as np
+
+        if not len(ages):
+            return
+        samples = np.linspace(0.0, float(ages.max()), SAMPLES)
+        if self.radius is not None:
+            sizes = [_aged(self.radius, age) for age in samples]
+            radii = np.maximum(np.interp(ages, samples, sizes), 0.0)
+        if self.color is None:
+            yield None, slice(None), radii
+            return
+        width = max(samples[-1], 1e-300) / COLORS
+        which = np.minimum((ages / width).astype(int), COLORS - 1)
+        for k in np.unique(which):
+            some = np.flatnonzero(which == k)
+            shade = tuple(Number(float(c)) for c in _aged(self.color, (k + 0.5) * width))
+            yield Value(Vector(shade, Type((3,)))), some, radii[some]
+
+
+class Emit(Record):
+    """Births and deaths. Birth j is at `start` + j/`rate` exactly, wherever the frames and the steps of the solver lie.
+
+    Chance is counter-based: what birth j draws depends on the part's name, the seed and j alone.
+    """
+
+    rate: FixedFrequency = field("Births a second.", "100 Hz", above=0)
+    from_: Position = field("Where they are born.", "0 0 0 m")
+    within: ObjectRef | None = field(
+        "An object within which they are born, as it stands at the start; `from` is added.", None
+    )
+    velocity: Velocity = field("Their mean velocity at birth.", "0 3 0 m/s")
+    spread: FixedAngle = field(
+        "Half angle of the cone that they are thrown into, evenly.", "0 deg", at_least=0, at_most=math.pi
+    )
+    variation: FixedScalar = field(
+        "Largest relative deviation of the speed and of the lifetime.", "0", at_least=0, below=1
+    )
+    lifetime: FixedTime = field("How long they live.", "4 s", above=0)
+    start: FixedTime = field("Time of the first birth.", "0 s", at_least=0)
+    until: FixedTime | None = field("No births after it.", None, above=0)
+    count: int | None = field("No more births than that.", None, at_least=1)
+    most: int | None = field(
+        "How many may live at once; the oldest goes for one too many. By default as many as will.", None, at_least=1
+    )
+    seed: int = field("Another number, another shower.", 0, at_least=0)
+
+    def problems(self) -> Iterator[Problem]:
+        """An end before the start, and more particles than memory is allowed for."""
+        if self.until is not None and self.until <= self.start:
+            yield Problem("`until` must be after `start`", ("until",))
+        try:
+            bounded(self.capacity())
+        except Exceeds as error:
+            yield Problem(str(error), code="limit-refused")
+
+    def total(self) -> float:
+        """How many are born in all; may be infinite."""
+        births = math.inf if self.until is None else math.floor((self.until - self.start) * self.rate * (1 + 1e-12)) + 1
+        return min(births, math.inf if self.count is None else self.count)
+
+    def capacity(self) -> float:
+        """How many live at once, at most."""
+        alive = math.ceil(self.rate * self.lifetime * (1 + self.variation)) + 1
+        return min(alive, self.total(), math.inf if self.most is None else self.most)
+
+    def assemble(self, name: str, assembly: Assembly, bodies: Bodies, mass: float, radius: float) -> None:
+        """Add births and deaths to the bodies, which are the room for them."""
+        import numpy as np
+
+        pool = np.zeros((1, 3))
+        if self.within is not None:
+            pool = filled(Fill(object=self.within, count=POOL, seed=self.seed), name, assembly)
+        spec = [self.rate, self.start, self.total(), self.lifetime, self.variation, 1 - math.cos(self.spread)]
+        # Of a source that is solved itself, the place at time 0 is not known here: its first step starts from its end.
+        solved = [
+            link for value in (self.from_, self.velocity) for link in value.links if assembly.formula(link) is None
+        ]
+        before = [-1.0] * 7 if solved else [0.0, *assembly.initial(self.from_), *assembly.initial(self.velocity)]
+        self._act(name, assembly, bodies, [*spec, mass, radius], pool, before, 0, bodies.count)
+
+    def assemble_part(self, name: str, assembly: Assembly, bodies: Bodies, start: ModelState, first: int) -> None:
+        """The same for a block, whose bodies are the room for those from ``first`` on of all: ``start``."""
+        from sceneql.bodies.emitter_kernels import BEFORE, MEMORY, MEMORY_AT, POOL, POOL_AT, SPEC, SPEC_AT
+
+        assert start.bodies is not None
+        ints, floats = start.ints, start.floats
+        spec = floats[ints[SPEC_AT] : ints[SPEC_AT] + SPEC]
+        pool = floats[ints[POOL_AT] : ints[POOL_AT] + 3 * ints[POOL]].reshape(-1, 3)
+        before = floats[ints[MEMORY_AT] + BEFORE : ints[MEMORY_AT] + MEMORY]
+        self._act(name, assembly, bodies, spec, pool, before, first, start.bodies.count)
+
+    def _act(
+        self,
+        name: str,
+        assembly: Assembly,
+        bodies: Bodies,
+        spec: Any,
+        pool: Floats,
+        before: Any,
+        first: int,
+        slots: int,
+    ) -> None:
+        """Add the kernel of births and deaths (emitter_kernels)."""
+        import numpy as np
+
+        memory_at = assembly.floats([0.0, 0.0, *before])
+        ints = (
+            bodies.position_at,
+            bodies.velocity_at,
+            bodies.count,
+            bodies.mass_at,
+            bodies.inverse_at,
+            bodies.radius_at,
+            assembly.floats(spec),
+            assembly.value(self.from_),
+            assembly.value(self.velocity),
+            assembly.floats(pool),
+            len(pool),
+            memory_at,
+            assembly.floats(np.full(bodies.count, np.inf)),
+            chance_key(name, self.seed),
+            first,
+            slots,
+        )
+        assembly.step_at_most(self.lifetime / STEPS)
+        assembly.contact("local", ("sceneql.bodies.emitter_kernels:emit",), ints, 0, apart=True)
+        assembly.changing(memory_at, 2 + len(before))
+        assembly.remember(*ints)
+
+    def living(self, bodies: Bodies, state: ModelState) -> tuple[Bodies, ModelState, Floats]:
+        """The particles that live at the state's time as bodies of a state of their own, and their ages (n,) [s]."""
+        import numpy as np
+
+        from sceneql.bodies.emitter_kernels import AGE, BORN, FIRST, KEY, MEMORY_AT
+
+        ints, n = state.ints, bodies.count
+        first, born = (int(state.floats[ints[MEMORY_AT] + k]) for k in (FIRST, BORN))
+        births = np.arange(max(0, born - n), born)
+        ages = state.t - self.start - births / self.rate
+        luck = draws(births.astype(np.uint64), AGE, ints[KEY])
+        alive = (ages >= 0) & (ages < self.lifetime * (1 + self.variation * (2 * luck - 1)))
+        births, ages = births[alive], ages[alive]
+        slots = births % n
+        x, v = (state.y[at : at + 3 * n].reshape(-1, 3)[slots] for at in (bodies.position_at, bodies.velocity_at))
+        a = state.rate[bodies.velocity_at : bodies.velocity_at + 3 * n].reshape(-1, 3)[slots]
+        # Births of the last step still owe the acceleration of their first moments (emitter_kernels.emit).
+        owed = np.where(births >= first, ages, 0.0)[:, None]
+        x, v = x + 0.5 * a * owed**2, v + a * owed
+        m = len(births)
+        numbers = [state.floats[at : at + n][slots] for at in (bodies.mass_at, bodies.inverse_at, bodies.radius_at)]
+        compact = replace(bodies, count=m, position_at=0, velocity_at=3 * m, work_at=6 * m)
+        compact = replace(compact, mass_at=0, inverse_at=m, radius_at=2 * m)
+        y = np.concatenate([x.ravel(), v.ravel(), state.y[bodies.work_at : bodies.work_at + 1]])
+        rate = np.concatenate([v.ravel(), a.ravel(), [0.0]])
+        return compact, replace(state, y=y, rate=rate, floats=np.concatenate(numbers)), ages

@@ -1,0 +1,177 @@
+# mypy: ignore-errors
+"""Births and deaths of emitted particles, at the end of every accepted step."""
+
+import math
+
+import numpy as np
+from numba import types
+
+from sceneql.compiled.kernels import inlined, kernel
+from sceneql.system_kernels import SETTLE
+
+CHANGED_AT = 1
+"""floats[1]: above 0 in a settling that is to change nothing (march_kernels)."""
+
+RATE, START, TOTAL, LIFETIME, VARIATION, NARROW, MASS, RADIUS, SPEC = range(9)
+"""What an emitter is: births a second; the first one's time; how many; mean lifetime, largest relative deviation of it
+and of the speed; 1 - cos of the cone's half angle; mass and radius of a particle."""
+
+FIRST, BORN, BEFORE, MEMORY = 0, 1, 2, 9
+"""Memory: births before the last step, births so far; time of the last settling (below 0: none
+is known), place and velocity (3 each) then."""
+
+SPEC_AT, FROM_AT, MEAN_AT, POOL_AT, POOL, MEMORY_AT, DEATH_AT, KEY, FIRST_SLOT, SLOTS = range(6, 16)
+"""Places in the kernel's integers, behind those of the bodies."""
+
+AZIMUTH, POLAR, SPEED, AGE, PLACE = range(5)
+"""The draws of a birth."""
+
+MULTIPLIER, WEYL, MASK = np.uint64(0xD256D193), np.uint64(0x9E3779B9), np.uint64(0xFFFFFFFF)
+HIGH, LEFT, RIGHT = np.uint64(32), np.uint64(21), np.uint64(11)
+
+
+@kernel(types.float64(types.int64, types.int64, types.int64))
+def draw(birth, number, key):
+    """Uniform in [0, 1): Philox2x32-10 of the counter (birth, number), as sceneql.quantities.chance has it."""
+    first, second, word = np.uint64(birth) & MASK, np.uint64(number), np.uint64(key)
+    for _ in range(10):
+        product = first * MULTIPLIER
+        first, second = (product >> HIGH) ^ word ^ second, product & MASK
+        word = (word + WEYL) & MASK
+    return ((first << LEFT) | (second >> RIGHT)) * 2.0**-53
+
+
+@inlined
+def birth_time(floats, spec, birth):
+    """When a birth happens."""
+    return floats[spec + START] + birth / floats[spec + RATE]
+
+
+@inlined
+def born_until(floats, spec, t):
+    """How many are born up to t."""
+    birth = max(0, int(min((t - floats[spec + START]) * floats[spec + RATE], floats[spec + TOTAL])))
+    while birth > 0 and birth_time(floats, spec, birth - 1) > t:
+        birth -= 1
+    while birth < floats[spec + TOTAL] and birth_time(floats, spec, birth) <= t:
+        birth += 1
+    return birth
+
+
+@inlined
+def own_from(birth, ints):
+    """The first birth from that one on whose slot is one of this block's."""
+    slot, first = birth % ints[SLOTS], ints[FIRST_SLOT]
+    if slot < first:
+        return birth + first - slot
+    return birth if slot < first + ints[2] else birth + ints[SLOTS] - slot + first
+
+
+@inlined
+def lifetime(floats, spec, birth, key):
+    """How long a particle lives."""
+    return floats[spec + LIFETIME] * (1.0 + floats[spec + VARIATION] * (2.0 * draw(birth, AGE, key) - 1.0))
+
+
+@inlined
+def thrown(floats, spec, birth, key, vx, vy, vz):
+    """The mean velocity, turned by chance within the cone, evenly over its solid angle, and lengthened by chance."""
+    speed = math.sqrt(vx * vx + vy * vy + vz * vz)
+    if speed == 0.0:
+        return vx, vy, vz
+    vx, vy, vz = vx / speed, vy / speed, vz / speed
+    cosine = 1.0 - floats[spec + NARROW] * draw(birth, POLAR, key)
+    sine = math.sqrt(max(0.0, 1.0 - cosine * cosine))
+    angle = 2.0 * math.pi * draw(birth, AZIMUTH, key)
+    # Two axes across the direction (Duff et al. 2017).
+    sign = math.copysign(1.0, vz)
+    a = -1.0 / (sign + vz)
+    b = vx * vy * a
+    p, q = sine * math.cos(angle), sine * math.sin(angle)
+    speed *= 1.0 + floats[spec + VARIATION] * (2.0 * draw(birth, SPEED, key) - 1.0)
+    return (
+        speed * (cosine * vx + p * (1.0 + sign * vx * vx * a) + q * b),
+        speed * (cosine * vy + p * sign * b + q * (sign + vy * vy * a)),
+        speed * (cosine * vz - p * sign * vx - q * vy),
+    )
+
+
+@inlined
+def catch_up(t0, t1, y0, rate0, y1, floats, ints):
+    """What the last step's births owe: the acceleration, known only now, acts from their birth on."""
+    position_at, velocity_at, spec, memory = ints[0], ints[1], ints[SPEC_AT], ints[MEMORY_AT]
+    born = int(floats[memory + BORN])
+    birth = own_from(max(int(floats[memory + FIRST]), born - ints[SLOTS]), ints)
+    while birth < born:
+        slot = birth % ints[SLOTS] - ints[FIRST_SLOT]
+        s = t0 - birth_time(floats, spec, birth) if floats[ints[4] + slot] > 0.0 else 0.0
+        for c in range(3 * slot, 3 * slot + 3):
+            more = rate0[velocity_at + c] * s
+            y0[position_at + c] += 0.5 * more * s
+            y1[position_at + c] += 0.5 * more * s + more * (t1 - t0)
+            y0[velocity_at + c] += more
+            y1[velocity_at + c] += more
+            rate0[position_at + c] += more
+        birth = own_from(birth + 1, ints)
+
+
+@kernel(SETTLE, inner=True)
+def emit(t0, t1, y0, rate0, y1, floats, ints):
+    """Births and deaths of a step.
+
+    ints: position_at, velocity_at, count, mass_at, inverse_at, radius_at, spec_at, from_at, mean_at (a velocity),
+    pool_at, pool size, memory_at, death_at, key, number of the first slot, slots of all blocks. Birth j takes slot j
+    mod slots, and is the matter of the block that has it. A particle that is born inside the
+    step has flown straight since, and gets the acceleration that it finds at the step's end in the next step, for the
+    whole time: exact under a uniform force, else of third order. One that died in the step before is taken out.
+    """
+    if floats[CHANGED_AT] > 0.0:
+        return
+    position_at, velocity_at, count = ints[0], ints[1], ints[2]
+    mass_at, inverse_at, radius_at = ints[3], ints[4], ints[5]
+    spec, place, mean, pool = ints[SPEC_AT], ints[FROM_AT], ints[MEAN_AT], ints[POOL_AT]
+    memory, death, key = ints[MEMORY_AT], ints[DEATH_AT], ints[KEY]
+    catch_up(t0, t1, y0, rate0, y1, floats, ints)
+    for slot in range(count):
+        if floats[death + slot] <= t0:
+            floats[death + slot] = math.inf
+            floats[mass_at + slot] = 0.0
+            floats[inverse_at + slot] = 0.0
+            floats[radius_at + slot] = 0.0
+            for c in range(3):
+                y1[position_at + 3 * slot + c] = floats[place + c]
+                y1[velocity_at + 3 * slot + c] = 0.0
+    floats[memory + FIRST] = floats[memory + BORN]
+    floats[memory + BORN] = born_until(floats, spec, t1)
+    before = floats[memory + BEFORE]
+    birth = own_from(int(floats[memory + FIRST]), ints)
+    while birth < floats[memory + BORN]:
+        t = birth_time(floats, spec, birth)
+        w = (t - before) / (t1 - before) if before >= 0.0 else 1.0
+        slot = birth % ints[SLOTS] - ints[FIRST_SLOT]
+        vx, vy, vz = thrown(
+            floats, spec, birth, key,
+            (1.0 - w) * floats[memory + 6] + w * floats[mean],
+            (1.0 - w) * floats[memory + 7] + w * floats[mean + 1],
+            (1.0 - w) * floats[memory + 8] + w * floats[mean + 2],
+        )  # fmt: skip
+        own = 3 * int(draw(birth, PLACE, key) * ints[POOL])
+        for c in range(3):
+            x = (1.0 - w) * floats[memory + 3 + c] + w * floats[place + c] + floats[pool + own + c]
+            v = vx if c == 0 else (vy if c == 1 else vz)
+            at, rate_at = position_at + 3 * slot + c, velocity_at + 3 * slot + c
+            y0[at] = x + v * (t0 - t)
+            y1[at] = x + v * (t1 - t)
+            y0[rate_at] = v
+            y1[rate_at] = v
+            rate0[at] = v
+            rate0[rate_at] = 0.0
+        floats[mass_at + slot] = floats[spec + MASS]
+        floats[inverse_at + slot] = 1.0 / floats[spec + MASS]
+        floats[radius_at + slot] = floats[spec + RADIUS]
+        floats[death + slot] = t + lifetime(floats, spec, birth, key)
+        birth = own_from(birth + 1, ints)
+    floats[memory + BEFORE] = t1
+    for c in range(3):
+        floats[memory + 3 + c] = floats[place + c]
+        floats[memory + 6 + c] = floats[mean + c]

@@ -1,0 +1,1 @@
+"""Objects filled with masses, and with tetrahedra of masses."""

@@ -1,0 +1,221 @@
+"""Places inside an object: where the particles and lattices that fill it start."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, Literal
+
+from sceneql.failure import LimitRefused
+from sceneql.island.memory import PLACE, bounded
+from sceneql.island.start import Start
+from sceneql.kinds import Exceeds, FixedLength, Object, ObjectRef, Problem, Record, Ref, field
+from sceneql.quantities.chance import philox, unit
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from sceneql.frame import Floats
+    from sceneql.system import Assembly
+
+CHUNK = 1 << 18
+HALVINGS = 40
+"""Of a way, to find where it leaves."""
+EMPTIEST = 2000
+"""An object that holds less than one in so many places of its box counts as holding none."""
+
+
+class Fill(Record):
+    """Places inside an object, at the start of the run."""
+
+    object: ObjectRef = field("The object to fill; usually a hidden one.")
+    count: int | None = field("How many places.", None, at_least=1)
+    spacing: FixedLength | None = field("In place of a count: distance of neighbors.", None, above=0)
+    pattern: Literal["grid", "random", "even"] = field(
+        "Rows along the axes, places by chance, or by chance but none close to another (blue noise).", "random"
+    )
+    seed: int = field("Another number, other places.", 0, at_least=0)
+
+    def problems(self) -> Iterator[Problem]:
+        """Two measures or none, or not that of a grid."""
+        if (self.count is None) == (self.spacing is None):
+            yield Problem("a filling has either `count` or `spacing`")
+        elif self.pattern == "grid" and self.spacing is None:
+            yield Problem("a grid needs a `spacing`", ("pattern",))
+
+    def bounded(self, low: Floats, high: Floats) -> None:
+        """Raise Exceeds where the filling of an object in a box at a spacing is sure to be too much."""
+        import numpy as np
+
+        assert self.spacing is not None
+        if self.pattern == "grid":
+            grid_counts(low, high, self.spacing)
+        else:
+            bounded(float(np.prod(np.maximum(high - low, 0.0) / self.spacing)) / EMPTIEST)
+
+
+class Inside:
+    """The box around an object at the start of the run, and which places lie in the object."""
+
+    def __init__(self, ref: Ref, assembly: Assembly) -> None:
+        """Raises ScriptError for an object without an inside or without an end."""
+        import numpy as np
+
+        kind: Any = assembly.object(ref)
+        start: Any = Start(assembly)
+        self.span = ref.span
+        self.name = ref.name
+        place = np.eye(3, 4)
+        try:
+            low, high = kind.extent(place, start)
+            self.low, self.high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
+            if not (np.isfinite(self.low).all() and np.isfinite(self.high).all()):
+                raise TypeError("it has no end")
+            self.holds, self._exits = _test(kind, start)
+        except (TypeError, ValueError) as error:
+            raise self.refusal(str(error)) from None
+
+    def crossing(self, inner: Floats, outer: Floats) -> Floats:
+        """(n,) where (0..1) the ways from places inside to places outside, each (n, 3), leave the object."""
+        import numpy as np
+
+        found = np.full(len(inner), np.nan) if self._exits is None else self._exits(inner, outer)
+        left = np.isnan(found)
+        start, way = inner[left], (outer - inner)[left]
+        low, high = np.zeros(len(start)), np.ones(len(start))
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            held = self.holds(start + middle[:, None] * way)
+            low, high = np.where(held, middle, low), np.where(held, high, middle)
+        found[left] = 0.5 * (low + high)
+        return found
+
+    def refusal(self, why: str) -> ScriptError:
+        """That it cannot be filled."""
+        return ScriptError([Diagnostic("not-filled", f"'{self.name}' cannot be filled: {why}", self.span)])
+
+    def bounded(self, bound: Callable[..., object], *arguments: Any) -> None:
+        """Raise LimitRefused where a function of the arguments (as memory.bounded) raises Exceeds."""
+        try:
+            bound(*arguments)
+        except Exceeds as error:
+            raise LimitRefused(str(error), self.span, "use a larger spacing") from None
+
+    def random(self, first: int, count: int, key: int) -> Floats:
+        """Those of the places number first to first + count of its box, by chance, that lie in it: (m, 3)."""
+        import numpy as np
+
+        index = np.arange(first, first + count, dtype=np.uint64)
+        shares = np.stack([draws(index, axis, key) for axis in range(3)], axis=1)
+        places = self.low + shares * (self.high - self.low)
+        held: Floats = places[self.holds(places)]
+        return held
+
+
+def draws(index: Any, draw: int, key: int) -> Floats:
+    """Uniform numbers in [0, 1) of the counters (index, draw): index (n,) uint64."""
+    import numpy as np
+
+    numbers: Floats = unit(*philox(index, np.full_like(index, draw), np.full_like(index, key)))
+    return numbers
+
+
+def chance_key(name: str, seed: int) -> int:
+    """The key of a part's stream of chance."""
+    import zlib
+
+    return zlib.crc32(f"{seed}:{name}".encode())
+
+
+def _test(kind: Object, start: Any) -> tuple[Callable[[Floats], Any], Callable[[Floats, Floats], Floats] | None]:
+    """places (n, 3) -> (n,) bool, whether they lie in the object; of meshes where ways leave it, too (winding.exits).
+
+    Raises TypeError where it has no inside.
+    """
+    import numpy as np
+
+    from sceneql.field.tape.builder import TapeBuilder
+    from sceneql.field.tape.tape_solid import field_values
+
+    triangles = getattr(kind, "triangles_at", None)
+    if triangles is not None:
+        from sceneql.bodies.filling.winding import exits, winding
+
+        corners = triangles(start)
+        return lambda places: winding(places, corners) > 0.5, lambda inner, outer: exits(inner, outer, corners)
+    build = TapeBuilder()
+    tape = build.finish(kind.implicit(build, build.x, build.y, build.z, start))
+    return lambda places: np.asarray(field_values(tape, places) < 0), None
+
+
+def filled(fill: Fill, name: str, assembly: Assembly) -> Floats:
+    """(n, 3) places [m]. Raises ScriptError where the object holds none, LimitRefused where too many."""
+    import numpy as np
+
+    inside = Inside(fill.object, assembly)
+    if fill.pattern == "grid":
+        places = grid(inside, fill.spacing or 1.0)[0]
+        inside.bounded(bounded, len(places))
+        return places
+    key = chance_key(name, fill.seed)
+    size = float(np.prod(inside.high - inside.low))
+    trial = inside.random(0, CHUNK, key)
+    if len(trial) * EMPTIEST < CHUNK:
+        raise inside.refusal("next to nothing of its box lies in it")
+    volume = size * len(trial) / CHUNK
+    wanted = fill.count
+    if wanted is None:
+        wanted = max(1, round(min(volume / (fill.spacing or 1.0) ** 3, 1e18)))
+        inside.bounded(bounded, wanted)
+    if fill.pattern == "even":
+        from sceneql.bodies.filling.fill_kernels import spread
+
+        apart = fill.spacing or (volume / wanted) ** (1 / 3)
+        return _even(inside, trial, wanted, 0.85 * apart, key, spread)
+    parts, have, first = [trial], len(trial), CHUNK
+    while have < wanted:
+        parts.append(inside.random(first, CHUNK, key))
+        have, first = have + len(parts[-1]), first + CHUNK
+    return np.concatenate(parts)[:wanted]
+
+
+def _even(inside: Inside, trial: Floats, wanted: int, apart: float, key: int, spread: Any) -> Floats:
+    """Darts that keep a distance, which shrinks while no more fit (McCool & Fiume 1992, section 3)."""
+    import numpy as np
+
+    room = np.ascontiguousarray(inside.high - inside.low)
+    places, kept = np.empty((wanted, 3)), 0
+    darts, first = trial, CHUNK
+    while True:
+        kept = spread(np.ascontiguousarray(darts), places, kept, inside.low, room, apart)
+        if kept == wanted:
+            return places
+        apart *= 0.9
+        darts, first = inside.random(first, CHUNK, key), first + CHUNK
+
+
+def grid_counts(low: Floats, high: Floats, spacing: float) -> Floats:
+    """(3,) places along the sides of a box. Raises Exceeds where a grid of them cannot be looked at."""
+    import numpy as np
+
+    count: Floats = np.floor(np.maximum(high - low, 0.0) / spacing + 1e-9) + 1
+    bounded(float(np.prod(count)), "places of a grid", PLACE)
+    return count
+
+
+def grid(inside: Inside, spacing: float) -> tuple[Floats, Any]:
+    """Places (n, 3) of a cubic grid about the middle of an object's box, and their whole numbers (n, 3).
+
+    Raises ScriptError where the object holds none, LimitRefused where too many were to be looked at.
+    """
+    import numpy as np
+
+    inside.bounded(grid_counts, inside.low, inside.high, spacing)
+    count = grid_counts(inside.low, inside.high, spacing)
+    axes = [np.arange(int(c)) for c in count]
+    cells = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    places = (inside.low + inside.high) / 2 + spacing * (cells - (count - 1) / 2)
+    held = inside.holds(places)
+    if not held.any():
+        raise inside.refusal("no place of the grid lies in it; make the spacing smaller")
+    return places[held], cells[held]

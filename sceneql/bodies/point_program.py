@@ -1,0 +1,154 @@
+"""Forces on a mass by formulas of its place, velocity, mass and charge, printed as a compiled kernel.
+
+Kernels have the signature of a term; ints: constants_at, position_at, velocity_at, count, mass_at, inverse_at,
+work_at, charge_at, charge_step (0: one charge for all), then the offset of every value read from other parts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from sceneql.compiled import generated
+from sceneql.compiled.printer import IMPORTS, Constants, Printer, printable
+from sceneql.kinds import Formula, Value
+from sceneql.quantities.derivative import components, differentiate
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import TIME_SYMBOL, Call, Expr, Link, Number, Symbol, walk
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.system import Assembly, Bodies, ModelState
+
+PLACE = ("x", "y", "z")
+MOTION = (*PLACE, "vx", "vy", "vz")
+CHARGE = Symbol("q")
+HEAD = 9
+ZERO = Number(0.0)
+NAMES = {name: f"own_{name}" for name in (*MOTION, "m", "q")} | {TIME_SYMBOL: "t"}
+"""The kernel's names of a mass's own numbers: `y` is the state."""
+
+
+def problem(formula: Formula, count: int) -> str | None:
+    """Why a formula is not ``count`` numbers computed from numbers, or None."""
+    try:
+        parts = components(formula.expr)
+    except TypeError as error:
+        return f"a formula cannot be computed: {error}"
+    if len(parts) != count:
+        return f"{count} {'formula is' if count == 1 else 'formulas are'} needed here, not {len(parts)}"
+    return None if all(map(printable, parts)) else "a formula uses an operation that a force cannot compute"
+
+
+def downhill(potential: Formula) -> tuple[Expr, ...]:
+    """Minus the gradient of a potential: three scalars."""
+    (phi,) = components(potential.expr)
+    return tuple(Call("neg", (differentiate(phi, Symbol(name)),)) for name in PLACE)
+
+
+def scaled(rows: Sequence[Expr], factor: Expr) -> tuple[Expr, ...]:
+    """Every row times a factor."""
+    return tuple(Call("mul", (factor, row)) for row in rows)
+
+
+def add_force(
+    assembly: Assembly, bodies: Bodies, rows: Sequence[Expr], charge: tuple[int, int] = (0, 0), *, counted: bool
+) -> None:
+    """Add the force [N] of three scalar rows to every mass; ``counted``: what it gives is counted in the work."""
+    from sceneql.system import Slopes
+
+    for row in rows:
+        assembly.stop_where_it_turns(row)
+    constants = Constants()
+    printer = Printer(NAMES, {}, constants)
+    forces = [printer.name(row) for row in [constants.lift(row) for row in rows]]
+    outputs = [f"out[velocity_at + 3 * k + {c}] += {force}" for c, force in enumerate(forces)]
+    if counted:
+        power = " + ".join(f"{force} * {NAMES[v]}" for force, v in zip(forces, MOTION[3:], strict=True))
+        outputs.append(f"out[ints[6]] -= {power}")
+    head = (bodies.position_at, bodies.velocity_at, bodies.count, bodies.mass_at, bodies.inverse_at, bodies.work_at)
+
+    def store(constants: Constants) -> tuple[int, ...]:
+        inputs = [assembly.value(Value(expr)) for expr in constants.inputs]
+        return (assembly.floats(constants.values), *head, *charge, *inputs)
+
+    # The numbers of the derivatives are stored with those of the force: when a solver asks for them it is too late.
+    entries, kernel, more = _slopes(rows)
+    ints = store(more)
+
+    def slopes() -> Slopes:
+        import numpy as np
+
+        first = 3 * np.arange(bodies.count)[:, None]
+        columns = np.array(
+            [(bodies.position_at, bodies.velocity_at)[n // 3] + n % 3 for _, n in entries], dtype=np.int64
+        )
+        rows = bodies.velocity_at + np.array([c for c, _ in entries], dtype=np.int64)
+        return Slopes(kernel(), (first + rows).ravel(), (first + columns).ravel(), ints)
+
+    name = _kernel("force", printer, outputs)
+    assembly.term("force", name, store(constants), slopes if entries else Slopes("", (), ()), apart=charge[1] == 0)
+
+
+def _slopes(rows: Sequence[Expr]) -> tuple[list[tuple[int, int]], Callable[[], str], Constants]:
+    """Which (component, number of MOTION) have a derivative other than zero, the kernel for them, and its constants."""
+    constants = Constants()
+    printer = Printer(NAMES, {}, constants)
+    found = [(c, n, differentiate(row, Symbol(name))) for c, row in enumerate(rows) for n, name in enumerate(MOTION)]
+    entries = [(c, n, expr) for c, n, expr in found if expr != ZERO]
+    names = [printer.name(constants.lift(expr)) for _, _, expr in entries]
+    outputs = [f"out[{len(names)} * k + {i}] += {name}" for i, name in enumerate(names)]
+    return [(c, n) for c, n, _ in entries], lambda: _kernel("force_slopes", printer, outputs), constants
+
+
+def links_of(formula: Formula) -> list[Link]:
+    """The outputs of other parts that a formula reads."""
+    return list(dict.fromkeys(node for node in walk(formula.expr) if isinstance(node, Link)))
+
+
+def store_links(assembly: Assembly, formula: Formula) -> list[int]:
+    """Store what a formula reads of other parts: the offset of each of `links_of`."""
+    return [assembly.value(Value(link)) for link in links_of(formula)]
+
+
+def potential_at(
+    formula: Formula, places: Floats, state: ModelState, linked: Sequence[int], known: Mapping[str, Any] | None = None
+) -> Floats:
+    """A potential at points (n, 3), as an array (n,); ``linked``: offsets from `store_links`."""
+    import numpy as np
+
+    offsets = dict(zip(links_of(formula), linked, strict=True))
+    names: dict[str, Any] = {**dict(zip(PLACE, places.T, strict=True)), TIME_SYMBOL: state.t, **(known or {})}
+
+    def look_up(node: Symbol | Link) -> Any:
+        if isinstance(node, Symbol):
+            return names[node.name]
+        first = offsets[node]
+        return state.floats[first : first + 3] if node.type.shape else state.floats[first]
+
+    return np.broadcast_to(evaluate(components(formula.expr)[0], look_up, arrays=True), len(places))
+
+
+def _kernel(function: str, printer: Printer, outputs: Sequence[str]) -> str:
+    constants = printer.constants
+    lines = [
+        *IMPORTS,
+        "from sceneql.compiled.kernels import kernel",
+        "from sceneql.system_kernels import TERM",
+        "",
+        "",
+        "@kernel(TERM)",
+        f"def {function}(t, y, out, floats, ints):",
+        "    position_at, velocity_at, mass_at, inverse_at = ints[1], ints[2], ints[4], ints[5]",
+        *(f"    c{k} = floats[ints[0] + {k}]" for k in range(len(constants.values))),
+        *(f"    u{k} = floats[ints[{HEAD + k}]]" for k in range(len(constants.inputs))),
+        "    for k in range(ints[3]):",
+        "        if floats[inverse_at + k] == 0.0:",
+        "            continue",
+        *(f"        {NAMES[name]} = y[position_at + 3 * k + {c}]" for c, name in enumerate(MOTION[:3])),
+        *(f"        {NAMES[name]} = y[velocity_at + 3 * k + {c}]" for c, name in enumerate(MOTION[3:])),
+        "        own_m = floats[mass_at + k]",
+        "        own_q = floats[ints[7] + k * ints[8]]",
+        *(f"        {line}" for line in (*printer.lines, *outputs)),
+    ]
+    return f"{generated.write(function, chr(10).join(lines) + chr(10))}:{function}"

@@ -1,0 +1,321 @@
+"""What every model of masses and springs has in common: pins, tears, forces, outputs, looks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+from pydantic import PrivateAttr
+
+from sceneql.bodies import bodies as point_masses
+from sceneql.bodies.filling.fill import chance_key, draws
+from sceneql.bodies.pins import Pin, guide, pinned, start_velocity
+from sceneql.kinds import (
+    Color,
+    FixedLength,
+    FixedScalar,
+    FixedVelocity,
+    Gives,
+    MaterialRef,
+    Model,
+    Moment,
+    Problem,
+    Quantity,
+    Record,
+    field,
+    quantity_type,
+)
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.expression import Type
+
+if TYPE_CHECKING:
+    from sceneql.bodies.nets import Net
+    from sceneql.frame import Floats, Shape
+    from sceneql.system import Assembly, Bodies, ModelState, Slopes
+
+SPRINGS_A_TILE = 10_000
+"""Springs whose slopes a thread finds at a time."""
+MOST_COILS = 40
+
+
+class Tear(Record):
+    """When springs break, for good: at the end of the solver's step in which one is stretched too far."""
+
+    at: FixedScalar = field("Its length then, as a part of its rest length.", "1.5", above=1)
+    variation: FixedScalar = field(
+        "Largest relative deviation of that from spring to spring.", "0", at_least=0, below=1
+    )
+    seed: int = field("Another number, other weak springs.", 0, at_least=0)
+
+
+def pin_problems(pins: Iterable[str] | Mapping[str, Pin], known: Sequence[str], count: int | None) -> Iterator[Problem]:
+    """The pins that are neither one of the names nor the number of one of ``count`` masses (None: not known yet)."""
+    for pin in pins:
+        if isinstance(pins, Mapping) and pins[pin].where is not None:
+            continue
+        if pin not in known and not pin.isdecimal():
+            text = f"no mass is called '{pin}'; a pin is one of {', '.join(sorted(known))}, or a number"
+            yield Problem(text, ("pins", pin), at_key=True)
+        elif pin not in known and count is not None and int(pin) >= count:
+            yield Problem(f"pin {pin}: the {count} masses are counted from 0", ("pins", pin), at_key=True)
+
+
+class SpringModel(Model):
+    """Point masses tied by springs."""
+
+    gives: ClassVar[Mapping[str, Gives]] = {
+        **point_masses.BODY_OUTPUTS,
+        "stretch": Gives(Type(), "Largest |L - L0| / L0 of a spring that holds."),
+        "springs": Gives(quantity_type(dim.LENGTH, (None, 2, 3)), "The two ends of every spring that holds."),
+        "torn": Gives(Type(), "Number of springs that have torn."),
+        "triangles": Gives(Type((None, 3)), "Of a cloth or a solid: its surface by numbers of masses, less what tore."),
+    }
+
+    pins: tuple[str, ...] | dict[str, Pin] = field(
+        "Masses that are held: names, or `name: {shift: ..., until: ...}`. Names are those of the masses; of a lattice "
+        "left, right, bottom, top, back, front; of a cloth left, right, bottom, top and corners such as top_left; of a "
+        "rope start, end; or a number, counted from 0; or any, with `where`.",
+        (),
+    )
+    tear: Tear | None = field("When springs break; by default never.", None)
+    velocity: FixedVelocity = field("Velocity of all at the start.", "0 0 0 m/s")
+    spin: Annotated[tuple[float, float, float], Quantity(dim.FREQUENCY, (3,))] = field(
+        "Angular velocity at the start, about the center of mass [rad/s].", "0 0 0 rad/s"
+    )
+    radius: FixedLength | None = field(
+        "Radius of the masses in contacts and in the picture; by default a tenth of the shortest spring.",
+        None,
+        at_least=0,
+    )
+    look: Literal["auto", "coil", "line", "masses"] = field(
+        "How it draws itself: springs as coils or lines, or not at all; auto: coils when few, a cloth as a sheet, a "
+        "solid as its surface.",
+        "auto",
+    )
+    material: MaterialRef | None = field("How it looks where no object draws it.", None)
+    color: Color | None = field("Color in place of the material's.", None)
+
+    _made: tuple[Net, Floats] | None = PrivateAttr(None)
+
+    def make(self, assembly: Assembly) -> tuple[Net, Floats, Floats]:
+        """The net as it stands at the start, the masses (n,) [kg], and the springs' blocks (m, 5).
+
+        A block is rest length [m], stiffness [N/m], its part of the model's, damping [N s/m], its part of the model's.
+        """
+        raise NotImplementedError
+
+    def mass_count(self) -> int | None:
+        """Number of masses, where the fields tell."""
+        return None
+
+    def items(self, output: str) -> int | None:
+        """How many there are."""
+        several = point_masses.BODY_OUTPUTS.get(output)
+        return None if several is None or several.type.shape[:1] != (None,) else self.mass_count()
+
+    def shared(self, assembly: Assembly) -> tuple[int, int]:
+        """Offsets of the model's stiffness and damping in the floats."""
+        return (assembly.floats([0.0]),) * 2
+
+    def damped(self, blocks: Floats) -> bool:
+        """Whether any spring may be damped."""
+        return bool(blocks[:, 3].any())
+
+    def start_velocities(self, count: int) -> Floats:
+        """(n, 3) [m/s], before the spin."""
+        import numpy as np
+
+        return np.tile(self.velocity, (count, 1)).astype(float)
+
+    def held(self, net: Net) -> Any:
+        """(n,) bool: the masses that are held at the start."""
+        import numpy as np
+
+        fixed = np.zeros(len(net.points), dtype=bool)
+        for pin in self.pins:
+            fixed[pinned(pin, net, self.pins[pin] if isinstance(self.pins, dict) else None)] = True
+        return fixed
+
+    @property
+    def net(self) -> Net:
+        """Masses and springs; there is none before the island is assembled."""
+        assert self._made is not None
+        return self._made[0]
+
+    @property
+    def rest(self) -> Floats:
+        """(m,) lengths of the springs without force [m]."""
+        assert self._made is not None
+        return self._made[1]
+
+    def mass_radius(self) -> float:
+        """Radius of the masses [m]."""
+        if self.radius is not None:
+            return self.radius
+        some = self.rest[self.rest > 0]
+        return 0.1 * float(some.min()) if len(some) else 0.05
+
+    def assemble(self, name: str, assembly: Assembly) -> Bodies:
+        """Reserve the masses and add the forces of the springs."""
+        import numpy as np
+
+        net, weights, blocks = self.make(assembly)
+        self._made = (net, blocks[:, 0].copy())
+        fixed = self.held(net)
+        n, m = len(net.points), len(net.pairs)
+        velocities = self.start_velocities(n)
+        velocities += np.cross(self.spin, net.points - np.average(net.points, axis=0, weights=weights))
+        velocities[fixed] = 0.0
+        for pin, how in self.pins.items() if isinstance(self.pins, dict) else ():
+            velocities[pinned(pin, net, how)] = start_velocity(how, assembly)
+        bodies = point_masses.reserve(
+            name, assembly, net.points, velocities, weights, np.full(n, self.mass_radius()), fixed
+        )
+        blocks_at = assembly.floats(blocks.ravel())
+        stiffness_at, damping_at = self.shared(assembly)
+        ends = net.pairs.ravel().tolist()
+        places = (bodies.position_at, bodies.velocity_at, bodies.work_at)
+        ints = (*places, blocks_at, stiffness_at, damping_at, m, *ends, bodies.inverse_at)
+        kernel = "sceneql.bodies.mass_spring_kernels:springs"
+        assembly.term("internal", kernel, ints, lambda: _slopes(net, bodies, self.damped(blocks), ints[3:6]))
+        torn_at = assembly.floats([0.0])
+        if self.tear is not None:
+            luck = draws(np.arange(m, dtype=np.uint64), 0, chance_key(name, self.tear.seed))
+            strains = (self.tear.at - 1) * (1 + self.tear.variation * (2 * luck - 1))
+            strains *= 1.0 if net.toughness is None else net.toughness
+            more = (assembly.floats((1 + strains) * blocks[:, 0]), torn_at)
+            torn = (bodies.position_at, bodies.work_at, blocks_at, stiffness_at, *more, m, *ends)
+            assembly.contact("local", ("sceneql.bodies.tear_kernels:tear",), torn, 0)
+        if isinstance(self.pins, dict):
+            guide(self.pins, net, assembly, bodies)
+        assembly.remember(blocks_at, stiffness_at, torn_at)
+        stiffnesses = blocks[:, 1] + blocks[:, 2] * assembly.numbers()[stiffness_at]
+        return replace(bodies, period=_shortest_period(net.pairs, stiffnesses, weights), tied=net.pairs)
+
+    def holding(self, state: ModelState) -> Any:
+        """(m,) bool: the springs that have not torn."""
+        import numpy as np
+
+        from sceneql.bodies.mass_spring_kernels import BLOCK
+
+        m, at = len(self.net.pairs), state.ints[0]
+        if self.tear is None:
+            return np.ones(m, dtype=bool)
+        return state.floats[at : at + BLOCK * m].reshape(m, BLOCK)[:, 1:3].any(axis=1)
+
+    def read(self, output: str, state: ModelState) -> Any:
+        """Any output of the manual."""
+        import numpy as np
+
+        assert state.bodies is not None
+        blocks_at, stiffness_at, torn_at = state.ints
+        if output in point_masses.BODY_OUTPUTS:
+            own = 0.0
+            if output in ("potential", "energy"):
+                from sceneql.bodies.mass_spring_energy_kernels import energy
+
+                at = state.bodies.position_at
+                own = energy(state.y, at, state.floats, blocks_at, stiffness_at, self.net.pairs)
+            return point_masses.read(output, state.bodies, state, own)
+        if output == "triangles":
+            found = self.triangles(state)
+            return np.zeros((0, 3)) if found is None else found.astype(float)
+        if output == "torn":
+            return float(state.floats[torn_at])
+        holding = self.holding(state)
+        ends = point_masses.positions(state.bodies, state)[self.net.pairs[holding]]
+        if output == "springs":
+            return ends
+        if output == "stretch":
+            lengths, rest = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1), self.rest[holding]
+            stretched = rest > 0
+            return float(np.max(np.abs(lengths[stretched] / rest[stretched] - 1), initial=0.0))
+        raise KeyError(output)
+
+    def triangles(self, state: ModelState) -> Any:
+        """(k, 3) triangles of its surface that have no torn side; None where it has no surface."""
+        import numpy as np
+
+        net = self.net
+        if net.triangles is None or self.tear is None:
+            return net.triangles
+        if net.tetrahedra is not None:
+            from sceneql.bodies.filling.tetrahedra import boundary
+
+            return boundary(self.tetrahedra(state))
+        n = len(net.points)
+        torn = np.sort(net.pairs[~self.holding(state)], axis=1) @ [n, 1]
+        sides = np.sort(net.triangles[:, [[0, 1], [1, 2], [2, 0]]].astype(np.int64), axis=2) @ [n, 1]
+        return net.triangles[~np.isin(sides, torn).any(axis=1)]
+
+    def tetrahedra(self, state: ModelState) -> Any:
+        """(t, 4) those of a solid that have no torn edge; none of other models."""
+        import numpy as np
+
+        from sceneql.bodies.filling.tetrahedra import edges
+
+        net = self.net
+        if net.tetrahedra is None:
+            return np.zeros((0, 4), dtype=np.int32)
+        if self.tear is None:
+            return net.tetrahedra
+        return net.tetrahedra[self.holding(state)[edges(net.tetrahedra)[1]].all(axis=1)]
+
+    def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Shape]:
+        """A cloth as a sheet, a solid as its skin, else masses as spheres and springs as coils or lines."""
+        from sceneql.bodies import spring_look
+
+        assert state.bodies is not None
+        surface = moment.surface(name, self.material, self.color)
+        places = point_masses.positions(state.bodies, state).copy()
+        triangles = self.triangles(state)
+        if triangles is not None and self.look == "auto":
+            yield spring_look.skin(name, surface, places, triangles, 0.5 * self.mass_radius())
+            return
+        yield spring_look.spheres(name, surface, places, self.mass_radius())
+        holding = self.holding(state)
+        ends, rest = places[self.net.pairs[holding]], self.rest[holding]
+        line = self.net.line
+        if self.look == "coil" or (self.look == "auto" and len(self.net.pairs) <= MOST_COILS and not line):
+            yield spring_look.coils(name, surface, ends, rest, self.mass_radius())
+        elif self.look != "masses":
+            yield spring_look.lines(name, surface, ends, self.mass_radius() if line else 0.15 * self.mass_radius())
+
+
+def _shortest_period(pairs: Any, stiffnesses: Floats, weights: Floats) -> float:
+    """A bound [s] from below: no squared frequency is above the largest of 2 (sum of stiffnesses) / mass (Gershgorin).
+
+    It is that of K v = w^2 M v, whose row of a mass has the sum on and once more beside its diagonal block.
+    """
+    import numpy as np
+
+    sums = sum(np.bincount(pairs[:, end], np.abs(stiffnesses), len(weights)) for end in range(2))
+    fastest = float(np.max(2.0 * sums / weights, initial=0.0))
+    return 2.0 * np.pi / fastest**0.5 if fastest > 0.0 else np.inf
+
+
+def _slopes(net: Net, bodies: Bodies, damped: bool, floats_at: Sequence[int]) -> Slopes:
+    """Of each spring a block of 3x3 by positions, in four places; if damped, as much by velocities."""
+    import numpy as np
+
+    from sceneql.bodies.mass_spring_slopes_kernels import tile
+    from sceneql.compiled.threads_kernels import threads, tile_address
+    from sceneql.system import Slopes
+
+    count = len(net.pairs)
+    ends = 3 * net.pairs.astype(np.int64)
+    rows = np.repeat(ends, 2, axis=1).ravel() + bodies.velocity_at
+    columns = np.tile(ends, 2).ravel()
+    by = [bodies.position_at, bodies.velocity_at] if damped else [bodies.position_at]
+    own = np.arange(count * len(by)).reshape(-1, 1)
+    tiles = count // SPRINGS_A_TILE + 1
+    head = (bodies.position_at, bodies.velocity_at, bodies.inverse_at, count, int(damped), tiles)
+    return Slopes(
+        "sceneql.bodies.mass_spring_slopes_kernels:springs",
+        np.tile(rows, len(by)),
+        np.concatenate([columns + at for at in by]),
+        np.concatenate([(*head, *threads(), tile_address(tile), *floats_at), net.pairs.ravel()]),
+        np.concatenate([-1 - own, own, own, -1 - own], axis=1).ravel(),
+        blocks=True,
+    )

@@ -1,0 +1,39 @@
+# mypy: ignore-errors
+"""Springs that break."""
+
+import math
+
+from sceneql.bodies.mass_spring_kernels import BLOCK
+from sceneql.compiled.kernels import kernel
+from sceneql.system_kernels import SETTLE
+
+CHANGED_AT = 1
+"""floats[1]: above 0 in a settling that is to change nothing (march_kernels)."""
+
+
+@kernel(SETTLE, inner=True)
+def tear(t0, t1, y0, rate0, y1, floats, ints):
+    """Springs longer than they bear lose stiffness and damping; their energy is counted as dissipated.
+
+    ints: position_at, work_at, blocks_at, stiffness_at, limits_at, torn_at, count, then the two masses of each. The
+    energy is added at both ends of the step, as frames inside it see the spring torn already.
+    """
+    if floats[CHANGED_AT] > 0.0:
+        return
+    position_at, work_at, blocks_at, limits_at = ints[0], ints[1], ints[2], ints[4]
+    for s in range(ints[6]):
+        block = blocks_at + BLOCK * s
+        k = floats[block + 1] + floats[block + 2] * floats[ints[3]]
+        if k == 0.0:
+            continue
+        a, b = position_at + 3 * ints[7 + 2 * s], position_at + 3 * ints[8 + 2 * s]
+        dx, dy, dz = y1[b] - y1[a], y1[b + 1] - y1[a + 1], y1[b + 2] - y1[a + 2]
+        length = math.sqrt(dx * dx + dy * dy + dz * dz)
+        if length <= floats[limits_at + s]:
+            continue
+        lost = 0.5 * k * (length - floats[block]) ** 2
+        y0[work_at] += lost
+        y1[work_at] += lost
+        for c in range(1, BLOCK):
+            floats[block + c] = 0.0
+        floats[ints[5]] += 1.0

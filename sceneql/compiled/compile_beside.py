@@ -1,0 +1,113 @@
+"""Compiling on a second core: a process beside this one imports modules of kernels, and this one loads what it made.
+
+Compiling holds the interpreter's lock, so a second core can only help from a second process.
+"""
+
+from __future__ import annotations
+
+import atexit
+import os
+import signal
+import subprocess
+import sys
+import threading
+import warnings
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+from traceback import print_exc
+from typing import IO, NoReturn, cast
+
+from sceneql.compiled.kernels import OURS, cache_folder, compiled, compiles, thread_count
+
+
+def compile_ahead(modules: Iterable[str]) -> Callable[..., None]:
+    """Have modules' kernels compiled beside, in this order, unless they were before; call the result to have them all.
+
+    The call imports them from the last one on, less those that it names, and counts as compilation. Generated modules
+    are left out.
+    """
+    ours = [module for module in modules if module.partition(".")[0] in OURS[:2]]
+    marks = {module: cache_folder(module) / "all.compiled" for module in ours}
+    due = [module for module, mark in marks.items() if not mark.exists()]
+    if not due or not compiles():
+        return lambda *but: None
+    for module in due:
+        marks[module].parent.mkdir(parents=True, exist_ok=True)
+    if thread_count() > 1:
+        with suppress(BrokenPipeError):  # what ended it will be said where the module is imported here
+            names = _beside()
+            names.write("".join(f"{module} {marks[module]}\n" for module in due))
+            names.flush()
+
+    def wait(*but: str) -> None:
+        wanted = [module for module in due if module not in but]
+        with compiled.whole_block():
+            for module in reversed(wanted):
+                import_module(module)
+        for module in wanted:
+            marks[module].touch()
+
+    return cache(wait)
+
+
+def compile_named(names: Iterable[str]) -> None:
+    """What the process beside does: import the module that each line names, and touch the file named behind it.
+
+    Ctrl-C is for the process that says what was kept; it takes this one with it.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for line in names:
+        module, mark = line.rstrip("\n").split(" ", 1)
+        import_module(module)
+        Path(mark).touch()
+
+
+@cache
+def _beside() -> IO[str]:
+    """Where to write names for the process, which ends with this one.
+
+    A copy of this process need not import numba once more, but it has one thread: others would hold locks for ever.
+    """
+    if sys.platform == "linux" and threading.active_count() == 1:
+        return _copied()
+    command = "import sys; from sceneql.compiled.compile_beside import compile_named; compile_named(sys.stdin)"
+    process = subprocess.Popen([sys.executable, "-c", command], stdin=subprocess.PIPE, text=True)
+    atexit.register(process.terminate)
+    return cast("IO[str]", process.stdin)
+
+
+def _copied() -> IO[str]:
+    reading, writing = os.pipe()
+    blocked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # of threads that are not Python's: BLAS ends its own
+        process = os.fork()
+    if process == 0:
+        _work_and_end(reading)
+    signal.pthread_sigmask(signal.SIG_SETMASK, blocked)
+    os.close(reading)
+
+    def end() -> None:
+        with suppress(ProcessLookupError, ChildProcessError):
+            os.kill(process, signal.SIGTERM)
+            os.waitpid(process, 0)
+
+    atexit.register(end)
+    return os.fdopen(writing, "w")
+
+
+def _work_and_end(reading: int) -> NoReturn:
+    """Nothing that the first process does when it ends is done twice, and no file that it closes stays open."""
+    try:
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        os.closerange(3, reading)
+        os.closerange(reading + 1, os.sysconf("SC_OPEN_MAX"))
+        with os.fdopen(reading) as names:
+            compile_named(names)
+    except BaseException:
+        print_exc()
+        os._exit(1)
+    os._exit(0)

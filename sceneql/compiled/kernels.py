@@ -1,0 +1,323 @@
+# mypy: ignore-errors
+"""Where compiled code begins: the one decorator, the cache folder, the compile account and the thread pool.
+
+Imports numba; only ``*_kernels.py`` files and those that run them import this module.
+"""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import os
+import re
+import sys
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from functools import cache
+from importlib.util import find_spec, resolve_name
+from pathlib import Path
+from typing import Any
+
+try:
+    import fcntl
+except ImportError:  # not on Windows
+    fcntl = None
+
+import numba
+from numba import types
+from numba.core import cgutils, event
+from numba.extending import intrinsic
+
+from sceneql.compiled.numba.kernel_compiler import (
+    HelperCompiler,
+    KernelCompiler,
+    WayInCompiler,
+    call_by_name,
+    collecting_later,
+)
+
+OURS = ("sceneql", "renderers", "sceneql_generated")
+_IMPORTS = re.compile(r"^[ \t]*((?:from|import)\b[^\n(]*(?:\([^)]*\))?)", re.MULTILINE)
+"""Statements that import, and lines of text that look like them."""
+_HIDDEN_IMPORTS = re.compile(r"[;:][ \t]*(?:from|import)\b|\\\n")
+"""Where a file may import in the middle of a line, or over lines without brackets."""
+
+
+def _cache_home() -> Path:
+    """Folder of all compiled code of this version of numba; SCENEQL_CACHE moves it."""
+    home = os.environ.get("SCENEQL_CACHE") or os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    mode = "plain" if numba.config.DISABLE_JIT else "compiled"
+    folder = Path(home) / "sceneql" / f"numba-{numba.__version__}-{mode}"
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
+CACHE = _cache_home()
+
+
+def _spec(module: str) -> Any:
+    """Where a module lies; None where there is none of this name, or a package that only Python made."""
+    try:
+        return find_spec(module)
+    except (ImportError, ValueError):
+        return None
+
+
+def _has_modules(name: str) -> bool:
+    """Whether a name is that of a package."""
+    if name in sys.modules:
+        return hasattr(sys.modules[name], "__path__")
+    spec = _spec(name)
+    return spec is not None and spec.submodule_search_locations is not None
+
+
+@cache
+def _imported(path: Path, package: str, changed: int) -> frozenset[str]:
+    """Names of the modules that a file may import: of ``from a import b`` both ``a`` and ``a.b``.
+
+    ``changed``: when it was last written to; other contents are read anew.
+    """
+    text = path.read_text(encoding="utf-8")
+    parts = [text] if _HIDDEN_IMPORTS.search(text) else _IMPORTS.findall(text)
+    found = set()
+    for part in parts:
+        try:
+            tree = ast.parse(part)
+        except SyntaxError:  # a line of text
+            continue
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Import):
+                found |= {alias.name for alias in node.names}
+            elif isinstance(node, ast.ImportFrom):
+                name = f"{'.' * node.level}{node.module or ''}"
+                source = resolve_name(name, package) if node.level else name
+                found |= {source, *(f"{source}.{alias.name}" for alias in node.names)}
+    return frozenset(found)
+
+
+def _sources(module: str) -> frozenset[Path]:
+    """The files that compiled code of a module is made of: its own, and those of ours that they import."""
+    found: dict[str, Path | None] = {}
+    tops = {*OURS, module.partition(".")[0]}
+    todo = [module]
+    while todo:
+        name = todo.pop()
+        if name in found or name.partition(".")[0] not in tops:
+            continue
+        found[name] = None
+        package = name.rpartition(".")[0]
+        if package:
+            todo.append(package)
+            if not _has_modules(package):
+                continue  # what a module defines, not a module
+        spec = _spec(name)
+        if spec is not None and spec.has_location:
+            path = found[name] = Path(spec.origin)
+            todo += _imported(path, spec.parent, path.stat().st_mtime_ns)
+    return frozenset(path for path in found.values() if path is not None)
+
+
+def cache_folder(module: str) -> Path:
+    """Folder of a module's compiled code, named by a hash of all that it is made of.
+
+    numba's own cache does not notice a change in a function imported from another file; the hash does. Files of ours
+    do not change while a process runs; those of a ``--words`` folder may.
+    """
+    return _folder_of_ours(module) if module.partition(".")[0] in OURS else _folder(module)
+
+
+@cache
+def _folder_of_ours(module: str) -> Path:
+    return _folder(module)
+
+
+def _folder(module: str) -> Path:
+    digest = hashlib.sha256()
+    for text in sorted(path.read_bytes() for path in _sources(module)):
+        digest.update(text)
+    return CACHE / f"{module.rpartition('.')[2]}-{digest.hexdigest()[:16]}"
+
+
+class CompileAccount(event.Listener):
+    """Counts numba compilations (not loads from the cache) and the seconds they took, nested ones once."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self.seconds = 0.0
+        self._depth = 0
+        self._block = 0
+        self._started = 0.0
+
+    def on_start(self, event: Any) -> None:
+        """A compilation starts."""
+        if self._depth == 0:
+            self._started = time.perf_counter()
+        self._depth += 1
+
+    def on_end(self, event: Any) -> None:
+        """A compilation ends."""
+        self._depth -= 1
+        if self._depth == self._block:
+            self.count += 1
+        self._leave()
+
+    def _leave(self) -> None:
+        if self._depth == 0:
+            self.seconds += time.perf_counter() - self._started
+
+    @contextmanager
+    def whole_block(self) -> Iterator[None]:
+        """Count all the seconds spent in a block."""
+        self.on_start(None)
+        self._block += 1
+        try:
+            yield
+        finally:
+            self._block -= 1
+            self._depth -= 1
+            self._leave()
+
+
+compiled = CompileAccount()
+event.register("numba:compile", compiled)
+
+
+@contextmanager
+def alone(path: Path) -> Iterator[None]:
+    """Let one process at a time through, where the system has such locks: what it compiles the next one loads."""
+    if fcntl is None or numba.config.DISABLE_JIT:
+        yield
+        return
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
+def kernel(signature: Any, *, inner: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Compile a function for one explicit signature, cached on disk, without the GIL, NaN and inf as in numpy.
+
+    Fastmath stays off, so that the bits do not depend on the machine. Only kernels call an ``inner`` one, by its name
+    or its address. The code for calls from Python is made when the first one comes.
+    """
+    options |= COMMON | {"no_cpython_wrapper": True}
+
+    def compile(function: Callable[..., Any]) -> Any:
+        folder = cache_folder(function.__module__)
+
+        def made(folder: Path, compiler: Any) -> Any:
+            with alone(folder / function.__name__), collecting_later():
+                numba.config.CACHE_DIR = str(folder)
+                return numba.njit(signature, cache=True, pipeline_class=compiler, **options)(function)
+
+        whole = made(folder, KernelCompiler)
+        if not numba.config.DISABLE_JIT:
+            call_by_name(whole, None if inner else lambda: made(folder / "from_python", WayInCompiler))
+        return whole
+
+    return compile
+
+
+COMMON = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+HELPER = {**COMMON, "no_cpython_wrapper": True, "pipeline_class": HelperCompiler}
+
+inlined = numba.njit(**HELPER)
+"""A helper of kernels: compiled with its caller, for the types it is called with; not callable from Python."""
+
+woven = numba.njit(inline="always", **COMMON)
+"""Put into its caller before compilation: for small functions around a large one, whose code they would repeat."""
+
+
+def lean(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """A kernel that makes no arrays (slices may be taken): without counting references, some 100 ns a call."""
+    return kernel(signature, _nrt=False, **options)
+
+
+lean_inlined = numba.njit(_nrt=False, **HELPER)
+"""A helper of lean kernels."""
+
+
+def address(function: Any, kind: Any) -> Any:
+    """Address of a compiled kernel of FunctionType ``kind``, for ``function_at``. Keep the kernel alive."""
+    if numba.config.DISABLE_JIT:
+        return function
+    compiled = function.overloads[kind.signature.args]
+    return compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
+
+
+def function_at(kind: Any) -> Any:
+    """What makes of an ``address`` a function that kernels can call.
+
+    numba can take functions as arguments, but asks Python for their addresses at every call (50 us each). Kernels call
+    by name what is always the same one (compiling.call_by_name).
+    """
+    if numba.config.DISABLE_JIT:
+        return lambda function: function
+
+    @intrinsic
+    def at(typing: Any, address: Any) -> Any:
+        def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            value = cgutils.create_struct_proxy(kind)(context, builder)
+            pointer = builder.inttoptr(arguments[0], context.get_value_type(types.voidptr))
+            # The address is known to be one, so the code for Python functions is dropped.
+            builder.assume(cgutils.is_not_null(builder, pointer))
+            value.jit_addr = pointer
+            value.c_addr = value.py_addr = context.get_constant_null(types.voidptr)
+            return value._getvalue()
+
+        return kind(types.int64), code
+
+    return at
+
+
+def compiles() -> bool:
+    """Whether kernels are compiled; NUMBA_DISABLE_JIT=1 lets Python run them as they are written."""
+    return not numba.config.DISABLE_JIT
+
+
+def thread_count() -> int:
+    """Threads to use: SCENEQL_THREADS, else the processors this process may run on."""
+    wanted = os.environ.get("SCENEQL_THREADS")
+    return max(1, int(wanted)) if wanted else max(1, len(os.sched_getaffinity(0)))
+
+
+@cache
+def _pool(threads: int) -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(threads, thread_name_prefix="sceneql")
+
+
+def over_tiles(count: int, work: Callable[[int], object]) -> None:
+    """Call ``work(tile)`` for every tile 0..count-1 here and on the pool; tiles must write to places of their own.
+
+    Which thread takes which tile does not matter to the result, so the bytes are the same for any thread count.
+    The first exception is raised after all threads have stopped, and after it no tile is begun.
+    """
+    upcoming = iter(range(count))
+    lock = threading.Lock()
+
+    def drain() -> None:
+        try:
+            while True:
+                with lock:
+                    tile = next(upcoming, None)
+                if tile is None:
+                    return
+                work(tile)
+        except BaseException:
+            with lock:
+                deque(upcoming, maxlen=0)
+            raise
+
+    # This thread works, too: one that sleeps would leave its core to be found again by those that it has woken.
+    others = min(thread_count(), count) - 1
+    futures = [_pool(others).submit(drain) for _ in range(others)]
+    try:
+        drain()
+    finally:
+        errors = [error for error in (future.exception() for future in futures) if error is not None]
+    if errors:
+        raise errors[0]

@@ -1,0 +1,1 @@
+"""How numba compiles kernels: its own pipeline, shortened."""

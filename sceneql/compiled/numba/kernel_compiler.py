@@ -1,0 +1,251 @@
+# mypy: ignore-errors
+"""How numba compiles our kernels: its own steps, less those that our code has no use for.
+
+Most of the time that numba takes is spent in Python. What is left out here is half of it all, and changes neither what
+kernels compute nor what they may contain, but for closures, comprehensions, ``with`` and raises of computed errors.
+"""
+
+import gc
+from contextlib import contextmanager
+from copy import copy
+
+from llvmlite import binding
+from llvmlite.binding import ffi
+from numba import config
+from numba.core import cgutils
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import CompilerBase
+from numba.core.compiler_machinery import PassManager, _pass_registry, register_pass
+from numba.core.typed_passes import (
+    NativeLowering,
+    NoPythonBackend,
+    NopythonTypeInference,
+    PreLowerStripPhis,
+)
+from numba.core.untyped_passes import (
+    FixupArgs,
+    GenericRewrites,
+    InlineInlinables,
+    ReconstructSSA,
+    TranslateByteCode,
+)
+
+from sceneql.compiled.numba.builtin_calls import take_words
+from sceneql.compiled.numba.elements import take_elements
+from sceneql.compiled.numba.python_entry import WayIn, lead_in
+from sceneql.compiled.numba.shortcuts import take_shortcuts
+from sceneql.compiled.numba.statements import Free, KernelLower
+
+FRONT = (
+    TranslateByteCode,
+    FixupArgs,
+    GenericRewrites,
+    InlineInlinables,
+    ReconstructSSA,
+    NopythonTypeInference,
+    PreLowerStripPhis,
+    Free,
+)
+
+
+class KernelLibrary(JITCodeLibrary):
+    """Code of a kernel: nothing of it is looked over for LLVM's own mistakes, or made good where there is nothing."""
+
+    def add_ir_module(self, ir_module):
+        """Take LLVM's words in."""
+        module = binding.parse_assembly(cgutils.normalize_ir_text(str(ir_module)))
+        module.name = ir_module.name
+        module.data_layout = self._codegen._data_layout
+        passes, builder = self._codegen._function_pass_manager()
+        for function in module.functions:
+            if not function.is_declaration:
+                passes.run(function, builder)
+        self._final_module.link_in(module)
+
+    def serialize_using_object_code(self):
+        """What is cached: machine code, and the names in it. No other code will be linked with LLVM's words for it."""
+        self._ensure_finalized()
+        names = (one.name for one in self.get_defined_functions())
+        words = "".join(f'define void @"{name}"() {{\nret void\n}}\n' for name in names)
+        return self.name, "object", (self._get_compiled_object(), binding.parse_assembly(words).as_bitcode())
+
+
+class HelperLibrary(KernelLibrary):
+    """Code of a helper: it goes into its callers, is made good there, and never becomes machine code of its own."""
+
+    def _optimize_final_module(self):
+        passes, builder = self._codegen._module_pass_manager(
+            loop_vectorize=False, slp_vectorize=False, opt=self._codegen._opt_level, cost="cheap"
+        )
+        passes.run(self._final_module, builder)
+
+    def _finalize_final_module(self):
+        self._finalize_dynamic_globals()
+        self._finalized = True
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class KernelLowering(NativeLowering):
+    """Lower a kernel to a KernelLibrary."""
+
+    lowering_class = KernelLower
+
+    def run_pass(self, state):
+        """Leave the code in state.library, to be cached."""
+        state.library = KernelLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.enable_object_caching()
+        return super().run_pass(state)
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class HelperLowering(NativeLowering):
+    """Lower a helper to a HelperLibrary."""
+
+    lowering_class = KernelLower
+
+    def run_pass(self, state):
+        """Leave the code in state.library, and in state.cr what callers know it by."""
+        state.flags = state.flags.copy()
+        state.flags.no_compile = True
+        state.library = HelperLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        super().run_pass(state)
+        name = _kept_out(state.func_id.func_name)
+        state.targetctx.insert_user_function(name, state.cr.fndesc, [state.library])
+        state.cr = state.cr._replace(cfunc=name)
+        return True
+
+
+def _kept_out(name):
+    """What stands for a function in Python that only kernels may call: it raises KeyError.
+
+    numba asks for a builtin function, one of its own for each.
+    """
+    return f"{{{name} is for kernels only}}".format
+
+
+class Passes(PassManager):
+    """A list of passes, with nothing between them: numba would find anew after each where variables live."""
+
+    def run(self, state):
+        """Run them all on the state."""
+        for one, _ in self.passes:
+            _pass_registry.get(one).pass_inst.run_pass(state)
+            if state.func_ir is not None:
+                state.func_ir.of_kernel = True
+
+
+def _pipeline(*passes):
+    manager = Passes("kernels")
+    for one in passes:
+        manager.add_pass(one, one.__name__)
+    manager.finalize()
+    return [manager]
+
+
+class KernelCompiler(CompilerBase):
+    """For ``pipeline_class`` of numba.jit."""
+
+    def define_pipelines(self):
+        """The one list of passes."""
+        return _pipeline(*FRONT, KernelLowering, NoPythonBackend)
+
+
+class HelperCompiler(CompilerBase):
+    """The same for functions that only compiled ones call."""
+
+    def define_pipelines(self):
+        """The one list of passes."""
+        return _pipeline(*FRONT, HelperLowering, NoPythonBackend)
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class LowerWayIn(WayIn):
+    """Lower the way into a kernel to a KernelLibrary."""
+
+    _name = "lower_way_in"
+
+    def run_pass(self, state):
+        """Leave the code in state.library, to be cached."""
+        state.library = KernelLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.enable_object_caching()
+        return super().run_pass(state)
+
+
+class WayInCompiler(CompilerBase):
+    """For ``pipeline_class`` of what leads from Python into a kernel that is there."""
+
+    def define_pipelines(self):
+        """The one list of passes."""
+        return _pipeline(LowerWayIn, NoPythonBackend)
+
+
+def call_by_name(kernel, way_in):
+    """Let other kernels call this one by its name, where numba would put its code into each of them once more.
+
+    The name is the function's own: what numba makes of it differs from process to process, and callers are cached.
+    ``way_in()`` gives what Python calls the kernel by, when it does; where there is None, calls raise TypeError.
+    """
+    (made,) = kernel.overloads.values()  # of one signature: a name stands for one function
+    called = copy(made.fndesc)
+    called.mangled_name = f"{made.fndesc.modname}.{made.fndesc.qualname}"
+    binding.add_symbol(called.mangled_name, made.library.get_pointer_to_function(made.fndesc.mangled_name))
+    context = made.target_context
+    context.remove_user_function(made.entry_point)
+    context.insert_user_function(made.entry_point, called, [])
+    if way_in is not None:
+        lead_in(kernel, called, way_in)
+    else:
+        kernel._clear()
+        kernel._explain_matching_error = _refusal(kernel.__name__)
+
+
+def _refusal(name):
+    """What raises TypeError for a call from Python of a function for kernels."""
+
+    def refuse(*_, **__):
+        raise TypeError(f"{name} is for kernels only")
+
+    return refuse
+
+
+MANY, VERY_MANY = 20_000, 3_000_000
+"""Objects that a compilation makes, a load from the cache does not; and how many of them memory has room for."""
+out_of_sight: list[int] = []
+
+
+@contextmanager
+def collecting_later():
+    """Leave the garbage collector off: a compilation makes millions of objects that live on, looked over in vain.
+
+    Afterwards they are kept out of its sight too, or it would look them over at once, until there are very many.
+    """
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            made = gc.get_count()[0]
+            if made > MANY:
+                out_of_sight.append(made)
+                if sum(out_of_sight) > VERY_MANY:
+                    out_of_sight.clear()
+                    gc.unfreeze()
+                    gc.collect()
+                gc.freeze()
+            gc.enable()
+
+
+def widen():
+    """Let LLVM use vectors of 512 bits where they do not slow the clock, which is from AVX512-VBMI2 on (Ice Lake)."""
+    if config.CPU_NAME is None and config.CPU_FEATURES is None and config.ENABLE_AVX:
+        features = binding.get_host_cpu_features()
+        if features.get("avx512vbmi2"):
+            config.CPU_FEATURES = f"{features.flatten()},-prefer-256-bit"
+
+
+take_elements()
+take_shortcuts()
+take_words()
+widen()
+ffi.lib._lock._cblist.clear()  # LLVM's calls are many, and how long it is held asks nobody here

@@ -1,0 +1,332 @@
+# mypy: ignore-errors
+"""Shortcuts through numba: what it asks again and again, always with the same answer, is remembered or not asked.
+
+None of them changes what is compiled. Each names the function of numba that it stands in for.
+"""
+
+import operator
+from functools import cache
+from importlib import import_module, metadata
+from types import BuiltinFunctionType
+
+from llvmlite.ir._utils import DuplicatedNameError, NameScope
+from numba import types
+from numba.core import (
+    base,
+    byteflow,
+    cpu,
+    entrypoints,
+    errors,
+    interpreter,
+    ir,
+    lowering,
+    postproc,
+    ssa,
+    transforms,
+    typeinfer,
+)
+from numba.core.rewrites.ir_print import RewritePrintCalls
+from numba.core.typing.context import BaseContext
+from numba.np import linalg
+
+from sceneql.compiled.numba.builtin_calls import RESOLVED
+from sceneql.compiled.numba.builtin_calls import resolve as resolve_ours
+
+WITHOUT_VARIABLES = {str, int, float, bool, type(None), ir.Loc, ir.Const, ir.Global, ir.Arg, type(operator.add)}
+PLAIN = (types.Number, types.Boolean)
+BY_TYPE = {value for name, value in vars(operator).items() if "pow" not in name and type(value) is BuiltinFunctionType}
+PLAIN_OR_PACKED = (*PLAIN, types.Array, types.BaseTuple)
+
+
+def remember_signatures():
+    """What an operation on numbers, or the picking of an element, gives.
+
+    At every ``a + b`` numba tries up to twenty rules, those for strings, lists and sets among them, and that twice.
+    """
+    resolve = types.Function.get_call_type
+    known = {}
+
+    def remembering(self, typing, args, keywords):
+        if self.typing_key in RESOLVED:
+            found = resolve_ours(self, typing, args, keywords)
+            if found is not None:
+                return found
+        plain = PLAIN_OR_PACKED if self.typing_key in (operator.getitem, operator.setitem) else PLAIN
+        if keywords or not all(isinstance(arg, plain) for arg in args):
+            return resolve(self, typing, args, keywords)
+        if self.typing_key in BY_TYPE:
+            args = [types.unliteral(arg) for arg in args]
+        key = self, typing, tuple(args)
+        if key not in known:
+            known[key] = resolve(self, typing, args, keywords)
+        return known[key]
+
+    types.Function.get_call_type = remembering
+
+
+def remember_attributes():
+    """Types of what modules and arrays have, and of functions that are not of Python."""
+    find, resolve = BaseContext.find_matching_getattr_template, BaseContext.resolve_value_type
+    found = {}
+
+    def finding(self, kind, name):
+        key = self, kind, name
+        if key in found:
+            return found[key]
+        match = find(self, kind, name)
+        steady = match is not None and isinstance(kind, types.Module | types.Array)
+        if steady and not isinstance(match["return_type"], types.BoundFunction):
+            found[key] = match
+        return match
+
+    def resolving(self, value):
+        known = self._lookup_global(value) if type(value) is BuiltinFunctionType else None
+        return resolve(self, value) if known is None else known
+
+    BaseContext.find_matching_getattr_template = finding
+    BaseContext.resolve_value_type = resolving
+
+
+def resolve_once():
+    """Types are found in rounds: calls are resolved again only where the types of their arguments have changed."""
+    slowly = typeinfer.CallConstraint.resolve
+
+    def resolving(self, typeinfer, typevars, fnty):
+        try:
+            named = sorted(self.kws.items())
+            arguments = [typevars[one.name].type for one in (*self.args, *(value for _, value in named))]
+        except AttributeError:
+            arguments = [None]
+        if self.vararg is not None or None in arguments:
+            return slowly(self, typeinfer, typevars, fnty)
+        key = fnty, *arguments
+        if getattr(self, "resolved", None) == key:
+            return None
+        slowly(self, typeinfer, typevars, fnty)
+        if self.signature is not None:
+            self.resolved = key
+        return None
+
+    typeinfer.CallConstraint.resolve = resolving
+
+
+class Context:
+    """What an error is told to have happened in, put into words only where there is one (errors.new_error_context)."""
+
+    def __init__(self, words, *parts, errcls_=None, **named):
+        self.words, self.parts, self.named = words, parts, named
+        loc = named.get("loc")
+        if loc is not None:
+            errors.loc_info.update(named)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, error, trace):
+        if isinstance(error, errors.NumbaError):
+            error.add_context(errors._format_msg(self.words, self.parts, self.named))
+
+
+def propagate(self, inference):
+    """One round of type inference: the errors, which the next may mend (typeinfer.ConstraintNetwork.propagate)."""
+    found = []
+    for constraint in self.constraints:
+        try:
+            constraint(inference)
+        except errors.ForceLiteralArg as error:
+            found.append(error)
+        except errors.TypingError as error:
+            told = errors.TypingError(str(error), loc=constraint.loc, highlighting=False)
+            told.__cause__ = error
+            found.append(told)
+    return found
+
+
+def list_quickly():
+    """A statement's variables by looking at the types of its parts in one step, not in up to six."""
+    slowly = ir.Inst._rec_list_vars
+
+    def listed(self, value):
+        kind = type(value)
+        if kind is ir.Var:
+            return [value]
+        if kind in WITHOUT_VARIABLES:
+            return ()
+        if kind is dict or kind is list or kind is tuple:
+            return [one for part in (value.values() if kind is dict else value) for one in listed(self, part)]
+        return slowly(self, value)
+
+    ir.Inst._rec_list_vars = listed
+
+
+def remember_misses():
+    """That there is no implementation for some types, until there is one more."""
+    find, append = base.OverloadSelector._find, base.OverloadSelector.append
+
+    def finding(self, signature):
+        missed = self.__dict__.setdefault("missed", set())
+        if signature in missed:
+            raise errors.NumbaNotImplementedError(signature)
+        try:
+            return find(self, signature)
+        except errors.NumbaNotImplementedError:
+            missed.add(signature)
+            raise
+
+    def appending(self, value, signature):
+        self.__dict__.pop("missed", None)
+        append(self, value, signature)
+
+    base.OverloadSelector._find, base.OverloadSelector.append = finding, appending
+
+
+def refresh_rarely():
+    """All of numba's registries are imported once; later it is only looked whether there is anything new in them."""
+    load = cpu.CPUContext.load_additional_registries
+    loaded = set()
+
+    def loading(self):
+        if id(self) not in loaded:
+            loaded.add(id(self))
+            load(self)
+        for registry in list(self._registries):
+            self.install_registry(registry)
+
+    cpu.CPUContext.load_additional_registries = loading
+    for kind in (base.BaseContext, BaseContext):
+        kind.install_registry = _when_grown(kind.install_registry)
+
+
+def _when_grown(install):
+    """What is in a registry, looked through only when there is more: nothing is ever taken out."""
+    installed = {}
+
+    def installing(self, registry):
+        count = sum(len(one) for one in vars(registry).values() if type(one) is list)
+        if installed.get((id(self), id(registry))) != count:
+            install(self, registry)
+            installed[id(self), id(registry)] = count
+
+    return installing
+
+
+def look_once():
+    """Where variables live is found for the last of a kernel's passes, not after each of them."""
+    run = postproc.PostProcessor.run
+
+    def running(self, emit_dels=False, extend_lifetimes=False):
+        if emit_dels or not getattr(self.func_ir, "of_kernel", False):
+            run(self, emit_dels, extend_lifetimes)
+        else:
+            self.func_ir.blocks = transforms.canonicalize_cfg(self.func_ir.blocks)
+
+    postproc.PostProcessor.run = running
+
+
+def name_quickly():
+    """Names in LLVM's words that were not used before."""
+
+    def register(self, name, deduplicate=False):
+        used = self._useset
+        if name in used:
+            if not deduplicate:
+                raise DuplicatedNameError(name)
+            first, counts = name, self._basenamemap
+            while name in used:
+                counts[first] += 1
+                name = f"{first}.{counts[first]}"
+        used.add(name)
+        return name
+
+    NameScope.register = register
+
+
+def pass_over():
+    """Kernels have no ``with`` and no dictionaries, whose traces in bytecode numba looks for in every statement."""
+    slowly = interpreter.Interpreter.post_process
+
+    def processing(self, peepholes, function):
+        kept = [one for one in peepholes if one.__name__ not in ABSENT]
+        statements = [one for block in function.blocks.values() for one in block.body]
+        if any(
+            isinstance(one, ir.EnterWith)
+            or (isinstance(one, ir.Assign) and isinstance(one.value, ir.Expr) and one.value.op == "build_map")
+            for one in statements
+        ):
+            kept = peepholes
+        return slowly(self, kept, function)
+
+    interpreter.Interpreter.post_process = processing
+
+
+def look_for_print():
+    """Calls of print are looked for where the word stands: numba writes an error for every call of a method."""
+    match = RewritePrintCalls.match
+
+    def matching(self, function, block, typemap, calltypes):
+        return "print" in function.func_id.code.co_names and match(self, function, block, typemap, calltypes)
+
+    RewritePrintCalls.match = matching
+
+
+def remember_sizes():
+    """Sizes of types in memory, for each of which numba has LLVM read a module."""
+    sizeof = cache(lambda target, kind: kind.get_abi_size(target))
+    base.BaseContext.get_abi_sizeof = lambda self, kind: sizeof(self.target_data, kind)
+
+
+def believe_in_scipy():
+    """numba imports a fifth of a second of scipy to see whether it is there."""
+    look = linalg.ensure_blas
+    linalg.ensure_blas = _say_nothing
+    import_module("numba.np.arraymath")
+    linalg.ensure_blas = look
+
+
+def look_for_extensions():
+    """Whether any library extends numba: numba reads the entry points of all that are installed to find out."""
+    initialize = entrypoints.init_all
+
+    def look():
+        if entrypoints._already_initialized:
+            return
+        told = (one.read_text("entry_points.txt") for one in metadata.distributions())
+        if any("numba_extensions" in text for text in told if text):
+            initialize()
+        entrypoints._already_initialized = True
+
+    entrypoints.init_all = look
+
+
+def silence():
+    """The log of what passes do, which nobody reads."""
+    for module in (byteflow, interpreter, ssa, transforms, typeinfer):
+        module._logger.debug = _say_nothing
+
+
+def _say_nothing(*_, **__):
+    pass
+
+
+ABSENT = {"peep_hole_delete_with_exit", "peep_hole_fuse_dict_add_updates"}
+
+
+def take_shortcuts():
+    """Take all shortcuts."""
+    remember_signatures()
+    remember_attributes()
+    resolve_once()
+    list_quickly()
+    remember_misses()
+    refresh_rarely()
+    look_once()
+    name_quickly()
+    pass_over()
+    look_for_print()
+    remember_sizes()
+    believe_in_scipy()
+    look_for_extensions()
+    silence()
+    typeinfer.ConstraintNetwork.propagate = propagate
+    typeinfer.new_error_context = lowering.new_error_context = Context
+    base._has_loc = cache(base._has_loc)

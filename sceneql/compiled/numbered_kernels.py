@@ -1,0 +1,28 @@
+# mypy: ignore-errors
+"""Kernels that others find by an integer, which may stand among the integers that they are given.
+
+By its number a kernel calls what only the run knows.
+"""
+
+from typing import Any
+
+import numba
+from numba import types
+
+from sceneql.compiled.kernels import address, function_at
+
+_uncompiled: list[Any] = []
+"""Functions that stand for their addresses where numba is switched off."""
+
+
+def number_of(function: Any, signature: Any) -> int:
+    """The integer by which kernels find another kernel of that signature. Keep the kernel alive."""
+    if not numba.config.DISABLE_JIT:
+        return int(address(function, types.FunctionType(signature)))
+    _uncompiled.append(function)
+    return len(_uncompiled) - 1
+
+
+def kernel_at(signature: Any) -> Any:
+    """What makes of a ``number_of`` the kernel."""
+    return _uncompiled.__getitem__ if numba.config.DISABLE_JIT else function_at(types.FunctionType(signature))

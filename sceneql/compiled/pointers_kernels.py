@@ -1,0 +1,47 @@
+# mypy: ignore-errors
+"""Compiled functions handed over as addresses.
+
+numba can take functions as arguments, but asks Python for the addresses of each at every call: 0.3 ms for the six of a
+march. Here the addresses are looked up once and cross as integers.
+"""
+
+from typing import Any
+
+import numba
+import numpy as np
+
+from sceneql.compiled.kernels import address, function_at
+from sceneql.system_kernels import (
+    DENSE_FUNCTION,
+    EVENT_FUNCTION,
+    GAP_FUNCTION,
+    IMPACT_FUNCTION,
+    JACOBIAN_FUNCTION,
+    RATE_FUNCTION,
+    SETTLE_FUNCTION,
+    STEP_FUNCTION,
+)
+
+KINDS = (
+    STEP_FUNCTION,
+    DENSE_FUNCTION,
+    RATE_FUNCTION,
+    GAP_FUNCTION,
+    IMPACT_FUNCTION,
+    SETTLE_FUNCTION,
+    JACOBIAN_FUNCTION,
+    EVENT_FUNCTION,
+)
+AT_STEP, AT_DENSE, AT_RATE, AT_GAP, AT_IMPACT, AT_SETTLE, AT_JACOBIAN, AT_EVENT = range(len(KINDS))
+"""Places in the array of addresses: ``rate = rate_at(functions[AT_RATE])``."""
+
+
+def addresses(*functions: Any) -> Any:
+    """(8,) int64 addresses of KINDS; 0 for None, which must not be called. Keep the functions alive."""
+    if numba.config.DISABLE_JIT:
+        return functions
+    found = [0 if f is None else address(f, kind) for f, kind in zip(functions, KINDS, strict=True)]
+    return np.array(found, dtype=np.int64)
+
+
+step_at, dense_at, rate_at, gap_at, impact_at, settle_at, jacobian_at, event_at = (function_at(kind) for kind in KINDS)

@@ -1,0 +1,155 @@
+"""Scalar expressions printed as lines of a compiled kernel: shared parts once, generated names, no numbers.
+
+Every constant becomes an entry of the kernel's floats, so that the text depends on the form of a formula alone and a
+changed number finds its compiled code. The one exception is an exponent 2, 3 or 4: it is form (a product), since a
+general power costs some twenty multiplications.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Call, Expr, Link, Number, Symbol, walk
+
+PRODUCTS = {2.0: "{0} * {0}", 3.0: "{0} * {0} * {0}", 4.0: "({0} * {0}) * ({0} * {0})"}
+"""A power by its exponent."""
+
+IMPORTS = (
+    "import math",
+    "",
+    "import numpy as np",
+    "",
+    "from sceneql.compiled.printer_kernels import ease, smoothstep, truth",
+)
+
+TEXTS: Mapping[str, str] = {
+    "add": "{0} + {1}",
+    "sub": "{0} - {1}",
+    "mul": "{0} * {1}",
+    "div": "{0} / {1}",
+    "neg": "-{0}",
+    "pow": "{0} ** {1}",
+    "abs": "abs({0})",
+    "sign": "np.sign({0})",
+    "floor": "np.floor({0})",
+    "ceil": "np.ceil({0})",
+    "round": "np.rint({0})",
+    "mod": "np.mod({0}, {1})",
+    **{name: f"math.{name}({{0}})" for name in ("sqrt", "exp", "log", "log10", "sin", "cos", "tan", "asin", "acos")},
+    **{name: f"math.{name}({{0}})" for name in ("atan", "sinh", "cosh", "tanh")},
+    "atan2": "math.atan2({0}, {1})",
+    "hypot": "math.hypot({0}, {1})",
+    "min": "min({0}, {1})",
+    "max": "max({0}, {1})",
+    "clamp": "min(max({0}, {1}), {2})",
+    "mix": "{0} + ({1} - {0}) * {2}",
+    "step": "truth({1} >= {0})",
+    "smoothstep": "smoothstep({0}, {1}, {2})",
+    "ease": "ease({0})",
+    "lt": "truth({0} < {1})",
+    "le": "truth({0} <= {1})",
+    "gt": "truth({0} > {1})",
+    "ge": "truth({0} >= {1})",
+    "eq": "truth({0} == {1})",
+    "where": "{1} if {0} else {2}",
+}
+"""The operations that a kernel may use, by the names of the one table; {0}, {1}, ... are names of floats."""
+
+
+@dataclass
+class Constants:
+    """What formulas take from outside, as symbols in its place: ``#0``, ``#1``, ... numbers, ``@0``, ... inputs."""
+
+    values: list[float] = field(default_factory=list)
+    inputs: list[Expr] = field(default_factory=list)
+    """Parts that read outputs of other parts of the script."""
+
+    def lift(self, expr: Expr) -> Expr:
+        """The scalar formula with each largest part that has no symbol of its own replaced.
+
+        Two constants never share a symbol, even where their values are equal: then a new value would change the form.
+        """
+        if not free(expr):
+            if any(isinstance(node, Link) for node in walk(expr)):
+                self.inputs.append(expr)
+                return Symbol(f"@{len(self.inputs) - 1}")
+            return self.number(float(evaluate(expr, {})))
+        if not isinstance(expr, Call):
+            return expr
+        first, *others = expr.args
+        if exponent(expr) in PRODUCTS:
+            return Call(expr.op, (self.lift(first), *others))
+        if expr.op in ("min", "max") and len(others) > 1:
+            first, others = Call(expr.op, (first, *others[:-1])), others[-1:]
+        return Call(expr.op, (self.lift(first), *(self.lift(other) for other in others)))
+
+    def number(self, value: float) -> Symbol:
+        """The symbol of a new constant."""
+        self.values.append(value)
+        return Symbol(f"#{len(self.values) - 1}")
+
+
+@dataclass
+class Printer:
+    """Prints lifted expressions as assignments to ``v0``, ``v1``, ...; equal parts are assigned once.
+
+    ``names``: the kernel's text for a symbol; ``meanings``: expressions that symbols stand for, printed where first
+    used.
+    """
+
+    names: Mapping[str, str]
+    meanings: Mapping[str, Expr]
+    constants: Constants
+    lines: list[str] = field(default_factory=list)
+    _names_of: dict[Expr, str] = field(default_factory=dict)
+    _names_of_texts: dict[str, str] = field(default_factory=dict)
+
+    def name(self, expr: Expr) -> str:
+        """The name that holds the expression's value, after the lines that compute it."""
+        if expr not in self._names_of:
+            self._names_of[expr] = self._print(expr)
+        return self._names_of[expr]
+
+    def _print(self, expr: Expr) -> str:
+        match expr:
+            case Number(value=value):
+                # A number that is still here was made by differentiation: form, but a float like the others.
+                return self.name(self.constants.number(value))
+            case Symbol(name=name) if name in self.meanings:
+                return self.name(self.meanings[name])
+            case Symbol(name=name):
+                return self.names[name] if name in self.names else name.replace("#", "c").replace("@", "u")
+            case Call(op=op, args=args) if exponent(expr) in PRODUCTS:
+                return self._assign(PRODUCTS[exponent(expr)].format(self.name(args[0])))
+            case Call(op=op, args=args):
+                return self._assign(TEXTS[op].format(*(self.name(arg) for arg in args)))
+        raise TypeError(f"a {type(expr).__name__.lower()} has no place in a scalar formula")
+
+    def _assign(self, text: str) -> str:
+        if text not in self._names_of_texts:
+            self._names_of_texts[text] = f"v{len(self.lines)}"
+            self.lines.append(f"v{len(self.lines)} = {text}")
+        return self._names_of_texts[text]
+
+
+def free(expr: Expr) -> bool:
+    """Whether an expression has a symbol."""
+    return any(isinstance(node, Symbol) for node in walk(expr))
+
+
+def printable(expr: Expr) -> bool:
+    """Whether a kernel can compute an expression: constants and links apart, scalars and operations of TEXTS alone."""
+    if not free(expr):
+        return True
+    if not isinstance(expr, Call):
+        return isinstance(expr, Symbol)
+    return expr.op in TEXTS and all(printable(arg) for arg in expr.args)
+
+
+def exponent(expr: Expr) -> float:
+    """The constant exponent of a power; NaN where there is none."""
+    if isinstance(expr, Call) and expr.op == "pow" and isinstance(expr.args[1], Number):
+        return expr.args[1].value
+    return float("nan")

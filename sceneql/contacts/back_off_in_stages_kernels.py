@@ -1,0 +1,199 @@
+# mypy: ignore-errors
+"""Local contacts that act within the stages of Newton's method (stage_contacts_kernels): what is left to do between the
+steps.
+
+Masses that a stage has stopped on a surface have their impact now: they leave with the restitution, or rest. Listed for
+the next step is what may come near in it. What was not, and met something all the same, is settled as where contacts
+act between steps alone (respond_kernels).
+"""
+
+import math
+
+import numpy as np
+from numba import types
+
+from sceneql.compiled.kernels import kernel, lean, lean_inlined
+from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.contacts.back_off_kernels import find_near
+from sceneql.contacts.body_path_kernels import NEVER, set_out
+from sceneql.contacts.impulse_kernels import (
+    BODIES,
+    FRICTION,
+    HEAD,
+    INVERSE,
+    LAST,
+    MASS,
+    OBJECTS,
+    PAIRS,
+    POSITION,
+    RADIUS,
+    RESTITUTION,
+    TALLY,
+    THICKNESS,
+    VELOCITY,
+    WORK,
+    bounce,
+    count_hit,
+    scale_of,
+)
+from sceneql.contacts.meet_kernels import earliest
+from sceneql.contacts.memory_kernels import (
+    ANSWER,
+    EARLIER,
+    FREE,
+    LIST,
+    LOAD,
+    PAIR,
+    PATH,
+    PRESS,
+    RESTING,
+    SETTLE_HELD,
+    TIED,
+    WHOLE,
+)
+from sceneql.contacts.pair_kernels import body_of
+from sceneql.contacts.resting_kernels import come_to_rest, set_velocity
+from sceneql.contacts.shape_kernels import DEPTH, MOVING, NEAR, OBJECT, near_at, surface, velocity
+from sceneql.system_kernels import A, F, I, N
+
+settle_found = late("sceneql.contacts.respond_kernels:settle_found", ANSWER)
+
+AHEAD = 3.0
+"""Steps of the present speed within which what comes near is listed."""
+TOUCH = 1e-9
+"""Depth, as a part of the coordinates (or of a meter), from which on a mass at a step's end is put outside."""
+
+
+@lean_inlined
+def whole_way(path):
+    """How far apart the ends of a path are."""
+    return math.sqrt((path[6] - path[0]) ** 2 + (path[7] - path[1]) ** 2 + (path[8] - path[2]) ** 2)
+
+
+@lean(types.void(F, A, A, A, A, A, A, A, I), inner=True)
+def find_missed(h, y0, y1, found, listed, path, mean, floats, ints):
+    """Leave found[k] = 1 where a mass met something that no stage has stopped it at."""
+    find_near(h, y0, y1, found, floats, ints)
+    thinnest = math.inf
+    for j in range(ints[OBJECTS]):
+        thinnest = min(thinnest, floats[ints[HEAD + OBJECT * j + DEPTH]])
+    for k in range(ints[BODIES]):
+        if found[k] == 0.0:
+            continue
+        set_out(k, h, y0, y1, path, mean, ints)
+        reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
+        held = False
+        for j in range(ints[OBJECTS]):
+            held = held or floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j) + LOAD] > 0.0
+        if listed[k] != 0.0 and (held or whole_way(path) < thinnest):
+            found[k] = 0.0
+        elif earliest(k, reach, path, floats, ints)[0] == NEVER:
+            found[k] = 0.0
+
+
+@lean(types.void(F, F, N, N, A, A, A, I), inner=True)
+def arrive(t1, h, k, j, y0, y1, floats, ints):
+    """The impact of a pair that a stage of the step of length h has stopped, or the beginning of its rest.
+
+    What the stages took of the speed of approach, and the other forces' work along the normal, are counted here: what
+    loads at the ends of stages say of that is off by as much as an impact has.
+    """
+    memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
+    at = HEAD + OBJECT * j
+    reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
+    px, py, pz, vx, vy, vz = body_of(ints, k, y1)
+    _, nx, ny, nz = surface(floats, ints, at, px, py, pz)
+    ux, uy, uz = velocity(floats, ints, at, px, py, pz)
+    qx, qy, qz, wx, wy, wz = body_of(ints, k, y0)
+    before = (wx - ux) * nx + (wy - uy) * ny + (wz - uz) * nz
+    rx, ry, rz = vx - ux, vy - uy, vz - uz
+    now = rx * nx + ry * ny + rz * nz
+    rx, ry, rz = rx - now * nx, ry - now * ny, rz - now * nz
+    if before < 2.0 * min(0.0, floats[memory + PRESS]) * h:
+        gap = surface(floats, ints, at, qx, qy, qz)[0] - reach
+        count_hit(floats, ints[TALLY], t1 - h * max(0.0, 1.0 + gap / (before * h)), -before)
+        rx, ry, rz = rx + before * nx, ry + before * ny, rz + before * nz
+        rx, ry, rz = bounce(rx, ry, rz, nx, ny, nz, floats[ints[RESTITUTION]], floats[ints[FRICTION]])
+    if before >= 0.0 or floats[ints[RESTITUTION]] == 0.0 or rx * nx + ry * ny + rz * nz <= 0.0:
+        come_to_rest(t1, memory, rx, ry, rz, nx, ny, nz, floats, ints)
+    set_velocity(k, rx + ux, ry + uy, rz + uz, y1, floats, ints)
+    way = (px - qx - h * ux) * nx + (py - qy - h * uy) * ny + (pz - qz - h * uz) * nz
+    stopped = 0.5 * (before * before - now * now) + floats[memory + PRESS] * way
+    y1[ints[WORK]] += floats[ints[MASS] + k] * stopped
+
+
+@lean(types.void(F, F, N, N, A, A, A, I), inner=True)
+def put_right(t1, h, k, j, y0, y1, floats, ints):
+    """What a step of length h has made of a listed pair: it arrives, rests on or is let go, and is outside."""
+    memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
+    at = HEAD + OBJECT * j
+    load = floats[memory + LOAD]
+    if floats[memory + TIED] > 0.0 and floats[memory] == FREE:
+        arrive(t1, h, k, j, y0, y1, floats, ints)
+        floats[memory + EARLIER] = max(0.0, -floats[memory + PRESS])
+        floats[memory + TIED] = 0.0 if floats[memory] == FREE else 1.0
+    elif load > 0.0:
+        px, py, pz, vx, vy, vz = body_of(ints, k, y1)
+        _, nx, ny, nz = surface(floats, ints, at, px, py, pz)
+        ux, uy, uz = velocity(floats, ints, at, px, py, pz)
+        come_to_rest(t1, memory, vx - ux, vy - uy, vz - uz, nx, ny, nz, floats, ints)
+        floats[memory + EARLIER] = load
+    else:
+        floats[memory], floats[memory + TIED] = FREE, 0.0
+    px, py, pz, _, _, _ = body_of(ints, k, y1)
+    d, nx, ny, nz = surface(floats, ints, at, px, py, pz)
+    d -= floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
+    if d < -TOUCH * scale_of(px, py, pz):
+        to = ints[POSITION] + 3 * k
+        y1[to], y1[to + 1], y1[to + 2] = px - d * nx, py - d * ny, pz - d * nz
+        y1[ints[WORK]] -= floats[ints[MASS] + k] * min(0.0, floats[memory + PRESS]) * d
+
+
+@lean(types.void(F, A, A, A, A, I), inner=True)
+def list_near(h, y0, y1, found, floats, ints):
+    """List the masses that may touch something in the next step; found (bodies,) is scratch."""
+    n = ints[BODIES]
+    at, to = ints[POSITION], ints[VELOCITY]
+    x1, v1 = y1[at : at + 3 * n], y1[to : to + 3 * n]
+    change = 0.0
+    for c in range(3 * n):
+        change = max(change, abs(v1[c] - y0[to + c]))
+    more = floats[ints[THICKNESS]] + 2.0 * h * change
+    radii = floats[ints[RADIUS] : ints[RADIUS] + n]
+    for k in range(n):
+        found[k] = 0.0
+    for j in range(ints[OBJECTS]):
+        place = HEAD + OBJECT * j
+        if ints[place + MOVING] == 0:
+            near_at(ints[place + NEAR])(floats, ints, place, AHEAD * h, x1, v1, x1, v1, radii, more, found)
+        for k in range(n):
+            if ints[place + MOVING] != 0 or floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)] != FREE:
+                found[k] = 1.0
+    count = 0
+    for k in range(n):
+        if found[k] != 0.0 and floats[ints[INVERSE] + k] != 0.0:
+            floats[ints[LAST] + LIST + count] = k
+            count += 1
+    floats[ints[LAST] + RESTING] = count
+
+
+@kernel(SETTLE_HELD, inner=True)
+def settle_held(t0, t1, y0, y1, floats, ints):
+    """Change y1 where masses met something in the step from t0 to t1, and list those that may in the next one."""
+    h = t1 - t0
+    found, listed = np.zeros(ints[BODIES]), np.zeros(ints[BODIES])
+    path, mean = np.empty(PATH), np.empty(3)
+    for i in range(int(floats[ints[LAST] + RESTING])):
+        listed[int(floats[ints[LAST] + LIST + i])] = 1.0
+    find_missed(h, y0, y1, found, listed, path, mean, floats, ints)
+    missed = False
+    for k in range(found.size):
+        missed = missed or found[k] != 0.0
+    if missed:
+        floats[ints[LAST] + WHOLE] = h
+        settle_found(t0, t1, y0, y1, found, path, mean, floats, ints)
+    for k in range(ints[BODIES]):
+        if listed[k] != 0.0 and found[k] == 0.0:
+            for j in range(ints[OBJECTS]):
+                put_right(t1, h, k, j, y0, y1, floats, ints)
+    list_near(h, y0, y1, found, floats, ints)

@@ -1,0 +1,136 @@
+# mypy: ignore-errors
+"""Contacts in `local` mode: every body backs off to its own impacts within the step and flies the rest of it.
+
+Here the bodies are found that may meet something; what becomes of them is in respond_kernels, and how they rest in
+resting_kernels and support_kernels: code that is compiled when the first body comes near enough.
+"""
+
+import numpy as np
+from numba import types
+
+from sceneql.compiled.kernels import kernel, lean, lean_inlined
+from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.contacts.impulse_kernels import (
+    BODIES,
+    HEAD,
+    INVERSE,
+    LAST,
+    MOST_CUTS,
+    OBJECTS,
+    PAIRS,
+    POSITION,
+    RADIUS,
+    THICKNESS,
+    VELOCITY,
+)
+from sceneql.contacts.memory_kernels import (
+    ANSWER,
+    ASKED,
+    CUTS,
+    END,
+    FREE,
+    HOLD,
+    LIST,
+    OUTSIDE,
+    PAIR,
+    PATH,
+    RESTING,
+    SETTLE_HELD,
+    STAGE,
+    SUPPORT,
+    WHOLE,
+)
+from sceneql.contacts.shape_kernels import MOVING, NEAR, OBJECT, near_at
+from sceneql.system_kernels import SETTLE, TERM, A, F, I
+
+cut = late("sceneql.contacts.respond_kernels:cut", ANSWER)
+settle_found = late("sceneql.contacts.respond_kernels:settle_found", ANSWER)
+support = late("sceneql.contacts.support_kernels:support", SUPPORT)
+hold = late("sceneql.contacts.stage_contacts_kernels:hold", HOLD)
+settle_held = late("sceneql.contacts.back_off_in_stages_kernels:settle_held", SETTLE_HELD)
+
+LATE_FIRST = (
+    "sceneql.contacts.resting_kernels",
+    "sceneql.contacts.slide_kernels",
+    "sceneql.contacts.support_kernels",
+    "sceneql.contacts.search_kernels",
+)
+"""Of what is compiled late, modules that a process beside does best to begin with (driver.late_first)."""
+
+
+@lean(types.void(F, A, A, A, A, I), inner=True)
+def find_near(h, y0, y1, found, floats, ints):
+    """Set found[k] to 1 for the bodies that may touch something in the step, or rest: the others cost next to nothing.
+
+    found (bodies,): zeros.
+    """
+    n = ints[BODIES]
+    at, to = ints[POSITION], ints[VELOCITY]
+    x0, v0, x1, v1 = y0[at : at + 3 * n], y0[to : to + 3 * n], y1[at : at + 3 * n], y1[to : to + 3 * n]
+    radii = floats[ints[RADIUS] : ints[RADIUS] + n]
+    for j in range(ints[OBJECTS]):
+        place = HEAD + OBJECT * j
+        if ints[place + MOVING] != 0:
+            for k in range(n):
+                found[k] = 1.0
+        else:
+            near_at(ints[place + NEAR])(floats, ints, place, h, x0, v0, x1, v1, radii, floats[ints[THICKNESS]], found)
+    memory = ints[LAST]
+    for i in range(int(floats[memory + RESTING])):
+        found[int(floats[memory + LIST + i])] = 1.0
+    for k in range(n):
+        if floats[ints[INVERSE] + k] == 0.0:
+            found[k] = 0.0
+            for j in range(ints[OBJECTS]):
+                floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)] = FREE
+
+
+@lean_inlined
+def may_be_cut(t0, t1, floats, ints):
+    """Whether the step may end sooner, and note it if it is a new one."""
+    memory = ints[LAST]
+    if t1 > floats[memory + END]:
+        floats[memory + END], floats[memory + WHOLE], floats[memory + CUTS] = t1, t1 - t0, 0.0
+    return floats[memory + CUTS] < MOST_CUTS
+
+
+@lean_inlined
+def some(found):
+    """Whether any body was found."""
+    for k in range(found.size):
+        if found[k] != 0.0:
+            return True
+    return False
+
+
+@kernel(SETTLE, inner=True)
+def settle(t0, t1, y0, rate0, y1, floats, ints):
+    """Change y1 so that no body went through a surface in the step from t0 to t1; or only say when it should end."""
+    asked = floats[ASKED] > 0.0
+    if floats[STAGE] == OUTSIDE:
+        if not asked:
+            settle_held(t0, t1, y0, y1, floats, ints)
+        return
+    if asked and not may_be_cut(t0, t1, floats, ints):
+        return
+    found = np.zeros(ints[BODIES])
+    find_near(t1 - t0, y0, y1, found, floats, ints)
+    if some(found):
+        path = np.empty(PATH)
+        mean = np.empty(3)
+        if asked:
+            cut(t0, t1, y0, y1, found, path, mean, floats, ints)
+        else:
+            settle_found(t0, t1, y0, y1, found, path, mean, floats, ints)
+    elif not asked:
+        floats[ints[LAST] + RESTING] = 0.0
+
+
+@lean(TERM, inner=True)
+def constrain(t, y, rate, floats, ints):
+    """What the surfaces do to the accelerations; free pairs cost nothing."""
+    if floats[ints[LAST] + RESTING] > 0.0:
+        if floats[STAGE] > 0.0:
+            hold(y, rate, floats, ints)
+        else:
+            support(-1, y, rate, floats, ints)

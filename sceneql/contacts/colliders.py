@@ -1,0 +1,128 @@
+"""The integers by which contact kernels know the surfaces of objects (shape_kernels)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from sceneql.bodies.time_shift import APART, goes_evenly, later
+from sceneql.contacts.shapes import implicit
+from sceneql.kinds import Collider, Object, Ref, Value
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+if TYPE_CHECKING:
+    from sceneql.system import Assembly
+
+OFTEN = 1 / 240
+"""Longest step [s] that a tolerance may choose where contacts act at the ends of steps or objects move unevenly: it
+sees neither, and what comes as slowly as gravity makes it in two steps is taken to rest."""
+SHIFTING = ("position", "height")
+"""What only shifts an object that may be collided with; `height` is a plane's."""
+FAR_APART = 1.0
+"""Seconds between the poses of an object that moves evenly: exact for any, and its velocity is as good as its place."""
+
+
+def surfaces(refs: Sequence[Ref], assembly: Assembly, at: int) -> tuple[int, ...]:
+    """The objects' integers, to stand at ``at`` in a contact's, each shape's further ones behind those of all.
+
+    Raises ScriptError for an object that cannot be collided with.
+    """
+    from sceneql.contacts.shape_kernels import OBJECT
+
+    heads: list[int] = []
+    tail: list[int] = []
+    for ref in refs:
+        head, data = _surface(ref, assembly)
+        heads += [*head, at + len(refs) * OBJECT + len(tail)]
+        tail += data
+    return (*heads, *tail)
+
+
+def must_be_outside(model: str, refs: Sequence[Ref], ints: Sequence[int], assembly: Assembly) -> None:
+    """Raise ScriptError where a moving body starts with its center inside an object; ``ints`` are the contact's."""
+    import numpy as np
+
+    from sceneql.contacts.start_kernels import deepest
+
+    depth, body, other = deepest(assembly.start(), assembly.numbers(), np.array(ints, dtype=np.int64))
+    if depth > 0.0:
+        ref = refs[other]
+        text = f"mass {body} of '{model}' starts inside '{ref.name}', {depth:.3g} m deep"
+        help = f"move it outside, or name under `between` what may touch, without '{ref.name}'"
+        raise ScriptError([Diagnostic("starts-inside", text, ref.span or assembly.line(), help)])
+
+
+def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """All but the last of an object's integers, and the further ones of its shape."""
+    from sceneql.compiled.numbered_kernels import number_of
+    from sceneql.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, NEAR_TYPE, SURFACE_TYPE
+
+    kind = assembly.object(ref)
+    try:
+        here = _collider(kind, assembly)
+        if not is_moving(kind):
+            poses = (0, here.position_at, here.rotation_at, here.position_at, here.rotation_at)
+        else:
+            even = _moves_evenly(kind, assembly)
+            if not even:
+                assembly.step_at_most(OFTEN)
+            apart = FAR_APART if even else APART
+            before, after = _shifted(kind, -apart, assembly), _shifted(kind, apart, assembly)
+            poses = (assembly.floats([apart]), *before, *after)
+    except (TypeError, ValueError) as error:
+        help = f"name under `between` what may touch, without '{ref.name}'"
+        place = ref.span or assembly.line()
+        raise ScriptError([Diagnostic("no-collider", f"'{ref.name}': {error}", place, help)]) from None
+    shape = import_module(here.kernels)
+    signatures = {"surface": SURFACE_TYPE, "bend": BEND_TYPE, "clear": CLEAR_TYPE}
+    numbers = [number_of(getattr(shape, name), signature) for name, signature in signatures.items()]
+    if not hasattr(shape, "near"):
+        shape = import_module("sceneql.contacts.near_kernels")
+    numbers.append(number_of(shape.near, NEAR_TYPE))
+    places = (here.position_at, here.rotation_at, here.size_at, here.depth_at)
+    flat = int(here.flat and not is_moving(kind))
+    return (*numbers, *places, *poses, flat), here.data
+
+
+def _has_own(kind: Object) -> bool:
+    return type(kind).collider is not Object.collider
+
+
+def _collider(kind: Object, assembly: Assembly) -> Collider:
+    """An object's own collider, or that of its field. Raises TypeError, ValueError."""
+    return kind.collider(assembly) if _has_own(kind) else implicit.collider(kind, assembly)
+
+
+def _shifted(kind: Object, by: float, assembly: Assembly) -> tuple[int, int]:
+    """Position and rotation of an object's collider a little earlier or later."""
+    there = shifted(kind, by, assembly)
+    if not _has_own(kind):
+        return implicit.place(there, assembly)
+    collider = there.collider(assembly)
+    return collider.position_at, collider.rotation_at
+
+
+def is_moving(kind: Object) -> bool:
+    """Whether any of its values varies in time."""
+    return any(isinstance(value, Value) and not value.constant for _, value in kind)
+
+
+def _moves_evenly(kind: Object, assembly: Assembly) -> bool:
+    """Whether it is known to go straight on at one speed: what it does to masses is then what one at rest does."""
+    return all(
+        name in SHIFTING and goes_evenly(value.expr, assembly.formula)
+        for name, value in kind
+        if isinstance(value, Value) and not value.constant
+    )
+
+
+def shifted(kind: Object, by: float, assembly: Assembly) -> Object:
+    """The object with every value taken ``by`` [s] later. Raises ValueError for one that follows a solved model."""
+    changed = {
+        name: replace(value, expr=later(value.expr, by, assembly.formula))
+        for name, value in kind
+        if isinstance(value, Value) and not value.constant
+    }
+    return kind.model_copy(update=changed)

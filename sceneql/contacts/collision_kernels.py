@@ -1,0 +1,142 @@
+# mypy: ignore-errors
+"""Contacts in `exact` mode: gaps and impacts for event location.
+
+A resting pair with friction slides until its speed along the last direction is zero, which is an event as well. A
+body's memory in the floats: the last accepted instant, its place and velocity then (INSTANT).
+"""
+
+import numpy as np
+
+from sceneql.compiled.kernels import kernel, lean, lean_inlined
+from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.contacts.body_path_kernels import NEVER, first_contact, moving, place
+from sceneql.contacts.impulse_kernels import (
+    BODIES,
+    FRICTION,
+    HEAD,
+    INSTANT,
+    INVERSE,
+    LAST,
+    OBJECTS,
+    PAIRS,
+    POSITION,
+    RADIUS,
+    THICKNESS,
+    VELOCITY,
+)
+from sceneql.contacts.memory_kernels import ALONG, FREE, KEEP, PAIR, PATH, SLIDES, STICKS, SUPPORT
+from sceneql.contacts.pair_kernels import away, body_of
+from sceneql.contacts.shape_kernels import DEPTH, FROM_TYPE, MOVING, OBJECT, surface, velocity
+from sceneql.system_kernels import GAP, IMPACT, TERM
+
+hit = late("sceneql.contacts.hit_kernels:hit", IMPACT)
+keep = late("sceneql.contacts.resting_kernels:keep", KEEP)
+from_object = late("sceneql.contacts.moving_kernels:from_object", FROM_TYPE)
+support = late("sceneql.contacts.support_kernels:support", SUPPORT)
+
+CHANGED = 1
+"""floats[1] tells the march that the state or a flag was changed."""
+
+NO_EVENT = 1e300
+
+
+@lean_inlined
+def swept(t, k, at, x, y, z, vx, vy, vz, distance, reach, path, floats, ints):
+    """The gap; negative also where the path since the last accepted instant went through the object."""
+    last = ints[LAST] + INSTANT * k
+    gap = distance - reach
+    if not t > floats[last]:
+        return gap
+    for c in range(6):
+        path[c] = floats[last + 1 + c]
+    path[6], path[7], path[8], path[9], path[10], path[11] = x, y, z, vx, vy, vz
+    path[12] = t - floats[last]
+    if ints[at + MOVING] != 0:
+        # So far in that what the path is off by cannot feign it.
+        off = from_object(floats, ints, at, path)
+        if not off < 0.5 * (floats[ints[at + DEPTH]] + reach):
+            return gap
+        reach -= off
+    s = first_contact(path, floats, ints, at, reach)
+    if s == NEVER or s == 1.0:
+        return gap
+    px, py, pz = place(path, s)
+    ux, uy, uz = moving(path, s)
+    _, nx, ny, nz = surface(floats, ints, at, px, py, pz)
+    approach = min(-1e-9, ux * nx + uy * ny + uz * nz)
+    return min(gap, approach * (1.0 - s) * path[12])
+
+
+@kernel(GAP, inner=True)
+def gap(t, y, gaps, floats, ints):
+    """Signed distances [m] of all pairs; of a sliding one its speed [m/s]; none for one that rests or is fixed."""
+    objects = ints[OBJECTS]
+    path = np.empty(PATH)
+    for k in range(ints[BODIES]):
+        px, py, pz, vx, vy, vz = body_of(ints, k, y)
+        reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
+        for j in range(objects):
+            pair = k * objects + j
+            memory = ints[PAIRS] + PAIR * pair
+            at = HEAD + OBJECT * j
+            gaps[pair] = NO_EVENT
+            if floats[ints[INVERSE] + k] == 0.0 or floats[memory] == STICKS:
+                continue
+            if floats[memory] == SLIDES:
+                if floats[ints[FRICTION]] > 0.0:
+                    ux, uy, uz = velocity(floats, ints, at, px, py, pz)
+                    ax, ay, az = floats[memory + ALONG], floats[memory + ALONG + 1], floats[memory + ALONG + 2]
+                    gaps[pair] = (vx - ux) * ax + (vy - uy) * ay + (vz - uz) * az
+                continue
+            d = surface(floats, ints, at, px, py, pz)[0]
+            gaps[pair] = swept(t, k, at, px, py, pz, vx, vy, vz, d, reach, path, floats, ints)
+
+
+@lean_inlined
+def note_instant(t, k, y, floats, ints):
+    """Remember where body k is and how fast, at an accepted instant."""
+    last = ints[LAST] + INSTANT * k
+    floats[last] = t
+    for c in range(3):
+        floats[last + 1 + c] = y[ints[POSITION] + 3 * k + c]
+        floats[last + 4 + c] = y[ints[VELOCITY] + 3 * k + c]
+
+
+@lean_inlined
+def hold(t, y, floats, ints):
+    """Keep what rests on its surface, let go what has left it, and note the accepted instant."""
+    for k in range(ints[BODIES]):
+        for j in range(ints[OBJECTS]):
+            if floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)] != FREE and keep(t, k, j, y, floats, ints):
+                floats[CHANGED] = 1.0
+        note_instant(t, k, y, floats, ints)
+
+
+@lean(IMPACT, inner=True)
+def impact(t, y, pair, floats, ints):
+    """The impulse of a pair at its impact, or the end of its sliding; pair -1: `hold`."""
+    if pair < 0:
+        hold(t, y, floats, ints)
+    else:
+        hit(t, y, pair, floats, ints)
+        note_instant(t, pair // ints[OBJECTS], y, floats, ints)
+
+
+@lean_inlined
+def first_near(y, floats, ints):
+    """The first body that rests or is so near to an object that it matters how it would press; -1 for none."""
+    for k in range(ints[BODIES]):
+        if floats[ints[INVERSE] + k] == 0.0:
+            continue
+        for j in range(ints[OBJECTS]):
+            if floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)] != FREE or not away(k, j, y, floats, ints):
+                return k
+    return -1
+
+
+@lean(TERM, inner=True)
+def constrain(t, y, rate, floats, ints):
+    """What the surfaces do to the accelerations; impacts want to know how free pairs press."""
+    first = first_near(y, floats, ints)
+    if first >= 0:
+        support(first, y, rate, floats, ints)

@@ -1,0 +1,58 @@
+# mypy: ignore-errors
+"""How an object's own points move, by central differences of its poses, and paths as they are seen from it."""
+
+import math
+
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.contacts.shape_kernels import AFTER, BEFORE, FROM_TYPE, MOTION_TYPE, MOVING, inward, turn
+
+
+@lean_inlined
+def carried(floats, ints, at, pose, x, y, z):
+    """Where a point that is fixed to the object stands in its pose BEFORE or AFTER."""
+    a, b, c = inward(floats, ints, at, x, y, z)
+    a, b, c = turn(floats, ints[at + pose + 1], a, b, c)
+    p = ints[at + pose]
+    return a + floats[p], b + floats[p + 1], c + floats[p + 2]
+
+
+@lean(MOTION_TYPE, inner=True)
+def moving_velocity(floats, ints, at, x, y, z):
+    """Velocity [m/s] of the point at (x, y, z) of one that moves."""
+    apart = floats[ints[at + MOVING]]
+    a, b, c = carried(floats, ints, at, BEFORE, x, y, z)
+    p, q, r = carried(floats, ints, at, AFTER, x, y, z)
+    return (p - a) / (2.0 * apart), (q - b) / (2.0 * apart), (r - c) / (2.0 * apart)
+
+
+@lean(MOTION_TYPE, inner=True)
+def moving_acceleration(floats, ints, at, x, y, z):
+    """Acceleration [m/s^2] of the same."""
+    apart = floats[ints[at + MOVING]]
+    a, b, c = carried(floats, ints, at, BEFORE, x, y, z)
+    p, q, r = carried(floats, ints, at, AFTER, x, y, z)
+    square = apart * apart
+    return (p - 2.0 * x + a) / square, (q - 2.0 * y + b) / square, (r - 2.0 * z + c) / square
+
+
+@lean(FROM_TYPE, inner=True)
+def from_object(floats, ints, at, path):
+    """Change a path (body_path_kernels) to what is seen of it from one that moves, where that stands at the path's end.
+
+    Returns how far off it may be [m]: half the object's acceleration at either end times the square of the duration.
+    """
+    h = path[12]
+    most = 0.0
+    for end in range(0, 12, 6):
+        x, y, z = path[end], path[end + 1], path[end + 2]
+        a, b, c = moving_acceleration(floats, ints, at, x, y, z)
+        most = max(most, math.sqrt(a * a + b * b + c * c))
+        u, v, w = moving_velocity(floats, ints, at, x, y, z)
+        p, q, r = path[end + 3] - u, path[end + 4] - v, path[end + 5] - w
+        if end == 0:
+            # What the object has turned since turns the velocity, too.
+            a, b, c = moving_velocity(floats, ints, at, x + p, y + q, z + r)
+            p, q, r = p + h * (a - u), q + h * (b - v), r + h * (c - w)
+            path[0], path[1], path[2] = x + h * u, y + h * v, z + h * w
+        path[end + 3], path[end + 4], path[end + 5] = p, q, r
+    return 0.5 * most * h * h

@@ -1,0 +1,1 @@
+"""Contact of masses with one another."""

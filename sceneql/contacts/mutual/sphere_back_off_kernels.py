@@ -1,0 +1,98 @@
+# mypy: ignore-errors
+"""Masses that collide with one another in `local` mode: which pairs may meet in a step.
+
+What becomes of these is compiled when the first two come near each other (sphere_meet_kernels).
+"""
+
+import math
+
+import numpy as np
+from numba import types
+
+from sceneql.compiled.kernels import inlined, kernel
+from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.contacts.mutual.sphere_pair_kernels import (
+    COUNT,
+    INVERSE,
+    MASS,
+    MEET,
+    POINTS,
+    RADIUS,
+    X,
+    neighbors,
+    of,
+    radii,
+    sort_cells,
+    tied,
+)
+from sceneql.system_kernels import SETTLE, A, F, I
+
+ASKED = 1
+"""floats[1]: above 0 the march only asks when the step should end."""
+
+meet_all = late("sceneql.contacts.mutual.sphere_meet_kernels:meet_all", MEET)
+
+
+@inlined
+def twice(numbers):
+    """The numbers, with room for as many more."""
+    more = np.empty(2 * numbers.size, dtype=np.int64)
+    for k in range(numbers.size):
+        more[k] = numbers[k]
+    return more
+
+
+@kernel(types.Tuple((I, I))(F, A, A, A, I), inner=True)
+def candidates(h, y0, y1, floats, ints):
+    """The pairs that may meet in the step: first of each mass (n + 1), and the masses of larger number.
+
+    Also those that would meet if one took over the way of the fastest.
+    """
+    n = ints[COUNT]
+    first = np.zeros(n + 1, dtype=np.int64)
+    longest, widest = 0.0, 0.0
+    for k in range(n):
+        at = of(ints, k, X)
+        way = 0.0
+        for c in range(3):
+            floats[ints[POINTS] + c * n + k] = 0.5 * (y0[at + c] + y1[at + c])
+            way += (y1[at + c] - y0[at + c]) ** 2
+        longest = max(longest, way)
+        widest = max(widest, floats[of(ints, k, RADIUS)])
+    edge = 2.0 * (widest + math.sqrt(longest))
+    if not edge > 0.0 or widest == 0.0 or not math.isfinite(edge):
+        return first, np.zeros(0, dtype=np.int64)
+    sort_cells(edge, floats, ints)
+    found = np.empty(n, dtype=np.int64)
+    others = np.empty(8 * n + 64, dtype=np.int64)
+    points = ints[POINTS]
+    for k in range(n):
+        total = first[k]
+        for one in range(neighbors(k, edge, found, floats, ints)):
+            j = found[one]
+            square = 0.0
+            for c in range(3):
+                square += (floats[points + c * n + k] - floats[points + c * n + j]) ** 2
+            fixed = floats[of(ints, k, INVERSE)] + floats[of(ints, j, INVERSE)] == 0.0
+            # Without mass: a place for a particle that is not there now.
+            absent = floats[of(ints, k, MASS)] == 0.0 or floats[of(ints, j, MASS)] == 0.0
+            if fixed or absent or square > (radii(k, j, floats, ints) + 2.0 * math.sqrt(longest)) ** 2:
+                continue
+            if tied(k, j, ints):
+                continue
+            if total == others.size:
+                others = twice(others)
+            others[total] = j
+            total += 1
+        first[k + 1] = total
+    return first, others
+
+
+@kernel(SETTLE, inner=True)
+def settle(t0, t1, y0, rate0, y1, floats, ints):
+    """Change y1 so that no mass went through another in the step from t0 to t1."""
+    if floats[ASKED] > 0.0:
+        return
+    first, others = candidates(t1 - t0, y0, y1, floats, ints)
+    if first[ints[COUNT]] > 0:
+        meet_all(t1, t1 - t0, first, others, y0, rate0, y1, floats, ints)

@@ -1,0 +1,132 @@
+# mypy: ignore-errors
+"""Impacts of masses with one another within a step, first ones first, then rest (sphere_back_off_kernels).
+
+In the step a mass moves on with its mean velocity, and with the acceleration that it has at the start; an impact
+changes both ends of what is left of its way. Two masses that are each other's next impact are taken together, in
+passes, so the order of masses does not matter.
+"""
+
+import math
+
+import numpy as np
+
+from sceneql.compiled.kernels import inlined, kernel
+from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.contacts.impulse_kernels import count_hit
+from sceneql.contacts.mutual.sphere_pair_kernels import (
+    COUNT,
+    INVERSE,
+    MASS,
+    MEET,
+    REST,
+    ROWS,
+    TALLY,
+    WORK,
+    V,
+    X,
+    impulse,
+    of,
+    radii,
+    rests_below,
+)
+from sceneql.system_kernels import A, F, I, N
+
+MOST_PASSES = 100
+
+rest = late("sceneql.contacts.mutual.sphere_rest_kernels:rest", REST)
+
+
+@inlined
+def relative(i, j, left, y1, mean, pull, r, v, ints):
+    """Place r and velocity v of mass i seen from j, ``left`` before the step's end."""
+    for c in range(3):
+        r[c] = y1[of(ints, i, X) + c] - y1[of(ints, j, X) + c] - left * (mean[i, c] - mean[j, c])
+        v[c] = y1[of(ints, i, V) + c] - y1[of(ints, j, V) + c] - left * (pull[i, c] - pull[j, c])
+
+
+@kernel(F(N, N, F, A, ROWS, ROWS, A, A, A, A, I), inner=True)
+def meet(i, j, h, since, mean, pull, y1, r, v, floats, ints):
+    """How long before the step's end two masses meet, fast enough for an impact; -1 if they do not."""
+    left = h - max(since[i], since[j])
+    relative(i, j, left, y1, mean, pull, r, v, ints)
+    reach = radii(i, j, floats, ints)
+    square, b, speed2 = -reach * reach, 0.0, 0.0
+    for c in range(3):
+        w = mean[i, c] - mean[j, c]
+        square += r[c] * r[c]
+        b += r[c] * w
+        speed2 += w * w
+    if b >= 0.0:
+        return -1.0
+    if square > 1e-12 * reach * reach:
+        inside = b * b - speed2 * square
+        if inside < 0.0:
+            return -1.0
+        left -= square / (math.sqrt(inside) - b)
+        if left < 0.0:
+            return -1.0
+        relative(i, j, left, y1, mean, pull, r, v, ints)
+    vn = (v[0] * r[0] + v[1] * r[1] + v[2] * r[2]) / reach
+    return left if -vn > rests_below(i, j, h, pull, floats, ints) else -1.0
+
+
+@inlined
+def collide(i, j, left, t1, h, since, mean, pull, y1, r, v, floats, ints):
+    """The impact of two masses ``left`` before the step's end; half of what it takes is counted for each."""
+    relative(i, j, left, y1, mean, pull, r, v, ints)
+    px, py, pz, speed = impulse(i, j, r, v, floats, ints)
+    count_hit(floats, ints[TALLY], t1 - left, speed)
+    lost = 0.0
+    for one in range(2):
+        k = i if one == 0 else j
+        inverse = floats[of(ints, k, INVERSE)] * (1.0 if one == 0 else -1.0)
+        if inverse == 0.0:
+            continue
+        mass = floats[of(ints, k, MASS)]
+        for c in range(3):
+            add = inverse * (px if c == 0 else (py if c == 1 else pz))
+            lost -= mass * add * (y1[of(ints, k, V) + c] + 0.5 * add - pull[k, c] * left)
+            y1[of(ints, k, V) + c] += add
+            y1[of(ints, k, X) + c] += left * add
+            mean[k, c] += add
+        since[k] = h - left
+    y1[of(ints, i, WORK)] += 0.5 * lost
+    y1[of(ints, j, WORK)] += 0.5 * lost
+
+
+@kernel(MEET, inner=True)
+def meet_all(t1, h, first, others, y0, rate0, y1, floats, ints):
+    """Change y1 so that no mass went through another of the pairs found in the step of length h up to t1."""
+    n = ints[COUNT]
+    mean, pull = np.empty((n, 3)), np.empty((n, 3))
+    for k in range(n):
+        for c in range(3):
+            mean[k, c] = (y1[of(ints, k, X) + c] - y0[of(ints, k, X) + c]) / h
+            # Not the mean of the step, in which objects may have given impulses.
+            pull[k, c] = rate0[of(ints, k, V) + c]
+    since, next_left = np.zeros(n), np.empty(n)
+    partner = np.empty(n, dtype=np.int64)
+    r, v = np.empty(3), np.empty(3)
+    for _ in range(MOST_PASSES):
+        for k in range(n):
+            next_left[k], partner[k] = -1.0, -1
+        for i in range(n):
+            for one in range(first[i], first[i + 1]):
+                j = others[one]
+                left = meet(i, j, h, since, mean, pull, y1, r, v, floats, ints)
+                if left < 0.0:
+                    continue
+                # Of pairs at one instant the first in the order of the list counts, for both.
+                if left > next_left[i]:
+                    next_left[i], partner[i] = left, j
+                if left > next_left[j]:
+                    next_left[j], partner[j] = left, i
+        met = False
+        for i in range(n):
+            j = partner[i]
+            if j > i and partner[j] == i:
+                collide(i, j, next_left[i], t1, h, since, mean, pull, y1, r, v, floats, ints)
+                met = True
+        if not met:
+            break
+    rest(h, first, others, pull, y1, floats, ints)

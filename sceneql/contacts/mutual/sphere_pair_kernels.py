@@ -1,0 +1,118 @@
+# mypy: ignore-errors
+"""Pairs of masses as spheres: layout, when two meet in a step, and what an impact does to both.
+
+ints: number of masses, offsets of restitution, friction and tally in the floats, of the places, the sorted places,
+numbers and starts of the cell lists, table of cells (neighbors.table), number of objects, where the tied ones stand in
+the ints (0: there are none); BODY integers a mass: places in y of position, velocity and work, in floats of mass,
+inverse mass and radius; the objects (shape_kernels). Of the tied ones n + 1 places where those of each mass begin, and
+then for each the masses of larger number that it does not meet.
+"""
+
+import math
+
+from numba import types
+
+from sceneql.bodies.neighbors_kernels import cell_of, sort_by_cell
+from sceneql.compiled.kernels import inlined, kernel
+from sceneql.system_kernels import A, F, I, N
+
+COUNT, RESTITUTION, FRICTION, TALLY, POINTS, SORTED, ORDER, START, SIZE, P, Q, OBJECTS, TIED, HEAD = range(14)
+X, V, WORK, MASS, INVERSE, RADIUS, BODY = range(7)
+
+FOUR = types.UniTuple(F, 4)
+ROWS = types.float64[:, ::1]
+MEET = types.void(F, F, I, I, A, A, A, A, I)
+"""(end of the step, its length, the pairs: first of each mass and the others, state and rate at the start, state at the
+end, floats, ints)."""
+REST = types.void(F, I, I, ROWS, A, A, I)
+"""(length of the step, the pairs, mean accelerations (n, 3), state at the end, floats, ints)."""
+TOUCHING = 1e-9
+"""Distance, as a part of the radii, below which two masses touch."""
+
+
+@inlined
+def of(ints, k, what):
+    """An integer of mass k."""
+    return ints[HEAD + BODY * k + what]
+
+
+@inlined
+def radii(i, j, floats, ints):
+    """Sum of the radii of two masses."""
+    return floats[of(ints, i, RADIUS)] + floats[of(ints, j, RADIUS)]
+
+
+@inlined
+def tied(i, j, ints):
+    """Whether mass i and mass j of larger number are tied, so that they do not meet."""
+    found = False
+    if ints[TIED] > 0:
+        for at in range(ints[ints[TIED] + i], ints[ints[TIED] + i + 1]):
+            found = found or ints[at] == j
+    return found
+
+
+@kernel(FOUR(N, N, A, A, A, I), inner=True)
+def impulse(i, j, r, v, floats, ints):
+    """Impulse [N s] on mass i, its negative on j, at r = x_i - x_j with relative velocity v; the speed of approach.
+
+    Newton's restitution along r; across it Coulomb's friction, which never turns the slip round.
+    """
+    length = math.sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2])
+    nx, ny, nz = r[0] / length, r[1] / length, r[2] / length
+    vn = v[0] * nx + v[1] * ny + v[2] * nz
+    tx, ty, tz = v[0] - vn * nx, v[1] - vn * ny, v[2] - vn * nz
+    slip = math.sqrt(tx * tx + ty * ty + tz * tz)
+    reduced = 1.0 / (floats[of(ints, i, INVERSE)] + floats[of(ints, j, INVERSE)])
+    normal = -(1.0 + floats[ints[RESTITUTION]]) * vn * reduced
+    part = min(reduced, floats[ints[FRICTION]] * normal / slip) if slip > 0.0 else 0.0
+    return normal * nx - part * tx, normal * ny - part * ty, normal * nz - part * tz, -vn
+
+
+@inlined
+def rests_below(i, j, h, pull, floats, ints):
+    """Speed of approach [m/s] below which two masses rest: what they gain in two steps; elastic ones never do."""
+    if floats[ints[RESTITUTION]] >= 1.0:
+        return 1e-12
+    a, b = 0.0, 0.0
+    for c in range(3):
+        a += pull[i, c] ** 2
+        b += pull[j, c] ** 2
+    return 2.0 * h * math.sqrt(max(a, b)) + 1e-12
+
+
+@inlined
+def approach(i, j, y, ints):
+    """Speed [m/s] at which two masses approach each other."""
+    along, square = 0.0, 0.0
+    for c in range(3):
+        r = y[of(ints, i, X) + c] - y[of(ints, j, X) + c]
+        along -= (y[of(ints, i, V) + c] - y[of(ints, j, V) + c]) * r
+        square += r * r
+    return along / math.sqrt(square)
+
+
+@inlined
+def sort_cells(edge, floats, ints):
+    """Sort the places of all masses (floats[ints[POINTS]:], all x, all y, all z) into cells of that edge."""
+    lists = (ints[SIZE], ints[P], ints[Q], ints[SORTED], ints[ORDER], ints[START])
+    sort_by_cell(floats, ints[COUNT], ints[POINTS], edge, *lists)
+
+
+@kernel(N(N, F, I, A, I), inner=True)
+def neighbors(k, edge, found, floats, ints):
+    """Masses of larger number in the cells around mass k, into ``found``; how many, at most as many as it holds."""
+    n, points = ints[COUNT], ints[POINTS]
+    i = cell_of(floats[points + k], edge)
+    j = cell_of(floats[points + n + k], edge)
+    l = cell_of(floats[points + 2 * n + k], edge)
+    count = 0
+    for row in range(27):
+        di, dj, dl = row % 3 - 1, (row // 3) % 3 - 1, row // 9 - 1
+        place = (i + di + ints[P] * (j + dj) + ints[Q] * (l + dl)) & (ints[SIZE] - 1)
+        for one in range(int(floats[ints[START] + place]), int(floats[ints[START] + place + 1])):
+            other = int(floats[ints[ORDER] + one])
+            if other > k and count < found.size:
+                found[count] = other
+                count += 1
+    return count

@@ -1,0 +1,279 @@
+# mypy: ignore-errors
+"""What becomes of bodies that meet something within a step, or rest: compiled when the first one does.
+
+The body's path in the step is the cubic Hermite curve of its ends; after an impact it flies on with the step's mean
+acceleration, which costs the solver's order. So where few bodies meet something, the march is asked to end the step
+right after the first impact and to go on from there; and wherever a tie is torn off, for one cut serves all that are
+at that instant. An approach slower than what the pressing acceleration gives in two steps is no impact: the body rests
+(resting_kernels), and slides for the rest of the step.
+"""
+
+import math
+
+from numba import types
+
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.contacts.body_path_kernels import NEVER, moving, place, set_out
+from sceneql.contacts.impulse_kernels import (
+    BODIES,
+    FRICTION,
+    HEAD,
+    LAST,
+    MASS,
+    OBJECTS,
+    PAIRS,
+    POSITION,
+    RADIUS,
+    RESTITUTION,
+    TALLY,
+    THICKNESS,
+    VELOCITY,
+    WORK,
+    bounce,
+    count_hit,
+)
+from sceneql.contacts.meet_kernels import earliest, seen
+from sceneql.contacts.memory_kernels import (
+    ANSWER,
+    ASKED,
+    BETWEEN,
+    BRAKE,
+    CREEPS,
+    CUTS,
+    EARLIER,
+    FREE,
+    HOLDS,
+    LIST,
+    LOAD,
+    PAIR,
+    PRESS,
+    PULL,
+    RESTING,
+    SLACK,
+    SLIDES,
+    STAGE,
+    STICKS,
+    WHOLE,
+)
+from sceneql.contacts.pair_kernels import is_flat
+from sceneql.contacts.resting_kernels import come_to_rest, keep, lies
+from sceneql.contacts.shape_kernels import OBJECT, clear, surface, velocity
+from sceneql.contacts.slide_kernels import fly_on, slide, start_with
+from sceneql.system_kernels import A, F, I, N
+
+brake = late("sceneql.contacts.friction_kernels:brake", BRAKE)
+
+MOST_IMPACTS = 8
+"""Impacts of a body in one step; after that it is only kept outside."""
+FEW = 8
+"""Bodies with an impact in a step, above which it is not cut."""
+AFTER_IMPACT = 1e-4
+"""Where a cut step ends, in parts of the step after the impact."""
+
+
+@lean(types.boolean(F, F, N, A, A, A, I), inner=True)
+def hits(s, whole, j, path, mean, floats, ints):
+    """Whether the contact at s with object j is an impact, not the beginning of rest."""
+    at = HEAD + OBJECT * j
+    x, y, z = seen(path, s, floats, ints, at)
+    vx, vy, vz = moving(path, s)
+    ux, uy, uz = velocity(floats, ints, at, x, y, z)
+    _, nx, ny, nz = surface(floats, ints, at, x, y, z)
+    press = min(0.0, mean[0] * nx + mean[1] * ny + mean[2] * nz)
+    return (vx - ux) * nx + (vy - uy) * ny + (vz - uz) * nz < 2.0 * press * whole
+
+
+@lean_inlined
+def fly(k, t1, whole, reach, path, mean, floats, ints):
+    """Take the path through its impacts; the energy by mass that they take [J/kg]. ``whole``: length of a step."""
+    length = path[12]
+    lost = 0.0
+    for _ in range(MOST_IMPACTS):
+        s, j = earliest(k, reach, path, floats, ints)
+        if s == NEVER:
+            break
+        at = HEAD + OBJECT * j
+        px, py, pz = place(path, s)
+        vx, vy, vz = moving(path, s)
+        qx, qy, qz = seen(path, s, floats, ints, at)
+        d, nx, ny, nz = surface(floats, ints, at, qx, qy, qz)
+        # Onto the surface: a root is found to rounding, a body may start a little inside.
+        d = min(0.0, d - reach)
+        ux, uy, uz = velocity(floats, ints, at, qx, qy, qz)
+        rx, ry, rz = vx - ux, vy - uy, vz - uz
+        vn = rx * nx + ry * ny + rz * nz
+        press = min(0.0, mean[0] * nx + mean[1] * ny + mean[2] * nz)
+        t = t1 - path[12] * (1.0 - s)
+        impact = hits(s, whole, j, path, mean, floats, ints)
+        path[12] *= 1.0 - s
+        path[0], path[1], path[2] = px - d * nx, py - d * ny, pz - d * nz
+        path[3], path[4], path[5] = vx, vy, vz
+        if impact:
+            rx, ry, rz = bounce(rx, ry, rz, nx, ny, nz, floats[ints[RESTITUTION]], floats[ints[FRICTION]])
+            lost += start_with(path, rx + ux, ry + uy, rz + uz)
+            count_hit(floats, ints[TALLY], t, -vn)
+            fly_on(path, mean[0], mean[1], mean[2], path[12])
+        else:
+            rx, ry, rz = rx - vn * nx, ry - vn * ny, rz - vn * nz
+            lost += start_with(path, rx + ux, ry + uy, rz + uz)
+            lost += slide(path, mean, nx, ny, nz, ux, uy, uz, press, floats[ints[FRICTION]])
+            memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
+            rx, ry, rz = path[9] - ux, path[10] - uy, path[11] - uz
+            come_to_rest(t, memory, rx, ry, rz, nx, ny, nz, floats, ints)
+            if floats[memory] == SLIDES and floats[ints[FRICTION]] > 0.0:
+                floats[memory] = CREEPS
+        if path[12] <= 1e-14 * length:
+            break
+    return lost
+
+
+@lean_inlined
+def push_out(reach, path, mean, floats, ints):
+    """Put the path's end outside of all objects; the energy by mass of approach and of place that this takes."""
+    work = 0.0
+    before = path[9] ** 2 + path[10] ** 2 + path[11] ** 2
+    for _ in range(3):
+        apart = True
+        for j in range(ints[OBJECTS]):
+            at = HEAD + OBJECT * j
+            if clear(floats, ints, at, path[6], path[7], path[8], reach):
+                continue
+            d, nx, ny, nz = surface(floats, ints, at, path[6], path[7], path[8])
+            d -= reach
+            if d >= 0.0:
+                continue
+            apart = False
+            work -= d * (mean[0] * nx + mean[1] * ny + mean[2] * nz)
+            path[6], path[7], path[8] = path[6] - d * nx, path[7] - d * ny, path[8] - d * nz
+            ux, uy, uz = velocity(floats, ints, at, path[6], path[7], path[8])
+            vn = (path[9] - ux) * nx + (path[10] - uy) * ny + (path[11] - uz) * nz
+            if vn < 0.0:
+                path[9], path[10], path[11] = path[9] - vn * nx, path[10] - vn * ny, path[11] - vn * nz
+        if apart:
+            break
+    return work + 0.5 * (before - path[9] ** 2 - path[10] ** 2 - path[11] ** 2)
+
+
+@lean_inlined
+def slack(memory, floats, ints):
+    """By how much the pull on a pair along its surface may grow [m/s^2]; NaN where it does not stick."""
+    if floats[memory] != STICKS or floats[ints[FRICTION]] == 0.0:
+        return math.nan
+    return floats[ints[FRICTION]] * floats[memory + LOAD] - floats[memory + PULL]
+
+
+@lean_inlined
+def crossing(before, after):
+    """Where in a step what goes evenly from ``before`` to ``after`` turns negative; 1 where it does not (or NaN)."""
+    if before > 0.0 and after < 0.0:
+        return before / (before - after)
+    return 1.0
+
+
+@lean_inlined
+def torn_off(k, floats, ints):
+    """Where in a step the first tie of body k began to pull, or to ask too much of friction; 1 where none does."""
+    first = 1.0
+    for j in range(ints[OBJECTS]):
+        memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
+        if floats[memory] != FREE and not math.isnan(floats[memory + EARLIER]):
+            first = min(first, crossing(floats[memory + EARLIER], -floats[memory + PRESS]))
+            first = min(first, crossing(floats[memory + SLACK], slack(memory, floats, ints)))
+    return first
+
+
+@lean_inlined
+def let_go(k, floats, ints):
+    """End the ties of body k that pull, or that friction could not hold; of the others the load is noted."""
+    for j in range(ints[OBJECTS]):
+        memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
+        if floats[memory] == FREE:
+            continue
+        left = slack(memory, floats, ints)
+        floats[memory + SLACK] = left
+        if floats[memory + PRESS] > 0.0:
+            floats[memory] = FREE
+        elif left < 0.0:
+            floats[memory] = SLIDES
+        if floats[memory] != CREEPS:
+            floats[memory + EARLIER] = floats[memory + LOAD]
+
+
+@lean(ANSWER, inner=True)
+def cut(t0, t1, y0, y1, found, path, mean, floats, ints):
+    """When the step should end: after its first impact, where few of the bodies with found[k] = 1 have one.
+
+    Or after the first tie is torn off, however many are: mostly they are at one instant, or few.
+    """
+    h = t1 - t0
+    memory = ints[LAST]
+    ties = floats[STAGE] == BETWEEN
+    impact = torn = 1.0
+    count = 0
+    for k in range(ints[BODIES]):
+        if found[k] == 0.0:
+            continue
+        if ties:
+            torn = min(torn, torn_off(k, floats, ints))
+        if count > FEW:
+            continue
+        reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
+        set_out(k, h, y0, y1, path, mean, ints)
+        s, j = earliest(k, reach, path, floats, ints)
+        if s != NEVER and hits(s, floats[memory + WHOLE], j, path, mean, floats, ints):
+            impact = min(impact, s)
+            count += 1
+            if count > FEW and not ties:
+                return
+    first = min(torn, impact) if count <= FEW else torn
+    end = first * h + AFTER_IMPACT * floats[memory + WHOLE]
+    if first < 1.0 and end < h * (1.0 - AFTER_IMPACT) and t0 + end < floats[ASKED]:
+        floats[ASKED] = t0 + end
+        floats[memory + CUTS] += 1.0
+
+
+@lean(ANSWER, inner=True)
+def settle_found(t0, t1, y0, y1, found, path, mean, floats, ints):
+    """Settle the bodies with found[k] = 1, and note which ones rest."""
+    h = t1 - t0
+    resting = 0
+    ties = floats[STAGE] == BETWEEN
+    flat = is_flat(ints) and not ties
+    level, nx, ny, nz = surface(floats, ints, HEAD, 0.0, 0.0, 0.0)
+    for k in range(ints[BODIES]):
+        if found[k] == 0.0:
+            continue
+        if flat and lies(k, level, nx, ny, nz, y1, floats, ints):
+            floats[ints[LAST] + LIST + resting] = k
+            resting += 1
+            continue
+        reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
+        if ties:
+            let_go(k, floats, ints)
+        for j in range(ints[OBJECTS]):
+            if floats[ints[FRICTION]] > 0.0:
+                brake(t1, k, j, h, y0, y1, floats, ints)
+            keep(t1, k, j, y1, floats, ints)
+        pair = ints[PAIRS] + PAIR * k
+        if ints[OBJECTS] == 1 and floats[pair] != FREE and floats[pair + PRESS] < 0.0:
+            # Held on the only thing that it can meet.
+            floats[ints[LAST] + LIST + resting] = k
+            resting += 1
+            continue
+        set_out(k, h, y0, y1, path, mean, ints)
+        at, to = ints[POSITION] + 3 * k, ints[VELOCITY] + 3 * k
+        lost = fly(k, t1, max(h, floats[ints[LAST] + WHOLE]), reach, path, mean, floats, ints)
+        lost += push_out(reach, path, mean, floats, ints)
+        y1[ints[WORK]] += floats[ints[MASS] + k] * lost
+        for c in range(3):
+            y1[at + c], y1[to + c] = path[6 + c], path[9 + c]
+        rests = False
+        for j in range(ints[OBJECTS]):
+            rests = rests or floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)] != FREE
+        if rests:
+            floats[ints[LAST] + LIST + resting] = k
+            resting += 1
+    floats[ints[LAST] + RESTING] = resting
+    if resting > 0:
+        floats[ASKED] = HOLDS

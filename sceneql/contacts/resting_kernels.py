@@ -1,0 +1,132 @@
+# mypy: ignore-errors
+"""Resting contact: how a body comes to rest or slides, and what keeps it on the surface.
+
+The direction of Coulomb's friction turns at a rate of friction / speed: infinitely stiff as the speed goes to 0. So a
+body slower than CREEP sticks: friction there goes against the pull, not against the velocity, and what velocity is
+left is taken away once the pull is too weak. Only one that slides to its end, with little pull, stops by itself.
+"""
+
+import math
+
+from numba import types
+
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.contacts.impulse_kernels import (
+    FRICTION,
+    HEAD,
+    MASS,
+    OBJECTS,
+    PAIRS,
+    POSITION,
+    RADIUS,
+    REST_TIME,
+    STILL,
+    TALLY,
+    THICKNESS,
+    VELOCITY,
+    WORK,
+    scale_of,
+)
+from sceneql.contacts.memory_kernels import (
+    ALONG,
+    CREEPS,
+    EARLIER,
+    FREE,
+    KEEP,
+    LOAD,
+    PAIR,
+    PRESS,
+    PULL,
+    SLIDES,
+    STICKS,
+)
+from sceneql.contacts.pair_kernels import body_of
+from sceneql.contacts.shape_kernels import OBJECT, surface, velocity
+from sceneql.system_kernels import A, F, I, N
+
+CREEP = 1e-3
+"""Speed along the surface [m/s] below which friction goes against the pull."""
+
+
+@lean_inlined
+def set_velocity(k, x, y, z, state, floats, ints):
+    """Give body k a velocity; the kinetic energy that this takes is counted as dissipated."""
+    at = ints[VELOCITY] + 3 * k
+    before = state[at] ** 2 + state[at + 1] ** 2 + state[at + 2] ** 2
+    after = x * x + y * y + z * z
+    state[ints[WORK]] += 0.5 * floats[ints[MASS] + k] * (before - after)
+    state[at], state[at + 1], state[at + 2] = x, y, z
+
+
+@lean(types.void(F, N, F, F, F, F, F, F, A, I), inner=True)
+def come_to_rest(t, memory, vx, vy, vz, nx, ny, nz, floats, ints):
+    """Note that a pair rests from t on: sliding along v (relative to the surface), or sticking."""
+    if math.isnan(floats[ints[TALLY] + REST_TIME]):
+        floats[ints[TALLY] + REST_TIME] = t
+    vn = vx * nx + vy * ny + vz * nz
+    tx, ty, tz = vx - vn * nx, vy - vn * ny, vz - vn * nz
+    slip = math.sqrt(tx * tx + ty * ty + tz * tz)
+    slides = slip >= CREEP or floats[ints[FRICTION]] == 0.0
+    floats[memory] = SLIDES if slides else STICKS
+    floats[memory + EARLIER] = math.nan
+    if slip > 0.0:
+        floats[memory + ALONG] = tx / slip
+        floats[memory + ALONG + 1] = ty / slip
+        floats[memory + ALONG + 2] = tz / slip
+
+
+@lean(KEEP, inner=True)
+def keep(t, k, j, y, floats, ints):
+    """Hold a resting pair on its surface, or let it go when it has left: whether anything changed."""
+    memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
+    if floats[memory] == FREE:
+        return False
+    at = HEAD + OBJECT * j
+    px, py, pz, vx, vy, vz = body_of(ints, k, y)
+    ux, uy, uz = velocity(floats, ints, at, px, py, pz)
+    d, nx, ny, nz = surface(floats, ints, at, px, py, pz)
+    d -= floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
+    rx, ry, rz = vx - ux, vy - uy, vz - uz
+    vn = rx * nx + ry * ny + rz * nz
+    small = 1e-12 * scale_of(px, py, pz)
+    if d > small and vn > STILL and floats[memory + PRESS] >= 0.0:
+        floats[memory] = FREE
+        return True
+    changed = floats[memory + PRESS] < 0.0 and (abs(d) > small or abs(vn) > small)
+    if changed:
+        to = ints[POSITION] + 3 * k
+        y[to], y[to + 1], y[to + 2] = px - d * nx, py - d * ny, pz - d * nz
+        # What presses does work on that way.
+        y[ints[WORK]] -= floats[ints[MASS] + k] * floats[memory + PRESS] * d
+        set_velocity(k, vx - vn * nx, vy - vn * ny, vz - vn * nz, y, floats, ints)
+    if floats[memory] == CREEPS:
+        return changed
+    rx, ry, rz = rx - vn * nx, ry - vn * ny, rz - vn * nz
+    slip = math.sqrt(rx * rx + ry * ry + rz * rz)
+    most = floats[ints[FRICTION]] * floats[memory + LOAD]
+    if slip >= CREEP or (floats[memory] == SLIDES and floats[memory + PULL] > 0.5 * most):
+        come_to_rest(t, memory, rx, ry, rz, nx, ny, nz, floats, ints)
+    elif floats[memory] == STICKS and floats[memory + PULL] <= most and slip > 0.0:
+        set_velocity(k, vx - vn * nx - rx, vy - vn * ny - ry, vz - vn * nz - rz, y, floats, ints)
+        changed = True
+    return changed
+
+
+@lean_inlined
+def lies(k, level, nx, ny, nz, y, floats, ints):
+    """Whether body k lies on the plane n . x + level = 0 as it should, sticking or without friction.
+
+    Then `keep` and `brake` would change nothing.
+    """
+    memory = ints[PAIRS] + PAIR * k
+    px, py, pz, vx, vy, vz = body_of(ints, k, y)
+    if floats[memory + PRESS] >= 0.0:
+        return False
+    if floats[memory] == STICKS:
+        if vx != 0.0 or vy != 0.0 or vz != 0.0:
+            return False
+    elif floats[memory] != SLIDES or floats[ints[FRICTION]] != 0.0:
+        return False
+    d = level + (px * nx + py * ny + pz * nz) - floats[ints[RADIUS] + k] - floats[ints[THICKNESS]]
+    small = 1e-12 * scale_of(px, py, pz)
+    return abs(d) <= small and abs(vx * nx + vy * ny + vz * nz) <= small

@@ -1,0 +1,202 @@
+# mypy: ignore-errors
+"""Local contacts within a stage of Newton's method, y = base + a f(t, y): what keeps masses outside and holds them.
+
+A mass that may touch in the step (listed by back_off_in_stages_kernels) is tied to the surface from when the iteration
+has it inside until the tie pulls: its normal acceleration is that which has it end the stage on the surface. With the
+gap d at the place that the iteration has reached, that is n . (v + dv) = n . v - d/a (Stewart & Trinkle 1996).
+Coulomb's friction takes from its slip at the stage's end what it can, up to all of it (Moreau 1988).
+
+That ties the mass to the surface whatever its springs do, which slopes have to say without losing their symmetry: so
+what is left of a tie is multiplied by FIRM times the stiffest that springs have, and so are its slopes (Baraff & Witkin
+1998 change the matrix instead). Where ties leave nothing, at the solution, that changes nothing.
+"""
+
+import math
+
+import numpy as np
+
+from sceneql.compiled.kernels import kernel, lean_inlined
+from sceneql.contacts.impulse_kernels import (
+    BODIES,
+    FRICTION,
+    HEAD,
+    INVERSE,
+    LAST,
+    MASS,
+    OBJECTS,
+    PAIRS,
+    POSITION,
+    RADIUS,
+    THICKNESS,
+    VELOCITY,
+    WORK,
+)
+from sceneql.contacts.memory_kernels import (
+    ALONG,
+    EARLIER,
+    FREE,
+    HOLD,
+    LET_GO,
+    LIST,
+    LOAD,
+    NUMBER,
+    PAIR,
+    PRESS,
+    PULL,
+    RESTING,
+    STAGE,
+    TIED,
+    firmness,
+)
+from sceneql.contacts.pair_kernels import body_of
+from sceneql.contacts.shape_kernels import OBJECT, surface, velocity
+
+DEFINITE_AT = 2
+"""floats[2]: above 0 while slopes are asked for, and ties are to stay (system.Slopes)."""
+SWEEPS = 50
+"""Over the objects that a mass touches at once."""
+PATIENCE = 3
+"""Evaluations in which a tie has to pull before it is let go: forces of iterates far from the solution say little."""
+MOST_LET_GO = 2
+"""Times that a pair is let go in a stage; then it is left to the end of the step, so that the iteration ends."""
+
+
+@lean_inlined
+def change_tie(memory, gap, floats):
+    """Tie a pair that is inside; let go one that has been pulling."""
+    tied = floats[memory + TIED]
+    if tied == 0.0:
+        if gap < 0.0:
+            floats[memory + TIED] = 1.0
+    elif floats[memory + LOAD] >= 0.0:
+        floats[memory + TIED] = 1.0
+    elif tied < PATIENCE or floats[memory + LET_GO] >= MOST_LET_GO:
+        floats[memory + TIED] = tied + 1.0
+    else:
+        floats[memory + TIED] = 0.0
+        floats[memory + LET_GO] += 1.0
+
+
+@lean_inlined
+def press(k, a, base, fresh, y, rate, seen, floats, ints):
+    """Normal forces that close the gaps of ties, one after the other; ``fresh``: ties may change.
+
+    ``seen`` (4 objects,): gap and normal of each.
+    """
+    objects = ints[OBJECTS]
+    at, to = ints[POSITION] + 3 * k, ints[VELOCITY] + 3 * k
+    reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
+    ties = 0
+    for j in range(objects):
+        d, nx, ny, nz = surface(floats, ints, HEAD + OBJECT * j, y[at], y[at + 1], y[at + 2])
+        seen[4 * j], seen[4 * j + 1], seen[4 * j + 2], seen[4 * j + 3] = d - reach, nx, ny, nz
+        memory = ints[PAIRS] + PAIR * (k * objects + j)
+        if fresh:
+            change_tie(memory, d - reach, floats)
+        ties += floats[memory + TIED] > 0.0
+        floats[memory + LOAD] = floats[memory + PULL] = 0.0
+        floats[memory + PRESS] = rate[to] * nx + rate[to + 1] * ny + rate[to + 2] * nz
+    for _ in range(SWEEPS if ties > 1 else ties):
+        change = 0.0
+        for j in range(objects):
+            memory = ints[PAIRS] + PAIR * (k * objects + j)
+            if floats[memory + TIED] == 0.0:
+                continue
+            wanted = -seen[4 * j] / a
+            for c in range(3):
+                wanted += seen[4 * j + 1 + c] * (y[to + c] - floats[base + to + c] - a * rate[to + c])
+            add = wanted / a
+            floats[memory + LOAD] += add
+            for c in range(3):
+                rate[to + c] += add * seen[4 * j + 1 + c]
+            change = max(change, abs(add))
+        if change < 1e-12:
+            break
+    return ties
+
+
+@lean_inlined
+def rub(k, j, a, base, firm, nx, ny, nz, y, rate, floats, ints):
+    """Friction of a pair that presses: it holds, or goes against the slip at the stage's end.
+
+    Its bound is by the load of the step before, where there was one, so that slopes are symmetric. A mass that only
+    arrives has it from its impact.
+    """
+    memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
+    to = ints[VELOCITY] + 3 * k
+    load = max(0.0, floats[memory + LOAD]) if math.isnan(floats[memory + EARLIER]) else floats[memory + EARLIER]
+    most = floats[ints[FRICTION]] * load
+    if floats[memory] == FREE or not most > 0.0:
+        return
+    px, py, pz, vx, vy, vz = body_of(ints, k, y)
+    ux, uy, uz = velocity(floats, ints, HEAD + OBJECT * j, px, py, pz)
+    vx, vy, vz = vx - ux, vy - uy, vz - uz
+    vn = vx * nx + vy * ny + vz * nz
+    vx, vy, vz = vx - vn * nx, vy - vn * ny, vz - vn * nz
+    # The slip at the stage's end without friction.
+    sx = floats[base + to] + a * rate[to] - ux
+    sy = floats[base + to + 1] + a * rate[to + 1] - uy
+    sz = floats[base + to + 2] + a * rate[to + 2] - uz
+    sn = sx * nx + sy * ny + sz * nz
+    sx, sy, sz = sx - sn * nx, sy - sn * ny, sz - sn * nz
+    slip = math.sqrt(sx * sx + sy * sy + sz * sz)
+    if slip <= a * most:
+        part, tie = 1.0 / a, firm
+        dx = dy = dz = 0.0
+    else:
+        part, tie = most / slip, min(firm, most / (slip - a * most))
+        dx, dy, dz = sx / slip, sy / slip, sz / slip
+    floats[memory + PULL] = tie
+    floats[memory + ALONG], floats[memory + ALONG + 1], floats[memory + ALONG + 2] = dx, dy, dz
+    along = vx * dx + vy * dy + vz * dz
+    rate[to] -= part * sx + tie * (vx - along * dx)
+    rate[to + 1] -= part * sy + tie * (vy - along * dy)
+    rate[to + 2] -= part * sz + tie * (vz - along * dz)
+    rate[ints[WORK]] += floats[ints[MASS] + k] * part * (sx * vx + sy * vy + sz * vz)
+
+
+@lean_inlined
+def begins(floats, ints):
+    """Whether the stage is another one than last time."""
+    at = ints[LAST] + LIST + ints[BODIES] + 1
+    other = floats[at] != floats[NUMBER]
+    floats[at] = floats[NUMBER]
+    return other
+
+
+@kernel(HOLD, inner=True)
+def hold(y, rate, floats, ints):
+    """Add what the surfaces do to the accelerations of listed masses within a stage."""
+    a = floats[STAGE]
+    base = floats.size - 3 * y.size
+    firm = firmness(a, floats, ints)
+    objects = ints[OBJECTS]
+    seen = np.empty(4 * objects)
+    fresh = floats[DEFINITE_AT] == 0.0
+    first = begins(floats, ints)
+    for i in range(int(floats[ints[LAST] + RESTING])):
+        k = int(floats[ints[LAST] + LIST + i])
+        if floats[ints[INVERSE] + k] == 0.0:
+            continue
+        to = ints[VELOCITY] + 3 * k
+        for j in range(objects if first else 0):
+            memory = ints[PAIRS] + PAIR * (k * objects + j)
+            # What an earlier stage has stopped stays to the end of the step, for its impact.
+            stopped = floats[memory] == FREE and floats[memory + TIED] > 0.0
+            floats[memory + LET_GO] = MOST_LET_GO if stopped else 0.0
+        if press(k, a, base, fresh, y, rate, seen, floats, ints) == 0:
+            continue
+        for j in range(objects):
+            memory = ints[PAIRS] + PAIR * (k * objects + j)
+            if floats[memory + TIED] > 0.0:
+                gap, nx, ny, nz = seen[4 * j], seen[4 * j + 1], seen[4 * j + 2], seen[4 * j + 3]
+                rub(k, j, a, base, firm, nx, ny, nz, y, rate, floats, ints)
+                px, py, pz, vx, vy, vz = body_of(ints, k, y)
+                ux, uy, uz = velocity(floats, ints, HEAD + OBJECT * j, px, py, pz)
+                speed = (vx - ux) * nx + (vy - uy) * ny + (vz - uz) * nz
+                if floats[memory] != FREE:  # what an impact takes is told when the step is done
+                    rate[ints[WORK]] -= floats[ints[MASS] + k] * floats[memory + LOAD] * speed
+                tie = firm * gap / a
+                rate[to] -= tie * nx
+                rate[to + 1] -= tie * ny
+                rate[to + 2] -= tie * nz

@@ -1,0 +1,102 @@
+# mypy: ignore-errors
+"""Slopes of local contacts: within a stage of Newton's method (stage_contacts_kernels) or of resting_ties_kernels."""
+
+import math
+
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.contacts.impulse_kernels import (
+    FRICTION,
+    HEAD,
+    INVERSE,
+    LAST,
+    MASS,
+    OBJECTS,
+    PAIRS,
+    POSITION,
+    STILL,
+)
+from sceneql.contacts.memory_kernels import (
+    ALONG,
+    BETWEEN,
+    FREE,
+    LIST,
+    LOAD,
+    PAIR,
+    PULL,
+    RESTING,
+    SLIDES,
+    STAGE,
+    STICKS,
+    TIED,
+    firmness,
+    tightness,
+)
+from sceneql.contacts.pair_kernels import body_of
+from sceneql.contacts.shape_kernels import OBJECT, surface, velocity
+from sceneql.system_kernels import TERM
+
+
+@lean_inlined
+def add_square(entries, at, factor, x, y, z):
+    """Add factor times v v to the block, v = (x, y, z)."""
+    entries[at] += factor * x * x
+    entries[at + 1] += factor * x * y
+    entries[at + 2] += factor * x * z
+    entries[at + 3] += factor * y * x
+    entries[at + 4] += factor * y * y
+    entries[at + 5] += factor * y * z
+    entries[at + 6] += factor * z * x
+    entries[at + 7] += factor * z * y
+    entries[at + 8] += factor * z * z
+
+
+@lean_inlined
+def add_around(entries, at, across, along, nx, ny, nz, dx, dy, dz):
+    """Add what holds a mass along the normal n, and across both n and d."""
+    add_square(entries, at, across - along, nx, ny, nz)
+    add_square(entries, at, across, dx, dy, dz)
+    for c in range(0, 9, 4):
+        entries[at + c] -= across
+
+
+@lean_inlined
+def grip(memory, k, j, nx, ny, nz, y, floats, ints):
+    """How friction turns with the slip [1/s], and the slip's direction, of a pair that rests between steps."""
+    if floats[ints[FRICTION]] > 0.0 and floats[memory] == STICKS:
+        return tightness(floats, ints), 0.0, 0.0, 0.0
+    if floats[ints[FRICTION]] > 0.0 and floats[memory] == SLIDES:
+        px, py, pz, vx, vy, vz = body_of(ints, k, y)
+        ux, uy, uz = velocity(floats, ints, HEAD + OBJECT * j, px, py, pz)
+        vx, vy, vz = vx - ux, vy - uy, vz - uz
+        vn = vx * nx + vy * ny + vz * nz
+        vx, vy, vz = vx - vn * nx, vy - vn * ny, vz - vn * nz
+        slip = math.sqrt(vx * vx + vy * vy + vz * vz)
+        if slip > STILL:
+            return floats[ints[FRICTION]] * floats[memory + LOAD] / slip, vx / slip, vy / slip, vz / slip
+    return 0.0, 0.0, 0.0, 0.0
+
+
+@lean(TERM, inner=True)
+def holds(t, y, entries, floats, ints):
+    """Of body k, the block by its own velocity from 9 k on: ties, as firm as `hold` has left them in the memory."""
+    between = floats[STAGE] == BETWEEN
+    if floats[STAGE] <= 0.0 and not between:
+        return
+    firm = tightness(floats, ints) if between else firmness(floats[STAGE], floats, ints)
+    for i in range(int(floats[ints[LAST] + RESTING])):
+        k = int(floats[ints[LAST] + LIST + i])
+        if floats[ints[INVERSE] + k] == 0.0:
+            continue
+        at, mass = ints[POSITION] + 3 * k, floats[ints[MASS] + k]
+        for j in range(ints[OBJECTS]):
+            memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
+            if floats[memory + TIED] == 0.0 if not between else floats[memory] == FREE:
+                continue
+            _, nx, ny, nz = surface(floats, ints, HEAD + OBJECT * j, y[at], y[at + 1], y[at + 2])
+            if between:
+                across, dx, dy, dz = grip(memory, k, j, nx, ny, nz, y, floats, ints)
+            else:
+                # Across the slip, or both ways where the mass sticks.
+                across = floats[memory + PULL]
+                dx, dy, dz = floats[memory + ALONG], floats[memory + ALONG + 1], floats[memory + ALONG + 2]
+            add_around(entries, 9 * k, mass * across, mass * firm, nx, ny, nz, dx, dy, dz)

@@ -1,0 +1,115 @@
+# mypy: ignore-errors
+"""The normal force that carries bodies that rest, and Coulomb's friction: compiled when the first body needs them."""
+
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.contacts.impulse_kernels import (
+    BODIES,
+    FRICTION,
+    HEAD,
+    INVERSE,
+    LAST,
+    OBJECTS,
+    PAIRS,
+    VELOCITY,
+)
+from sceneql.contacts.memory_kernels import (
+    BETWEEN,
+    FREE,
+    LIST,
+    LOAD,
+    OF_BODY,
+    OF_PAIR,
+    PAIR,
+    PRESS,
+    RESTING,
+    STAGE,
+    SUPPORT,
+)
+from sceneql.contacts.pair_kernels import away, is_flat
+from sceneql.contacts.pressing_kernels import pressing
+from sceneql.contacts.shape_kernels import facing
+
+rub = late("sceneql.contacts.friction_kernels:rub", OF_BODY)
+carry = late("sceneql.contacts.carry_kernels:carry", OF_BODY)
+tie = late("sceneql.contacts.resting_ties_kernels:tie", OF_BODY)
+tie_one = late("sceneql.contacts.resting_ties_kernels:tie_one", OF_PAIR)
+
+
+@lean_inlined
+def press_of_pairs(k, near, y, rate, floats, ints):
+    """Store how each resting pair would press if nothing held it, and each free one if asked.
+
+    The number of resting ones; of the last of these the memory and the normal (3).
+    """
+    resting, last = 0, 0
+    nx, ny, nz = 0.0, 0.0, 0.0
+    for j in range(ints[OBJECTS]):
+        memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
+        rests = floats[memory] != FREE
+        if not rests and (not near or away(k, j, y, floats, ints)):
+            continue
+        press, ax, ay, az = pressing(k, j, y, rate, floats, ints)
+        floats[memory + LOAD] = 0.0
+        floats[memory + PRESS] = press
+        if rests:
+            resting += 1
+            last, nx, ny, nz = memory, ax, ay, az
+    return resting, last, nx, ny, nz
+
+
+@lean_inlined
+def bear(k, memory, nx, ny, nz, rate, floats, ints):
+    """The normal force that leaves a single resting pair not pressing."""
+    to = ints[VELOCITY] + 3 * k
+    load = max(0.0, -floats[memory + PRESS])
+    floats[memory + LOAD] = load
+    rate[to] += load * nx
+    rate[to + 1] += load * ny
+    rate[to + 2] += load * nz
+
+
+@lean_inlined
+def bear_lying(y, rate, floats, ints):
+    """What `support` does, on a single plane that never moves."""
+    _, nx, ny, nz = facing(floats, ints, HEAD, 0.0, 0.0, 0.0)
+    resting_at = ints[LAST] + LIST
+    for i in range(int(floats[ints[LAST] + RESTING])):
+        k = int(floats[resting_at + i])
+        memory, to = ints[PAIRS] + PAIR * k, ints[VELOCITY] + 3 * k
+        if floats[memory] == FREE or floats[ints[INVERSE] + k] == 0.0:
+            continue
+        floats[memory + PRESS] = rate[to] * nx + rate[to + 1] * ny + rate[to + 2] * nz
+        bear(k, memory, nx, ny, nz, rate, floats, ints)
+        if floats[ints[FRICTION]] > 0.0:
+            rub(k, y, rate, floats, ints)
+
+
+@lean(SUPPORT, inner=True)
+def support(first, y, rate, floats, ints):
+    """Take from the acceleration of bodies that rest what pushes into the surface, and add Coulomb's friction.
+
+    With ``first`` at least 0, bodies from that one on are looked at, and it is also noted how free pairs would press.
+    """
+    near = first >= 0
+    ties = floats[STAGE] == BETWEEN
+    if not near and not ties and is_flat(ints):
+        bear_lying(y, rate, floats, ints)
+        return
+    resting_at = ints[LAST] + LIST
+    count = ints[BODIES] if near else int(floats[ints[LAST] + RESTING])
+    for i in range(max(first, 0), count):
+        k = i if near else int(floats[resting_at + i])
+        if floats[ints[INVERSE] + k] == 0.0:
+            continue
+        resting, memory, nx, ny, nz = press_of_pairs(k, near, y, rate, floats, ints)
+        if resting > 1 and ties:
+            tie(k, y, rate, floats, ints)
+        elif resting == 1 and ties:
+            tie_one(k, memory, nx, ny, nz, y, rate, floats, ints)
+        elif resting > 1:
+            carry(k, y, rate, floats, ints)
+        elif resting == 1:
+            bear(k, memory, nx, ny, nz, rate, floats, ints)
+        if resting > 0 and floats[ints[FRICTION]] > 0.0:
+            rub(k, y, rate, floats, ints)

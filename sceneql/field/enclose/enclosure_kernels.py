@@ -1,0 +1,343 @@
+# mypy: ignore-errors
+"""First-order Taylor (affine) enclosures of a tape along a ray segment.
+
+On the segment o + t d, t = tm + h tau with tau in [-1, 1], every register is enclosed as c0 + c1 tau +- e (columns 0-2
+of its row of scratch), as in the affine arithmetic of Comba & Stolfi (1993) with one symbol kept: e shrinks with h^2,
+so that cutting the segment where the enclosure has no zero converges quadratically. Rounding is covered by widening e
+by some units in the last place of all that was added, and by some of its own.
+"""
+
+import numpy as np
+
+from sceneql.compiled.kernels import inlined, kernel
+from sceneql.field.enclose.forms_kernels import (
+    LARGE,
+    PAD,
+    TINY,
+    WIDER,
+    hull,
+    larger_of,
+    never_negative,
+    product,
+    spread,
+)
+from sceneql.field.enclose.sine_kernels import sine_cosine
+from sceneql.field.skeleton.density_enclosure_kernels import density_segment
+from sceneql.field.skeleton.skeleton_enclosure_kernels import skeleton_segment
+from sceneql.field.tape.tape_ops import (
+    ABS,
+    ADD,
+    ATAN2,
+    CONSTANT,
+    COPY,
+    COS,
+    DENSITY,
+    DIV,
+    EXP,
+    FLOOR,
+    LOG,
+    MAX,
+    MIN,
+    MUL,
+    NEG,
+    NOWHERE,
+    PARTIAL,
+    POW,
+    SIN,
+    SKELETON,
+    SQRT,
+    SQUARE,
+    SUB,
+    TAPE,
+    WHOLE,
+    X,
+    Y,
+    Z,
+)
+
+FAR = 1.0e150
+NEAR = 1.0e-300
+"""Beyond these numbers, and squares, slopes would be lost by underflow: next to nothing is claimed there."""
+
+
+@inlined
+def reciprocal(a0, a1, ea):
+    """Enclosure of 1/a where a keeps one sign: midway between the chord and the tangent parallel to it."""
+    reach = spread(a0, a1, ea)
+    near = abs(a0) - reach
+    far = abs(a0) + reach
+    if not (near > 0.0 and far < FAR):
+        return 0.0, 0.0, np.inf
+    slope = -1.0 / near / far
+    p = np.sqrt(1.0 / near)
+    q = np.sqrt(1.0 / far)
+    c0 = 0.5 * (p + q) * (p + q)
+    if a0 < 0.0:
+        c0 = -c0
+    e = 0.5 * (p - q) * (p - q) - slope * ea
+    return c0 + slope * a0, slope * a1, e + PAD * (abs(c0) + p * p)
+
+
+@inlined
+def square_root(a0, a1, ea):
+    """Enclosure of sqrt(a) where a >= 0: midway between the chord and the tangent parallel to it."""
+    reach = spread(a0, a1, ea)
+    high = a0 + reach
+    if not high > 0.0:
+        return 0.0, 0.0, 0.0
+    low = max(a0 - reach, 0.0)
+    p = np.sqrt(low)
+    q = np.sqrt(high)
+    slope = 1.0 / (p + q)
+    half_gap = 0.125 * (q - p) * (q - p) * slope
+    if a0 - reach < 0.0:
+        return hull(0.0, q)
+    return p * q * slope + half_gap + slope * a0, slope * a1, slope * ea + half_gap + PAD * q * 2.0
+
+
+@inlined
+def curve(f, slope, least, most, a1, ea):
+    """Taylor enclosure of a function of a with value and slope at a0, its second derivative in least..most."""
+    reach = abs(a1) + ea
+    low = 0.25 * min(least, 0.0) * reach * reach
+    high = 0.25 * max(most, 0.0) * reach * reach
+    e = high - low + abs(slope) * ea
+    return f + low + high, slope * a1, e + PAD * (abs(f) + abs(slope * a1))
+
+
+@inlined
+def sine(s, c, a1, ea):
+    """Enclosure of the sine about an argument whose sine and cosine are s and c; [-1, 1] where that is narrower."""
+    reach = abs(a1) + ea
+    if reach < 1.5:
+        c0, c1, e = curve(s, c, max(-s - reach, -1.0), min(reach - s, 1.0), a1, ea)
+        if e < 1.0:
+            return c0, c1, e + PAD
+    return 0.0, 0.0, 1.0 + PAD
+
+
+@inlined
+def exponential(a0, a1, ea):
+    """Enclosure of exp(a)."""
+    reach = spread(a0, a1, ea)
+    low = np.exp(a0 - reach)
+    high = np.exp(a0 + reach)
+    if reach > 1.0:
+        return hull(low, high)
+    f = np.exp(a0)
+    return curve(f, f, low, high, a1, ea)
+
+
+@inlined
+def logarithm(a0, a1, ea):
+    """Enclosure of log(a) where a > 0; nothing is claimed where a reaches 0."""
+    reach = spread(a0, a1, ea)
+    low = a0 - reach
+    if not low > 0.0:
+        return 0.0, 0.0, np.inf
+    if reach > low:
+        return hull(np.log(low), np.log(a0 + reach))
+    f = np.log(a0)
+    slope = 1.0 / a0
+    # The second derivative is -1/a^2; a^2 alone may overflow.
+    gap = 0.25 * (reach / low) * (reach / low)
+    return f - gap, slope * a1, gap + slope * ea + PAD * (abs(f) + abs(slope * a1))
+
+
+@inlined
+def power(a0, a1, ea, b0, b1, eb):
+    """Enclosure of a^b: exp(b log a) where a > 0; elsewhere a hull for a constant exponent > 0 that is no integer."""
+    reach = spread(a0, a1, ea)
+    if a0 > reach:
+        l0, l1, el = logarithm(a0, a1, ea)
+        p0, p1, ep = product(b0, b1, eb, l0, l1, el)
+        return exponential(p0, p1, ep)
+    if b1 == 0.0 and eb == 0.0 and b0 > 0.0 and b0 != np.floor(b0):
+        return hull(0.0, (a0 + reach) ** b0)
+    return 0.0, 0.0, np.inf
+
+
+@inlined
+def angle(y0, y1, ey, x0, x1, ex):
+    """Enclosure of atan2(y, x): Taylor with the second derivatives bounded by 1/r^2 of the nearest point.
+
+    Where the rectangle of arguments meets the cut x <= 0, y = 0 it is [-pi, pi].
+    """
+    reach_x = spread(x0, x1, ex)
+    reach_y = spread(y0, y1, ey)
+    near_x = max(abs(x0) - reach_x, 0.0)
+    near_y = max(abs(y0) - reach_y, 0.0)
+    if near_y == 0.0 and x0 - reach_x <= 0.0:
+        return 0.0, 0.0, np.pi + PAD * 4.0
+    r2 = x0 * x0 + y0 * y0
+    if not NEAR < r2 < LARGE:
+        return 0.0, 0.0, np.pi + PAD * 4.0
+    to_y = x0 / r2
+    to_x = -y0 / r2
+    remainder = 0.5 * (reach_x * reach_x + reach_y * reach_y) / (near_x * near_x + near_y * near_y)
+    if remainder > np.pi:
+        return 0.0, 0.0, np.pi + PAD * 4.0
+    e = abs(to_y) * ey + abs(to_x) * ex + remainder
+    return np.arctan2(y0, x0), to_y * y1 + to_x * x1, e + PAD * (4.0 + abs(to_y * y1) + abs(to_x * x1))
+
+
+@inlined
+def binary(op, a0, a1, ea, b0, b1, eb):
+    """Enclosure of the operations of two arguments that are seldom or long."""
+    if op == DIV:
+        r0, r1, er = reciprocal(b0, b1, eb)
+        return product(a0, a1, ea, r0, r1, er)
+    if op == MAX:
+        return larger_of(a0, a1, ea, b0, b1, eb)
+    if op == MIN:
+        m0, m1, em = larger_of(-a0, -a1, ea, -b0, -b1, eb)
+        return -m0, -m1, em
+    if op == POW:
+        return power(a0, a1, ea, b0, b1, eb)
+    return angle(a0, a1, ea, b0, b1, eb)
+
+
+@inlined
+def unary(op, a0, a1, ea):
+    """Enclosure of the operations of one argument that are seldom or long."""
+    if op == SQRT:
+        return square_root(a0, a1, ea)
+    if op == EXP:
+        return exponential(a0, a1, ea)
+    if op == LOG:
+        return logarithm(a0, a1, ea)
+    reach = spread(a0, a1, ea)
+    low = a0 - reach
+    high = a0 + reach
+    if op == ABS:
+        if low >= 0.0:
+            return a0, a1, ea
+        if high <= 0.0:
+            return -a0, -a1, ea
+        slope = a0 / reach
+        half_gap = -0.5 * low * (high / reach)
+        return slope * a0 + half_gap, slope * a1, abs(slope) * ea + half_gap + PAD * reach
+    if op == FLOOR:
+        return hull(np.floor(low), np.floor(high))
+    return hull(
+        -1.0 if low < 0.0 else (1.0 if low > 0.0 else 0.0), 1.0 if high > 0.0 else (-1.0 if high < 0.0 else 0.0)
+    )
+
+
+@inlined
+def domain(op, positive, a0, reach_a, b0, reach_b, b_constant):
+    """WHOLE, PARTIAL or NOWHERE: where an operation's value is a number, as far as the ranges of its arguments tell.
+
+    ``positive``: the first of them is never below 0.
+    """
+    if op == SQRT:
+        return WHOLE if positive or a0 >= reach_a else (NOWHERE if a0 + reach_a < 0.0 else PARTIAL)
+    if op == LOG:
+        return WHOLE if a0 > reach_a else (NOWHERE if a0 + reach_a < 0.0 else PARTIAL)
+    if op == DIV:
+        return WHOLE if abs(b0) > reach_b else PARTIAL
+    if op == POW:
+        if a0 > reach_a or (positive and b_constant and b0 > 0.0):
+            return WHOLE
+        return NOWHERE if a0 + reach_a < 0.0 and b_constant and b0 != np.floor(b0) else PARTIAL
+    return WHOLE
+
+
+@kernel(
+    f"Tuple((float64, float64, float64, int64))({TAPE}, float64, float64, float64, float64, float64, float64,"
+    " float64, float64, boolean)",
+    _nrt=False,
+)
+def segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, survey):
+    """(c0, c1, e, status) of f on the segment o + t d, t in [t0, t1]; ``scratch`` (rows, 8) is overwritten.
+
+    Wherever f is defined there, it lies in c0 + c1 tau +- e, t = (t0 + t1)/2 + tau (t1 - t0)/2. ``status`` says WHOLE
+    (defined all over), PARTIAL (perhaps not) or NOWHERE; e is infinite where nothing can be claimed. With ``survey``
+    the parts of density fields within reach of the segment are noted in scratch; a call without it must be for a piece
+    of the segment last surveyed.
+    """
+    middle = 0.5 * (t0 + t1)
+    half = 0.5 * (t1 - t0) + 2.0e-16 * (abs(t0) + abs(t1))
+    last = code.shape[0] - 1
+    status = WHOLE
+    for k in range(last + 1):
+        op = code[k, 0]
+        left = code[k, 1]
+        right = code[k, 2]
+        a0 = scratch[left, 0]
+        a1 = scratch[left, 1]
+        ea = scratch[left, 2]
+        b0 = scratch[right, 0]
+        b1 = scratch[right, 1]
+        eb = scratch[right, 2]
+        if op == MUL:
+            c0, c1, e = product(a0, a1, ea, b0, b1, eb)
+        elif op == ADD:
+            c0 = a0 + b0
+            c1 = a1 + b1
+            e = ea + eb + PAD * (abs(c0) + abs(c1))
+        elif op == SUB:
+            c0 = a0 - b0
+            c1 = a1 - b1
+            e = ea + eb + PAD * (abs(c0) + abs(c1))
+        elif op == SQUARE:
+            second = 0.5 * a1 * a1
+            size = abs(a0) + abs(a1)
+            c0 = a0 * a0 + second
+            c1 = 2.0 * a0 * a1
+            e = second + ea * (2.0 * size + ea) + (PAD * size * size + TINY)
+        elif op == CONSTANT:
+            c0 = constants[left]
+            c1 = e = 0.0
+        elif op == X or op == Y or op == Z:
+            o = ox if op == X else (oy if op == Y else oz)
+            d = dx if op == X else (dy if op == Y else dz)
+            c0 = o + middle * d
+            c1 = half * d
+            e = PAD * (abs(o) + abs(middle * d) + abs(c1))
+        elif op == COPY:
+            c0 = a0
+            c1 = a1
+            e = ea
+        elif op == NEG:
+            c0 = -a0
+            c1 = -a1
+            e = ea
+        elif op == DENSITY:
+            c0, c1, e = density_segment(parts, left, right, scratch, k, last + 1 + left, code[k, 3], survey)
+        elif op == SKELETON:
+            c0, c1, e = skeleton_segment(parts, left, right, scratch, k, last + 1 + left, code[k, 3], survey)
+        elif op == SIN or op == COS:
+            twin = code[k, 3]
+            if twin:
+                s = scratch[twin, 3]
+                c = scratch[twin, 4]
+            else:
+                s, c = sine_cosine(a0)
+                scratch[k, 3] = s
+                scratch[k, 4] = c
+            if op == COS:
+                s, c = c, -s
+            c0, c1, e = sine(s, c, a1, ea)
+        elif op <= ATAN2:
+            positive = never_negative(code[left, 0])
+            found = domain(op, positive, a0, abs(a1) + ea, b0, abs(b1) + eb, b1 == 0.0 and eb == 0.0)
+            if found == NOWHERE:
+                return 0.0, 0.0, np.inf, NOWHERE
+            status = max(status, found)
+            c0, c1, e = binary(op, a0, a1, ea, b0, b1, eb)
+            e += TINY
+        else:
+            found = domain(op, never_negative(code[left, 0]), a0, abs(a1) + ea, 0.0, 0.0, False)
+            if found == NOWHERE:
+                return 0.0, 0.0, np.inf, NOWHERE
+            status = max(status, found)
+            c0, c1, e = unary(op, a0, a1, ea)
+            e += TINY
+        e *= WIDER
+        if not e + abs(c0) + abs(c1) < LARGE:
+            return 0.0, 0.0, np.inf, PARTIAL
+        scratch[k, 0] = c0
+        scratch[k, 1] = c1
+        scratch[k, 2] = e
+    return c0, c1, e, status

@@ -1,0 +1,26 @@
+# mypy: ignore-errors
+"""Least and largest of many numbers, by their bits: integers are compared in any order, so that loops vectorize."""
+
+import numpy as np
+
+from sceneql.compiled.kernels import inlined
+
+SIGN, REST = np.int64(63), np.int64(0x7FFFFFFFFFFFFFFF)
+
+
+@inlined
+def number_of(key):
+    """The number with a key."""
+    return (key ^ ((key >> SIGN) & REST)).view(np.float64)
+
+
+@inlined
+def extent(row, n):
+    """(least, largest) of the first n > 0 numbers; NaN where one is."""
+    least, largest = REST, -REST
+    for i in range(n):
+        bits = row[i].view(np.int64)
+        key = bits ^ ((bits >> SIGN) & REST)
+        least = key if key < least else least
+        largest = key if key > largest else largest
+    return number_of(least), number_of(largest)

@@ -1,0 +1,299 @@
+# mypy: ignore-errors
+"""Interval bounds of a tape over a box, rounded outward, to cull what a solid cannot reach.
+
+A bound may be infinite: what a number too large or a pole makes of what comes after is still enclosed.
+"""
+
+import numpy as np
+from numba import types
+
+from sceneql.compiled.kernels import inlined, kernel
+from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.field.enclose.forms_kernels import never_negative
+from sceneql.field.enclose.sine_kernels import sine_cosine
+from sceneql.field.tape.order_kernels import sign_of
+from sceneql.field.tape.tape_ops import (
+    ABS,
+    ADD,
+    ATAN2,
+    CONSTANT,
+    COPY,
+    COS,
+    DENSITY,
+    DIV,
+    EXP,
+    FLOOR,
+    LOG,
+    MAX,
+    MIN,
+    MUL,
+    NEG,
+    NOWHERE,
+    PARTIAL,
+    POW,
+    SIN,
+    SKELETON,
+    SQRT,
+    SQUARE,
+    SUB,
+    TAPE,
+    WHOLE,
+    X,
+    Y,
+    Z,
+)
+
+LARGE = 1.0e300
+ULPS = 1.2e-15
+"""Five units in the last place: more than any library function is off."""
+TINY = 1.0e-300
+TURN = 2.0 * np.pi
+OF_PARTS = types.UniTuple(types.float64, 2)(
+    types.float64[:, ::1], types.int64, types.int64, types.float64[:, ::1], types.int64
+)
+density_box = late("sceneql.field.skeleton.parts_box_kernels:density_box", OF_PARTS)
+skeleton_box = late("sceneql.field.skeleton.parts_box_kernels:skeleton_box", OF_PARTS)
+
+
+@inlined
+def outward(low, high):
+    """The interval widened by its rounding; infinite bounds stay so."""
+    down = min(low * (1.0 - ULPS), low * (1.0 + ULPS))
+    up = max(high * (1.0 - ULPS), high * (1.0 + ULPS))
+    return down - TINY, up + TINY
+
+
+@inlined
+def hull4(p, q, r, s):
+    """Least interval with four numbers."""
+    return outward(min(min(p, q), min(r, s)), max(max(p, q), max(r, s)))
+
+
+@inlined
+def products(a, b, c, d):
+    """Interval of [a, b] [c, d]; zero times an infinite bound is zero: no number is infinite."""
+    p = a * c
+    q = a * d
+    r = b * c
+    s = b * d
+    if np.isnan(p + q + r + s):
+        p = 0.0 if a == 0.0 or c == 0.0 else p
+        q = 0.0 if a == 0.0 or d == 0.0 else q
+        r = 0.0 if b == 0.0 or c == 0.0 else r
+        s = 0.0 if b == 0.0 or d == 0.0 else s
+    return hull4(p, q, r, s)
+
+
+@inlined
+def quotients(a, b, c, d):
+    """Interval of [a, b] / [c, d] with one sign of the divisor; anything over an infinite bound is zero."""
+    p = a / c
+    q = a / d
+    r = b / c
+    s = b / d
+    if np.isnan(p + q + r + s):
+        p = 0.0 if abs(c) == np.inf else p
+        q = 0.0 if abs(d) == np.inf else q
+        r = 0.0 if abs(c) == np.inf else r
+        s = 0.0 if abs(d) == np.inf else s
+    return hull4(p, q, r, s)
+
+
+@inlined
+def over_zero(a, b, d):
+    """Interval of [a, b] / [0, d], which is not defined at zero."""
+    if a >= 0.0:
+        return outward(a / d, np.inf)
+    return outward(-np.inf, b / d if b <= 0.0 else np.inf)
+
+
+@inlined
+def squared(low, high):
+    """Interval of the square."""
+    p = low * low
+    q = high * high
+    return 0.0 if low <= 0.0 <= high else min(p, q), max(p, q)
+
+
+@inlined
+def wave(low, high, peak):
+    """Interval of the cosine of a - peak."""
+    if high - low >= TURN or abs(low) > 1.0e6 or abs(high) > 1.0e6:
+        return -1.0, 1.0
+    first = sine_cosine(low - peak)[1]
+    second = sine_cosine(high - peak)[1]
+    bottom = min(first, second) - ULPS
+    top = max(first, second) + ULPS
+    # Whole turns from the peak, and from the trough, that lie within the interval or a hair outside.
+    hair = 1.0e-9
+    if np.floor((high - peak) / TURN + hair) >= np.ceil((low - peak) / TURN - hair):
+        top = 1.0
+    if np.floor((high - peak) / TURN - 0.5 + hair) >= np.ceil((low - peak) / TURN - 0.5 - hair):
+        bottom = -1.0
+    return max(bottom, -1.0), min(top, 1.0)
+
+
+@inlined
+def binary_box(op, a, b, c, d):
+    """(low, high, status) of an operation on [a, b] and [c, d]."""
+    if op == ADD:
+        low, high = outward(a + c, b + d)
+        if a >= 0.0 and c >= 0.0:
+            low = max(low, 0.0)  # so that a sum of squares has a square root
+    elif op == SUB:
+        low, high = outward(a - d, b - c)
+    elif op == MUL:
+        low, high = products(a, b, c, d)
+    elif op == MIN:
+        return min(a, c), min(b, d), WHOLE
+    elif op == MAX:
+        return max(a, c), max(b, d), WHOLE
+    elif op == DIV:
+        if c <= 0.0 <= d:
+            return -np.inf, np.inf, PARTIAL
+        low, high = quotients(a, b, c, d)
+    elif op == POW:
+        if c < d:  # the builder has other ways for exponents that vary but not by whole numbers
+            c, d = np.ceil(c), np.floor(d)
+        if a > 0.0:
+            low, high = hull4(a**c, a**d, b**c, b**d)
+        elif c == d and c > 0.0 and c != np.floor(c):
+            if b < 0.0:
+                return 0.0, 0.0, NOWHERE
+            low, high = outward(0.0, b**c)
+            return max(low, 0.0), high, PARTIAL if a < 0.0 else WHOLE
+        elif c == d == np.floor(c) and (c >= 0.0 or b < 0.0):
+            low, high = hull4(a**c, a**c, b**c, b**c)
+            if c > 0.0 and 0.5 * c == np.floor(0.5 * c):
+                low = 0.0 if b >= 0.0 else max(low, 0.0)
+        elif a == 0.0 and c >= 0.0:
+            low, high = outward(0.0, max(1.0, max(b**c, b**d)))
+            return 0.0, high, WHOLE
+        else:
+            return -np.inf, np.inf, PARTIAL
+    elif c <= 0.0 and a <= 0.0 <= b:
+        low, high = outward(-np.pi, np.pi)
+    else:
+        low, high = hull4(np.arctan2(a, c), np.arctan2(a, d), np.arctan2(b, c), np.arctan2(b, d))
+    return low, high, WHOLE
+
+
+@inlined
+def unary_box(op, a, b):
+    """(low, high, status) of an operation on [a, b]."""
+    status = WHOLE
+    if op == NEG:
+        low, high = -b, -a
+    elif op == ABS:
+        low = 0.0 if a <= 0.0 <= b else min(abs(a), abs(b))
+        high = max(abs(a), abs(b))
+    elif op == SQUARE:
+        low, high = squared(a, b)
+        low, high = outward(low, high)
+        low = max(low, 0.0)
+    elif op == SQRT:
+        if b < 0.0:
+            return 0.0, 0.0, NOWHERE
+        status = WHOLE if a >= 0.0 else PARTIAL
+        low, high = outward(np.sqrt(max(a, 0.0)), np.sqrt(b))
+        low = max(low, 0.0)
+    elif op == SIN:
+        low, high = wave(a, b, 0.25 * TURN)
+    elif op == COS:
+        low, high = wave(a, b, 0.0)
+    elif op == EXP:
+        low, high = outward(np.exp(a), np.exp(b))
+        low = max(low, 0.0)
+    elif op == LOG:
+        if b < 0.0:
+            return 0.0, 0.0, NOWHERE
+        status = WHOLE if a > 0.0 else PARTIAL
+        low, high = outward(np.log(a) if a > 0.0 else -np.inf, np.log(b))
+    elif op == FLOOR:
+        low, high = np.floor(a), np.floor(b)
+    elif op == COPY:
+        low, high = a, b
+    else:
+        low, high = sign_of(a), sign_of(b)
+    return low, high, status
+
+
+@inlined
+def over_cut(code, scratch, k):
+    """Whether the angle of row k, of which whole turns do not matter, is taken across its cut: y = 0 > x."""
+    y = code[k, 1]
+    return code[k, 3] != 0 and scratch[code[k, 2], 1] < 0.0 and scratch[y, 0] <= 0.0 <= scratch[y, 1]
+
+
+@inlined
+def finite(scratch, k):
+    """Whether the bounds of a row are."""
+    return scratch[k, 0] > -LARGE and scratch[k, 1] < LARGE
+
+
+@inlined
+def positive_or_zero(op):
+    """Whether a zero that bounds values of an operation from below is +0, so that one over it is +infinity."""
+    return never_negative(op) or op == ADD
+
+
+@kernel(f"Tuple((float64, float64, int64))({TAPE}, float64, float64, float64, float64, float64, float64)", _nrt=False)
+def box(code, constants, parts, scratch, x0, x1, y0, y1, z0, z1):
+    """(low, high, status): f lies in low..high wherever it is defined in the box; ``scratch`` (rows, 8) is overwritten.
+
+    So do all rows, but for angles of which whole turns do not matter: they go on beyond pi.
+
+    ``status`` says WHOLE (defined all over), PARTIAL (perhaps not, or too large for float64) or NOWHERE. Where nothing
+    can be claimed, as for a box that is no numbers or upside down, the answer is (-inf, inf, PARTIAL).
+    """
+    last = code.shape[0] - 1
+    status = WHOLE
+    for k in range(last + 1):
+        op = code[k, 0]
+        left = code[k, 1]
+        right = code[k, 2]
+        found = WHOLE
+        if op == CONSTANT:
+            low = high = constants[left]
+        elif op == X:
+            low = x0
+            high = x1
+        elif op == Y:
+            low = y0
+            high = y1
+        elif op == Z:
+            low = z0
+            high = z1
+        elif op == DENSITY or op == SKELETON:
+            p = code[k, 3]
+            if finite(scratch, p) and finite(scratch, p + 1) and finite(scratch, p + 2):
+                if op == DENSITY:
+                    low, high = density_box(parts, left, right, scratch, p)
+                else:
+                    low, high = skeleton_box(parts, left, right, scratch, p)
+            else:
+                low = -np.inf
+                high = np.inf
+        elif op == DIV and scratch[right, 0] == 0.0 < scratch[right, 1] and positive_or_zero(code[right, 0]):
+            low, high = over_zero(scratch[left, 0], scratch[left, 1], scratch[right, 1])
+            found = PARTIAL
+        elif op == ATAN2 and over_cut(code, scratch, k):
+            # pi - atan2(y, -x), or a whole turn less
+            low, high, _ = binary_box(op, scratch[left, 0], scratch[left, 1], -scratch[right, 1], -scratch[right, 0])
+            low, high = outward(np.pi - high, np.pi - low)
+        elif op <= ATAN2 and op != COPY:
+            low, high, found = binary_box(op, scratch[left, 0], scratch[left, 1], scratch[right, 0], scratch[right, 1])
+        else:
+            low, high, found = unary_box(op, scratch[left, 0], scratch[left, 1])
+        if found == NOWHERE:
+            return np.inf, -np.inf, NOWHERE
+        status = max(status, found)
+        if not low <= high:
+            return -np.inf, np.inf, PARTIAL
+        if low <= -LARGE or high >= LARGE:
+            status = max(status, PARTIAL)
+            low = min(low, LARGE)
+            high = max(high, -LARGE)
+        scratch[k, 0] = low
+        scratch[k, 1] = high
+    return low, high, status

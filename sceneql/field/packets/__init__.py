@@ -1,0 +1,1 @@
+"""First roots along packets of neighboring rays, in lanes."""

@@ -1,0 +1,100 @@
+# mypy: ignore-errors
+"""The enclosure of a whole tape in lanes: see ``packet_kernels``. A density alone and its bundles do without."""
+
+import numpy as np
+
+from sceneql.compiled.kernels import lean
+from sceneql.field.enclose.affine_kernels import ZERO, F
+from sceneql.field.enclose.forms_kernels import row_never_negative
+from sceneql.field.packets.packet_density_kernels import density_lanes
+from sceneql.field.packets.packet_kernels import (
+    C1,
+    ENCLOSE,
+    LANES,
+    E,
+    binary_lanes,
+    common_lanes,
+    scale_lanes,
+    skeleton_lanes,
+    turn_lanes,
+    unary_lanes,
+    wave_lanes,
+)
+from sceneql.field.tape.tape_ops import (
+    ADD,
+    ATAN2,
+    CONSTANT,
+    COPY,
+    COS,
+    DENSITY,
+    MUL,
+    NEG,
+    SIGN,
+    SIN,
+    SKELETON,
+    SQUARE,
+    SUB,
+    X,
+    Z,
+)
+
+
+@lean(ENCLOSE, inner=True)
+def enclose(code, constants, parts, registers, point, status, n):
+    """Enclose f in n lanes, into the last operation's register; ``status`` (LANES,) gets WHOLE, PARTIAL or NOWHERE.
+
+    Nothing is claimed of a lane in which c0, c1 or e is not finite. ``parts`` are those of packet_parts.
+    """
+    for i in range(n):
+        status[i] = ZERO
+    for k in range(code.shape[0]):
+        op = code[k, 0]
+        left = code[k, 1]
+        right = code[k, 2]
+        out = registers[k]
+        if op == CONSTANT:
+            continue
+        if op >= X and op <= Z:
+            p = point[op - X]
+            for i in range(3 * LANES):
+                out[i] = p[i]
+            continue
+        if op == DENSITY:
+            p = code[k, 3]
+            density_lanes(parts, left, right, registers[p], registers[p + 1], registers[p + 2], out, n)
+            continue
+        if op == SKELETON:
+            p = code[k, 3]
+            skeleton_lanes(parts, left, right, registers[p], registers[p + 1], registers[p + 2], out, n)
+            continue
+        a = registers[left]
+        b = registers[right]
+        if op == MUL:
+            if code[left, 0] == CONSTANT:
+                scale_lanes(b, a, out, n)
+            elif code[right, 0] == CONSTANT:
+                scale_lanes(a, b, out, n)
+            else:
+                common_lanes(op, a, b, out, n)
+        elif op == ADD or op == SUB or op == SQUARE:
+            common_lanes(op, a, b, out, n)
+        elif op == NEG:
+            for i in range(n):
+                out[i] = -a[i]
+                out[C1 + i] = -a[C1 + i]
+                out[E + i] = a[E + i]
+        elif op == COPY:
+            for i in range(3 * LANES):
+                out[i] = a[i]
+        elif op == SIN or op == COS:
+            twin = registers[code[k, 3] if code[k, 3] else k]
+            if code[k, 3] == 0:
+                turn_lanes(a, out, n)
+            wave_lanes(op, a, out, twin, n)
+        elif op <= ATAN2:
+            binary_lanes(op, a, b, out, n, status, row_never_negative(code, left))
+        elif op <= SIGN:
+            unary_lanes(op, a, out, n, status, row_never_negative(code, left))
+        else:  # nothing is claimed of an operation that has no lanes
+            for i in range(n):
+                out[i] = F(np.nan)

@@ -1,0 +1,266 @@
+# mypy: ignore-errors
+"""First-order enclosures of a tape on many ray segments at once: operations in the outer loop, lanes in the inner one.
+
+float32; what is enclosed is the tape's value in exact arithmetic, as by ``enclosure_kernels.segment``. ``registers``
+(rows, WIDTH) has c0, c1 and e of an operation in its first three columns of LANES each, then the sine and cosine of an
+angle for its twin; of ``point`` (3, WIDTH), the enclosures of x, y and z, the first n lanes count, n a multiple of 16.
+"""
+
+import numpy as np
+from numba import types
+from numba.core.sigutils import normalize_signature
+
+from sceneql.compiled.kernels import inlined
+from sceneql.compiled.lanes_kernels import load, store
+from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.field.enclose.affine_kernels import (
+    GROW,
+    PAD,
+    TINY,
+    ZERO,
+    F,
+    absolute,
+    difference,
+    floored,
+    fraction,
+    grown,
+    larger_of,
+    logged,
+    power,
+    product,
+    reciprocal,
+    scaled,
+    signed,
+    square_root,
+    squared,
+    total,
+    turned,
+    wave,
+)
+from sceneql.field.tape.single_kernels import lane, sine_cosine
+from sceneql.field.tape.tape_ops import (
+    ABS,
+    ADD,
+    CONSTANT,
+    DIV,
+    EXP,
+    FLOOR,
+    LOG,
+    MAX,
+    MIN,
+    MUL,
+    NOWHERE,
+    PARTIAL,
+    POW,
+    SIN,
+    SQRT,
+    SUB,
+    WHOLE,
+)
+
+LANES, VECTOR = 64, 16
+C1, E, SINE, COSINE, WIDTH = LANES, 2 * LANES, 3 * LANES, 4 * LANES, 5 * LANES
+"""Columns of a register."""
+TWICE, FIVE_TIMES = F(1.2e-7), F(3.0e-7)
+"""Half units in the last place."""
+PACKET = "int32[:, ::1], float64[::1], float32[:, ::1], float32[:, ::1], float32[:, ::1]"
+"""Types of (code, constants, parts, registers, point)."""
+ENCLOSE = types.void(*normalize_signature(f"void({PACKET}, float32[::1], int64)")[0])
+enclose = late("sceneql.field.packets.enclose_kernels:enclose", ENCLOSE)
+_singles, _row, _many = types.float32[:, ::1], types.float32[::1], types.int64
+SKELETON_LANES = types.void(_singles, _many, _many, _row, _row, _row, _row, _many)
+skeleton_lanes = late("sceneql.field.packets.packet_skeleton_kernels:skeleton_lanes", SKELETON_LANES)
+BUNDLE = f"{PACKET}, float32[::1], float32[::1], int64[::1], float64[:, ::1], float32[:, ::1], int64[::1]"
+MEMORY = "float64[:, ::1]," * 6 + "int32[:, ::1], float32[:, ::1], float64[:, ::1]"
+"""Types of a bundle of rays, and of what a tape works in: see ``packets.Memory``."""
+_wide = types.float64[:, ::1]
+KEEP_SKELETON = types.UniTuple(_many, 2)(
+    _many, _many, _row, _row, _row, _row, _many, _many, _singles, _wide, _many, _singles, _wide
+)  # fmt: skip
+keep_skeleton = late("sceneql.field.packets.packet_near_kernels:keep_skeleton", KEEP_SKELETON)
+_place = types.float64
+TAPE_ROOTS = types.Tuple((types.int64, types.int64, types.int64, _place, _place, _place))(
+    *normalize_signature(f"void({BUNDLE}, int64, int64, boolean, {MEMORY}, int64[::1])")[0]
+)
+tape_roots = late("sceneql.field.packets.tape_bundle_kernels:tape_roots", TAPE_ROOTS)
+CHECK_INSIDE = types.void(
+    types.int32[:, ::1],
+    types.float64[::1],
+    _wide,
+    _wide,
+    _wide,
+    _wide,
+    types.int64[::1],
+    _many,
+    _many,
+    types.float64,
+    _wide,
+)
+check_inside = late("sceneql.field.packets.inside_kernels:check_inside", CHECK_INSIDE)
+
+
+@lane
+def worse(status, i, safe, never):
+    """Note in a lane where an operation is defined."""
+    found = F(WHOLE) if safe else (F(NOWHERE) if never else F(PARTIAL))
+    status[i] = found if found > status[i] else status[i]
+
+
+@inlined
+def load_constants(code, constants, registers):
+    """Fill the registers of constants, once for all evaluations of a tape."""
+    for k in range(code.shape[0]):
+        if code[k, 0] == CONSTANT:
+            number = constants[code[k, 1]]
+            c0 = F(number)
+            e = ZERO if float(c0) == number else abs(c0) * TWICE + TINY
+            for i in range(LANES):
+                registers[k, i] = c0
+                registers[k, C1 + i] = ZERO
+                registers[k, E + i] = e
+
+
+@inlined
+def taken(row, i):
+    """c0, c1 and e of VECTOR lanes of a register from the ith on."""
+    return load(row, i), load(row, C1 + i), load(row, E + i)
+
+
+@inlined
+def put(row, i, c0, c1, e):
+    """Write c0, c1 and e of VECTOR lanes of a register from the ith on."""
+    store(row, i, c0)
+    store(row, C1 + i, c1)
+    store(row, E + i, e)
+
+
+@inlined
+def common_lanes(op, a, b, out, n):
+    """Sums, differences, products and squares."""
+    for i in range(0, n, VECTOR):
+        a0, a1, ea = taken(a, i)
+        b0, b1, eb = taken(b, i)
+        if op == MUL:
+            c0, c1, e = product(a0, a1, ea, b0, b1, eb)
+        elif op == ADD:
+            c0, c1, e = total(a0, a1, ea, b0, b1, eb)
+        elif op == SUB:
+            c0, c1, e = difference(a0, a1, ea, b0, b1, eb)
+        else:
+            c0, c1, e = squared(a0, a1, ea)
+        put(out, i, c0, c1, e)
+
+
+@inlined
+def scale_lanes(a, b, out, n):
+    """A product with the constant in b."""
+    s = b[0]
+    es = b[E]
+    for i in range(0, n, VECTOR):
+        a0, a1, ea = taken(a, i)
+        c0, c1, e = scaled(a0, a1, ea, s, es)
+        put(out, i, c0, c1, e)
+
+
+@inlined
+def unary_lanes(op, a, out, n, status, positive):
+    """The operations of one argument that are seldom; ``positive``: that is never below 0."""
+    if op == ABS:
+        for i in range(n):
+            out[i], out[C1 + i], out[E + i] = absolute(a[i], a[C1 + i], a[E + i])
+    elif op == SQRT:
+        for i in range(n):
+            c0, c1, e = a[i], a[C1 + i], a[E + i]
+            out[i], out[C1 + i], out[E + i] = square_root(c0, c1, e)
+            reach = (abs(c1) + e) * GROW + PAD * abs(c0)
+            worse(status, i, positive or c0 >= reach, c0 + reach < ZERO and not positive)
+    elif op == EXP:
+        for i in range(n):
+            out[i], out[C1 + i], out[E + i] = grown(a[i], a[C1 + i], a[E + i])
+    elif op == LOG:
+        for i in range(n):
+            c0, c1, e = a[i], a[C1 + i], a[E + i]
+            out[i], out[C1 + i], out[E + i] = logged(c0, c1, e)
+            reach = (abs(c1) + e) * GROW + PAD * abs(c0)
+            worse(status, i, c0 > reach, c0 + reach < ZERO)
+    elif op == FLOOR:
+        for i in range(n):
+            out[i], out[C1 + i], out[E + i] = floored(a[i], a[C1 + i], a[E + i])
+    else:
+        for i in range(n):
+            out[i], out[C1 + i], out[E + i] = signed(a[i], a[C1 + i], a[E + i])
+
+
+@inlined
+def binary_lanes(op, a, b, out, n, status, positive):
+    """The operations of two arguments that are seldom; ``positive``: the first is never below 0."""
+    if op == DIV:
+        for i in range(n):
+            b0, b1, eb = b[i], b[C1 + i], b[E + i]
+            r0, r1, er = reciprocal(b0, b1, eb)
+            out[i], out[C1 + i], out[E + i] = product(a[i], a[C1 + i], a[E + i], r0, r1, er)
+            worse(status, i, er < F(np.inf), False)
+    elif op == MAX:
+        for i in range(n):
+            out[i], out[C1 + i], out[E + i] = larger_of(a[i], a[C1 + i], a[E + i], b[i], b[C1 + i], b[E + i])
+    elif op == MIN:
+        for i in range(n):
+            c0, c1, e = larger_of(-a[i], -a[C1 + i], a[E + i], -b[i], -b[C1 + i], b[E + i])
+            out[i] = -c0
+            out[C1 + i] = -c1
+            out[E + i] = e
+    elif op == POW:
+        for i in range(n):
+            a0, a1, ea = a[i], a[C1 + i], a[E + i]
+            b0, b1, eb = b[i], b[C1 + i], b[E + i]
+            out[i], out[C1 + i], out[E + i] = power(a0, a1, ea, b0, b1, eb)
+            reach = (abs(a1) + ea) * GROW + PAD * abs(a0)
+            plain = fraction(b0, b1, eb)
+            safe = a0 > reach or (positive and plain and b0 > ZERO)
+            worse(status, i, safe, a0 + reach < ZERO and plain and not positive)
+    else:
+        for i in range(n):
+            out[i], out[C1 + i], out[E + i] = turned(a[i], a[C1 + i], a[E + i], b[i], b[C1 + i], b[E + i])
+
+
+@inlined
+def turn_lanes(a, out, n):
+    """Sine and cosine of an angle, for both."""
+    for i in range(n):
+        s, c = sine_cosine(a[i])
+        out[SINE + i] = s
+        out[COSINE + i] = c
+
+
+@inlined
+def wave_lanes(op, a, out, twin, n):
+    """Sine or cosine; ``twin`` is the register that keeps both."""
+    if op == SIN:
+        for i in range(n):
+            out[i], out[C1 + i], out[E + i] = wave(twin[SINE + i], twin[COSINE + i], a[i], a[C1 + i], a[E + i])
+    else:
+        for i in range(n):
+            out[i], out[C1 + i], out[E + i] = wave(twin[COSINE + i], -twin[SINE + i], a[i], a[C1 + i], a[E + i])
+
+
+@lane
+def placed(o, d, middle, half):
+    """Enclosure of o + t d, t = middle + half tau, where each of the numbers may be off by half a unit."""
+    c1 = half * d
+    way = middle * d
+    return o + way, c1, TWICE * abs(o) + FIVE_TIMES * (abs(way) + abs(c1)) + TINY
+
+
+@lane
+def place(row, i, o, d, middle, half):
+    """The same, into lane i."""
+    row[i], row[C1 + i], row[E + i] = placed(o, d, middle, half)
+
+
+@inlined
+def has(code, op):
+    """Whether a tape has an operation."""
+    for k in range(code.shape[0]):
+        if code[k, 0] == op:
+            return True
+    return False

@@ -1,0 +1,90 @@
+# mypy: ignore-errors
+"""Which parts of skeletons are near what many ray segments enclose, in float32: those of a bundle are kept."""
+
+from sceneql.compiled.kernels import inlined, lean
+from sceneql.compiled.lanes_kernels import bits_below, load
+from sceneql.field.packets.packet_density_kernels import (
+    C1,
+    GROW,
+    INFINITE,
+    TINY,
+    VECTOR,
+    apart,
+    looked_at,
+    near_box,
+    sizes,
+)
+from sceneql.field.packets.packet_kernels import KEEP_SKELETON
+from sceneql.field.packets.packet_rows import FAR, LOW_X, LOW_Y, LOW_Z, PART
+from sceneql.field.skeleton.skeleton_parts_kernels import NODE, SHAPE, STRIDE
+
+
+@inlined
+def off_box(parts, k, x, y, z):
+    """The square of how far places are off the box around part k."""
+    gx = apart(x, x, parts[LOW_X, k], parts[LOW_X + 1, k])
+    gy = apart(y, y, parts[LOW_Y, k], parts[LOW_Y + 1, k])
+    gz = apart(z, z, parts[LOW_Z, k], parts[LOW_Z + 1, k])
+    return gx * gx + gy * gy + gz * gz
+
+
+@inlined
+def lanes_within(off, far):
+    """Bits of the lanes where ``off`` is no more than far^2; where a place is not a number, nothing is known."""
+    return ~bits_below(far * far * GROW + TINY, off) & ((1 << VECTOR) - 1)
+
+
+@inlined
+def within_reach(parts, k, x, y, z, spare, first, stop):
+    """(whether part k may have a density in one of the lanes first..stop-1, whose ``sizes`` are in ``spare``; the same
+    for the middle of what is enclosed in them)."""
+    found, middle = False, False
+    for i in range(first // VECTOR * VECTOR, stop, VECTOR):
+        off, far = off_box(parts, k, load(x, i), load(y, i), load(z, i)), parts[FAR, k + 1]
+        chosen = (1 << min(stop - i, VECTOR)) - (1 << max(first - i, 0))
+        if lanes_within(off, far + load(spare, i)) & chosen != 0:
+            found = True
+            way = abs(load(x, C1 + i)) + abs(load(y, C1 + i)) + abs(load(z, C1 + i))
+            middle = middle or lanes_within(off, far + way) & chosen != 0
+    return found, middle
+
+
+@inlined
+def box_around(x, y, z, first, stop):
+    """(box around what is enclosed in lanes first..stop-1 and some beside, whether all of it are numbers)."""
+    ax, bx, ay, by, az, bz = INFINITE, -INFINITE, INFINITE, -INFINITE, INFINITE, -INFINITE
+    known = True
+    for i in range(first // VECTOR * VECTOR, stop, VECTOR):
+        seen = looked_at(x, y, z, i)
+        box, loose = seen[6], seen[8]
+        known = known and bits_below(loose, INFINITE) == (1 << VECTOR) - 1
+        ax, bx, ay, by = min(ax, box[0]), max(bx, box[1]), min(ay, box[2]), max(by, box[3])
+        az, bz = min(az, box[4]), max(bz, box[5])
+    return (ax, bx, ay, by, az, bz), known
+
+
+@lean(KEEP_SKELETON, inner=True)
+def keep_skeleton(start, end, x, y, z, spare, first, stop, singles, parts, kept, near_singles, near_parts):
+    """(rows then kept, rays' own): copy what of the skeleton in rows start..end-1 is near lanes first..stop-1 behind.
+
+    The second is how many parts are near the middle of what is enclosed in the lanes.
+    """
+    own = 0
+    sizes(x, y, z, spare)
+    box, known = box_around(x, y, z, first, stop)
+    for begin in range(start, end, VECTOR):
+        bits = near_box(singles, begin, end, box)
+        for k in range(begin, min(begin + VECTOR, end), STRIDE):
+            if parts[k + 1, SHAPE] == NODE or (known and (bits >> (k - begin)) & 1 == 0):
+                continue
+            found, middle = within_reach(singles, k, x, y, z, spare, first, stop)
+            own += 1 if middle else 0
+            if found:
+                for j in range(PART):
+                    near_singles[j, kept] = singles[j, k]
+                    near_singles[j, kept + 1] = singles[j, k + 1]
+                for j in range(8):
+                    near_parts[kept, j] = parts[k, j]
+                    near_parts[kept + 1, j] = parts[k + 1, j]
+                kept += STRIDE
+    return kept, own

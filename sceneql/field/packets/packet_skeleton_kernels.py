@@ -1,0 +1,193 @@
+# mypy: ignore-errors
+"""First-order enclosures of skeletons' densities on many ray segments at once, in float32.
+
+For each part u = 1 - s, s the least |x - p|^2/R(p)^2 over its points p, is taken as a parabola a0 + a1 tau - a2 tau^2
++- e along the segment. Of a group the largest u counts; what its kernel makes of it is added up by its weight.
+"""
+
+from sceneql.compiled.kernels import inlined, lean
+from sceneql.compiled.lanes_kernels import below, bits_below, first_bit, root, spread
+from sceneql.field.packets.packet_curve_kernels import LESS, by_three
+from sceneql.field.packets.packet_density_kernels import (
+    GROW,
+    HALF,
+    INFINITE,
+    ONE,
+    PAD,
+    TINY,
+    TWO,
+    VECTOR,
+    ZERO,
+    F,
+    around,
+    cubed,
+    looked_at,
+    near_box,
+    summed,
+    weighed,
+)
+from sceneql.field.packets.packet_falloff_kernels import fallen
+from sceneql.field.packets.packet_kernels import SKELETON_LANES
+from sceneql.field.packets.packet_near_kernels import lanes_within, off_box
+from sceneql.field.packets.packet_rows import (
+    ANCHOR_X,
+    ANCHOR_Y,
+    ANCHOR_Z,
+    ANCHORED,
+    AWAY,
+    BLUR,
+    CONE,
+    EVEN,
+    FAR,
+    GROUP,
+    KERNEL,
+    RADIUS,
+    SHAPE,
+    WEIGHT,
+)
+from sceneql.field.packets.packet_triangle_kernels import triangle
+from sceneql.field.skeleton.falloff_kernels import WYVILL
+from sceneql.field.skeleton.skeleton_parts_kernels import CURVE, TRIANGLE
+
+COARSE = F(8.0)
+"""|u|^2 relative to R times what a simpler part is off, from which on that is good enough."""
+NONE = F(-1.0)
+"""No group."""
+
+
+@inlined
+def nearest_anchor(parts, k, bits, first, x, y, z, rival):
+    """(x, y, z, 1/R, |p - x|) of the anchor with the least |p - x|/R: ``rival``, or one of ``bits`` in k's group."""
+    group = parts[GROUP, k + 1]
+    bx, by, bz, inverse, away = rival
+    while bits != 0:
+        k = first + first_bit(bits)
+        if parts[GROUP, k + 1] != group:
+            break
+        bits &= bits - 1
+        ax, ay, az, per = parts[ANCHOR_X, k], parts[ANCHOR_Y, k], parts[ANCHOR_Z, k], parts[ANCHORED, k]
+        wx, wy, wz = x - ax, y - ay, z - az
+        r = root(wx * wx + wy * wy + wz * wz)
+        one, other = r * per, away * inverse
+        bx, by, bz = below(one, other, ax, bx), below(one, other, ay, by), below(one, other, az, bz)
+        inverse, away = below(one, other, per, inverse), below(one, other, r, away)
+    return bx, by, bz, inverse, away
+
+
+@inlined
+def beaten(parts, k, px, py, pz, ux, uy, uz, speed, way, loose, rival):
+    """Bits of the lanes all along which part k has nothing with a |x - p|/R as low as the rival's.
+
+    It lies in a ball about its anchor a of radius g: |x - a| - g > m |x - b| is what is to be shown, m the ratio of
+    radii; the difference of both squares is linear in tau but for (1 - m^2) |u|^2 tau^2.
+    """
+    bx, by, bz, inverse, away = rival
+    ratio = parts[FAR, k + 1] * inverse * GROW
+    m2 = ratio * ratio
+    wx, wy, wz = px - parts[ANCHOR_X, k], py - parts[ANCHOR_Y, k], pz - parts[ANCHOR_Z, k]
+    vx, vy, vz = px - bx, py - by, pz - bz
+    own, other = wx * wx + wy * wy + wz * wz, m2 * (vx * vx + vy * vy + vz * vz)
+    slope = TWO * (ux * (wx - m2 * vx) + uy * (wy - m2 * vy) + uz * (wz - m2 * vz))
+    bend = speed * (m2 - ONE)
+    least = own - other - abs(slope) - below(bend, ZERO, ZERO, bend)
+    g = parts[AWAY, k] + (loose + TWO * parts[BLUR, k]) * (ONE + ratio)
+    most = g * (TWO * ratio * (away + way) + g) + F(4.0) * PAD * (own + other + speed * (ONE + m2))
+    return bits_below(most * GROW, least)
+
+
+@inlined
+def part_parabola(parts, k, px, py, pz, ux, uy, uz, speed, way, loose):
+    """1 - s of part k at p + u tau +- loose, tau in [-1, 1]: a0 + a1 tau - a2 tau^2 +- the last of the four."""
+    shape = parts[SHAPE, k + 1]
+    if shape == F(TRIANGLE):
+        return triangle(parts, k, px, py, pz, ux, uy, uz, speed, way, loose)
+    # What stands for a part is off it by this much wherever it reaches, where |p - x| < R.
+    even, cone = parts[EVEN, k + 1], parts[CONE, k + 1]
+    rough = COARSE * parts[RADIUS, k]
+    if bits_below(speed, rough * even) == 0:
+        return around(parts, k, px, py, pz, ux, uy, uz, speed, way, loose + even)
+    straight = shape != F(CURVE) or bits_below(speed, rough * cone) == 0
+    if straight:
+        loose = loose + cone
+    return by_three(parts, k, straight, px, py, pz, ux, uy, uz, speed, way, loose)
+
+
+@inlined
+def coarse(parts, k, off, ball):
+    """The same for segments as long as R or more, where only what u is not above is of use: below 0 nothing counts."""
+    r = root(off) - (ball + TWO * parts[BLUR, k])
+    r = below(r, ZERO, ZERO, r) * (LESS / parts[FAR, k + 1])
+    most = HALF * (ONE - r * r)
+    return most - HALF, spread(ZERO), spread(ZERO), abs(most) + (HALF + PAD)
+
+
+@inlined
+def larger(a, b):
+    """The larger of two parabolas: b + the chord of max(a - b, 0), as affine_kernels.larger_of."""
+    a0, a1, a2, ea = a
+    b0, b1, b2, eb = b
+    d0 = a0 - b0
+    reach = abs(a1 - b1) + abs(a2 - b2) + (ea + eb)
+    reach = reach * GROW + PAD * (abs(a0) + abs(b0) + abs(a1) + abs(b1) + a2 + b2) + TINY
+    s = HALF + HALF * d0 / reach
+    s = below(s, ZERO, ZERO, below(ONE, s, ONE, s))
+    t = ONE - s
+    high, low = (d0 + reach) * t, (reach - d0) * s
+    gap = below(high, low, low, high)
+    gap = HALF * below(gap, ZERO, ZERO, gap)
+    error = (s * ea + t * eb + gap) * GROW + PAD * (abs(a0) + abs(b0) + abs(a1) + abs(b1) + a2 + b2)
+    return s * a0 + t * b0 + gap, s * a1 + t * b1, s * a2 + t * b2, error
+
+
+@lean(SKELETON_LANES, inner=True)
+def skeleton_lanes(parts, start, stop, x, y, z, out, n):
+    """Enclosure of the density of the skeleton in columns start..stop-1 at the point enclosed in x, y, z, into ``out``.
+
+    ``parts`` are those of packet_parts.
+    """
+    for i in range(0, n, VECTOR):
+        px, py, pz, ux, uy, uz, box, way, loose = looked_at(x, y, z, i)
+        speed = ux * ux + uy * uy + uz * uz
+        none = spread(ZERO)
+        sums = none, none, none, none, none
+        best = none, none, none, none
+        added = ZERO
+        ball = way + loose
+        nobody = none, none, none, spread(ONE), spread(INFINITE)
+        rival, fresh = nobody, True
+        group, kernel, weight = NONE, ZERO, ZERO
+        first = start
+        bits = near_box(parts, first, stop, box)
+        while True:
+            while bits == 0 and first + VECTOR < stop:
+                first += VECTOR
+                fresh = True
+                bits = near_box(parts, first, stop, box)
+            last = bits == 0
+            k = 0 if last else first + first_bit(bits)
+            if last or parts[GROUP, k + 1] != group:
+                if group != NONE:
+                    g0, g1, g2, ge = best
+                    if kernel == F(WYVILL):
+                        sums = weighed(weight, cubed(g0, g1, g2, ge), sums)
+                    else:
+                        sums = weighed(weight, fallen(kernel, g0, g1, g2, ge), sums)
+                    added += ONE
+                    group = NONE
+            if last:
+                break
+            if fresh or group == NONE:
+                rival = nearest_anchor(parts, k, bits, first, px, py, pz, rival if group != NONE else nobody)
+                fresh = False
+            bits &= bits - 1
+            off = off_box(parts, k, px, py, pz)
+            near = lanes_within(off, parts[FAR, k + 1] + ball)
+            if near & ~beaten(parts, k, px, py, pz, ux, uy, uz, speed, way, loose, rival) == 0:
+                continue
+            if bits_below(ball, parts[RADIUS, k]) == 0:
+                found = coarse(parts, k, off, ball)
+            else:
+                found = part_parabola(parts, k, px, py, pz, ux, uy, uz, speed, way, loose)
+            best = found if group == NONE else larger(found, best)
+            group, kernel, weight = parts[GROUP, k + 1], parts[KERNEL, k + 1], parts[WEIGHT, k]
+        summed(out, i, sums, added, loose)

@@ -1,0 +1,204 @@
+"""Packets of rays against the solid {f < 0} of a tape, for Python callers: numpy arrays in, numpy arrays out.
+
+Imports numpy and numba: to be imported by the function that needs it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.field.packets import packet_roots_kernels
+from sceneql.field.packets.packet_kernels import LANES, VECTOR, WIDTH
+from sceneql.field.packets.packet_parts import density_columns, skeleton_columns
+from sceneql.field.packets.packet_roots_kernels import GROUP
+from sceneql.field.packets.packet_rows import PART
+from sceneql.field.packets.ray_rows import ASK, FOUND_ROOT, FOUND_STATUS, LANE_ROWS, RAY
+from sceneql.field.packets.slab_kernels import BEAM, OCTET
+from sceneql.field.roots import density_march_kernels, density_roots_kernels, density_slice_kernels
+from sceneql.field.roots.polynomial_kernels import ABREAST, DEGREES, POLYNOMIAL
+from sceneql.field.roots.polynomial_steps_kernels import ROWS, C
+from sceneql.field.tape.own_coordinates import in_own_coordinates
+from sceneql.field.tape.plans import degrees_of, density_of, places_of, tape_of_rows, without_factor
+from sceneql.field.tape.tape_ops import DENSITY, MAX, OF_PARTS
+from sceneql.field.tape.tape_solid import scratch
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy import float32, int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats, Tape
+
+
+def single_parts(tape: Tape) -> NDArray[float32]:
+    """The parts of a tape as packets read them, and some columns more: vectors are loaded whole."""
+    out = lined((PART, len(tape.parts) + VECTOR), np.float32)
+    for op, start, stop, _ in tape.code.tolist():
+        if op in OF_PARTS:
+            columns = density_columns if op == DENSITY else skeleton_columns
+            out[:, start:stop] = columns(tape.parts[start:stop])
+    return out
+
+
+def enclosures(tape: Tape, origins: Floats, directions: Floats, t0: Floats, t1: Floats) -> Floats:
+    """(4, n): c0, c1, e and the status of f on segments o + t d, t in [t0, t1] (n,), of rays (n, 3).
+
+    f lies in c0 + c1 tau +- e, t = (t0 + t1)/2 + tau (t1 - t0)/2, wherever it is defined there; status is WHOLE,
+    PARTIAL or NOWHERE. Nothing is claimed where c0, c1 or e is not finite.
+    """
+    from sceneql.field.enclose.enclosures_kernels import enclose_rays
+
+    out = np.empty((4, len(t0)))
+    registers = np.zeros((len(tape.code), WIDTH), dtype=np.float32)
+    point, status = np.zeros((3, WIDTH), dtype=np.float32), np.zeros(LANES, dtype=np.float32)
+    memory = registers, point, status
+    enclose_rays(tape.code, tape.constants, single_parts(tape), *memory, origins, directions, t0, t1, out)
+    return out
+
+
+def plan_of(tape: Tape) -> NDArray[int64]:
+    """How packets look for roots of a tape f or max(f, g), or a positive multiple, as its kernels read it.
+
+    (row of D, index of c, row of g, row of p), -1 for the rows where f has not the form; then of a polynomial p the
+    degrees of the rows up to it and where their coefficients begin. Of a tape without such a form, ``Memory`` adds the
+    rows by which rays are cut.
+    """
+    last = without_factor(tape, len(tape.code) - 1)
+    rows = [last]
+    if tape.code[last, 0] == MAX:
+        rows = [without_factor(tape, int(row)) for row in tape.code[last, 1:3]]
+    # Its parts are gathered for each bundle: those of another row are not.
+    alone = sum(int(op) in OF_PARTS for op in tape.code[:, 0]) == 1
+    turns = list(zip(rows, [*rows[1:], *rows[:1]] if len(rows) > 1 else [-1], strict=True))
+    for row, other in turns:
+        if alone and (found := density_of(tape, row)) is not None:
+            return np.array([*found, other, -1], dtype=np.int64)
+    for row, other in turns:
+        if (degrees := degrees_of(tape, row)) is not None:
+            starts = [ROWS // ABREAST + place for place in places_of(tape, degrees)[0]]
+            return np.array([-1, 0, other, row, *degrees, *starts, C // ABREAST], dtype=np.int64)
+    return np.array([-1, 0, -1, -1], dtype=np.int64)
+
+
+def others_of(plan: NDArray[int64]) -> list[int]:
+    """The rows of a tape at which places are looked at where its plan has found a root."""
+    if plan[density_roots_kernels.ROW_OF] < 0 and plan[POLYNOMIAL] < 0:
+        return [int(row) for row in plan[POLYNOMIAL + 1 :]]
+    return [int(row) for row in plan[[density_roots_kernels.OTHER]] if row >= 0]
+
+
+def room_for(plan: NDArray[int64]) -> int:
+    """How many numbers polynomials of a plan work in: see polynomial_steps_kernels."""
+    rows = int(plan[POLYNOMIAL]) + 1
+    if rows == 0:
+        return ROWS
+    ends = plan[DEGREES : DEGREES + rows] + plan[DEGREES + rows :] + 1
+    return max(int(ends.max()) * ABREAST, ROWS + 2 * rows)
+
+
+CACHE_LINE = 64
+"""Bytes: vectors that lie across two of these are read and written at half the speed."""
+
+
+STAGGER = 8
+"""Columns that no ray has: rows whose begins are powers of two apart push each other out of the nearest cache."""
+
+
+def lined(shape: tuple[int, ...] | int, dtype: Any = np.float64) -> NDArray[Any]:
+    """Zeros from the begin of a cache line on."""
+    size = int(np.prod(shape)) * np.dtype(dtype).itemsize
+    raw = np.zeros(size + CACHE_LINE, dtype=np.uint8)
+    first = -raw.ctypes.data % CACHE_LINE
+    numbers: NDArray[Any] = raw[first : first + size].view(dtype).reshape(shape)
+    return numbers
+
+
+class Memory:
+    """What one thread works in for bundles of up to ``count`` rays against a tape.
+
+    Rays are cut by the rows ``cut`` of the tape already (see ``clips.clip_rows``), but for rounding: it is looked at
+    these where a root is found. Rays that are not are met as well, but by the certified routine.
+    """
+
+    def __init__(self, tape: Tape, count: int, cut: Sequence[int] = ()) -> None:
+        whole = OCTET * GROUP
+        count = -(-count // whole) * whole  # lanes beyond the rays are looked at, too
+        rows = len(tape.code)
+        self.tape = tape
+        self.rays = lined((RAY, count))
+        self.found = lined((5, count))
+        single = np.float32
+        self.packet = (
+            lined((rows, WIDTH), single),
+            lined((3, WIDTH), single),
+            lined(LANES, single),
+            lined(max(LANE_ROWS * LANES, density_march_kernels.ROWS), single),
+            lined(2 * LANES, np.int64),
+        )
+        self.asked, self.queue = lined((ASK, count), single), lined(count, np.int64)
+        plan = plan_of(tape)
+        enclosed = plan[density_roots_kernels.ROW_OF] < 0 and plan[POLYNOMIAL] < 0
+        # An exact form does without enclosures.
+        self.singles = single_parts(tape) if enclosed else lined((PART, VECTOR), single)
+        beams, doubles = lined((BEAM, -(-count // GROUP) + VECTOR)), lined((rows, LANES))
+        near = np.zeros((2 * rows, 4), dtype=np.int32), lined(self.singles.shape, single), lined(tape.parts.shape)
+        if enclosed:
+            plan = np.array([*plan, *cut], dtype=np.int64)
+        most = STAGGER + -(-max(count, density_march_kernels.LANES, len(tape.parts)) // LANES) * LANES
+        march = (
+            plan,
+            lined(4 * density_march_kernels.LANES + count + len(tape.parts), np.int64),
+            lined((density_slice_kernels.ROOM, most)),
+            lined((density_roots_kernels.MOST_PARTS, density_march_kernels.COLUMNS), single),
+            lined(room_for(plan)),
+            tape_of_rows(tape, others_of(plan)),
+        )
+        self.rest = tape.parts, lined(scratch(tape).shape), beams, doubles, lined((3, LANES)), *near, *march
+
+    @property
+    def bundle(self) -> tuple[Any, ...]:
+        """The arrays of a bundle of rays, in the order in which kernels take them."""
+        packet = self.tape.code, self.tape.constants, self.singles, *self.packet
+        return *packet, self.rays, self.asked, self.queue
+
+    def settle(self, count: int, anywhere: bool) -> tuple[int, int]:
+        """First roots of the first ``count`` of ``rays`` into ``found``: see packet_roots_kernels.first_roots."""
+        counts: tuple[int, int] = packet_roots_kernels.first_roots(
+            *self.bundle, count, anywhere, self.found, *self.rest
+        )
+        return counts
+
+
+def cast_together(
+    tape: Tape,
+    origins: Floats,
+    directions: Floats,
+    t0: Floats,
+    t1: Floats,
+    anywhere: bool = False,
+    cut: Sequence[int] = (),
+) -> tuple[NDArray[np.int64], Floats]:
+    """(status, t), each (n,): as ``solid.cast``, of rays that pass near each other, in bundles of 256.
+
+    They are cut by the rows ``cut`` of the tape already: see Memory.
+    """
+    size = min(256, len(t0))
+    tape, matrix = (tape, np.eye(3, 4)) if len(cut) > 0 else in_own_coordinates(tape)
+    origins, directions = origins @ matrix[:, :3].T + matrix[:, 3], directions @ matrix[:, :3].T
+    memory = Memory(tape, size, cut)
+    status, t = np.empty(len(t0), dtype=np.int64), np.empty(len(t0))
+    for start in range(0, len(t0), size):
+        stop = min(start + size, len(t0))
+        n = stop - start
+        # Neighbors go into columns of GROUP rows.
+        columns = -(-n // GROUP)
+        ray = start + np.argsort(np.arange(n) // GROUP + columns * (np.arange(n) % GROUP), kind="stable")
+        memory.rays[:3, :n], memory.rays[3:6, :n] = origins[ray].T, directions[ray].T
+        memory.rays[6, :n], memory.rays[7, :n] = t0[ray], t1[ray]
+        memory.settle(n, anywhere)
+        status[ray] = memory.found[FOUND_STATUS, :n]
+        t[ray] = memory.found[FOUND_ROOT, :n]
+    return status, t

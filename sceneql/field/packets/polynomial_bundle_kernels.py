@@ -1,0 +1,54 @@
+# mypy: ignore-errors
+"""First roots along a whole bundle of rays of a polynomial: see ``polynomial_search_kernels``."""
+
+from sceneql.compiled.kernels import lean
+from sceneql.field.packets.polynomial_search_kernels import (
+    POLYNOMIAL_ROOTS,
+    pack,
+    reach,
+    settle_lanes,
+    take,
+)
+from sceneql.field.roots.polynomial_kernels import ABREAST, DEGREES, POLYNOMIAL, coefficients, rounding
+from sceneql.field.roots.polynomial_steps_kernels import HALF_WAY, MIDDLE, MOST, C, step
+
+
+@lean(POLYNOMIAL_ROOTS, inner=True)
+def polynomial_roots(
+    code, constants, rays, count, anywhere, found, queue, plan, order, room, lanes
+):  # fmt: skip
+    """Settle a bundle as ``packet_roots_kernels.first_roots`` does.
+
+    Returns (steps, rays that may be met, in ``queue``). Enclosures of the tape would empty some bundles, but cost all
+    of them what they save in steps.
+    """
+    n = pack(rays, count, order, room)
+    if n == 0:
+        return 0, 0
+    wide = rays if n == count else room
+    x, y, z = reach(wide, n, 0), reach(wide, n, 1), reach(wide, n, 2)
+    off = rounding(code, constants, plan, (x[0], y[0], z[0], x[1], y[1], z[1]), lanes)
+    rows = plan[POLYNOMIAL] + 1
+    degree = plan[DEGREES + rows - 1]
+    kept = C + (max(degree + degree % 2, 4) + 1) * ABREAST  # coefficients up to the next even degree from 4 on
+    spare = order[rays.shape[1] :]
+    spent = queued = 0
+    for first in range(0, n, ABREAST):
+        width = min(ABREAST, n - first)
+        m = (width + 15) // 16 * 16
+        take(wide, first, width, m, lanes)
+        coefficients(code, constants, plan, wide, first, lanes[MIDDLE:], lanes[HALF_WAY:], m, lanes)
+        for i in range(C + (degree + 1) * ABREAST, kept):
+            lanes[i] = 0.0
+        live, tries = width, 0
+        while width > 0:
+            while 2 * live > width:
+                tries += 1
+                spent += live
+                live = step(lanes, degree, m, off, anywhere, tries > MOST)
+            queued = settle_lanes(
+                lanes, kept, degree, order, spare, width, live, rays, anywhere, found, queue, queued
+            )  # fmt: skip
+            width = live
+            m = (width + 15) // 16 * 16
+    return spent, queued

@@ -1,0 +1,224 @@
+# mypy: ignore-errors
+"""First roots of a tape along a bundle of rays by enclosures of packets: see ``packet_roots_kernels``."""
+
+import numpy as np
+
+from sceneql.compiled.kernels import inlined, lean
+from sceneql.compiled.lanes_kernels import spread
+from sceneql.field.enclose.affine_kernels import GROW, ONE, PAD, ZERO, F
+from sceneql.field.enclose.shorten_kernels import shorten
+from sceneql.field.packets.packet_kernels import C1, LANES, TAPE_ROOTS, VECTOR, E, enclose, has, load_constants
+from sceneql.field.packets.ray_rows import (
+    FAR,
+    FOUND_HIGH,
+    FOUND_LOW,
+    FOUND_ROOT,
+    FOUND_SLOPE,
+    FOUND_STATUS,
+    NEAR,
+    RUN,
+    SETTLED,
+    SURE,
+)
+from sceneql.field.packets.search_lanes_kernels import hunt
+from sceneql.field.packets.slab_kernels import SETTLED as SETTLED_INSIDE
+from sceneql.field.packets.slab_kernels import (
+    STOP,
+    ask,
+    ask_places,
+    bundle,
+    cut_beams,
+    first_inside,
+    join,
+    left_of_beams,
+    left_of_slabs,
+    note_beams,
+    place_beams,
+    place_slabs,
+    single_beams,
+)
+from sceneql.field.tape.batch_kernels import evaluate
+from sceneql.field.tape.tape_ops import DENSITY, HIT, MAX, MIN, SKELETON, UNDECIDED
+
+SLABS = 8
+"""Of a beam."""
+FEW = 8
+"""Up to so many beams are not looked at together."""
+
+
+@inlined
+def enqueue(rays, count, groups, asked, found, queue):
+    """Queue the rays of which something is left, beam by beam; how many. What is settled is noted."""
+    queued = 0
+    states = asked[SURE]
+    for g in range(groups):
+        for ray in range(g, count, groups):
+            j = np.uint64(ray)
+            queue[np.uint64(queued)] = ray
+            if states[j] == SETTLED_INSIDE:
+                far = asked[FAR, j]
+                found[FOUND_STATUS, j] = HIT
+                found[FOUND_LOW, j] = found[FOUND_HIGH, j] = far
+                found[FOUND_ROOT, j] = rays[6, j] + far
+            else:
+                queued += 1 if states[j] >= 0.0 else 0
+    return queued
+
+
+@inlined
+def polish(code, constants, parts, registers, points, rays, queue, count, found, values, ways):
+    """A step of Newton's method on all hits among the queued rays, in float64, and one of the secant method.
+
+    The first has the slope of the last enclosure, which may be a mean of what is enclosed. ``values`` and ``ways``
+    (n,) are memory.
+    """
+    width = points.shape[1]
+    for start in range(0, count, width):
+        n = min(width, count - start)
+        own, times = queue[start:], registers[0]
+        for turn in range(2):
+            begins, roots = rays[6], found[FOUND_ROOT]
+            for i in range(n):
+                j = np.uint64(own[i])
+                times[i] = begins[j] + roots[j]
+            for axis in range(3):
+                o, d, place = rays[axis], rays[3 + axis], points[axis]
+                for i in range(n):
+                    j = np.uint64(own[i])
+                    place[i] = o[j] + times[i] * d[j]
+            evaluate(code, constants, parts, registers, points, n)
+            last = registers[code.shape[0] - 1]
+            for i in range(n):
+                j = np.uint64(queue[start + i])
+                step = last[i] / found[FOUND_SLOPE, j]
+                rise = last[i] - values[j]
+                if turn == 1 and ways[j] != ZERO and rise * ways[j] * found[FOUND_SLOPE, j] > 0.0:
+                    step = last[i] * ways[j] / rise
+                root = min(max(found[FOUND_ROOT, j] - step, found[FOUND_LOW, j]), found[FOUND_HIGH, j])
+                values[j], ways[j] = last[i], root - found[FOUND_ROOT, j]
+                left = min(abs(step), found[FOUND_HIGH, j] - found[FOUND_LOW, j])
+                if turn == 1 and not (left <= SETTLED * (rays[7, j] - rays[6, j]) and rays[6, j] + root < rays[7, j]):
+                    found[FOUND_STATUS, j] = UNDECIDED
+                found[FOUND_ROOT, j] = root
+
+
+@inlined
+def uncut(registers, clips):
+    """(first, end) of the longest run of slabs that all rows ``clips`` leave whole."""
+    first, end, begun = 0, 0, 0
+    for i in range(LANES):
+        for k in range(clips.shape[0]):
+            row = registers[clips[k]]
+            m = abs(row[C1 + i])
+            if not row[i] + m + (row[E + i] * GROW + PAD * (abs(row[i]) + m)) < ZERO:
+                begun = i + 1
+        if i + 1 - begun > end - first:
+            first, end = begun, i + 1
+    return first, end
+
+
+@inlined
+def all_through(rays, count, low, high):
+    """Whether all rays that have a length come through low..high."""
+    begins, ends = rays[6], rays[7]
+    others = 0
+    for j in range(count):
+        others += 1 if (begins[j] < ends[j]) & ~((begins[j] < low) & (ends[j] > high)) else 0
+    return others == 0
+
+
+@inlined
+def leave_all(rays, count, found, queue):
+    """Leave all rays that have a length to the certified routine; how many."""
+    queued = 0
+    for j in range(count):
+        if rays[6, j] < rays[7, j]:
+            queue[np.uint64(queued)] = j
+            found[FOUND_STATUS, j], found[FOUND_LOW, j] = UNDECIDED, 0.0
+            queued += 1
+    return queued
+
+
+@lean(TAPE_ROOTS, inner=True)
+def tape_roots(
+    code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, count, groups, anywhere, found,
+    parts, scratch, beams, doubles, points, short, near_singles, near_parts, clips,
+):  # fmt: skip
+    """Settle a bundle as ``packet_roots_kernels.first_roots`` does, but for what the rows ``clips`` cut away.
+
+    Returns (enclosures, rays that may be met, in ``queue``, rows of ``short`` that hold up to where all is looked at,
+    that place; from where to where no ray is cut).
+    """
+    load_constants(code, constants, registers)
+    length = code.shape[0]
+    last = registers[length - 1]
+    spent = 0
+    rows = 0
+    safe, unsafe = -np.inf, np.inf
+    base = bundle(rays, count, groups, beams)
+    if base == np.inf:
+        return 0, 0, 0, np.inf, np.inf, np.inf
+    join(beams, groups, groups)
+    begin, end = base, beams[STOP, groups]
+    if groups > FEW:
+        place_slabs(beams, groups, base, begin, end, point)
+        enclose(code, constants, singles, registers, point, status, LANES)
+        spent += LANES
+        first, final, _ = left_of_slabs(last, status, 0, LANES)
+        if first == LANES:
+            return spent, 0, 0, np.inf, np.inf, np.inf
+        depth = (end - begin) / LANES
+        deep = first_inside(last, status, 0, LANES)
+        if deep >= 0 and all_through(rays, count, base + deep * depth, base + (deep + 1) * depth):
+            final = deep
+        begin, end = base + (first - 1e-6) * depth, base + (final + 1 + 1e-6) * depth
+        of_parts = has(code, DENSITY) or has(code, SKELETON)
+        if of_parts or has(code, MAX) or has(code, MIN):
+            rows, parted = shorten(
+                code, registers, status, first, final, clips, singles, parts, scratch, short, near_singles, near_parts
+            )
+            if parted:
+                return spent, leave_all(rays, count, found, queue), 0, np.inf, -np.inf, np.inf
+            from_slab, to_slab = uncut(registers, clips)
+            if clips.shape[0] > 0:
+                safe, unsafe = base + from_slab * depth, base + to_slab * depth
+            code = short[length : length + rows]
+            if of_parts:
+                singles = near_singles
+            last = registers[rows - 1]
+            load_constants(code, constants, registers)
+    cut_beams(beams, groups, begin, end)
+    for at in range(0, groups, VECTOR):
+        # The memory of the lanes is free till the hunt.
+        single_beams(beams, at, base, SLABS, lanes)
+        left, final_slab, deep_slab = spread(F(SLABS)), spread(-ONE), spread(-ONE)
+        for begun in range(0, SLABS, LANES // VECTOR):
+            place_beams(lanes, begun, point)
+            enclose(code, constants, singles, registers, point, status, LANES)
+            left, final_slab, deep_slab = left_of_beams(last, status, begun, left, final_slab, deep_slab)
+        spent += SLABS * min(VECTOR, groups - at)
+        note_beams(beams, at, SLABS, left, final_slab, deep_slab, lanes)
+    ask(rays, count, groups, beams, anywhere, safe, unsafe, asked)
+    ask_places(rays, count, asked)
+    queued = enqueue(rays, count, groups, asked, found, queue)
+    spent += hunt(code, constants, singles, registers, point, status, lanes, ids, asked, queue, queued, anywhere, found)
+    if not anywhere:
+        hits = 0
+        for k in range(queued):  # hits to the front of the queue
+            if found[FOUND_STATUS, queue[k]] == HIT:
+                queue[hits], queue[k] = queue[k], queue[hits]
+                hits += 1
+        polish(
+            code,
+            constants,
+            near_parts if rows > 0 else parts,
+            doubles,
+            points,
+            rays,
+            queue,
+            hits,
+            found,
+            asked[NEAR],
+            asked[RUN],
+        )
+    return spent, queued, rows, end, safe, unsafe

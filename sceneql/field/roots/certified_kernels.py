@@ -1,0 +1,207 @@
+# mypy: ignore-errors
+"""First roots along a ray from outward-rounded intervals of f and df/dt: what decides where enclosures cannot.
+
+A piece of the ray is cleared by the bounds of f on it, by the mean value form f(m) + (t - m) df/dt, or, where df/dt
+keeps one sign, by f at one end; else it is cut where the mean value form allows no root, or halved, the first part
+first (Moore 1966; Hansen and Walster 2004, chapter 9). Rounding is outward all along, so what is cleared is proved.
+"""
+
+import numpy as np
+
+from sceneql.compiled.kernels import lean, woven
+from sceneql.field.enclose.slope_kernels import on_ray
+from sceneql.field.roots.bracket_kernels import FINE, lowest, polished
+from sceneql.field.tape.tape_ops import HIT, MISS, NOWHERE, TAPE, UNDECIDED, WHOLE
+
+EVALUATIONS = 1000
+"""Pieces looked at on one ray before it is left undecided."""
+SPLIT = 0.4609375
+"""Where pieces are halved: off the middle, so that a root at the end of a piece is not at an end again."""
+WIDEST = 1.0e-3
+"""Half of the widest piece, relative to the ray, that a root of even multiplicity may be spread over by rounding."""
+CROSSES, TOUCHES, JUMPS, ABSENT, UNKNOWN = range(5)
+"""What may be hidden: a change of sign, a root without one, a pole or an edge of where f is defined, little or nothing
+since f is undefined at both ends; or unknown."""
+SHORTEST = 4.0e-15
+"""Piece, relative to its place on the ray, that is not cut any more."""
+NEARBY = 64.0
+"""How far an edge is looked for behind a piece that is undefined at both ends, in the shortest steps."""
+UNDEFINED = 2
+SURE = 1.0 - 1.0e-14
+
+
+@woven
+def surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, sign):
+    """(side, bounds of sign df/dt (2)): 1 where sign f(t) is proved > 0, -1 where < 0, or UNDEFINED; else 0."""
+    low, high, least, most, status = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t, sign)
+    if status == NOWHERE:
+        return UNDEFINED, least, most
+    if low > 0.0:
+        return 1, least, most
+    return (-1 if status == WHOLE and high < 0.0 else 0), least, most
+
+
+@woven
+def told(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, least, sign):
+    """(side, t) as ``surely`` at the first place from t0 on, by steps that grow fourfold, where it is not 0."""
+    t = t0
+    step = 0.125 * least
+    side, _, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, sign)
+    while side == 0 and step < WIDEST * (t1 - t0) + least:
+        t = min(t0 + step, t1)
+        step *= 4.0
+        side, _, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, sign)
+    return side, t
+
+
+@lean(
+    f"Tuple((int64, int64, float64, float64, float64))({TAPE}, float64, float64, float64, float64, float64, float64,"
+    " float64, float64, float64, float64, float64, float64)",
+    inner=True,
+)
+def hidden(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, t0, t1, least, sign):
+    """(kind, side at the end, place, from, to) of what cannot be told of the piece a..b, within t0..t1.
+
+    from..to is the piece with a..b in it, grown fourfold until sign f is proved < 0 at an end, or undefined, or > 0 and
+    on its way down at the first or up at the last. It CROSSES zero from > 0 to < 0, or it TOUCHES it, > 0 at both ends.
+    It JUMPS where it is undefined at one end, or goes from > 0 to < 0 on its way from zero at both: at a pole. Where
+    it is undefined at the first and about the last, so that an edge is not near, it is ABSENT.
+    """
+    reach = WIDEST * (t1 - t0) + 2.0 * least
+    step = least
+    before = a
+    first, gone, falling = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, before, sign)
+    while (first == 0 or (first == 1 and not falling < 0.0)) and before > t0 and step < reach:
+        before = max(a - step, t0)
+        first, gone, falling = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, before, sign)
+        step *= 4.0
+    step = least
+    after = b
+    last, rising, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, after, sign)
+    while after < t1 and step < (NEARBY * least if first == UNDEFINED == last else reach):
+        if last == -1 or (last == 1 and rising > 0.0) or (last == UNDEFINED and first != UNDEFINED):
+            break
+        after = min(b + step, t1)
+        last, rising, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, after, sign)
+        step *= 4.0
+    place = a
+    kind = UNKNOWN
+    if first > 0 and last == -1:
+        place = polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, before, after, sign)
+        kind = JUMPS if first == UNDEFINED or (gone > 0.0 and rising > 0.0) else CROSSES
+    elif first == 1 and last == 1 and falling < 0.0 and rising > 0.0:
+        place = lowest(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, before, after, sign)
+        near = 4.0 * FINE * abs(place)
+        low, _, _, _, _ = on_ray(
+            code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, place - near, place + near, sign
+        )
+        kind = UNKNOWN if low > 0.0 else TOUCHES
+    elif (first == UNDEFINED and last == 1) or (first == 1 and last == UNDEFINED):
+        kind = JUMPS
+    elif first == UNDEFINED and last == UNDEFINED:
+        kind = ABSENT
+    return kind, last, place, before, after
+
+
+@lean(
+    f"Tuple((int64, float64))({TAPE}, float64, float64, float64, float64, float64, float64,"
+    " float64, float64, float64, float64, boolean, boolean)"
+)
+def certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, finest, sign, anywhere, touching):
+    """(status, t) of the first place in [t0, t1] where sign f < 0 begins, or with ``anywhere`` of any place of it.
+
+    With ``touching`` the first root of f instead, also one without a change of sign: where f is zero up to its
+    rounding, and df/dt changes sign. UNDECIDED: all before t is proved, and there a piece
+    no longer than ``finest`` could not be told.
+    What begins nearer to an end of [t0, t1] than f can be told from zero is not met: a ray may begin on a surface.
+    """
+    a = t0
+    end = t1
+    found = MISS  # at `end`
+    where = t1
+    least = max(finest, 4.0e-15 * (abs(t0) + abs(t1)))
+    if touching:
+        side, a = told(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, least, sign)
+        if side == 0:
+            return UNDECIDED, a
+        if side < 0:
+            sign = -sign
+    b = end
+    eager = True  # to look at what rounding hides before it is narrowed down
+    for count in range(EVALUATIONS):
+        if count > 0 and not a < end:
+            return found, where
+        width = b - a
+        middle = a + SPLIT * width
+        low, high, slope0, slope1, status = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign)
+        if status == WHOLE and high < 0.0:
+            return HIT, a
+        clear = status == NOWHERE or low > 0.0 or (low == 0.0 and not touching)
+        below = above = 0.0
+        if not clear:
+            below, above, _, _, known = on_ray(
+                code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, middle, middle, sign
+            )
+            if known == WHOLE and above < 0.0:
+                if anywhere:
+                    return HIT, middle
+                if width <= least and (status == WHOLE or not touching):
+                    return HIT, polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, middle, sign)
+                if width > least:
+                    b = end = where = middle
+                    found = HIT
+                    continue
+        if status == WHOLE and not clear:
+            reach = WIDEST * (t1 - t0) + least  # from where f cannot be told from zero to where it is
+            if slope0 > 0.0:
+                low, high, _, _, _ = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, a, sign)
+                clear = high >= 0.0 and low >= -slope0 * reach
+            elif slope1 < 0.0:
+                low, high, _, _, _ = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, b, b, sign)
+                if high < 0.0:
+                    return HIT, polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign)
+                clear = low > 0.0 or (b == end and low >= slope1 * reach)
+                if not clear and b < end:
+                    b = min(b + width, end)
+                    continue
+        if not clear and (width <= least or (eager and status == WHOLE and below <= 0.0 <= above)):
+            first = a if width <= least else middle
+            last = b if width <= least else middle
+            kind, behind, place, before, after = hidden(
+                code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, first, last, t0, t1, 0.125 * least, sign
+            )
+            if (kind == ABSENT or (kind == JUMPS and behind > 0)) and width > SHORTEST * (abs(a) + abs(b)):
+                b = middle
+                continue
+            if width <= least or kind != UNKNOWN:
+                if kind == JUMPS and (touching or behind > 0):
+                    if behind < 0:
+                        sign = -sign
+                        end = t1
+                        found = MISS
+                    a = after
+                    b = min(a + 2.0 * width, end)
+                    continue
+                found = HIT if kind == CROSSES or kind == (TOUCHES if touching else JUMPS) else UNDECIDED
+                b = end = max(before, a)
+                where = place if found == HIT else b
+                continue
+            eager = False
+        if not clear and status == WHOLE and below > 0.0:
+            # f >= below - slope1 (middle - t) before the middle, and >= below + slope0 (t - middle) behind it.
+            blur = 1.0e-15 * (abs(a) + abs(b))
+            free = middle - below / slope1 * SURE + blur if slope1 > 0.0 else -np.inf
+            if free > a:
+                b = free
+                continue
+            free = middle + below / -slope0 * SURE - blur if slope0 < 0.0 else np.inf
+            clear = free >= b
+            if not clear:
+                a = max(a, free)
+                continue
+        if clear:
+            a = b
+            b = min(a + 2.0 * width, end)
+        else:
+            b = middle
+    return UNDECIDED, a

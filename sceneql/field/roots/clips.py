@@ -1,0 +1,117 @@
+"""Quadrics outside of which a field is proved to be positive: what its rays need not be searched beyond.
+
+Imports numpy: to be imported by the function that needs it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.field.tape.plans import root_of, without_factor
+from sceneql.field.tape.tape_ops import ADD, CONSTANT, COPY, MAX, MUL, NEG, SQUARE, SUB, X, Y, Z
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Tape
+
+PRODUCTS = (0, 1, 2, 0, 1, 2), (0, 1, 2, 1, 2, 0)
+"""Axes whose products the first coefficients are of: squares, then xy, yz and zx."""
+LINEAR, LAST = 6, 9
+"""First of those of x, y and z; the constant."""
+LARGEST = 1e100
+"""Coefficient of a clip, so that its values are numbers wherever solids can be."""
+
+
+def clips_of(tape: Tape) -> Floats:
+    """(k, 10) coefficients of polynomials q of degree 1 or 2 with q < 0 wherever the tape is negative.
+
+    They are those of x^2, y^2, z^2, xy, yz, zx, x, y, z and 1, rounded a little.
+    """
+    return np.array([quadric for quadric, _ in _clips(tape)]).reshape(-1, LAST + 1)
+
+
+def clip_rows(tape: Tape) -> list[int]:
+    """Rows of convex clips: rays that are cut by ``clips_of`` are below zero there, but for rounding at their ends.
+
+    At least one other row is left of what the tape is the largest of.
+    """
+    branches = _branches(tape)
+    rows = [row for quadric, row in _clips(tape) if _convex(quadric)]
+    return rows if len(rows) < len(branches) else rows[1:]
+
+
+def _branches(tape: Tape) -> list[int]:
+    """Rows of which the tape, or a positive multiple, is the largest."""
+    found = []
+    rows = [len(tape.code) - 1]
+    while rows:
+        row = rows.pop()
+        inner = without_factor(tape, row)
+        if tape.code[inner, 0] == MAX:
+            rows += map(int, tape.code[inner, 1:3])
+        else:
+            found.append(row)
+    return found
+
+
+def _clips(tape: Tape) -> list[tuple[Floats, int]]:
+    """Polynomials as of ``clips_of``, each with the row that it has the sign of."""
+    found = []
+    for branch in _branches(tape):
+        row, radius = root_of(tape, without_factor(tape, branch))
+        with np.errstate(over="ignore", invalid="ignore"):  # what overflows is no clip
+            quadric = _expanded(tape, row)
+            if quadric is not None and radius >= 0:
+                quadric[LAST] -= tape.constants[radius] ** 2
+        if quadric is not None and quadric[:LAST].any() and np.abs(quadric).max() <= LARGEST:
+            found.append((quadric, branch))
+    return found
+
+
+def _convex(quadric: Floats) -> bool:
+    """Whether a polynomial of degree 2 is below zero in a convex region."""
+    form = np.diag(quadric[:3])
+    form[[0, 1, 2], [1, 2, 0]] = form[[1, 2, 0], [0, 1, 2]] = 0.5 * quadric[3:LINEAR]
+    values = np.linalg.eigvalsh(form)
+    return bool(values[0] >= -1e-12 * abs(values).max())
+
+
+def _expanded(tape: Tape, row: int) -> Floats | None:
+    """Coefficients (10,) of a row, None where it is no polynomial of degree 2 at the most."""
+    op, left, right, _ = map(int, tape.code[row])
+    if op == CONSTANT or op in (X, Y, Z):
+        plain: Floats = np.zeros(LAST + 1)
+        plain[LAST if op == CONSTANT else LINEAR + op - X] = tape.constants[left] if op == CONSTANT else 1.0
+        return plain
+    if op not in (COPY, NEG, SQUARE, ADD, SUB, MUL):
+        return None
+    a = _expanded(tape, left)
+    b = _expanded(tape, right) if op in (ADD, SUB, MUL) else a
+    if a is None or b is None:
+        return None
+    if op == COPY:
+        return a
+    if op == NEG:
+        return -a
+    if op in (SQUARE, MUL):
+        return _product(a, b)
+    total: Floats = a + b if op == ADD else a - b
+    return total
+
+
+def _product(a: Floats, b: Floats) -> Floats | None:
+    """Of two polynomials, one of which is a constant or both of degree 1; else None."""
+    if not b[:LAST].any():
+        a, b = b, a
+    if not a[:LAST].any():
+        scaled: Floats = b * a[LAST]
+        return scaled
+    if a[:LINEAR].any() or b[:LINEAR].any():
+        return None
+    out: Floats = a * b[LAST] + b * a[LAST]
+    out[LAST] = a[LAST] * b[LAST]
+    u, v = a[LINEAR:LAST], b[LINEAR:LAST]
+    for k, (i, j) in enumerate(zip(*PRODUCTS, strict=True)):
+        out[k] = u[i] * v[j] + (u[j] * v[i] if i != j else 0.0)
+    return out

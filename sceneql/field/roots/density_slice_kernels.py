@@ -1,0 +1,224 @@
+# mypy: ignore-errors
+"""A slice of a bundle of rays made ready to be searched: its lanes, its parts, and what these tell at once."""
+
+import numpy as np
+
+from sceneql.compiled.kernels import inlined
+from sceneql.field.roots.beam_kernels import BEHIND, DX, FAR, PX, STRETCH, WIDE
+from sceneql.field.roots.density_march_kernels import (
+    AT_A,
+    AT_B,
+    DEEP,
+    END,
+    FINE,
+    HALF,
+    INVERSE,
+    LANES,
+    LESS,
+    LIVE,
+    MORE,
+    ONE,
+    ROOT,
+    STATE,
+    TOP,
+    TRIES,
+    WEIGHT,
+    ZERO,
+    A,
+    B,
+    F,
+    Q,
+    T,
+)
+from sceneql.field.tape.single_kernels import lane
+from sceneql.field.tape.tape_ops import HIT, MISS
+
+SPOT, SPANS, BEAM_ROW, OWN_ROW, SPARE, ROOM = WIDE, WIDE + 7, WIDE + 10, WIDE + 11, WIDE + 12, WIDE + 18
+BASE = 6
+"""Rows of ``room`` (ROOM, n): rays, lanes (place, direction, where the slice begins on the ray), where parts are
+entered and left along the axis of a beam and how dense they are in it at most, the bundle's beam and a packet's, and
+working memory of theirs."""
+NARROW, HAIR = F(2.0e-5), F(1.0e-6)
+"""Width of a bracket, and what is searched beyond the parts, relative to the ray's piece."""
+TWO, THREE = F(2.0), F(3.0)
+CLEARLY = F(1.001)
+"""Densities so many times the threshold tell the inside, where rounding is less than what is beyond it."""
+INFINITE = F(np.inf)
+GOLDEN = F(0.4472136)
+"""1/sqrt(5)."""
+
+
+@inlined
+def pick(source, live, n, target):
+    """What lanes have of a row of the rays."""
+    for i in range(n):
+        target[i] = source[np.uint64(live[i])]
+
+
+@inlined
+def place_lanes(room, live, state, given, n, fresh, begin, end, lowest):
+    """Set the rays of n lanes at the begin of a slice, and where on them it ends; those behind the ``given`` reach
+    nothing."""
+    bases = room[SPOT + BASE]
+    far, behind, stretch = room[SPARE], room[SPARE + 1], room[SPARE + 2]
+    if fresh:
+        own = slice(live[0], live[0] + n)
+        far, behind, stretch = room[FAR, own], room[BEHIND, own], room[STRETCH, own]
+    else:
+        for row, target in ((FAR, far), (BEHIND, behind), (STRETCH, stretch)):
+            pick(room[row], live, n, target)
+    sliced = lowest > 0.5
+    for i in range(n):
+        stop = far[i]
+        base, last = (begin - behind[i]) * stretch[i], (end - behind[i]) * stretch[i]
+        base = base if base > 0.0 else 0.0
+        base = base if base < stop else stop
+        last = last if last > base else base
+        last = last if last < stop else stop
+        base = base if sliced else 0.0
+        bases[i] = base
+        state[END + i] = F((last if sliced else stop) - base)
+        state[FINE + i] = F(stop)
+        state[AT_A + i] = INFINITE
+        state[AT_B + i] = -INFINITE
+        state[TOP + i] = ZERO
+        state[DEEP + i] = INFINITE
+    for i in range(given, n):
+        state[END + i] = -INFINITE
+    for axis in range(3):
+        spot, way = room[SPOT + axis], room[SPOT + 3 + axis]
+        if fresh:
+            place, along = room[PX + axis, own], room[DX + axis, own]
+            for i in range(n):
+                d = along[i]
+                way[i] = d
+                spot[i] = place[i] + bases[i] * d
+        else:
+            pick(room[PX + axis], live, n, spot)
+            pick(room[DX + axis], live, n, way)
+            for i in range(n):
+                spot[i] += bases[i] * way[i]
+
+
+@lane
+def densest(p, t, inverse, end):
+    """The largest u of a point between 0 and ``end``."""
+    s = t if t < end else end
+    s = t - (s if s > ZERO else ZERO)
+    u = p - inverse * (s * s)
+    return u if u > ZERO else ZERO
+
+
+@inlined
+def set_part(part, room, row, state, n, level):
+    """A row of the table for a part; how many lanes come into its reach. AT_A and AT_B: where they enter and leave.
+
+    ``level``: u at which the part alone has the threshold.
+    """
+    cx, cy, cz, radius = part[0], part[1], part[2], part[6]
+    inverse = 1.0 / (radius * radius)
+    x, y, z = room[SPOT], room[SPOT + 1], room[SPOT + 2]
+    dx, dy, dz = room[SPOT + 3], room[SPOT + 4], room[SPOT + 5]
+    for i in range(n):
+        wx, wy, wz = cx - x[i], cy - y[i], cz - z[i]
+        t = wx * dx[i] + wy * dy[i] + wz * dz[i]
+        row[i] = F(1.0 - inverse * (wx * wx + wy * wy + wz * wz - t * t))
+        row[T + i] = F(t)
+    reach = F(radius)
+    weight = F(part[7])
+    most = weight if weight > ZERO else ZERO
+    inverse_single = F(inverse)
+    lanes = np.int32(0)
+    for i in range(n):
+        p, t = row[i], row[T + i]
+        half = reach * np.sqrt(p if p > ZERO else ZERO)
+        row[Q + i] = t - GOLDEN * half
+        near = (p > ZERO) & (t + half > ZERO) & (t - half < state[END + i])
+        entry, exit = state[AT_A + i], state[AT_B + i]
+        first = entry if entry < t - half else t - half
+        last = exit if exit > t + half else t + half
+        state[AT_A + i] = first if near else entry
+        state[AT_B + i] = last if near else exit
+        lanes = np.int32(lanes + (np.int32(1) if near else np.int32(0)))
+        top = densest(p, t, inverse_single, state[END + i])
+        state[TOP + i] += most * (top * top * top) if near else ZERO
+        lift = p - level
+        inner = t - reach * np.sqrt(lift if lift > ZERO else ZERO)
+        deep = state[DEEP + i]
+        inside = (lift > ZERO) & (inner > ZERO) & (inner < state[END + i]) & (inner < deep)
+        state[DEEP + i] = inner if inside else deep
+    row[WEIGHT] = weight
+    row[INVERSE] = inverse_single
+    return lanes
+
+
+@inlined
+def reach_threshold(state, n, threshold, close, drift):
+    """Whether all parts together may in some lane."""
+    lanes = np.int32(0)
+    for i in range(n):
+        off = close + drift * state[END + i]
+        lanes = np.int32(lanes + (np.int32(1) if state[TOP + i] > threshold - off else np.int32(0)))
+    return lanes > 0
+
+
+@inlined
+def tighten(table, rows, state, n, threshold, close, drift):
+    """Bring AT_A and AT_B of n lanes together, to where all parts are dense enough for the threshold.
+
+    Where all others are densest, a part still has to give what they lack. At densities above the threshold ``close`` +
+    ``drift`` t bounds the rounding of a sum, and of a share, as many times as they are denser.
+    """
+    scale = TWO / threshold if threshold > ZERO else ZERO
+    for k in range(rows):
+        row = table[k]
+        weight, inverse = row[WEIGHT], row[INVERSE]
+        if not weight > ZERO:
+            continue
+        share, reach = ONE / weight, ONE / np.sqrt(inverse)
+        for i in range(n):
+            p, t, end = row[i], row[T + i], state[END + i]
+            top = densest(p, t, inverse, end)
+            excess = (state[TOP + i] * (MORE + scale * (close + drift * end)) - threshold) * share
+            least = top * top * top - excess
+            # No more than the cube root: 1 + z + z >= 3 z^(2/3) for z = least/top^3.
+            level = THREE * LESS * least * top / (top * top * top + TWO * least if least > ZERO else ONE)
+            half = reach * np.sqrt(p - level if p > level else ZERO)
+            entry, exit = state[AT_A + i], state[AT_B + i]
+            first = entry if entry > t - half else t - half
+            last = exit if exit < t + half else t + half
+            state[AT_A + i] = first if least > ZERO else entry
+            state[AT_B + i] = last if least > ZERO else exit
+
+
+@inlined
+def start_lanes(state, n, threshold, close, drift, negative, anywhere):
+    """Begin the search in each lane, where the parts of the slice are dense enough; in how many.
+
+    Where all parts together cannot reach the threshold, nothing is met. Where no part is negative, a place is inside
+    if one part alone tells. ``close`` + ``drift`` t: see ``density_march_kernels.advance``.
+    """
+    positive = not negative
+    looking = np.int32(0)
+    for i in range(n):
+        way = state[FINE + i]
+        low = state[AT_A + i] - HAIR * way
+        high = state[AT_B + i] + HAIR * way
+        low = low if low > ZERO else ZERO
+        high = high if high < state[END + i] else state[END + i]
+        deep = state[DEEP + i]
+        off = close + drift * high
+        known = positive & (off < (CLEARLY - ONE) * threshold) & (deep < high) & (deep > low)
+        state[A + i] = low
+        state[B + i] = deep if known else (high if anywhere else HALF * (low + high))
+        state[END + i] = high
+        state[FINE + i] = NARROW * way
+        state[TRIES + i] = ZERO
+        state[ROOT + i] = low
+        live = (low < high) & (state[TOP + i] > threshold - off)
+        met = known & anywhere
+        state[STATE + i] = F(HIT) if met else (LIVE if live else F(MISS))
+        looking = np.int32(looking + (np.int32(1) if live & (not met) else np.int32(0)))
+    for i in range(n, LANES):
+        state[STATE + i] = F(MISS)
+    return looking

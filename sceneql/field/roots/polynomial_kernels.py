@@ -1,0 +1,151 @@
+# mypy: ignore-errors
+"""Polynomials along rays: a tape of sums and products alone is, on a ray, a polynomial whose coefficients it gives.
+
+Coefficients are float64, in tau of [-1, 1] over the searched piece of a ray; ``lanes`` has ABREAST numbers for each
+coefficient of an operation, one behind the other. Their rounding is bounded once for a bundle: with |x|, |y|, |z| at
+most some sizes, the absolute values of an operation's coefficients add up to no more than the operation on sizes with
+all signs positive.
+"""
+
+from sceneql.compiled.kernels import inlined
+from sceneql.field.tape.tape_ops import ADD, CONSTANT, MUL, NEG, SQUARE, SUB, X, Z
+
+POLYNOMIAL, DEGREES = 3, 4
+"""Of a plan: the row of the polynomial p of a field p or max(p, g), -1 where there is none; then, for each row up to
+that, its degree (-1: it is not needed), and where in ``lanes`` its coefficients begin, in ABREAST."""
+ABREAST = 128
+"""Rays that are looked at together."""
+UNIT = 1.2e-16
+ONE, TWO, THREE, FOUR = ABREAST, 2 * ABREAST, 3 * ABREAST, 4 * ABREAST
+
+
+@inlined
+def line(a, b, out, n):
+    """The product of two polynomials of degree 1."""
+    for i in range(n):
+        a0, a1, b0, b1 = a[i], a[ONE + i], b[i], b[ONE + i]
+        out[i] = a0 * b0
+        out[ONE + i] = a0 * b1 + a1 * b0
+        out[TWO + i] = a1 * b1
+
+
+@inlined
+def parabola(a, b, out, n):
+    """The product of two polynomials of degree 2."""
+    for i in range(n):
+        a0, a1, a2, b0, b1, b2 = a[i], a[ONE + i], a[TWO + i], b[i], b[ONE + i], b[TWO + i]
+        out[i] = a0 * b0
+        out[ONE + i] = a0 * b1 + a1 * b0
+        out[TWO + i] = a0 * b2 + a1 * b1 + a2 * b0
+        out[THREE + i] = a1 * b2 + a2 * b1
+        out[FOUR + i] = a2 * b2
+
+
+@inlined
+def scale(a, number, degree, out):
+    """A polynomial times a number, in all lanes."""
+    for i in range((degree + 1) * ABREAST):
+        out[i] = number * a[i]
+
+
+@inlined
+def multiply(a, da, b, db, out, n):
+    """The product of polynomials of degrees da and db."""
+    if da == 1 and db == 1:
+        line(a, b, out, n)
+        return
+    if da == 2 and db == 2:
+        parabola(a, b, out, n)
+        return
+    if da == 0 or db == 0:
+        scale(b if da == 0 else a, a[0] if da == 0 else b[0], max(da, db), out)
+        return
+    for k in range(da + db + 1):
+        row = out[k * ABREAST :]
+        first = max(k - db, 0)
+        left, right = a[first * ABREAST :], b[(k - first) * ABREAST :]
+        for i in range(n):
+            row[i] = left[i] * right[i]
+        m = first + 1
+        last = min(k, da)
+        while m < last:
+            left, right = a[m * ABREAST :], b[(k - m - 1) * ABREAST :]
+            for i in range(n):
+                row[i] += left[i] * right[ONE + i] + left[ONE + i] * right[i]
+            m += 2
+        if m == last:
+            left, right = a[m * ABREAST :], b[(k - m) * ABREAST :]
+            for i in range(n):
+                row[i] += left[i] * right[i]
+
+
+@inlined
+def add(a, da, b, db, sign, out):
+    """a + sign b, in all lanes."""
+    both = (min(da, db) + 1) * ABREAST
+    for i in range(both):
+        out[i] = a[i] + sign * b[i]
+    if da > db:
+        scale(a[both:], 1.0, da - db - 1, out[both:])
+    elif db > da:
+        scale(b[both:], sign, db - da - 1, out[both:])
+
+
+@inlined
+def coefficients(code, constants, plan, rays, first, middle, half, n, lanes):
+    """Coefficients on pieces of the n rays (RAY, k) from ``first`` on, given by their middles [t] and half lengths."""
+    rows = plan[POLYNOMIAL] + 1
+    for k in range(rows):
+        degree = plan[DEGREES + k]
+        if degree < 0:
+            continue
+        op, left, right = code[k, 0], code[k, 1], code[k, 2]
+        out = lanes[plan[DEGREES + rows + k] * ABREAST :]
+        if op == CONSTANT:
+            number = constants[left]
+            for i in range(ABREAST):
+                out[i] = number
+        elif op >= X and op <= Z:
+            place, way = rays[op - X, first:], rays[op - X + 3, first:]
+            for i in range(n):
+                out[i] = place[i] + middle[i] * way[i]
+                out[ONE + i] = half[i] * way[i]
+        else:
+            a, b = lanes[plan[DEGREES + rows + left] * ABREAST :], lanes[plan[DEGREES + rows + right] * ABREAST :]
+            da, db = plan[DEGREES + left], plan[DEGREES + right]
+            if op == MUL or op == SQUARE:
+                multiply(a, da, b, db, out, n)
+            elif op == ADD or op == SUB:
+                add(a, da, b, db, 1.0 if op == ADD else -1.0, out)
+            else:
+                scale(a, -1.0 if op == NEG else 1.0, da, out)
+
+
+@inlined
+def rounding(code, constants, plan, sizes, work):
+    """How far p and its derivative in tau may be off, as ``polynomial_steps_kernels`` has them.
+
+    ``sizes``: bounds of |x|, |y|, |z|, then of the error of each in units. Of an operation, ``work`` gets the sum of
+    absolute values and the error in units of that.
+    """
+    rows = plan[POLYNOMIAL] + 1
+    for k in range(rows):
+        degree = plan[DEGREES + k]
+        if degree < 0:
+            continue
+        op, left, right = code[k, 0], code[k, 1], code[k, 2]
+        a, b, e, f = work[2 * left], work[2 * right], work[2 * left + 1], work[2 * right + 1]
+        if op == CONSTANT:
+            a, e = abs(constants[left]), 0.0
+        elif op >= X and op <= Z:
+            a, e = sizes[op - X], sizes[op - X + 3]
+        elif op == MUL or op == SQUARE:
+            a, e = a * b, e + f + degree + 2.0
+        elif op == ADD or op == SUB:
+            a, e = a + b, max(e, f) + 1.0
+        work[2 * k], work[2 * k + 1] = a, e
+    degree = plan[DEGREES + rows - 1]
+    # Moved to another middle m by Horner's scheme, a coefficient is off by 2 d units of what |c_j| |m|^(j - k) add up
+    # to, and |m| and the half length together are no more than 1.
+    units = work[2 * rows - 1] + 8.0 * degree + 20.0
+    return 2.0 * UNIT * units * work[2 * rows - 2] * max(degree, 1)

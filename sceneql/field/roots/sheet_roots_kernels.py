@@ -1,0 +1,137 @@
+# mypy: ignore-errors
+"""First roots of a tape along a ray with or without a change of sign: where it meets a sheet."""
+
+import numpy as np
+
+from sceneql.compiled.kernels import lean, woven
+from sceneql.field.enclose.enclosure_kernels import segment
+from sceneql.field.enclose.slope_kernels import on_ray
+from sceneql.field.roots.bracket_kernels import FINE
+from sceneql.field.roots.certified_kernels import CROSSES, TOUCHES, certify, hidden, told
+from sceneql.field.roots.isolation_kernels import begin_of_proof, beyond, leaps, search
+from sceneql.field.tape.tape_ops import ATAN2, FLOOR, HIT, MISS, NOWHERE, SIGN, TAPE, UNDECIDED, WHOLE
+
+POLES = 16
+"""Changes of sign without a root that are passed on one ray."""
+NEARER = 0.95
+"""Part of f that is left half as far from a root, at the most: of |x|^k it is 1/2^k."""
+NO_ROOT = -2
+"""Beside the sides of f."""
+
+
+@woven
+def side_of(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, near):
+    """(side, t, whole) as ``told``, or NO_ROOT in start..t1, and whether f is known to be a number all over that.
+
+    An enclosure of all of it mostly tells, else one at the start, which is sooner than intervals.
+    """
+    c0, c1, e, status = segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, True)
+    whole = status == WHOLE
+    side, t = 0, start
+    if status == NOWHERE or abs(c0) - abs(c1) > e:
+        side = NO_ROOT
+    elif whole and abs(c0 - c1) > e:
+        side = 1 if c0 > c1 else -1
+    else:
+        c0, c1, e, status = segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, start, True)
+        if status == WHOLE and abs(c0) - abs(c1) > e:
+            side = 1 if c0 > 0.0 else -1
+        else:
+            side, t = told(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, near, 1.0)
+    return side, t, whole
+
+
+@woven
+def is_defined(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
+    """Whether f is a number all around the place t: no pole, no jump of its domain."""
+    _, _, _, status = segment(
+        code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t - 0.01 * near, t + 0.01 * near, True
+    )
+    if status != WHOLE:
+        _, _, _, _, status = on_ray(
+            code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t - 0.01 * near, t + 0.01 * near, 1.0
+        )
+    return status == WHOLE
+
+
+@woven
+def nears_zero(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
+    """Whether f, which is not known to be a number all around t, nears zero there from both sides, where it is one.
+
+    As acos(1 - |x|) does, of which rounding lets no interval tell that it is defined. A jump leaves f nearly what it is
+    half as far away, and a pole makes it larger.
+    """
+    reach = max(near, 4.0 * FINE * abs(t))
+    for side in (-1.0, 1.0):
+        a, b = t + side * reach, t + 2.0 * side * reach
+        low, high, _, _, first = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, a, 1.0)
+        least, most, _, _, last = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, b, b, 1.0)
+        if first == NOWHERE or last == NOWHERE or not abs(low + high) < np.inf:
+            return False
+        if first == WHOLE and last == WHOLE and not abs(low + high) < NEARER * abs(least + most):
+            return False
+    return True
+
+
+@woven
+def is_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
+    """Whether f, which is a number all around t, goes through zero there, or to it, and does not jump over it.
+
+    A root is looked for as far away as ``search`` may have left it.
+    """
+    for k in range(code.shape[0]):
+        op = code[k, 0]
+        if op == FLOOR or op == SIGN or op == ATAN2:
+            reach = max(near, 4.0 * FINE * abs(t))
+            return not leaps(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, reach)
+    return True
+
+
+@lean(
+    f"Tuple((int64, float64))({TAPE}, float64, float64, float64, float64, float64, float64, float64, float64, float64)"
+)
+def surface_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance):
+    """(status, t) of the first root of f on the ray o + t d, t in [t0, t1], with or without a change of sign.
+
+    HIT: all before t is proved to have none, and at t is one, up to rounding: see ``certify``. MISS: none is there.
+    UNDECIDED: all before t is proved. Where f jumps or has a pole is no root.
+    """
+    near = tolerance * (t1 - t0)
+    start = t0
+    for _ in range(POLES):
+        side, start, whole = side_of(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, near)
+        if side == 0:
+            return UNDECIDED, start
+        if side == NO_ROOT:
+            return MISS, t1
+        side = min(side, 1)
+        status, t = search(
+            code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, tolerance, float(side), False
+        )
+        if status == MISS:
+            return MISS, t1
+        if status == UNDECIDED:
+            kind, _, place, _, _ = hidden(
+                code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t, start, t1, 0.1 * near, float(side)
+            )
+            if kind == CROSSES or kind == TOUCHES:
+                status = HIT
+                t = place
+        if status == UNDECIDED:
+            t = begin_of_proof(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, start, t1)
+            status, t = certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, near, 1.0, False, True)
+            if status == UNDECIDED:
+                status, t = beyond(
+                    code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, near, 1.0, False, True
+                )
+            if status != HIT:
+                return status, t
+        if whole or is_defined(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
+            if is_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
+                return HIT, t
+        elif nears_zero(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
+            return UNDECIDED, t
+        start = t + near
+        if not start < t1:
+            return MISS, t1
+    return UNDECIDED, start

@@ -1,0 +1,1 @@
+"""Densities of skeletons: values, gradients and enclosures."""

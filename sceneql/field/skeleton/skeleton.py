@@ -1,0 +1,222 @@
+"""Skeletons as rows of a tape: parts of points, segments, triangles and curves, in a hierarchy of boxes.
+
+Imports numpy: to be imported by the function that needs it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy import bool_, int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats, Tape
+
+    NDBool = NDArray[bool_]
+    Order = NDArray[int64]
+
+KERNELS = ("wyvill", "soft_object", "metaball", "gaussian", "inverse_square")
+"""In the order of falloff_kernels."""
+SEGMENT, TRIANGLE, NODE, CURVE = range(4)
+"""As in skeleton_parts_kernels."""
+FLAT = 1e-6
+"""Sine of the angle between two sides below which a triangle is taken for its longest side."""
+BRANCHES = 8
+"""Parts, and boxes of parts, in a box."""
+WIDER = 1e-9
+"""By how much boxes are larger than what they hold, in parts of their size and of its distance from the origin."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Skeleton:
+    """Parts of a density field: see skeleton_kernels for what they mean."""
+
+    corners: Floats
+    """(p, 3, 3) [m]: ends a and b, and c of a triangle or curve; a segment has c = a, a point a = b = c."""
+    radii: Floats
+    """(p, 2) [m] > 0, at a and at b; of a triangle the first counts."""
+    weights: Floats
+    """(p,), the same within a group."""
+    groups: Floats
+    """(p,) whole numbers >= 0: of the parts of a group the largest density counts."""
+    kernel: int = 0
+    """Index into KERNELS."""
+    middles: Floats | None = None
+    """(p,) [m] > 0, the radius at the control point c of a quadratic Bezier curve a c b; NaN for other parts."""
+
+    @property
+    def curved(self) -> NDBool:
+        """(p,) which parts are curves."""
+        return np.zeros(len(self.weights), dtype=bool) if self.middles is None else np.isfinite(self.middles)
+
+    @property
+    def largest(self) -> Floats:
+        """(p,) [m] a radius that a part has nowhere more than."""
+        ends: Floats = self.radii.max(axis=1)
+        return ends if self.middles is None else np.fmax(ends, self.middles)
+
+    def weighted(self, weights: Floats) -> Skeleton:
+        """The same parts with other weights (p,)."""
+        return replace(self, weights=weights)
+
+    def plain(self) -> NDBool:
+        """(p,) which parts are points or segments of one radius, alone in their group, with Wyvill's kernel."""
+        a, b, c = self.corners.transpose(1, 0, 2)
+        _, where, count = np.unique(self.groups, return_inverse=True, return_counts=True)
+        lone = count[where] == 1
+        flat = (c == a).all(axis=1) | (c == b).all(axis=1)
+        plain: NDBool = lone & flat & ~self.curved & (self.radii[:, 0] == self.radii[:, 1]) & (self.kernel == 0)
+        return plain
+
+    def chosen(self, which: NDBool) -> Skeleton:
+        """Some of the parts."""
+        middles = None if self.middles is None else self.middles[which]
+        return Skeleton(
+            self.corners[which], self.radii[which], self.weights[which], self.groups[which], self.kernel, middles
+        )
+
+    def density_rows(self) -> Floats:
+        """(p, 8) rows of the operation DENSITY, which knows plain parts alone."""
+        return np.concatenate(
+            [self.corners[:, :2].reshape(-1, 6), self.radii[:, :1], self.weights[:, None]], axis=1
+        )  # fmt: skip
+
+    def rows(self) -> Floats:
+        """(r, 8) rows of the operation SKELETON: parts by place, groups kept together, boxes before what they hold."""
+        corners, radii, shapes, condition = _settled(self.corners, self.radii)
+        curved = self.curved
+        corners[curved], radii[curved], shapes[curved] = self.corners[curved], self.radii[curved], CURVE
+        if self.middles is not None:
+            condition[curved] = self.middles[curved]
+        low, high = corners.min(axis=1), corners.max(axis=1)
+        reach = self.largest[:, None]
+        order = _order(0.5 * (low + high), self.groups)
+        low, high = (low - reach)[order], (high + reach)[order]
+        room = WIDER * (high - low + np.abs(low) + np.abs(high))
+        low, high = low - room, high + room
+        n = len(order)
+        sizes = _sizes(n)
+        places = 2 * (np.arange(n) + sum((np.arange(n) // size + 1 for size in sizes), start=np.zeros(n, dtype=int)))
+        total = n + sum(-(-n // size) for size in sizes)
+        rows = np.zeros((2 * total, 8))
+        rows[places, :6] = corners[order, :2].reshape(-1, 6)
+        rows[places, 6], rows[places, 7] = radii[order, 0], self.weights[order]
+        rows[places + 1, :3], rows[places + 1, 3] = corners[order, 2], radii[order, 1]
+        rows[places + 1, 4], rows[places + 1, 5] = self.kernel, self.groups[order]
+        rows[places + 1, 6], rows[places + 1, 7] = shapes[order], condition[order]
+        for size in sizes:
+            starts = np.arange(0, n, size)
+            nodes = 2 * (starts + sum(starts // other + (other > size) for other in sizes))
+            ends = np.minimum(starts + size, n)
+            behind = 2 * (ends + sum(-(-ends // other) for other in sizes))
+            rows[nodes, :3] = np.minimum.reduceat(low, starts)
+            rows[nodes, 3:6] = np.maximum.reduceat(high, starts)
+            rows[nodes, 6], rows[nodes + 1, 6] = behind - nodes - 2, NODE
+        return rows
+
+
+def plain_points(rows: Floats) -> Floats | None:
+    """The parts among ``rows`` (r, 8) of a SKELETON, as rows of a DENSITY; None where one has another kernel or group.
+
+    What has a second end as a segment, or a second radius, keeps two ends that differ.
+    """
+    first: Floats
+    first, second = rows[::2], rows[1::2]
+    part = second[:, 6] != NODE
+    first, second = first[part], second[part]
+    alone = len(np.unique(second[:, 5])) == len(second)
+    if not alone or (second[:, 4] != 0).any() or (second[:, 6] != SEGMENT).any() or (first[:, 6] != second[:, 3]).any():
+        return None
+    return first
+
+
+@cache
+def _unit(kernel: int) -> Tape:
+    """The tape of one point of radius 1 at the origin."""
+    from sceneql.field.tape.builder import TapeBuilder
+
+    build = TapeBuilder()
+    one = Skeleton(np.zeros((1, 3, 3)), np.ones((1, 2)), np.ones(1), np.zeros(1), kernel)
+    return build.finish(build.skeleton(one, build.x, build.y, build.z))
+
+
+def profile(kernel: int, r: Floats) -> Floats:
+    """K at r = d/R (n,)."""
+    from sceneql.field.tape.tape_solid import field_values
+
+    return field_values(_unit(kernel), np.stack([r, 0.0 * r, 0.0 * r], axis=1))
+
+
+def farthest(kernel: int, density: Floats) -> Floats:
+    """(n,) the r = d/R within which a kernel is above a density (n,) > 0; 0 where it never is. By bisection."""
+    densities, where = np.unique(density, return_inverse=True)
+    low, high = np.zeros(len(densities)), np.ones(len(densities))
+    for _ in range(54):
+        middle = 0.5 * (low + high)
+        above = profile(kernel, middle) > densities
+        low, high = np.where(above, middle, low), np.where(above, high, middle)
+    found: Floats = np.where(densities < 1.0, high, 0.0)[where]
+    return found
+
+
+def steepness(kernel: int, density: float) -> float:
+    """-R dK/dd where a kernel has a density."""
+    r = farthest(kernel, np.array([density]))
+    step = 1e-6 * min(r[0], 1.0 - r[0])
+    return float((profile(kernel, r - step) - profile(kernel, r + step))[0] / (2.0 * step))
+
+
+def _sizes(n: int) -> list[int]:
+    """Parts in the boxes of each level, the largest first."""
+    sizes = []
+    size = BRANCHES
+    while n > size:
+        sizes.append(size)
+        size *= BRANCHES
+    return sizes[::-1]
+
+
+def _settled(corners: Floats, radii: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """(corners, radii, shapes, condition) of the parts, triangles without an area as their longest sides."""
+    a, b, c = corners.transpose(1, 0, 2)
+    normal = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    product = np.linalg.norm(b - a, axis=1) * np.linalg.norm(c - a, axis=1)
+    triangle = normal > FLAT * product
+    condition = np.where(triangle, np.divide(product, normal, out=np.ones(len(a)), where=normal > 0), 1.0)
+    sides = np.stack([np.linalg.norm(corners[:, (k + 1) % 3] - corners[:, k], axis=1) for k in range(3)])
+    longest = np.argmax(sides, axis=0)
+    pick = np.arange(len(a))
+    ends = np.stack([corners[pick, longest], corners[pick, (longest + 1) % 3]], axis=1)
+    degenerate = ~triangle & (longest > 0)
+    settled, reach = corners.copy(), radii.copy()
+    settled[degenerate, :2] = ends[degenerate]
+    settled[~triangle, 2] = settled[~triangle, 0]
+    reach[degenerate | triangle, 1] = reach[degenerate | triangle, 0]
+    return settled, reach, np.where(triangle, TRIANGLE, SEGMENT), condition
+
+
+def _order(places: Floats, groups: Floats) -> Order:
+    """Indices along Morton's curve (1966): of the groups by their middle, and in each of its parts."""
+    n = len(places)
+    if n <= BRANCHES:
+        return np.lexsort([np.arange(n), groups])
+    _, where, count = np.unique(groups, return_inverse=True, return_counts=True)
+    middles = np.stack([np.bincount(where, places[:, k]) for k in range(3)], axis=1) / count[:, None]
+    return np.lexsort([_morton(places), groups, _morton(middles)[where]])
+
+
+def _morton(places: Floats) -> Order:
+    """Numbers along Morton's curve of points (n, 3)."""
+    low = places.min(axis=0)
+    size = float((places.max(axis=0) - low).max()) or 1.0
+    cells = np.minimum((places - low) / size * 1024.0, 1023.0).astype(np.int64)
+    code = np.zeros(len(places), dtype=np.int64)
+    for bit in range(10):
+        for axis in range(3):
+            code |= (cells[:, axis] >> bit & 1) << (3 * bit + axis)
+    return code

@@ -1,0 +1,124 @@
+"""Proofs that a tape's solid {f < 0} or surface {f = 0} has nothing in a box, for Python callers.
+
+Imports numpy and numba: to be imported by the function that needs it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from heapq import heappop, heappush
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.field.enclose import interval_kernels
+from sceneql.field.tape import tape_kernels
+from sceneql.field.tape.magnitude import lattice
+from sceneql.field.tape.tape_ops import NOWHERE, WHOLE
+from sceneql.field.tape.tape_solid import field_values, scratch
+
+if TYPE_CHECKING:
+    from sceneql.frame import Tape
+
+BOXES = 4096
+"""Boxes that a proof may take; without one by then the answer is no."""
+SHALLOW = 1e-12
+"""A solid nowhere deeper than this, in parts of its box's size and of what |f| typically is there, counts as empty."""
+
+Corner = tuple[float, float, float]
+
+
+def proved_empty(tape: Tape, low: Corner, high: Corner) -> bool:
+    """Whether f is proved to be nowhere negative, where it is defined at all, in the box low..high [m].
+
+    Touching 0 from above is not negative, by how much rounding may make of it: SHALLOW.
+    """
+    slack = SHALLOW * _depth(tape, low, high)
+    return _all_settled(
+        tape,
+        low,
+        high,
+        lambda least, most, status: status == NOWHERE or least >= -slack,
+        lambda value, status: value < 0.0,
+    )
+
+
+def proved_rootless(tape: Tape, low: Corner, high: Corner) -> bool:
+    """Whether f is proved to be nowhere zero in the box low..high [m]."""
+    return _all_settled(
+        tape,
+        low,
+        high,
+        lambda least, most, status: status == NOWHERE or least > 0.0 or most < 0.0,
+        lambda value, status: value == 0.0,
+    )
+
+
+def nowhere_defined(tape: Tape, low: Corner, high: Corner) -> bool:
+    """Whether f is proved to be undefined in all of the box low..high [m]."""
+    return _all_settled(
+        tape,
+        low,
+        high,
+        lambda least, most, status: status == NOWHERE,
+        lambda value, status: status == WHOLE or value == value,
+    )
+
+
+def nowhere_finite(tape: Tape, low: Corner, high: Corner) -> bool:
+    """Whether f is infinite or no number at all places of a lattice in the box low..high [m]: a reason, no proof."""
+    return not np.isfinite(field_values(tape, lattice(low, high))).any()
+
+
+def bottomless(tape: Tape, low: tuple[float, ...], high: tuple[float, ...]) -> bool:
+    """Whether f is finite at no place of a lattice in the box low..high [m], and at some is minus infinity."""
+    values = field_values(tape, lattice(low, high))
+    return bool((values == -np.inf).any() and not np.isfinite(values).any())
+
+
+def _depth(tape: Tape, low: Corner, high: Corner) -> float:
+    """The size [m] of the box low..high, or the median of |f| in it where that is less."""
+    values = np.abs(field_values(tape, lattice(low, high)))
+    values = values[np.isfinite(values)]
+    size = max(b - a for a, b in zip(low, high, strict=True))
+    return min(size, float(np.median(values))) if len(values) else size
+
+
+def _all_settled(
+    tape: Tape,
+    low: Corner,
+    high: Corner,
+    settled: Callable[[float, float, int], bool],
+    refuted: Callable[[float, int], bool],
+) -> bool:
+    """Branch and bound (Land and Doig 1960): halve boxes until all are settled, the least first; no once refuted.
+
+    ``settled`` gets the least and the largest value that f may have in a box and where it is defined, ``refuted`` the
+    value in its middle and where it is defined.
+    """
+    program = (tape.code, tape.constants, tape.parts, scratch(tape))
+    boxes: list[tuple[float, int, Corner, Corner]] = [(0.0, 0, low, high)]
+    for count in range(1, BOXES, 2):
+        if not boxes:
+            return True
+        _, _, first, last = heappop(boxes)
+        sides = [b - a for a, b in zip(first, last, strict=True)]
+        axis = sides.index(max(sides))
+        middle = 0.5 * (first[axis] + last[axis])
+        for part, (a, b) in enumerate(((first[axis], middle), (middle, last[axis]))):
+            one, two = _moved(first, axis, a), _moved(last, axis, b)
+            least, most, status = interval_kernels.box(
+                *program, *(c for pair in zip(one, two, strict=True) for c in pair)
+            )
+            if settled(least, most, status):
+                continue
+            center = (0.5 * (c + d) for c, d in zip(one, two, strict=True))
+            if refuted(tape_kernels.value(*program, *center), status):
+                return False
+            heappush(boxes, (least, count + part, one, two))
+    return False
+
+
+def _moved(corner: Corner, axis: int, place: float) -> Corner:
+    x, y, z = (place if k == axis else c for k, c in enumerate(corner))
+    return x, y, z

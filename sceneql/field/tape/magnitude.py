@@ -1,0 +1,87 @@
+"""How large a field is where its surface lies, so that one of any magnitude can be made like a distance.
+
+Imports numpy and numba: to be imported by the function that needs it.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.field.tape.tape_solid import field_gradients, field_values
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Tape
+
+SAMPLES = 7
+"""Along each axis of the box."""
+ORDINARY = 20
+"""Powers of two by which a field may differ from a distance and stay as it is."""
+MOST = 1000
+"""The largest power of two to multiply with."""
+PLACES = 64
+"""Places of the surface whose gradients are looked at."""
+TURNS = 50
+"""Of bisection to each of them."""
+
+Corner = tuple[float, ...]
+
+
+def lattice(low: Corner, high: Corner) -> Floats:
+    """(n, 3) points inside a box, evenly spaced, x slowest."""
+    ticks = [np.linspace(a, b, SAMPLES + 2)[1:-1] for a, b in zip(low, high, strict=True)]
+    return np.stack(np.meshgrid(*ticks, indexing="ij"), axis=-1).reshape(-1, 3)
+
+
+def leveling(tape: Tape, low: Corner, high: Corner) -> float:
+    """The power of two that makes |grad f| about 1 on the surface {f = 0} in the box low..high; 1 where f is ordinary.
+
+    The gradient's median is taken at places found by bisection between points of a lattice; where there is none, |f|
+    over the size of the box stands for it.
+    """
+    return _leveling(tape.code.tobytes(), tape.constants.tobytes(), tape.parts.tobytes(), low, high)
+
+
+@lru_cache(maxsize=256)
+def _leveling(code: bytes, constants: bytes, parts: bytes, low: Corner, high: Corner) -> float:
+    from sceneql.frame import Tape
+
+    rows = np.frombuffer(code, np.int32).reshape(-1, 4).copy()
+    tape = Tape(rows, np.frombuffer(constants).copy(), np.frombuffer(parts).reshape(-1, 8).copy())
+    points = lattice(low, high)
+    size = 0.5 * max(b - a for a, b in zip(low, high, strict=True))
+    with np.errstate(all="ignore"):
+        values = field_values(tape, points)
+        slopes = np.abs(values[np.isfinite(values)]) / size
+        slopes = slopes[np.isfinite(slopes)]
+        if not slopes.any():
+            return 1.0
+        typical = float(np.median(slopes[slopes > 0.0]))
+        if typical > 2.0**-ORDINARY and slopes.max() < 2.0**ORDINARY:
+            return 1.0
+        typical = _steepness(tape, points, values) or typical
+    power = -round(float(np.log2(typical)))
+    return 1.0 if abs(power) <= ORDINARY else 2.0 ** max(-MOST, min(MOST, power))
+
+
+def _steepness(tape: Tape, points: Floats, values: Floats) -> float:
+    """The median of |grad f| at places of the surface; 0 where none is found."""
+    places = np.arange(len(points)).reshape(SAMPLES, SAMPLES, SAMPLES)
+    pairs = np.concatenate(
+        [
+            np.stack([places.take(range(SAMPLES - 1), axis), places.take(range(1, SAMPLES), axis)], -1).reshape(-1, 2)
+            for axis in range(3)
+        ]
+    )
+    crossed = pairs[(values[pairs] < 0.0).sum(axis=1) == 1]
+    inner = np.where(values[crossed[:, :1]] < 0.0, crossed, crossed[:, ::-1])[:: max(1, len(crossed) // PLACES)]
+    a, b = points[inner[:, 0]], points[inner[:, 1]]
+    for _ in range(TURNS):
+        middle = 0.5 * (a + b)
+        inside = (field_values(tape, middle) < 0.0)[:, None]
+        a, b = np.where(inside, middle, a), np.where(inside, b, middle)
+    steep = np.linalg.norm(field_gradients(tape, b), axis=1)
+    steep = steep[np.isfinite(steep) & (steep > 0.0)]
+    return float(np.median(steep)) if len(steep) else 0.0

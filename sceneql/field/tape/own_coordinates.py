@@ -1,0 +1,72 @@
+"""A tape in coordinates of its own, where all that it looks at is an affine map of the place.
+
+Rays are then brought there once, in float64, instead of each place on them: a moved object costs what one at rest does,
+and float32 numbers finely what is small and far from the origin.
+
+Imports numpy: to be imported by the function that needs it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.field.tape.plans import tape_of_rows
+from sceneql.field.tape.tape_ops import ADD, CONSTANT, COPY, MUL, NEG, OF_PARTS, SUB, X, Y, Z
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Tape
+
+LEAST = 1e-9
+"""Volume of three directions, relative to the product of their lengths, below which they are taken to be flat."""
+
+
+def in_own_coordinates(tape: Tape) -> tuple[Tape, Floats]:
+    """(tape g, A (3, 4)) with f(p) = g(A (p, 1)); the tape itself and the identity where it has no such coordinates."""
+    same = tape, np.eye(3, 4)
+    forms = _affine_rows(tape)
+    seen = sorted({row for k in range(len(tape.code)) if k not in forms for row in _operands(tape, k) if row in forms})
+    seen = [row for row in seen if forms[row][:3].any()]
+    axes: dict[bytes, int] = {}
+    for row in seen:
+        axes.setdefault((forms[row] + 0.0).tobytes(), len(axes))  # -0.0 is 0.0
+    if len(axes) != 3:
+        return same
+    matrix = np.array([np.frombuffer(form) for form in axes])
+    lengths = np.linalg.norm(matrix[:, :3], axis=1)
+    if (matrix == same[1]).all() or not abs(np.linalg.det(matrix[:, :3] / lengths[:, None])) > LEAST:
+        return same
+    code = tape.code.copy()
+    for row in seen:
+        code[row] = X + axes[(forms[row] + 0.0).tobytes()], 0, 0, 0
+    own = replace(tape, code=code)
+    return replace(own, code=tape_of_rows(own, [len(code) - 1])), matrix
+
+
+def _affine_rows(tape: Tape) -> dict[int, Floats]:
+    """Rows that are a x + b y + c z + d: (a, b, c, d) of each."""
+    forms: dict[int, Floats] = {}
+    for k, (op, left, right, _) in enumerate(tape.code.tolist()):
+        if op == CONSTANT:
+            forms[k] = np.array([0.0, 0.0, 0.0, tape.constants[left]])
+        elif op in (X, Y, Z):
+            forms[k] = np.eye(3, 4)[op - X]
+        elif op in (COPY, NEG) and left in forms:
+            forms[k] = forms[left] if op == COPY else -forms[left]
+        elif op in (ADD, SUB) and left in forms and right in forms:
+            forms[k] = forms[left] + forms[right] if op == ADD else forms[left] - forms[right]
+        elif op == MUL and left in forms and right in forms:
+            a, b = (forms[left], forms[right]) if forms[right][:3].any() else (forms[right], forms[left])
+            if not a[:3].any():
+                forms[k] = a[3] * b
+    return forms
+
+
+def _operands(tape: Tape, row: int) -> tuple[int, ...]:
+    """Rows that a row reads."""
+    op, left, right, third = map(int, tape.code[row])
+    if op in OF_PARTS:
+        return third, third + 1, third + 2
+    return (left, right)

@@ -1,0 +1,181 @@
+"""Which form a tape has that lets its roots on a ray be told by more than enclosures.
+
+Imports numpy: to be imported by the function that needs it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.field.skeleton.skeleton import plain_points
+from sceneql.field.tape.tape_ops import (
+    ADD,
+    ATAN2,
+    CONSTANT,
+    COPY,
+    DENSITY,
+    DIV,
+    MAX,
+    MUL,
+    NEG,
+    OF_PARTS,
+    SCRATCH_COLUMNS,
+    SQRT,
+    SQUARE,
+    SUB,
+    X,
+    Y,
+    Z,
+)
+
+if TYPE_CHECKING:
+    from numpy import int32
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Ints, Tape
+
+MOST_DEGREE = 8
+"""Of a polynomial."""
+
+
+def without_factor(tape: Tape, row: int) -> int:
+    """The row of which a row is a positive multiple: their roots are the same."""
+    op, left, right, _ = map(int, tape.code[row])
+    factors = {MUL: ((left, right), (right, left)), DIV: ((right, left),)}.get(op, ())
+    for factor, rest in factors:
+        if tape.code[factor, 0] == CONSTANT and tape.constants[tape.code[factor, 1]] > 0.0:
+            return without_factor(tape, rest)
+    return row
+
+
+def density_of(tape: Tape, row: int) -> tuple[int, int] | None:
+    """(row of the density D, index of the constant c) where a row is c - D, D of lone points with Wyvill's kernel.
+
+    What no part reaches is outside: c is more than 0.
+    """
+    op, left, right, _ = tape.code[row]
+    if op != SUB or tape.code[left, 0] != CONSTANT or tape.code[right, 0] not in OF_PARTS:
+        return None
+    if not tape.constants[tape.code[left, 1]] > 0.0:
+        return None
+    kind, start, stop, at = tape.code[right]
+    place = [tape.code[row[1], 0] if row[0] == COPY else row[0] for row in tape.code[at : at + 3]]
+    parts = tape.parts[start:stop] if kind == DENSITY else plain_points(tape.parts[start:stop])
+    if place != [X, Y, Z] or parts is None or not (parts[:, :3] == parts[:, 3:6]).all():
+        return None
+    return int(right), int(tape.code[left, 1])
+
+
+def degrees_of(tape: Tape, row: int) -> list[int] | None:
+    """Degrees of the rows up to one that is a polynomial of the place, -1 of those it does not need; else None."""
+    degrees = [-1] * (row + 1)
+    needed = {row}
+    for k in range(row, -1, -1):
+        op, left, right, _ = map(int, tape.code[k])
+        if k in needed and op not in (CONSTANT, X, Y, Z):
+            if op not in (COPY, ADD, SUB, MUL, NEG, SQUARE):
+                return None
+            needed |= {left, right}
+    for k in sorted(needed):
+        op, left, right, _ = map(int, tape.code[k])
+        if op in (CONSTANT, X, Y, Z):
+            degrees[k] = 0 if op == CONSTANT else 1
+        elif op in (MUL, SQUARE):
+            degrees[k] = degrees[left] + degrees[right]
+        else:
+            degrees[k] = max(degrees[left], degrees[right])
+    return degrees if 1 < degrees[row] <= MOST_DEGREE else None
+
+
+def places_of(tape: Tape, degrees: list[int]) -> tuple[list[int], int]:
+    """(Where the coefficients of each row but the last begin, how many places that takes): what is no longer needed
+    makes room."""
+    last_use = dict.fromkeys(range(len(degrees)), -1)
+    for k, degree in enumerate(degrees):
+        if degree >= 0 and tape.code[k, 0] not in (CONSTANT, X, Y, Z):
+            last_use |= dict.fromkeys(map(int, tape.code[k, 1:3]), k)
+    places, most = [0] * (len(degrees) - 1), 0
+    held: list[tuple[int, int, int]] = []  # (begin, end, last use)
+    for k, degree in enumerate(degrees[:-1]):
+        if degree < 0:
+            continue
+        begin = 0
+        for start, end, _ in sorted(held):
+            if begin + degree + 1 <= start:
+                break
+            begin = end
+        places[k] = begin
+        most = max(most, begin + degree + 1)
+        held = [*(piece for piece in held if piece[2] > k), (begin, begin + degree + 1, last_use[k])]
+    return places, most
+
+
+NO_FORM, POLYNOMIAL = range(2)
+"""What a plan for single rays begins with."""
+OWN, CLIP, RADIUS, DEGREES = range(1, 5)
+"""Then, of a field p, max(p, q) or max(p, sqrt(q) - r): the row of p, that of a quadratic q, -1 where there is none,
+and the index of the constant r, -1 likewise; the degree of each row up to the last of these, -1 where it is not needed;
+where its numbers begin in the working memory."""
+BESIDE = 2
+"""Numbers of a row behind its coefficients."""
+
+
+def root_of(tape: Tape, row: int) -> tuple[int, int]:
+    """(row of q, index of r) where a row is sqrt(q) - r, r > 0: it has the sign of q - r^2; else (row, -1)."""
+    op, left, right, _ = map(int, tape.code[row])
+    if op == SUB and tape.code[left, 0] == SQRT and tape.code[right, 0] == CONSTANT:
+        index = int(tape.code[right, 1])
+        if tape.constants[index] > 0.0:
+            return int(tape.code[left, 1]), index
+    return row, -1
+
+
+def ray_plan(tape: Tape) -> Ints:
+    """How a single ray looks for roots of a tape, as ray_polynomial_kernels reads it; NO_FORM alone: by enclosures."""
+    none = np.array([NO_FORM], dtype=np.int32)
+    last = without_factor(tape, len(tape.code) - 1)
+    rows = [(last, -1)]
+    if tape.code[last, 0] == MAX:
+        rows = [root_of(tape, without_factor(tape, int(row))) for row in tape.code[last, 1:3]]
+    degrees = np.full((len(rows), max(rows)[0] + 1), -1)
+    for known, (row, _) in zip(degrees, rows, strict=True):
+        found = degrees_of(tape, row)
+        if found is None:
+            return none
+        known[: row + 1] = found
+    needed = degrees.max(axis=0)
+    *clips, (own, rooted) = sorted(rows, key=lambda pair: (pair[1] < 0, int(needed[pair[0]])))
+    if rooted >= 0 or any(needed[row] != 2 for row, _ in clips):
+        return none
+    ends = MOST_DEGREE + 1 + np.cumsum(np.where(needed < 0, 0, needed + 1 + BESIDE))
+    if ends[-1] > len(tape.code) * SCRATCH_COLUMNS:
+        return none
+    starts = ends - needed - 1 - BESIDE
+    return np.array([POLYNOMIAL, own, *(clips or [(-1, -1)])[0], *needed, *starts], dtype=np.int32)
+
+
+def tape_of_rows(tape: Tape, rows: list[int]) -> NDArray[int32]:
+    """Code (k, 4) of the largest of some rows and what it needs of the tape alone; empty for none."""
+    needed = set(rows)
+    for k in range(max(rows, default=-1), -1, -1):
+        op, left, right, point = map(int, tape.code[k])
+        if k in needed and op in OF_PARTS:
+            needed |= {point, point + 1, point + 2}
+        elif k in needed and op not in (CONSTANT, X, Y, Z):
+            needed |= {left, right}
+    place = {k: i for i, k in enumerate(sorted(needed))}
+    code = [[int(n) for n in tape.code[k]] for k in place]
+    for line in code:
+        if line[0] in OF_PARTS:
+            line[3] = place[line[3]]
+        elif line[0] not in (CONSTANT, X, Y, Z):
+            # The third operand of an angle is no row: see turns.
+            third = line[3] if line[0] == ATAN2 else place.get(line[3], 0)
+            line[1:] = place[line[1]], place[line[2]], third
+    last = [place[row] for row in rows]
+    for row in last[1:]:
+        code.append([MAX, last[0], row, 0])
+        last[0] = len(code) - 1
+    return np.array(code, dtype=np.int32).reshape(-1, 4)

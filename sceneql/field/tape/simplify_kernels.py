@@ -1,0 +1,107 @@
+# mypy: ignore-errors
+"""What of a tape matters in a box: branches of min and max that cannot win and parts out of reach are left out.
+
+In the box the shorter tape has the same bits of value as the whole one, so that neighboring boxes agree on their face.
+"""
+
+import numpy as np
+
+from sceneql.compiled.kernels import inlined, lean
+from sceneql.field.skeleton.density_kernels import offset
+from sceneql.field.skeleton.falloff_kernels import WYVILL
+from sceneql.field.skeleton.skeleton_bounds_kernels import skeleton_near
+from sceneql.field.skeleton.skeleton_parts_kernels import GROUP, KERNEL, RADIUS, RADIUS_B, SEGMENT, SHAPE, STRIDE
+from sceneql.field.tape.short_rows_kernels import ALIAS, LIVE, mark, write_row
+from sceneql.field.tape.tape_ops import DENSITY, MAX, MIN, SKELETON
+
+
+@inlined
+def within_reach(parts, i, scratch, p):
+    """Whether part i may have a density in the box whose sides are rows p..p+2 of scratch."""
+    hx = 0.5 * (scratch[p, 1] - scratch[p, 0])
+    hy = 0.5 * (scratch[p + 1, 1] - scratch[p + 1, 0])
+    hz = 0.5 * (scratch[p + 2, 1] - scratch[p + 2, 0])
+    x = scratch[p, 0] + hx
+    y = scratch[p + 1, 0] + hy
+    z = scratch[p + 2, 0] + hz
+    wx, wy, wz = offset(parts, i, x, y, z)
+    blur = 1.0e-12 * (abs(x) + abs(y) + abs(z) + abs(parts[i, 0]) + abs(parts[i, 1]) + abs(parts[i, 2]) + parts[i, 6])
+    blur += 1.0e-12 * (abs(parts[i, 3]) + abs(parts[i, 4]) + abs(parts[i, 5]))
+    distance = np.sqrt(wx * wx + wy * wy + wz * wz)
+    diagonal = np.sqrt(hx * hx + hy * hy + hz * hz)
+    return distance < parts[i, 6] + diagonal + blur
+
+
+@inlined
+def winner(code, k, scratch):
+    """The row whose value row k has all over the box: that of a branch which must win, else k itself."""
+    op = code[k, 0]
+    if op == MIN or op == MAX:
+        left = code[k, 1]
+        right = code[k, 2]
+        if scratch[left, 1] < scratch[right, 0]:
+            return int(scratch[left if op == MIN else right, ALIAS])
+        if scratch[right, 1] < scratch[left, 0]:
+            return int(scratch[right if op == MIN else left, ALIAS])
+    return k
+
+
+@inlined
+def plain_parts(near, first, found):
+    """Bring the parts of a skeleton in rows first..found-1 of near into the form of DENSITY, if all have one; the row
+    behind, or 0.
+
+    They have it as points or segments of one radius, alone in their groups, with Wyvill's kernel.
+    """
+    group = -1.0
+    for i in range(first, found, STRIDE):
+        flat = near[i + 1, SHAPE] == SEGMENT and near[i + 1, KERNEL] == WYVILL
+        if not flat or near[i + 1, RADIUS_B] != near[i, RADIUS] or near[i + 1, GROUP] == group:
+            return 0
+        group = near[i + 1, GROUP]
+    rows = first
+    for i in range(first, found, STRIDE):
+        for j in range(8):
+            near[rows, j] = near[i, j]
+        rows += 1
+    return rows
+
+
+@lean(
+    "UniTuple(int64, 2)(int32[:, ::1], float64[:, ::1], float64[:, ::1], boolean, int32[:, ::1], float64[:, ::1])",
+)
+def simplify(code, parts, scratch, whole, short, near):
+    """Write the tape that matters into ``short`` and ``near``, as large as code and parts; (rows, parts) used of them.
+
+    ``scratch`` is as ``interval_kernels.box`` left it, ``whole`` whether the tape is defined all over that box: where
+    it is not, all matters: a NaN in any branch makes the value NaN, and ``box`` may have stopped before the end.
+    """
+    last = code.shape[0] - 1
+    for k in range(last + 1):
+        scratch[k, ALIAS] = winner(code, k, scratch) if whole else k
+    mark(code, last, scratch)
+    rows = 0
+    found = 0
+    for k in range(last + 1):
+        if scratch[k, LIVE] == 0.0:
+            continue
+        op = code[k, 0]
+        write_row(code, k, scratch, short, rows)
+        if op == SKELETON and whole:
+            short[rows, 1] = found
+            found = skeleton_near(parts, code[k, 1], code[k, 2], scratch, code[k, 3], near, found)
+            behind = plain_parts(near, short[rows, 1], found)
+            if behind > 0:
+                short[rows, 0] = DENSITY
+                found = behind
+            short[rows, 2] = found
+        elif op == DENSITY or op == SKELETON:
+            short[rows, 1] = found
+            for i in range(code[k, 1], code[k, 2]):
+                if not whole or within_reach(parts, i, scratch, code[k, 3]):
+                    for j in range(8):
+                        near[found, j] = parts[i, j]
+                    found += 1
+            short[rows, 2] = found
+        rows += 1
+    return rows, found

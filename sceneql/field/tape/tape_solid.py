@@ -1,0 +1,106 @@
+"""The solid {f < 0} of a tape, for Python callers: numpy arrays in, numpy arrays out.
+
+Imports numpy and numba: to be imported by the function that needs it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.field.tape import tape_kernels
+from sceneql.field.tape.tape_ops import SCRATCH_COLUMNS, scratch_rows
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats, Tape
+
+
+def scratch(tape: Tape) -> Floats:
+    """Working memory for the kernels of one thread."""
+    return np.zeros((scratch_rows(len(tape.code), len(tape.parts)), SCRATCH_COLUMNS))
+
+
+def field_values(tape: Tape, points: Floats) -> Floats:
+    """f at points (n, 3) [m]: (n,)."""
+    points = np.ascontiguousarray(points, dtype=np.float64)
+    out = np.empty(len(points))
+    tape_kernels.values(tape.code, tape.constants, tape.parts, scratch(tape), points, out)
+    return out
+
+
+def field_gradients(tape: Tape, points: Floats) -> Floats:
+    """Gradient of f at points (n, 3) [m]: (n, 3) [1/m]."""
+    from sceneql.field.tape.gradient_kernels import gradient
+
+    room = scratch(tape)
+    rows = [gradient(tape.code, tape.constants, tape.parts, room, *map(float, point)) for point in points]
+    return np.array(rows).reshape(-1, 4)[:, 1:]
+
+
+def many_gradients(tape: Tape, points: Floats) -> Floats:
+    """``field_gradients`` to the bit, by kernels that meshes have compiled already: sooner from a few points on."""
+    from sceneql.field.tape.batch_gradient_kernels import differentiate
+    from sceneql.field.tape.batch_kernels import LANES
+
+    out, slope = np.empty((len(points), 3)), np.empty((len(tape.code), 3, LANES))
+    for start, n, registers in _by_lanes(tape, points):
+        differentiate(tape.code, tape.constants, tape.parts, registers, slope, n)
+        out[start : start + n] = slope[-1, :, :n].T
+    return out
+
+
+def cast(
+    tape: Tape,
+    origins: Floats,
+    directions: Floats,
+    t0: Floats | float,
+    t1: Floats | float,
+    tolerance: float = 1e-9,
+    *,
+    surface: bool = False,
+) -> tuple[NDArray[np.int64], Floats]:
+    """(status, t), each (n,): the first entry of rays o + t d, t in [t0, t1], as of isolation_kernels.first_root.
+
+    ``surface``: the first root of f instead, as of sheet_roots_kernels.surface_root.
+    """
+    first: Any
+    if surface:
+        from sceneql.field.roots.sheet_roots_kernels import surface_root as first
+    else:
+        from sceneql.field.roots.isolation_kernels import first_root as first
+    room = scratch(tape)
+    origins, directions = np.broadcast_arrays(np.atleast_2d(origins), np.atleast_2d(directions))
+    starts = np.broadcast_to(np.asarray(t0, dtype=np.float64), len(origins))
+    ends = np.broadcast_to(np.asarray(t1, dtype=np.float64), len(origins))
+    status = np.empty(len(origins), dtype=np.int64)
+    t = np.empty(len(origins))
+    for i in range(len(origins)):
+        o, d = origins[i], directions[i]
+        ray = (*map(float, o), *map(float, d), float(starts[i]), float(ends[i]), tolerance)
+        status[i], t[i] = first(tape.code, tape.constants, tape.parts, room, *ray)
+    return status, t
+
+
+def paint_values(tape: Tape, points: Floats) -> Floats:
+    """The last three registers of a tape at points (n, 3) [m]: (n, 3)."""
+    out = np.empty((len(points), 3))
+    for start, n, registers in _by_lanes(tape, points):
+        out[start : start + n] = registers[-3:, :n].T
+    return out
+
+
+def _by_lanes(tape: Tape, points: Floats) -> Iterator[tuple[int, int, Floats]]:
+    """Of points (n, 3) [m], LANES at a time: the first, how many, and their registers (rows, LANES)."""
+    from sceneql.field.tape.batch_kernels import LANES, evaluate
+
+    registers, block = np.empty((len(tape.code), LANES)), np.zeros((3, LANES))
+    for start in range(0, len(points), LANES):
+        n = min(LANES, len(points) - start)
+        block[:, :n] = points[start : start + n].T
+        evaluate(tape.code, tape.constants, tape.parts, registers, block, n)
+        yield start, n, registers

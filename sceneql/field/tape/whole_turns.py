@@ -1,0 +1,38 @@
+"""Which angles of a tape matter only up to whole turns: those whose cut, from pi to -pi, is no jump of the field.
+
+The third operand of their rows is 1, else 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from sceneql.field.tape import tape_ops as ops
+
+NEVER_BELOW = (ops.SQRT, ops.SQUARE, ops.ABS, ops.EXP)
+"""Operations with no value below zero."""
+
+
+def up_to_whole_turns(
+    rows: Sequence[tuple[int, int, int, int]], constants: Mapping[int, float], values: Iterable[int]
+) -> set[int]:
+    """The rows of ATAN2 whose cut is no jump of the rows ``values``.
+
+    To some a whole turn may be added without changing these: they go into sines and cosines alone, added to others,
+    negated or multiplied by whole numbers on their way; ``constants`` are the numbers of rows that are some. Others are
+    angles of what is never below zero: they end at the cut.
+    """
+    free = set(range(len(rows))) - set(values)
+    for k in range(len(rows) - 1, -1, -1):
+        op, left, right, third = rows[k]
+        if op in ops.OF_PARTS:
+            free -= {third, third + 1, third + 2}
+        elif op not in (ops.CONSTANT, ops.X, ops.Y, ops.Z, ops.SIN, ops.COS):
+            kept: set[int] = set()
+            if k in free and op in (ops.NEG, ops.COPY, ops.ADD, ops.SUB):
+                kept = {left, right}
+            elif k in free and op == ops.MUL:
+                kept = {a for a, b in ((left, right), (right, left)) if constants.get(b, 0.5).is_integer()}
+            free -= {left, right} - kept
+    angles = {k: left for k, (op, left, _, _) in enumerate(rows) if op == ops.ATAN2}
+    return {k for k, left in angles.items() if k in free or rows[left][0] in NEVER_BELOW}

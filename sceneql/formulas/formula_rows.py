@@ -1,0 +1,152 @@
+"""The rows of a system of differential equations as a script writes them: what states they have, what is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from graphlib import CycleError, TopologicalSorter
+from typing import Any
+
+from sceneql.compiled.printer import printable
+from sceneql.kinds import Problem
+from sceneql.quantities.derivative import components
+from sceneql.quantities.diagnostic import suggestion
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Expr, Link, Symbol, walk
+
+TIMES = ("t", "time")
+
+
+def states(rows: Iterable[str]) -> list[str]:
+    """The states of rows named ``y`` (first order) or ``a''`` (second order: a and a').
+
+    All positions a stand first, then all velocities a' in the same order, then the states of first order.
+    """
+    rows = list(rows)
+    second = [row.removesuffix("''") for row in rows if row.endswith("''")]
+    return [*second, *(f"{name}'" for name in second), *(row for row in rows if not row.endswith("'"))]
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Bound formulas of one system; ``index`` is the symbol of a copy's number."""
+
+    start: Mapping[str, Expr]
+    rate: Mapping[str, Expr]
+    where: Mapping[str, Expr]
+    invariants: Mapping[str, Expr]
+    gives: Mapping[str, Expr]
+    index: str | None
+
+    @property
+    def states(self) -> list[str]:
+        """The states, in their order in y."""
+        return states(self.rate)
+
+    def row_of(self, state: str) -> str:
+        """The row that says how a state changes: ``a''`` for both a and a'."""
+        name = state.rstrip("'")
+        return name if name in self.rate else f"{name}''"
+
+    def rates(self) -> list[Expr]:
+        """dy/dt of every state."""
+        second = [row.removesuffix("''") for row in self.rate if row.endswith("''")]
+        velocities: list[Expr] = [Symbol(f"{name}'") for name in second]
+        return [
+            *velocities,
+            *(self.rate[f"{name}''"] for name in second),
+            *(expr for row, expr in self.rate.items() if not row.endswith("'")),
+        ]
+
+    def everything(self) -> Iterator[Expr]:
+        """All formulas."""
+        for formulas in (self.start, self.rate, self.where, self.invariants, self.gives):
+            yield from formulas.values()
+
+    def links(self) -> list[Link]:
+        """The outputs of other parts that the formulas read."""
+        nodes = (node for expr in self.everything() for node in walk(expr))
+        return list(dict.fromkeys(node for node in nodes if isinstance(node, Link)))
+
+    def look_up(
+        self, known: dict[str, Any], link: Callable[[Link], Any], *, arrays: bool = False
+    ) -> Callable[[Symbol | Link], Any]:
+        """Values for `evaluate`; ``known`` has the states, times and index, and gets the helper quantities used."""
+
+        def find(node: Symbol | Link) -> Any:
+            if isinstance(node, Link):
+                return link(node)
+            if node.name not in known:
+                known[node.name] = evaluate(self.where[node.name], find, arrays=arrays)
+            return known[node.name]
+
+        return find
+
+    def problems(self) -> list[Problem]:
+        """All that is wrong with the system, or an empty list."""
+        found = [*self._row_problems(), *self._name_problems(), *self._scalar_problems()]
+        return found or [*self._use_problems(), *self._circle_problems()]
+
+    def _row_problems(self) -> Iterator[Problem]:
+        if not self.rate:
+            yield Problem("a system needs a rate: `y: ...` is dy/dt, `a'': ...` is d²a/dt²", ("rate",))
+        for row in self.rate:
+            name = row.rstrip("'")
+            order = len(row) - len(name)
+            if order == 1:
+                yield Problem(f"the rate of {name} is written '{name}'; of second order, '{name}'''", ("rate", row))
+            if order > 2:
+                yield Problem(f"'{row}' is of order {order}: write it as rows of first and second order", ("rate", row))
+            if order == 2 and (name in self.rate or f"{name}'" in self.rate):
+                yield Problem(f"{name} has rows of first and of second order", ("rate", row))
+        known = self.states
+        for state in known:
+            if state not in self.start:
+                yield Problem(f"{state} has a rate but no value at the start", ("rate", self.row_of(state)))
+        for name in self.start:
+            if name not in known:
+                hint = suggestion(name, known)
+                yield Problem(
+                    f"{name} has a value at the start but no rate{f': {hint}' if hint else ''}", ("start", name)
+                )
+
+    def _name_problems(self) -> Iterator[Problem]:
+        taken = dict.fromkeys(TIMES, "the time")
+        if self.index is not None:
+            taken[self.index] = "the number of a copy"
+        for field, names, what in (
+            ("start", self.states, "a state"),
+            ("where", self.where, "a helper quantity"),
+            ("invariants", self.invariants, "an invariant"),
+            ("gives", self.gives, "an output"),
+        ):
+            for name in names:
+                if name in taken:
+                    yield Problem(f"'{name}' is the name of {taken[name]} already", (field, name))
+                taken.setdefault(name, what)
+
+    def _scalar_problems(self) -> Iterator[Problem]:
+        for field, formulas in (("start", self.start), ("rate", self.rate), ("where", self.where)):
+            for name, expr in formulas.items():
+                if expr.type.shape != () or not printable(components(expr)[0]):
+                    yield Problem(f"{name} must be one number, computed from numbers", (field, name))
+        for name, expr in self.invariants.items():
+            if expr.type.shape != ():
+                yield Problem(f"the invariant {name} is one number", ("invariants", name))
+        for name, expr in self.gives.items():
+            if expr.type.shape not in ((), (3,)):
+                yield Problem(f"{name} must be one number or a vector of 3", ("gives", name))
+
+    def _use_problems(self) -> Iterator[Problem]:
+        for name, expr in self.start.items():
+            for node in walk(expr):
+                if isinstance(node, Symbol) and node.name != self.index:
+                    yield Problem(f"'{node.name}' has no value before the start", ("start", name))
+
+    def _circle_problems(self) -> Iterator[Problem]:
+        uses = {name: [n.name for n in walk(expr) if isinstance(n, Symbol)] for name, expr in self.where.items()}
+        try:
+            TopologicalSorter(uses).prepare()
+        except CycleError as error:
+            circle = list(reversed(error.args[1]))
+            yield Problem(f"{circle[0]} is defined by itself: {' -> '.join(circle)}", ("where", circle[0]))

@@ -1,0 +1,376 @@
+"""Fields that spread over cells, as state, numbers and terms of an island."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from sceneql.grids.cell_program import FIELD, over_cells, over_faces
+from sceneql.grids.domain.boundary import GIVEN_FLUX, Condition, conditions
+from sceneql.grids.flow import Flow, flow_of
+from sceneql.kinds import Formula
+from sceneql.quantities.derivative import components, differentiate
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import TIME_SYMBOL, Expr, Link, Number, Symbol, walk
+from sceneql.system import Grid, Slopes
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.grids.domain.cells import Cells
+    from sceneql.grids.drift import Drift
+    from sceneql.grids.medium import Boundary, Picture
+    from sceneql.system import Assembly
+
+KERNELS = "sceneql.grids.diffusion_kernels"
+SLOPES = "sceneql.grids.diffusion_slopes_kernels:spread"
+ZERO = Number(0.0)
+
+
+class Spreading(Protocol):
+    """A field of a model."""
+
+    @property
+    def coefficient(self) -> Formula | None:
+        """D; None: 0."""
+
+    @property
+    def initial(self) -> Formula | Picture | None:
+        """At the start; None: 0."""
+
+    @property
+    def source(self) -> Formula | None:
+        """What comes in a second and cubic meter."""
+
+    @property
+    def made(self) -> bool:
+        """Whether anything inside makes or takes it."""
+
+    @property
+    def positive(self) -> bool:
+        """Whether nothing of it can be below 0."""
+
+
+class Ground:
+    """The cells of a model with their numbers in an island."""
+
+    def __init__(self, cells: Cells, assembly: Assembly) -> None:
+        self.cells = cells
+        self.count = len(cells.volumes)
+        self.inside = cells.volumes > 0.0
+        self.centers = cells.centers()
+        if cells.flat:
+            self.centers[:, 2] = 0.0
+        low_z = -0.5 * cells.spacing[2] if cells.flat else cells.low[2]
+        self.box_at = assembly.floats([*cells.low[:2], low_z, *cells.spacing])
+        self.volumes_at = assembly.floats(cells.volumes)
+        self.divisors_at = assembly.floats(np.where(self.inside, cells.volumes, 1.0))
+        """1 outside, where nothing is divided by it."""
+
+    @property
+    def memory(self) -> tuple[int, ...]:
+        """What medium.layout_of reads."""
+        return (self.volumes_at, self.box_at, *self.cells.shape)
+
+
+def add_field(field: Spreading, boundary: Boundary, drift: Drift | None, ground: Ground, assembly: Assembly) -> Grid:
+    """Reserve a number a cell and one for the inflow, and add the terms of the rate.
+
+    Raises ScriptError for a coefficient below 0 and for boundary parts that overlap.
+    """
+    return _Builder(field, boundary, drift, ground, assembly).build()
+
+
+def varies(formula: Formula | None) -> bool:
+    """Whether a formula depends on time, on the field or on other parts."""
+    return formula is not None and any(
+        isinstance(node, Link) or (isinstance(node, Symbol) and node.name in (TIME_SYMBOL, FIELD))
+        for node in walk(formula.expr)
+    )
+
+
+def at_points(formula: Formula, points: Floats, **more: Any) -> Floats:
+    """A formula of the place (and of the symbols in ``more``) at points (k, 3): (k,)."""
+    known = {"x": points[:, 0], "y": points[:, 1], "z": points[:, 2], **more}
+
+    def look_up(node: Any) -> Any:
+        return known[node.name]
+
+    value = evaluate(components(formula.expr)[0], look_up, arrays=True)
+    return np.array(np.broadcast_to(np.asarray(value, dtype=np.float64), len(points)))
+
+
+@dataclass
+class _Builder:
+    field: Spreading
+    boundary: Boundary
+    drift: Drift | None
+    ground: Ground
+    assembly: Assembly
+
+    def build(self) -> Grid:
+        cells, assembly = self.ground.cells, self.assembly
+        nx, ny, nz = cells.shape
+        n = self.count = self.ground.count
+        self.cells, self.inside, self.centers = cells, self.ground.inside, self.ground.centers
+        self.at = assembly.state(np.append(self._start(), 0.0))
+        given, periodic = conditions(self.boundary, cells, assembly.line())
+        self.conditions = [one for one in given if not one.open]
+        ties = [self._ties(axis, periodic[axis]) for axis in range(3 if nz > 1 else 2)]
+        varying = varies(self.field.coefficient)
+        if varying:
+            faces, sink, weights, bend = self._varying_coefficient(ties)
+        else:
+            faces, sink, weights = self._constant_coefficient(ties)
+            bend = 0
+        fed, reaction = self._fed(weights)
+        faces = (*faces, faces[0])[:3] if len(faces) == 2 else faces
+        ties_at = tuple(self.ties_at) if bend else (0, 0, 0)
+        volumes = self.ground.divisors_at
+        ints = (self.at, nx, ny, nz, volumes, sink, fed, *faces, self.at + n)
+        more = (*ints, bend, *(*ties_at, 0)[:3], reaction)
+        assembly.term("close", f"{KERNELS}:spread", ints, lambda: Slopes(SLOPES, *self._slopes(periodic), more))
+        if self.drift is not None:
+            self._drifts(self.drift, flow_of(self.drift, cells, ties, given, periodic), given, periodic)
+        return Grid(
+            shape=cells.shape,
+            at=self.at,
+            volumes_at=volumes,
+            sink_at=sink,
+            faces_at=(faces[0], faces[1], faces[2]),
+            periodic=periodic,
+            varying=varying or reaction > 0,
+            fed_at=-1 if varying or self.feeding or self.drift is not None else fed,
+            outside=~self.inside,
+            insides_at=self.ground.volumes_at,
+            box_at=self.ground.box_at,
+            carried=self.drift is not None,
+            keeps=self._keeps(given),
+        )
+
+    def _keeps(self, given: list[Condition]) -> tuple[float, float]:
+        """Values that the field has no reason to leave (Protter and Weinberger 1967, chapter 3); infinite where it has.
+
+        What is made inside, or let in at a rate, may have any value; but no concentration is below 0.
+        """
+        gathered = self.drift is not None and not self.drift.incompressible
+        made, positive = self.field.made or gathered, self.field.positive
+        known = [self.assembly.start()[self.at : self.at + self.count][self.inside]]
+        for one in given:
+            if varies(one.formula):
+                made, positive = True, False
+                continue
+            values = np.zeros(len(one.cells)) if one.formula is None else at_points(one.formula, one.points)
+            if one.resistance == GIVEN_FLUX:
+                made |= bool(values.any())
+            else:
+                known.append(values)
+        values = np.concatenate(known)
+        least = float(values.min(initial=math.inf))
+        if made:
+            return (0.0 if positive and least >= 0.0 else -math.inf), math.inf
+        return least, float(values.max(initial=-math.inf))
+
+    def _drifts(self, drift: Drift, flow: Flow, given: list[Condition], periodic: tuple[bool, ...]) -> None:
+        """What goes through the boundary with the drift, and the drift itself."""
+        from sceneql.grids.carrying import add_drift
+
+        forth, back = self._exchange(flow.through, given), self._exchange([-out for out in flow.through], given)
+        add_drift(drift, flow, self.at, self.ground, periodic, (*forth, *back), self.assembly)
+
+    def _exchange(self, through: Sequence[Floats], given: list[Condition]) -> tuple[int, int]:
+        """Offsets of what a flow out through the boundary brings in a second, and of its part that leaves."""
+        assembly, n = self.assembly, self.count
+        leaving, coming = np.zeros(n), np.zeros(n)
+        later: list[tuple[Condition, Floats]] = []
+        for one, out in zip(given, through, strict=True):
+            np.add.at(leaving, one.cells, np.maximum(out, 0.0))
+            into = np.maximum(-out, 0.0)
+            if one.formula is not None and into.any():
+                if varies(one.formula):
+                    later.append((one, into))
+                else:
+                    np.add.at(coming, one.cells, into * at_points(one.formula, one.points))
+        brought = base = assembly.floats(coming)
+        if later:
+            brought = assembly.floats(coming)
+            assembly.term("internal", f"{KERNELS}:begin", (n, base, brought), self._dummy(f"{KERNELS}:begin"))
+        for one, into in later:
+            self._faces_kernel(one, brought, assembly.floats(into))
+        return brought, assembly.floats(leaving)
+
+    def _start(self) -> Floats:
+        initial = self.field.initial
+        if initial is None:
+            return np.zeros(self.count)
+        if not isinstance(initial, Formula):
+            return self._pictured(initial)
+        start = at_points(initial, self.centers)
+        start[~self.inside] = 0.0
+        if not np.isfinite(start).all():
+            message = "the field at the start is not finite everywhere"
+            raise ScriptError([Diagnostic("not-finite", message, initial.span)])
+        return start
+
+    def _pictured(self, initial: Picture) -> Floats:
+        """The field at the start by a picture over the box around the domain."""
+        from sceneql.grids.domain.picture_mask import sampled
+
+        low, high = (corner[:2] for corner in self.cells.around)
+        try:
+            light = sampled(initial.file, (self.centers[:, :2] - low) / (high - low))
+        except ValueError as error:
+            raise ScriptError([Diagnostic("no-picture", str(error), self.assembly.line())]) from error
+        return np.where(self.inside, initial.black + (initial.white - initial.black) * light, 0.0)
+
+    def _ties(self, axis: int, periodic: bool) -> Floats:
+        """Area over distance of all faces of an axis."""
+        cells = self.cells
+        areas = cells.areas[axis].copy()
+        if periodic:
+            nx, ny, nz = cells.shape
+            first = np.arange(self.count).reshape(nz, ny, nx).take(0, axis=2 - axis).ravel()
+            areas[first] = cells.volumes[first] / cells.spacing[axis]
+        ties: Floats = areas / cells.spacing[axis]
+        return ties
+
+    def _before(self, axis: int) -> Any:
+        """The cell before each along an axis, round the grid."""
+        nx, ny, nz = self.cells.shape
+        index = np.arange(self.count).reshape(nz, ny, nx)
+        return np.roll(index, 1, axis=2 - axis).ravel()
+
+    def _constant_coefficient(self, ties: list[Floats]) -> tuple[tuple[int, ...], int, list[Floats]]:
+        """Offsets of conductances and sink, and the weights of the boundary's conditions."""
+        assembly = self.assembly
+        formula = self.field.coefficient
+        d = np.zeros(self.count) if formula is None else at_points(formula, self.centers)
+        self._must_be_positive(d)
+        faces = []
+        for axis, tie in enumerate(ties):
+            other = d[self._before(axis)]
+            total = d + other
+            mean = np.where(total > 0.0, 2.0 * d * other / np.where(total > 0.0, total, 1.0), 0.0)
+            faces.append(assembly.floats(tie * mean))
+        sink = np.zeros(self.count)
+        weights = []
+        for one in self.conditions:
+            weights.append(one.weights(d[one.cells]))
+            if one.resistance >= 0.0:
+                np.add.at(sink, one.cells, weights[-1])
+        return tuple(faces), assembly.floats(sink), weights
+
+    def _varying_coefficient(self, ties: list[Floats]) -> tuple[tuple[int, ...], int, list[Floats], int]:
+        assembly, n = self.assembly, self.count
+        formula = self.field.coefficient
+        assert formula is not None
+        start = at_points(formula, self.centers, time=0.0, c=assembly.start()[self.at : self.at + n]) if not any(
+            isinstance(node, Link) for node in walk(formula.expr)) else np.zeros(n)  # fmt: skip
+        self._must_be_positive(start)
+        self.zeros, self.ones = assembly.floats(np.zeros(n)), assembly.floats(self.inside.astype(float))
+        d = assembly.floats(np.zeros(n))
+        self._cells_kernel(formula.expr, (d, self.zeros, self.ones))
+        bend = 0
+        slope = differentiate(components(formula.expr)[0], Symbol(FIELD))
+        if slope != ZERO:
+            bend = assembly.floats(np.zeros(n))
+            self._cells_kernel(slope, (bend, self.zeros, self.ones))
+        self.ties_at = [assembly.floats(tie) for tie in ties]
+        faces = tuple(assembly.floats(np.zeros(n)) for _ in ties)
+        sink = assembly.floats(np.zeros(n))
+        everything = self.conditions
+        m = sum(len(one.cells) for one in everything)
+        owners = np.concatenate([one.cells for one in everything]) if m else np.zeros(0, dtype=np.int64)
+        areas, distances, resistances = (
+            assembly.floats(np.concatenate([part(one) for one in everything]) if m else [])
+            for part in (
+                lambda one: one.areas,
+                lambda one: one.distances,
+                lambda one: np.full(len(one.cells), one.resistance),
+            )
+        )
+        fixed = [one.areas if one.resistance < 0.0 else np.zeros(len(one.cells)) for one in everything]
+        self.weights_at = assembly.floats(np.concatenate(fixed) if m else [])
+        third = (*faces, faces[0])[:3]
+        ties_third = (*self.ties_at, self.ties_at[0])[:3]
+        ints = (d, *self.cells.shape, *third, *ties_third, sink, m, areas, distances, resistances, self.weights_at)
+        assembly.term("internal", f"{KERNELS}:conduct", (*ints, *owners.tolist()), self._dummy(f"{KERNELS}:conduct"))
+        return faces, sink, [np.full(len(one.cells), np.nan) for one in everything], bend
+
+    def _fed(self, weights: list[Floats]) -> tuple[int, int]:
+        """Offsets of what is fed, and of d(source)/dc times the volume (0: none)."""
+        assembly, n = self.assembly, self.count
+        moving = varies(self.field.coefficient)
+        fixed = np.zeros(n)
+        later: list[tuple[Condition, int]] = []
+        first = 0
+        for one, weight in zip(self.conditions, weights, strict=True):
+            if one.formula is not None and (varies(one.formula) or (moving and one.resistance >= 0.0)):
+                later.append((one, self.weights_at + first if moving else assembly.floats(weight)))
+            elif one.formula is not None:
+                given = one.areas if moving else weight
+                np.add.at(fixed, one.cells, given * at_points(one.formula, one.points))
+            first += len(one.cells)
+        source = self.field.source
+        volumes = np.where(self.inside, self.cells.volumes, 0.0)
+        if source is not None and not varies(source):
+            fixed += volumes * at_points(source, self.centers)
+        fed = assembly.floats(fixed)
+        self.feeding = bool(later) or varies(source)
+        if not self.feeding:
+            return fed, 0
+        base, fed = fed, assembly.floats(fixed)
+        reaction = 0
+        if source is not None and varies(source):
+            measure = assembly.floats(volumes)
+            self._cells_kernel(source.expr, (fed, base, measure))
+            slope = differentiate(components(source.expr)[0], Symbol(FIELD))
+            if slope != ZERO:
+                reaction = assembly.floats(np.zeros(n))
+                zeros = getattr(self, "zeros", None) or assembly.floats(np.zeros(n))
+                self._cells_kernel(slope, (reaction, zeros, measure))
+        else:
+            assembly.term("internal", f"{KERNELS}:begin", (n, base, fed), self._dummy(f"{KERNELS}:begin"))
+        for one, weight_at in later:
+            self._faces_kernel(one, fed, weight_at)
+        return fed, reaction
+
+    def _faces_kernel(self, one: Condition, target: int, weight: int) -> None:
+        assert one.formula is not None
+        points = self.assembly.floats(one.points)
+        kernel, ints = over_faces(self.assembly, one.formula.expr, self.at, target, weight, points, one.cells.tolist())
+        self.assembly.term("internal", kernel, ints, self._dummy(kernel))
+
+    def _cells_kernel(self, expr: Expr, arrays: tuple[int, int, int]) -> None:
+        kernel, ints = over_cells(self.assembly, expr, self.at, arrays, self.cells.shape, self.ground.box_at)
+        self.assembly.term("internal", kernel, ints, self._dummy(kernel))
+
+    def _dummy(self, kernel: str) -> Slopes:
+        """What fills the floats before the slopes are read: its own entry stays 0."""
+        return Slopes(kernel, [self.at], [self.at])
+
+    def _slopes(self, periodic: tuple[bool, bool, bool]) -> tuple[Any, Any]:
+        """Rows and columns of the entries of diffusion_slopes_kernels.spread; those of no tie go to the diagonal."""
+        own = np.arange(self.count, dtype=np.int64)
+        rows, columns = [own], [own]
+        nx, ny, nz = self.cells.shape
+        for axis in range(3 if nz > 1 else 2):
+            before = self._before(axis)
+            if not periodic[axis]:
+                first = own.reshape(nz, ny, nx).take(0, axis=2 - axis).ravel()
+                before[first] = first
+            rows += [own, before]
+            columns += [before, own]
+        return self.at + np.concatenate(rows), self.at + np.concatenate(columns)
+
+    def _must_be_positive(self, d: Floats) -> None:
+        bad = np.flatnonzero(self.inside & ~(d >= 0.0))
+        if len(bad):
+            x, y, z = self.centers[bad[0]]
+            message = f"the coefficient must be at least 0, and is {d[bad[0]]:g} at ({x:g}, {y:g}, {z:g}) m"
+            formula = self.field.coefficient
+            raise ScriptError([Diagnostic("out-of-range", message, None if formula is None else formula.span)])

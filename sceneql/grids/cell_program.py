@@ -1,0 +1,103 @@
+"""Formulas of place, time and the field, printed as kernels that evaluate them for all cells or boundary faces.
+
+Both add weight * value to what stands there: ``floats[target + cell] = floats[base + cell] + floats[weight + cell] *
+value`` for cells, ``floats[target + cell] += floats[weight + k] * value`` for face k of the cell. ints of the first:
+constants, field (in y), target, base, weight, nx, ny, nz, box (low corner and spacing: 6 floats), then values read from
+other parts; of the second: constants, field, target, weight, faces, points (3 floats a face), inputs, where the cells
+start in ints: then the inputs' offsets and the cells.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from sceneql.compiled import generated
+from sceneql.compiled.printer import IMPORTS, Constants, Printer
+from sceneql.kinds import Value
+from sceneql.quantities.derivative import components
+from sceneql.quantities.expression import TIME_SYMBOL, Expr
+
+if TYPE_CHECKING:
+    from sceneql.system import Assembly
+
+FIELD = "c"
+NAMES = {"x": "own_x", "y": "own_y", "z": "own_z", FIELD: "own_c", TIME_SYMBOL: "t"}
+
+
+def over_cells(
+    assembly: Assembly, expr: Expr, at: int, arrays: tuple[int, int, int], shape: tuple[int, int, int], box: int
+) -> tuple[str, tuple[int, ...]]:
+    """Kernel and ints for all cells; ``arrays``: offsets of target, base, weight."""
+    constants, printer, value = _printed(expr)
+    lines = [
+        "    field, target, base, weight = ints[1], ints[2], ints[3], ints[4]",
+        "    nx, ny, nz, box = ints[5], ints[6], ints[7], ints[8]",
+        *_inputs(constants, 9),
+        "    for k in range(nz):",
+        "        own_z = floats[box + 2] + (k + 0.5) * floats[box + 5]",
+        "        for j in range(ny):",
+        "            own_y = floats[box + 1] + (j + 0.5) * floats[box + 4]",
+        "            for i in range(nx):",
+        "                own_x = floats[box] + (i + 0.5) * floats[box + 3]",
+        "                cell = i + nx * (j + ny * k)",
+        "                if floats[weight + cell] == 0.0:",
+        "                    floats[target + cell] = floats[base + cell]",
+        "                    continue",
+        "                own_c = y[field + cell]",
+        *(f"                {line}" for line in printer.lines),
+        f"                floats[target + cell] = floats[base + cell] + floats[weight + cell] * {value}",
+    ]
+    ints = (assembly.floats(constants.values), at, *arrays, *shape, box, *_stored(assembly, constants))
+    return _kernel("cells", lines), ints
+
+
+def over_faces(
+    assembly: Assembly, expr: Expr, at: int, target: int, weight: int, points: int, cells: Sequence[int]
+) -> tuple[str, tuple[int, ...]]:
+    """Kernel and ints for boundary faces of some cells."""
+    constants, printer, value = _printed(expr)
+    lines = [
+        "    field, target, weight, points = ints[1], ints[2], ints[3], ints[5]",
+        *_inputs(constants, 7),
+        "    for k in range(ints[4]):",
+        "        cell = ints[ints[6] + k]",
+        "        own_x, own_y, own_z = floats[points + 3 * k], floats[points + 3 * k + 1], floats[points + 3 * k + 2]",
+        "        own_c = y[field + cell]",
+        *(f"        {line}" for line in printer.lines),
+        f"        floats[target + cell] += floats[weight + k] * {value}",
+    ]
+    inputs = _stored(assembly, constants)
+    head = (assembly.floats(constants.values), at, target, weight, len(cells), points, 7 + len(inputs))
+    return _kernel("faces", lines), (*head, *inputs, *cells)
+
+
+def _printed(expr: Expr) -> tuple[Constants, Printer, str]:
+    constants = Constants()
+    printer = Printer(NAMES, {}, constants)
+    return constants, printer, printer.name(constants.lift(components(expr)[0]))
+
+
+def _inputs(constants: Constants, first: int) -> list[str]:
+    return [
+        *(f"    c{k} = floats[ints[0] + {k}]" for k in range(len(constants.values))),
+        *(f"    u{k} = floats[ints[{first + k}]]" for k in range(len(constants.inputs))),
+    ]
+
+
+def _stored(assembly: Assembly, constants: Constants) -> list[int]:
+    return [assembly.value(Value(expr)) for expr in constants.inputs]
+
+
+def _kernel(function: str, lines: list[str]) -> str:
+    text = [
+        *IMPORTS,
+        "from sceneql.compiled.kernels import kernel",
+        "from sceneql.system_kernels import TERM",
+        "",
+        "",
+        "@kernel(TERM)",
+        f"def {function}(t, y, out, floats, ints):",
+        *lines,
+    ]
+    return f"{generated.write(function, chr(10).join(text) + chr(10))}:{function}"

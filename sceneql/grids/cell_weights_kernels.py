@@ -1,0 +1,66 @@
+# mypy: ignore-errors
+"""The cells around a point, and their weights in the linear interpolant between the centers of cells.
+
+ints of a field, from ``first`` on: at, nx, ny, nz, volumes (0 outside), box (low corner and sides: 6 floats), 1 where
+periodic along x, y, z. Cells outside the domain have no weight; the others' sum to 1, or there are none.
+"""
+
+import math
+
+from sceneql.compiled.kernels import lean_inlined
+
+CORNERS = 8
+
+
+@lean_inlined
+def moved(cell, axis, way, floats, ints, first):
+    """The neighbor of a cell along an axis, round a periodic grid; the cell itself where that is outside."""
+    nx, ny, nz = ints[first + 1], ints[first + 2], ints[first + 3]
+    count = nx if axis == 0 else (ny if axis == 1 else nz)
+    stride = 1 if axis == 0 else (nx if axis == 1 else nx * ny)
+    place = cell // stride % count
+    found = cell + way * stride
+    if place + way < 0 or place + way >= count:
+        if ints[first + 6 + axis] == 0:
+            return cell
+        found = cell - way * (count - 1) * stride
+    return found if floats[ints[first + 4] + found] > 0.0 else cell
+
+
+@lean_inlined
+def around(x, y, z, floats, ints, first, cells, weights):
+    """Fill cells and weights (CORNERS,); False where the point lies outside, half a cell away from its last cells."""
+    nx, ny, nz = ints[first + 1], ints[first + 2], ints[first + 3]
+    box, volumes = ints[first + 5], ints[first + 4]
+    total = 0.0
+    for corner in range(CORNERS):
+        weight = 1.0
+        cell = 0
+        for axis in range(3):
+            count = nx if axis == 0 else (ny if axis == 1 else nz)
+            stride = 1 if axis == 0 else (nx if axis == 1 else nx * ny)
+            high = corner >> axis & 1
+            if count == 1:
+                weight *= 1.0 - high
+                continue
+            place = x if axis == 0 else (y if axis == 1 else z)
+            place = (place - floats[box + axis]) / floats[box + 3 + axis] - 0.5
+            below = math.floor(place)
+            weight *= place - below if high else 1.0 - (place - below)
+            index = int(below) + high
+            if ints[first + 6 + axis] == 1:
+                index %= count
+            if index < 0 or index >= count:
+                weight = 0.0
+                index = 0
+            cell += index * stride
+        if floats[volumes + cell] == 0.0:
+            weight = 0.0
+        cells[corner] = cell
+        weights[corner] = weight
+        total += weight
+    if total < 1e-9:
+        return False
+    for corner in range(CORNERS):
+        weights[corner] /= total
+    return True

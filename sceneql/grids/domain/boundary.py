@@ -1,0 +1,175 @@
+"""The conditions on a domain's boundary: which faces each part of the script has, and how they tie to their cells."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.grids.domain.cells import SIDES
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats
+    from sceneql.grids.domain.cells import Cells
+    from sceneql.grids.medium import Boundary, Part
+    from sceneql.kinds import Formula
+    from sceneql.quantities.span import Span
+
+GIVEN_FLUX = -1.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Condition:
+    """One part of the boundary on its m faces: a flux w (outside - c) of every cell, or a given one."""
+
+    cells: NDArray[int64]
+    areas: Floats
+    distances: Floats
+    points: Floats
+    formula: Formula | None
+    """The value outside or the flux; None: 0."""
+    resistance: float
+    """Of the boundary itself [s/m], 0 where the value is given; GIVEN_FLUX."""
+    open: bool = False
+    """Whether a drift goes through freely, and nothing else does."""
+
+    @property
+    def through(self) -> bool:
+        """Whether a drift goes through."""
+        return self.open or self.resistance == 0.0
+
+    def weights(self, d: Floats) -> Floats:
+        """What multiplies the formula: w = A D/(D r + distance) by the cells' coefficients, or the area."""
+        if self.resistance == GIVEN_FLUX:
+            return self.areas
+        if self.open:
+            return np.zeros(len(self.cells))
+        weights: Floats = self.areas * d / (d * self.resistance + self.distances)
+        return weights
+
+
+def conditions(boundary: Boundary, cells: Cells, line: Span | None) -> tuple[list[Condition], tuple[bool, bool, bool]]:
+    """The conditions that let something through, and which directions are periodic. Raises ScriptError.
+
+    ``line`` of the script where the model stands.
+    """
+    faces = cells.boundary
+    taken = np.zeros(len(faces.cells), dtype=bool)
+    owner = np.full(len(faces.cells), -1)
+    found: list[Condition] = []
+    periodic = [False, False, False]
+    rest = [(name, part) for name, part in boundary.items() if name == "rest"]
+    named = [(name, part) for name, part in boundary.items() if name != "rest"]
+    for number, (name, part) in enumerate(named + rest):
+        if name not in (*cells.names, "rest") and not part.chosen:
+            known = ", ".join((*cells.names, "rest"))
+            text = f"the boundary has no part '{name}'"
+            raise ScriptError([Diagnostic("unknown-boundary", text, _span(part) or line, f"it has {known}")])
+        mine = _faces_of(name, part, cells, taken)
+        both = mine & taken
+        if both.any():
+            other = (named + rest)[int(owner[np.flatnonzero(both)[0]])]
+            text = f"the boundary's parts '{other[0]}' and '{name}' overlap on {int(both.sum())} faces"
+            raise ScriptError([Diagnostic("boundary-overlap", text, _span(part) or _span(other[1]) or line, HELP)])
+        taken |= mine
+        owner[mine] = number
+        if part.periodic:
+            if name not in SIDES:
+                text = f"'{name}' is no side of a box, which alone can be periodic"
+                raise ScriptError([Diagnostic("unknown-boundary", text, line)])
+            axis = cells.names.index(name) // 2
+            if cells.shape[axis] < 3:
+                text = f"'{name}' can be periodic where there are 3 cells or more in its direction"
+                raise ScriptError([Diagnostic("too-few-cells", text, line)])
+            periodic[axis] = True
+        else:
+            found.append(_condition(part, cells, np.flatnonzero(mine)))
+    alive = [one for one in found if len(one.cells) and (one.open or one.resistance < float("inf"))]
+    return alive, (periodic[0], periodic[1], periodic[2])
+
+
+HELP = "give each face to one part: say `where` or `near`, or name other sides"
+
+
+def _faces_of(name: str, part: Part, cells: Cells, taken: Any) -> Any:
+    """(faces,) bool."""
+    faces = cells.boundary
+    mine = ~taken if name == "rest" else np.ones(len(faces.cells), dtype=bool)
+    if name in cells.names:
+        piece = cells.names.index(name)
+        mine = faces.pieces // 2 == piece // 2 if part.periodic else faces.pieces == piece
+    points = faces.points.copy()
+    if cells.flat:
+        points[:, 2] = 0.0
+    return mine & _chosen(part, points)
+
+
+def _chosen(part: Part, points: Floats) -> Any:
+    """(m,) bool: whether a part holds at points (m, 3) of the pieces that it is for."""
+    from sceneql.grids.assembly import at_points
+
+    found = np.ones(len(points), dtype=bool)
+    if part.where is not None:
+        found &= at_points(part.where, points) > 0.0
+    if part.near is not None and part.within is not None:
+        away = points[:, : len(part.near)] - np.array(part.near)
+        found &= np.einsum("ij,ij->i", away, away) <= part.within**2
+    return found
+
+
+def _condition(part: Part, cells: Cells, mine: Any) -> Condition:
+    faces = cells.boundary
+    points = faces.points[mine]
+    if cells.flat:
+        points[:, 2] = 0.0
+    formula, resistance = part.value, 0.0
+    if part.flux is not None:
+        formula, resistance = part.flux, GIVEN_FLUX
+    elif part.robin is not None:
+        k = part.robin.coefficient
+        formula, resistance = part.robin.outside, (1.0 / k if k > 0.0 else float("inf"))
+    if part.open:
+        resistance = float("inf")
+    ways = faces.cells[mine], faces.areas[mine], faces.distances[mine]
+    return Condition(*ways, points, formula, resistance, part.open)
+
+
+def _span(part: Part) -> Span | None:
+    """A line of the script for a part of the boundary."""
+    outside = None if part.robin is None else part.robin.outside
+    for formula in (part.value, part.flux, part.where, outside):
+        if formula is not None:
+            return formula.span
+    return None
+
+
+def held_by(boundaries: Sequence[Boundary], names: tuple[str, ...]) -> Callable[[Floats, Any], Any] | None:
+    """From points of a boundary (m, 3) and their pieces (m,) whether a field's value is given there; None: nowhere."""
+    if all(part.value is None for boundary in boundaries for part in boundary.values()):
+        return None
+
+    def held(points: Floats, pieces: Any) -> Any:
+        found = np.zeros(len(points), dtype=bool)
+        for boundary in boundaries:
+            found |= _held(boundary, names, points, pieces)
+        return found
+
+    return held
+
+
+def _held(boundary: Boundary, names: tuple[str, ...], points: Floats, pieces: Any) -> Any:
+    found, taken = np.zeros(len(points), dtype=bool), np.zeros(len(points), dtype=bool)
+    for name, part in sorted(boundary.items(), key=lambda item: item[0] == "rest"):
+        mine = ~taken
+        if name in names:
+            mine &= pieces == names.index(name)
+        mine &= _chosen(part, points)
+        taken |= mine
+        found |= mine & (part.value is not None)
+    return found

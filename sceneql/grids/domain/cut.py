@@ -1,0 +1,310 @@
+"""Cells that the boundary of a domain cuts: volumes, open areas of faces, and the boundary's own areas.
+
+The domain is {phi < 0}. In a cell and in a face the boundary is the plane that phi's value and gradient at the center
+say, and what lies below it has a closed form (Scardovelli & Zaleski 2000, J. Comput. Phys. 164, 228-237). A cell's
+boundary is what closes the surface of its open faces. Fluxes between neighbors go by the open areas and the distance of
+the centers, which is of second order where nothing crosses the boundary (Ng, Min & Gibou 2009, J. Comput. Phys. 228,
+8807-8829). Where a value is given, cells are whole, those whose centers lie inside, and the boundary is as far from
+them along each axis as it is (Gibou, Fedkiw, Cheng & Kang 2002, J. Comput. Phys. 176, 205-227), which is of second
+order there. ``staircase`` takes whole cells everywhere and half a cell for that distance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import combinations
+from math import factorial
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from sceneql.grids.domain.cells import BoundaryFaces, Cells
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats
+
+LEAST_SLOPE = 1e-4
+"""Of a plane along an axis, in parts of all: below, differences of its cubes would be rounding."""
+LEAST_VOLUME = 1e-6
+"""Of a cell, in parts of a whole one: less is left out. The open face of its neighbor is closed then, which costs the
+second order where it is no sliver too."""
+CROWDED = 0.3
+"""Least volume of a cell, in parts of what its open faces would need for the explicit limit of a whole one: more would
+rule the largest error."""
+NEAREST = 0.2
+"""Of a cell's size: its center is taken to be no nearer to the boundary."""
+NEAREST_HELD = 0.05
+"""The same where the boundary's value is given."""
+
+
+class Level(Protocol):
+    """A domain as a level set."""
+
+    names: tuple[str, ...]
+    """Of the pieces of its boundary."""
+
+    def values(self, points: Floats) -> Floats:
+        """phi at points (k, 3): (k,), negative inside; near the boundary like a distance but for a factor."""
+
+    def pieces(self, points: Floats) -> NDArray[int64]:
+        """(k,) which piece of the boundary is nearest."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Frame:
+    """The grid that a domain is cut out of."""
+
+    shape: tuple[int, int, int]
+    low: Floats
+    spacing: Floats
+    """The last is the depth where the grid is flat."""
+
+    @property
+    def axes(self) -> tuple[int, ...]:
+        """Those of the domain."""
+        return (0, 1) if self.shape[2] == 1 else (0, 1, 2)
+
+    def points(self, shift: int | None = None) -> Floats:
+        """(cells, 3): centers, or those of the low faces along an axis; z = 0 where flat."""
+        nx, ny, nz = self.shape
+        cell = np.arange(nx * ny * nz)
+        index = np.stack([cell % nx, cell // nx % ny, cell // (nx * ny)], axis=1) + 0.5
+        if shift is not None:
+            index[:, shift] -= 0.5
+        points: Floats = self.low + index * self.spacing
+        if len(self.axes) == 2:
+            points[:, 2] = 0.0
+        return points
+
+    def cells(self, volumes: Floats, areas: list[Floats], boundary: BoundaryFaces, names: tuple[str, ...]) -> Cells:
+        """Cells of this grid; the box around is that of the grid."""
+        around = self.low, self.low + np.array(self.shape) * self.spacing
+        return Cells(
+            self.shape, self.low, self.spacing, volumes, (areas[0], areas[1], areas[2]), boundary, names, around
+        )
+
+
+def frame(low: Floats, high: Floats, cell: float, depth: float, flat: bool) -> Frame:
+    """A grid of cells [m] over a box, a little more of it where they do not fit."""
+    sides = np.asarray(high, dtype=float) - low
+    counts = np.maximum(1, np.ceil(sides / cell * (1.0 - 1e-9))).astype(int)
+    middle = 0.5 * (np.asarray(low) + high)
+    spacing = np.full(3, cell)
+    if flat:
+        counts[2], spacing[2], middle[2] = 1, depth, 0.0
+    return Frame((int(counts[0]), int(counts[1]), int(counts[2])), middle - 0.5 * counts * spacing, spacing)
+
+
+def below(phi: Floats, slopes: Floats, sides: Floats) -> Floats:
+    """Part of boxes (m,) in which phi + slopes . x < 0, x from -sides/2 to sides/2: (m,); slopes (m, k), sides (k,)."""
+    k = slopes.shape[1]
+    rise = np.abs(slopes) * sides
+    largest = np.maximum(rise.max(axis=1), np.abs(phi))
+    largest = np.where(largest > 0.0, largest, 1.0)
+    rise, phi = rise / largest[:, None], phi / largest
+    total = rise.sum(axis=1)
+    some = total > 1e-9 * np.abs(phi)
+    rise = np.where(some[:, None], rise / np.where(some, total, 1.0)[:, None], 1.0 / k)
+    rise = np.maximum(rise, LEAST_SLOPE)
+    whole = rise.sum(axis=1)
+    room = np.where(some, -phi / np.where(some, total, 1.0), np.where(phi < 0.0, 1.0, -1.0)) + 0.5 * whole
+    part = np.zeros(len(phi))
+    for size in range(k + 1):
+        for chosen in combinations(range(k), size):
+            part += (-1.0) ** size * np.maximum(0.0, room - rise[:, list(chosen)].sum(axis=1)) ** k
+    part /= factorial(k) * rise.prod(axis=1)
+    found: Floats = np.clip(np.where(room <= 0.0, 0.0, np.where(room >= whole, 1.0, part)), 0.0, 1.0)
+    return found
+
+
+def _slopes(level: Level, points: Floats, grid: Frame, axes: tuple[int, ...]) -> Floats:
+    """Gradient of phi along some axes by central differences: (m, len(axes))."""
+    columns = []
+    for axis in axes:
+        move = np.zeros(3)
+        move[axis] = 0.05 * grid.spacing[axis]
+        columns.append((level.values(points + move) - level.values(points - move)) / (0.1 * grid.spacing[axis]))
+    return np.column_stack(columns)
+
+
+def _near(phi: Floats, grid: Frame) -> Any:
+    """(cells,) whether a cell or one beside it (corners too) has another sign."""
+    inside = (phi < 0.0).reshape(grid.shape[::-1])
+    some, all_ = inside.copy(), inside.copy()
+    for axis in (0, 1, 2):
+        wide, narrow = some.copy(), all_.copy()
+        for way in (1, -1):
+            to = tuple(slice(1, None) if (k == axis and way > 0) else slice(None, -1) if k == axis else slice(None)
+                       for k in range(3))  # fmt: skip
+            of = tuple(slice(None, -1) if (k == axis and way > 0) else slice(1, None) if k == axis else slice(None)
+                       for k in range(3))  # fmt: skip
+            wide[to] |= some[of]
+            narrow[to] &= all_[of]
+            edge = tuple(0 if (k == axis and way > 0) else -1 if k == axis else slice(None) for k in range(3))
+            narrow[edge] &= grid.shape[2 - axis] == 1
+        some, all_ = wide, narrow
+    return (some & ~all_).ravel()
+
+
+def cut(level: Level, grid: Frame, held: Callable[[Floats, Any], Any] | None = None) -> Cells:
+    """The cells of a domain with the parts of them that lie inside.
+
+    ``held``: from points of the boundary (m, 3) and their pieces (m,) whether a value is given there (m,) bool.
+    """
+    axes = grid.axes
+    whole = float(np.prod(grid.spacing))
+    centers = grid.points()
+    phi = level.values(centers)
+    near = np.flatnonzero(_near(phi, grid))
+    slopes = _slopes(level, centers[near], grid, axes)
+    volumes = np.where(phi < 0.0, whole, 0.0)
+    volumes[near] = whole * below(phi[near], slopes, grid.spacing[list(axes)])
+    volumes[volumes < LEAST_VOLUME * whole] = 0.0
+    stiff = np.zeros(len(phi), dtype=bool)
+    if held is not None:
+        steepness = np.maximum(np.linalg.norm(slopes, axis=1), 1e-300)
+        foot = centers[near]
+        foot[:, list(axes)] -= (phi[near] / steepness**2)[:, None] * slopes
+        stiff[near] = held(foot, level.pieces(foot))
+        volumes[stiff] = np.where(phi[stiff] < 0.0, whole, 0.0)
+    areas = [_areas(level, grid, axis, volumes > 0.0, near, stiff) for axis in range(3)]
+    alone = sum(_both(area, grid, axis) for axis, area in enumerate(areas)) == 0.0
+    volumes[alone] = 0.0
+    closing = np.stack([area - _after(area, grid, axis) for axis, area in enumerate(areas)], axis=1)
+    owners = np.flatnonzero((volumes > 0.0) & ~stiff & (np.linalg.norm(closing, axis=1) > 1e-9 * whole ** (2 / 3)))
+    size = np.linalg.norm(closing[owners], axis=1)
+    place = np.full(len(phi), -1)
+    place[near] = np.arange(len(near))
+    steep = np.linalg.norm(slopes, axis=1)[place[owners]]
+    least = NEAREST * grid.spacing[list(axes)].min()
+    distances = np.maximum(-phi[owners] / np.maximum(steep, 1e-300), least)
+    points = centers[owners] + closing[owners] / size[:, None] * distances[:, None]
+    boundary = BoundaryFaces(owners, size, distances, points, level.pieces(points))
+    if stiff.any():
+        boundary = _joined(boundary, _held_faces(level, grid, phi, (volumes > 0.0) & stiff, areas))
+    volumes = _relieved(volumes, areas, grid)
+    return grid.cells(volumes, areas, boundary, level.names)
+
+
+def staircase(level: Level, grid: Frame) -> Cells:
+    """Whole cells, those whose centers lie inside."""
+    whole = float(np.prod(grid.spacing))
+    centers = grid.points()
+    inside = level.values(centers) < 0.0
+    n = len(inside)
+    areas, faces = [], []
+    for axis in range(3):
+        full = whole / grid.spacing[axis] if axis in grid.axes else 0.0
+        before, first = _shifted(inside, grid, axis)
+        area = np.where(inside & before & ~first, full, 0.0)
+        areas.append(area)
+        if axis in grid.axes:
+            after = _after(area, grid, axis)
+            faces += [(np.flatnonzero(inside & (area == 0.0)), axis, -0.5, full)]
+            faces += [(np.flatnonzero(inside & (after == 0.0)), axis, 0.5, full)]
+    owners = np.concatenate([cells for cells, *_ in faces])
+    points = centers[owners]
+    at = 0
+    for cells, axis, way, _ in faces:
+        points[at : at + len(cells), axis] += way * grid.spacing[axis]
+        at += len(cells)
+    size = np.concatenate([np.full(len(cells), full) for cells, _, _, full in faces])
+    distances = np.concatenate([np.full(len(cells), 0.5 * grid.spacing[axis]) for cells, axis, _, _ in faces])
+    boundary = BoundaryFaces(owners, size, distances, points, level.pieces(points))
+    volumes = np.where(inside, whole, np.zeros(n))
+    return grid.cells(volumes, areas, boundary, level.names)
+
+
+def _shifted(values: Any, grid: Frame, axis: int) -> tuple[Any, Any]:
+    """What the cell before has, round the grid, and which cells are the first."""
+    index = np.arange(values.size).reshape(grid.shape[::-1])
+    first = np.zeros(index.shape, dtype=bool)
+    first[tuple(0 if k == 2 - axis else slice(None) for k in range(3))] = True
+    return values[np.roll(index, 1, axis=2 - axis).ravel()], first.ravel()
+
+
+def _after(area: Floats, grid: Frame, axis: int) -> Floats:
+    """A cell's face on its high side: that on the low side of the next; 0 at the end, since the first has none."""
+    following: Floats = np.roll(area.reshape(grid.shape[::-1]), -1, axis=2 - axis).ravel()
+    return following
+
+
+def _both(area: Floats, grid: Frame, axis: int) -> Floats:
+    return area + _after(area, grid, axis)
+
+
+def _held_faces(level: Level, grid: Frame, phi: Floats, cells: Any, areas: list[Floats]) -> BoundaryFaces:
+    """The closed faces of whole cells beside a boundary whose value is given, as far from them as it is."""
+    centers = grid.points()
+    index = np.arange(len(phi)).reshape(grid.shape[::-1])
+    parts = []
+    for axis in grid.axes:
+        after = _after(areas[axis], grid, axis)
+        for area, way in ((areas[axis], 1), (after, -1)):
+            mine = np.flatnonzero(cells & (area == 0.0))
+            other = phi[np.roll(index, way, axis=2 - axis).ravel()[mine]]
+            share = np.where(other > 0.0, phi[mine] / np.where(other > 0.0, phi[mine] - other, 1.0), 0.5)
+            distance = np.clip(share, NEAREST_HELD, 1.0) * grid.spacing[axis]
+            points = centers[mine]
+            points[:, axis] -= way * distance
+            full = np.full(len(mine), float(np.prod(grid.spacing)) / grid.spacing[axis])
+            parts.append(BoundaryFaces(mine, full, distance, points, level.pieces(points)))
+    found = parts[0]
+    for part in parts[1:]:
+        found = _joined(found, part)
+    return found
+
+
+def _joined(one: BoundaryFaces, other: BoundaryFaces) -> BoundaryFaces:
+    names = ("cells", "areas", "distances", "points", "pieces")
+    cells, areas, distances, points, pieces = (np.concatenate([getattr(one, n), getattr(other, n)]) for n in names)
+    return BoundaryFaces(cells, areas, distances, points, pieces)
+
+
+def _areas(level: Level, grid: Frame, axis: int, inside: Any, near: Any, stiff: Any) -> Floats:
+    """Open areas of the faces on the low sides along an axis."""
+    if axis not in grid.axes:
+        return np.zeros(len(inside))
+    full = float(np.prod(grid.spacing)) / grid.spacing[axis]
+    before, first = _shifted(inside, grid, axis)
+    area = np.where(inside & before & ~first, full, 0.0)
+    at_edge = np.zeros(len(inside), dtype=bool)
+    at_edge[near] = True
+    cut_before, _ = _shifted(at_edge, grid, axis)
+    held_before, _ = _shifted(stiff, grid, axis)
+    chosen = np.flatnonzero((area > 0.0) & (at_edge | cut_before) & ~stiff & ~held_before)
+    others = tuple(a for a in grid.axes if a != axis)
+    points = grid.points(axis)[chosen]
+    part = below(level.values(points), _slopes(level, points, grid, others), grid.spacing[list(others)])
+    area[chosen] = np.where(part > 1e-9, full * part, 0.0)
+    return area
+
+
+def _relieved(volumes: Floats, areas: list[Floats], grid: Frame) -> Floats:
+    """Volumes of which small ones have taken some of their neighbors', so that no explicit step need be much shorter.
+
+    What a cell takes it takes from the neighbor it has the widest face with; all together stay the same.
+    """
+    whole = float(np.prod(grid.spacing))
+    n = len(volumes)
+    index = np.arange(n).reshape(grid.shape[::-1])
+    need = np.zeros(n)
+    widest, giver = np.zeros(n), np.full(n, -1)
+    all_open = sum(2.0 / grid.spacing[axis] ** 2 for axis in grid.axes)
+    for axis in grid.axes:
+        after = _after(areas[axis], grid, axis)
+        need += (areas[axis] + after) / grid.spacing[axis]
+        for area, way in ((areas[axis], 1), (after, -1)):
+            wider = area > widest
+            widest[wider] = area[wider]
+            giver[wider] = np.roll(index, way, axis=2 - axis).ravel()[wider]
+    missing = np.where((volumes > 0.0) & (giver >= 0), np.maximum(0.0, CROWDED * need / all_open - volumes), 0.0)
+    missing = np.minimum(missing, 0.25 * whole)
+    relieved = volumes + missing
+    takers = np.flatnonzero(missing)
+    np.subtract.at(relieved, giver[takers], missing[takers])
+    return np.where(relieved > 0.0, relieved, volumes)

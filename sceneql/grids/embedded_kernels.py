@@ -1,0 +1,53 @@
+# mypy: ignore-errors
+"""The error of a step on a grid, by the embedded method (grid_stage_kernels)."""
+
+import math
+
+from sceneql.compiled.kernels import lean
+from sceneql.grids.grid_stage_kernels import (
+    ABSOLUTE,
+    EMBEDDED_ERROR,
+    ERROR_ORDER,
+    HEAD,
+    RELATIVE,
+    SHARE,
+    STAGES,
+    TABLEAU,
+)
+from sceneql.grids.multigrid.linear_kernels import AT, NX, NY, NZ, SOLVER, VOLUME, solver_at
+
+KEPT = 1.2
+"""A longer step by less than that is not worth new factors."""
+
+
+@lean(EMBEDDED_ERROR, inner=True)
+def embedded_error(h, a, y0, y1, work, settings, numbers, floats):
+    """The error in units of the tolerance, filtered by the stage system; the length to try next in work[0]."""
+    n, stages = y0.size, numbers[STAGES]
+    base, scratch = work[:n], work[(1 + stages) * n : (2 + stages) * n]
+    change, store = work[(2 + stages) * n : (3 + stages) * n], work[(3 + stages) * n :]
+    plan = numbers[HEAD:]
+    solve = solver_at(plan[SOLVER])
+    e = TABLEAU + 2 * stages
+    at = plan[AT]
+    size = 0.0
+    for k in range(n):
+        total = 0.0
+        for j in range(stages):
+            total += settings[e + j] * work[(1 + j) * n + k]
+        base[k] = h * total
+    cells = plan[NX] * plan[NY] * plan[NZ]
+    for c in range(cells):
+        scratch[c] = floats[plan[VOLUME] + c] / a * base[at + c]
+        size += scratch[c] * scratch[c]
+    if size > 0.0 and not solve(plan, a, 1e-2 * math.sqrt(size), floats, scratch, change, store):
+        work[0] = 0.25 * h
+        return math.inf
+    error = 0.0
+    for c in range(cells if size > 0.0 else 0):
+        allowed = settings[ABSOLUTE] + settings[RELATIVE] * max(abs(y0[at + c]), abs(y1[at + c]))
+        error += (SHARE * change[c] / allowed) ** 2
+    error = math.sqrt(error / cells)
+    factor = min(5.0, max(0.2, 0.9 * max(error, 1e-8) ** (-1.0 / numbers[ERROR_ORDER])))
+    work[0] = h if 1.0 <= factor <= KEPT else h * factor
+    return error

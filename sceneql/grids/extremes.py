@@ -1,0 +1,65 @@
+"""The watch over fields that leave the values that nothing but an error of the solver can take them beyond."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from sceneql.quantities.diagnostic import Diagnostic
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.run.run import IslandRun
+    from sceneql.system import Grid
+
+BEYOND = 0.01
+"""How far a field may leave its values, in parts of the way between them, before it is warned of."""
+
+
+@dataclass
+class Extremes:
+    """How far a field has left the values that it should stay between."""
+
+    model: str
+    output: str
+    grid: Grid
+    beyond: float = 0.0
+    """The most so far, 0 where it is not worth a word."""
+    value: float = 0.0
+    time: float = 0.0
+
+    def look(self, time: float, y: Floats) -> None:
+        """Note the field of a state."""
+        low, high = self.grid.keeps
+        field = y[self.grid.at : self.grid.at + len(self.grid.outside)][~self.grid.outside]
+        least, largest = float(field.min(initial=math.inf)), float(field.max(initial=-math.inf))
+        way = high - low if high > low and math.isfinite(high - low) else max(abs(least), abs(largest))
+        for value, beyond in ((least, low - least), (largest, largest - high)):
+            if beyond > max(self.beyond, BEYOND * way):
+                self.beyond, self.value, self.time = beyond, value, time
+
+    def warnings(self, island: IslandRun) -> Iterator[Diagnostic]:
+        """At most one."""
+        if self.beyond == 0.0:
+            return
+        low, high = self.grid.keeps
+        name = self.model if self.output == "concentration" else f"{self.model}.{self.output}"
+        span = island.graph.tasks[self.model].span
+        if math.isinf(high):
+            text = f"'{name}' has fallen to {self.value:.3g} at {self.time:.4g} s, and nothing can be less than none"
+            help = "let what takes it away be less where less is there, as a formula of c, or take shorter steps"
+        else:
+            text = f"'{name}' has come to {self.value:.3g} at {self.time:.4g} s"
+            text += f", but all that it began with or is given lies from {low:.3g} to {high:.3g}"
+            help = "the solver's error: take shorter steps, tr_bdf2, or a drift with a limiter"
+        yield Diagnostic("overshoot", text, span, help, severity="warning")
+
+
+def watched(island: IslandRun) -> list[Extremes]:
+    """The fields of an island that nothing else feeds and that have values to stay between."""
+    if island.island.forces:
+        return []
+    fields = island.assembly.fields.items()
+    return [Extremes(*names, grid) for names, grid in fields if any(map(math.isfinite, grid.keeps))]

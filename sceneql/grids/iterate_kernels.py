@@ -1,0 +1,75 @@
+# mypy: ignore-errors
+"""A stage on a grid that is not linear, or is not solved to rounding at once: by residuals (grid_stage_kernels)."""
+
+import math
+
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
+from sceneql.grids.grid_stage_kernels import ABSOLUTE, ITERATE, RELATIVE
+from sceneql.grids.multigrid.linear_kernels import AT, GX, GY, GZ, NX, NY, NZ, SINK, SOLVER, VARYING, VOLUME, solver_at
+from sceneql.grids.multigrid.stencil_kernels import dot
+
+MOST_NEWTON = 40
+UNSOLVED = 1e-13
+"""Part of what cancels in a residual that counts as rounding."""
+
+
+@lean_inlined
+def residual(n, a, volume, base, y, slope, r, d):
+    """r = V ((base - y)/a + slope), and the 2-norms of it, of V base/a and of V y/a; d is scratch."""
+    inverse = 1.0 / a
+    for c in range(n):
+        d[c] = volume[c] * base[c]
+    whole = inverse * math.sqrt(dot(d, d))
+    for c in range(n):
+        d[c] = volume[c] * y[c]
+    largest = inverse * math.sqrt(dot(d, d))
+    for c in range(n):
+        r[c] = volume[c] * (inverse * (base[c] - y[c]) + slope[c])
+    return math.sqrt(dot(r, r)), whole, largest
+
+
+@lean_inlined
+def stiffest(plan, floats):
+    """Largest (faces + sink)/V of a cell, but for a factor of 2."""
+    n = plan[NX] * plan[NY] * plan[NZ]
+    most = 0.0
+    for c in range(n):
+        total = floats[plan[GX] + c] + floats[plan[GY] + c] + floats[plan[SINK] + c]
+        if plan[NZ] > 1:
+            total += floats[plan[GZ] + c]
+        most = max(most, total / floats[plan[VOLUME] + c])
+    return most
+
+
+@lean(ITERATE, inner=True)
+def iterate(functions, t, a, base, y, slope, r, d, store, plan, settings, floats, ints):
+    """y = base + a f(t, y) from a guess, and slope = f(t, y) of what was found; False where it was not."""
+    rate, solve = rate_at(functions[AT_RATE]), solver_at(plan[SOLVER])
+    at, n = plan[AT], r.size
+    volume, x = floats[plan[VOLUME] : plan[VOLUME] + n], y[at : at + n]
+    cells = math.sqrt(dot(volume, volume))
+    before = math.inf
+    for iteration in range(MOST_NEWTON):
+        rate(t, y, slope, floats, ints)
+        size, whole, largest = residual(n, a, volume, base[at:], x, slope[at:], r, d)
+        if not size < math.inf:
+            return False
+        if iteration == 0 and size > 2.0 * whole and plan[VARYING] == 0:
+            # Far from the solution: nothing is a better guess than what changes fast.
+            for c in range(n):
+                x[c] = 0.0
+            rate(t, y, slope, floats, ints)
+            size, whole, largest = residual(n, a, volume, base[at:], x, slope[at:], r, d)
+        target = settings[RELATIVE] * max(whole, largest) + settings[ABSOLUTE] * cells / a
+        rounding = UNSOLVED * (1.0 + a * stiffest(plan, floats)) * max(whole, largest)
+        if size <= max(target, rounding) or (size > 0.5 * before and size <= 100.0 * rounding):
+            return True
+        before = size
+        # Where all was 0 the size of what is to come is not known yet, but that of the residual is.
+        target = max(target, rounding, settings[RELATIVE] * size)
+        if not solve(plan, a, 0.5 * target, floats, r, d, store):
+            return False
+        for c in range(n):
+            x[c] += d[c]
+    return False

@@ -1,0 +1,27 @@
+"""What the colors of a field mean, for legends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.quantities.dimension import Dimension
+
+
+@dataclass(frozen=True, slots=True)
+class ColorKey:
+    """A map of colors, the values at its ends and those of its contours, in SI."""
+
+    colors: str
+    low: float
+    high: float
+    dimension: Dimension
+    marks: tuple[float, ...]
+
+    def ramp(self, places: Any) -> Floats:
+        """Linear RGB (n, 3) at places (n,) from 0 to 1."""
+        from sceneql.grids.maps.colors import colored
+
+        return colored(places, (0.0, 1.0), self.colors)

@@ -1,0 +1,144 @@
+"""A field as a word sees it at a moment: from a script's value to numbers at any place."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any, cast
+
+from sceneql.grids.maps.kept import Kept
+from sceneql.kinds import Problem, Quantity, Ref, Value
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Link, Symbol
+from sceneql.quantities.units import describe
+from sceneql.shapes.placement import compose, inverse
+from sceneql.shapes.solid import triple
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.grids.maps.interpolation import Interpolation
+    from sceneql.grids.medium import FieldLayout
+    from sceneql.kinds import Moment
+
+Field = Annotated[Value, Quantity(None, (None,))]
+"""An expression of a field's values: ``lake.concentration``, ``dish.u - dish.v``."""
+Levels = Annotated[Value, Quantity(None, None)]
+"""A value or several."""
+Bounds = Annotated[Value, Quantity(None, (2,))]
+Corner = tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Seen:
+    """A field at a moment."""
+
+    model: Any
+    layout: FieldLayout
+    interpolation: Interpolation
+    filled: Floats
+    least: float
+    largest: float
+
+    def at(self, points: Floats) -> Floats:
+        """The field at points (k, 3) [m] in its model's own coordinates: (k,)."""
+        return self.interpolation.at(self.filled, points)
+
+    def nodes(self, place: Floats) -> tuple[Floats, Corner, Corner]:
+        """(3, 4) map from the world to the nodes of ``filled``, and the corners of the grid's box there.
+
+        ``place`` (3, 4): from the model's coordinates to the world. Of a deep field.
+        """
+        import numpy as np
+
+        spacing = np.array(self.layout.spacing)
+        grid = np.column_stack([np.diag(spacing), np.array(self.layout.low) - 0.5 * spacing])
+        high = triple(np.array(self.layout.shape) + 0.5)
+        return inverse(compose(place, grid)), (0.5, 0.5, 0.5), high
+
+    def bounds(self, moment: Moment) -> Floats | None:
+        """The level set of the domain at these nodes, negative inside; None where the grid's box is the domain."""
+        level = level_of(self, moment)
+        return None if level is None else _bounds.get(self.model, self.layout.shape, lambda: self._at_nodes(level))
+
+    def _at_nodes(self, level: Any) -> Floats:
+        import numpy as np
+
+        shape = self.filled.shape
+        k, j, i = (index.ravel() for index in np.indices(shape))
+        places = np.array(self.layout.low) + (np.stack([i, j, k], axis=1) - 0.5) * self.layout.spacing
+        found: Floats = level.values(places).reshape(shape)
+        return found
+
+
+def seen(of: Value, moment: Moment) -> Seen:
+    """The field that a value tells now. Raises ValueError where it is of no field."""
+    import numpy as np
+
+    from sceneql.grids.maps.interpolation import interpolation
+
+    task, output = of.links[0].task, of.links[0].output
+    model: Any = moment.object(Ref(task, of.span))
+    if not hasattr(model, "layout"):
+        raise ValueError(f"'{task}' is no field on a grid")
+    state = moment.state(task)
+    layout = model.layout(state, output)
+    inside = state.floats[layout.volumes_at : layout.volumes_at + layout.count] > 0.0
+    values = np.asarray(moment.at(of), dtype=float)
+    if values.shape != (int(inside.sum()),):
+        raise ValueError(f"this has {values.size} values, but '{task}' has {inside.sum()} cells")
+    between = interpolation(layout, inside)
+    return Seen(model, layout, between, between.filled(values), float(values.min()), float(values.max()))
+
+
+class AtStart:
+    """What an object's field and extent may ask of a moment (part of kinds.Moment), as of the start of the run.
+
+    Fields spread where an object is at the start. What it reads of other parts is taken as it is now.
+    """
+
+    time = 0.0
+
+    def __init__(self, moment: Moment) -> None:
+        self._moment = moment
+
+    def at(self, value: Value) -> Any:
+        """A value at the start."""
+        return evaluate(value.expr, self._look_up, arrays=True)
+
+    def _look_up(self, node: Symbol | Link) -> Any:
+        return self.time if isinstance(node, Symbol) else self._moment.read(node.task, node.output)
+
+    def object(self, ref: Ref) -> Any:
+        """The kind of an object."""
+        return self._moment.object(ref)
+
+
+def level_of(field: Seen, moment: Moment) -> Any:
+    """The level set of a field's domain (grids.cut.Level); None for a box by its sides."""
+    if field.model.size is not None:
+        return None
+    from sceneql.grids.domain.domain import inside
+
+    def make() -> Any:
+        level, *_ = inside(field.model.domain, field.model.flat, cast("Moment", AtStart(moment)))
+        return level
+
+    return _levels.get(field.model, None, make)
+
+
+_levels: Kept[Any] = Kept()
+_bounds: Kept[Any] = Kept()
+
+
+def unfit(of: Value, others: dict[str, Value | None]) -> Iterator[Problem]:
+    """What is wrong with the field that a word draws, and with what must be of its dimension."""
+    parts = {link.task for link in of.links}
+    if len(parts) != 1:
+        told = f"of {len(parts)} parts" if parts else "of no part"
+        yield Problem(f"this is {told}; a field is one part's: `lake.concentration`", ("of",))
+    own = of.expr.type.dimension
+    for name, value in others.items():
+        has = None if value is None else value.expr.type.dimension
+        if own is not None and has is not None and has != own and not has.plain:
+            text = f"{name} is {describe(own)} as the field is, but this is {describe(has)}"
+            yield Problem(text, (name,), code="dimension-mismatch")

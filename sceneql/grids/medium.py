@@ -1,0 +1,277 @@
+"""What models of fields on grids share: where they spread, what holds on the boundary, what is read of a field."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from sceneql.grids.domain.cells import MOST_CELLS, SIDES, centers_of, counts
+from sceneql.grids.drift import Drift
+from sceneql.kinds import (
+    File,
+    FixedLength,
+    FixedScalar,
+    Formula,
+    Gives,
+    Model,
+    ObjectRef,
+    Problem,
+    Quantity,
+    Record,
+    Symbols,
+    field,
+    quantity_type,
+)
+from sceneql.kinds.stable_step import Oscillation
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.dimension import Dimension
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Link, Symbol, walk
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.system import Assembly, ModelState
+
+PLACE = Annotated[Formula, Symbols(("x", "y", "z"))]
+ANYTHING = Annotated[Formula, Symbols(("x", "y", "z", "t", "c"))]
+MEASURES = ("field", "concentration", "centers", "mass", "inflow", "max", "min", "mean")
+SIZES = Annotated[tuple[float, ...], Quantity(dim.LENGTH, (None,))]
+
+
+@dataclass(frozen=True, slots=True)
+class FieldLayout:
+    """A field on its grid: cell (i, j, k) is y[at + i + nx (j + ny k)]; where its volume is 0 it is outside."""
+
+    shape: tuple[int, int, int]
+    at: int
+    volumes_at: int
+    """In the floats."""
+    low: tuple[float, ...]
+    """Low corner [m]."""
+    spacing: tuple[float, ...]
+    """Sides of a cell [m]."""
+
+    @property
+    def count(self) -> int:
+        """Cells, also those outside."""
+        return self.shape[0] * self.shape[1] * self.shape[2]
+
+    def cell(self, place: tuple[float, ...]) -> int:
+        """The number of the cell at a place [m]; -1 beyond the grid."""
+        index = [math.floor((x - low) / side) for x, low, side in zip(place, self.low, self.spacing, strict=False)]
+        i, j, k = (*index, 0)[:3]
+        nx, ny, nz = self.shape
+        return i + nx * (j + ny * k) if 0 <= i < nx and 0 <= j < ny and 0 <= k < nz else -1
+
+    def centers(self) -> Floats:
+        """(cells, 3) [m]."""
+        return centers_of(self.shape, self.low, self.spacing)
+
+
+class Exchange(Record):
+    """What crosses a boundary in proportion to a difference: coefficient (outside - c) a second and square meter."""
+
+    coefficient: Annotated[float, Quantity(dim.VELOCITY)] = field("How well it crosses.", at_least=0)
+    outside: ANYTHING | None = field("The value outside; by default 0.", None)
+
+
+class Picture(Record):
+    """A field from the brightness of a picture that covers the box around the domain in x and y."""
+
+    file: File = field("Path of the picture, inside the scene's folder.")
+    black: FixedScalar = field("The field where it is black, in SI.", "0")
+    white: FixedScalar = field("The field where it is white, in SI.", "1")
+
+
+class Part(Record):
+    """What holds on a part of the boundary: one of value, flux, robin, periodic, open."""
+
+    value: ANYTHING | None = field("The value there (Dirichlet).", None)
+    flux: ANYTHING | None = field("What comes in a second and square meter, D dc/dn outwards (Neumann).", None)
+    robin: Exchange | None = field("Exchange with the outside (Robin).", None)
+    periodic: bool = field("The sides of this direction are one: what leaves here comes in at the other.", False)
+    open: bool = field("A drift goes through: out with what it carries, in with nothing.", False)
+    where: PLACE | None = field("Only where this formula is above 0.", None)
+    near: SIZES | None = field("Only around this place, of two or three numbers.", None)
+    within: FixedLength | None = field("How far around it.", None, above=0)
+
+    def problems(self) -> Iterable[Problem]:
+        """More than one thing that holds, or none; a place without its size."""
+        given = [self.value is not None, self.flux is not None, self.robin is not None, self.periodic, self.open]
+        if sum(given) != 1:
+            yield Problem("a part of the boundary has one of `value`, `flux`, `robin`, `periodic` and `open`")
+        if self.periodic and self.chosen:
+            yield Problem("`periodic` holds on whole sides, without `where` or `near`")
+        if (self.near is None) != (self.within is None) or (self.near is not None and len(self.near) not in (2, 3)):
+            yield Problem("`near` is a place of two or three numbers, and goes with `within`")
+
+    @property
+    def chosen(self) -> bool:
+        """Whether it says by itself where it holds."""
+        return self.where is not None or self.near is not None
+
+
+Boundary = dict[str, Part]
+
+
+def number_in(formula: Formula | None) -> float | None:
+    """The number that a formula is; None where it depends on anything, or there is none."""
+    if formula is None or any(isinstance(node, Symbol | Link) for node in walk(formula.expr)):
+        return None
+    return float(evaluate(formula.expr, {}))
+
+
+class Medium(Model):
+    """A domain on a grid of cells."""
+
+    has_bodies = False
+    is_field = True
+
+    domain: ObjectRef | None = field("The object whose inside, at the start, it spreads in; or give `size`.", None)
+    flat: bool = field("The section of that object at z = 0 alone.", False)
+    edges: Literal["cut_cell", "staircase"] = field(
+        "How cells meet the object's boundary: cut by it, or whole where their centers lie inside.", "cut_cell"
+    )
+    size: SIZES | None = field(
+        "Sides of a box in place of a domain: two for a flat one, three for a deep one.", None, above=0
+    )
+    corner: SIZES | None = field("Low corner of that box; by default the origin.", None)
+    depth: FixedLength = field("How thick a flat domain is.", "1 m", above=0)
+    cell: FixedLength = field("Largest side of a cell.", above=0)
+    drift: Drift | None = field("A given flow that carries what spreads.", None)
+    probes: dict[str, SIZES] = field(
+        "Places by name: the value of the cell there is an output of that name, which other parts may read while all "
+        "is solved together.",
+        {},
+    )
+
+    def boundaries(self) -> Iterable[Boundary]:
+        """What holds on the boundary, of every field."""
+        raise NotImplementedError
+
+    def coefficients(self) -> Iterable[tuple[Formula | None, tuple[str, ...]]]:
+        """How every field spreads, and where that is told."""
+        raise NotImplementedError
+
+    def problems(self) -> Iterable[Problem]:
+        """Two places or none, coefficients below 0, sides that do not fit, too many cells, boundaries of no side."""
+        if (self.size is None) == (self.domain is None):
+            yield Problem("it spreads in one of `domain` and `size`")
+        for coefficient, path in self.coefficients():
+            d = number_in(coefficient)
+            if d is not None and d < 0.0:
+                yield Problem(f"the coefficient must be at least 0, and is {d:g}", path, code="out-of-range")
+        for name, place in self.probes.items():
+            if name in MEASURES or not name.isidentifier():
+                yield Problem(f"a probe cannot be called '{name}'", ("probes", name), at_key=True)
+            if len(place) not in (2, 3):
+                yield Problem("a probe stands at two or three numbers, `0.5 0.2 m`", ("probes", name))
+        if self.size is None:
+            return
+        if self.drift is not None:
+            yield from self._misled(self.drift, len(self.size))
+        if len(self.size) not in (2, 3) or (self.corner is not None and len(self.corner) != len(self.size)):
+            yield Problem("a domain has two or three sides, and its corner as many numbers")
+            return
+        shape = counts(self.size, self.cell)
+        cells = shape[0] * shape[1] * shape[2]
+        if cells > MOST_CELLS:
+            text = f"{cells:.3g} cells: at most {MOST_CELLS:,} are possible; take a larger `cell`"
+            yield Problem(text, code="limit-refused")
+        known = (*SIDES[: 2 * len(self.size)], "rest")
+        for name in dict.fromkeys(
+            name
+            for boundary in self.boundaries()
+            for name, part in boundary.items()
+            if name not in known and not part.chosen
+        ):
+            yield Problem(f"the boundary has no side '{name}': it has {', '.join(known)}; or say `where` or `near`")
+
+    def _misled(self, drift: Drift, sides: int) -> Iterable[Problem]:
+        if drift.velocity is not None and drift.velocity.expr.type.shape != (sides,):
+            yield Problem(f"the velocity of a drift needs {sides} components, one for each side", ("drift",))
+        if drift.velocity is None and sides == 3:
+            yield Problem("a deep drift has a velocity, not a stream function", ("drift",))
+
+    def spreading(self, coefficient: Formula | None) -> Oscillation | None:
+        """What limits the explicit step of a field of constant D: the decay of the checkerboard, and the drift.
+
+        The first is at most 4 D sum of 1/spacing^2 (von Neumann's bound); None where a coefficient varies.
+        """
+        d = 0.0 if coefficient is None else number_in(coefficient)
+        if d is None:
+            return None
+        spacing: tuple[float, ...] = (self.cell, self.cell)  # of a flat domain; rates of a deep one are larger
+        if self.size is not None:
+            spacing = tuple(side / n for n, side in zip(counts(self.size, self.cell), self.size, strict=False))
+        rate = 4.0 * d * sum(1.0 / side**2 for side in spacing)
+        carried = 0.0
+        if self.drift is not None and coefficient is not None and self.size is not None:
+            carried = self.drift.fastest(self.corner or (0.0,) * len(spacing), self.size, spacing)
+        ways = " and ".join(way for way, one in (("spread", rate), ("drift", carried)) if one > 0.0)
+        if not ways:
+            return None
+        return Oscillation(0.0, rate + carried, f"the {ways} over cells of {self.cell:g} m", ("cell",))
+
+    def must_hold_probes(self, layout: FieldLayout, assembly: Assembly) -> None:
+        """Raises ScriptError where a probe stands in no cell of the domain."""
+        volumes = assembly.numbers()[layout.volumes_at : layout.volumes_at + layout.count]
+        for name, place in self.probes.items():
+            cell = layout.cell(place)
+            if cell < 0 or not volumes[cell] > 0.0:
+                raise ScriptError(
+                    [Diagnostic("no-cell", f"the probe '{name}' stands outside the domain", assembly.line())]
+                )
+
+    def measure(self, what: str, layout: FieldLayout, state: ModelState) -> Any:
+        """Of a field: `field` (cells of the domain,), `centers` (cells, 3), or a float: another measure, a probe."""
+        import numpy as np
+
+        field = state.y[layout.at : layout.at + layout.count]
+        volumes = state.floats[layout.volumes_at : layout.volumes_at + layout.count]
+        inside = volumes > 0.0
+        match what:
+            case "field":
+                return field[inside]
+            case "centers":
+                return layout.centers()[inside]
+            case "mass":
+                return float(volumes @ field)
+            case "inflow":
+                return float(state.y[layout.at + layout.count])
+            case "max":
+                return float(field[inside].max())
+            case "min":
+                return float(field[inside].min())
+            case "mean":
+                return float(np.average(field, weights=volumes))
+        return float(field[layout.cell(self.probes[what])])
+
+
+def gives_of(field: str, unit: Dimension, written: Mapping[str, Any]) -> Mapping[str, Gives]:
+    """The outputs of `measure`, in the unit of a field; ``field``: its line of the manual."""
+    probes = written.get("probes")
+    one, amount = quantity_type(unit), quantity_type(unit * dim.VOLUME)
+    return {
+        "field": Gives(quantity_type(unit, (None,)), field),
+        "centers": Gives(quantity_type(dim.LENGTH, (None, 3)), "The centers of these cells."),
+        "mass": Gives(amount, "How much there is: the field over the volume."),
+        "inflow": Gives(amount, "How much has come in through the boundary and from sources since the start."),
+        "max": Gives(one, "Largest value."),
+        "min": Gives(one, "Least value."),
+        "mean": Gives(one, "Mean over the volume."),
+        **{
+            name: Gives(one, "The value of the cell there.")
+            for name in map(str, probes if isinstance(probes, Mapping) else ())
+        },
+    }
+
+
+def layout_of(at: int, ints: tuple[int, ...], floats: Floats) -> FieldLayout:
+    """Where a field lies; ``ints``: offsets of volumes and box, nx, ny, nz."""
+    volumes_at, box_at, nx, ny, nz = ints[:5]
+    box = floats[box_at : box_at + 6]
+    return FieldLayout((nx, ny, nz), at, volumes_at, tuple(box[:3].tolist()), tuple(box[3:].tolist()))

@@ -1,0 +1,1 @@
+"""Linear systems of fields on grids: multigrid, relaxation, transforms, factorization."""

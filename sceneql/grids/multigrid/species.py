@@ -1,0 +1,93 @@
+"""The plan of species_kernels: which systems a multigrid over cells of several species takes, and how they lie."""
+
+from __future__ import annotations
+
+from itertools import accumulate
+from math import prod
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.island.island import System
+    from sceneql.system import Grid
+
+FEWEST = {2: 30_000, 3: 2_000}
+"""Cells of a flat or deep grid from which on cycles are quicker than factors."""
+
+
+def one_grid(system: System, core: NDArray[int64]) -> bool:
+    """Whether unknowns are species on one grid that do not drift, and enough of them."""
+    grids = system.grids
+    if not grids or any(grid.carried or grid.shape != grids[0].shape for grid in grids):
+        return False
+    shape = grids[0].shape
+    return prod(shape) >= FEWEST[3 if shape[2] > 1 else 2] and bool((_places(grids, len(system.y))[core] >= 0).all())
+
+
+def plan(system: System, core: NDArray[int64], pattern: Any) -> tuple[NDArray[int64], int, str]:
+    """The integers behind the preconditioner's number, floats of the levels, and how it is told.
+
+    ``core``: (unknowns,) entries of y; ``pattern``: their (unknowns, unknowns) scipy CSR.
+    """
+    import numpy as np
+
+    grids = system.grids
+    s, first = len(grids), grids[0]
+    n, sides = prod(first.shape), (3 if first.shape[2] > 1 else 2)
+    shapes = [first.shape]
+    while any(count > 1 for count in shapes[-1]):  # what is even over the whole grid is solved by the last cell
+        nx, ny, nz = ((count + 1) // 2 for count in shapes[-1])
+        shapes.append((nx, ny, nz))
+    sizes = [(2 * sides * s + s * s + 3 * s) * prod(shape) for shape in shapes]
+    starts = list(accumulate(sizes, initial=0))
+    table = [number for shape, start in zip(shapes, starts, strict=False) for number in (*shape, start)]
+    places = _places(grids, len(system.y))[core]
+    at = np.full(s * n, -1, dtype=np.int64)
+    at[places] = np.arange(len(core))
+    entry = _Entries(pattern, at.reshape(s, n))
+    cells = np.arange(n).reshape(first.shape[::-1])
+    blocks = [entry.of(m, cells.ravel(), q, cells.ravel()) for m in range(s) for q in range(s)]
+    ties = []
+    for direction in range(2 * sides):
+        axis, high = direction // 2, direction % 2
+        beside = np.roll(cells, -1 if high else 1, axis=2 - axis).ravel()
+        ties += [np.where(beside == cells.ravel(), -1, entry.of(m, cells.ravel(), m, beside)) for m in range(s)]
+    volumes = system.floats[first.volumes_at : first.volumes_at + n] / system.floats[first.volumes_at :][:n].max()
+    head = [len(shapes), s, 2 * sides, starts[-1], *table]
+    numbers = np.concatenate([head, places, *blocks, *ties, volumes.view(np.int64)]).astype(np.int64)
+    text = f"multigrid over {len(shapes)} grids, {s} species of a cell at once, for {len(core)} unknowns"
+    return numbers, starts[-1] + s * first.shape[0], text
+
+
+def _places(grids: tuple[Grid, ...], size: int) -> NDArray[int64]:
+    """(size,) where an entry of y stands among the species and cells; -1: it is no cell."""
+    import numpy as np
+
+    found = np.full(size, -1, dtype=np.int64)
+    n = prod(grids[0].shape)
+    for number, grid in enumerate(grids):
+        found[grid.at : grid.at + n] = number * n + np.arange(n)
+    return found
+
+
+class _Entries:
+    """Places of entries in a pattern."""
+
+    def __init__(self, pattern: Any, at: NDArray[int64]) -> None:
+        """``at`` (s, n): the unknowns of the species in the cells, -1 where they are none."""
+        import numpy as np
+
+        self._at, self._count = at, pattern.shape[0]
+        rows = np.repeat(np.arange(self._count, dtype=np.int64), np.diff(pattern.indptr))
+        self._keys = rows * self._count + pattern.indices
+
+    def of(self, species: int, cells: Any, other: int, others: Any) -> NDArray[int64]:
+        """(k,) places of the derivatives of species in cells by other species in other cells; -1: none."""
+        import numpy as np
+
+        rows, columns = self._at[species, cells], self._at[other, others]
+        keys = rows * self._count + columns
+        found = np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)
+        return np.where((rows >= 0) & (columns >= 0) & (self._keys[found] == keys), found, -1)

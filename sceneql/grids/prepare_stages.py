@@ -1,0 +1,246 @@
+"""How implicit steps are prepared on a grid: which linear solver, what it keeps, why."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import accumulate
+from typing import TYPE_CHECKING, Any
+
+from sceneql.failure import LimitRefused
+from sceneql.system import Grid, Prepared, Stepper
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats
+    from sceneql.island.island import System
+    from sceneql.march.march import March
+
+DIRECT_CELLS = {2: 40_000, 3: 4_000}
+"""Up to so many cells of a flat or deep grid factors are small: `auto` takes them."""
+LARGEST_FACTORED = {2: 500_000, 3: 30_000}
+MOST = {
+    "multigrid": 100,
+    "conjugate_gradient": 20_000,
+    "gauss_seidel": 20_000,
+    "sor": 20_000,
+    "direct": 1,
+    "fast_transform": 1,
+}
+"""Iterations for one system; 1: it is solved to rounding."""
+KERNELS = {
+    "multigrid": "sceneql.grids.multigrid.multigrid_kernels:solve",
+    "conjugate_gradient": "sceneql.grids.multigrid.relaxation_kernels:solve_conjugate_gradient",
+    "gauss_seidel": "sceneql.grids.multigrid.relaxation_kernels:solve_gauss_seidel",
+    "sor": "sceneql.grids.multigrid.relaxation_kernels:solve_sor",
+    "direct": "sceneql.grids.multigrid.grid_factors_kernels:solve",
+    "fast_transform": "sceneql.grids.multigrid.transform_kernels:solve",
+}
+FIRST = {"direct": ("sceneql.linear.multifrontal_symmetric_kernels",)}
+"""What of a solver's own the second process begins with, while this one begins with another part."""
+BEYOND = "; by Newton's method on all that its drift ties, from the first step on that this does not solve"
+COARSEST = 2
+LONGEST_ROW = 512
+"""Cells of a row up to which `auto` transforms: a cell costs twice as many multiplications."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Plan:
+    numbers: Any
+    room: int
+    """Floats that the linear solver keeps."""
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class LinearReport:
+    """What the linear solver of a march has done so far."""
+
+    systems: int
+    iterations: int
+    residuals: tuple[float, ...]
+    """2-norms of the residual of the last system, as it was solved: by sweep groups of relaxation_kernels.CHECKED for
+    gauss_seidel and sor, by iteration for the others."""
+
+
+def prepare(system: System, stepper: Stepper) -> Prepared:
+    """What grid_stage_kernels.step works with. Raises LimitRefused where a named linear solver cannot take the grid."""
+    import numpy as np
+
+    from sceneql.compiled.numbered_kernels import number_of
+    from sceneql.grids.grid_stage_kernels import SHARE
+    from sceneql.grids.multigrid import linear_kernels as linear
+    from sceneql.march.driver import function
+
+    grid = system.grid
+    assert grid is not None
+    stages, explicit_first, _, embedded, error_order = stepper.numbers
+    _, _, relative, absolute, _, _, _, *tableau = stepper.settings
+    share = SHARE if stepper.adaptive else 1.0
+    largest = float(np.abs(system.y).max(initial=0.0)) or 1.0
+    absolute *= largest if stepper.by_scale else 1.0
+    separated = separate(grid, system.floats) if _may_separate(grid, stepper.linear) else None
+    name, why = _choice(grid, stepper.linear, separated is not None)
+    cells = grid.shape[0] * grid.shape[1] * grid.shape[2]
+    plan = _PLANS[name](grid) if separated is None or name != "fast_transform" else _transform(grid, separated)
+    solver = number_of(function(KERNELS[name]), linear.SOLVE)
+    exact = int(MOST[name] == 1)
+    offsets = (grid.volumes_at, grid.sink_at, *grid.faces_at)
+    head = [solver, exact, *grid.shape, grid.at, *offsets, int(grid.varying), MOST[name], grid.fed_at]
+    assert len(head) == linear.PLAN
+    store = 2 * cells + plan.room + linear.RECORD
+    return Prepared(
+        settings=np.array([share * relative, share * absolute if stepper.adaptive else 0.0, *tableau]),
+        numbers=np.concatenate([[stages, explicit_first, embedded, error_order], head, plan.numbers]).astype(np.int64),
+        work=(3 + stages) * len(system.y) + store,
+        text=f"linear systems by {name}, {plan.text}, {why}{'' if stepper.otherwise is None else BEYOND}",
+    )
+
+
+def likely_kernels(stepper: Stepper, grid: Grid) -> tuple[str, ...]:
+    """Modules of the linear solver that `prepare` will most likely ask for, to be compiled meanwhile."""
+    if stepper.prepare != f"{__name__}:{prepare.__name__}":
+        return ()
+    try:
+        name = _choice(grid, stepper.linear, _may_separate(grid, stepper.linear))[0]
+    except LimitRefused:
+        return ()
+    return (*FIRST.get(name, ()), f"{__package__}.{KERNELS[name].partition(':')[0]}")
+
+
+def report(march: March) -> LinearReport:
+    """What the linear solver of an implicit method on a grid has done so far."""
+    from sceneql.grids.multigrid.linear_kernels import HISTORY, ITERATIONS, RECORD, SOLVES
+
+    record = march.scratch[-RECORD:]
+    residuals = tuple(float(size) for size in record[HISTORY:] if size >= 0.0)
+    return LinearReport(int(record[SOLVES]), int(record[ITERATIONS]), residuals)
+
+
+def _choice(grid: Grid, asked: str, separable: bool) -> tuple[str, str]:
+    """The linear solver by name, and why."""
+    nx, ny, nz = grid.shape
+    dims, cells = (3 if nz > 1 else 2), nx * ny * nz
+    if asked == "direct" and cells > LARGEST_FACTORED[dims]:
+        raise LimitRefused(
+            f"factors of {cells} cells would not fit: at most {LARGEST_FACTORED[dims]} in {dims} dimensions",
+            None,
+            "take `linear: multigrid`",
+        )
+    if asked == "fast_transform" and not separable:
+        raise LimitRefused(
+            "a fast transform needs a flat box whose coefficient and boundary do not vary along x, nor in time, and "
+            "that is not periodic along y",
+            None,
+            "take `linear: auto`",
+        )
+    if asked != "auto":
+        return asked, "as the script says"
+    if separable and grid.shape[0] <= LONGEST_ROW:
+        return "fast_transform", "chosen since the box and its coefficient are the same in every row"
+    if cells > DIRECT_CELLS[dims]:
+        return "multigrid", f"chosen since {cells} cells are more than {DIRECT_CELLS[dims]} (factors fill up)"
+    if grid.varying:
+        return "multigrid", "chosen since the coefficients vary, so that factors would serve once"
+    return "direct", f"chosen since {cells} cells are few, and the factors serve for every step of one length"
+
+
+def _multigrid(grid: Grid) -> _Plan:
+    shapes = [grid.shape]
+    while any(n > COARSEST for n in shapes[-1]):
+        nx, ny, nz = ((n + 1) // 2 if n > COARSEST else n for n in shapes[-1])
+        shapes.append((nx, ny, nz))
+    sizes = [nx * ny * nz * (8 if nz > 1 else 7) for nx, ny, nz in shapes]
+    starts = list(accumulate(sizes, initial=0))
+    table = [number for shape, start in zip(shapes, starts, strict=False) for number in (*shape, start)]
+    text = f"conjugate gradients with a V-cycle over {len(shapes)} grids"
+    return _Plan([len(shapes), *table], (starts[-1] + grid.shape[0] + 1) // 2 + 1, text)
+
+
+def _iterations(grid: Grid) -> _Plan:
+    nx, ny, nz = grid.shape
+    return _Plan([], nx * ny * nz, "an iteration over all cells")
+
+
+def _direct(grid: Grid) -> _Plan:
+    import numpy as np
+
+    from sceneql.linear import multifrontal
+
+    pattern, entries = _pattern(grid)
+    plan = multifrontal.plan(pattern)
+    numbers = np.concatenate([[len(entries), plan.factors, plan.work], entries.ravel(), plan.numbers])
+    text = f"a sparse factorization with {plan.factors:.3g} numbers, made once for each length of step"
+    return _Plan(numbers, len(entries) + plan.factors + plan.work, text)
+
+
+def _may_separate(grid: Grid, asked: str) -> bool:
+    """Whether it is worth looking for modes of rows."""
+    nx, _, nz = grid.shape
+    wanted = asked == "fast_transform" or (asked == "auto" and nx <= LONGEST_ROW)
+    deep_or_bent = nz > 1 or grid.varying or grid.periodic[1] or nx > 4 * LONGEST_ROW or grid.outside.any()
+    return wanted and not deep_or_bent
+
+
+def separate(grid: Grid, floats: Floats) -> tuple[Floats, ...] | None:
+    """Modes of a row (nx, nx), transposed, eigenvalues, conductances and sinks along y, volume; None: rows differ."""
+    import numpy as np
+
+    nx, ny, _ = grid.shape
+    n = nx * ny
+    offsets = (grid.volumes_at, grid.sink_at, *grid.faces_at[:2])
+    volume, sink, gx, gy = (floats[at : at + n].reshape(ny, nx) for at in offsets)
+    along_y = sink[:, nx // 2]
+    along_x = sink[ny // 2] - sink[ny // 2, nx // 2]
+    same = (volume, volume[0, 0]), (gx, gx[0]), (gy, gy[:, :1]), (sink, along_y[:, None] + along_x)
+    if not all(np.allclose(one, other, rtol=1e-13, atol=1e-13 * float(np.abs(one).max())) for one, other in same):
+        return None
+    g = gx[0]
+    matrix = np.diag(g + np.roll(g, -1) + along_x)
+    for i in range(nx):
+        matrix[i, i - 1] -= g[i]
+        matrix[i - 1, i] -= g[i]
+    values, vectors = np.linalg.eigh(matrix)
+    return vectors.T, vectors, values, gy[:, 0], along_y, volume[0, :1]
+
+
+def _transform(grid: Grid, separated: tuple[Floats, ...]) -> _Plan:
+    import numpy as np
+
+    table = np.concatenate([np.ravel(part) for part in separated]).view(np.int64)
+    cells = grid.shape[0] * grid.shape[1]
+    return _Plan(table, 3 * cells, "modes of the rows along x and tridiagonal systems along y")
+
+
+def _pattern(grid: Grid) -> tuple[Any, NDArray[int64]]:
+    """The (cells, cells) scipy CSR pattern, and for every value its cell and face (see grid_factors_kernels)."""
+    import numpy as np
+    from scipy.sparse import csr_array
+
+    n = int(np.prod(grid.shape))
+    cells = np.arange(n, dtype=np.int64).reshape(grid.shape[::-1])
+    rows, columns, faces = [cells.ravel()], [cells.ravel()], [np.zeros(n, dtype=np.int64)]
+    for axis in range(3 if grid.shape[2] > 1 else 2):
+        before = np.roll(cells, 1, axis=2 - axis)
+        tied = np.ones(cells.shape, dtype=bool)
+        if not grid.periodic[axis]:
+            tied[tuple(slice(1) if k == 2 - axis else slice(None) for k in range(3))] = False
+        high, low = cells[tied], before[tied]
+        rows += [high, low]
+        columns += [low, high]
+        faces += [np.full(len(high), axis + 1), np.full(len(high), axis + 4)]
+    i, j, face = (np.concatenate(part) for part in (rows, columns, faces))
+    pattern = csr_array((np.ones(len(i)), (i, j)), shape=(n, n))
+    pattern.sort_indices()
+    order = np.lexsort((j, i))
+    return pattern, np.column_stack([i[order], face[order]])
+
+
+_PLANS = {
+    "multigrid": _multigrid,
+    "conjugate_gradient": _iterations,
+    "gauss_seidel": _iterations,
+    "sor": _iterations,
+    "direct": _direct,
+}

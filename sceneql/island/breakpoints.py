@@ -1,0 +1,315 @@
+"""Where expressions of the time turn: keys, comparisons and whatever else a smooth step must not go over.
+
+What goes evenly with the time is met in closed form. All else is sampled over the run, and each change is closed in on;
+what turns inside a formula is found before it and sampled at both its sides: so a pulse is seen however short it is. So
+are smooth ones: bells, where the argument of an exponential is largest or a divisor least, and poles.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from sceneql.frame import Floats
+from sceneql.island.breakpoint_table import APART, Stop, after
+from sceneql.kinds.values import TIME
+from sceneql.quantities.curves import Table, known_table
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Call, Expr, Keys, Link, Number, Symbol, children, each_once
+from sceneql.quantities.span import Span
+
+MOST = 10_000
+"""Instants of a run; of what turns more often none are kept."""
+SAMPLES = (8192, 65536)
+"""Steps of the grid over the run; the second where every other sample of the first tells of other changes."""
+FALLEN = (1.0, 4.0, 12.0, 30.0)
+"""Of the logarithm of a pulse, where steps that are to see its sides end."""
+MOST_BELLS = 1000
+"""Of a formula that are stopped at: steps see by themselves what swings so often."""
+PARTS = 32
+"""Into which a piece that holds a change is divided, again and again."""
+
+Cells = Callable[[Any], Any]
+"""Numbers to the cells that they lie in: what reads them turns where the cell changes."""
+Even = tuple[float, float]
+"""Of what goes evenly with the time its value at 0 and its rate."""
+
+
+@dataclass
+class Turns:
+    """The instants at which expressions turn in a run from 0 to ``end`` [s].
+
+    ``formula`` gives a linked output as an expression of time; None for one that is solved.
+    """
+
+    formula: Callable[[Link], Expr | None]
+    end: float
+    stops: set[Stop] = field(default_factory=set)
+    """Within the run, and those that come again."""
+    beyond: list[Span | None] = field(default_factory=list)
+    """Where the script writes what turns more often than can be kept."""
+    _followed: dict[int, Expr] = field(default_factory=dict)
+    _formulas: dict[Link, Expr | None] = field(default_factory=dict)
+    _even: dict[int, Even | None] = field(default_factory=dict)
+    """By the identity of a node of the time alone; None: not evenly."""
+
+    @np.errstate(all="ignore")
+    def follow(self, expr: Expr, span: Span | None = None) -> None:
+        """Look where an expression turns, if it was not looked at before; ``span``: where its parts say no place."""
+        for node in each_once(expr, below=self._below) if id(expr) not in self._followed else ():
+            if id(node) in self._followed:
+                continue
+            self._followed[id(node)] = node
+            known = [id(child) in self._even for child in self._below(node)]
+            other = isinstance(node, Symbol) and node.name not in TIME
+            if other or not all(known) or (isinstance(node, Link) and not known):
+                continue  # it reads what is solved
+            self._even[id(node)] = self._evenly(node)
+            found = [instant for number, cells in _turning(node) for instant in self._instants(number, cells)]
+            found += [stop for number in _bells(node) for stop in self._bell(number)]
+            if isinstance(node, Keys) and (table := known_table(node)) is not None:
+                found += self._keys(node.argument, table)
+            found = [stop for stop in found if stop[1] > 0.0 or APART * self.end < stop[0] < self.end]
+            if len(found) + len(self.stops) > MOST:
+                self.beyond.append(node.span or span)
+            else:
+                self.stops.update(found)
+
+    def _below(self, expr: Expr) -> tuple[Expr, ...]:
+        if not isinstance(expr, Link):
+            return children(expr)
+        if expr not in self._formulas:
+            self._formulas[expr] = self.formula(expr)
+        meaning = self._formulas[expr]
+        return () if meaning is None else (meaning,)
+
+    def _evenly(self, node: Expr) -> Even | None:
+        """Value at 0 and rate, of the time alone."""
+        if id(node) in self._even:
+            return self._even[id(node)]
+        parts = [self._evenly(child) for child in self._below(node)]
+        even = [part for part in parts if part is not None]
+        if len(even) < len(parts) or node.type.shape:
+            return None
+        match node:
+            case Number(value=value):
+                return value, 0.0
+            case Symbol():
+                return 0.0, 1.0
+            case Link():
+                return even[0]
+            case Call(op="add" | "sub" as op):
+                (a, rise), (b, climb) = even
+                return (a + b, rise + climb) if op == "add" else (a - b, rise - climb)
+            case Call(op="neg"):
+                return -even[0][0], -even[0][1]
+            case Call(op="mul") if even[0][1] == 0.0 or even[1][1] == 0.0:
+                (a, rise), (b, climb) = even
+                return a * b, rise * b + climb * a
+            case Call(op="div") if even[1][1] == 0.0 and even[1][0] != 0.0:
+                return even[0][0] / even[1][0], even[0][1] / even[1][0]
+            case Call() if all(rate == 0.0 for _, rate in even):
+                found = self._values(node, np.zeros(1))
+                return None if found is None else (float(found[0]), 0.0)
+        return None
+
+    def _values(self, expr: Expr, times: Floats) -> Floats | None:
+        """(n,) of a scalar at instants (n,) [s]; None of what is no number at each."""
+
+        def look_up(node: Symbol | Link) -> Any:
+            return times if isinstance(node, Symbol) else evaluate(self._below(node)[0], look_up, arrays=True)
+
+        try:
+            found = np.asarray(evaluate(expr, look_up, arrays=True))
+        except (KeyError, TypeError, ValueError):
+            return None
+        return np.broadcast_to(found, times.shape) if found.ndim == 0 else found if found.shape == times.shape else None
+
+    def _keys(self, argument: Expr, table: Table) -> Iterator[Stop]:
+        even = self._evenly(argument)
+        if even is None:
+            yield from self._sampled(argument, _between(table))
+        elif even[1] != 0.0 and math.isfinite(even[0] + even[1] * self.end):
+            here, slope = even
+            for time in table.times:  # what is new holds at a key: behind it where the argument falls
+                at = (time - here) / slope
+                yield (at if slope > 0.0 else after(at, 2)), table.cycle / abs(slope)
+
+    def _instants(self, number: Expr, cells: Cells) -> Iterator[Stop]:
+        """Where the cell of a number changes."""
+        even = self._evenly(number)
+        if even is None:
+            yield from self._sampled(number, cells)
+        elif even[1] != 0.0 and math.isfinite(even[0] + even[1] * self.end):
+            here, slope = even
+            first, last = 0, 0
+            if cells is np.floor:
+                low, high = sorted((here, here + slope * self.end))
+                first = math.ceil(low)
+                last = min(math.floor(high), first + MOST + 1)
+            for whole in range(first, last + 1):
+                yield after((whole - here) / slope, 2), 0.0
+
+    def _sampled(self, number: Expr, cells: Cells) -> Iterator[Stop]:
+        """Where the cell changes on a grid, and between its points where the number turns round."""
+        grid = np.linspace(0.0, self.end, SAMPLES[0] + 1)
+        where = self._cell(number, cells, grid)
+        if where is None:
+            return
+        if np.count_nonzero(_changes(where)) != np.count_nonzero(_changes(where[::2])):
+            grid = np.linspace(0.0, self.end, SAMPLES[1] + 1)
+        known = np.array([time for stop in self.stops for time in _again(stop, self.end)])
+        grid = np.unique(np.concatenate([grid, known, known - 4.0 * np.spacing(known)]))
+        grid = np.union1d(grid, self._turned_round(number, cells, grid))
+        changes = _changes(self._cell(number, cells, grid))
+        low, high = grid[:-1][changes], grid[1:][changes]
+        while 0 < len(low) <= MOST and np.any(high - low > np.spacing(np.maximum(low, APART * self.end))):
+            pieces = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, PARTS + 1)
+            pieces[:, -1] = high
+            changes = _changes(self._cell(number, cells, pieces.ravel()).reshape(pieces.shape))
+            low, high = pieces[:, :-1][changes], pieces[:, 1:][changes]
+        last = math.inf
+        for time in high[: MOST + 1][::-1].tolist():  # of those as good as one the last: there all is new
+            if last - time > APART * self.end:
+                yield after(time, 2), 0.0
+                last = time
+
+    def _cell(self, number: Expr, cells: Cells, times: Floats) -> Any:
+        """(n,) cells at instants (n,) [s]; None of what is no number."""
+        found = self._values(number, times)
+        return None if found is None else np.nan_to_num(cells(found), nan=1e300)
+
+    def _turned_round(self, number: Expr, cells: Cells, grid: Floats) -> Floats:
+        """The instants near which a number is least or most, where that may bring it to another cell."""
+        values = self._values(number, grid)
+        assert values is not None
+        rise = np.sign(np.diff(values))
+        at = np.flatnonzero(rise[:-1] != rise[1:]) + 1
+        way = np.where(rise[at] != 0.0, rise[at], -rise[at - 1])  # 1 where it is least
+        if cells is np.sign:
+            at, way = at[way * values[at] > 0.0], way[way * values[at] > 0.0]
+        if len(at) == 0 or len(at) > MOST:
+            return grid[:0]
+        return self._closed_in(number, grid[at - 1], grid[at + 1], way)
+
+    def _bell(self, number: Expr) -> list[Stop]:
+        """Where a number is largest of those around, and has fallen by FALLEN from it to both sides, or does begin."""
+        if self._evenly(number) is not None:
+            return []
+        grid = np.linspace(0.0, self.end, SAMPLES[0] + 1)
+        values = self._values(number, grid)
+        rise = np.sign(np.diff(np.zeros(2) if values is None else values))
+        at = np.flatnonzero((rise[:-1] > 0.0) & (rise[1:] <= 0.0)) + 1
+        if not 0 < len(at) <= MOST_BELLS:
+            return []
+        tops = self._closed_in(number, grid[at - 1], grid[at + 1], -1.0)
+        stops = tops.tolist()
+        valleys = np.concatenate([[0.0], 0.5 * (tops[1:] + tops[:-1]), [self.end]])
+
+        def at_times(times: Floats) -> Floats:
+            found = self._values(number, times)
+            assert found is not None
+            return found
+
+        highest = at_times(tops)
+        for fallen in FALLEN:
+            for low, high in ((valleys[:-1].copy(), tops.copy()), (valleys[1:].copy(), tops.copy())):
+                for _ in range(60):  # bisection, from the foot up
+                    middle = 0.5 * (low + high)
+                    below = at_times(middle) < highest - fallen
+                    low, high = np.where(below, middle, low), np.where(below, high, middle)
+                stops += high[np.abs(high - tops) > APART * self.end].tolist()
+        return [(after(time, 2), 0.0) for time in stops]
+
+    def _closed_in(self, number: Expr, low: Floats, high: Floats, way: Any) -> Floats:
+        """The instants (k,) between low and high (k,) at which a number is least (way 1) or most (-1)."""
+        way, rows = np.broadcast_to(way, low.shape), np.arange(len(low))
+        for _ in range(9):  # to 2^-27 of a step: beyond, a smooth number is flat
+            pieces = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, 17)
+            found = self._values(number, pieces.ravel())
+            assert found is not None
+            best = np.argmin(way[:, None] * found.reshape(pieces.shape), axis=1)
+            low, high = pieces[rows, np.maximum(best - 1, 0)], pieces[rows, np.minimum(best + 1, 16)]
+        return (low + high) / 2.0
+
+
+def _turning(node: Expr) -> list[tuple[Expr, Cells]]:
+    """The numbers whose cells decide what an operation does. (`where` turns with what turns in its condition.)"""
+    if not isinstance(node, Call) or any(arg.type.shape for arg in node.args):
+        return []
+    args = node.args
+    match node.op:
+        case "lt" | "le" | "gt" | "ge" | "eq" | "step":
+            return [(Call("sub", args), np.sign)]
+        case "min" | "max" as op:
+            return [
+                (Call("sub", (args[0] if k == 1 else Call(op, args[:k]), args[k])), np.sign)
+                for k in range(1, len(args))
+            ]
+        case "abs" | "sign":
+            return [(args[0], np.sign)]
+        case "clamp":
+            return [(Call("sub", (args[0], bound)), np.sign) for bound in args[1:]]
+        case "ease":
+            return [(args[0], np.sign), (Call("sub", (args[0], Number(1.0))), np.sign)]
+        case "div":
+            return [(args[1], np.sign)]
+        case "tan":
+            return [(Call("cos", args), np.sign)]
+        case "log":
+            return [(args[0], np.sign)]
+        case "smoothstep":
+            return [(Call("sub", (args[2], bound)), np.sign) for bound in args[:2]]
+        case "floor" | "ceil" | "random":
+            return [(arg, np.floor) for arg in args]
+        case "round":
+            return [(Call("add", (args[0], Number(0.5))), np.floor)]
+        case "mod":
+            return [(Call("div", args), np.floor)]
+    return []
+
+
+def _bells(node: Expr) -> list[Expr]:
+    """Logarithms of what an operation gives, where that may be a pulse as narrow as you like."""
+    if not isinstance(node, Call) or any(arg.type.shape for arg in node.args):
+        return []
+    match node:
+        case Call(op="exp", args=(argument,)):
+            return [argument]
+        case Call(op="div", args=(_, divisor)) | Call(op="pow", args=(divisor, Number(value=-1.0 | -2.0))):
+            return [Call("neg", (Call("log", (Call("abs", (divisor,)),)),))]
+    return []
+
+
+def _between(table: Table) -> Cells:
+    """Between which keys a number lies, and in which cycle."""
+    times = np.array(table.times)
+
+    def cells(number: Floats) -> Any:
+        cycles: Any = 0.0
+        if table.cycle > 0.0:
+            cycles, rest = np.divmod(number - times[0], table.cycle)
+            number = times[0] + rest
+        return cycles * (len(times) + 1) + np.searchsorted(times, number, side="right")
+
+    return cells
+
+
+def _changes(cells: Any) -> Any:
+    """(..., n - 1) whether neighbors of (..., n) differ."""
+    return cells[..., 1:] != cells[..., :-1]
+
+
+def _again(stop: Stop, end: float) -> Iterator[float]:
+    """An instant and those that it comes again at, from the start of the run to its end."""
+    time, period = stop
+    if period <= 0.0:
+        yield time
+        return
+    first = math.ceil(-time / period)
+    for k in range(first, first + min(math.floor((end - time) / period) - first, MOST) + 1):
+        yield time + k * period

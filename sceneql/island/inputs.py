@@ -1,0 +1,202 @@
+"""Values of a script that vary in time, lowered to programs for the interpreter of inputs_kernels.
+
+A value may use the time, keyframes, outputs of kinematic models (formulas of time) and outputs of models that are
+solved in the same island (entries of y).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial, reduce
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.island.lowering import LOWERINGS
+from sceneql.kinds import Value
+from sceneql.quantities.curves import keys_table
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import TIME_SYMBOL, Call, Expr, Keys, Link, Number, Symbol, Vector, walk
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats
+
+Register = int
+Lowered = Any
+"""A register, or a list of lowered components."""
+
+
+class Inputs:
+    """Lowers the values of one island.
+
+    ``formula``: a linked output as an expression, None for one that is solved; ``places``: where in y that one stands;
+    ``start``: y at the start; ``store``: puts numbers into the floats, for their offset.
+    """
+
+    def __init__(
+        self,
+        formula: Callable[[Link], Expr | None],
+        places: Callable[[Link], NDArray[int64] | None],
+        start: Callable[[], Floats],
+        store: Callable[[Any], int],
+    ) -> None:
+        self._formula, self._places, self._start, self._store = formula, places, start, store
+        self._known: dict[int, tuple[Expr, Lowered]] = {}
+        self._rows: list[int] = []
+
+    def at_start(self, value: Value) -> Any:
+        """The value at time 0: float or float64 array. Raises ScriptError where it reads what has no place in y."""
+        return evaluate(value.expr, self._look_up, arrays=True)
+
+    def reads_state(self, expr: Expr) -> bool:
+        """Whether it reads what is solved, directly or through formulas."""
+        for node in walk(expr):
+            if isinstance(node, Link):
+                formula = self._formula(node)
+                if formula is None or self.reads_state(formula):
+                    return True
+        return False
+
+    def program(self, value: Value, first: int) -> list[int]:
+        """The rows that evaluate a value into floats[first:]. Raises ScriptError for what cannot vary in a system."""
+        from sceneql.island.inputs_kernels import COPY
+
+        self._rows = []
+        self._known = {}
+        for k, register in enumerate(_flat(self._lower(value.expr))):
+            self._row(COPY, first + k, register)
+        return self._rows
+
+    def _look_up(self, node: Symbol | Link) -> Any:
+        if isinstance(node, Symbol):
+            return {TIME_SYMBOL: 0.0}[node.name]
+        formula = self._formula(node)
+        return (
+            evaluate(formula, self._look_up, arrays=True) if formula is not None else self._start()[self._found(node)]
+        )
+
+    def _found(self, link: Link) -> NDArray[int64]:
+        places = self._places(link)
+        if places is None:
+            text = f"'{link.task}.{link.output}' is no part of the state that is solved together with this"
+            help = "link to a position or velocity of a model of the same island, or to a kinematic model"
+            raise ScriptError([Diagnostic("unsupported-link", text, link.span, help)])
+        return places
+
+    def _lower(self, expr: Expr) -> Lowered:
+        if id(expr) not in self._known:
+            self._known[id(expr)] = expr, self._one(expr)
+        return self._known[id(expr)][1]
+
+    def _one(self, expr: Expr) -> Lowered:
+        from sceneql.island.inputs_kernels import STATE, TIME
+
+        if not any(isinstance(node, Symbol | Link) for node in walk(expr)):
+            return self._constant(evaluate(expr, {}, arrays=True))
+        match expr:
+            case Symbol():
+                return self._emit(TIME)
+            case Link():
+                formula = self._formula(expr)
+                if formula is not None:
+                    return self._lower(formula)
+                return _mapped(lambda place: self._emit(STATE, place), self._found(expr).tolist())
+            case Vector(items=items):
+                return [self._lower(item) for item in items]
+            case Keys():
+                return self._keys(expr)
+            case Call():
+                return self._call(expr)
+        raise TypeError(f"an unbound name cannot be lowered: {expr!r}")
+
+    def _constant(self, value: Any) -> Lowered:
+        return _mapped(lambda number: self._store([number]), np.asarray(value).tolist())
+
+    def _keys(self, keys: Keys) -> Lowered:
+        from sceneql.island.inputs_kernels import KEYS, ROTATION
+
+        argument = self._lower(keys.argument)
+        try:
+            table = keys_table(keys)
+        except KeyError:
+            text = "keyframes inside a solved system need constant times and values"
+            raise ScriptError([Diagnostic("varying-keys", text, keys.span)]) from None
+        columns = (table.values, table.slopes_in, table.slopes_out)
+        at = self._store([table.cycle, *table.times, *np.ravel(columns)])
+        width = len(table.values[0])
+        out = self._store(np.zeros(width))
+        form = table.curve + (ROTATION if table.rotation else 0)
+        self._row(KEYS, out, argument, at, width, len(table.times), form)
+        return [out + k for k in range(width)] if keys.type.shape else out
+
+    def _call(self, expr: Call) -> Lowered:
+        from sceneql.island.inputs_kernels import CODES
+
+        op, args = expr.op, expr.args
+        if op == "component":
+            assert isinstance(args[1], Number)
+            return _component(self._lower(args[0]), int(args[1].value))
+        operands = [self._lower(arg) for arg in args]
+        if op in ("min", "max"):
+            return reduce(partial(self._do, op), _flat(operands[0]) if len(operands) == 1 else operands)
+        if op in CODES:
+            return self._do(op, *operands)
+        if op in LOWERINGS:
+            return LOWERINGS[op](self._do, *operands)
+        text = f"'{op}' cannot vary in time inside a solved system"
+        raise ScriptError([Diagnostic("unsupported-operation", text, expr.span)])
+
+    def _do(self, op: str, *operands: Any) -> Lowered:
+        """A scalar operation, component by component; floats among the operands are constants."""
+        from sceneql.island.inputs_kernels import CODES
+
+        depth = max(_depth(operand) for operand in operands)
+        if depth == 0:
+            registers = [self._store([x]) if isinstance(x, float) else x for x in operands]
+            return self._emit(CODES[op], *registers)
+        count = next(len(operand) for operand in operands if _depth(operand) == depth)
+        return [self._do(op, *(x[k] if _depth(x) == depth else x for x in operands)) for k in range(count)]
+
+    def _emit(self, code: int, *operands: Register) -> Register:
+        out = self._store([0.0])
+        self._row(code, out, *operands)
+        return out
+
+    def _row(self, code: int, out: int, *rest: int) -> None:
+        self._rows += [code, out, *rest, *(0,) * (5 - len(rest))]
+
+
+def _mapped(function: Callable[[Any], Any], value: Any) -> Any:
+    """A function on every number of nested lists."""
+    return [_mapped(function, item) for item in value] if isinstance(value, list) else function(value)
+
+
+def _flat(value: Lowered) -> list[Register]:
+    return [register for item in value for register in _flat(item)] if isinstance(value, list) else [value]
+
+
+def _depth(value: Lowered) -> int:
+    return 1 + max((_depth(item) for item in value), default=0) if isinstance(value, list) else 0
+
+
+def _component(value: Lowered, k: int) -> Lowered:
+    """Component k of a vector or of every vector of a list."""
+    return [_component(item, k) for item in value] if _depth(value) > 1 else value[k]
+
+
+def places(read: Callable[[Floats], Any], size: int) -> NDArray[int64] | None:
+    """Where in y an output stands that copies entries of y: an array of its shape, or None where it computes.
+
+    ``read`` is the output as a function of y; it is asked on two states that number their own entries.
+    """
+    numbers = np.arange(size, dtype=np.float64)
+    with np.errstate(all="ignore"):
+        found = np.asarray(read(numbers), dtype=np.float64)
+        again = np.asarray(read(3.0 * numbers + 0.5), dtype=np.float64)
+    if not np.all((found >= 0) & (found < size) & (found == np.floor(found))) or np.any(again != 3.0 * found + 0.5):
+        return None
+    return found.astype(np.int64)

@@ -1,0 +1,393 @@
+"""An island under construction: words reserve state, store numbers and add terms; `finish` lays it out as arrays.
+
+It knows no word. What it makes is a `System`: the start, two arrays of numbers, and a `Structure`, which is all that
+decides which code is compiled.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import accumulate
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.failure import LimitRefused
+from sceneql.island.blocks_laid import Block, grouped, lay_out
+from sceneql.island.breakpoint_table import Stop, Stops
+from sceneql.island.breakpoints import Turns
+from sceneql.island.inputs import Inputs
+from sceneql.island.jacobian import BY_DIFFERENCES, full, section
+from sceneql.island.memory import LARGEST_MEMORY
+from sceneql.kinds import Object, Ref, Value
+from sceneql.quantities.diagnostic import Diagnostics, ScriptError
+from sceneql.quantities.expression import Expr, Link
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats
+    from sceneql.island.setting import Setting
+    from sceneql.quantities.span import Span
+    from sceneql.system import Grid, Mode, Pattern, Slopes, Stage
+
+STAGES: tuple[Stage, ...] = ("internal", "force", "close", "constrain")
+VECTORS = 12
+"""Arrays of the state's size that a run keeps: ends and rates of a step, and the stages of a solver."""
+RESERVED_FLOATS = 5
+"""floats[0] counts rate evaluations; floats[1] is set by a contact that changed the state (march_kernels); floats[2] is
+above 0 while slopes are to serve Newton's method; floats[3] is not 0 where terms may act within its stages, whose
+number is floats[4], or give slopes of how they act between steps (system.Slopes)."""
+STAGE = 3
+WITHIN, BETWEEN = -1.0, -2.0
+
+
+@dataclass(frozen=True, slots=True)
+class Structure:
+    """The kernels of an island by name, each once for each stage. Nothing of the script's text or numbers."""
+
+    terms: tuple[str, ...]
+    exact: tuple[tuple[str, str], ...]
+    """(gap, impact)."""
+    local: tuple[str, ...]
+    varying: bool
+    """Whether values vary in time."""
+    slopes: tuple[str, ...] | None = None
+    """The kernels of the Jacobian; None: it is not asked for, or found by differences."""
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where entries of the state come from."""
+
+    part: str
+    span: Span | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class System:
+    """An island as arrays."""
+
+    structure: Structure
+    y: Floats
+    """(n,) the start."""
+    floats: Floats
+    ints: NDArray[int64]
+    """Offsets, then the integers of every block (driver.py says how they are laid out)."""
+    pairs: int
+    """Contact pairs of exact contacts."""
+    partner: NDArray[int64]
+    """(n,) for a position its velocity's index, else -1."""
+    ranges: tuple[tuple[int, int, str, tuple[Span | None, ...]], ...]
+    largest_step: float = float("inf")
+    """[s], of steps that a tolerance chooses."""
+    stops: Stops = field(default_factory=Stops)
+    """Where such steps end."""
+    pattern: Pattern | None = None
+    """Of its Jacobian; None: not asked for, or too large to be found by differences."""
+    grid: Grid | None = None
+    """Of an island that is one field on a grid."""
+    unsloped: str = ""
+    """The part that gives no slopes, where one gives none."""
+    grids: tuple[Grid, ...] = ()
+    """Of all its fields."""
+    masses: tuple[tuple[int, int, int], ...] = ()
+    """Of each model of masses: where in y their velocities start, where in floats their inverse masses, how many."""
+    terms: tuple[Origin, ...] = ()
+    """Where the terms of the rate come from, in the order in which they act."""
+
+    def origin(self, index: int) -> Origin:
+        """Part and line of an entry of y."""
+        for first, last, part, spans in self.ranges:
+            if first <= index < last:
+                return Origin(part, spans[(index - first) * len(spans) // (last - first)])
+        return Origin("island", None)
+
+
+@dataclass
+class IslandAssembly:
+    """The Assembly (system.py) of one island.
+
+    ``places`` says where in y the output of a solved model stands (None: it is computed); it may be set until `finish`.
+    """
+
+    setting: Setting
+    whole: int = 0
+    """Of a block: the bodies of the whole island."""
+    places: Callable[[Link], NDArray[int64] | None] = lambda link: None
+    fields: dict[tuple[str, str], Grid] = field(default_factory=dict)
+    """By model and output."""
+    changes: list[tuple[int, int]] = field(default_factory=list)
+    """Floats that change as bodies come and go; none where none do."""
+    _starts: list[Floats] = field(default_factory=list)
+    _size: int = 0
+    _bodies: int = 0
+    _ranges: list[tuple[int, int, str, tuple[Span | None, ...]]] = field(default_factory=list)
+    _pairs: list[tuple[int, int, int]] = field(default_factory=list)
+    _masses: list[tuple[int, int, int]] = field(default_factory=list)
+    _numbers: list[Floats] = field(default_factory=lambda: [np.zeros(RESERVED_FLOATS)])
+    _stored: int = RESERVED_FLOATS
+    _terms: dict[Stage, list[Block]] = field(default_factory=lambda: {stage: [] for stage in STAGES})
+    _exact: list[Block] = field(default_factory=list)
+    _local: list[Block] = field(default_factory=list)
+    _varying: list[tuple[int, Value]] = field(default_factory=list)
+    _largest_step: float = float("inf")
+    _stops: set[Stop] = field(default_factory=set)
+    _grids: list[Grid] = field(default_factory=list)
+    _apart: bool = True
+    _unsloped: str = "a value that reads the state"
+    _word: tuple[str, Span | None, str | None] = ("island", None, None)
+    _remembered: dict[tuple[str, str | None], tuple[int, ...]] = field(default_factory=dict)
+
+    @contextmanager
+    def word(self, name: str, span: Span | None, model: str | None = None) -> Iterator[None]:
+        """What is added inside comes from the part ``name`` (a force's for one model)."""
+        before = self._word
+        self._word = (name, span, model)
+        try:
+            yield
+        finally:
+            self._word = before
+
+    def state(self, initial: Any, spans: Sequence[Span | None] | None = None) -> int:
+        """Reserve entries of y (system.Assembly). Raises LimitRefused when the run would need too much memory."""
+        start = np.array(initial, dtype=np.float64).ravel()
+        name, span, _ = self._word
+        self.room(self._size + len(start), span)
+        first = self._size
+        self._starts.append(start)
+        self._size += len(start)
+        self._ranges.append((first, self._size, name, tuple(spans) if spans else (span,)))
+        return first
+
+    def room(self, entries: float, span: Span | None) -> None:
+        """Raise LimitRefused when a state of so many entries cannot be held; call it before making large arrays."""
+        memory = 8.0 * entries * VECTORS
+        if memory > LARGEST_MEMORY:
+            raise LimitRefused(
+                f"a state of {entries:.3g} numbers needs about {memory / 2**30:.3g} GiB; at most "
+                f"{LARGEST_MEMORY / 2**30:.0f} GiB are allowed",
+                span,
+                "use fewer masses or a coarser lattice",
+            )
+
+    def pair(self, position_at: int, velocity_at: int, count: int) -> None:
+        """Say which entries are velocities of which (system.Assembly)."""
+        self._pairs.append((position_at, velocity_at, count))
+        self._bodies += count // 3
+
+    def floats(self, values: Any) -> int:
+        """Store numbers; the offset of the first."""
+        numbers = np.array(values, dtype=np.float64).ravel()
+        first = self._stored
+        self._numbers.append(numbers)
+        self._stored += len(numbers)
+        return first
+
+    def value(self, value: Value) -> int:
+        """Store a value, a varying one to be evaluated at stage times; the offset of its first float."""
+        if value.constant:
+            return self.floats(self.initial(value))
+        shape = value.expr.type.shape
+        # The output of a model that is solved may have no place yet.
+        later = None not in shape and self._inputs().reads_state(value.expr)
+        first = self.floats(np.zeros([k or 0 for k in shape]) if later else self.initial(value))
+        self._varying.append((first, value))
+        return first
+
+    def initial(self, value: Value) -> Any:
+        """The value at the start of the run: float or float64 array."""
+        return self._inputs().at_start(value)
+
+    def term(
+        self,
+        stage: Stage,
+        kernel: str,
+        ints: Sequence[int],
+        jacobian: Slopes | Callable[[], Slopes | None] | None = None,
+        apart: bool = False,
+    ) -> None:
+        """Add a term to the rate."""
+        self._apart = self._apart and apart
+        self._terms[stage].append(Block((kernel,), tuple(ints), 0, jacobian, *self._word[:2]))
+
+    def inertia(self, velocity_at: int, inverse_at: int, count: int) -> None:
+        """Say which rows of the Jacobian inverse masses multiply (system.Assembly)."""
+        self._masses.append((velocity_at, inverse_at, count))
+
+    def contact(self, mode: Mode, kernels: Sequence[str], ints: Sequence[int], pairs: int, apart: bool = False) -> None:
+        """Add contacts."""
+        self._apart = self._apart and apart and mode == "local"
+        (self._exact if mode == "exact" else self._local).append(Block(tuple(kernels), tuple(ints), pairs))
+
+    def grid(self, grid: Grid) -> None:
+        """Say that part of the state is a field (system.Assembly)."""
+        self._grids.append(grid)
+
+    def offer(self, output: str, grid: Grid) -> None:
+        """Say where a field lies (system.Assembly)."""
+        self.fields[self._word[0], output] = grid
+
+    def field_of(self, link: Link) -> Grid | None:
+        """Where the field of a link lies (system.Assembly)."""
+        return self.fields.get((link.task, link.output))
+
+    @property
+    def only_field(self) -> Grid | None:
+        """The grid of an island that is one field and nothing that acts on it."""
+        alone = len(self._grids) == 1 and len(self._ranges) == 1
+        return self._grids[0] if alone and not self._pairs and not self._exact and not self._local else None
+
+    def object(self, ref: Ref) -> Object:
+        """The kind of an object of the script."""
+        return self.setting.object(ref)
+
+    def formula(self, link: Link) -> Expr | None:
+        """A linked output as an expression of time; None for one of a model that is solved."""
+        return self.setting.formula(link)
+
+    def step_at_most(self, seconds: float) -> None:
+        """Bound the steps that a tolerance chooses (system.Assembly)."""
+        self._largest_step = min(self._largest_step, seconds)
+
+    def stop_at(self, time: float) -> None:
+        """Let steps that a tolerance chooses end at an instant (system.Assembly)."""
+        self._stops.add((time, 0.0))
+
+    def stop_where_it_turns(self, expr: Expr) -> None:
+        """Let them end where a formula turns (system.Assembly)."""
+        if not self.whole:  # the steps of blocks are given
+            self.turns.follow(expr, expr.span or self.line())
+
+    @cached_property
+    def turns(self) -> Turns:
+        """Where values and formulas turn in the run."""
+        return Turns(self.setting.formula, self.setting.end)
+
+    def line(self) -> Span | None:
+        """Where in the script the word stands that is being assembled."""
+        return self._word[1]
+
+    def body_count(self) -> int:
+        """Number of bodies of the island so far; in a block that of the whole."""
+        return max(self._bodies, self.whole)
+
+    def changing(self, at: int, count: int) -> None:
+        """Say that floats change as bodies come and go (system.Assembly)."""
+        self.changes.append((at, count))
+
+    def remember(self, *ints: int) -> None:
+        """Keep integers for the word's own reading (ModelState.ints)."""
+        name, _, model = self._word
+        self._remembered[name, model] = self._remembered.get((name, model), ()) + ints
+
+    def remembered(self, name: str, model: str | None = None) -> tuple[int, ...]:
+        """What a word asked to be remembered (a force: for this model)."""
+        return self._remembered.get((name, model), ())
+
+    @property
+    def apart(self) -> bool:
+        """Whether no body feels another one, by what its terms and contacts say."""
+        return self._apart and not any(self._inputs().reads_state(value.expr) for _, value in self._varying)
+
+    @property
+    def contact_mode(self) -> str:
+        """How its contacts work: exact, local, both or none."""
+        modes = [mode for mode, blocks in (("exact", self._exact), ("local", self._local)) if blocks]
+        return " and ".join(modes) or "none"
+
+    def finish(self, jacobian: bool = False, newton: bool = False) -> System:
+        """The island as arrays, with its Jacobian if asked for, ``newton``: for Newton's method alone.
+
+        Raises ScriptError for values without a program.
+        """
+        y = self.start()
+        slopes = self._slopes(newton) if jacobian else None
+        inputs = self._inputs()
+        blocks = [Block((), tuple(self._program(inputs)))]
+        groups: list[tuple[tuple[str, ...], int]] = []
+        for stage in STAGES:
+            groups += grouped(self._terms[stage], blocks)
+        first_exact = len(blocks)
+        exact = grouped(self._exact, blocks)
+        pairs = [block.pairs for block in blocks[first_exact:]]
+        local = grouped(self._local, blocks)
+        first_blocks = list(accumulate((count for _, count in (*groups, *exact, *local)), initial=1))
+        ints = lay_out(self._pairs, blocks, first_blocks, pairs)
+        found, derived = full(len(y)) if jacobian else None, None
+        if slopes is not None:
+            found, derived, more = section(len(ints), len(y), slopes, self._masses, self._pairs)
+            ints = np.concatenate([ints, more])
+        structure = Structure(
+            tuple(kernels[0] for kernels, _ in groups),
+            tuple((kernels[0], kernels[1]) for kernels, _ in exact),
+            tuple(kernels[0] for kernels, _ in local),
+            bool(self._varying),
+            derived,
+        )
+        partner = np.full(len(y), -1, dtype=np.int64)
+        for position, velocity, count in self._pairs:
+            partner[position : position + count] = np.arange(velocity, velocity + count)
+        floats = np.concatenate([*self._numbers, np.zeros(0 if found is None else 3 * len(y))])
+        if slopes is not None and self._local:
+            floats[STAGE] = WITHIN if newton else BETWEEN
+        return System(
+            structure=structure,
+            y=y,
+            floats=floats,
+            ints=ints,
+            pairs=sum(pairs),
+            partner=partner,
+            ranges=tuple(self._ranges),
+            largest_step=self._largest_step,
+            stops=Stops.of(self._stops | self.turns.stops),
+            pattern=found,
+            grid=self.only_field,
+            unsloped=self._unsloped,
+            grids=tuple(self.fields.values()),
+            masses=tuple(self._masses),
+            terms=tuple(Origin(block.part, block.span) for block in blocks[1:first_exact]),
+        )
+
+    def start(self) -> Floats:
+        """The state reserved so far, at the start of the run."""
+        return np.concatenate(self._starts) if self._starts else np.zeros(0)
+
+    def numbers(self) -> Floats:
+        """The floats stored so far."""
+        return np.concatenate(self._numbers)
+
+    def _program(self, inputs: Inputs) -> list[int]:
+        """What evaluates the values that vary."""
+        program: list[int] = []
+        found = Diagnostics()
+        for first, value in self._varying:
+            with self.word("values", value.span):
+                self.stop_where_it_turns(value.expr)
+            try:
+                program += inputs.program(value, first)
+            except ScriptError as error:
+                found.extend(error.diagnostics)
+        found.raise_errors()
+        return program
+
+    def _slopes(self, newton: bool) -> list[tuple[Slopes, Sequence[int]]] | None:
+        """The slopes of all terms with their integers; None where those of one are not known."""
+        found = []
+        for block in (block for stage in STAGES for block in self._terms[stage]):
+            slopes = block.slopes() if callable(block.slopes) else block.slopes
+            if slopes is None or (slopes.in_stages and not newton and self._size <= BY_DIFFERENCES):
+                self._unsloped = block.part
+                return None
+            found.append((slopes, block.ints if slopes.ints is None else slopes.ints))
+        inputs = self._inputs()
+        if any(inputs.reads_state(value.expr) for _, value in self._varying):
+            return None
+        return [one for one in found if len(one[0].rows)]
+
+    def _inputs(self) -> Inputs:
+        return Inputs(self.setting.formula, self.places, self.start, self.floats)

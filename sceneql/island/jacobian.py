@@ -1,0 +1,169 @@
+"""An island's Jacobian as it is laid out: its pattern, and the section of integers that its kernel works by.
+
+The section, at ints[4], all indices absolute: [values, entries, blocks, tiles of blocks, masses_at, mass_triples,
+where the blocks' table starts, and their parts; singles, tiles of them, their table, their parts; the numbers of
+threads_kernels.threads, the addresses of the tiles' kernels (jacobian_kernels), first term of every group and the end
+of the last, ...]; a term is (first and last of its integers, first and last of its entries, which stand behind the
+values). The blocks' table: where the parts of each start, and which of the floats is the inverse mass of its rows (-1:
+none). Singles are the values outside blocks, and those inside to which single entries are added: value, inverse mass,
+where its parts start. A part is an entry, k (of a block its first), or, to be taken away, -1 - k. At masses_at triples
+(velocity_at, inverse_at, count).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import accumulate
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.linear.ordering import rising
+from sceneql.system import Pattern, Slopes
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    Numbers = NDArray[int64]
+    Triples = Sequence[tuple[int, int, int]]
+
+BY_DIFFERENCES = 400
+"""Up to so many entries of y a Jacobian is found by differences where a term does not know its own."""
+HEAD = 16
+"""Integers of a section before its groups."""
+TILE = 20_000
+"""Values that a thread sums at a time; fewer are not worth threads."""
+_NONE = np.zeros(0, dtype=np.int64)
+
+
+def full(size: int) -> Pattern | None:
+    """The pattern of a Jacobian by differences; None where there are too many entries."""
+    if size > BY_DIFFERENCES:
+        return None
+    rows, columns = np.divmod(np.arange(size * size, dtype=np.int64), max(size, 1))
+    every = np.column_stack([rows, columns])
+    known = np.ones(len(every), dtype=bool)
+    return Pattern(_NONE.reshape(0, 2), every, known, size * size + 3 * size, False, _NONE)
+
+
+def section(
+    at: int, size: int, slopes: Sequence[tuple[Slopes, Sequence[int]]], masses: Triples, pairs: Triples
+) -> tuple[Pattern, tuple[str, ...], Numbers]:
+    """The pattern of ``size`` rows, the kernels in order, and the section that is to stand ``at`` an index of ints.
+
+    ``slopes`` with the integers of each; ``masses``: (velocity_at, inverse_at, count) of each model of masses;
+    ``pairs``: (position_at, velocity_at, count of entries).
+    """
+    by_kernel: dict[str, list[tuple[Slopes, Sequence[int]]]] = {}
+    for one in slopes:
+        by_kernel.setdefault(one[0].kernel, []).append(one)
+    ordered = [one for group in by_kernel.values() for one in group]
+    from sceneql.compiled.threads_kernels import threads, tile_address
+    from sceneql.island.jacobian_kernels import block_tile, single_tile
+
+    found, lists = _pattern(size, [one for one, _ in ordered], masses, pairs)
+    count, blocks, singles = found.count, len(found.blocks), len(lists[2]) // 3 - 1
+    groups_at = at + HEAD
+    terms_at = groups_at + len(by_kernel) + 1
+    starts = list(accumulate((len(part) for part in lists), initial=terms_at + 4 * len(ordered)))
+    masses_at = starts.pop()
+    ints_at = list(accumulate((len(ints) for _, ints in ordered), initial=masses_at + 3 * len(masses)))
+    entries_at = list(accumulate((one.entries for one, _ in ordered), initial=count))
+    parts = [
+        [count, entries_at[-1] - count, blocks, 9 * blocks // TILE + 1, masses_at, len(masses), *starts[:2]],
+        [singles, singles // TILE + 1, *starts[2:]],
+        [*threads(), tile_address(block_tile), tile_address(single_tile)],
+        list(accumulate((4 * len(group) for group in by_kernel.values()), initial=terms_at)),
+        np.column_stack([ints_at[:-1], ints_at[1:], entries_at[:-1], entries_at[1:]]).ravel(),
+        *lists,
+        np.ravel(masses),
+        *(ints for _, ints in ordered),
+    ]
+    return found, tuple(by_kernel), np.concatenate([np.asarray(part, dtype=np.int64) for part in parts])
+
+
+def _pattern(
+    size: int, slopes: Sequence[Slopes], masses: Triples, pairs: Triples
+) -> tuple[Pattern, tuple[Numbers, Numbers, Numbers, Numbers]]:
+    """The pattern; the table and parts of blocks, those of singles (whose table has an end of its own)."""
+    top, inverse = _masses_of(size, masses, pairs)
+    first = list(accumulate((one.entries for one in slopes), initial=0))
+    blocks, singles = ([one for one in zip(slopes, first, strict=False) if one[0].blocks == kind] for kind in (1, 0))
+    (rows, columns, parts), (block_rows, block_columns, block_parts) = _joined(singles), _joined(blocks)
+    tallies = np.ones(size, dtype=bool)
+    for places in (rows, columns):
+        tallies[places] = False
+    for places in (block_rows, block_columns):
+        tallies[(places[:, None] + np.arange(3)).ravel()] = False
+    # The diagonal is there in any case, and what stands in rows of masses makes blocks.
+    diagonal = np.arange(size, dtype=np.int64)
+    summed = np.repeat([True, False], [len(rows), size])
+    rows, columns = np.concatenate([rows, diagonal]), np.concatenate([columns, diagonal])
+    inside = (inverse[rows] >= 0) & (top[columns] >= 0)
+    block_keys = block_rows * size + block_columns
+    inside_keys = top[rows[inside]] * size + top[columns[inside]]
+    kept, starts, order = _distinct(block_keys, inside_keys)
+    table = np.column_stack([starts[:-1], inverse[kept // max(size, 1)]]).ravel()
+
+    target = np.empty(len(rows), dtype=np.int64)
+    number = np.searchsorted(kept, inside_keys)
+    own = 3 * (rows[inside] - top[rows[inside]]) + columns[inside] - top[columns[inside]]
+    target[inside] = 9 * number + own
+    keys = rows[~inside] * size + columns[~inside]
+    others = rising(keys)
+    target[~inside] = 9 * len(kept) + np.searchsorted(others, keys)
+    more = np.arange(9 * len(kept), 9 * len(kept) + len(others))
+    single, single_starts, single_order = _distinct(target[summed], more)
+    in_blocks = 9 * len(kept)
+    keys_of = np.concatenate([kept[single[single < in_blocks] // 9], others])
+    single_table = np.column_stack([single, inverse[keys_of // max(size, 1)], single_starts[:-1]]).ravel()
+    known = np.zeros(len(others), dtype=bool)
+    known[target[summed & ~inside] - 9 * len(kept)] = True
+    found = Pattern(
+        np.column_stack(np.divmod(kept, max(size, 1))),
+        np.column_stack(np.divmod(others, max(size, 1))),
+        known,
+        9 * len(kept) + len(others) + first[-1],
+        True,
+        np.flatnonzero(tallies),
+    )
+    end = [-1, -1, int(single_starts[-1])]
+    lists = (np.append(table, starts[-1]), block_parts[order], np.append(single_table, end), parts[single_order])
+    return found, lists
+
+
+def _masses_of(size: int, masses: Triples, pairs: Triples) -> tuple[Numbers, Numbers]:
+    """Of each entry of y the first one of the position or velocity of its mass, and where a velocity's inverse mass is.
+
+    -1 where it is none.
+    """
+    top, inverse = np.full(size, -1, dtype=np.int64), np.full(size, -1, dtype=np.int64)
+    for velocity_at, inverse_at, count in masses:
+        own = np.arange(count).repeat(3)
+        top[velocity_at : velocity_at + 3 * count] = velocity_at + 3 * own
+        inverse[velocity_at : velocity_at + 3 * count] = inverse_at + own
+    for position, velocity, count in pairs:
+        if (top[velocity : velocity + count : 3] == np.arange(velocity, velocity + count, 3)).all() and count % 3 == 0:
+            top[position : position + count] = position + 3 * np.arange(count // 3).repeat(3)
+    return top, inverse
+
+
+def _joined(slopes: Sequence[tuple[Slopes, int]]) -> tuple[Numbers, Numbers, Numbers]:
+    """Rows, columns and parts of slopes, whose entries start where it is said."""
+    rows, columns, parts = [_NONE], [_NONE], [_NONE]
+    for one, at in slopes:
+        size = 9 if one.blocks else 1
+        own = np.arange(len(one.rows)) if one.shared is None else np.asarray(one.shared, dtype=np.int64)
+        rows.append(np.asarray(one.rows, dtype=np.int64))
+        columns.append(np.asarray(one.columns, dtype=np.int64))
+        parts.append(np.where(own < 0, -1 - (at + size * (-1 - own)), at + size * own))
+    return np.concatenate(rows), np.concatenate(columns), np.concatenate(parts)
+
+
+def _distinct(keys: Numbers, more: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+    """All keys, rising, each once; where each one's of ``keys`` start in their order, and the end; and that order."""
+    order = np.argsort(keys, kind="stable")
+    ordered = keys[order]
+    kept = rising(np.concatenate([ordered, more]))
+    return kept, np.append(np.searchsorted(ordered, kept), len(keys)), order

@@ -1,0 +1,68 @@
+# mypy: ignore-errors
+"""An island's Jacobian, put together of the slopes of its terms."""
+
+from sceneql.compiled.kernels import lean
+from sceneql.compiled.threads_kernels import TILE, over_threads
+from sceneql.system_kernels import TERM
+
+
+@lean(TILE)
+def block_tile(number, t, y, values, floats, ints):
+    """The blocks of a tile as sums of their entries, which stand behind the values, times inverse masses.
+
+    See jacobian.py.
+    """
+    at = ints[4]
+    count, blocks, tiles, table, parts = ints[at], ints[at + 2], ints[at + 3], ints[at + 6], ints[at + 7]
+    for b in range(blocks * number // tiles, blocks * (number + 1) // tiles):
+        s0 = s1 = s2 = s3 = s4 = s5 = s6 = s7 = s8 = 0.0
+        for k in range(parts + ints[table + 2 * b], parts + ints[table + 2 * b + 2]):
+            sign = 1.0 if ints[k] >= 0 else -1.0
+            e = count + (ints[k] if ints[k] >= 0 else -1 - ints[k])
+            s0 += sign * values[e]
+            s1 += sign * values[e + 1]
+            s2 += sign * values[e + 2]
+            s3 += sign * values[e + 3]
+            s4 += sign * values[e + 4]
+            s5 += sign * values[e + 5]
+            s6 += sign * values[e + 6]
+            s7 += sign * values[e + 7]
+            s8 += sign * values[e + 8]
+        mass = ints[table + 2 * b + 1]
+        inverse = floats[mass] if mass >= 0 else 1.0
+        v = 9 * b
+        values[v], values[v + 1], values[v + 2] = inverse * s0, inverse * s1, inverse * s2
+        values[v + 3], values[v + 4], values[v + 5] = inverse * s3, inverse * s4, inverse * s5
+        values[v + 6], values[v + 7], values[v + 8] = inverse * s6, inverse * s7, inverse * s8
+
+
+@lean(TILE)
+def single_tile(number, t, y, values, floats, ints):
+    """The singles of a tile likewise; those inside blocks are added to them."""
+    at = ints[4]
+    count, singles, tiles, parts = ints[at], ints[at + 8], ints[at + 9], ints[at + 11]
+    for s in range(singles * number // tiles, singles * (number + 1) // tiles):
+        row = ints[at + 10] + 3 * s
+        total = 0.0
+        for k in range(parts + ints[row + 2], parts + ints[row + 5]):
+            if ints[k] >= 0:
+                total += values[count + ints[k]]
+            else:
+                total -= values[count - 1 - ints[k]]
+        if ints[row + 1] >= 0:
+            total *= floats[ints[row + 1]]
+        values[ints[row]] = total + (values[ints[row]] if ints[row] < 9 * ints[at + 2] else 0.0)
+
+
+@lean(TERM, inner=True)
+def gather(t, y, values, floats, ints):
+    """Sum the entries to values and multiply their rows by inverse masses: any number of threads, the same bytes."""
+    at = ints[4]
+    if ints[at + 3] == 1:
+        block_tile(0, t, y, values, floats, ints)
+    else:
+        over_threads(ints[at + 12], ints[at + 13], ints[at + 14], ints[at + 3], t, y, values, floats, ints)
+    if ints[at + 9] == 1:
+        single_tile(0, t, y, values, floats, ints)
+    else:
+        over_threads(ints[at + 12], ints[at + 13], ints[at + 15], ints[at + 9], t, y, values, floats, ints)

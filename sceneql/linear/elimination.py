@@ -1,0 +1,123 @@
+"""What is left of an island's implicit stages, (1 - a J) d = r, when positions and idle entries are eliminated."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.linear.ordering import rising
+
+if TYPE_CHECKING:
+    from numpy import bool_, int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats
+    from sceneql.island.island import System
+
+    Numbers = NDArray[int64]
+    Mask = NDArray[bool_]
+
+_THREE = np.arange(3)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Left:
+    """The unknowns that are left, in units of one entry or of a mass's three, and where values of the Jacobian go."""
+
+    unit: int
+    """Entries of a unit: 1 or 3. Values are blocks of as many rows and columns, row by row."""
+    core: Numbers
+    """(m,) entries of y."""
+    positions: Numbers
+    """(p, 3): position, velocity, place of the one in its row of the Jacobian."""
+    first: Numbers
+    """(., 3): place in the Jacobian, row and column (units) of what is left: the coefficient is -a."""
+    second: Numbers
+    """(., 4): place, row and column likewise, which position (the first of the unit): the coefficient is -a^2."""
+    tallies: Numbers
+    """Entries that depend on others by unknown slopes and that nothing depends on."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Kinds:
+    """What becomes of every entry of y."""
+
+    core: Mask
+    position: Mask
+    tally: Mask
+    one: Numbers
+    """Place in the Jacobian by which a position depends on its velocity; -1: none."""
+
+
+def kinds_of(system: System, inverse: Floats) -> Kinds:
+    """Which entries are positions whose rows say dx/dt = v, which are held or idle; ``inverse`` masses (n,)."""
+    pattern = system.pattern
+    assert pattern is not None
+    n = len(system.y)
+    (rows, columns), known, partner = pattern.others.T, pattern.known, system.partner
+    in_blocks, by_blocks = ((pattern.blocks[:, side, None] + _THREE).ravel() for side in (0, 1))
+    off = (rows != columns) & known
+    # A position whose row has nothing but its velocity.
+    alien = np.bincount(rows[off & (columns != partner[rows])], minlength=n) > 0
+    alien[in_blocks] = True
+    ones = off & (columns == partner[rows])
+    one = np.full(n, -1, dtype=np.int64)
+    one[rows[ones]] = 9 * len(pattern.blocks) + np.flatnonzero(ones)
+    position = (partner >= 0) & ~alien & (one >= 0)
+    used = np.zeros(n, dtype=bool)
+    for entries in (rows[known], columns[known], in_blocks, by_blocks, partner[partner >= 0]):
+        used[entries] = True
+    tally = ~used & (partner < 0)
+    return Kinds(~position & (inverse != 0.0) & ~tally, position, tally, one)
+
+
+def left_by_masses(system: System, kinds: Kinds) -> Left | None:
+    """In units of three; None where something else is left than whole masses that act on one another."""
+    pattern, partner = system.pattern, system.partner
+    assert pattern is not None
+    core = np.flatnonzero(kinds.core)
+    rows, columns = pattern.blocks.T
+    mine = kinds.core[rows]
+    tops = core[::3]
+    whole = len(core) % 3 == 0 and (core.reshape(-1, 3) == tops[:, None] + _THREE).all()
+    if not whole or not np.array_equal(tops, rising(rows[mine])):
+        return None
+    if (kinds.core[pattern.others[:, 0]] & pattern.known).any():
+        return None
+    for mask in (kinds.core, kinds.position):
+        if not (mask[columns] == mask[columns + 1]).all() or not (mask[columns] == mask[columns + 2]).all():
+            return None
+    bare = columns[mine & kinds.position[columns]]
+    if any((partner[bare + k] != partner[bare] + k).any() for k in (1, 2)):
+        return None
+    return _left(system, kinds, 3, rows, columns, 9 * np.arange(len(rows)))
+
+
+def left_by_entries(system: System, kinds: Kinds) -> Left:
+    """In units of one."""
+    pattern = system.pattern
+    assert pattern is not None
+    known = np.concatenate([np.ones(9 * len(pattern.blocks), dtype=bool), pattern.known])
+    return _left(system, kinds, 1, pattern.rows[known], pattern.columns[known], np.flatnonzero(known))
+
+
+def _left(system: System, kinds: Kinds, unit: int, rows: Numbers, columns: Numbers, places: Numbers) -> Left:
+    partner = system.partner
+    core, eliminated = np.flatnonzero(kinds.core), np.flatnonzero(kinds.position)
+    number, rank = (np.full(len(system.y), -1, dtype=np.int64) for _ in range(2))
+    number[core] = np.arange(len(core)) // unit
+    rank[eliminated] = np.arange(len(eliminated))
+    mine = kinds.core[rows]
+    direct = mine & kinds.core[columns]
+    through = mine & kinds.position[columns] & kinds.core[partner[columns]]
+    bare = columns[through]
+    return Left(
+        unit=unit,
+        core=core,
+        positions=np.column_stack([eliminated, partner[eliminated], kinds.one[eliminated]]),
+        first=np.column_stack([places[direct], number[rows[direct]], number[columns[direct]]]),
+        second=np.column_stack([places[through], number[rows[through]], number[partner[bare]], rank[bare]]),
+        tallies=np.flatnonzero(kinds.tally),
+    )

@@ -1,0 +1,78 @@
+# mypy: ignore-errors
+"""Sparse factorization on a planned pattern by the multifrontal method, and solutions with the factors.
+
+The integers of a plan: [unknowns, fronts, where these start: order, rows, maps, entries, pivots; floats of the
+updates; where the pieces start, how many; the numbers of threads_kernels.threads, the address of the kernel that
+factors a piece; unknowns of a unit, whose blocks make up the matrix; the addresses of the kernels that solve in a
+piece; numbers and addresses of the same of multifrontal_single_kernels (-1: not worth it), whether the factors are in
+single precision, how many next ones are not to be, whether solutions are to be refined, the bits of what the matrix was
+multiplied by; where the starts of the rows of blocks and their columns start], then a table with FIELDS a front: first
+unknown, number eliminated, rows of the front, then where its rows, its map into the parent, its factors and its entries
+(blocks: first value, its place in the front) start, its last child and the child of its parent before it (-1: none),
+where its update stands in the work, and where its entries below the diagonal start; last a row that ends them. A map is
+in runs: where each ends in the update, and its first place in the parent. A piece: its first front, the one after its
+last, and whether it was factored. A front keeps U (width x rows, the reciprocals of the pivots on its diagonal) and,
+where the matrix is not symmetric, L below it ((rows - width) x width). Symmetric: A = U^T D^-1 U. Pivots are sought in
+the same block of rows alone.
+"""
+
+from numba import types
+
+from sceneql.compiled.kernels import lean
+from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.linear.multifrontal_plan_kernels import (
+    IN_SINGLE,
+    NEW,
+    RESTING,
+    SINGLE_FACTOR,
+    SINGLE_SOLVE,
+    factor_single_at,
+    solve_single_at,
+)
+from sceneql.linear.multifrontal_solve_kernels import solve_symmetric
+from sceneql.linear.multifrontal_symmetric_kernels import factor_symmetric
+from sceneql.linear.solver_kernels import FACTOR_SYSTEM, SOLVE_SYSTEM
+from sceneql.system_kernels import A, I
+
+RESTS = 7
+"""Factorizations in double precision after one in single precision was not good enough."""
+
+FACTOR_GENERAL = types.boolean(I, A, A, A)
+SOLVE_GENERAL = types.void(I, A, A, A)
+
+factor_general = late("sceneql.linear.multifrontal_general_kernels:factor_general", FACTOR_GENERAL)
+solve_general = late("sceneql.linear.multifrontal_general_kernels:solve_general", SOLVE_GENERAL)
+
+
+@lean(FACTOR_SYSTEM)
+def factor_system(plan, values, factors, work, symmetric):
+    """Factor the matrix of ``values``, in the order of the pattern planned; False where a pivot is 0 or not finite.
+
+    ``factors`` and ``work`` of the plan's sizes; ``symmetric`` says that the values are, so that half is computed.
+    """
+    if symmetric:
+        plan[IN_SINGLE] = 0
+        if plan[SINGLE_FACTOR] >= 0 and plan[RESTING] == 0:
+            if factor_single_at(plan[SINGLE_FACTOR])(plan, values, factors, work):
+                plan[IN_SINGLE] = NEW
+                return True
+            plan[RESTING] = RESTS + 1
+        plan[RESTING] = max(0, plan[RESTING] - 1)
+        return factor_symmetric(plan, values, factors, work)
+    return factor_general(plan, values, factors, work)
+
+
+@lean(SOLVE_SYSTEM)
+def solve_system(plan, values, factors, b, work, symmetric):
+    """Solve by the factors of ``factor_system``; the solution takes the place of b."""
+    if symmetric:
+        if plan[IN_SINGLE] > 0:
+            if solve_single_at(plan[SINGLE_SOLVE])(plan, values, factors, b, work):
+                return True
+            plan[IN_SINGLE], plan[RESTING] = 0, RESTS
+            if not factor_symmetric(plan, values, factors, work):
+                return False
+        solve_symmetric(plan, factors, b, work)
+        return True
+    solve_general(plan, factors, b, work)
+    return True

@@ -1,0 +1,221 @@
+# mypy: ignore-errors
+"""Newton's method for one implicit stage: y = base + a f(t, y), by the linear systems of stage_kernels.
+
+Slopes are those at the forces that the change before foresaw (system.Slopes). Those found at the new state itself would
+not do: a stiff spring that turns stretches by the square of its move, and the force of that, gone after the next
+change, hides all that is left across it (Magisano, Leonetti & Garcea 2017).
+
+The Jacobian and its factors are kept from stage to stage and step to step as long as the iteration contracts well
+(Hairer & Wanner 1996, IV.8). Where the plain iteration fails it begins again with care: slopes are definite, and
+evaluated anew for every change. Where that slows down, the plain iteration is tried again from there.
+
+``memory`` (MEMORY,): the a that is factored (0: none), the contraction of last time; the relative and absolute
+tolerance of the norm, and the part of it that the iteration's own error may take; 1 while stages begin with care (the
+last one ended with it), and 1 if definite slopes are factored.
+"""
+
+import math
+
+from numba import types
+
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.pointers_kernels import AT_JACOBIAN, AT_RATE, jacobian_at, rate_at
+from sceneql.linear.stage_kernels import POSITIONS, POSITIONS_AT, factor_stage, solve_stage
+from sceneql.system_kernels import A, F, I
+
+FACTORED, CONTRACTION, RELATIVE, ABSOLUTE, SHARE, CAREFUL, DEFINITE, MEMORY = range(8)
+DEFINITE_AT = 2
+"""floats[2]: whether slopes are to be definite, and how far (system.Slopes)."""
+STAGE_AT = 3
+"""floats[3]: a while a stage is solved, -1 outside (0: nobody wants to know it), whose base is told (system.Slopes)."""
+
+MOST = 25
+"""Iterations of a plain stage."""
+MOST_CAREFUL = 100
+"""Those of one with definite slopes."""
+SLOWED = 0.5
+"""Contraction from which on the careful iteration is slow."""
+PLAIN_AFTER = 16
+"""Careful iterations after which the plain one is tried again if they are slow; twice as many if it failed there."""
+HELPS = 0.7
+"""Contraction that the plain iteration needs there."""
+SLOW = 0.2
+"""Contraction from which on the Jacobian is evaluated anew."""
+UNSEEN = 0.05
+"""Contraction that is believed before there are two changes to tell it by."""
+TINY = 0.01
+"""Change, in units of the tolerance, that is believed to be the last one by itself."""
+HOLDS = 0.02
+"""Part of what inertia holds in a stage that definite slopes may push away, by each spring: two dozen springs of a mass
+push no more than it holds. Without it buckled cloth converges but linearly; with more, changes grow without bound."""
+
+NEWTON = types.boolean(I, F, F, A, A, A, A, A, A, A, A, I, A, I)
+
+
+@lean_inlined
+def norm(change, y0, y1, memory):
+    """Root mean square of a change, each entry in units of its tolerance (Hairer, Norsett & Wanner 1993, II.4.11)."""
+    total = 0.0
+    for k in range(y0.size):
+        part = change[k] / (memory[ABSOLUTE] + memory[RELATIVE] * max(abs(y0[k]), abs(y1[k])))
+        total += part * part
+    return math.sqrt(total / y0.size)
+
+
+@lean_inlined
+def largest(change, y0, y1, memory):
+    """The largest entry of a change in the same units: where many masses rest, a mean would hide one that runs off."""
+    most = 0.0
+    for k in range(y0.size):
+        part = abs(change[k]) / (memory[ABSOLUTE] + memory[RELATIVE] * max(abs(y0[k]), abs(y1[k])))
+        if not part < math.inf:
+            return math.inf
+        most = max(most, part)
+    return most
+
+
+@lean_inlined
+def fail(change, y):
+    """Mark the entry of y that is worst, so that the march rejects the step and a failure names it."""
+    worst = 0
+    for k in range(y.size):
+        if not abs(change[k]) <= abs(change[worst]):
+            worst = k
+    y[worst] = math.nan
+
+
+@lean_inlined
+def follow(plan, a, base, y):
+    """Positions as their velocities have it: their rows are linear, and solved from then on."""
+    at = plan[POSITIONS_AT]
+    for k in range(at, at + 3 * plan[POSITIONS], 3):
+        y[plan[k]] = base[plan[k]] + a * y[plan[k + 1]]
+
+
+@lean_inlined
+def foresee(old, new, floats):
+    """Tell definite slopes which change the next one follows on (system.Slopes)."""
+    at = floats.size - 2 * old.size
+    for k in range(old.size):
+        floats[at + k] = old[k]
+        floats[at + old.size + k] = new[k]
+
+
+@lean_inlined
+def tell_stage(a, base, floats):
+    """Tell the terms what a stage is about."""
+    if floats[STAGE_AT] != 0.0:
+        floats[STAGE_AT] = a
+        floats[STAGE_AT + 1] += 1.0
+        at = floats.size - 3 * base.size
+        for k in range(base.size):
+            floats[at + k] = base[k]
+
+
+@lean_inlined
+def end_stage(floats):
+    """Tell the terms that the stage is over."""
+    if floats[STAGE_AT] != 0.0:
+        floats[STAGE_AT] = -1.0
+
+
+@lean_inlined
+def leave(rate, t, a, base, y, residual, plan, floats, ints):
+    """What is left of the stage's equations at y; positions, which `follow`, leave nothing but rounding."""
+    follow(plan, a, base, y)
+    rate(t, y, residual, floats, ints)
+    for k in range(y.size):
+        residual[k] = base[k] + a * residual[k] - y[k]
+    at = plan[POSITIONS_AT]
+    for k in range(at, at + 3 * plan[POSITIONS], 3):
+        residual[plan[k]] = 0.0
+
+
+@lean(NEWTON, inner=True)
+def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memory, plan, floats, ints):
+    """Solve for y, which comes as a guess; True if the iteration converged. ``scratch``: (3 n,).
+
+    ``jacobian`` (room of the pattern) and ``store`` (of the plan) keep values and factors between calls.
+    """
+    rate, slopes = rate_at(functions[AT_RATE]), jacobian_at(functions[AT_JACOBIAN])
+    n = y.size
+    change, residual, guess = scratch[:n], scratch[n : 2 * n], scratch[2 * n : 3 * n]
+    for k in range(n):
+        guess[k] = y[k]
+    foresee(y0, y0, floats)
+    tell_stage(a, base, floats)
+    careful = definite = memory[CAREFUL] > 0.0
+    stale = memory[FACTORED] == 0.0 or definite or memory[DEFINITE] > 0.0
+    before, before_mean = 0.0, 0.0
+    patience, limit = PLAIN_AFTER, 1.0
+    iteration = since = 0
+    leave(rate, t, a, base, y, residual, plan, floats, ints)
+    while iteration < MOST or (careful and iteration < MOST_CAREFUL):
+        if stale:
+            floats[DEFINITE_AT] = HOLDS / (a * a) if definite else math.inf
+            slopes(functions, t, y, jacobian, floats, ints)
+            floats[DEFINITE_AT] = 0.0
+            memory[DEFINITE] = 1.0 if definite else 0.0
+        size = math.inf
+        regular = True
+        if stale or memory[FACTORED] != a:
+            memory[FACTORED] = a
+            regular = factor_stage(plan, a, jacobian, scales, store)
+        contraction = max(UNSEEN, memory[CONTRACTION])
+        if regular:
+            for k in range(n):
+                change[k] = residual[k]
+            regular = solve_stage(plan, a, jacobian, scales, store, change)
+        if regular:
+            for k in range(n):
+                change[k] += y[k]
+            foresee(y, change, floats)
+            for k in range(n):
+                y[k], change[k] = change[k], change[k] - y[k]
+            leave(rate, t, a, base, y, residual, plan, floats, ints)
+            size = largest(change, y0, y, memory)
+        mean = norm(change, y0, y, memory) if size < math.inf else math.inf
+        if size < math.inf and since > 0:
+            contraction = size / before if before > 0.0 else 0.0
+            memory[CONTRACTION] = max(contraction, 1e-3)
+        done = size == 0.0 or (contraction < 1.0 and size * contraction <= memory[SHARE] * (1.0 - contraction))
+        # Steps of a given length have no estimate of their error beside this one: there, two changes have to tell it.
+        done = done and (since > 0 or memory[SHARE] < 1.0 or size < TINY)
+        # Where a few masses still buckle, by less than the tolerance, the largest change says nothing of the next one.
+        if careful and since > 0 and size <= memory[SHARE]:
+            done = done or mean * mean <= memory[SHARE] * (before_mean - mean)
+        if done:
+            if not definite:
+                memory[CAREFUL] = 0.0
+            end_stage(floats)
+            return True
+        iteration += 1
+        since += 1
+        if not size < math.inf or (not definite and since > 1 and contraction >= limit):
+            # The plain iteration fails: once more from the guess, with care.
+            memory[FACTORED] = 0.0
+            if definite:
+                break
+            memory[CAREFUL] = limit = 1.0
+            careful = definite = stale = True
+            for k in range(n):
+                y[k] = guess[k]
+            foresee(y0, y0, floats)
+            leave(rate, t, a, base, y, residual, plan, floats, ints)
+            since = 0
+            continue
+        # A stretched spring hides what is left across it: slopes from before a change say little of the next one.
+        stale = definite or (since > 1 and contraction > SLOW)
+        if stale and since > 1:
+            memory[CONTRACTION] = 1.0
+        if definite and since >= patience and contraction > SLOWED:
+            for k in range(n):
+                guess[k] = y[k]
+            definite, stale, since = False, True, 0
+            limit = HELPS
+            patience *= 2
+        before, before_mean = size, mean
+    memory[FACTORED] = 0.0
+    end_stage(floats)
+    fail(change, y)
+    return False

@@ -1,0 +1,21 @@
+# mypy: ignore-errors
+"""How linear solvers are called: factor the values of a matrix, then solve, both by their numbers in a plan.
+
+    factor(plan, values, factors, work, symmetric) -> False where the matrix is singular or not finite
+    solve(plan, values, factors, b, work, symmetric) -> False where it does not converge; the solution in b's place
+
+``plan``: the solver's own integers, which it may change; ``symmetric``: the values are.
+"""
+
+from numba import types
+
+from sceneql.compiled.numbered_kernels import kernel_at
+from sceneql.system_kernels import A, I
+
+FACTOR_SYSTEM = types.boolean(I, A, A, A, types.boolean)
+SOLVE_SYSTEM = types.boolean(I, A, A, A, A, types.boolean)
+
+PRECONDITION = types.void(I, A, A, A)
+"""Of an iteration, (plan, factors, b, x): x is near what solves A x = b."""
+
+factor_at, solve_at, precondition_at = map(kernel_at, (FACTOR_SYSTEM, SOLVE_SYSTEM, PRECONDITION))

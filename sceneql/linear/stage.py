@@ -1,0 +1,284 @@
+"""The linear systems of implicit stages, (1 - a J) d = r, analyzed once for an island.
+
+Positions are eliminated: their rows say dx/dt = v, so d_x = r_x + a d_v, and what is left is a system in the velocities
+(and other entries), 1 - a D - a^2 K for damping D and stiffness K: half the size, and symmetric when its rows are
+multiplied by the masses. Entries that nothing depends on and fixed masses are left out too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import accumulate
+from typing import TYPE_CHECKING, Any
+
+from sceneql.failure import LimitRefused
+from sceneql.grids.multigrid.species import one_grid
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats
+    from sceneql.island.island import System
+    from sceneql.linear.elimination import Kinds, Left
+
+SMALL = 96
+"""Up to so many unknowns a dense factorization is as quick as a sparse one."""
+MOST_GROUPS = 100_000
+MOST_OPERATIONS = 2e10
+"""Multiplications of a factorization; above, iterations are quicker."""
+SOLID = 16
+"""Neighbors of a mass from which on a net counts as a solid, whose factors fill up."""
+SOLID_GROUPS = 3000
+TILE = 40_000
+"""Values of the matrix that a thread puts together at a time; fewer are not worth threads."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StagePlan:
+    """What the kernels of stage_kernels.py need of an island."""
+
+    numbers: NDArray[int64]
+    """See stage_kernels for how they lie; changed by the kernels (pivots, symmetry)."""
+    scales: Floats
+    """(unknowns,) factor of each row."""
+    store: int
+    """Floats for the matrix, its factors and scratch."""
+    text: str
+    """How the systems are solved, for `explain`."""
+
+
+def stage_plan(system: System, exact: bool = False) -> StagePlan:
+    """Analyze an island whose Jacobian was asked for. Raises LimitRefused where it could not be had.
+
+    Not ``exact``: solutions may have errors of some percent, which Newton's method repairs.
+    """
+    import numpy as np
+
+    from sceneql.compiled.numbered_kernels import number_of
+    from sceneql.compiled.threads_kernels import threads, tile_address
+    from sceneql.linear.elimination import kinds_of
+    from sceneql.linear.solver_kernels import FACTOR_SYSTEM, SOLVE_SYSTEM
+    from sceneql.linear.stage_kernels import HEAD, assemble_tile, compare_tile
+
+    if system.pattern is None:
+        raise LimitRefused(
+            f"an implicit solver needs the Jacobian of {len(system.y)} entries: {system.unsloped} gives no slopes, "
+            "and those are too many for differences",
+            None,
+            "take `auto`, `verlet` or `dop853`, which need none, or fewer masses",
+        )
+    inverse = _inverse_masses(system)
+    left, pattern, solver = _chosen(system, kinds_of(system, inverse), exact)
+    square = left.unit**2
+    parts, diagonal = _parts(left, pattern)
+    lists = [left.core, left.positions.ravel(), parts.ravel(), diagonal, _twins(pattern), solver.numbers, left.tallies]
+    starts = list(accumulate((len(part) for part in lists), initial=HEAD))
+    counts = [len(system.y), len(left.core), square * pattern.nnz, len(left.positions), len(left.tallies)]
+    kernels = (
+        number_of(solver.kernels.factor_system, FACTOR_SYSTEM),
+        number_of(solver.kernels.solve_system, SOLVE_SYSTEM),
+    )
+    tiles = square * pattern.nnz // TILE + 1
+    shared = (tiles, *threads(), tile_address(assemble_tile), tile_address(compare_tile))
+    head = [*counts, *starts[:-1], solver.factors, 0, *kernels, left.unit, *shared]
+    assert len(head) == HEAD
+    numbers = np.concatenate([np.asarray(part, dtype=np.int64) for part in (head, *lists)])
+    store = square * pattern.nnz + solver.factors + solver.work + 2 * tiles + len(left.core)
+    return StagePlan(numbers, 1.0 / inverse[left.core], store, solver.text)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Solver:
+    kernels: Any
+    """The module with its `factor` and `solve` (solver_kernels.py)."""
+    numbers: Any
+    factors: int
+    work: int
+    text: str
+
+
+def _chosen(system: System, kinds: Kinds, exact: bool) -> tuple[Left, Any, _Solver]:
+    """What is left, its pattern and how it is solved: by masses where their factors do not fill up too much."""
+    from sceneql.linear.elimination import left_by_entries, left_by_masses
+
+    by_masses = left_by_masses(system, kinds) if kinds.core.sum() > SMALL else None
+    if by_masses is not None:
+        pattern = _pattern(by_masses)
+        solver = _factored(pattern, 3, _points(system, by_masses), exact)
+        if solver is not None:
+            return by_masses, pattern, solver
+    left = left_by_entries(system, kinds)
+    pattern = _pattern(left)
+    if one_grid(system, left.core):
+        return left, pattern, _over_grids(system, left.core, pattern)
+    solver = None if by_masses is not None else _factored(pattern, 1, _points(system, left), exact)
+    return left, pattern, solver or _iterations(pattern)
+
+
+def _parts(left: Left, pattern: Any) -> tuple[NDArray[int64], NDArray[int64]]:
+    """Of each block of the matrix what it is made of (stage_kernels.py), and which blocks are the diagonal."""
+    import numpy as np
+
+    units = pattern.shape[0]
+    row_of = np.repeat(np.arange(units, dtype=np.int64), np.diff(pattern.indptr))
+    keys = row_of * units + pattern.indices
+    direct, through = (np.searchsorted(keys, part[:, 1] * units + part[:, 2]) for part in (left.first, left.second))
+    parts = np.full((pattern.nnz, 4), -1, dtype=np.int64)
+    parts[:, 0] = row_of
+    parts[direct, 1] = left.first[:, 0]
+    parts[through, 2:] = left.second[:, [0, 3]]
+    return parts, np.searchsorted(keys, np.arange(units) * (units + 1))
+
+
+def _inverse_masses(system: System) -> Floats:
+    """(n,) what multiplies the rows of the Jacobian: the inverse mass of a velocity, 1 for all else."""
+    import numpy as np
+
+    assert system.pattern is not None
+    inverse = np.ones(len(system.y))
+    for velocity_at, inverse_at, count in _masses(system):
+        inverse[velocity_at : velocity_at + 3 * count] = np.repeat(system.floats[inverse_at : inverse_at + count], 3)
+    return inverse
+
+
+def _masses(system: System) -> list[list[int]]:
+    """(velocity_at, inverse_at, count) of each model of masses, where the slopes are known."""
+    assert system.pattern is not None
+    if not system.pattern.exact:
+        return []
+    section = system.ints[4]
+    at, count = system.ints[section + 4], system.ints[section + 5]
+    masses: list[list[int]] = system.ints[at : at + 3 * count].reshape(-1, 3).tolist()
+    return masses
+
+
+class _Full:
+    """What scipy CSR tells of a pattern, for one without gaps: scipy.sparse takes a tenth of a second to import."""
+
+    def __init__(self, units: int) -> None:
+        import numpy as np
+
+        self.shape, self.nnz = (units, units), units * units
+        self.indptr = np.arange(0, self.nnz + 1, max(units, 1))
+        self.indices = np.tile(np.arange(units), units)
+
+
+def _pattern(left: Left) -> Any:
+    """The symmetric pattern of units as scipy CSR, indices sorted; where it is small, the full one."""
+    import numpy as np
+
+    units = len(left.core) // left.unit
+    if units <= SMALL and left.unit == 1:
+        return _Full(units)
+    from scipy.sparse import csr_array
+
+    own = np.arange(units)
+    rows, columns = (np.concatenate([left.first[:, k], left.second[:, k], own]) for k in (1, 2))
+    one_way = csr_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(units, units))
+    one_way.sum_duplicates()
+    one_way.data[:] = 1
+    found = (one_way + one_way.T.tocsr()).astype(np.float64)
+    found.sort_indices()
+    return found
+
+
+def _twins(pattern: Any) -> NDArray[int64]:
+    """For each entry of a symmetric pattern, indices sorted, the place of the transposed one."""
+    import numpy as np
+
+    return np.argsort(pattern.indices, kind="stable").astype(np.int64)
+
+
+def _points(system: System, left: Left) -> Floats | None:
+    """(units, 3) where the masses whose velocities they are lie at the start; None where one is no velocity."""
+    import numpy as np
+
+    points = np.full((len(system.y), 3), np.nan)
+    position_of = np.full(len(system.y), -1, dtype=np.int64)
+    paired = np.flatnonzero(system.partner >= 0)
+    position_of[system.partner[paired]] = paired
+    for velocity_at, _, count in _masses(system):
+        positions = position_of[velocity_at : velocity_at + 3 * count]
+        if (positions >= 0).all():
+            points[velocity_at : velocity_at + 3 * count] = system.y[positions].reshape(-1, 3).repeat(3, axis=0)
+    found = points[left.core[:: left.unit]]
+    return None if np.isnan(found).any() else found
+
+
+def likely_kernels(system: System) -> tuple[str, ...]:
+    """Modules that a plan will most likely ask for, to be compiled while the island is built."""
+    if system.pattern is None or system.grids:
+        return ()
+    few = (system.partner < 0).sum() <= SMALL
+    if few:
+        return ("sceneql.linear.dense_systems_kernels",)
+    return (  # the process beside begins with the first, this one with the last
+        "sceneql.linear.multifrontal_forward_kernels",
+        "sceneql.linear.multifrontal_kernels",
+        "sceneql.linear.multifrontal_backward_kernels",
+        "sceneql.linear.multifrontal_symmetric_kernels",
+    )
+
+
+def _factored(pattern: Any, unit: int, points: Floats | None, exact: bool) -> _Solver | None:
+    """A factorization on a pattern of units; None where it would fill up too much."""
+    import numpy as np
+
+    size = pattern.shape[0]
+    m = unit * size
+    if m <= SMALL:
+        from sceneql.linear import dense_systems_kernels
+
+        numbers = np.concatenate([[m], np.zeros(m)])
+        return _Solver(dense_systems_kernels, numbers, m * m, 0, f"dense LU factorization of {m} unknowns")
+
+    from sceneql.linear import multifrontal, multifrontal_kernels
+    from sceneql.linear.ordering import Groups, grouped
+
+    groups = grouped(pattern) if unit == 1 else Groups(list(np.arange(size).reshape(-1, 1)), pattern)
+    count = groups.graph.shape[0]
+    solid = groups.graph.nnz > (SOLID + 1) * count and count > SOLID_GROUPS
+    if solid or count > MOST_GROUPS:
+        return None
+    plan = multifrontal.plan(pattern, groups, points, unit, exact)
+    if plan.operations > MOST_OPERATIONS:
+        return None
+    text = f"sparse factorization of {m} unknowns, {plan.factors:.3g} numbers in its factors"
+    return _Solver(multifrontal_kernels, plan.numbers, plan.factors, plan.work, text)
+
+
+def _iterations(pattern: Any) -> _Solver:
+    from sceneql.linear import krylov_kernels
+
+    m = pattern.shape[0]
+    numbers = _iterated(pattern, krylov_kernels)
+    text = f"iterations (conjugate gradients or BiCGStab, incomplete factors) on {m} unknowns"
+    return _Solver(krylov_kernels, numbers, pattern.nnz, 8 * m, text)
+
+
+def _over_grids(system: System, core: NDArray[int64], pattern: Any) -> _Solver:
+    """The solver of species on one grid."""
+    import numpy as np
+
+    from sceneql.grids.multigrid import species, species_kernels
+
+    own, floats, text = species.plan(system, core, pattern)
+    numbers = np.concatenate([_iterated(pattern, species_kernels), own])
+    return _Solver(species_kernels, numbers, floats, 8 * len(core), f"iterations (BiCGStab) with {text}")
+
+
+def _iterated(pattern: Any, kernels: Any) -> NDArray[int64]:
+    """The integers of krylov_kernels with a module's preconditioner."""
+    import numpy as np
+
+    from sceneql.compiled.numbered_kernels import number_of
+    from sceneql.linear.solver_kernels import PRECONDITION
+
+    m = pattern.shape[0]
+    diagonal = np.searchsorted(
+        np.repeat(np.arange(m, dtype=np.int64), np.diff(pattern.indptr)) * m + pattern.indices,
+        np.arange(m, dtype=np.int64) * (m + 1),
+    )
+    near = number_of(kernels.precondition, PRECONDITION)
+    return np.concatenate([[m], pattern.indptr, diagonal, pattern.indices, [near]]).astype(np.int64)

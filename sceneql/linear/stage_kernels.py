@@ -1,0 +1,145 @@
+# mypy: ignore-errors
+"""Factor and solve the linear systems of implicit stages, (1 - a J) d = r, as stage.py has planned them.
+
+The integers of a plan: [entries of y, unknowns, values of the matrix; numbers of eliminated positions and of tallies;
+then where these start: unknowns, positions (3 each), for each block of the matrix its parts (4: the unit of its row,
+places in the Jacobian of a first coefficient and of a second one, and the first position that one goes through; -1:
+none), diagonal, twins (the place of the transposed block), the solver's own, tallies; floats of the factors; 1 while
+the matrix is symmetric; the numbers of the solver's kernels; unknowns of a unit (1, or 3 of a mass: blocks are square,
+row by row); tiles of blocks, the numbers of threads_kernels.threads, the addresses of the tiles' kernels]. ``store``:
+values of the matrix, factors, scratch, two numbers a tile, and last a right side (unknowns,).
+"""
+
+from numba import types
+
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.threads_kernels import TILE, over_threads
+from sceneql.linear.solver_kernels import factor_at, solve_at
+from sceneql.system_kernels import A, F, I
+
+SIZE, UNKNOWNS, VALUES, POSITIONS, TALLIES = range(5)
+CORE_AT, POSITIONS_AT, PARTS_AT, DIAGONAL_AT, TWINS_AT, SOLVER_AT, TALLIES_AT = range(5, 12)
+FACTORS, SYMMETRIC, FACTOR, SOLVE, UNIT = range(12, 17)
+TILES, ENTRY, THREADS, ASSEMBLE, COMPARE, HEAD = range(17, 23)
+
+ROUNDING = 1e-13
+"""Of the largest value: a difference of two twins that is none."""
+
+FACTOR_STAGE = types.boolean(I, F, A, A, A)
+SOLVE_STAGE = types.boolean(I, F, A, A, A, A)
+
+
+@lean(TILE)
+def assemble_tile(number, a, jacobian, values, scales, plan):
+    """A tile of the matrix that is left, its rows scaled."""
+    unit = plan[UNIT]
+    square = unit * unit
+    blocks, tiles = plan[VALUES] // square, plan[TILES]
+    for block in range(blocks * number // tiles, blocks * (number + 1) // tiles):
+        at = plan[PARTS_AT] + 4 * block
+        row, direct, through = unit * plan[at], plan[at + 1], plan[at + 2]
+        ones = plan[POSITIONS_AT] + 3 * plan[at + 3] + 2
+        k = square * block
+        for i in range(unit):
+            scale = -scales[row + i]
+            for j in range(unit):
+                value = a * jacobian[direct + unit * i + j] if direct >= 0 else 0.0
+                if through >= 0:
+                    value += a * jacobian[through + unit * i + j] * (a * jacobian[plan[ones + 3 * j]])
+                values[k] = scale * value
+                k += 1
+
+
+@lean_inlined
+def assemble(plan, a, jacobian, scales, values):
+    """The matrix that is left, its rows scaled."""
+    if plan[TILES] == 1:
+        assemble_tile(0, a, jacobian, values, scales, plan)
+    else:
+        over_threads(plan[ENTRY], plan[THREADS], plan[ASSEMBLE], plan[TILES], a, jacobian, values, scales, plan)
+    unit, at = plan[UNIT], plan[DIAGONAL_AT]
+    for k in range(plan[UNKNOWNS]):
+        inside = k % unit
+        values[(plan[at + k // unit] * unit + inside) * unit + inside] += scales[k]
+
+
+@lean(TILE)
+def compare_tile(number, t, values, found, scales, plan):
+    """The largest value of a tile, and how far one is from its twin."""
+    unit = plan[UNIT]
+    square = unit * unit
+    blocks, tiles = plan[VALUES] // square, plan[TILES]
+    largest = apart = 0.0
+    for block in range(blocks * number // tiles, blocks * (number + 1) // tiles):
+        k, twin = square * block, square * plan[plan[TWINS_AT] + block]
+        if k <= twin:
+            for i in range(unit):
+                for j in range(unit):
+                    largest = max(largest, abs(values[k + unit * i + j]))
+                    apart = max(apart, abs(values[k + unit * i + j] - values[twin + unit * j + i]))
+    found[2 * number], found[2 * number + 1] = largest, apart
+
+
+@lean_inlined
+def is_symmetric(plan, values, found):
+    """Whether every value is that of its twin, but for rounding."""
+    tiles = plan[TILES]
+    if tiles == 1:
+        compare_tile(0, 0.0, values, found, values, plan)
+    else:
+        over_threads(plan[ENTRY], plan[THREADS], plan[COMPARE], tiles, 0.0, values, found, values, plan)
+    largest = apart = 0.0
+    for k in range(tiles):
+        largest, apart = max(largest, found[2 * k]), max(apart, found[2 * k + 1])
+    return apart <= ROUNDING * largest
+
+
+@lean(FACTOR_STAGE)
+def factor_stage(plan, a, jacobian, scales, store):
+    """Factor the matrix at a [s], a method's coefficient times its step; False where it is singular or not finite."""
+    count = plan[VALUES]
+    assemble(plan, a, jacobian, scales, store)
+    symmetric = is_symmetric(plan, store, store[store.size - plan[UNKNOWNS] - 2 * plan[TILES] :])
+    plan[SYMMETRIC] = 1 if symmetric else 0
+    factors = store[count:]
+    return factor_at(plan[FACTOR])(plan[plan[SOLVER_AT] :], store, factors, factors[plan[FACTORS] :], symmetric)
+
+
+@lean_inlined
+def through_positions(plan, a, jacobian, r, b):
+    """What is left in the positions' rows, as it comes into the others'."""
+    unit, positions = plan[UNIT], plan[POSITIONS_AT]
+    moved = False
+    for k in range(plan[POSITIONS]):
+        moved = moved or r[plan[positions + 3 * k]] != 0.0
+    if not moved:
+        return
+    for at in range(plan[PARTS_AT], plan[PARTS_AT] + 4 * (plan[VALUES] // (unit * unit)), 4):
+        place = plan[at + 2]
+        if place >= 0:
+            for i in range(unit):
+                total = 0.0
+                for j in range(unit):
+                    total += jacobian[place + unit * i + j] * r[plan[positions + 3 * (plan[at + 3] + j)]]
+                b[unit * plan[at] + i] += a * total
+
+
+@lean(SOLVE_STAGE)
+def solve_stage(plan, a, jacobian, scales, store, r):
+    """Solve (1 - a J) d = r by the factors; d takes the place of r, in the size of y. False: no convergence."""
+    m = plan[UNKNOWNS]
+    factors = store[plan[VALUES] :]
+    b = store[store.size - m :]
+    core, positions = plan[CORE_AT], plan[POSITIONS_AT]
+    for k in range(m):
+        b[k] = r[plan[core + k]]
+    through_positions(plan, a, jacobian, r, b)
+    for k in range(m):
+        b[k] *= scales[k]
+    own, work = plan[plan[SOLVER_AT] :], factors[plan[FACTORS] :]
+    solved = solve_at(plan[SOLVE])(own, store, factors, b, work, plan[SYMMETRIC] == 1)
+    for k in range(m):
+        r[plan[core + k]] = b[k]
+    for at in range(positions, positions + 3 * plan[POSITIONS], 3):
+        r[plan[at]] += a * jacobian[plan[at + 2]] * r[plan[at + 1]]
+    return solved

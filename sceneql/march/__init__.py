@@ -1,0 +1,1 @@
+"""The march of an island in time: its driver, its loop, events, switching, stability and modes."""

@@ -1,0 +1,161 @@
+"""A graph's island as an assembly: its models, then its forces and contacts; whole, or in blocks of its bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import cast
+
+from sceneql.graph import Island, SimulationGraph, Task
+from sceneql.island.island import IslandAssembly, System
+from sceneql.kinds import Contact, Force, Model, Object, Ref, Value
+from sceneql.quantities.diagnostic import Diagnostics, ScriptError
+from sceneql.quantities.expression import Expr, Link
+from sceneql.system import Bodies, ModelState, Stepper
+
+BLOCK = 4608
+"""Bodies of a block, or a few more: some 300 bytes each, they stay in a core's own cache from step to step."""
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """What an island's assembly may ask of the scene."""
+
+    tasks: Mapping[str, Task]
+    end: float
+    """Of the run [s]."""
+
+    def object(self, ref: Ref) -> Object:
+        """The kind of an object of the script, as written."""
+        task = self.tasks[ref.name]
+        return cast(Object, task.original or task.kind)
+
+    def formula(self, link: Link) -> Expr | None:
+        """The output of a kinematic model, or an object's field, as an expression; None for a dynamic model's."""
+        kind = self.tasks[link.task].kind
+        if isinstance(kind, Model):
+            return kind.formula(link.output) if kind.kinematic else None
+        value = getattr(kind, link.output, None)
+        return value.expr if isinstance(value, Value) else None
+
+
+@dataclass(frozen=True, slots=True)
+class Assembled:
+    """An island under construction and the bodies of its models."""
+
+    graph: SimulationGraph
+    island: Island
+    assembly: IslandAssembly
+    bodies: dict[str, Bodies | None] = field(default_factory=dict)
+    found: Diagnostics = field(default_factory=Diagnostics)
+    """What is wrong with its parts."""
+
+    @contextmanager
+    def word(self, name: str, model: str | None = None) -> Iterator[None]:
+        """What is added inside comes from the part ``name``; what is wrong with it does not hide what else is."""
+        with self.assembly.word(name, self.graph.tasks[name].span, model):
+            try:
+                yield
+            except ScriptError as error:
+                self.found.extend(error.diagnostics)
+
+    def act(self) -> None:
+        """Add the forces and contacts."""
+        tasks = self.graph.tasks
+        for force in dict.fromkeys(force for force, _ in self.island.forces):
+            self._add_force(force)
+        contacts = dict.fromkeys(contact for contact, _, _ in self.island.contacts)
+        # Masses among themselves last: objects need the whole path of a step as the solver made it.
+        for contact in sorted(contacts, key=lambda name: cast(Contact, tasks[name].kind).mutual):
+            self._add_contact(contact)
+
+    def _add_force(self, force: str) -> None:
+        """Add a force on the masses of all its models."""
+        task = self.graph.tasks[force]
+        kind = cast(Force, task.kind)
+        everyone = [self.bodies.get(model) for name, model in self.island.forces if name == force]
+        masses = [bodies for bodies in everyone if bodies is not None]
+        if kind.mutual and masses:
+            with self.word(force):
+                kind.assemble_together(force, self.assembly, masses)
+        for bodies in masses if not kind.mutual else ():
+            with self.word(force, bodies.model):
+                kind.assemble(force, self.assembly, bodies)
+
+    def _add_contact(self, contact: str) -> None:
+        """Add a contact of the masses of all its models with its objects."""
+        task = self.graph.tasks[contact]
+        kind = cast(Contact, task.kind)
+        rows = [(self.bodies.get(model), others) for name, model, others in self.island.contacts if name == contact]
+        masses = [(bodies, tuple(Ref(other) for other in others)) for bodies, others in rows if bodies is not None]
+        with self.word(contact):
+            if kind.mutual and masses:
+                kind.assemble_together(contact, self.assembly, [bodies for bodies, _ in masses], masses[0][1])
+            for bodies, refs in masses if not kind.mutual else ():
+                kind.assemble(contact, self.assembly, bodies, refs)
+
+
+def models_of(graph: SimulationGraph, island: Island) -> Assembled:
+    """The island's models, on which nothing acts yet."""
+    made = Assembled(graph, island, IslandAssembly(Setting(graph.tasks, graph.settings.clock.end)))
+    for name in island.models:
+        with made.word(name):
+            made.bodies[name] = cast(Model, graph.tasks[name].kind).assemble(name, made.assembly)
+    return made
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """Some bodies of an island as an island of their own."""
+
+    system: System
+    places: tuple[tuple[int, int, int], ...]
+    """(first in the island's state, first in the block's, how many): where its entries stand, those of sums apart."""
+    sums: tuple[tuple[int, int], ...]
+    """(in the island's state, in the block's): entries that are sums over the bodies."""
+    assembly: IslandAssembly
+    changes: tuple[tuple[int, int, int], ...]
+    """As ``places``, of the floats that change where bodies come and go."""
+
+
+def blocks_of(whole: Assembled, system: System, stepper: Stepper) -> list[Block]:
+    """The island in blocks that fit into a cache; none where bodies feel one another, or steps are chosen for all."""
+    count = sum(0 if bodies is None else bodies.count for bodies in whole.bodies.values()) // BLOCK
+    fixed = not stepper.adaptive and not stepper.jacobian and stepper.prepare is None
+    if count < 2 or not fixed or not whole.assembly.apart:
+        return []
+    made = [_block(whole, system, k, count) for k in range(count)]
+    return [block for block in made if block is not None] if None not in made else []
+
+
+def _block(whole: Assembled, system: System, number: int, count: int) -> Block | None:
+    """Block ``number`` of ``count``: an equal part of every model; None where one cannot be divided."""
+    graph, island = whole.graph, whole.island
+    made = Assembled(graph, island, IslandAssembly(whole.assembly.setting, whole.assembly.body_count()))
+    places, sums, changes = [], [], []
+    for name, bodies in whole.bodies.items():
+        if bodies is None:
+            return None
+        first, last = (bodies.count * k // count for k in (number, number + 1))
+        start = ModelState(0.0, system.y, system.y, system.floats, bodies, whole.assembly.remembered(name))
+        with made.word(name):
+            part = cast(Model, graph.tasks[name].kind).assemble_part(name, made.assembly, bodies, start, first, last)
+        if part is None:
+            return None
+        made.bodies[name] = part
+        for there, here in ((bodies.position_at, part.position_at), (bodies.velocity_at, part.velocity_at)):
+            places.append((there + 3 * first, here, 3 * (last - first)))
+        sums.append((bodies.work_at, part.work_at))
+        for there, here in zip(_numbers_of(bodies), _numbers_of(part), strict=True):
+            changes.append((there + first, here, last - first))
+    made.act()
+    made.found.raise_errors()
+    for (there, n), (here, _) in zip(whole.assembly.changes, made.assembly.changes, strict=True):
+        changes.append((there, here, n))
+    changing = tuple(changes) if whole.assembly.changes else ()
+    return Block(made.assembly.finish(), tuple(places), tuple(sums), made.assembly, changing)
+
+
+def _numbers_of(bodies: Bodies) -> tuple[int, int, int]:
+    return bodies.mass_at, bodies.inverse_at, bodies.radius_at

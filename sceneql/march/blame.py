@@ -1,0 +1,31 @@
+"""Which of an island's terms makes its rate not finite."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.island.blocks_laid import GROUPS_AT
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.island.island import Origin, System
+    from sceneql.march.driver import Driver
+
+
+def culprit(system: System, driver: Driver, floats: Floats, t: float, y: Floats) -> Origin | None:
+    """The first term with which the rate at a time [s] and a finite state is not; None where it is finite.
+
+    The terms are called one more at a time, in their order: the driver is shown shorter and shorter groups of them.
+    """
+    ints, floats, rate = system.ints.copy(), floats.copy(), np.empty_like(y)
+    firsts = ints[GROUPS_AT : GROUPS_AT + len(system.structure.terms) + 1].copy()
+    if not np.isfinite(y).all():
+        return None
+    for count, term in enumerate(system.terms, 1):
+        ints[GROUPS_AT : GROUPS_AT + len(firsts)] = np.minimum(firsts, firsts[0] + count)
+        driver.rate(t, y, rate, floats, ints)
+        if not np.isfinite(rate).all():
+            return term
+    return None

@@ -1,0 +1,165 @@
+"""The generated driver of an island: kernels that call the island's own kernels on their integers.
+
+Its text depends on the `Structure` alone, so that it is written and compiled once for all scenes of that structure.
+
+Layout of ``ints``: [triples_at, triple_count, table_at, ranges_at, slopes_at, first of each group (absolute indices
+into the table), ...]; at triples_at (position, velocity, count) of the pairs; at table_at the start of every block and
+the end of the last; at ranges_at the first pair of every exact contact and the end. Block 0 is the program of the
+values that vary in time; a group is a run of blocks with the same kernel. At slopes_at the section of the Jacobian,
+which has a module of its own (jacobian.py), so that explicit solvers compile nothing of it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from functools import cache
+from importlib import import_module
+from itertools import chain
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from sceneql.compiled.generated import load, write
+from sceneql.island.blocks_laid import GROUPS_AT
+from sceneql.island.island import Structure, System
+from sceneql.island.jacobian import HEAD
+
+REFRESH = "    refresh(t, y, floats, ints[ints[ints[2]] : ints[ints[2] + 1]])"
+
+
+class Driver(NamedTuple):
+    """The kernels of an island (system.py has their signatures)."""
+
+    rate: Any
+    gap: Any
+    impact: Any
+    settle: Any
+
+
+def function(name: str) -> Any:
+    """The function of ``"package.module:function"``."""
+    module, _, attribute = name.partition(":")
+    return getattr(load(module), attribute)
+
+
+@cache
+def driver(structure: Structure) -> Driver:
+    """The driver of a structure, from the cache where it has been compiled before."""
+    module = import_module("sceneql.march.march_kernels")
+    source = load(write("driver", text(structure)))
+    if structure.exact:
+        gap, impact = source.gap, source.impact
+    else:
+        gap, impact = module.no_gap, module.no_impact
+    return Driver(source.rate, gap, impact, source.settle if structure.local else module.no_settle)
+
+
+def jacobian(system: System) -> Any:
+    """The Jacobian of an island that was asked for it; None where it is too large to be found by differences."""
+    if system.pattern is None:
+        return None
+    if system.pattern.exact:
+        return _exact_jacobian(system.structure)
+    return load("sceneql.march.differences_kernels").differences
+
+
+@cache
+def _exact_jacobian(structure: Structure) -> Any:
+    return load(write("jacobian", jacobian_text(structure))).jacobian
+
+
+def jacobian_text(structure: Structure) -> str:
+    """The text of the Jacobian's module."""
+    names = {name: f"kernel_{k}" for k, name in enumerate(structure.slopes or ())}
+    lines = [
+        *_imports(names),
+        "from sceneql.compiled.kernels import lean",
+        *(["from sceneql.island.inputs_kernels import refresh"] if structure.varying else []),
+        "from sceneql.island.jacobian_kernels import gather",
+        "from sceneql.system_kernels import JACOBIAN",
+        *("", "", "@lean(JACOBIAN)", "def jacobian(functions, t, y, values, floats, ints):"),
+        *([REFRESH] if structure.varying else []),
+        "    s = ints[4]",
+        "    for k in range(ints[s], ints[s] + ints[s + 1]):",
+        "        values[k] = 0.0",
+    ]
+    for group, short in enumerate(names.values(), HEAD):
+        lines += [
+            f"    for b in range(ints[s + {group}], ints[s + {group + 1}], 4):",
+            f"        {short}(t, y, values[ints[b + 2] : ints[b + 3]], floats, ints[ints[b] : ints[b + 1]])",
+        ]
+    return "\n".join([*lines, "    gather(t, y, values, floats, ints)"]) + "\n"
+
+
+def modules(structure: Structure) -> tuple[str, ...]:
+    """What the kernels of an island are imported from; contacts, as a rule the largest, first."""
+    names = (*structure.local, *chain(*structure.exact), *(structure.slopes or ()), *structure.terms)
+    return tuple(dict.fromkeys(name.partition(":")[0] for name in names))
+
+
+def late_first(structure: Structure) -> list[str]:
+    """Modules that contacts will soon ask for, in their order, when this process will be busy with the others."""
+    local = dict.fromkeys(name.partition(":")[0] for name in structure.local)
+    return [first for module in local for first in getattr(load(module), "LATE_FIRST", ())]
+
+
+def text(structure: Structure) -> str:
+    """The module's text."""
+    names: dict[str, str] = {}
+    for name in (*structure.terms, *(name for pair in structure.exact for name in pair), *structure.local):
+        names.setdefault(name, f"kernel_{len(names)}")
+    lines = [
+        *_imports(names),
+        "from sceneql.compiled.kernels import lean",
+        *(["from sceneql.island.inputs_kernels import refresh"] if structure.varying else []),
+        "from sceneql.system_kernels import GAP, IMPACT, SETTLE, TERM",
+    ]
+    refresh = [REFRESH] if structure.varying else []
+    group = GROUPS_AT
+    lines += ["", "", "@lean(TERM)", "def rate(t, y, rate, floats, ints):", "    floats[0] += 1.0", *refresh]
+    lines += ["    for k in range(rate.size):", "        rate[k] = 0.0"]
+    for name in structure.terms:
+        lines += _blocks(group, f"{names[name]}(t, y, rate, floats, ints[ints[b] : ints[b + 1]])")
+        group += 1
+    if structure.exact:
+        lines += _contacts(structure, names, group, refresh)
+    group += len(structure.exact)
+    if structure.local:
+        lines += ["", "", "@lean(SETTLE)", "def settle(t0, t1, y0, rate0, y1, floats, ints):"]
+        lines += [line.replace("(t, y,", "(t1, y1,") for line in refresh]
+        for name in structure.local:
+            lines += _blocks(group, f"{names[name]}(t0, t1, y0, rate0, y1, floats, ints[ints[b] : ints[b + 1]])")
+            group += 1
+    return "\n".join(lines) + "\n"
+
+
+def _imports(names: dict[str, str]) -> list[str]:
+    """The kernels' hashes (as comments: a changed kernel makes another module) and imports."""
+    modules = dict.fromkeys(name.partition(":")[0] for name in names)
+    lines = [f"# {module} {_digest(module)}" for module in modules]
+    for name, short in names.items():
+        module, _, attribute = name.partition(":")
+        lines.append(f"from {module} import {attribute} as {short}")
+    return lines
+
+
+def _blocks(group: int, *calls: str) -> list[str]:
+    return [f"    for b in range(ints[{group}], ints[{group + 1}]):", *(f"        {call}" for call in calls)]
+
+
+def _contacts(structure: Structure, names: dict[str, str], first: int, refresh: list[str]) -> list[str]:
+    pair_range = (f"p = ints[ints[3] + b - ints[{first}]]", f"q = ints[ints[3] + b - ints[{first}] + 1]")
+    lines = ["", "", "@lean(GAP)", "def gap(t, y, gaps, floats, ints):", *refresh]
+    for group, (gap, _) in enumerate(structure.exact, first):
+        call = f"{names[gap]}(t, y, gaps[p:q], floats, ints[ints[b] : ints[b + 1]])"
+        lines += _blocks(group, *pair_range, call)
+    lines += ["", "", "@lean(IMPACT)", "def impact(t, y, pair, floats, ints):", *refresh]
+    for group, (_, impact) in enumerate(structure.exact, first):
+        call = f"{names[impact]}(t, y, pair if pair < 0 else pair - p, floats, ints[ints[b] : ints[b + 1]])"
+        lines += _blocks(group, *pair_range, "if pair < 0 or p <= pair < q:", f"    {call}")
+    return lines
+
+
+def _digest(module: str) -> str:
+    """Hash of a module's text: numba would not notice that a function of another file has changed."""
+    path = load(module).__file__
+    return "" if path is None else hashlib.sha256(Path(path).read_bytes()).hexdigest()[:16]

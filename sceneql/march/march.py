@@ -1,0 +1,383 @@
+"""The march of one island: compiled steps up to the instant asked for, which is read off the last step."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.compiled.kernels import compiled
+from sceneql.compiled.pointers_kernels import addresses
+from sceneql.failure import LimitRefused, RunFailure
+from sceneql.island.breakpoint_table import before, next_stop
+from sceneql.island.island import STAGE, IslandAssembly, System
+from sceneql.island.jacobian import BY_DIFFERENCES
+from sceneql.march import march_kernels as kernels
+from sceneql.march.driver import driver, function, jacobian
+from sceneql.march.switching import Switch
+from sceneql.system import Prepared
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from sceneql.frame import Floats
+    from sceneql.system import Stepper
+
+GROWTH_LIMIT = 1e12
+"""A run fails when an entry of y exceeds this times the largest of the start (at least 1, or what its rate adds)."""
+
+TOUCHING = 1e-13
+"""Gap that counts as touching, relative to the largest position at the start or 1 m."""
+
+ENTRIES_A_CALL = 20_000_000
+"""Entries of y to step over in one compiled call, so that a long run can be interrupted."""
+
+LARGEST = 1e100
+"""Of a number at the start, in SI: the square of its growth can still be told."""
+MESSAGES = {
+    kernels.NOT_FINITE: "a value is no longer finite: the step is unstable, or the equations have no value there",
+    kernels.GROWTH: f"the state has grown beyond {GROWTH_LIMIT:.0e} times its start: {{}}",
+    kernels.STEP_TOO_SMALL: "the step that the tolerance asks for is below the resolution of time: a singularity",
+    kernels.STUCK: "contacts push against each other at one instant without end",
+}
+
+
+@dataclass(slots=True)
+class Statistics:
+    """What a march has cost so far."""
+
+    steps: int = 0
+    rejected: int = 0
+    """Steps tried again with a smaller length."""
+    events: int = 0
+    """Impacts of exact contacts."""
+    evaluations: int = 0
+    """Evaluations of the rate."""
+    seconds: float = 0.0
+    """Run time of the compiled steps [s]."""
+
+
+class March:
+    """An island on its way from 0 to ``end`` [s] by one solver."""
+
+    def __init__(
+        self, system: System, stepper: Stepper, end: float, with_jacobian: Callable[[], System] | None = None
+    ) -> None:
+        """``with_jacobian``: what lays the island out again for a stiff method that may take over."""
+        self.system, self.stepper, self.end = system, stepper, end
+        self._with_jacobian = with_jacobian
+        self.statistics = Statistics()
+        self.floats = system.floats.copy()
+        self.driver = driver(system.structure)
+        n = len(system.y)
+        self._y0, self._rate0, self._rate1, self._sample = (np.zeros(n) for _ in range(4))
+        self._y1 = system.y.copy()
+        self._gaps = np.zeros(3 * system.pairs)
+        self._leaving = np.zeros(system.pairs, dtype=np.int64)
+        self._clock = np.zeros(kernels.CLOCKS)
+        self._counts = np.zeros(kernels.COUNTS, dtype=np.int64)
+        self._counts[kernels.LOCAL] = bool(system.structure.local)
+        self._counts[kernels.PENDING] = -1
+        self._clock[kernels.ERROR] = 1e-4
+        self._clock[kernels.LARGEST] = min(stepper.largest_step, system.largest_step)
+        self._started = False
+        self._floats_time = math.nan
+        self._switch = None
+        takes_turns = not system.structure.local or len(system.y) > BY_DIFFERENCES
+        if stepper.stiff is not None and stepper.adaptive and takes_turns:
+            self._switch = Switch(stepper, stepper.stiff, int((system.partner < 0).sum()))
+        self._last_look = 0
+        self._look_for_stop(0.0)
+        self._engage(stepper)
+
+    def _engage(self, stepper: Stepper) -> None:
+        """Go on with a method."""
+        if stepper.jacobian and self._with_jacobian is not None:
+            self.system = self._with_jacobian()
+            self.floats = np.concatenate([self.floats, self.system.floats[len(self.floats) :]])
+            self._with_jacobian = None
+        system = self.system
+        self._step = function(stepper.step)
+        self._jacobian = jacobian(system) if stepper.jacobian else None
+        local = bool(system.structure.local)
+        between = stepper.jacobian and not stepper.newton
+        if local:
+            self.floats[STAGE] = system.floats[STAGE] if stepper.jacobian else 0.0
+        self._mixed = local and between
+        # What contacts change after a step, its own dense output does not know.
+        dense = None if local and not between else stepper.dense
+        self._dense = kernels.hermite if dense is None else function(dense)
+        self._extend = None if stepper.extend is None or local else function(stepper.extend)
+        self._extended = math.nan
+        # Islands without exact contacts have no events: the kernels that find them are not even loaded.
+        event = function("sceneql.march.events_kernels:find_event") if system.pairs else None
+        self._functions = addresses(self._step, self._dense, *self.driver, self._jacobian, event)
+        if stepper.prepare is None:
+            prepared = Prepared(stepper.settings, stepper.numbers, max(1, stepper.work) * len(system.y))
+        else:
+            prepared = function(stepper.prepare)(system, stepper)
+        self._settings = np.array(prepared.settings, dtype=np.float64)
+        self._numbers = np.array(prepared.numbers, dtype=np.int64)
+        self._work = np.zeros(prepared.work)
+        self.prepared_text = prepared.text
+        self._counts[kernels.ADAPTIVE] = stepper.adaptive
+        self._counts[kernels.ORDER] = stepper.order
+        self._counts[kernels.LAST_STAGE] = -1 if local and between else stepper.last_stage
+        self._counts[kernels.CONTROLS] = stepper.controls
+        self._counts[kernels.HALVES] = stepper.halves
+
+    def _look_for_stop(self, time: float) -> None:
+        """Find what turns next after an instant: a step of chosen length ends before it, by as little as can be."""
+        self._stop = next_stop(self.system.stops, time, self.end) if self.stepper.adaptive else self.end
+        self._step_end = before(self._stop) if self._stop < self.end else self.end
+
+    def _pass_stop(self) -> None:
+        """Go on behind what turns: the next step begins with what is there then."""
+        self._clock[kernels.T1] = self._stop
+        self._rate1[:] = self.rate(self._stop, self._y1)
+        self._floats_time = math.nan
+        self._look_for_stop(self._stop)
+
+    def _change(self, switch: Switch, t: float) -> None:
+        """Go on with the method that a switch has chosen, if it takes this island."""
+        try:
+            self._engage(switch.active)
+        except LimitRefused as refusal:
+            switch.refuse(t, refusal.diagnostic.message)
+            self._engage(switch.active)
+
+    def choices(self) -> list[tuple[float, str]]:
+        """When [s] which method was taken, and why, where the solver chooses by itself; before the run, the first."""
+        if self._switch is None:
+            return []
+        if not self._started:
+            self._start()
+        return self._switch.history
+
+    @property
+    def scratch(self) -> Floats:
+        """What the steps work in; a solver may keep a record of its doings there."""
+        return self._work
+
+    def rate(self, t: float, y: Floats) -> Floats:
+        """dy/dt (n,) at a time [s] and state, not counted as cost; the floats then hold the values at that time."""
+        rate = np.empty_like(y)
+        counted = self.floats[0]
+        self.driver.rate(t, y, rate, self.floats, self.system.ints)
+        self.floats[0] = counted
+        self._floats_time = t
+        return rate
+
+    def floats_at(self, t: float, y: Floats) -> Floats:
+        """The island's floats with the values that vary at a time [s]."""
+        if self._floats_time != t:
+            self.rate(t, y)
+        return self.floats
+
+    def advance(self, t: float) -> tuple[Floats, Floats]:
+        """State and rate at an instant [s], not before the one asked for last; beyond the end, those at the end.
+
+        Raises RunFailure, with the part and line of the entry of the state that failed.
+        """
+        t = min(t, self.end)
+        y, at_the_end = self._reach(t)
+        y = y.copy() if at_the_end else y
+        return y, self.rate(t, y)
+
+    def view(self, t: float) -> tuple[Floats, Floats]:
+        """As `advance`, valid until the next call; at the end of a step the rate is that which the step found."""
+        t = min(t, self.end)
+        y, at_the_end = self._reach(t)
+        return y, self._rate1 if at_the_end else self.rate(t, y)
+
+    def memory(self, name: str, assembly: IslandAssembly, t: float, y: Floats) -> tuple[Floats, tuple[int, ...]]:
+        """What a contact remembers at the instant reached: floats and the integers that say where in them."""
+        return self.floats_at(t, y), assembly.remembered(name)
+
+    def _reach(self, t: float) -> tuple[Floats, bool]:
+        """March on to an instant: the state there, and whether it is the end of a step, in the march's own array."""
+        if not self._started:
+            self._start()
+        if t > self._clock[kernels.T1]:
+            self._march(t)
+        t0, t1 = float(self._clock[kernels.T0]), float(self._clock[kernels.T1])
+        if not t < t1:
+            return self._y1, True
+        h = t1 - t0
+        if self._extend is not None and self._extended != t1:
+            self._extend_step(t0, h)
+            self._extended = t1
+        y = np.empty_like(self._y1)
+        steps = (self._y0, self._rate0, self._y1, self._rate1, self._work, self._settings, self._numbers)
+        self._dense((t - t0) / h, h, *steps, y)
+        if self._mixed:
+            changed = self._sample != self._y1
+            if changed.any():
+                line = np.empty_like(y)
+                kernels.straightened((t - t0) / h, h, *steps, line)
+                y[changed] = line[changed]
+        return y, False
+
+    def _extend_step(self, t0: float, h: float) -> None:
+        """Let the last step get what its dense output needs; not counted as cost, as frames must not change it."""
+        assert self._extend is not None
+        counted = self.floats[0]
+        step = (self._y0, self._rate0, self._y1, self._work, self._settings, self._numbers)
+        self._extend(self._functions, t0, h, *step, self.floats, self.system.ints)
+        self.floats[0] = counted
+        self._floats_time = math.nan
+
+    def _start(self) -> None:
+        self._started = True
+        y = self._y1
+        if self.system.pairs:
+            self.driver.impact(0.0, y, -1, self.floats, self.system.ints)
+        self._rate1[:] = self.rate(0.0, y)
+        bad = np.flatnonzero(~(np.maximum(np.abs(y), np.abs(self._rate1)) <= LARGEST))
+        if len(bad):
+            k = int(bad[0])
+            finite = math.isfinite(y[k]) and math.isfinite(self._rate1[k])
+            what = f"has a value beyond {LARGEST:.0e}" if finite else "has no finite value"
+            self._fail(
+                k, f"the {'state' if abs(y[k]) > LARGEST else 'rate'} {what} at the start", None if finite else 0.0
+            )
+        moved = np.abs(self._rate1).max(initial=0.0) * self.end
+        self._clock[kernels.LIMIT] = GROWTH_LIMIT * max(1.0, np.abs(y).max(initial=0.0), moved)
+        positions = np.abs(y[self.system.partner >= 0]).max(initial=1.0)
+        self._clock[kernels.SLOP] = TOUCHING * positions
+        step = self.stepper.first_step or self._first_step()
+        if self._switch is not None:
+            self._switch.start(self, y, step)
+            self._change(self._switch, 0.0)
+        self._clock[kernels.STEP] = step
+
+    def _first_step(self) -> float:
+        """The first step of an adaptive method (Hairer, Norsett & Wanner 1993, II.4, "starting step size")."""
+        y, rate, stepper = self._y1, self._rate1, self.stepper
+        scale = np.asarray(stepper.absolute) + stepper.tolerance * np.abs(y)
+
+        def norm(x: Floats) -> float:
+            return math.sqrt(float(np.mean((x / scale) ** 2))) if len(x) else 0.0
+
+        size, speed = norm(y), norm(rate)
+        h = 1e-6 if size < 1e-5 or speed < 1e-5 else 0.01 * size / speed
+        h = min(h, stepper.largest_step, self.end)
+        bend = norm(self.rate(h, y + h * rate) - rate) / h
+        most = max(speed, bend)
+        guess = max(1e-6, 1e-3 * h) if not most > 1e-15 else (0.01 / most) ** (1.0 / stepper.order)
+        return min(100.0 * h, guess, stepper.largest_step)
+
+    def _march(self, target: float) -> None:
+        started = time.perf_counter() - compiled.seconds
+        counts, clock = self._counts, self._clock
+        if counts[kernels.HELD] and not math.isnan(self._floats_time):
+            # What terms leave for contacts to read is that of the step's end again, wherever frames have looked.
+            self.rate(float(clock[kernels.T1]), self._y1)
+        self._floats_time = math.nan
+        while True:
+            left = max(100, ENTRIES_A_CALL // (len(self._y1) + 10))
+            if self._switch is not None:
+                left = min(left, self._last_look + self._switch.until_look - int(counts[kernels.STEPS]))
+            counts[kernels.LEFT] = left
+            status = kernels.march(
+                self._functions,
+                min(target, self._step_end),
+                self._step_end,
+                self._y0,
+                self._rate0,
+                self._y1,
+                self._rate1,
+                self._sample,
+                self._work,
+                self._settings,
+                self._numbers,
+                self.floats,
+                self.system.ints,
+                self._gaps,
+                self._leaving,
+                clock,
+                counts,
+            )
+            if counts[kernels.SWAPPED]:
+                self._y0, self._rate0, self._y1, self._rate1 = self._y1, self._rate1, self._y0, self._rate0
+                counts[kernels.SWAPPED] = 0
+            if status == kernels.PAUSED:
+                self._look()
+            elif status == kernels.REACHED and target > self._step_end:
+                self._pass_stop()
+            elif not self._goes_on(status):
+                break
+        done = self.statistics
+        done.steps, done.rejected, done.events = (
+            int(counts[k]) for k in (kernels.STEPS, kernels.REJECTED, kernels.EVENTS)
+        )
+        done.evaluations = int(self.floats[0])
+        done.seconds += time.perf_counter() - compiled.seconds - started
+        if status != kernels.REACHED:
+            self.fail(status)
+
+    @property
+    def time(self) -> float:
+        """End of the last step [s]."""
+        return float(self._clock[kernels.T1])
+
+    def fail(self, status: int) -> None:
+        """Raise the RunFailure of the compiled march's status."""
+        at = int(self._counts[kernels.INDEX])
+        why = "the equations run away" if self.stepper.adaptive else "the step is unstable"
+        unsolved = self.stepper.unsolved if status == kernels.NOT_FINITE else ""
+        ahead = float(self._clock[kernels.STEP]) if status == kernels.NOT_FINITE and not unsolved else None
+        self._fail(-1 if status == kernels.STUCK else at, unsolved or MESSAGES[status].format(why), ahead)
+
+    def _look(self) -> None:
+        """Let the other method take over where it is time to see which is the better one."""
+        switch, clock = self._switch, self._clock
+        steps = int(self._counts[kernels.STEPS]) - self._last_look
+        if switch is None or steps < switch.until_look:
+            return
+        self._last_look += steps
+        t, step = float(clock[kernels.T1]), float(clock[kernels.STEP])
+        if switch.look(self, t, self._y1, step, steps):
+            self._change(switch, t)
+            clock[kernels.STEP] = switch.stable(self, t, self._y1, step)
+            clock[kernels.ERROR] = 1e-4
+        if self._counts[kernels.HELD]:
+            self.rate(t, self._y1)  # what contacts are to read is that of the state again
+
+    def _goes_on(self, status: int) -> bool:
+        """Whether another method goes on where one finds no step."""
+        if status == kernels.NOT_FINITE and self.stepper.otherwise is not None:
+            self.stepper = self.stepper.otherwise
+            self._engage(self.stepper)
+            return True
+        return status == kernels.STEP_TOO_SMALL and self._give_up()
+
+    def _give_up(self) -> bool:
+        """Whether the explicit method goes on where the stiff one finds no step short enough."""
+        switch, clock = self._switch, self._clock
+        t = float(clock[kernels.T1])
+        if switch is None or not switch.give_up(t):
+            return False
+        self._last_look = int(self._counts[kernels.STEPS])
+        self._change(switch, t)
+        clock[kernels.STEP] = switch.stable(self, t, self._y1, float(clock[kernels.STEP]))
+        clock[kernels.ERROR] = 1e-4
+        return True
+
+    def _fail(self, entry: int, message: str, ahead: float | None = None) -> None:
+        """``ahead`` [s]: a term may have no finite value so much later, which then is named."""
+        origin, t = self.system.origin(entry), float(self._clock[kernels.T1])
+        span = origin.span
+        if ahead is not None:
+            from sceneql.march.blame import culprit
+
+            for h in dict.fromkeys((0.0, 0.5 * ahead, ahead)):
+                y = self._y1 + h * self._rate1 if h else self._y1
+                term = culprit(self.system, self.driver, self.floats, t + h, y)
+                if term is not None and term.part != origin.part:
+                    message, span = f"{message.partition(':')[0]}: '{term.part}' gives none", term.span or span
+                    break
+        raise RunFailure(message, part=origin.part, time=t, span=span)

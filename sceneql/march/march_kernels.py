@@ -1,0 +1,299 @@
+# mypy: ignore-errors
+"""The one loop that marches an island in time: fixed grid or error control, exact events, local contacts, the watch.
+
+All state of a march lies in arrays of the caller, so that it can stop anywhere and go on: the last accepted step
+(y0, rate0 at clock[T0]; y1, rate1 at clock[T1]; where counts[SWAPPED] is 1 they have changed places; ``work`` as its
+solver left it, for dense output), ``clock`` and ``counts`` with the entries named below. An impact is applied when the
+step after it begins, so that frames up to the impact read the state before it.
+"""
+
+import math
+
+from numba import types
+
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.pointers_kernels import (
+    AT_EVENT,
+    AT_IMPACT,
+    AT_RATE,
+    AT_SETTLE,
+    AT_STEP,
+    event_at,
+    impact_at,
+    rate_at,
+    settle_at,
+    step_at,
+)
+from sceneql.system_kernels import DENSE, GAP, IMPACT, SETTLE, A, F, I
+
+T0, T1, STEP, ERROR, LARGEST, LIMIT, SLOP, CLOCKS = range(8)
+"""Ends of the last step [s]; the step to try next, or the grid's; the last error; largest step [s]; largest |y|; gap
+that counts as touching [m]."""
+
+STEPS, REJECTED, EVENTS, REPEATS, LEFT, INDEX, GRID, PENDING = range(8)
+"""Tallies; impacts since time moved; steps left in this call; the entry that a failure names; grid points passed; the
+pair whose impact is due (-1: none)."""
+
+ADAPTIVE, ORDER, LOCAL, LAST_STAGE, CONTROLS, HALVES, HELD, SWAPPED, COUNTS = range(8, 17)
+"""What solver and island are (system.Stepper); whether a local contact holds something (CHANGED_AT); whether the arrays
+of a step's start and end have changed places, for the end of a step is the next one's start."""
+
+SHORTEST = 1e-3
+"""Part of a step of given length below which it is not halved any more."""
+
+REACHED, PAUSED, NOT_FINITE, GROWTH, STEP_TOO_SMALL, STUCK = range(6)
+
+MOST_REPEATS = 100
+"""Impacts for each pair at one instant before the contacts count as contradictory."""
+
+CHANGED_AT = 1
+"""floats[1]: a contact sets it to 1 when its hold changed the state. Before a settle that is to change nothing it is
+the end of the step, which contacts lower to where it should end instead; 0 before the one that counts, in which one
+that holds something sets it to HOLDS: its next settle reads what the terms leave in floats at the step's end."""
+
+HOLDS = -1.0
+
+MARCH = types.int64(I, F, F, A, A, A, A, A, A, A, I, A, I, A, I, A, I)
+
+
+@lean(DENSE)
+def hermite(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
+    """Cubic Hermite interpolant of the step's ends: third order (Hairer, Norsett & Wanner 1993, eq. II.6.7)."""
+    for k in range(y0.size):
+        difference = y1[k] - y0[k]
+        bend = (1.0 - 2.0 * theta) * difference + (theta - 1.0) * h * rate0[k] + theta * h * rate1[k]
+        out[k] = (1.0 - theta) * y0[k] + theta * y1[k] + theta * (theta - 1.0) * bend
+
+
+@lean(DENSE)
+def straightened(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
+    """As `hermite`, but a line where the rates at the ends are not those of a curve that such a step could follow.
+
+    For what contacts have changed after a stiff step, which may pass over all that follows an impact: its rates are
+    gone long before the step's end. Of most smooth curves, what the mean of the rates misses is far less than their
+    difference.
+    """
+    for k in range(y0.size):
+        difference, first, last = y1[k] - y0[k], h * rate0[k], h * rate1[k]
+        bend = (1.0 - 2.0 * theta) * difference + (theta - 1.0) * first + theta * last
+        if abs(difference - 0.5 * (first + last)) > 0.25 * abs(last - first):
+            bend = 0.0
+        out[k] = (1.0 - theta) * y0[k] + theta * y1[k] + theta * (theta - 1.0) * bend
+
+
+@lean(GAP, inner=True)
+def no_gap(t, y, gaps, floats, ints):
+    """Of an island without exact contacts."""
+
+
+@lean(IMPACT, inner=True)
+def no_impact(t, y, pair, floats, ints):
+    """Of an island without exact contacts."""
+
+
+@lean(SETTLE, inner=True)
+def no_settle(t0, t1, y0, rate0, y1, floats, ints):
+    """Of an island without local contacts."""
+
+
+@lean_inlined
+def copy(source, target):
+    """Entry by entry: numba's slice assignment costs seconds to compile."""
+    for k in range(target.size):
+        target[k] = source[k]
+
+
+@lean_inlined
+def beyond(y, limit):
+    """Number of entries that are larger than the limit or not finite: one pass that vectorizes."""
+    count = 0
+    for k in range(y.size):
+        count += not (abs(y[k]) <= limit)
+    return count
+
+
+@lean_inlined
+def first_bad(y):
+    """Index of the first entry that is not finite, or -1."""
+    for k in range(y.size):
+        if not math.isfinite(y[k]):
+            return k
+    return -1
+
+
+@lean_inlined
+def largest(y):
+    """Index of the entry of largest magnitude."""
+    best = 0
+    for k in range(y.size):
+        if abs(y[k]) > abs(y[best]):
+            best = k
+    return best
+
+
+@lean_inlined
+def next_factor(error, previous, order, rejected):
+    """Factor for the next step: PI control (Gustafsson 1991; the constants of Hairer, Norsett & Wanner's DOPRI5)."""
+    if not math.isfinite(error):
+        return 0.1
+    if error > 1.0:
+        return max(0.2, 0.9 * error ** (-1.0 / order))
+    beta = 0.2 / order
+    factor = 0.9 * max(error, 1e-10) ** (0.75 * beta - 1.0 / order) * previous**beta
+    return min(1.0 if rejected else 10.0, max(0.2, factor))
+
+
+@lean_inlined
+def try_steps(step, functions, t0, t1, y0, rate0, y1, work, settings, numbers, floats, ints, clock, counts):
+    """Step until the error is accepted: (end of the step, status). A fixed step is tried once, but halved where its
+    equations have no solution: contacts let steps end before the grid's next point, too."""
+    adaptive = counts[ADAPTIVE] > 0
+    rejected = False
+    while True:
+        h = t1 - t0
+        error = step(functions, t0, h, y0, rate0, y1, work, settings, numbers, floats, ints)
+        large = beyond(y1, clock[LIMIT]) > 0
+        bad = first_bad(y1) if large else -1
+        if bad >= 0:
+            error = math.inf
+        if bad < 0 and (error <= 1.0 or not adaptive):
+            if adaptive:
+                controls = counts[CONTROLS] > 0
+                clock[STEP] = work[0] if controls else h * next_factor(error, clock[ERROR], counts[ORDER], rejected)
+                clock[ERROR] = max(error, 1e-4)
+            if large:
+                counts[INDEX] = largest(y1)
+            return t1, GROWTH if large else REACHED
+        counts[REJECTED] += 1
+        counts[INDEX] = bad if bad >= 0 else largest(rate0)
+        if counts[CONTROLS] > 0:
+            h = min(work[0], 0.9 * h)
+        else:
+            h *= next_factor(error, 1.0, counts[ORDER], True) if adaptive else 0.5
+        if adaptive and t0 + 0.1 * h <= t0:
+            return t1, STEP_TOO_SMALL
+        if not adaptive and (counts[HALVES] == 0 or h < SHORTEST * clock[STEP]):
+            return t1, NOT_FINITE
+        rejected = True
+        t1 = t0 + h
+
+
+@lean_inlined
+def apply_impact(rate, impact, t, y, slope, floats, ints, leaving, counts):
+    """The impact that is due. Contacts may read what the terms left in floats for the state before it."""
+    pair = counts[PENDING]
+    counts[PENDING] = -1
+    counts[EVENTS] += 1
+    rate(t, y, slope, floats, ints)
+    impact(t, y, pair, floats, ints)
+    rate(t, y, slope, floats, ints)
+    if counts[REPEATS] == 0:
+        for k in range(leaving.size):
+            leaving[k] = 0
+    leaving[pair] = 1
+
+
+@lean_inlined
+def take_back(length, t0, y0, rate0, y1, rate1, clock, counts):
+    """Take back a step that fails on a part of its length, as an implicit one's may; whether to try a shorter one."""
+    counts[REJECTED] += 1
+    counts[INDEX] = largest(rate0)
+    clock[STEP] = 0.3 * length
+    copy(y0, y1)
+    copy(rate0, rate1)
+    return counts[ADAPTIVE] > 0 and t0 + 0.1 * clock[STEP] > t0
+
+
+@lean(MARCH)
+def march(
+    functions, target, end,
+    y0, rate0, y1, rate1, sample, work, settings, numbers, floats, ints, gaps, leaving, clock, counts,
+):  # fmt: skip
+    """Take steps until clock[T1] >= target; the status. ``functions``: addresses (pointers_kernels).
+
+    y0, rate0, y1, rate1, sample are of y's size, and sample with local contacts is left as the step's end was before
+    these acted; leaving (pairs,), gaps (3 pairs,). On a failure the step is taken
+    back: (clock[T1], y1, rate1) is the last good state, counts[INDEX] the entry of y (STUCK: the pair) at fault.
+    """
+    step, rate = step_at(functions[AT_STEP]), rate_at(functions[AT_RATE])
+    impact, settle = impact_at(functions[AT_IMPACT]), settle_at(functions[AT_SETTLE])
+    n = y0.size
+    while clock[T1] < target:
+        if counts[LEFT] <= 0:
+            return PAUSED
+        counts[LEFT] -= 1
+        t0 = clock[T1]
+        y0, y1 = y1, y0
+        rate0, rate1 = rate1, rate0
+        counts[SWAPPED] = 1 - counts[SWAPPED]
+        if counts[PENDING] >= 0:
+            apply_impact(rate, impact, t0, y0, rate0, floats, ints, leaving, counts)
+        if counts[ADAPTIVE] > 0:
+            h = min(clock[STEP], clock[LARGEST])
+            grid = end if t0 + 1.01 * h >= end else t0 + h
+        else:
+            grid = (counts[GRID] + 1) * clock[STEP]
+            if grid > end - 1e-9 * clock[STEP]:
+                grid = end
+        t1, status = try_steps(
+            step, functions, t0, grid, y0, rate0, y1, work, settings, numbers, floats, ints, clock, counts
+        )
+        if status != REACHED:
+            copy(y0, y1)
+            copy(rate0, rate1)
+            return status
+        if counts[LAST_STAGE] >= 0:
+            copy(work[counts[LAST_STAGE] * n :], rate1)
+        elif counts[LOCAL] == 0 or leaving.size > 0 or (counts[HELD] > 0 and counts[ORDER] > 1):
+            # (What a first-order method holds may follow what pressed at the step's start.)
+            rate(t1, y1, rate1, floats, ints)
+        if leaving.size > 0:
+            pair, reached = event_at(functions[AT_EVENT])(
+                functions, t0, t1 - t0, y0, rate0, y1, rate1,
+                sample, work, settings, numbers, floats, ints, gaps, leaving, clock[SLOP],
+            )  # fmt: skip
+            if first_bad(y1) >= 0:
+                if take_back(t1 - t0, t0, y0, rate0, y1, rate1, clock, counts):
+                    continue
+                return STEP_TOO_SMALL if counts[ADAPTIVE] > 0 else NOT_FINITE
+            counts[PENDING] = pair
+            if reached == 0.0:
+                copy(y0, y1)
+                copy(rate0, rate1)
+                counts[REPEATS] += 1
+                if counts[REPEATS] > MOST_REPEATS * leaving.size:
+                    counts[INDEX] = pair
+                    return STUCK
+                continue
+            counts[REPEATS] = 0
+            if reached < t1 - t0:
+                t1 = t0 + reached
+        if counts[LOCAL] > 0:
+            floats[CHANGED_AT] = t1
+            settle(t0, t1, y0, rate0, y1, floats, ints)
+            if floats[CHANGED_AT] < t1:
+                t1 = floats[CHANGED_AT]
+                counts[PENDING] = -1
+                step(functions, t0, t1 - t0, y0, rate0, y1, work, settings, numbers, floats, ints)
+                if first_bad(y1) >= 0:
+                    if take_back(t1 - t0, t0, y0, rate0, y1, rate1, clock, counts):
+                        continue
+                    return STEP_TOO_SMALL if counts[ADAPTIVE] > 0 else NOT_FINITE
+                if counts[LAST_STAGE] < 0 and counts[HELD] > 0 and counts[ORDER] > 1:
+                    rate(t1, y1, rate1, floats, ints)
+            floats[CHANGED_AT] = 0.0
+            copy(y1, sample)
+            settle(t0, t1, y0, rate0, y1, floats, ints)
+            counts[HELD] = floats[CHANGED_AT] == HOLDS
+            rate(t1, y1, rate1, floats, ints)
+        if leaving.size > 0:
+            floats[CHANGED_AT] = 0.0
+            impact(t1, y1, -1, floats, ints)
+            if floats[CHANGED_AT] != 0.0:
+                rate(t1, y1, rate1, floats, ints)
+        clock[T0] = t0
+        clock[T1] = t1
+        counts[STEPS] += 1
+        if counts[ADAPTIVE] == 0 and t1 >= grid:
+            counts[GRID] += 1
+    return REACHED

@@ -1,0 +1,79 @@
+"""The fastest mode of an island at any moment of its run, for little more than a dozen evaluations of the rate."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.march.march import March
+
+SMALL = 12
+"""Up to so many entries of y the whole Jacobian is found; above, the Krylov space of so many products."""
+MOVE = 1.5e-8
+"""Relative size of differences: the root of the rounding unit."""
+
+
+def dominant(march: March, t: float, y: Floats) -> complex:
+    """The eigenvalue [1/s] of largest modulus of the rate's Jacobian at a state, the upper one of a pair.
+
+    Above SMALL entries by Arnoldi's iteration (Arnoldi 1951), which finds the outermost eigenvalues first.
+    """
+    n = len(y)
+    rate = march.rate(t, y)
+    if n <= SMALL:
+        moves = MOVE * np.maximum(np.abs(y), 1e-3)
+        columns = [(march.rate(t, y + move * unit) - rate) / move for move, unit in zip(moves, np.eye(n), strict=True)]
+        matrix = np.column_stack(columns)
+    else:
+        scale = MOVE * max(1e-3, float(np.linalg.norm(y)))
+        units = units_of(march, t, y, scale)
+        basis = np.zeros((SMALL + 1, n))
+        matrix = np.zeros((SMALL + 1, SMALL))
+        start = np.random.Generator(np.random.Philox(1)).standard_normal(n)
+        basis[0] = start / np.linalg.norm(start)
+        size = 0
+        for k in range(SMALL):
+            product = (march.rate(t, y + scale * units * basis[k]) - rate) / (scale * units)
+            matrix[: k + 1, k] = basis[: k + 1] @ product
+            product -= matrix[: k + 1, k] @ basis[: k + 1]
+            size = k + 1
+            matrix[k + 1, k] = left = np.linalg.norm(product)
+            if not left > 1e-10 * np.abs(matrix).max():
+                break
+            basis[k + 1] = product / left
+        matrix = matrix[:size, :size]
+    if not np.isfinite(matrix).all():
+        return 0j
+    values = np.linalg.eigvals(matrix)
+    found = complex(values[int(np.argmax(np.abs(values)))])
+    return complex(found.real, abs(found.imag))
+
+
+def units_of(march: March, t: float, y: Floats, scale: float) -> Floats:
+    """Units (n,) in which positions and velocities of stiff springs are alike in size.
+
+    Without them the Krylov space sees how far the matrix is from a normal one, not its eigenvalues.
+    """
+    units = np.ones(len(y))
+    positions = np.flatnonzero(march.system.partner >= 0)
+    if len(positions):
+        velocities = march.system.partner[positions]
+        moved = y.copy()
+        moved[positions] += scale * np.random.Generator(np.random.Philox(2)).choice([-1.0, 1.0], len(positions))
+        pull = (march.rate(t, moved) - march.rate(t, y))[velocities] / scale
+        square = float(np.sqrt(np.mean(pull * pull)))
+        units[velocities] = np.sqrt(square) if 0.0 < square < np.inf else 1.0
+    return units
+
+
+def boundary(coefficients: tuple[float, ...], direction: complex) -> float:
+    """Largest r with |R(s u)| <= 1 for s up to r, u the direction; R a polynomial, its coefficient of z^0 first."""
+    if direction.real > 0:
+        direction = complex(0.0, abs(direction))
+    lengths = np.geomspace(0.1, 50.0, 400)
+    growth = np.abs(np.polyval(coefficients[::-1], lengths * direction / abs(direction)))
+    unstable = np.flatnonzero(growth > 1.0 + 1e-9)
+    return float(lengths[unstable[0]]) if len(unstable) else float(lengths[-1])

@@ -1,0 +1,1 @@
+"""Marching cubes: cells, curves on their faces, triangles, refinement."""

@@ -1,0 +1,214 @@
+# mypy: ignore-errors
+"""What the surface does in a block: cubes it passes through with their variants, and its vertices on grid edges."""
+
+from sceneql.compiled.kernels import inlined, lean
+from sceneql.field.tape.batch_kernels import LANES, along_z, evaluate
+from sceneql.field.tape.simplify_kernels import simplify
+from sceneql.field.tape.tape_ops import TAPE
+from sceneql.mesh.cubes.cull_kernels import CLEAR, CUT, REACH, verdict
+from sceneql.mesh.cubes.decide_kernels import CASES, decide
+from sceneql.mesh.cubes.grid import BLOCK
+from sceneql.mesh.cubes.polish_kernels import DX, DY, DZ, FA, FB, SIDE, UNDEFINED, A, B, T, normals, polish
+
+NODES = BLOCK + 1
+"""Nodes along a block; those on its high sides are its neighbors' too."""
+LAYERS = NODES // -(-NODES // (LANES // NODES**2))
+"""Of nodes, that are sampled at once: equal shares of NODES that LANES have room for."""
+EDGES = 3 * BLOCK**3
+"""Edges that a block owns: the three that go up from each node but those on its high sides."""
+VERTICES, CUBES, TRIANGLES, OWN = range(4)
+"""Columns of a block's tally: vertices on edges, cubes, triangles, and vertices of the cubes' own."""
+
+
+@inlined
+def sample(code, constants, parts, registers, rest, points, grid, i, j, k, values):
+    """f at the nodes of the block whose first node is (i, j, k), x fastest; ``rest`` (rows, 4) is room for a tape.
+
+    Some layers at a time; what does not change with z is evaluated for the first ones alone.
+    """
+    h = grid[3]
+    last = code.shape[0] - 1
+    n = LAYERS * NODES * NODES
+    along_z(code, rest)
+    for lane in range(n):
+        points[0, lane] = grid[0] + (i + lane % NODES) * h
+        points[1, lane] = grid[1] + (j + lane // NODES % NODES) * h
+    for z in range(0, NODES, LAYERS):
+        for lane in range(n):
+            points[2, lane] = grid[2] + (k + z + lane // NODES**2) * h
+        evaluate(code if z == 0 else rest[: code.shape[0]], constants, parts, registers, points, n)
+        for lane in range(n):
+            values[z * NODES**2 + lane] = registers[last, lane]
+
+
+@inlined
+def insides(values, masks):
+    """Into masks (NODES^2,) a bit for each node of a row along x, set where f < 0; whether the nodes differ."""
+    some = 0
+    every = (1 << NODES) - 1
+    for row in range(NODES * NODES):
+        mask = 0
+        for x in range(NODES):
+            mask |= (1 if values[NODES * row + x] < 0.0 else 0) << x
+        masks[row] = mask
+        some |= mask
+        every &= mask
+    return some != 0 and every != (1 << NODES) - 1
+
+
+@inlined
+def cubes_of(values, masks, corners, first, faces, tunnel, start, own, cubes, at, tally):
+    """Note the cubes with a change of sign as (place in the block, variant) from ``at`` on; count what they make."""
+    n = at
+    for z in range(BLOCK):
+        for y in range(BLOCK):
+            row = z * NODES + y
+            a = masks[row]
+            b = masks[row + 1]
+            c = masks[row + NODES]
+            d = masks[row + NODES + 1]
+            some = a | b | c | d
+            every = a & b & c & d
+            mixed = (some | some >> 1) & ~(every & every >> 1) & ((1 << BLOCK) - 1)
+            x = -1
+            while mixed >> (x + 1) != 0:
+                x += 1
+                if mixed >> x & 1 == 0:
+                    continue
+                config = a >> x & 3 | (b >> x & 3) << 2 | (c >> x & 3) << 4 | (d >> x & 3) << 6
+                variant = first[config]
+                if faces[config, 0, 0] != -1:
+                    p = row * NODES + x
+                    for k in range(8):
+                        corners[k] = values[p + (k & 1) + (k >> 1 & 1) * NODES + (k >> 2) * NODES * NODES]
+                    variant = decide(corners, config, first, faces, tunnel)
+                cubes[n, 0] = (z * BLOCK + y) * BLOCK + x
+                cubes[n, 1] = variant
+                n += 1
+                tally[TRIANGLES] += start[variant + 1] - start[variant]
+                tally[OWN] += own[variant]
+    tally[CUBES] = n - at
+    return n
+
+
+@inlined
+def vertices_of(
+    code,
+    constants,
+    parts,
+    registers,
+    slope,
+    points,
+    starts,
+    search,
+    grid,
+    i,
+    j,
+    k,
+    values,
+    masks,
+    keys,
+    at,
+    place,
+    normal,
+):
+    """Find the vertices on the edges that the block owns, in the order of the edges, from ``at`` on."""
+    h = grid[3]
+    n = 0
+    done = at
+    for z in range(BLOCK):
+        for y in range(BLOCK):
+            row = z * NODES + y
+            mask = masks[row]
+            crossed_x = (mask ^ mask >> 1) & ((1 << BLOCK) - 1)
+            crossed_y = (mask ^ masks[row + 1]) & ((1 << BLOCK) - 1)
+            crossed_z = (mask ^ masks[row + NODES]) & ((1 << BLOCK) - 1)
+            crossed = crossed_x | crossed_y | crossed_z
+            x = -1
+            while crossed >> (x + 1) != 0:
+                x += 1
+                if crossed >> x & 1 == 0:
+                    continue
+                p = row * NODES + x
+                up = mask >> x & 1 == 1
+                step = 1
+                for axis in range(3):
+                    q = p + step
+                    step *= NODES
+                    if (crossed_x if axis == 0 else crossed_y if axis == 1 else crossed_z) >> x & 1 == 0:
+                        continue
+                    keys[done + n] = 3 * ((z * BLOCK + y) * BLOCK + x) + axis
+                    outer = values[q] if up else values[p]
+                    search[A, n] = 0.0 if up else 1.0
+                    search[B, n] = 1.0 if up else 0.0
+                    search[FA, n] = values[p] if up else values[q]
+                    search[FB, n] = outer if outer == outer else UNDEFINED
+                    search[T, n] = -1.0
+                    search[SIDE, n] = 0.0
+                    search[DX, n] = h if axis == 0 else 0.0
+                    search[DY, n] = h if axis == 1 else 0.0
+                    search[DZ, n] = h if axis == 2 else 0.0
+                    starts[0, n] = grid[0] + (i + x) * h
+                    starts[1, n] = grid[1] + (j + y) * h
+                    starts[2, n] = grid[2] + (k + z) * h
+                    n += 1
+            if n > LANES - 3 * BLOCK or (n > 0 and z == BLOCK - 1 and y == BLOCK - 1):
+                polish(code, constants, parts, registers, points, search, starts, place, done, n)
+                normals(code, constants, parts, registers, slope, points, place, normal, done, n)
+                done += n
+                n = 0
+    return done
+
+
+@lean(
+    f"UniTuple(int64, 2)({TAPE}, int32[:, :, ::1], float64[:, :, ::1], float64[:, ::1], float64[:, :, ::1],"
+    " float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1], int64[::1], float64[::1],"
+    f" float64[::1], int32[:, ::1], {CASES}, int32[::1], int32[::1],"
+    " int16[::1], float64[:, ::1], float64[:, ::1], int32[:, ::1], int64[:, ::1])"
+)
+def extract(
+    code, constants, parts, scratch, short, near, registers, slope,
+    points, starts, search, values, masks, corners,
+    grid, blocks, first, faces, tunnel, start, own,
+    keys, place, normal, cubes, tally,
+):  # fmt: skip
+    """Vertices, normals, edge keys and cubes of some blocks, one after the other; their (vertices, cubes).
+
+    ``tally`` (blocks, 4) counts by block. Those that follow each other in one box of REACH a side begin with what is
+    left of the tape there. ``short`` (3, rows, 4), ``near`` (2, parts, 8), ``registers``, ``slope``, ``points``,
+    ``starts``, ``search``, ``values``, ``masks`` and ``corners`` are room to work in.
+    """
+    wide = REACH * BLOCK
+    x = y = z = -1
+    rows1 = used1 = 0
+    vertices = 0
+    found = 0
+    for b in range(blocks.shape[0]):
+        i = blocks[b, 0] * BLOCK
+        j = blocks[b, 1] * BLOCK
+        k = blocks[b, 2] * BLOCK
+        for column in range(4):
+            tally[b, column] = 0
+        if i // wide != x or j // wide != y or k // wide != z:
+            x, y, z = i // wide, j // wide, k // wide
+            at = verdict(code, constants, parts, scratch, grid, x * wide, y * wide, z * wide, wide)
+            rows1, used1 = simplify(code, parts, scratch, at == CUT, short[0], near[0])
+        code1 = short[0][:rows1]
+        parts1 = near[0][:used1]
+        at = verdict(code1, constants, parts1, scratch, grid, i, j, k, BLOCK)
+        if at == CLEAR:
+            continue
+        rows, used = simplify(code1, parts1, scratch, at == CUT, short[1], near[1])
+        code2 = short[1][:rows]
+        parts2 = near[1][:used]
+        sample(code2, constants, parts2, registers, short[2], points, grid, i, j, k, values)
+        if not insides(values, masks):
+            continue
+        found = cubes_of(values, masks, corners, first, faces, tunnel, start, own, cubes, found, tally[b])
+        before = vertices
+        vertices = vertices_of(
+            code2, constants, parts2, registers, slope, points, starts, search,
+            grid, i, j, k, values, masks, keys, vertices, place, normal,
+        )  # fmt: skip
+        tally[b, VERTICES] = vertices - before
+    return vertices, found

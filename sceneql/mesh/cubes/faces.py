@@ -1,0 +1,136 @@
+"""Curves on the faces between coarse and fine cells, as each of them sees them. Imports numpy."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Ints
+    from sceneql.mesh.cubes.refine import Level, Numbering
+
+    Keys = NDArray[np.int64]
+
+
+class Sides(NamedTuple):
+    """Sides of coarse triangles on faces to fine cells."""
+
+    triangles: Keys
+    """(s,)"""
+    turns: Keys
+    """(s,) which side of it: from this corner to the next."""
+    cells: Keys
+    """(s, 3) the coarse cell."""
+    ends: Keys
+    """(s,) number of the pair of edges that it goes between."""
+
+
+class Curves(NamedTuple):
+    """Curves of fine triangles on faces to coarse cells, in the direction of the coarse triangles' sides."""
+
+    paths: Keys
+    """(c, n) vertices in turn, the last repeated."""
+    cells: Keys
+    """(c, 3) the coarse cell."""
+    ends: Keys
+    """(c,) number of the pair of coarse edges that it goes between; -1 for what is no such curve."""
+
+
+def among(keys: Keys, ascending: Keys) -> NDArray[np.bool_]:
+    """(n,) whether keys are some of those ascending, of which there must be one."""
+    import numpy as np
+
+    at = np.minimum(np.searchsorted(ascending, keys), len(ascending) - 1)
+    found: NDArray[np.bool_] = ascending[at] == keys
+    return found
+
+
+def pair(numbers: Numbering, first: Keys, second: Keys) -> Keys:
+    """(n,) of pairs of edges of one cube (n, 3) by their middles in half cells."""
+    import numpy as np
+
+    # The difference is within -2..2 along each axis.
+    found: Keys = numbers.of(first) * 125 + (second - first + 2) @ np.array([1, 5, 25])
+    return found
+
+
+def face_sides(coarse: Level, kept: NDArray[np.bool_], numbers: Numbering, chosen: Keys, group: int) -> Sides:
+    """The sides of kept triangles on faces of chosen groups."""
+    import numpy as np
+
+    rows = np.flatnonzero(kept)
+    parts: list[tuple[Keys, ...]] = []
+    edges = len(coarse.doubled)
+    for turn in range(3):
+        a, b = coarse.triangles[rows, turn], coarse.triangles[rows, (turn + 1) % 3]
+        on_edges = (a < edges) & (b < edges)
+        at, a, b = rows[on_edges], coarse.doubled[a[on_edges]], coarse.doubled[b[on_edges]]
+        common = (a == b) & (a % 2 == 0)
+        on_face = common.any(axis=1)
+        at, a, b, common = at[on_face], a[on_face], b[on_face], common[on_face]
+        cells = coarse.cells[at]
+        beyond = cells + np.where(common, np.where(a == 2 * cells, -1, 1), 0)
+        finer = among(numbers.of(beyond // group), chosen)
+        parts.append((at[finer], np.full(finer.sum(), turn), cells[finer], pair(numbers, a[finer], b[finer])))
+    return Sides(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+
+
+def border_curves(fine: Level, parts: int, numbers: Numbering, chosen: Keys, group: int) -> Curves:
+    """The curves along the border of the fine triangles; ``parts`` is how finely a coarse cell is cut."""
+    import numpy as np
+
+    starts, stops = border(fine.triangles)
+    first, last = fine.doubled[starts], fine.doubled[stops]
+    across = np.argmax((first == last) & (first % (2 * parts) == 0), axis=1)
+    middle = (first + last) // 2
+    high = middle // (2 * parts)
+    low = high.copy()
+    low[np.arange(len(low)), across] -= 1
+    cells = np.where(among(numbers.of(high // group), chosen)[:, None], low, high)
+    on_edge = (fine.doubled % (2 * parts) == 0).sum(axis=1) == 2
+    following = np.full(len(fine.doubled), -1)
+    # A vertex inside a face has one curve through it; one on a coarse edge may end several.
+    through = ~on_edge[starts]
+    following[starts[through]] = stops[through]
+    begins = on_edge[starts]
+    columns = [starts[begins], stops[begins]]
+    while not on_edge[columns[-1]].all():
+        columns.append(np.where(on_edge[columns[-1]], columns[-1], following[columns[-1]]))
+    paths = np.stack(columns, axis=1)
+    edges = [_coarse(fine.doubled[paths[:, k]], parts) for k in (0, -1)]
+    followed = np.zeros(len(fine.doubled), dtype=bool)
+    followed[paths] = True
+    rings = through & ~followed[starts]
+    return Curves(
+        np.concatenate([paths, np.repeat(starts[rings, None], paths.shape[1], axis=1)]),
+        np.concatenate([cells[begins], cells[rings]]),
+        np.concatenate([_ends(numbers, *edges), np.full(rings.sum(), -1)]),
+    )
+
+
+def _ends(numbers: Numbering, first: Keys, second: Keys) -> Keys:
+    """As ``pair``, but -1 for both ends on one edge."""
+    import numpy as np
+
+    return np.where((first == second).all(axis=1), -1, pair(numbers, first, second))
+
+
+def _coarse(doubled: Keys, parts: int) -> Keys:
+    """Middles of coarse edges in half coarse cells, of the fine edges on them."""
+    import numpy as np
+
+    along = doubled % (2 * parts) != 0
+    return np.where(along, 2 * (doubled // (2 * parts)) + 1, doubled // parts)
+
+
+def border(triangles: Ints) -> tuple[Keys, Keys]:
+    """(starts, stops) of the sides that triangles lack a neighbor at, in the direction that it would have."""
+    import numpy as np
+
+    starts = triangles[:, [0, 1, 2]].ravel().astype(np.int64)
+    stops = triangles[:, [1, 2, 0]].ravel().astype(np.int64)
+    size = int(triangles.max(initial=0)) + 1
+    single = ~np.isin(stops * size + starts, starts * size + stops, assume_unique=True)
+    return stops[single], starts[single]

@@ -1,0 +1,170 @@
+"""A tape on a grid, looked at block by block on all threads. Imports numpy and numba."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from sceneql.compiled.kernels import over_tiles
+from sceneql.field.tape.batch_kernels import LANES
+from sceneql.field.tape.tape_solid import scratch
+from sceneql.mesh.cubes.cases import cases
+from sceneql.mesh.cubes.cull_kernels import REACH, cull
+from sceneql.mesh.cubes.extract_kernels import CUBES, EDGES, NODES, OWN, TRIANGLES, VERTICES, extract
+from sceneql.mesh.cubes.grid import BLOCK
+from sceneql.mesh.cubes.hidden_kernels import DEEPEST
+from sceneql.mesh.cubes.polish_kernels import ROWS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from sceneql.frame import Floats, Ints, Tape
+    from sceneql.mesh.cubes.grid import Grid
+
+BATCH = 32
+"""Blocks that a thread takes at a time."""
+
+
+class Room:
+    """What one thread works in."""
+
+    def __init__(self, tape: Tape) -> None:
+        import numpy as np
+
+        rows = len(tape.code)
+        self.scratch = scratch(tape)
+        self.short = np.empty((3, rows, 4), dtype=np.int32)
+        self.near = np.empty((2, len(tape.parts), 8))
+        self.registers = np.empty((rows, LANES))
+        self.slope = np.empty((rows, 3, LANES))
+        self.points, self.starts, self.search = np.empty((3, LANES)), np.empty((3, LANES)), np.empty((ROWS, LANES))
+        self.values, self.masks = np.empty(NODES**3), np.empty(NODES**2, dtype=np.int64)
+        self.corners = np.empty(8)
+        self.keys = np.empty(BATCH * EDGES, dtype=np.int16)
+        self.place, self.normal = np.empty((BATCH * EDGES, 3)), np.empty((BATCH * EDGES, 3))
+        self.cubes = np.empty((BATCH * BLOCK**3, 2), dtype=np.int32)
+        self.local = np.empty(EDGES, dtype=np.int32)
+        self.stack = np.empty((8 * DEEPEST + 8, 4))
+        self.low, self.fit = np.empty(3), np.empty((15, 3))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Found:
+    """What the surface does in blocks: of block b the vertices on edges begin at begin[b], the cubes at cube_at[b]."""
+
+    blocks: Ints
+    """(b, 3)."""
+    beyond: Ints
+    """(b, 8) the block one further along the axes whose bits are set; -1 where none was looked at."""
+    begin: Ints
+    cube_at: Ints
+    triangle_at: Ints
+    own_at: Ints
+    """(b + 1,) vertices of the cubes' own, counted after those on edges."""
+    keys: Ints
+    """(v,) edges of the vertices, ascending in each block."""
+    cubes: Ints
+    """(c, 2) place in the block and variant."""
+    place: Floats
+    """(v + own, 3) [m]; those of the cubes' own are zero, to be filled."""
+    normal: Floats
+    """(v + own, 3) unit gradients, or zero."""
+
+
+class Workshop:
+    """A tape on a grid, and room for each thread."""
+
+    def __init__(self, whole: Tape, grid: Grid) -> None:
+        self.whole, self.grid = whole, grid
+        self.program = (whole.code, whole.constants, whole.parts)
+        self._own = threading.local()
+
+    def room(self) -> Room:
+        """This thread's room."""
+        if not hasattr(self._own, "room"):
+            self._own.room = Room(self.whole)
+        found: Room = self._own.room
+        return found
+
+    def met(self) -> Ints:
+        """(b, 3) blocks that the surface may meet."""
+        import numpy as np
+
+        grid = self.grid
+        layers = -(-int(grid.blocks[2]) // REACH)
+        most = REACH * int(grid.blocks[0] + REACH) * int(grid.blocks[1] + REACH)
+        found: list[Any] = [None] * layers
+        counts = grid.blocks.astype(np.int64)
+
+        def work(layer: int) -> None:
+            r, blocks = self.room(), np.empty((most, 3), dtype=np.int32)
+            n = cull(*self.program, r.scratch, r.short[0], r.near[0], grid.numbers, counts, layer, blocks)
+            found[layer] = blocks[:n].copy()
+
+        over_tiles(layers, work)
+        return np.concatenate(found)
+
+    def extracted(self, blocks: Ints) -> Found:
+        """What the surface does in some blocks; an edge on the high side of one belongs to its neighbor there."""
+        import numpy as np
+
+        table = cases()
+        count = -(-len(blocks) // BATCH)
+        batches: list[Any] = [None] * count
+
+        def work(batch: int) -> None:
+            r, mine = self.room(), blocks[batch * BATCH : (batch + 1) * BATCH]
+            tally = np.empty((len(mine), 4), dtype=np.int64)
+            vertices, cubes = extract(
+                *self.program, r.scratch, r.short, r.near, r.registers, r.slope, r.points, r.starts, r.search,
+                r.values, r.masks, r.corners, self.grid.numbers, mine, table.first, table.faces, table.tunnel,
+                table.start, table.centers, r.keys, r.place, r.normal, r.cubes, tally,
+            )  # fmt: skip
+            copies: list[Any] = [r.keys[:vertices], r.cubes[:cubes], r.place[:vertices], r.normal[:vertices]]
+            batches[batch] = (tally, *(copy.copy() for copy in copies))
+
+        over_tiles(count, work)
+        return gathered(blocks, batches)
+
+    def over_blocks(self, count: int, work: Callable[[Room, int, int], None]) -> None:
+        """Call ``work(room, first, last)`` for batches of a number of blocks, on all threads."""
+        over_tiles(-(-count // BATCH), lambda b: work(self.room(), b * BATCH, min((b + 1) * BATCH, count)))
+
+
+def gathered(blocks: Ints, batches: list[Any]) -> Found:
+    """One account of what was found in the batches of blocks."""
+    import numpy as np
+
+    empty = np.zeros((0, 4), np.int64), np.zeros(0, np.int16), np.zeros((0, 2), np.int32)
+    tally, keys, cubes = (np.concatenate([none, *(batch[k] for batch in batches)]) for k, none in enumerate(empty))
+    begin, cube_at, triangle_at, own_at = (
+        np.concatenate([[0], np.cumsum(tally[:, column])]) for column in (VERTICES, CUBES, TRIANGLES, OWN)
+    )
+    own_at += begin[-1]
+    place, normal = np.empty((int(own_at[-1]), 3)), np.empty((int(own_at[-1]), 3))
+    for array, k in ((place, 3), (normal, 4)):
+        array[begin[-1] :] = 0.0
+        for b, batch in enumerate(batches):
+            array[begin[b * BATCH] :][: len(batch[k])] = batch[k]
+    return Found(blocks, beyond(blocks), begin, cube_at, triangle_at, own_at, keys, cubes, place, normal)
+
+
+def beyond(blocks: Ints) -> Ints:
+    """(b, 8) as in Found, of distinct blocks (b, 3)."""
+    import numpy as np
+
+    found = np.full((len(blocks), 8), -1, dtype=np.int32)
+    if not len(blocks):
+        return found
+    size = blocks.max(axis=0).astype(np.int64) + 2
+
+    strides = np.array([1, size[0], size[0] * size[1]])
+    numbers = blocks @ strides
+    order = np.argsort(numbers)
+    ascending = numbers[order]
+    for bits in range(8):
+        wanted = numbers + np.array([bits & 1, bits >> 1 & 1, bits >> 2]) @ strides
+        at = np.minimum(np.searchsorted(ascending, wanted), len(blocks) - 1)
+        found[:, bits] = np.where(ascending[at] == wanted, order[at], -1)
+    return found

@@ -1,0 +1,125 @@
+# mypy: ignore-errors
+"""Cubes without a change of sign that may yet hide some surface: proved empty or full, or counted."""
+
+from sceneql.compiled.kernels import inlined, lean
+from sceneql.field.enclose.interval_kernels import box
+from sceneql.field.tape.simplify_kernels import simplify
+from sceneql.field.tape.steepness_kernels import steepness
+from sceneql.field.tape.tape_kernels import value
+from sceneql.field.tape.tape_ops import NOWHERE, TAPE, WHOLE
+from sceneql.mesh.cubes.cull_kernels import CLEAR, CUT, verdict
+from sceneql.mesh.cubes.extract_kernels import NODES, sample
+from sceneql.mesh.cubes.grid import BLOCK
+
+DEEPEST = 2
+"""How often a cube may be halved before it is left unresolved."""
+SHALLOW = 1.0e-12
+"""Where f goes no further than this to the other side of zero, it touches zero but for rounding."""
+
+
+@inlined
+def proved(code, constants, parts, scratch, x, y, z, half, negative):
+    """Whether f keeps its sign in the box of half side ``half`` about a point: by its range, or by its mean value."""
+    low, high, status = box(
+        code, constants, parts, scratch, x - half, x + half, y - half, y + half, z - half, z + half
+    )  # fmt: skip
+    if status == NOWHERE:
+        return not negative
+    if negative:
+        if status != WHOLE:
+            return False
+        if high < SHALLOW:
+            return True
+    elif low >= -SHALLOW:
+        return True
+    if status != WHOLE:
+        return False
+    gx, gy, gz = steepness(code, constants, parts, scratch)
+    f = value(code, constants, parts, scratch, x, y, z)
+    return abs(f) > half * (gx + gy + gz) * (1.0 + 1.0e-9) and (f < 0.0) == negative
+
+
+@inlined
+def doubtful(code, constants, parts, scratch, x, y, z, half, negative, deepest, stack):
+    """Volume [m^3] of what in a cube is not proved to have its corners' sign."""
+    volume = 0.0
+    stack[0, 0] = x
+    stack[0, 1] = y
+    stack[0, 2] = z
+    stack[0, 3] = 0.0
+    top = 1
+    while top > 0:
+        top -= 1
+        x = stack[top, 0]
+        y = stack[top, 1]
+        z = stack[top, 2]
+        depth = stack[top, 3]
+        side = half * 0.5**depth
+        if proved(code, constants, parts, scratch, x, y, z, side, negative):
+            continue
+        if depth == deepest:
+            volume += 8.0 * side * side * side
+            continue
+        for k in range(8):
+            stack[top, 0] = x + (0.5 * side if k & 1 else -0.5 * side)
+            stack[top, 1] = y + (0.5 * side if k & 2 else -0.5 * side)
+            stack[top, 2] = z + (0.5 * side if k & 4 else -0.5 * side)
+            stack[top, 3] = depth + 1.0
+            top += 1
+    return volume
+
+
+@lean(
+    f"int64({TAPE}, int32[:, :, ::1], float64[:, :, ::1], float64[:, ::1], float64[:, ::1],"
+    " float64[::1], float64[:, ::1], float64[::1], int32[:, ::1], int64, int32[:, ::1], float64[::1])"
+)
+def hidden(
+    code, constants, parts, scratch, short, near, registers, points, values, stack, grid, blocks, deepest, cells, rest
+):
+    """The cubes of some blocks that have one sign at their corners, but not provably all over: their number.
+
+    Cubes are halved up to ``deepest`` times. Their places go into ``cells`` (n, 3), the volumes [m^3] without a proof
+    into ``rest``.
+    """
+    h = grid[3]
+    count = 0
+    for b in range(blocks.shape[0]):
+        i = blocks[b, 0] * BLOCK
+        j = blocks[b, 1] * BLOCK
+        k = blocks[b, 2] * BLOCK
+        at = verdict(code, constants, parts, scratch, grid, i, j, k, BLOCK)
+        if at == CLEAR:
+            continue
+        rows, used = simplify(code, parts, scratch, at == CUT, short[1], near[1])
+        code2 = short[1][:rows]
+        parts2 = near[1][:used]
+        far = 1.0e300
+        if verdict(code2, constants, parts2, scratch, grid, i, j, k, BLOCK) == CUT:
+            gx, gy, gz = steepness(code2, constants, parts2, scratch)
+            far = 0.5 * h * (gx + gy + gz) * (1.0 + 1.0e-9)
+        sample(code2, constants, parts2, registers, short[2], points, grid, i, j, k, values)
+        for z in range(BLOCK):
+            for y in range(BLOCK):
+                for x in range(BLOCK):
+                    p = (z * NODES + y) * NODES + x
+                    negative = values[p] < 0.0
+                    least = 1.0e300
+                    same = True
+                    for c in range(8):
+                        v = values[p + (c & 1) + (c >> 1 & 1) * NODES + (c >> 2) * NODES * NODES]
+                        same = same and (v < 0.0) == negative
+                        least = min(least, abs(v) if v == v else 0.0)
+                    # Every point of a cube is within half a side, along each axis, of a corner.
+                    if not same or least > far:
+                        continue
+                    rest[count] = doubtful(
+                        code2, constants, parts2, scratch,
+                        grid[0] + (i + x + 0.5) * h, grid[1] + (j + y + 0.5) * h, grid[2] + (k + z + 0.5) * h,
+                        0.5 * h * (1.0 + 1.0e-12), negative, deepest, stack,
+                    )  # fmt: skip
+                    if rest[count] > 0.0:
+                        cells[count, 0] = i + x
+                        cells[count, 1] = j + y
+                        cells[count, 2] = k + z
+                        count += 1
+    return count

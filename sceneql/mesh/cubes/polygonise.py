@@ -1,0 +1,51 @@
+"""Marching cubes on a tape: closed, of the topology of the trilinear interpolant. Imports numpy and numba."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from sceneql.mesh.bounded import Corner, bounded
+from sceneql.mesh.cubes.cases import cases
+from sceneql.mesh.cubes.connect_kernels import connect
+from sceneql.mesh.cubes.grid import grid_around
+from sceneql.mesh.cubes.grid_extraction import Found, Room, Workshop
+from sceneql.mesh.polygons import Polygons
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Ints, Tape
+
+
+def connected(shop: Workshop, found: Found, blocks: int) -> tuple[Ints, NDArray[np.int8]]:
+    """Triangles of the first so many blocks, and of each cube whether its surface turns much in it (0 or 1).
+
+    Fills in the places and normals of the cubes' own vertices.
+    """
+    import numpy as np
+
+    table = cases()
+    triangles = np.empty((int(found.triangle_at[blocks]), 3), dtype=np.int32)
+    bent = np.zeros(int(found.cube_at[blocks]), dtype=np.int8)
+
+    def work(r: Room, first: int, last: int) -> None:
+        connect(
+            *shop.program, r.scratch, shop.grid.numbers, found.blocks, first, last, found.beyond,
+            found.begin, found.cube_at, found.triangle_at, found.own_at, found.keys, found.cubes,
+            table.start, table.triangles, table.around, r.local, r.low, found.place, found.normal, triangles, bent,
+        )  # fmt: skip
+
+    shop.over_blocks(blocks, work)
+    return triangles, bent
+
+
+def polygonise(tape: Tape, low: Corner, high: Corner, cell: float) -> Polygons:
+    """Triangles of the solid {tape < 0} cut at the box low..high, by cells of a size [m].
+
+    The bytes do not depend on the number of threads. Raises ValueError as ``grid_around``.
+    """
+    shop = Workshop(bounded(tape, low, high), grid_around(low, high, cell))
+    found = shop.extracted(shop.met())
+    triangles, _ = connected(shop, found, len(found.blocks))
+    return Polygons(found.place, triangles, found.normal)

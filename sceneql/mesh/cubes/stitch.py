@@ -1,0 +1,65 @@
+"""Coarse and fine triangles to one closed mesh. Imports numpy and numba."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from sceneql.mesh.polygons import Polygons
+from sceneql.mesh.repair.move_vertices import settled, turned_outward
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Tape
+    from sceneql.mesh.cubes.faces import Curves, Sides
+    from sceneql.mesh.cubes.refine import Level
+
+
+def stitched(tape: Tape, coarse: Level, kept: NDArray[np.bool_], fine: Level, sides: Sides, curves: Curves) -> Polygons:
+    """The kept coarse triangles and the fine ones; where they meet, the coarse ones follow the fine curves."""
+    import numpy as np
+
+    offset = len(coarse.places)
+    order = np.argsort(curves.ends)
+    paths = curves.paths[order[np.searchsorted(curves.ends[order], sides.ends)]]
+    same = np.arange(offset)
+    same[coarse.triangles[sides.triangles, sides.turns]] = paths[:, 0] + offset
+    same[coarse.triangles[sides.triangles, (sides.turns + 1) % 3]] = paths[:, -1] + offset
+    bordering = np.unique(sides.triangles)
+    plain = kept.copy()
+    plain[bordering] = False
+    inner: defaultdict[int, dict[int, list[int]]] = defaultdict(dict)
+    for triangle, turn, path in zip(sides.triangles.tolist(), sides.turns.tolist(), paths.tolist(), strict=True):
+        inner[triangle][turn] = [vertex + offset for vertex in path[1:] if vertex != path[-1]]
+    fans: list[tuple[int, int, int]] = []
+    middles: list[list[int]] = []
+    fresh = offset + len(fine.places)
+    for triangle, corners in zip(bordering.tolist(), same[coarse.triangles[bordering]].tolist(), strict=True):
+        found = inner[triangle]
+        ring = [vertex for turn in range(3) for vertex in (corners[turn], *found.get(turn, ()))]
+        if len(found) == 1:
+            (turn,) = found
+            apex = corners[(turn + 2) % 3]
+            at = ring.index(apex)
+            ring = ring[at + 1 :] + ring[:at]
+            fans += [(a, b, apex) for a, b in pairwise(ring)]
+        else:
+            apex = fresh + len(middles)
+            middles.append(ring)
+            fans += [(a, b, apex) for a, b in zip(ring, [*ring[1:], ring[0]], strict=True)]
+    places, normals = np.concatenate([coarse.places, fine.places]), np.concatenate([coarse.normals, fine.normals])
+    means = np.array([places[ring].mean(axis=0) for ring in middles]).reshape(-1, 3)
+    reach = [np.linalg.norm(places[ring] - mean, axis=1).max() for ring, mean in zip(middles, means, strict=True)]
+    own, slopes = settled(tape, means, np.array(reach))
+    triangles = np.concatenate(
+        [same[coarse.triangles[plain]], np.array(fans, dtype=np.int64).reshape(-1, 3), fine.triangles + offset]
+    )
+    places, normals = np.concatenate([places, own]), np.concatenate([normals, slopes])
+    used = np.zeros(len(places), dtype=bool)
+    used[triangles] = True
+    triangles = (np.cumsum(used) - 1)[triangles].astype(np.int32)
+    seams = np.arange(plain.sum(), len(triangles) - len(fine.triangles))
+    return turned_outward(tape, Polygons(places[used], triangles, normals[used]), seams)

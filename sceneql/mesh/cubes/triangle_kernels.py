@@ -1,0 +1,109 @@
+# mypy: ignore-errors
+"""What is asked of every triangle of a mesh, one after the other."""
+
+from sceneql.compiled.kernels import inlined, lean
+
+
+@inlined
+def along(normals, v, x, y, z):
+    """Product of a vertex's normal with a vector."""
+    return normals[v, 0] * x + normals[v, 1] * y + normals[v, 2] * z
+
+
+@lean("int64(float64[:, ::1], int32[:, ::1], float64[:, ::1], int64[::1])")
+def unlike_corners(places, triangles, normals, rows):
+    """Put the triangles that do not face as the normals of all their corners do into ``rows``: how many they are."""
+    count = 0
+    for t in range(triangles.shape[0]):
+        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        x, y, z = places[b, 0] - places[a, 0], places[b, 1] - places[a, 1], places[b, 2] - places[a, 2]
+        u, v, w = places[c, 0] - places[a, 0], places[c, 1] - places[a, 1], places[c, 2] - places[a, 2]
+        x, y, z = y * w - z * v, z * u - x * w, x * v - y * u
+        least = min(min(along(normals, a, x, y, z), along(normals, b, x, y, z)), along(normals, c, x, y, z))
+        if least <= 0.0:
+            rows[count] = t
+            count += 1
+    return count
+
+
+@inlined
+def turn(places, normals, a, b):
+    """How much the normals of two vertices differ along the way from one to the other [m]."""
+    x, y, z = places[b, 0] - places[a, 0], places[b, 1] - places[a, 1], places[b, 2] - places[a, 2]
+    return abs(along(normals, b, x, y, z) - along(normals, a, x, y, z))
+
+
+@lean("void(float64[:, ::1], int32[:, ::1], float64[:, ::1], float64[::1])")
+def most_turn(places, triangles, normals, out):
+    """The largest ``turn`` along a side of each triangle into ``out`` (t,)."""
+    for t in range(triangles.shape[0]):
+        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        out[t] = max(max(turn(places, normals, a, b), turn(places, normals, b, c)), turn(places, normals, c, a))
+
+
+@inlined
+def span(places, triangles, t, axis):
+    """Least and largest coordinate of a triangle."""
+    a, b, c = places[triangles[t, 0], axis], places[triangles[t, 1], axis], places[triangles[t, 2], axis]
+    return min(min(a, b), c), max(max(a, b), c)
+
+
+@inlined
+def parts(low, high, width, count):
+    """(first, last + 1) of ``count`` parts of a width, from 0 on, that low..high meets."""
+    if high < 0.0 or low > count * width:
+        return 0, 0
+    return int(max(low / width, 0.0)), int(min(high / width, count - 1.0)) + 1
+
+
+@lean("int64(float64[:, ::1], int32[:, ::1], boolean[:, :, ::1], float64[::1], float64, int64[::1])")
+def in_cubes(places, triangles, marked, first, width, rows):
+    """Put the triangles whose boxes meet marked cubes, of those from ``first`` (3,) on, into ``rows``: their number."""
+    count = 0
+    for t in range(triangles.shape[0]):
+        low, high = span(places, triangles, t, 0)
+        i0, i1 = parts(low - first[0], high - first[0], width, marked.shape[0])
+        low, high = span(places, triangles, t, 1)
+        j0, j1 = parts(low - first[1], high - first[1], width, marked.shape[1])
+        low, high = span(places, triangles, t, 2)
+        k0, k1 = parts(low - first[2], high - first[2], width, marked.shape[2])
+        some = False
+        for i in range(i0, i1):
+            for j in range(j0, j1):
+                for k in range(k0, k1):
+                    some = some or marked[i, j, k]
+        if some:
+            rows[count] = t
+            count += 1
+    return count
+
+
+@lean("void(float64[:, ::1], int32[:, ::1], float64[:, ::1], int64[::1], float64[::1], float64, int64, int64[::1])")
+def count_passed(places, triangles, points, begin, first, width, row, around):
+    """Add to ``around`` (n,) for each of ``points`` (n, 3) the triangles that its ray along x leaves by, less those
+    that it enters by.
+
+    Points stand by the squares that their y and z are in, of a width, in ``row`` rows of ``row`` from ``first`` (2,)
+    on: those of square s are begin[s] to begin[s + 1].
+    """
+    for t in range(triangles.shape[0]):
+        low_y, high_y = span(places, triangles, t, 1)
+        low_z, high_z = span(places, triangles, t, 2)
+        i0, i1 = parts(low_y - first[0], high_y - first[0], width, row)
+        j0, j1 = parts(low_z - first[1], high_z - first[1], width, row)
+        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        for j in range(j0, j1):
+            for i in range(i0, i1):
+                for n in range(begin[j * row + i], begin[j * row + i + 1]):
+                    x, y, z = points[n, 0], points[n, 1], points[n, 2]
+                    if y < low_y or y > high_y or z < low_z or z > high_z:
+                        continue
+                    ya, yb, yc = places[a, 1] - y, places[b, 1] - y, places[c, 1] - y
+                    za, zb, zc = places[a, 2] - z, places[b, 2] - z, places[c, 2] - z
+                    # Of each corner, the area of the triangle between the other two and the ray.
+                    sa, sb, sc = yb * zc - yc * zb, yc * za - ya * zc, ya * zb - yb * za
+                    ahead = sa * (places[a, 0] - x) + sb * (places[b, 0] - x) + sc * (places[c, 0] - x)
+                    if sa > 0.0 and sb > 0.0 and sc > 0.0 and ahead > 0.0:
+                        around[n] += 1
+                    elif sa < 0.0 and sb < 0.0 and sc < 0.0 and ahead < 0.0:
+                        around[n] -= 1

@@ -1,0 +1,78 @@
+"""What a grid of cells cannot tell of a solid: told, not dropped. Imports numpy and numba."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from sceneql.compiled.kernels import over_tiles
+from sceneql.mesh.bounded import Corner, bounded
+from sceneql.mesh.cubes.grid import BLOCK, grid_around
+from sceneql.mesh.cubes.grid_extraction import BATCH, Workshop
+from sceneql.mesh.cubes.hidden_kernels import DEEPEST, hidden
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Ints, Tape
+    from sceneql.mesh.cubes.grid import Grid
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Unresolved:
+    """Cells whose corners have one sign, which f could not be proved to keep inside."""
+
+    where: Ints
+    """(n, 3) cells, counted from the grid's first node."""
+    volumes: Floats
+    """(n,) [m^3] of the parts of them that no proof was found for."""
+    grid: Grid
+    """That they are cells of."""
+
+    @property
+    def cells(self) -> int:
+        """How many they are."""
+        return len(self.where)
+
+    @property
+    def volume(self) -> float:
+        """[m^3] in all."""
+        return float(self.volumes.sum())
+
+    @property
+    def middles(self) -> Floats:
+        """(n, 3) [m] of the cells."""
+        found: Floats = self.grid.low + (self.where + 0.5) * self.grid.cell
+        return found
+
+
+def unresolved(tape: Tape, low: Corner, high: Corner, cell: float) -> Unresolved:
+    """What the cells of ``polygonise`` may hide: walls and drops that pass between their corners.
+
+    Raises ValueError as ``grid_around``.
+    """
+    shop = Workshop(bounded(tape, low, high), grid_around(low, high, cell))
+    return hidden_in(shop, shop.met())
+
+
+def hidden_in(shop: Workshop, blocks: Ints, deepest: int = DEEPEST) -> Unresolved:
+    """What the cells of some blocks may hide.
+
+    A cell is halved up to so many times, each part proved by the interval of f or by the mean value theorem (Moore
+    1966).
+    """
+    import numpy as np
+
+    count = -(-len(blocks) // BATCH)
+    found: list[tuple[Ints, Floats]] = [(np.zeros((0, 3), np.int32), np.zeros(0))] * (count + 1)
+
+    def work(batch: int) -> None:
+        r, mine = shop.room(), blocks[batch * BATCH : (batch + 1) * BATCH]
+        cells, rest = np.empty((len(mine) * BLOCK**3, 3), dtype=np.int32), np.empty(len(mine) * BLOCK**3)
+        n = hidden(
+            *shop.program, r.scratch, r.short, r.near, r.registers, r.points, r.values, r.stack,
+            shop.grid.numbers, mine, deepest, cells, rest,
+        )  # fmt: skip
+        found[batch] = cells[:n].copy(), rest[:n].copy()
+
+    over_tiles(count, work)
+    where, volumes = (np.concatenate(column) for column in zip(*found, strict=True))
+    return Unresolved(where, volumes, shop.grid)

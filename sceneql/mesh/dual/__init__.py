@@ -1,0 +1,1 @@
+"""Dual contouring: meshes that keep sharp edges and corners."""

@@ -1,0 +1,33 @@
+"""Quads around crossed edges, cut in two triangles each. Imports numpy and numba."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from sceneql.field.tape.tape_solid import field_values
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Ints, Tape
+
+
+def halved(tape: Tape, places: Floats, quads: Ints, ways: Ints) -> Ints:
+    """(2 n, 3) two triangles for each of the quads (n, 4), along the diagonal that folds neither of them over.
+
+    Both are to face outward along the edge that they go around, which goes so along the axis 1, 2 or 3, or against it,
+    by ``ways`` (n,): one diagonal is so where the corners lie in the four cells around the edge. Where both are, or
+    none, it is that whose middle is nearer to the surface: so it follows an edge of the solid where it can.
+    """
+    import numpy as np
+
+    corners = places[quads]
+    with np.errstate(all="ignore"):
+        off = [np.abs(field_values(tape, 0.5 * (corners[:, k] + corners[:, k + 2]))) for k in (0, 1)]
+    # Twice the areas of the four triangles that diagonals cut off, seen along the edge.
+    axes = np.abs(ways)
+    across = [np.take_along_axis(corners, ((axes + k) % 3)[:, None, None], axis=2)[:, :, 0] for k in (0, 1)]
+    x, y = (np.roll(seen, -1, axis=1) - seen for seen in across)
+    areas = (np.roll(x, 1, axis=1) * y - np.roll(y, 1, axis=1) * x) * np.sign(ways)[:, None]
+    outward = [(areas[:, k] >= 0.0) & (areas[:, k + 2] >= 0.0) for k in (1, 0)]
+    turned = np.where(outward[0] == outward[1], off[1] < off[0], outward[1])
+    turned_quads = np.where(turned[:, None], np.roll(quads, -1, axis=1), quads)
+    return np.stack([turned_quads[:, [0, 1, 2]], turned_quads[:, [0, 2, 3]]], axis=1).reshape(-1, 3)

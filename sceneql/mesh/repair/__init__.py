@@ -1,0 +1,1 @@
+"""Meshes put right: folded and self-intersecting triangles."""

@@ -1,0 +1,116 @@
+"""Triangles that face inward, put right by flips of edges. Imports numpy and numba."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from sceneql.field.tape.tape_solid import many_gradients
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats, Ints, Tape
+
+    Rows = NDArray[np.int64]
+
+ROUNDS = 8
+SLIVER = 1.0e-6
+"""Height of a triangle over its longest side, below which it has no direction."""
+
+
+def faced_outward(tape: Tape, places: Floats, triangles: Ints, doubtful: Rows) -> Ints:
+    """The triangles (t, 3) with edges flipped where one of the rows ``doubtful`` (n,) faces away from the gradient.
+
+    An edge of two triangles becomes the other diagonal of their four corners where both then face the gradient better
+    and that is no edge already: what is closed and 2-manifold stays so.
+    """
+    import numpy as np
+
+    found = triangles.astype(np.int64)
+    for _ in range(ROUNDS):
+        turned = doubtful[facing(tape, places[found[doubtful]]) < 0.0]
+        near = np.zeros(len(places), dtype=bool)
+        near[found[turned]] = True
+        around = np.flatnonzero(near[found].any(axis=1))
+        changed = _flipped(tape, places, found[around], np.searchsorted(around, turned))
+        if not changed:
+            break
+        for at, row in changed.items():
+            found[around[at]] = row
+        doubtful = np.union1d(turned, around[list(changed)])
+    return found.astype(np.int32)
+
+
+def facing(tape: Tape, corners: Floats) -> Floats:
+    """(t,) cosine of the angle between the normals of triangles (t, 3, 3) and the gradients in their middles.
+
+    0 where there is no gradient, and of a SLIVER, as along a sharp edge, whose normal is noise.
+    """
+    import numpy as np
+
+    a, b, c = (corners[:, k] for k in range(3))
+    normals, slopes = np.cross(b - a, c - a), many_gradients(tape, (a + b + c) / 3.0)
+    areas = np.linalg.norm(normals, axis=1)
+    sizes = areas * np.linalg.norm(slopes, axis=1)
+    longest = ((corners - np.roll(corners, 1, axis=1)) ** 2).sum(axis=2).max(axis=1)
+    dots = np.einsum("tj,tj->t", normals, slopes)
+    cosines: Floats = np.divide(dots, sizes, out=np.zeros_like(dots), where=(sizes > 0.0) & (areas > SLIVER * longest))
+    return cosines
+
+
+def _flipped(tape: Tape, places: Floats, triangles: Rows, turned: Rows) -> dict[int, tuple[int, int, int]]:
+    """New corners of some triangles (t, 3), by their rows: the flips of edges of those ``turned`` that gain the most.
+
+    All triangles at the corners of those must be there.
+    """
+    import numpy as np
+
+    # What is flipped, of all sides of the triangles turned: the third corners c and d of the two triangles at a side.
+    a, b, c = (np.roll(triangles[turned], -k, axis=1).ravel() for k in range(3))
+    at = np.repeat(turned, 3)
+    sides = Sides(triangles, len(places))
+    other = sides.owners(b, a)
+    paired = other >= 0
+    a, b, c, at, other = a[paired], b[paired], c[paired], at[paired], other[paired]
+    d = triangles[other].sum(axis=1) - a - b
+    free = (c != d) & (sides.owners(c, d) < 0) & (sides.owners(d, c) < 0)
+    a, b, c, d, at, other = a[free], b[free], c[free], d[free], at[free], other[free]
+    if not len(a):
+        return {}
+    old = triangles[np.stack([at, other], axis=1).ravel()]
+    new = np.stack([np.stack([c, a, d], axis=1), np.stack([d, b, c], axis=1)], axis=1).reshape(-1, 3)
+    least = [facing(tape, places[corners]).reshape(-1, 2).min(axis=1) for corners in (old, new)]
+    gains = least[1] - least[0]
+    changed: dict[int, tuple[int, int, int]] = {}
+    edges: set[frozenset[int]] = set()
+    best = np.argsort(-gains, kind="stable")
+    best = best[gains[best] > 0.0]
+    for rows, first, second in zip(
+        np.stack([at, other], axis=1)[best].tolist(), new[2 * best].tolist(), new[2 * best + 1].tolist(), strict=True
+    ):
+        edge = frozenset((first[0], first[2]))
+        if rows[0] not in changed and rows[1] not in changed and edge not in edges:
+            changed |= {rows[0]: tuple(first), rows[1]: tuple(second)}
+            edges.add(edge)
+    return changed
+
+
+class Sides:
+    """Triangles (t, 3) by their sides, each in the direction in which they go around."""
+
+    def __init__(self, triangles: Rows, vertices: int) -> None:
+        import numpy as np
+
+        keys = (triangles * vertices + np.roll(triangles, -1, axis=1)).ravel()
+        self._order, self._vertices = np.argsort(keys), vertices
+        self._ascending = keys[self._order]
+
+    def owners(self, first: Rows, last: Rows) -> Rows:
+        """(n,) the triangles with sides from vertices (n,) to others (n,); -1 where there is none."""
+        import numpy as np
+
+        keys = first * self._vertices + last
+        at = np.minimum(np.searchsorted(self._ascending, keys), len(self._ascending) - 1)
+        found: Rows = np.where(self._ascending[at] == keys, self._order[at] // 3, -1)
+        return found

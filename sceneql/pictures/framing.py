@@ -1,0 +1,143 @@
+"""Where a camera must stand so that a box fills its picture."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+from sceneql.kinds import Object, Ref, Value
+from sceneql.shapes.placement import apply
+from sceneql.shapes.solid import LARGEST, triple
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, View
+    from sceneql.kinds import Moment
+
+NEAREST = 1e-3
+"""Least distance [m] of a camera from what it is fitted to."""
+
+
+def axes_towards(back: Any, up: Any = (0.0, 1.0, 0.0)) -> Floats:
+    """(3, 3) rows right, up, back of a camera that looks along -back, with ``up`` upwards in the picture.
+
+    Where the camera looks along ``up``, another axis takes its place. Raises ValueError for a ``back`` of zero.
+    """
+    import numpy as np
+
+    b, u = np.asarray(back, dtype=float), np.asarray(up, dtype=float)
+    if np.abs([b, u]).max() > LARGEST:
+        raise ValueError(f"a camera stands within {LARGEST:g} m of what it looks at")
+    far = float(np.linalg.norm(b))
+    if not far > 0:
+        raise ValueError("a camera cannot look at its own position")
+    b = b / far
+    for candidate in (u, np.array([0.0, 0.0, -1.0]), np.array([0.0, 1.0, 0.0])):
+        right = np.cross(candidate, b)
+        if np.linalg.norm(right) > 1e-9 * np.linalg.norm(candidate):
+            break
+    right /= np.linalg.norm(right)
+    return np.array([right, np.cross(b, right), b])
+
+
+LONGEST, FINE = 12.0, 16.0
+"""How far back a follower remembers, in its lags, and how many places in one."""
+
+
+def corners(low: Any, high: Any) -> Floats:
+    """(8, 3) corners of a box."""
+    import numpy as np
+
+    return np.array(list(product(*zip(low, high, strict=True))), dtype=float)
+
+
+def bounds(moment: Moment, refs: Iterable[Ref] | None) -> tuple[Floats, Floats]:
+    """Low and high corner (3,) of what is to be framed over the whole film: the named parts, or all that is drawn."""
+    return moment.bounds([ref.name for ref in refs or ()])
+
+
+def fitted(points: Floats, axes: Floats, slopes: tuple[float, float], aim: Any = None) -> tuple[Floats, float]:
+    """Position (3,) and distance of the nearest camera that sees all points; exact, without iteration.
+
+    ``slopes``: half the picture's width and height at the distance 1, margins taken off. With ``aim`` (3,) the camera
+    looks at that point; else it moves sideways until the picture is filled best. For a coordinate p across, a depth b
+    towards the camera and a slope k, a point is seen from the distance D at the place s across if
+    |p - s| <= k (D - b): so D >= (max(p + k b) - min(p - k b))/(2 k), and s is the middle of what is left.
+    """
+    import numpy as np
+
+    center = np.asarray(aim, dtype=float) if aim is not None else (points.min(axis=0) + points.max(axis=0)) / 2
+    right, up, back = axes
+    depth = (points - center) @ back
+    distance, shift = float(depth.max()) + NEAREST, np.zeros(3)
+    sides = []
+    for axis, slope in ((right, slopes[0]), (up, slopes[1])):
+        p = (points - center) @ axis
+        if aim is not None:
+            distance = max(distance, float((depth + np.abs(p) / slope).max()))
+        else:
+            above, below = float((p + slope * depth).max()), float((p - slope * depth).min())
+            distance = max(distance, (above - below) / (2 * slope))
+            sides.append((axis, slope, above, below))
+    for axis, _, above, below in sides:
+        shift += (above + below) / 2 * axis
+    return center + shift + distance * back, distance
+
+
+def whereabouts(moment: Moment, ref: Ref) -> Any:
+    """(3,) place of a part in the world now: its position, the middle of its box, or the center of its masses."""
+    part: Any = moment.object(ref)
+    if isinstance(part, Object):
+        place = moment.place(ref.name)
+        position = getattr(part, "position", None)
+        if isinstance(position, Value):
+            return apply(place, moment.at(position))
+        low, high = part.extent(place, moment)
+        return (low + high) / 2
+    return moment.read(ref.name, "center" if "center" in part.gives else "position")
+
+
+@dataclass(frozen=True, slots=True)
+class Whereabouts:
+    """The place of a part, for what remembers it (kinds.moment.Seen)."""
+
+    ref: Ref
+
+    def at(self, moment: Moment) -> Any:
+        """(3,) now."""
+        return whereabouts(moment, self.ref)
+
+
+def behind(past: Sequence[tuple[float, Any]], now: float, place: Any, lag: float) -> Any:
+    """Where a follower is (3,) that at each time moves by (place - own)/lag a second, at the first place at the start.
+
+    The way (time [s], place) between is straight, and of that the solution is exact: the mean of the places so far
+    with the weight exp(-age/lag).
+    """
+    import numpy as np
+
+    times = np.array([*(time for time, _ in past), now])
+    places = np.array([*(where for _, where in past), place], dtype=float)
+    ages = (now - times) / lag
+    rest = np.exp(-ages)
+    lengths = np.maximum(ages[:-1] - ages[1:], 1e-300)
+    older = (rest[1:] - rest[:-1] * (1 + lengths)) / lengths
+    weights = np.zeros(len(times))
+    weights[:-1] += older
+    weights[1:] += rest[1:] - rest[:-1] - older
+    weights[0] += rest[0]
+    return weights @ places
+
+
+def seen_slopes(half_height: float, size: tuple[int, int], margin: float) -> tuple[float, float]:
+    """Half width and half height of the picture's inner part, at the distance 1."""
+    inner = half_height * (1 - margin)
+    return inner * size[0] / size[1], inner
+
+
+def view(origin: Any, axes: Floats, size: tuple[int, int], half_height: float, *, orthographic: bool = False) -> View:
+    """The view from a point (3,) [m]."""
+    from sceneql.frame import View
+
+    return View(triple(origin), axes, size, half_height, orthographic)

@@ -1,0 +1,137 @@
+"""Several pictures in one: boxes of rows, and runs of variants side by side."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
+
+from sceneql.failure import RunFailure
+from sceneql.kinds import EachVariant
+
+if TYPE_CHECKING:
+    from numpy import uint8
+    from numpy.typing import NDArray
+
+    from sceneql.graph import SimulationGraph
+    from sceneql.kinds.outputs import Row
+    from sceneql.run.run import Instant
+
+GAP = 0.008
+"""Between panels, in parts of the picture's height."""
+
+NAME, TOLD = 0.032, 0.024
+"""Heights of letters, in parts of the picture's height."""
+WARNING = (176, 40, 24)
+"""Ink of a failure."""
+
+Box = tuple[int, int, int, int]
+"""Left, top, width, height [pixels]."""
+
+
+def boxes(rows: Sequence[Row], variants: Sequence[str], size: tuple[int, int]) -> list[tuple[Any, Box]]:
+    """What stands in each panel (a variant's name, or the reference of a row) with its box."""
+    lines: list[tuple[Sequence[Any], float, int]] = []
+    for row in rows:
+        if isinstance(row, EachVariant):
+            columns = row.columns or _columns(len(variants))
+            for k in range(0, len(variants), columns):
+                lines.append((variants[k : k + columns], row.share, columns))
+        else:
+            lines.append((row, 1.0, len(row)))
+    gap = max(2, round(GAP * size[1]))
+    room = size[1] - gap * (len(lines) - 1)
+    total = sum(share for _, share, _ in lines)
+    found: list[tuple[Any, Box]] = []
+    done = 0.0
+    for k, (line, share, columns) in enumerate(lines):
+        top, bottom = (round(room * part / total) + k * gap for part in (done, done + share))
+        done += share
+        across = size[0] - gap * (columns - 1)
+        start = round(
+            (columns - len(line)) * (across / columns + gap) / 2
+        )  # the last line of a grid stands in its middle
+        for j, item in enumerate(line):
+            left, right = (round(across * part / columns) + j * gap for part in (j, j + 1))
+            found.append((item, (start + left, top, right - left, bottom - top)))
+    return found
+
+
+def _columns(count: int) -> int:
+    """Up to three stand side by side, more in a square."""
+    return max(1, count if count <= 3 else math.ceil(math.sqrt(count)))
+
+
+def page(size: tuple[int, int]) -> NDArray[uint8]:
+    """An empty picture (h, w, 3) of a size (width, height)."""
+    import numpy as np
+
+    from sceneql.pictures.lettering import LIGHT
+
+    return np.full((size[1], size[0], 3), LIGHT.paper, dtype=np.uint8)
+
+
+def label(pixels: NDArray[uint8], name: str, failure: RunFailure | None, scale: float) -> None:
+    """Write a variant's name on its panel (h, w, 3), and how it failed; ``scale`` times as high is the picture."""
+    from sceneql.pictures.lettering import Letterer
+
+    letters = Letterer(pixels, NAME * scale)
+    room = letters.em // 2
+    letters.line((room, room), name, 0.8)
+    letters.done()
+    if failure is not None:
+        letters = Letterer(pixels, TOLD * scale)
+        told = fitted(letters, f"failed at {failure.time:.3g} s: {failure.message}", letters.width - 3 * letters.em)
+        letters.line((room, letters.height), told, 0.9, WARNING)
+        letters.done()
+
+
+def fitted(letters: Any, text: str, room: float) -> str:
+    """As much of a text as is no wider [pixels]."""
+    short = text
+    while len(short) > 1 and letters.extent(short)[0] > room:
+        short = short[:-2].rstrip() + "…"
+    return short
+
+
+class Panel:
+    """A variant's run, as far as it goes: after a failure that the script allows, its last moment stays."""
+
+    def __init__(self, graph: SimulationGraph) -> None:
+        from sceneql.run.run import Run
+
+        self.graph = graph
+        self.run = Run(graph)
+        self.tools: Any = None
+        """What draws it."""
+        self.picture: Any = None
+        """Its latest picture (h, w, 3) uint8."""
+        self.failure: RunFailure | None = None
+        self._last: Instant | None = None
+
+    def at(self, time: float) -> Instant:
+        """The moment [s], or the last one before the failure. Raises RunFailure where the script does not allow it."""
+        if self.failure is None and (self._last is None or self._last.now < time):
+            try:
+                self._last = self.run.at(time)
+            except RunFailure as failure:
+                if not self.graph.may_fail:
+                    raise
+                self.failure = failure
+        if self._last is None:
+            self._last = self._before_failure()
+        return self._last
+
+    def _before_failure(self) -> Instant:
+        """The last frame of a film that goes as far. Raises RunFailure where there is none."""
+        from sceneql.run.run import Run
+
+        clock = self.graph.settings.clock
+        first, *more = clock.frames(clock.fps)
+        self.run = Run(self.graph)
+        last = self.run.at(first)
+        with suppress(RunFailure):
+            for time in more:
+                last = self.run.at(time)
+        return last

@@ -1,0 +1,201 @@
+"""A plot drawn into a picture: panel, axes, curves up to now with a dot at their end."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from sceneql.kinds.texts import SUPERSCRIPTS, shown_unit
+from sceneql.pictures.lettering import Letterer, Look, font
+from sceneql.pictures.plotting import Scale, scale_for, stroke, thousands
+from sceneql.quantities.units import parse_unit
+
+if TYPE_CHECKING:
+    from numpy import uint8
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats
+
+Color = tuple[int, int, int]
+
+FEW = 12
+"""Up to so many curves end in dots."""
+SHARE = 0.3
+"""A title below that is longer than this part of the panel has a line of its own."""
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """A quantity over another (n,), SI, at times (n,) [s]; it is drawn up to ``now`` [s]."""
+
+    name: str
+    times: Floats
+    across: Floats
+    values: Floats
+    color: Color
+    now: float
+
+    def drawn(self) -> tuple[Floats, Floats]:
+        """The part up to now, whose last point lies between two that are known."""
+        import numpy as np
+
+        count = int(np.searchsorted(self.times, self.now, side="right"))
+        x, y = self.across[:count], self.values[:count]
+        if 0 < count < len(self.times):
+            part = (self.now - self.times[count - 1]) / (self.times[count] - self.times[count - 1])
+            x = np.append(x, x[-1] + part * (self.across[count] - x[-1]))
+            y = np.append(y, y[-1] + part * (self.values[count] - y[-1]))
+        return x, y
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """What stands along one side of a plot. ``unit``: empty for plain numbers; ``limits`` in SI."""
+
+    title: str
+    unit: str
+    log: bool = False
+    limits: tuple[float, float] | None = None
+
+    def told(self, values: Any) -> Any:
+        """Values in the unit."""
+        unit = parse_unit(self.unit) if self.unit else None
+        return values if unit is None else (values - unit.offset) / unit.scale
+
+    def scale(self, values: Sequence[Any]) -> Scale:
+        """Its scale, in the unit."""
+        limits = None if self.limits is None else (self.told(self.limits[0]), self.told(self.limits[1]))
+        return scale_for([self.told(value) for value in values], self.log, limits)
+
+    def words(self, power: int) -> str:
+        """Title, unit and power of ten of the numbers."""
+        factor = "" if power == 0 else "10" + str(power).translate(SUPERSCRIPTS)
+        unit = " ".join(part for part in (factor, shown_unit(self.unit) if self.unit else "") if part)
+        return f"{self.title} [{unit}]" if unit and self.title else self.title or unit
+
+
+def draw_plot(
+    pixels: NDArray[uint8],
+    curves: Sequence[Curve],
+    up: Axis,
+    across: Axis,
+    opacity: float,
+    text: float,
+    look: Look,
+    named: bool,
+) -> None:
+    """Draw over all of a part of a picture (h, w, 3); ``named``: with the curves' names.
+
+    ``text``: height of letters in parts of that part's. Without room for letters there are curves alone.
+    """
+    letters = Letterer(pixels, text, look)
+    em, wide, high = letters.em, letters.width, letters.height
+    small = font(max(9, round(0.82 * em)))
+    pad = round(0.7 * em)
+    letters.panel((0, 0, wide - 1, high - 1), opacity)
+    y_scale, x_scale = up.scale([c.values for c in curves]), across.scale([c.across for c in curves])
+    y_power, x_power = thousands(y_scale), thousands(x_scale)
+    head, words = _head(letters, wide - 2 * pad, up.words(y_power), curves if named else ())
+    title = across.words(x_power)
+    length = letters.draw.textlength(title, font=small)
+    apart = length > SHARE * wide  # it has a line of its own
+    y0, y1 = pad + round(head), high - pad - round((2.35 if apart else 1.35) * em)
+    bare = y1 - y0 < 2 * em or wide < 8 * em
+    if bare:
+        y0, y1 = pad, max(high - pad, pad + 1)
+    marks = [] if bare else _scaled(y_scale, y_power).ticks(max(2, round((y1 - y0) / (2.2 * em))))
+    widest = max((letters.draw.textlength(word, font=small) for _, word in marks), default=0.0)
+    x0, x1 = pad + round(widest + 0.5 * em), wide - 1 - round(1.2 * em)
+    area = _Area(x0, y0, max(x1, x0 + 1), y1, x_scale, y_scale)
+
+    thin = max(1, round(em / 22))
+    if not bare:
+        for x, row, curve, word in words:
+            at = (pad + x, pad + row)
+            if curve is not None:
+                letters.draw.line(
+                    (at[0] - 1.4 * em, at[1], at[0] - 0.4 * em, at[1]), curve.color, max(2, round(em / 6))
+                )
+            letters.text(at, word)
+        for value in y_scale.between():
+            letters.draw.line((x0, area.y(value), x1, area.y(value)), look.fine, thin)
+        for value, word in marks:
+            y = float(area.y(value * 10.0**y_power))
+            letters.draw.line((x0, y, x1, y), look.lines, thin)
+            letters.draw.text((x0 - 0.45 * em, y), word, look.quiet, font=small, anchor="rm")
+        below, end = y1 + round(0.95 * em), x1 + 0.5 * em
+        letters.draw.text((end, below + (round(1.05 * em) if apart else 0)), title, look.ink, font=small, anchor="rm")
+        room = wide if apart else end - length - 0.8 * em
+        for value, word in _scaled(x_scale, x_power).ticks(max(2, round((x1 - x0) / (6 * em)))):
+            x = float(area.x(value * 10.0**x_power))
+            letters.draw.line((x, y0, x, y1), look.fine, thin)
+            if x + 0.5 * letters.draw.textlength(word, font=small) < room:
+                letters.draw.text((x, below), word, look.quiet, font=small, anchor="mm")
+    letters.draw.line((x0, y1, x1, y1), look.quiet, thin)
+    for curve in curves:
+        along, values = curve.drawn()
+        _draw_curve(letters, area, across.told(along), up.told(values), curve.color, dot=len(curves) <= FEW)
+    letters.done()
+
+
+@dataclass(frozen=True, slots=True)
+class _Area:
+    """The rectangle between the axes [pixels], and what it shows."""
+
+    x0: int
+    y0: int
+    x1: int
+    y1: int
+    across: Scale
+    up: Scale
+
+    def x(self, values: Any) -> Any:
+        """Columns of values."""
+        return self.x0 + self.across.place(values) * (self.x1 - self.x0)
+
+    def y(self, values: Any) -> Any:
+        """Rows of values."""
+        return self.y1 - self.up.place(values) * (self.y1 - self.y0)
+
+
+def _draw_curve(letters: Letterer, area: _Area, x: Floats, y: Floats, color: Color, *, dot: bool) -> None:
+    """A line, with a dot at its end."""
+    import numpy as np
+
+    reach = round(0.4 * letters.em)  # dots and thick lines go a little over the ends
+    corner = (area.x0 - reach, area.y0 - reach)
+    size = (area.x1 + reach - corner[0], area.y1 + reach - corner[1])
+    points = np.stack([area.x(x) - corner[0], area.y(y) - corner[1]], axis=1)
+    points[(points[:, 1] < -4 * size[1]) | (points[:, 1] > 5 * size[1])] = float("nan")
+    lines = [(points, max(1.4, letters.em / 9), color)]
+    if dot and len(points) and 0 <= points[-1][0] <= size[0] and 0 <= points[-1][1] <= size[1]:
+        lines += [(points[-1:], 0.62 * letters.em, letters.look.paper), (points[-1:], 0.42 * letters.em, color)]
+    for line, width, ink in lines:
+        drawn = stroke(size, line, width)
+        if drawn is not None:
+            mask, (left, top) = drawn
+            letters.stamp(ink, mask, (corner[0] + left, corner[1] + top))
+
+
+def _scaled(scale: Scale, power: int) -> Scale:
+    """The scale in units of a power of ten."""
+    return scale if power == 0 else Scale(scale.low / 10.0**power, scale.high / 10.0**power)
+
+
+def _head(
+    letters: Letterer, wide: int, title: str, curves: Sequence[Curve]
+) -> tuple[float, list[tuple[float, float, Curve | None, str]]]:
+    """Height of title and names, and where each stands: column and row of its left end, its curve, its words."""
+    em, at, row = letters.em, 0.0, 0.5 * letters.em
+    found: list[tuple[float, float, Curve | None, str]] = []
+    if title:
+        found.append((at, row, None, title))
+        at += letters.extent(title)[0] + 1.4 * em
+    for curve in curves:
+        length = 1.4 * em + letters.extent(curve.name)[0]
+        if at + length > wide and at > 0:
+            at, row = 0.0, row + 1.3 * em
+        found.append((at + 1.4 * em, row, curve, curve.name))
+        at += length + 1.2 * em
+    return row + (1.15 if found else 0.2) * em, found

@@ -1,0 +1,123 @@
+"""Axes of plots in pictures: limits, ticks, their texts, and soft strokes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from sceneql.kinds.texts import SUPERSCRIPTS
+from sceneql.pictures.lettering import round_numbers
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+
+FINE = 4
+"""Strokes are drawn so many times larger, and brought down by means."""
+SMALLEST = 1e-200
+"""The smallest number that a logarithmic axis is stretched for."""
+MORE = 4
+"""So many more ticks than fit well are asked for, to have three."""
+FEW_DECADES = 3
+"""Up to so many decades have ticks between their powers."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """One axis from low to high, linear or logarithmic."""
+
+    low: float
+    high: float
+    log: bool = False
+
+    def place(self, values: Any) -> Floats:
+        """Places of values, 0 at the low end and 1 at the high one; NaN for what a logarithm does not have."""
+        import numpy as np
+
+        values = np.asarray(values, dtype=float)
+        if not self.log:
+            return np.asarray((values - self.low) / (self.high - self.low))
+        with np.errstate(all="ignore"):
+            logs = np.where(values >= SMALLEST, np.log10(values), np.nan)
+        low, high = math.log10(self.low), math.log10(self.high)
+        return np.asarray((logs - low) / (high - low))
+
+    def ticks(self, count: int) -> list[tuple[float, str]]:
+        """About so many round numbers with their texts."""
+        if not self.log:
+            rows = (round_numbers(self.low, self.high, more) for more in range(count, count + MORE))
+            values = next((row for row in rows if len(row) > 2), round_numbers(self.low, self.high, count + MORE))
+            step = values[1] - values[0] if len(values) > 1 else abs(self.high - self.low)
+            digits = max(0, -math.floor(math.log10(step) + 1e-9))
+            return [(value, f"{value + 0.0:.{digits}f}".replace("-", "\u2212")) for value in values]
+        first, last = math.ceil(math.log10(self.low) - 1e-9), math.floor(math.log10(self.high) + 1e-9)
+        if last - first < 2:  # powers of ten alone would be too few
+            values = [m * 10.0**k for k in range(first - 1, last + 1) for m in (1, 2, 5)]
+            return [(v, f"{v:.6g}") for v in values if self.low * (1 - 1e-9) <= v <= self.high * (1 + 1e-9)]
+        every = math.ceil((last - first + 1) / count)
+        powers = range(last - (last - first) // every * every, last + 1, every)
+        return [(10.0**k, "10" + str(k).translate(SUPERSCRIPTS) if k not in (0, 1) else str(10**k)) for k in powers]
+
+    def between(self) -> list[float]:
+        """Values of the finer lines of a logarithmic axis."""
+        if not self.log or math.log10(self.high / self.low) > FEW_DECADES:
+            return []
+        powers = range(math.floor(math.log10(self.low)), math.ceil(math.log10(self.high)))
+        return [m * 10.0**k for k in powers for m in range(2, 10) if self.low < m * 10.0**k < self.high]
+
+
+def scale_for(values: Sequence[Any], log: bool, limits: tuple[float, float] | None) -> Scale:
+    """The axis that shows all of the finite values with some room, or just what the limits say."""
+    import numpy as np
+
+    if limits is not None:
+        return Scale(*limits, log)
+    known = np.concatenate([np.ravel(v) for v in values]) if len(values) else np.zeros(0)
+    known = known[np.isfinite(known) & ((known >= SMALLEST) | (not log))]
+    low, high = (float(known.min()), float(known.max())) if len(known) else (1.0, 1.0)
+    if log:
+        room = 10 ** max(0.06 * math.log10(high / low), 0.05)
+        return Scale(low / room, high * room, log)
+    room = 0.07 * (high - low) or 0.07 * abs(high) or 1.0
+    return Scale(low - room, high + room)
+
+
+def thousands(scale: Scale) -> int:
+    """The power of ten that the numbers beside a linear axis are told in: 0 where they are short enough as they are."""
+    most = max(abs(scale.low), abs(scale.high))
+    if scale.log or 1e-3 <= most < 1e5:
+        return 0
+    return 3 * math.floor(math.log10(most) / 3)
+
+
+def stroke(size: tuple[int, int], points: Floats, width: float) -> tuple[Any, tuple[int, int]] | None:
+    """A line through points (n, 2) [pixels] that breaks at NaN, with round ends, in an area of this size.
+
+    A mask (Pillow, 8 bits) and its left and top; None where nothing of it is inside.
+    """
+    import numpy as np
+    from PIL import Image, ImageDraw
+
+    known = np.isfinite(points).all(axis=1)
+    if not known.any():
+        return None
+    reach = 0.5 * width + 1
+    low = np.maximum(np.floor(points[known].min(axis=0) - reach), 0).astype(int)
+    high = np.minimum(np.ceil(points[known].max(axis=0) + reach), size).astype(int)
+    if (high <= low).any():
+        return None
+    left, top = (int(edge) for edge in low)
+    mask = Image.new("L", (int(high[0] - low[0]) * FINE, int(high[1] - low[1]) * FINE))
+    draw = ImageDraw.Draw(mask)
+    thick = max(1, round(width * FINE))
+    ends = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]]).astype(int)))
+    for first, last in ends.reshape(-1, 2):
+        # Far outside points are brought near, where Pillow's whole numbers hold them.
+        near = (np.clip(points[first:last], -4.0 * max(size), 5.0 * max(size)) - low) * FINE
+        places = [(float(x), float(y)) for x, y in near]
+        draw.line(places, fill=255, width=thick, joint="curve")
+        for x, y in (places[0], places[-1]):
+            half = 0.5 * thick
+            draw.ellipse((x - half, y - half, x + half, y + half), fill=255)
+    return mask.reduce(FINE), (left, top)

@@ -1,0 +1,52 @@
+"""How far the energy of an island drifts in time under each solver."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from sceneql.failure import RunFailure
+from sceneql.graph import Island, SimulationGraph
+from sceneql.kinds import Solver
+from sceneql.report.work_precision import LONGEST, prepared, setting_of
+
+if TYPE_CHECKING:
+    from sceneql.run.invariants import Invariant
+    from sceneql.run.watch import Balance
+
+MOMENTS = 200
+
+
+@dataclass(frozen=True, slots=True)
+class Drift:
+    """The energy of one run, relative to the largest of its kinetic energy and that of the start; else an invariant."""
+
+    island: str
+    solver: str
+    setting: float
+    """Step [s], or relative tolerance."""
+    times: tuple[float, ...]
+    changes: tuple[float, ...]
+    """(E(t) - E(0)) / scale."""
+
+
+def drift(graph: SimulationGraph, island: Island, word: str, solver: Solver) -> Drift | None:
+    """The drift up to the end, or to where the run fails; None where no model tells its energy or an invariant."""
+    from sceneql.run.run import Run
+    from sceneql.run.watch import Watch
+
+    run = Run(prepared(graph, island, solver))
+    watch = Watch(run, always=True)
+    conserved: list[Balance | Invariant] = [*watch.balances, *watch.invariants]
+    if not conserved:
+        return None
+    end = graph.settings.clock.end
+    try:
+        for moment in run.moments(end * k / MOMENTS for k in range(MOMENTS + 1)):
+            watch.look(moment)
+            if run.islands[0].march.statistics.seconds > LONGEST:
+                break
+    except RunFailure:
+        pass
+    first = conserved[0]
+    return Drift(", ".join(island.models), word, setting_of(solver), tuple(first.times), tuple(first.drifts))

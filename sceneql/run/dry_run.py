@@ -1,0 +1,135 @@
+"""A run ahead of the film's: how far all that is drawn reaches, and how values go over the whole run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.failure import RunFailure
+from sceneql.graph import SimulationGraph
+from sceneql.kinds import Camera, Overlay, Value
+from sceneql.quantities.expression import Call, Expr, Link, Symbol, Vector, children, each_once
+from sceneql.quantities.operations import OPERATIONS
+from sceneql.run.series import course
+from sceneql.shapes.world_boxes import box_of
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.run.run import Instant
+
+    Bounds = dict[str, tuple[Floats, Floats]]
+
+BOUNDS_EVERY = 12
+BOUNDS_STEPS = 48
+"""How often the run is looked at for what is drawn, and for values that often between."""
+
+
+@dataclass(frozen=True, slots=True)
+class Survey:
+    """What a run ahead has seen, up to its end or to where it fails."""
+
+    bounds: Bounds | None
+    """Low and high corner (3,) of each part over the run; None: not asked for."""
+    times: list[float]
+    rows: Mapping[int, Floats]
+    """(times, ...) of the pieces of what was asked for, by their identity."""
+
+    def course(self, expr: Expr, until: float) -> tuple[Floats, Floats]:
+        """Times (n,) [s] up to an instant, and an asked-for expression at each (n, ...)."""
+        count = max(1, int(np.searchsorted(self.times, until, side="right")))
+        series: dict[Symbol | Link, Any] = {}
+
+        def known(node: Expr) -> Expr:
+            if id(node) in self.rows:
+                symbol = Symbol(f"piece {id(node)}", node.type)
+                series[symbol] = self.rows[id(node)][:count]
+                return symbol
+            if isinstance(node, Call):
+                return replace(node, args=tuple(map(known, node.args)))
+            return replace(node, items=tuple(map(known, node.items))) if isinstance(node, Vector) else node
+
+        values = course(known(expr), series, self.times[:count])
+        one = np.shape(values)[np.ndim(values) - len(expr.type.shape) :]
+        return np.array(self.times[:count]), np.broadcast_to(values, (count, *one))
+
+
+def pieces(expr: Expr) -> Iterator[Expr]:
+    """The largest parts of an expression that have a value at each instant by themselves, numbers left out."""
+    calls = [OPERATIONS[node.op] for node in each_once(expr) if isinstance(node, Call)]
+    if not any(operation.series for operation in calls):
+        if any(isinstance(node, Symbol | Link) for node in each_once(expr)):
+            yield expr
+        return
+    for child in children(expr):
+        yield from pieces(child)
+
+
+def asked(graph: SimulationGraph) -> dict[tuple[str, int], Value]:
+    """The values whose course is asked for: by the part that asks and their number there."""
+    overlays = [(name, task.kind) for name, task in graph.tasks.items() if isinstance(task.kind, Overlay)]
+    return {(name, k): value for name, kind in overlays for k, value in enumerate(kind.courses())}
+
+
+def survey(graph: SimulationGraph, *, bounded: bool = True) -> Survey:
+    """Run a graph for what its cameras and overlays ask of the whole run.
+
+    Bounds are those of the start alone where the run fails, since what explodes fits into no picture. A part that asks
+    at the start for nothing that may change is looked at there alone.
+    """
+    from sceneql.run.run import Run
+
+    asked_for = {id(piece): Value(piece) for value in asked(graph).values() for piece in pieces(value.expr)}
+    rows: dict[int, list[Any]] = {key: [] for key in asked_for}
+    every = BOUNDS_EVERY if asked(graph) else 1
+    steps, end = BOUNDS_STEPS * every, graph.settings.clock.end
+    bounded = bounded or any(isinstance(t.kind, Camera) and t.kind.looks_ahead() for t in graph.tasks.values())
+    ahead = Run(graph)
+    start: Bounds = {}
+    now: Bounds = {}
+    changing: list[str] = []
+    times: list[float] = []
+    try:
+        for k, moment in enumerate(ahead.moments(end * k / steps for k in range(steps + 1))):
+            if bounded and k == 0:
+                for name in ahead.orders:
+                    moment.asked = False
+                    start = _widened(start, moment, [name])
+                    if moment.asked:
+                        changing.append(name)
+                now = start
+            elif bounded and k % every == 0:
+                now = _widened(now, moment, changing)
+            for key, piece in asked_for.items():
+                rows[key].append(moment.measure(piece))
+            times.append(moment.now)
+            if not changing and not every > 1:
+                break
+    except RunFailure:
+        if not times:
+            raise
+        now = start
+    count = len(times)
+    return Survey(now if bounded else None, times, {key: np.array(row[:count]) for key, row in rows.items()})
+
+
+def _widened(bounds: Bounds, moment: Instant, names: Iterable[str]) -> Bounds:
+    """Bounds that hold what some parts draw at a moment too."""
+    result = dict(bounds)
+    for name in names:
+        for shape in moment.lower([name]):
+            low, high = box_of(shape)
+            if np.isfinite(low).all() and np.isfinite(high).all():
+                for part in {name, *_around(shape.name, moment.run.holders)}:
+                    old = result.get(part, (low, high))
+                    result[part] = np.minimum(old[0], low), np.maximum(old[1], high)
+    return result
+
+
+def _around(name: str, holders: Mapping[str, str]) -> Iterator[str]:
+    """A part, and those that hold it, outwards."""
+    while name:
+        yield name
+        name = holders.get(name, "")

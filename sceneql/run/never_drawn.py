@@ -1,0 +1,65 @@
+"""Which solids and surfaces of a film had anything to draw, so that the film says what it never showed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from sceneql.kinds import Object
+from sceneql.quantities.diagnostic import Diagnostic
+
+if TYPE_CHECKING:
+    from sceneql.frame import Shape
+    from sceneql.graph import Task
+
+NO_SHAPE = "it was empty whenever it was drawn"
+
+
+def solids(names: Iterable[str], tasks: Mapping[str, Task]) -> Iterator[str]:
+    """Those of the named parts, and of what these draw, that are drawn by their fields, or by triangles of them."""
+    for name in names:
+        kind = tasks[name].kind
+        if not isinstance(kind, Object):
+            continue
+        if kind.traced or kind.unseen:
+            yield name
+        else:
+            yield from solids((ref.name for ref in kind.members() if not _hidden(tasks[ref.name])), tasks)
+
+
+def _hidden(task: Task) -> bool:
+    return isinstance(task.kind, Object) and task.kind.hidden
+
+
+def look(shapes: Sequence[Shape], asked: Iterable[str], tasks: Mapping[str, Task], present: dict[str, str]) -> None:
+    """Note of each solid by name why nothing of it was drawn, or "" where something may have been, now or before.
+
+    ``asked`` are the solids (as of ``solids``) that the shapes were made of.
+    """
+    from sceneql.frame import Implicit
+
+    shown = {shape.name for shape in shapes}
+    for name in asked:
+        if name not in shown:
+            kind = tasks[name].kind
+            present.setdefault(name, (isinstance(kind, Object) and kind.unseen) or NO_SHAPE)
+    for shape in shapes:
+        if not isinstance(shape, Implicit):
+            if shape.name in present:
+                present[shape.name] = ""
+        elif present.get(shape.name, "new"):
+            from sceneql.field.tape.emptiness import nowhere_finite, proved_empty, proved_rootless
+
+            proved, found = (proved_empty, "negative") if shape.within is None else (proved_rootless, "zero")
+            if not proved(shape.tape, shape.low, shape.high):
+                found = "finite" if nowhere_finite(shape.tape, shape.low, shape.high) else ""
+            present[shape.name] = found and f"its field is nowhere {found} in its bounds"
+
+
+def missing(present: Mapping[str, str], tasks: Mapping[str, Task]) -> tuple[Diagnostic, ...]:
+    """A warning for each solid of which nothing was drawn at any moment."""
+    return tuple(
+        Diagnostic("empty-solid", f"nothing of '{name}' was ever there: {why}", tasks[name].span, severity="warning")
+        for name, why in present.items()
+        if why
+    )

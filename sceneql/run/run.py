@@ -1,0 +1,361 @@
+"""Graph to moments: the islands march, and the moments asked for are read off, in one pass."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from sceneql.failure import LimitRefused, RunFailure, failing_as
+from sceneql.graph import Island, SimulationGraph
+from sceneql.kinds import Contact, Force, Material, Model, Object, Ref, Solver, Value
+from sceneql.quantities.diagnostic import Diagnostics, ScriptError
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Expr, Link, Symbol
+from sceneql.run.dry_run import Survey, asked, survey
+from sceneql.run.history import History
+from sceneql.run.ranges import ranged
+from sceneql.shapes.color import default_color, linear
+from sceneql.shapes.placement import Placed, compose
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Surface
+    from sceneql.frame import Shape as Drawn
+    from sceneql.kinds.moment import Remembered
+    from sceneql.march.march import March
+    from sceneql.system import ModelState
+
+IDENTITY = np.eye(3, 4)
+
+
+class Run:
+    """One run of a graph. ``moments`` may be called once; its moments are valid until the next one is asked for.
+
+    Raises ScriptError with all that keeps its islands from being built. Without ``marching`` there are none.
+    """
+
+    def __init__(self, graph: SimulationGraph, *, marching: bool = True) -> None:
+        self.graph = graph
+        found = Diagnostics()
+        islands = graph.islands if marching else ()
+        self.islands = [run for island in islands if (run := _built(graph, island, found)) is not None]
+        found.raise_errors()
+        self.island_of = {name: run for run in self.islands for name in run.members}
+        self.orders = _orders(graph)
+        self.palette = _palette(graph)
+        self.holders = _holders(graph)
+        self.history = History(graph)
+        self._ranged = ranged(graph, islands)
+        self._surveys: dict[str | None, Survey] = {}
+
+    def moments(self, times: Iterable[float]) -> Iterator[Instant]:
+        """The instants [s] asked for, in order; times do not decrease. Raises RunFailure."""
+        return map(self.at, times)
+
+    def at(self, time: float) -> Instant:
+        """The next instant [s]; times do not decrease. Raises RunFailure."""
+        for before, keys in self.history.due(time):
+            self.history.see(self._moment(before), keys)
+        return self._moment(time)
+
+    def _moment(self, time: float) -> Instant:
+        for island in self.islands:
+            island.advance(time)
+        moment = Instant(self, time)
+        for one in self._ranged:
+            one.check(moment)
+        return moment
+
+    def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
+        """Low and high corner (3,) of what the parts draw over the whole run, found by a run ahead of its own."""
+        if None not in self._surveys or self._surveys[None].bounds is None:
+            self._surveys[None] = survey(self.graph)
+        known = self._surveys[None].bounds or {}
+        corners = [known[name] for name in names if name in known]
+        if not corners:
+            return np.full(3, -1.0), np.full(3, 1.0)
+        lows, highs = np.array([low for low, _ in corners]), np.array([high for _, high in corners])
+        return lows.min(axis=0), highs.max(axis=0)
+
+    def course(self, value: Value, variant: str | None, until: float) -> tuple[Floats, Floats]:
+        """Times (n,) [s] and an asked-for value at each (n, ...), up to an instant, in a variant of the script."""
+        ahead, mine = self._survey(variant), value
+        if variant is not None:
+            key = next(key for key, one in asked(self.graph).items() if one is value)
+            mine = asked(self.graph.variant(variant))[key]
+        return ahead.course(mine.expr, until)
+
+    def _survey(self, variant: str | None) -> Survey:
+        """What a run ahead of the script, or of a variant of it, sees."""
+        if variant not in self._surveys:
+            graph = self.graph if variant is None else self.graph.variant(variant)
+            self._surveys[variant] = survey(graph, bounded=False)
+        return self._surveys[variant]
+
+
+class IslandRun:
+    """An island on its way: its assembly, its march and its latest state."""
+
+    def __init__(self, graph: SimulationGraph, island: Island) -> None:
+        from sceneql.compiled.compile_beside import compile_ahead
+        from sceneql.compiled.numba import lazy_kernels
+        from sceneql.island.jacobian import BY_DIFFERENCES
+        from sceneql.linear.stage import likely_kernels
+        from sceneql.march.assembled import blocks_of, models_of
+        from sceneql.march.driver import driver, function, jacobian, late_first, modules
+
+        compile_ahead(("sceneql.march.march_kernels",))  # while the models are made here
+        self.graph, self.island = graph, island
+        self.solver = cast(Solver, graph.tasks[island.solver].kind)
+        made = models_of(graph, island)
+        self.bodies = made.bodies
+        self.assembly = assembly = made.assembly
+        assembly.places = self._places
+        if not assembly.fields:  # then the solver's step is known before what acts is made
+            compile_ahead((self.solver.stepper().step.partition(":")[0],))
+        made.act()
+        made.found.raise_errors()
+        if assembly.only_field is not None:
+            self.solver = self.solver.on_grid(assembly.only_field, assembly.numbers)
+        stepper, end = self.solver.stepper(), graph.settings.clock.end
+        if assembly.only_field is not None and stepper.on_grid is not None:
+            from sceneql.grids import prepare_stages as on_grid
+            from sceneql.grids.grid_or_general import suited
+
+            stepper = suited(stepper, assembly.only_field)
+            compile_ahead(on_grid.likely_kernels(stepper, assembly.only_field))
+        # Few masses under error control are followed from impact to impact.
+        within = stepper.newton and (not stepper.adaptive or len(assembly.start()) > BY_DIFFERENCES)
+        system = assembly.finish(stepper.jacobian, within)
+        events = ("sceneql.march.events_kernels",) if system.pairs else ()
+        likely = likely_kernels if stepper.likely is None else function(stepper.likely)
+        solving = (stepper.step.partition(":")[0], *likely(system))
+        read = stepper.jacobian or not system.structure.local
+        dense = (stepper.dense.partition(":")[0],) if stepper.dense is not None and read else ()
+        acting = compile_ahead((*solving, *modules(system.structure), *events, *dense))
+        acting(*solving)
+        compile_ahead(late_first(system.structure))
+        if stepper.march is None:  # while the process beside compiles what solves
+            driver(system.structure)
+            if stepper.jacobian:
+                jacobian(system)
+        acting()
+        from sceneql.march.march import March
+
+        compile_ahead(lazy_kernels.modules())  # nobody waits for what may never be called
+        blocks = blocks_of(made, system, stepper)
+        self.march: March
+        try:
+            if stepper.march is not None:
+                self.march = function(stepper.march)(system, stepper, end)
+            elif blocks:
+                from sceneql.march.march_blocks import BlockMarch
+
+                self.march = BlockMarch(system, stepper, end, blocks)
+            else:
+                later = None if stepper.jacobian else lambda: assembly.finish(jacobian=True)
+                self.march = March(system, stepper, end, later)
+        except LimitRefused as refused:
+            raise refused.at(graph.tasks[island.solver].span) from None
+        self.members = {*island.models, *(contact for contact, _, _ in island.contacts)}
+        self._now: tuple[float, Floats, Floats] | None = None
+
+    def _places(self, link: Link) -> Any:
+        """Where in the state an output of one of the models stands, for values that read it at stage times."""
+        from sceneql.island.inputs import places
+        from sceneql.system import ModelState
+
+        kind = cast(Model, self.graph.tasks[link.task].kind)
+        bodies, ints = self.bodies.get(link.task), self.assembly.remembered(link.task)
+        floats = self.assembly.numbers()
+
+        def read(y: Floats) -> Any:
+            return kind.read(link.output, ModelState(0.0, y, y, floats, bodies, ints))
+
+        return places(read, len(self.assembly.start()))
+
+    def advance(self, time: float) -> None:
+        """March to an instant [s]."""
+        y, rate = self.march.advance(time)
+        self._now = (time, y, rate)
+
+    @property
+    def y(self) -> Floats:
+        """Its state at the latest instant."""
+        if self._now is None:
+            raise RuntimeError("the island has not been marched yet")
+        return self._now[1]
+
+    def state(self, name: str) -> ModelState:
+        """The view of a model or contact."""
+        from dataclasses import replace
+
+        from sceneql.system import ModelState
+
+        if self._now is None:
+            raise RuntimeError("the island has not been marched yet")
+        time, y, rate = self._now
+        floats = self.march.floats_at(time, y)
+        bodies = self.bodies.get(name)
+        if name not in self.bodies:
+            memory, ints = self.march.memory(name, self.assembly, time, y)
+            return ModelState(time, y, rate, memory, None, ints)
+        state = ModelState(time, y, rate, floats, bodies, self.assembly.remembered(name))
+        if bodies is None:
+            return state
+        potential = 0.0
+        for force, model in self.island.forces:
+            if model == name:
+                kind = cast(Force, self.graph.tasks[force].kind)
+                view = replace(state, ints=self.assembly.remembered(force, None if kind.mutual else model))
+                potential += kind.potential(bodies, view)
+        return replace(state, potential=potential)
+
+
+def _built(graph: SimulationGraph, island: Island, found: Diagnostics) -> IslandRun | None:
+    try:
+        return IslandRun(graph, island)
+    except ScriptError as error:
+        found.extend(error.diagnostics)
+        return None
+
+
+@dataclass
+class Instant:
+    """One instant of a run (kinds.Moment)."""
+
+    run: Run
+    now: float
+    """[s]"""
+    asked: bool = False
+    """Whether it was asked for what may be otherwise at another instant."""
+    _states: dict[str, ModelState] = field(default_factory=dict)
+
+    @property
+    def time(self) -> float:
+        """[s]"""
+        self.asked = True
+        return self.now
+
+    @property
+    def end(self) -> float:
+        """When the run ends [s]."""
+        return self.run.graph.settings.clock.end
+
+    @property
+    def variants(self) -> tuple[str, ...]:
+        """The names of the script's variants."""
+        return self.run.graph.variants
+
+    def at(self, value: Value) -> Any:
+        """The value now: float or float64 array, SI. Raises RunFailure if it is not finite."""
+        now = self._evaluate(value.expr)
+        if not np.isfinite(now).all():
+            raise RunFailure("a value is not finite now", part="", time=self.now, span=value.span)
+        return now
+
+    def measure(self, value: Value) -> Any:
+        """The value now, finite or not."""
+        return self._evaluate(value.expr)
+
+    def _evaluate(self, expr: Expr) -> Any:
+        return evaluate(expr, self._look_up, arrays=True)
+
+    def _look_up(self, node: Symbol | Link) -> Any:
+        if isinstance(node, Symbol):
+            if node.name == "time":
+                return self.time
+            raise KeyError(node.name)
+        return self.read(node.task, node.output)
+
+    def past(self, value: Remembered) -> list[tuple[float, Any]]:
+        """(time [s], value) at the instants before that a part asked for, oldest first."""
+        return self.run.history.past(value, self.time)
+
+    def course(self, value: Value, variant: str | None = None, until: float = math.inf) -> tuple[Floats, Floats]:
+        """Times (n,) [s] and a value that an overlay asked for at each of them (n, ...)."""
+        return self.run.course(value, variant, until)
+
+    def read(self, task: str, output: str) -> Any:
+        """An output of a part now."""
+        kind = self.run.graph.tasks[task].kind
+        if isinstance(kind, Model) and kind.kinematic:
+            return self._evaluate(kind.formula(output))
+        if isinstance(kind, Model | Contact):
+            return kind.read(output, self.state(task))
+        if isinstance(kind, Object) and output in kind.gives:
+            return kind.read(output, self)
+        return self._evaluate(getattr(kind, output).expr)
+
+    def state(self, name: str) -> ModelState:
+        """The state of a dynamic model or contact now."""
+        self.asked = True
+        if name not in self._states:
+            self._states[name] = self.run.island_of[name].state(name)
+        return self._states[name]
+
+    def object(self, ref: Ref) -> Object:
+        """The kind of an object."""
+        return cast(Object, self.run.graph.tasks[ref.name].kind)
+
+    def surface(self, name: str, material: Ref | None, color: Value | None) -> Surface:
+        """The surface of a drawn part: its material's, its color in place of that, a default by order."""
+        from sceneql.frame import Surface
+
+        own = None if color is None else linear(self.at(color))
+        if material is None:
+            return Surface(color=own or default_color(self.run.palette.get(name, 0)), roughness=0.35)
+        kind = cast(Material, self.run.graph.tasks[material.name].kind)
+        return kind.surface(self, own)
+
+    def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
+        """Low and high corner (3,) of what the parts draw over the whole film; of all that is drawn for no names."""
+        return self.run.bounds(list(names) or list(self.run.orders))
+
+    def place(self, name: str) -> Floats:
+        """(3, 4) map to the world from the coordinates that an object's position is told in."""
+        holder = self.run.holders.get(name)
+        if holder is None:
+            return IDENTITY
+        kind = self.run.graph.tasks[holder].kind
+        return compose(self.place(holder), kind.local(self)) if isinstance(kind, Placed) else self.place(holder)
+
+    def lower(self, names: Iterable[str]) -> list[Drawn]:
+        """The shapes of the named objects and models."""
+        shapes: list[Drawn] = []
+        for name in names:
+            task = self.run.graph.tasks[name]
+            with failing_as(name, self.now, task.span):
+                if isinstance(task.kind, Object):
+                    shapes += task.kind.lower(name, IDENTITY, self)
+                elif isinstance(task.kind, Model):
+                    shapes += task.kind.lower(name, self.state(name), self)
+        return shapes
+
+    @cached_property
+    def everything(self) -> list[str]:
+        """All that any picture draws, in order."""
+        return list(self.run.orders)
+
+
+def _orders(graph: SimulationGraph) -> dict[str, int]:
+    """All that any picture draws, in order."""
+    return {name: k for k, name in enumerate(dict.fromkeys(name for drawn in graph.drawn.values() for name in drawn))}
+
+
+def _holders(graph: SimulationGraph) -> dict[str, str]:
+    """For every object inside another the one that draws it (the first of several)."""
+    holders: dict[str, str] = {}
+    for name, task in graph.tasks.items():
+        for ref in task.kind.members() if isinstance(task.kind, Object) else ():
+            holders.setdefault(ref.name, name)
+    return holders
+
+
+def _palette(graph: SimulationGraph) -> dict[str, int]:
+    """For every object and model its place in the row of default colors, whatever is pruned: by the script's order."""
+    return {name: k for k, name in enumerate(graph.palette)}

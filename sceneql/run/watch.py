@@ -1,0 +1,247 @@
+"""Energy, momentum and stretch of what runs, looked at between frames: what is conserved, and what runs away."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from sceneql.grids.extremes import watched
+from sceneql.grids.ringing import ringing
+from sceneql.island.breakpoints import MOST
+from sceneql.kinds import Force, Model
+from sceneql.quantities.diagnostic import Diagnostic
+from sceneql.run.invariants import invariants_of
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.run.run import Instant, IslandRun, Run
+
+COST, AT_LEAST = 0.008, 0.005
+"""Part of the time of the run that looking may take, and seconds that it may take in any case."""
+MOST_STATES = 20_000
+"""Of an island that is looked at from the start to the end in any case; a larger one when the run can afford it."""
+FIRST = 4e-7
+"""Seconds that the first look takes for each number of the state, at most; the next are foretold by the last."""
+MOST_PAIRED = 256
+"""Bodies of one with forces between all of them."""
+GAINED = 0.5
+"""Energy gained, as a part of the largest kinetic energy, that is warned of."""
+OVERSTRETCHED = 4.0
+"""(L - L0)/L0 of a spring that is warned of, unless half of it was there at the start."""
+
+
+@dataclass
+class Balance:
+    """What has been seen of an island's energy and momentum."""
+
+    island: IslandRun
+    models: tuple[str, ...]
+    """Those that tell an energy."""
+    times: list[float] = field(default_factory=list)
+    energies: list[float] = field(default_factory=list)
+    """[J]"""
+    kinetic: float = 0.0
+    """Largest so far [J]."""
+    momentum: float = 0.0
+    """Largest change so far [kg m/s]."""
+    impulse: float = 0.0
+    """Largest sum of the magnitudes of the masses' momenta [kg m/s]."""
+    cost: float = 0.0
+    """Seconds that a look must be afforded; 0 of what is looked at in any case."""
+    stretch: dict[str, tuple[float, float]] = field(default_factory=dict)
+    """Of each model's springs, the largest (L - L0)/L0 at the start and of all times."""
+    at_start: Floats | None = None
+    """Momentum at the start."""
+
+    @property
+    def drifts(self) -> list[float]:
+        """Change of energy since the start at each time, relative to the largest of kinetic energy and the start's."""
+        if not self.energies:
+            return []
+        scale = max(self.kinetic, abs(self.energies[0])) or 1.0
+        return [(energy - self.energies[0]) / scale for energy in self.energies]
+
+    @property
+    def isolated(self) -> bool:
+        """Whether nothing outside acts, so that momentum is conserved."""
+        island = self.island.island
+        free = all(
+            bodies is None or (self.island.march.floats[bodies.inverse_at : bodies.inverse_at + bodies.count] > 0).all()
+            for bodies in self.island.bodies.values()
+        )
+        tasks = self.island.graph.tasks
+        forces = [cast(Force, tasks[force].kind) for force, _ in island.forces]
+        within = all(force.internal() and {*(force.targets() or ())} <= {*island.models} for force in forces)
+        return free and within and not any(objects for _, _, objects in island.contacts)
+
+    @property
+    def closed(self) -> bool:
+        """Whether energy is conserved: forces tell a potential or count their work, so only values in time drive, and
+        births and deaths."""
+        lasting = all(cast(Model, self.island.graph.tasks[name].kind).lasts() for name in self.models)
+        return lasting and not self.island.march.system.structure.varying
+
+
+class Watch:
+    """Looks at a run's moments, as often as it may; ``always``: at each, of islands of any size."""
+
+    def __init__(self, run: Run, *, always: bool = False) -> None:
+        self.always = always
+        islands = [island for island in run.islands if always or _alone(island)]
+        self.balances = [
+            Balance(island, models, cost=0.0 if always else _foretold(island))
+            for island in islands
+            if (models := _telling(island))
+        ]
+        self.invariants = [one for island in islands for one in invariants_of(island)]
+        self._ringing = [found for island in run.islands if (found := ringing(island)) is not None]
+        self._fields = [(island, fields) for island in run.islands if (fields := watched(island))]
+        self._islands = run.islands
+        self._turning = [span for island in run.islands if _adaptive(island) for span in island.assembly.turns.beyond]
+        self._started, self._spent = time.perf_counter(), 0.0
+
+    def look(self, moment: Instant, *, last: bool = False) -> None:
+        """Note energies and momenta at a moment, unless looking has taken its part of the time.
+
+        The start is noted of all, as what is gained is gained over it; the last moment of all but the largest.
+        """
+        started = time.perf_counter()
+        free = self.always or last or self._spent < AT_LEAST + COST * (started - self._started)
+        for balance in self.balances:
+            if balance.cost > 0.0:
+                begun = time.perf_counter()
+                if not balance.times or self._spent + balance.cost < COST * (begun - self._started):
+                    _note(balance, moment)
+                    balance.cost = time.perf_counter() - begun or balance.cost
+            elif free or not balance.times:
+                _note(balance, moment)
+        for one in self.invariants if free else ():
+            one.look(moment)
+        for island, fields in self._fields if free else ():
+            for extremes in fields:
+                extremes.look(moment.time, island.y)
+        self._spent += time.perf_counter() - started
+
+    def warnings(self) -> tuple[Diagnostic, ...]:
+        """Energy that came from nowhere, springs beyond what springs can do, fields that ring or run over, switches."""
+        found = list(self._ringing)
+        for span in self._turning:
+            message = f"this turns more than {MOST:,} times in the run: steps that a tolerance chooses go over some"
+            help = "choose a solver of given steps, or bound its `largest_step`"
+            found.append(Diagnostic("many-turns", message, span, help, severity="warning"))
+        found += [warning for island in self._islands if (warning := _halved(island)) is not None]
+        for island, fields in self._fields:
+            for extremes in fields:
+                found += extremes.warnings(island)
+        for one in self.invariants:
+            found += one.warnings()
+        for balance in self.balances:
+            tasks, title = balance.island.graph.tasks, ", ".join(balance.models)
+            span = tasks[balance.models[0]].span
+            gained = max(balance.drifts, default=0.0)
+            if balance.closed and gained > GAINED:
+                at = balance.times[int(np.argmax(balance.drifts))]
+                message = (
+                    f"the energy of {title} has grown from {balance.energies[0]:.3g} J to {max(balance.energies):.3g} J"
+                    f" at {at:.4g} s, more than its forces can give"
+                )
+                help = "the step is too large: see `explain` for its bound"
+                found.append(Diagnostic("energy-gained", message, span, help, severity="warning"))
+            found += [
+                Diagnostic(
+                    "over-stretched",
+                    f"a spring of '{name}' was stretched by {stretch:.3g} times its length at rest",
+                    tasks[name].span,
+                    severity="warning",
+                )
+                for name, (first, stretch) in balance.stretch.items()
+                if stretch > max(OVERSTRETCHED, 2.0 * first)
+            ]
+        return tuple(found)
+
+    def account(self) -> list[str]:
+        """A line for each island that tells an energy: its drift, and that of momentum where that is conserved; and for
+        each invariant of equations.
+        """
+        lines = [one.account() for one in self.invariants if one.times]
+        for balance in self.balances:
+            drifts = balance.drifts
+            if not drifts:
+                continue
+            largest = max(drifts, key=abs)
+            line = f"{', '.join(balance.models)}: energy {balance.energies[-1]:.6g} J"
+            line += f", drift {drifts[-1]:.2e} at the end, {largest:.2e} at most"
+            if not balance.closed:
+                line += " (it is driven)"
+            if balance.isolated and balance.impulse > 0:
+                line += f"; momentum drift {balance.momentum / balance.impulse:.2e}"
+            lines.append(line)
+        return lines
+
+
+def _alone(island: IslandRun) -> bool:
+    """Whether no energies of very many pairs are to be summed, which takes as long as their forces."""
+    forces = (cast(Force, island.graph.tasks[force].kind) for force, _ in island.island.forces)
+    bodies = sum(0 if one is None else one.count for one in island.bodies.values())
+    return bodies <= MOST_PAIRED or not any(force.mutual for force in forces)
+
+
+def _foretold(island: IslandRun) -> float:
+    """Seconds that a first look takes; 0 where they do not matter."""
+    states = len(island.march.system.y)
+    return FIRST * states if states > MOST_STATES else 0.0
+
+
+def _adaptive(island: IslandRun) -> bool:
+    """Whether a tolerance chooses its steps."""
+    return island.solver.stepper().adaptive
+
+
+def _halved(island: IslandRun) -> Diagnostic | None:
+    """What is told of a solver that was given one length of step and took shorter ones where it found no solution."""
+    stepper, tries = island.solver.stepper(), island.march.statistics.rejected
+    if not stepper.halves or tries == 0:
+        return None
+    times = "once" if tries == 1 else f"{tries:,} times"
+    message = f"Newton's method found no solution {times}: steps of {stepper.first_step:.4g} s were halved there"
+    span = island.graph.tasks[island.island.solver].span
+    return Diagnostic("steps-halved", message, span, "shorter steps are more exact there", severity="warning")
+
+
+def _telling(island: IslandRun) -> tuple[str, ...]:
+    """Models of an island that tell their energy."""
+    kinds = {name: cast(Model, island.graph.tasks[name].kind) for name in island.island.models}
+    return tuple(name for name, kind in kinds.items() if {"energy", "kinetic"} <= set(type(kind).gives))
+
+
+def _note(balance: Balance, moment: Instant) -> None:
+    read = moment.read
+    balance.times.append(moment.time)
+    balance.energies.append(sum(float(read(name, "energy")) for name in balance.models))
+    balance.kinetic = max(balance.kinetic, sum(float(read(name, "kinetic")) for name in balance.models))
+    if balance.isolated:
+        total = sum(read(name, "momentum") for name in balance.models)
+        if balance.at_start is None:
+            balance.at_start = np.asarray(total)
+        balance.momentum = max(balance.momentum, float(np.linalg.norm(total - balance.at_start)))
+        balance.impulse = max(balance.impulse, _impulse(balance, moment))
+    for name in balance.models:
+        if "stretch" in type(balance.island.graph.tasks[name].kind).gives:
+            now = float(read(name, "stretch"))
+            first, most = balance.stretch.get(name, (now, now))
+            balance.stretch[name] = first, max(most, now)
+
+
+def _impulse(balance: Balance, moment: Instant) -> float:
+    """Sum of mass times speed."""
+    from sceneql.bodies.bodies import masses, velocities
+
+    total = 0.0
+    for name in balance.models:
+        state = moment.state(name)
+        if state.bodies is not None:
+            total += float(masses(state.bodies, state) @ np.linalg.norm(velocities(state.bodies, state), axis=1))
+    return total

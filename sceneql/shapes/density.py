@@ -1,0 +1,48 @@
+"""How far the surface of a density field can lie from its skeleton parts."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sceneql.field.skeleton.skeleton import Skeleton
+    from sceneql.frame import Floats
+
+PAIRWISE_LIMIT = 2000
+"""Above this number of parts, neighbors are not told apart."""
+
+
+def reaches(skeleton: Skeleton, threshold: float) -> Floats:
+    """(p,) distance [m] from each part within which, taken together, the solid {density >= threshold} lies; 0 for none.
+
+    At a point of the solid let part i give the most. Of the parts that reach there, N_i at most, each gives no more,
+    so w_i K(d_i/R_i) >= c/N_i, which bounds d_i since the kernel K falls. N_i counts the parts of weight above 0 that
+    come within R_j of where part i can give the most; a second round uses the distances of the first.
+    """
+    import numpy as np
+
+    from sceneql.field.skeleton.skeleton import farthest
+
+    radii, weights = skeleton.largest, skeleton.weights
+    giving = weights > 0
+    gaps = _gaps(skeleton.corners) if len(radii) <= PAIRWISE_LIMIT else None
+    reach = np.where(giving, radii, 0.0)
+    for _ in range(2):
+        if gaps is None:
+            count = np.full(len(radii), np.count_nonzero(giving))
+        else:
+            count = np.count_nonzero((gaps < reach[:, None] + radii) & giving, axis=1)
+        with np.errstate(over="ignore"):  # a weight next to nothing reaches nowhere
+            share = np.divide(threshold, count * weights, out=np.ones(len(radii)), where=giving & (count > 0))
+        reach = radii * farthest(skeleton.kernel, share)
+    return reach
+
+
+def _gaps(corners: Floats) -> Floats:
+    """(p, p) distances between the boxes around the parts' corners: no more than those between the parts."""
+    import numpy as np
+
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    apart = np.maximum(low[:, None] - high, low - high[:, None])
+    distances: Floats = np.linalg.norm(np.maximum(apart, 0.0), axis=2)
+    return distances

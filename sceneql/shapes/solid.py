@@ -1,0 +1,185 @@
+"""Solids: objects that are known by an implicit field, negative inside; how they are drawn and measured."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from sceneql.kinds import Gives, quantity_type
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.expression import Type
+from sceneql.shapes.placement import Placed, compose, inverse, mapped_box
+
+if TYPE_CHECKING:
+    from sceneql import frame
+    from sceneql.frame import Floats, Surface
+    from sceneql.kinds import FieldBuilder, Moment, Object
+
+INFINITY = float("inf")
+LARGEST, SMALLEST = 1e100, 1e-100
+"""[m] Of solids that can be drawn: the products of a few of their lengths are numbers, and no zeros."""
+MARGIN = 1e-6
+"""By how much the box around a traced field is larger than the solid, in parts of its size."""
+CELLS = 96
+"""Along the longest side of its box, where a solid is measured."""
+MEASURES: Mapping[str, Gives] = {
+    "pieces": Gives(Type(), f"Of how many closed surfaces it is, by marching cubes with {CELLS} cells along it."),
+    "volume": Gives(quantity_type(dim.VOLUME), "What they hold, likewise, but curved between the vertices."),
+}
+
+
+class Solid(Placed):
+    """An object with a field in its own coordinates."""
+
+    gives: ClassVar[Mapping[str, Gives]] = MEASURES
+
+    @property
+    def traced(self) -> str:
+        """A field of its own."""
+        return "formula"
+
+    def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
+        """Register of its field, negative inside; (x, y, z) are registers of a point in its own coordinates."""
+        raise NotImplementedError
+
+    def reach(self, moment: Moment) -> tuple[Any, Any]:
+        """Low and high corner of a box around it in its own coordinates."""
+        raise NotImplementedError
+
+    def implicit(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
+        """Its field at a point of its parent's coordinates."""
+        return self.inside(build, *build.affine(inverse(self.local(moment)), x, y, z), moment)
+
+    def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
+        """The box around its own box."""
+        return mapped_box(compose(place, self.local(moment)), *self.reach(moment))
+
+    def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[frame.Shape]:
+        """Its field as a tape."""
+        return traced(self, name, place, moment)
+
+    def read(self, output: str, moment: Moment) -> Any:
+        """One of its measures."""
+        return measure(self, output, moment)
+
+
+def traced(solid: Object, name: str, place: Floats, moment: Moment) -> Iterable[frame.Implicit]:
+    """Any object with a field, as a tape in a box a little larger than itself; nothing where the box is empty.
+
+    Raises TypeError where it is unbounded, ValueError where numbers cannot tell its size.
+    """
+    import numpy as np
+
+    from sceneql import frame
+    from sceneql.field.tape.builder import TapeBuilder
+
+    low, high = solid.extent(place, moment)
+    if not (high > low).all():
+        return
+    with np.errstate(over="ignore", invalid="ignore"):
+        finite = np.isfinite(high - low).all()
+    if not finite:
+        raise TypeError(f"{name} is unbounded, and cannot be drawn: intersect it with a box")
+    told_by_numbers(low, high)
+    build = TapeBuilder()
+    value = solid.implicit(build, *build.affine(inverse(place), build.x, build.y, build.z), moment)
+    room = MARGIN * float(np.max(high - low))
+    surface = moment.surface(name, solid.material, solid.color)
+    box = triple(low - room), triple(high + room)
+    colored = TapeBuilder()
+    at = colored.affine(inverse(place), colored.x, colored.y, colored.z)
+    hues = solid.hues(colored, *at, surface, moment)
+    yield frame.Implicit(name, surface, build.finish(value), *box, None if hues is None else colored.finish(*hues))
+
+
+def told_by_numbers(low: Floats, high: Floats) -> None:
+    """Raise ValueError where a solid in a box is so far from 1 m that its squares overflow or vanish."""
+    import numpy as np
+
+    farthest, size = float(np.abs([low, high]).max()), float((high - low).max())
+    if farthest > LARGEST:
+        raise ValueError(f"it reaches {farthest:.3g} m away from the origin, more than {LARGEST:g} m")
+    if size < SMALLEST:
+        raise ValueError(f"its size is {size:.3g} m, less than {SMALLEST:g} m")
+
+
+def measure(solid: Object, output: str, moment: Moment) -> Any:
+    """Of any object with a field: the number of its closed surfaces, or its volume [m^3]; 0 where it is nowhere.
+
+    Raises TypeError where it is unbounded.
+    """
+    import numpy as np
+
+    from sceneql.mesh.cubes.polygonise import polygonise
+    from sceneql.mesh.measures import curved_volume, pieces
+
+    for shape in traced(solid, "it", np.eye(3, 4), moment):
+        cell = max(high - low for low, high in zip(shape.low, shape.high, strict=True)) / CELLS
+        mesh = polygonise(shape.tape, shape.low, shape.high, cell)
+        if output == "pieces":
+            return pieces(mesh.triangles)
+        return curved_volume(mesh.vertices, mesh.triangles, mesh.normals)
+    return 0.0
+
+
+def quadric(
+    name: str,
+    surface: Surface,
+    place: Floats,
+    *,
+    squares: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    linear: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    constant: float,
+    half: tuple[float, float, float] = (INFINITY, INFINITY, INFINITY),
+) -> frame.Quadric:
+    """A convex quadric solid within -half..half, both in the coordinates that ``place`` maps to the world.
+
+    Raises ValueError where numbers cannot tell its size.
+    """
+    from sceneql import frame
+
+    low = (-half[0], -half[1], -half[2])
+    if max(half) < INFINITY:
+        told_by_numbers(*mapped_box(place, low, half))
+    return frame.Quadric(name, surface, inverse(place), squares, linear, constant, low, half)
+
+
+def triple(vector: Any) -> tuple[float, float, float]:
+    """A vector (3,) as floats."""
+    x, y, z = (float(c) for c in vector)
+    return x, y, z
+
+
+def length(build: FieldBuilder, *registers: int) -> int:
+    """Register of the Euclidean length of a vector."""
+    total = build.op("square", registers[0])
+    for register in registers[1:]:
+        total = build.op("add", total, build.op("square", register))
+    return build.op("sqrt", total)
+
+
+def less(build: FieldBuilder, register: int, number: float) -> int:
+    """Register of a value less a number."""
+    return build.op("sub", register, build.constant(number))
+
+
+def largest(build: FieldBuilder, *registers: int) -> int:
+    """Register of the largest of some values."""
+    result = registers[0]
+    for register in registers[1:]:
+        result = build.op("max", result, register)
+    return result
+
+
+def block(build: FieldBuilder, registers: tuple[int, int, int], low: Any, high: Any) -> int:
+    """Register of the signed distance, in the maximum norm, to the box low..high; infinite sides are left out."""
+    sides = []
+    for register, down, up in zip(registers, low, high, strict=True):
+        if down == -up and up < INFINITY:
+            sides.append(less(build, build.op("abs", register), up))
+            continue
+        if up < INFINITY:
+            sides.append(less(build, register, up))
+        if down > -INFINITY:
+            sides.append(build.op("sub", build.constant(down), register))
+    return largest(build, *sides)

@@ -1,0 +1,70 @@
+"""World boxes of the closed set's shapes."""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.frame import Grid, Implicit, Mesh, Mist, Points, Quadric, Segments, Shape
+from sceneql.shapes.placement import inverse, mapped_box
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+
+
+def box_of(shape: Shape) -> tuple[Floats, Floats]:
+    """Low and high corner (3,) [m]; infinite for an unbounded shape, inverted (inf, -inf) for an empty one."""
+    match shape:
+        case Mesh(vertices=points):
+            return _around(points, 0.0)
+        case Points(centers=points, radii=radii):
+            return _around(points, radii[:, None])
+        case Segments(ends=ends, radii=radii):
+            return _around(ends.reshape(-1, 3), np.repeat(radii, 2)[:, None])
+        case Implicit(low=low, high=high):
+            return np.array(low), np.array(high)
+        case Grid(to_nodes=to_nodes, low=low, high=high):
+            return mapped_box(inverse(to_nodes), low, high)
+        case Mist(to_cells=to_cells, low=low, high=high):
+            return mapped_box(inverse(to_cells), low, high)
+        case Quadric():
+            return _quadric(shape)
+
+
+def _around(points: Floats, radii: Floats | float) -> tuple[Floats, Floats]:
+    if len(points) == 0:
+        return np.full(3, np.inf), np.full(3, -np.inf)
+    return (points - radii).min(axis=0), (points + radii).max(axis=0)
+
+
+def _quadric(shape: Quadric) -> tuple[Floats, Floats]:
+    """The local box, where each square term bounds its own axis, carried to the world."""
+    low, high = np.array(shape.low), np.array(shape.high)
+    for k in range(3):
+        # a p^2 + b p + c <= 0 at best, with the other axes at their least.
+        a, b = shape.squares[k], shape.linear[k]
+        others = sum(_least(shape.squares[j], shape.linear[j], low[j], high[j]) for j in range(3) if j != k)
+        c = shape.constant + others
+        if a > 0 and np.isfinite(c):
+            root = np.sqrt(max(b * b - 4 * a * c, 0.0))
+            low[k], high[k] = max(low[k], (-b - root) / (2 * a)), min(high[k], (-b + root) / (2 * a))
+    if not (np.isfinite(low).all() and np.isfinite(high).all()):
+        return np.full(3, -np.inf), np.full(3, np.inf)
+    to_world = np.linalg.inv(np.vstack([shape.to_local, [0, 0, 0, 1]]))
+    corners = np.array([[*corner, 1.0] for corner in product(*zip(low, high, strict=True))]) @ to_world.T
+    if np.allclose(shape.squares, shape.squares[0]) and shape.squares[0] > 0 and not any(shape.linear):
+        # A sphere in local coordinates: an ellipsoid in the world, whose box is tighter than its corners'.
+        reach = np.sqrt(-shape.constant / shape.squares[0]) * np.linalg.norm(to_world[:3, :3], axis=1)
+        center = to_world[:3, 3]
+        return np.maximum(center - reach, corners[:, :3].min(0)), np.minimum(center + reach, corners[:, :3].max(0))
+    return corners[:, :3].min(axis=0), corners[:, :3].max(axis=0)
+
+
+def _least(a: float, b: float, low: float, high: float) -> float:
+    """The least of a p^2 + b p over an interval."""
+    if a == 0:
+        return 0.0 if b == 0 else b * (low if b > 0 else high)
+    at = min(max(-b / (2 * a), low), high)
+    return a * at * at + b * at

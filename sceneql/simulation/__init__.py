@@ -1,1 +1,0 @@
-"""Graph to frames: the run, the islands, and the families of words."""

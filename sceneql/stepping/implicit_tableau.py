@@ -1,0 +1,186 @@
+"""Diagonally implicit Runge-Kutta methods as data: the tableau, its stability function, how a run is prepared."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import inf
+from typing import TYPE_CHECKING
+
+from sceneql.system import Prepared, Stepper
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.island.island import System
+
+KERNELS = "sceneql.stepping.implicit_runge_kutta_kernels"
+ON_GRIDS = "sceneql.grids.grid_stage_kernels"
+NEWTON = 1e-10
+"""Relative and absolute tolerance of Newton's method where steps are fixed."""
+UNSOLVED = "Newton's method finds no solution, not even of a thousandth of this step: take shorter ones"
+UNSOLVED_ON_GRID = "Newton's method finds no solution of this step: take a shorter one"
+UNSOLVED_AS_NAMED = f"{UNSOLVED_ON_GRID}, or with a drift `linear: auto`"
+SHARE = 0.02
+"""Part of the tolerance that Newton's method may leave as its own error."""
+
+
+@dataclass(frozen=True)
+class ImplicitTableau:
+    """Coefficients of a method whose stages are implicit in themselves alone, all with one coefficient (SDIRK).
+
+    Row i of ``a`` has its i entries below the diagonal and the diagonal's own; the first may be empty: the stage is
+    the rate at the start (Alexander 1977; Kennedy & Carpenter 2016).
+    """
+
+    a: tuple[tuple[float, ...], ...]
+    b: tuple[float, ...]
+    order: int
+    b_hat: tuple[float, ...] | None = None
+    """Weights of the embedded method whose difference is the error."""
+    error_order: int = 0
+    """The power of the step that the error goes by."""
+    dense: str | None = None
+
+    @property
+    def stages(self) -> int:
+        """Number of stages."""
+        return len(self.b)
+
+    @property
+    def diagonal(self) -> float:
+        """The coefficient of a stage in itself."""
+        return self.a[-1][-1]
+
+    @property
+    def stiffly_accurate(self) -> bool:
+        """Whether the last stage is the step's end."""
+        return self.a[-1] == self.b
+
+    @cached_property
+    def c(self) -> tuple[float, ...]:
+        """Places of the stages inside the step: the row sums."""
+        return tuple(sum(row) for row in self.a)
+
+    def fixed(self, step: float, linear: str = "auto", newton: float = NEWTON) -> Stepper:
+        """Steps of one length [s]; ``linear``: how the systems are solved on a grid.
+
+        ``newton``: relative and absolute error that may be left in a stage.
+        """
+        return self._stepper(first_step=step, linear=linear, newton=newton)
+
+    def adaptive(
+        self,
+        tolerance: float,
+        absolute: float,
+        *,
+        first_step: float = 0.0,
+        largest_step: float = inf,
+        linear: str = "auto",
+        by_scale: bool = False,
+    ) -> Stepper:
+        """Steps by the error of the embedded method. Raises ValueError where there is none."""
+        if self.b_hat is None:
+            raise ValueError("a method without an embedded one has no error estimate")
+        return self._stepper(
+            tolerance, absolute, first_step=first_step, largest_step=largest_step, linear=linear, by_scale=by_scale
+        )
+
+    def growth(self, jacobian: Floats, step: float) -> float:
+        """max |R(step * lambda)| over the eigenvalues of a (n, n) Jacobian, R(z) = 1 + z b (1 - z A)^-1 1."""
+        import numpy as np
+
+        z = step * np.linalg.eigvals(jacobian)
+        matrix = np.zeros((self.stages, self.stages))
+        for i, row in enumerate(self.a):
+            matrix[i, : len(row)] = row
+        ones = np.ones(self.stages)
+        systems = np.eye(self.stages) - z[:, None, None] * matrix
+        stages = np.linalg.solve(systems, np.broadcast_to(ones[:, None], (len(z), self.stages, 1)))
+        return float(np.abs(1.0 + z * (stages[..., 0] @ np.array(self.b))).max(initial=0.0))
+
+    def _stepper(
+        self,
+        tolerance: float = 0.0,
+        absolute: float = 0.0,
+        *,
+        first_step: float,
+        largest_step: float = inf,
+        linear: str,
+        by_scale: bool = False,
+        newton: float = NEWTON,
+    ) -> Stepper:
+        adaptive = tolerance > 0.0
+        differences = [b - other for b, other in zip(self.b, self.b_hat or self.b, strict=True)]
+        left = (tolerance, absolute, SHARE) if adaptive else (newton, newton, 1.0)
+        lower = [entry for i, row in enumerate(self.a) for entry in row[:i]]
+        whole = Stepper(
+            step=f"{KERNELS}:step",
+            dense=self.dense,
+            order=self.order,
+            settings=(0.0, 1.0, *left, 0.0, 0.0, self.diagonal, *self.c, *self.b, *differences, *lower),
+            numbers=(self.stages, int(not self.a[0]), int(self.stiffly_accurate), int(adaptive), self.error_order),
+            first_step=first_step,
+            adaptive=adaptive,
+            tolerance=tolerance,
+            absolute=absolute,
+            largest_step=largest_step,
+            jacobian=True,
+            newton=True,
+            prepare="sceneql.stepping.implicit_tableau:prepare",
+            controls=adaptive,
+            last_stage=self.stages if self.stiffly_accurate else -1,
+            linear=linear,
+            by_scale=by_scale,
+            unsolved=UNSOLVED,
+            halves=not adaptive,
+        )
+        on_grid = replace(
+            whole,
+            step=f"{ON_GRIDS}:step",
+            dense=None if adaptive else f"{ON_GRIDS}:linear",
+            jacobian=False,
+            newton=False,
+            prepare="sceneql.grids.prepare_stages:prepare",
+            unsolved=UNSOLVED_ON_GRID if linear == "auto" else UNSOLVED_AS_NAMED,
+            halves=False,
+        )
+        return replace(whole, on_grid=on_grid)
+
+
+def prepare(system: System, stepper: Stepper) -> Prepared:
+    """What implicit_runge_kutta_kernels.step works with on an island."""
+    import numpy as np
+
+    from sceneql.linear.newton_kernels import ABSOLUTE
+    from sceneql.linear.stage import stage_plan
+
+    plan = stage_plan(system)
+    assert system.pattern is not None
+    stages = stepper.numbers[0]
+    room = system.pattern.room
+    settings, text = np.array(stepper.settings), plan.text
+    if system.grid is not None:  # a field that drifts: grids.suited
+        text += ", chosen since a drift may pass many cells in a step"
+        if stepper.by_scale:
+            settings[ABSOLUTE] *= float(np.abs(system.y).max(initial=0.0)) or 1.0
+    return Prepared(
+        settings=np.concatenate([settings, plan.scales]),
+        numbers=np.concatenate([stepper.numbers, [len(stepper.settings), room], plan.numbers]),
+        work=(4 + stages) * len(system.y) + room + plan.store,
+        text=text,
+    )
+
+
+_T = 2.0 - 2.0**0.5
+_W = 2.0**0.5 / 4.0
+
+IMPLICIT_EULER = ImplicitTableau(((1.0,),), (1.0,), order=1)
+IMPLICIT_MIDPOINT = ImplicitTableau(((0.5,),), (1.0,), order=2, dense=f"{KERNELS}:linear")
+CRANK_NICOLSON = ImplicitTableau(((), (0.5, 0.5)), (0.5, 0.5), order=2)
+TR_BDF2 = ImplicitTableau(
+    ((), (_T / 2, _T / 2), (_W, _W, _T / 2)),
+    (_W, _W, _T / 2),
+    order=2,
+    b_hat=((1.0 - _W) / 3.0, (3.0 * _W + 1.0) / 3.0, _T / 6.0),
+    error_order=3,
+)

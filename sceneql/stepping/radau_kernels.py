@@ -1,0 +1,281 @@
+# mypy: ignore-errors
+"""One step of the three-stage Radau IIA method, with its Newton iteration, error estimate and step control.
+
+The stages z_i = Y_i - y0 solve z = h A F(z). With T diagonalizing the inverse of A, w = T^-1 z, a Newton iteration
+needs one real and one complex system of the size of y: (g/h - J) and ((a + i b)/h - J). Source: Hairer & Wanner,
+Solving Ordinary Differential Equations II (1996), IV.8; predictive control by Gustafsson (1994).
+
+``settings``, ``numbers`` and ``work``: see radau_stages_kernels.py.
+"""
+
+import math
+
+from numba import types
+
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.pointers_kernels import AT_JACOBIAN, jacobian_at
+from sceneql.stepping.error_scales_kernels import foresee, weigh
+from sceneql.stepping.radau_stages_kernels import (
+    BEFORE,
+    BEGUN,
+    C1,
+    C2,
+    CEILING,
+    CONTRACTION,
+    CONTRACTS,
+    CONVERGENCE,
+    ERROR,
+    FACTOR,
+    FACTORED,
+    FILTER,
+    FIXED,
+    FRESH,
+    GOOD_ERROR,
+    GOOD_LENGTH,
+    HEAD,
+    I11,
+    I12,
+    I13,
+    I21,
+    I22,
+    I23,
+    I31,
+    I32,
+    I33,
+    ITERATIONS,
+    LENGTH,
+    MEASURES,
+    MEMORY,
+    NEXT,
+    REJECTED,
+    RELATIVE,
+    ROOM,
+    ROOT6,
+    ROWS_AT,
+    SCALED,
+    START,
+    TALLIES,
+    VECTORS,
+    iterate,
+)
+from sceneql.stepping.radau_systems_kernels import factor_at, filter_at
+from sceneql.system_kernels import DENSE, STEP, A, F, I
+
+FINISH = types.void(I, F, F, A, A, I, A, I, A, A)
+finish_tallies = late("sceneql.stepping.radau_tallies_kernels:finish_tallies", FINISH)
+
+SAFETY = 0.9
+E1, E2, E3 = (-13.0 - 7.0 * ROOT6) / 3.0, (-13.0 + 7.0 * ROOT6) / 3.0, -1.0 / 3.0
+
+INSIDE = 0.01826
+"""Largest |s (s - C1) (s - C2) (s - 1)| for s from 0 to 1."""
+
+
+@lean_inlined
+def begin(t, y0, work, start, z, before):
+    """Take note of what became of the try before: whether its stages can be extrapolated. True: y0 is a new start."""
+    n = y0.size
+    same = work[BEGUN] > 0.0 and t == work[START]
+    follows = work[BEGUN] > 0.0 and not same
+    for k in range(n):
+        same = same and y0[k] == start[k]
+        follows = follows and y0[k] == start[k] + z[2 * n + k]
+    if same:
+        return False
+    work[REJECTED] = 0.0
+    work[FRESH] = 0.0
+    if follows:
+        for k in range(3 * n):
+            before[k] = z[k]
+        work[BEFORE] = work[LENGTH]
+        work[GOOD_LENGTH] = work[LENGTH]
+        work[GOOD_ERROR] = max(0.01, work[ERROR])
+    else:
+        work[BEFORE] = 0.0
+        work[GOOD_LENGTH] = 0.0
+        work[CONTRACTION] = 1.0
+        work[CONVERGENCE] = 1.0
+    for k in range(n):
+        start[k] = y0[k]
+    work[BEGUN] = 1.0
+    work[START] = t
+    return True
+
+
+@lean_inlined
+def guess_stages(n, ratio, known, z, before, w, ahead):
+    """Stages by the polynomial of the step before, or zero; w = T^-1 z; ``ahead`` (n,): the last stage as guessed."""
+    if not known:
+        for k in range(3 * n):
+            z[k] = 0.0
+            w[k] = 0.0
+        return
+    for k in range(n):
+        z3 = before[2 * n + k]
+        first = (before[n + k] - z3) / (C2 - 1.0)
+        inner = (before[k] - before[n + k]) / (C1 - C2)
+        second = (inner - first) / (C1 - 1.0)
+        third = second - (inner - before[k] / C1) / C2
+        s1, s2 = C1 * ratio, C2 * ratio
+        a = s1 * (first + (s1 - C2 + 1.0) * (second + (s1 - C1 + 1.0) * third))
+        b = s2 * (first + (s2 - C2 + 1.0) * (second + (s2 - C1 + 1.0) * third))
+        c = ratio * (first + (ratio - C2 + 1.0) * (second + (ratio - C1 + 1.0) * third))
+        z[k] = a
+        z[n + k] = b
+        z[2 * n + k] = c
+        ahead[k] = c
+        w[k] = I11 * a + I12 * b + I13 * c
+        w[n + k] = I21 * a + I22 * b + I23 * c
+        w[2 * n + k] = I31 * a + I32 * b + I33 * c
+
+
+@lean_inlined
+def tallies_move(numbers, n, z):
+    """Whether any sum that nothing depends on changes in the step."""
+    for k in range(HEAD, HEAD + numbers[TALLIES]):
+        i = numbers[k]
+        if z[i] != 0.0 or z[n + i] != 0.0 or z[2 * n + i] != 0.0:
+            return True
+    return False
+
+
+@lean_inlined
+def norm(x, weights):
+    """Root mean square in units of the tolerance."""
+    total = 0.0
+    for k in range(x.size):
+        part = x[k] * weights[k]
+        total += part * part
+    return math.sqrt(total / x.size)
+
+
+@lean_inlined
+def estimate(h, rate0, work, numbers, plan, rows, z, f, weights, values, store):
+    """The error in units of the tolerance, by the embedded third-order formula, filtered by (REAL/h - J)^-1."""
+    n = weights.size
+    error = f[:n]
+    for k in range(n):
+        error[k] = rate0[k] + (E1 * z[k] + E2 * z[n + k] + E3 * z[2 * n + k]) / h
+    if not filter_at(numbers[FILTER])(plan, work[FACTORED], values, rows, store, error):
+        return math.inf
+    return norm(error, weights)
+
+
+@lean_inlined
+def unevenness(ratio, z, ahead, weights):
+    """The largest error of dense output in units of the tolerance, by how far the polynomial before missed this step.
+
+    Both are fourth differences, scaled by the products of the distances to the nodes. The embedded formula does not
+    see it in components that a stiff mode pulls along: they are right at the ends of steps of any length.
+    """
+    n = weights.size
+    total = 0.0
+    for k in range(n):
+        part = (z[2 * n + k] - ahead[k]) * weights[k]
+        total += part * part
+    reach = (1.0 + ratio) * (1.0 - C1 + ratio) * (1.0 - C2 + ratio) / ratio**3
+    return INSIDE / reach * math.sqrt(total / n)
+
+
+@lean_inlined
+def control(h, error, iterations, work, contracts):
+    """Length of the next step (Gustafsson 1994); nearly the same one is kept, with its factors."""
+    safety = min(SAFETY, SAFETY * (1.0 + 2.0 * ITERATIONS) / (iterations + 2.0 * ITERATIONS))
+    divisor = min(5.0, max(0.125, error**0.25 / safety))
+    if error >= 1.0:
+        work[REJECTED] = 1.0
+        work[NEXT] = h / divisor
+        return
+    if work[GOOD_LENGTH] > 0.0:
+        trend = work[GOOD_LENGTH] / h * (error * error / work[GOOD_ERROR]) ** 0.25 / SAFETY
+        divisor = max(divisor, min(5.0, max(0.125, trend)))
+    wanted = h / divisor
+    if work[REJECTED] > 0.0:
+        wanted = min(wanted, h)
+    if work[CEILING] > 0.0:
+        wanted = min(wanted, max(h, work[CEILING]))
+        work[CEILING] *= 1.2
+    work[NEXT] = h if work[CONTRACTION] <= contracts and h <= wanted <= 1.2 * h else wanted
+
+
+@lean(STEP, inner=True)
+def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
+    """y1 after a step of length h and its error; NaN and a shorter length where Newton's iteration fails."""
+    jacobian = jacobian_at(functions[AT_JACOBIAN])
+    n = y0.size
+    at = MEMORY
+    z, before, w = work[at : at + 3 * n], work[at + 3 * n : at + 6 * n], work[at + 6 * n : at + 9 * n]
+    f, start, weights = work[at + 9 * n : at + 12 * n], work[at + 12 * n : at + 13 * n], work[at + 13 * n : at + 14 * n]
+    newton, ahead = work[at + 14 * n : at + 15 * n], work[at + 15 * n : at + 16 * n]
+    at += VECTORS * n
+    values, store = work[at : at + numbers[ROOM]], work[at + numbers[ROOM] :]
+    new = begin(t, y0, work, start, z, before)
+    last = HEAD + numbers[TALLIES]
+    plan, rows = numbers[last + numbers[SCALED] :], settings[numbers[ROWS_AT] :]
+    if numbers[SCALED] > 0:
+        later, moved, scales = f[:n], f[n : 2 * n], settings[MEASURES:]
+        foresee(functions, t, h, y0, rate0, scales, numbers[last:], later, moved, floats, ints)
+        weigh(new, settings[RELATIVE], h, y0, rate0, later, scales, numbers[last:], weights)
+    else:
+        for k in range(n):
+            weights[k] = 1.0 / (settings[MEASURES + k] + settings[RELATIVE] * abs(y0[k]))
+    for k in range(n):
+        newton[k] = weights[k]
+    for k in range(HEAD, last):
+        newton[numbers[k]] = 0.0
+    work[LENGTH] = h
+    known = work[BEFORE] > 0.0
+    iterations, shorter = 0, 1.0
+    while True:
+        renewed = work[FRESH] == 0.0 and (work[CONTRACTION] > settings[CONTRACTS] or shorter < 1.0)
+        if renewed:
+            jacobian(functions, t, y0, values, floats, ints)
+            work[FRESH] = 1.0
+        if renewed or abs(h - work[FACTORED]) > 1e-9 * h:
+            regular = factor_at(numbers[FACTOR])(plan, h, values, rows, store)
+            work[FACTORED] = h if regular else 0.0
+        shorter = 0.5
+        if work[FACTORED] > 0.0:
+            guess_stages(n, h / work[BEFORE] if known else 0.0, known, z, before, w, ahead)
+            iterations, shorter = iterate(
+                functions, t, h, y0, y1, work, settings, numbers, floats, ints, values, plan, rows, store
+            )
+        if shorter == 0.0:
+            break
+        if work[FRESH] > 0.0:
+            work[CONTRACTION] = 1.0
+            work[CONVERGENCE] = 1.0
+            work[REJECTED] = 1.0
+            work[CEILING] = 0.95 * h
+            work[NEXT] = shorter * h
+            for k in range(n):
+                y1[k] = math.nan
+            return math.inf
+    if tallies_move(numbers, n, z):
+        finish_tallies(functions, t, h, y0, y1, numbers, floats, ints, z, f)
+    error = 0.0
+    if numbers[FIXED] == 0:
+        error = estimate(h, rate0, work, numbers, plan, rows, z, f, weights, values, store)
+        if known:
+            error = max(error, unevenness(h / work[BEFORE], z, ahead, weights))
+        error = max(1e-10, error)
+        work[ERROR] = error
+        control(h, error, iterations, work, settings[CONTRACTS])
+    for k in range(n):
+        y1[k] = y0[k] + z[2 * n + k]
+    return error
+
+
+@lean(DENSE)
+def dense(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
+    """The collocation polynomial: third order (Hairer & Wanner 1996, eq. IV.8.14 and code RADAU5)."""
+    n = y0.size
+    s = theta - 1.0
+    for k in range(n):
+        z1, z2, z3 = work[MEMORY + k], work[MEMORY + n + k], work[MEMORY + 2 * n + k]
+        first = (z2 - z3) / (C2 - 1.0)
+        inner = (z1 - z2) / (C1 - C2)
+        second = (inner - first) / (C1 - 1.0)
+        third = second - (inner - z1 / C1) / C2
+        out[k] = y1[k] + s * (first + (s - C2 + 1.0) * (second + (s - C1 + 1.0) * third))

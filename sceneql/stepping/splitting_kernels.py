@@ -1,0 +1,57 @@
+# mypy: ignore-errors
+"""One step of any kick-drift-kick method: the shares are data.
+
+``numbers`` = (drifts s,). ``settings`` = (kicks (s + 1), drifts (s)). ``work``: the rate at the step's end, handed on
+to the next step; the state that the forces see.
+"""
+
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
+from sceneql.system_kernels import STEP
+
+
+@lean_inlined
+def keep_positions(slope, ints):
+    """Take out what a rate says about the positions of the island's pairs: they drift."""
+    for pair in range(ints[1]):
+        position, count = ints[ints[0] + 3 * pair], ints[ints[0] + 3 * pair + 2]
+        for k in range(position, position + count):
+            slope[k] = 0.0
+
+
+@lean(STEP, inner=True)
+def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
+    """y1 after kicks and drifts (splitting.py); ints[1] triples (position, velocity, count) from ints[0] on."""
+    rate = rate_at(functions[AT_RATE])
+    n = y0.size
+    drifts = numbers[0]
+    slope, seen = work[:n], work[n : 2 * n]
+    for k in range(n):
+        slope[k] = rate0[k]
+    keep_positions(slope, ints)
+    kick = h * settings[0]
+    for k in range(n):
+        y1[k] = y0[k] + kick * slope[k]
+    passed = 0.0
+    for i in range(drifts):
+        share = settings[drifts + 1 + i]
+        passed += share
+        for pair in range(ints[1]):
+            at = ints[0] + 3 * pair
+            position, velocity = ints[at], ints[at + 1]
+            for k in range(ints[at + 2]):
+                y1[position + k] += h * share * y1[velocity + k]
+        kick = h * settings[i + 1]
+        lead = kick if i == drifts - 1 else 0.5 * kick
+        for k in range(n):
+            seen[k] = y1[k] + lead * slope[k]
+        rate(t + passed * h, seen, slope, floats, ints)
+        keep_positions(slope, ints)
+        for k in range(n):
+            y1[k] += kick * slope[k]
+    for pair in range(ints[1]):
+        at = ints[0] + 3 * pair
+        position, velocity = ints[at], ints[at + 1]
+        for k in range(ints[at + 2]):
+            slope[position + k] = y1[velocity + k]
+    return 0.0

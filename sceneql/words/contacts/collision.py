@@ -1,0 +1,155 @@
+"""collision: masses bounce off, slide on and rest on objects."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+from sceneql.kinds import (
+    Contact,
+    DrawnRef,
+    FixedLength,
+    Gives,
+    Ref,
+    Scalar,
+    field,
+    quantity_type,
+)
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.expression import Type
+
+if TYPE_CHECKING:
+    from sceneql.system import Assembly, Bodies, ModelState, Slopes
+
+TALLY = ("hits.count", "hits.first.time", "hits.last.time", "hits.last.speed", "rest.time")
+MOST_EXACT = 8
+EXACT = "sceneql.contacts.collision_kernels"
+LOCAL = "sceneql.contacts.back_off_kernels"
+SHAPES = "sceneql.contacts.shapes"
+MOST_CUT = 4096
+"""Bodies above which no step is cut at an impact: looking costs more than it gives."""
+
+
+class Collision(Contact):
+    """Impacts and resting contact of masses with objects of any shape; the radius of a mass counts.
+
+    An impact turns the normal velocity round, scaled by the restitution (Newton 1687), with an impulse of Coulomb's
+    friction across it; a resting mass feels the normal force that keeps it outside and Coulomb's friction (1785). The
+    kinetic energy that is lost is counted as dissipated. Mode `exact` locates every impact to rounding and restarts
+    the solver there, up to the end of infinitely many bounces; `local` backs each mass off to its own impact within
+    the step, for very many; `auto` is exact for up to 8 masses. Implicit Runge-Kutta methods and bdf2 have `local`
+    contacts within their stages: a mass that touches ends the step on the surface whatever its springs do.
+
+    Planes, spheres, boxes and closed meshes have exact distances. Any other object with an inside is touched where its
+    field is zero; a mass with a radius at that distance from it, but in front of the sharp edges of combined solids,
+    where it is the field over its slope. An object may move, but not change its shape. A fast mass sees what is thicker
+    than a ten-thousandth of the object's size.
+
+    Steps that a tolerance chooses are at most 1/240 s in mode `local`, and where an object moves other than straight on
+    at one speed. In mode `local` what lands slower than gravity makes it in two steps comes to rest, at 1/240 s below
+    8 cm/s on Earth: smaller bounces need a solver of shorter steps, by `largest_step` or `step`, or mode `exact`.
+    """
+
+    gives: ClassVar[Mapping[str, Gives]] = {
+        "hits.count": Gives(Type(), "Number of impacts so far."),
+        "hits.first.time": Gives(quantity_type(dim.TIME), "Time of the first impact; NaN before."),
+        "hits.last.time": Gives(quantity_type(dim.TIME), "Time of the latest impact; NaN before the first."),
+        "hits.last.speed": Gives(quantity_type(dim.VELOCITY), "Speed of approach of the latest impact."),
+        "rest.time": Gives(quantity_type(dim.TIME), "When the bouncing came to its end; NaN before."),
+    }
+
+    between: tuple[DrawnRef, ...] | None = field(
+        "What collides: models and objects, as `[ball, floor]`; by default all models with masses and all objects with "
+        "an inside that follow no model that is solved.",
+        None,
+    )
+    restitution: Scalar = field("Normal speed after an impact as a part of that before.", "0.5", at_least=0, at_most=1)
+    friction: Scalar = field("Coulomb's coefficient of friction.", "0", at_least=0)
+    thickness: FixedLength = field("Distance to keep besides the radius.", "0 m", at_least=0)
+    mode: Literal["auto", "exact", "local"] = field("How impacts are found.", "auto")
+
+    def ties(self) -> tuple[Ref, ...]:
+        """The models and objects of `between`."""
+        return self.between or ()
+
+    def assemble(self, name: str, assembly: Assembly, bodies: Bodies, others: tuple[Ref, ...]) -> None:
+        """Add the contacts of one model with the objects. Raises ScriptError for one that cannot be collided with."""
+        import numpy as np
+
+        from sceneql.compiled.compile_beside import compile_ahead
+        from sceneql.compiled.numba import lazy_kernels
+        from sceneql.contacts.colliders import OFTEN, must_be_outside, surfaces
+        from sceneql.contacts.impulse_kernels import HEAD, INSTANT, MOST_CUTS
+
+        if not others:
+            return
+        exact = self.mode == "exact" or (self.mode == "auto" and assembly.body_count() <= MOST_EXACT)
+        compile_ahead(
+            (EXACT if exact else LOCAL,)
+        )  # the largest of the island, while what the objects are looked at with compiles here
+        from sceneql.contacts.memory_kernels import PAIR
+
+        written = {ref.name: ref for ref in self.between or ()}
+        touched = [written.get(ref.name, ref) for ref in others]
+        objects = surfaces(touched, assembly, HEAD)
+        if exact:
+            compile_ahead(
+                one for one in lazy_kernels.modules() if one.startswith(f"{SHAPES}.")
+            )  # every gap asks for them
+        nan = float("nan")
+        cuts = (0.0, 0.0, 0.0) if assembly.body_count() <= MOST_CUT else (float("inf"), 0.0, MOST_CUTS)
+        tally_at = assembly.floats([0.0, nan, nan, 0.0, nan])
+        pairs = bodies.count * len(others)
+        numbers = (
+            assembly.value(self.restitution),
+            assembly.value(self.friction),
+            assembly.floats([self.thickness]),
+            tally_at,
+            assembly.floats(np.zeros(pairs * PAIR)),
+            assembly.floats(
+                np.full(bodies.count * INSTANT, nan)
+                if exact
+                else np.concatenate([cuts, np.zeros(1 + bodies.count), [(2.0 * math.pi / bodies.period) ** 2, 0.0]])
+            ),
+            len(others),
+        )
+        masses = (bodies.position_at, bodies.velocity_at, bodies.work_at, bodies.mass_at, bodies.inverse_at)
+        ints = (*masses, bodies.radius_at, bodies.count, *numbers, *objects)
+        must_be_outside(bodies.model, touched, ints, assembly)
+        if exact:
+            assembly.contact("exact", (f"{EXACT}:gap", f"{EXACT}:impact"), ints, pairs)
+        else:
+            assembly.step_at_most(OFTEN)
+            assembly.contact("local", (f"{LOCAL}:settle",), ints, pairs, apart=True)
+        held = None if exact else lambda: _held(bodies)
+        constrain = f"{EXACT}:constrain" if exact else f"{LOCAL}:constrain"
+        assembly.term("constrain", constrain, ints, held, apart=not exact)
+        assembly.remember(tally_at)
+
+    def read(self, output: str, state: ModelState) -> Any:
+        """An output over all its models: counts add up, the first time is the earliest, the last the latest."""
+        import numpy as np
+
+        tallies = np.array([state.floats[at : at + len(TALLY)] for at in state.ints]).reshape(-1, len(TALLY))
+        column = tallies[:, TALLY.index(output)]
+        if output == "hits.count":
+            return float(column.sum())
+        times = column if output != "hits.last.speed" else tallies[:, TALLY.index("hits.last.time")]
+        known = np.flatnonzero(~np.isnan(times))
+        if len(known) == 0 or (output == "rest.time" and len(known) < len(tallies)):
+            return 0.0 if output == "hits.last.speed" else float("nan")
+        best = known[np.argmin(times[known]) if output == "hits.first.time" else np.argmax(times[known])]
+        return float(column[best])
+
+
+def _held(bodies: Bodies) -> Slopes:
+    """The slopes of local contacts within a stage."""
+    import numpy as np
+
+    from sceneql.system import Slopes
+
+    tops = bodies.velocity_at + 3 * np.arange(bodies.count)
+    return Slopes(
+        "sceneql.contacts.stage_contacts_slopes_kernels:holds", rows=tops, columns=tops, blocks=True, in_stages=True
+    )

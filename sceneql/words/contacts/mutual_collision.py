@@ -1,0 +1,163 @@
+"""mutual_collision: masses collide with one another, as spheres."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+from sceneql.kinds import Contact, DrawnRef, Gives, Ref, Scalar, field
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.expression import Type
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats
+    from sceneql.system import Assembly, Bodies, ModelState
+
+MOST_EXACT = 8
+EXACT = "sceneql.contacts.mutual.sphere_events_kernels"
+LOCAL = "sceneql.contacts.mutual.sphere_back_off_kernels"
+FEW = 300
+"""Of so few masses all pairs are looked at, which takes less time than the import of scipy's trees."""
+
+
+class MutualCollision(Contact):
+    """Impacts and resting contact of masses with one another: spheres of their radii, which do not turn.
+
+    An impact turns the normal part of the relative velocity round, scaled by the restitution (Newton 1687), with an
+    impulse of Coulomb's friction across it; the momentum stays. Mode `exact` locates every impact to rounding and
+    restarts the solver there, for elastic masses; `local` finds the impacts of a step by cell lists (Hockney & Eastwood
+    1981), first ones first, and lets masses that approach no faster than they are pressed rest on each other and on the
+    objects, by impulses at the end of the step (Moreau 1988); `auto` is exact for up to 8 elastic masses.
+
+    In mode `local` masses that a spring ties, and masses of one net that overlap at the start, do not collide: so a
+    cloth or a rope lies on itself, each mass a sphere as wide as the cloth is thick. Its layers cannot pass through
+    each other where the thickness is no less than the side of a cell. Steps that a tolerance chooses are at most
+    1/240 s there; masses that are not elastic rest where they approach slower than what presses them gives in two.
+    """
+
+    mutual: ClassVar[bool] = True
+    gives: ClassVar[Mapping[str, Gives]] = {"hits.count": Gives(Type(), "Number of impacts so far.")}
+
+    between: tuple[DrawnRef, ...] | None = field(
+        "The models whose masses collide, and the objects that these rest on; by default all models with masses and "
+        "all objects with an inside that follow no model that is solved.",
+        None,
+    )
+    restitution: Scalar = field("Normal speed after an impact as a part of that before.", "0.5", at_least=0, at_most=1)
+    friction: Scalar = field("Coulomb's coefficient of friction.", "0", at_least=0)
+    mode: Literal["auto", "exact", "local"] = field("How impacts are found.", "auto")
+
+    def ties(self) -> tuple[Ref, ...]:
+        """The models and objects of `between`."""
+        return self.between or ()
+
+    def assemble_together(
+        self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
+    ) -> None:
+        """Add the contacts of all pairs. Raises ScriptError for masses that start inside each other."""
+        import numpy as np
+
+        from sceneql.bodies.neighbors import table
+        from sceneql.contacts.colliders import OFTEN, surfaces
+        from sceneql.contacts.mutual.sphere_pair_kernels import BODY, HEAD
+
+        rows = [
+            (
+                at.position_at + 3 * k,
+                at.velocity_at + 3 * k,
+                at.work_at,
+                at.mass_at + k,
+                at.inverse_at + k,
+                at.radius_at + k,
+            )
+            for at in everyone
+            for k in range(at.count)
+        ]
+        n = len(rows)
+        elastic = self.restitution.constant and float(assembly.initial(self.restitution)) == 1.0
+        if self.mode == "exact" and not elastic:
+            text = "exact collisions between masses are elastic: those that lose speed come to rest on each other"
+            raise ScriptError([Diagnostic("not-elastic", text, assembly.line(), "set restitution: 1 or mode: local")])
+        exact = self.mode == "exact" or (self.mode == "auto" and elastic and n <= MOST_EXACT)
+        tied = _tied(assembly, everyone, exact)
+        size, first, second = table(n)
+        tally = assembly.floats([0.0, np.nan, np.nan, 0.0, np.nan])
+        objects = (
+            () if exact else surfaces([Ref(ref.name, assembly.line()) for ref in others], assembly, HEAD + BODY * n)
+        )
+        scratch = (3 * n, 3 * n, n, size + 1) if not exact else (7 * n, 0, 0, 0)
+        ints = (
+            *(n, assembly.value(self.restitution), assembly.value(self.friction), tally),
+            *(assembly.floats(np.zeros(count)) for count in scratch),
+            *(size, first, second, 0 if exact else len(others)),
+            HEAD + BODY * n + len(objects) if len(tied) else 0,
+            *(number for row in rows for number in row),
+            *objects,
+        )
+        ints = (*ints, *_partners(tied, n, len(ints)))
+        if exact:
+            kernels = (f"{EXACT}:gap", f"{EXACT}:impact")
+            assembly.contact("exact", kernels, ints, n * (n - 1) // 2)
+        else:
+            assembly.step_at_most(OFTEN)
+            assembly.contact("local", (f"{LOCAL}:settle",), ints, 0)
+        assembly.remember(tally)
+
+    def read(self, output: str, state: ModelState) -> Any:
+        """The number of impacts."""
+        return float(sum(state.floats[at] for at in state.ints))
+
+
+def _tied(assembly: Assembly, everyone: Sequence[Bodies], exact: bool) -> NDArray[int64]:
+    """(m, 2) the pairs that do not meet: those that springs tie, and those that overlap within a net at the start.
+
+    The lower number stands first. In `exact` mode all meet. Raises ScriptError where two moving masses overlap
+    otherwise.
+    """
+    import numpy as np
+
+    y, floats = assembly.start(), assembly.numbers()
+    nets = () if exact else tuple(k for k, at in enumerate(everyone) if at.tied is not None)
+    model = np.repeat(np.arange(len(everyone)), [at.count for at in everyone])
+    places = np.concatenate([y[at.position_at : at.position_at + 3 * at.count] for at in everyone]).reshape(-1, 3)
+    radii = np.concatenate([floats[at.radius_at : at.radius_at + at.count] for at in everyone])
+    moving = np.concatenate([floats[at.inverse_at : at.inverse_at + at.count] for at in everyone]) > 0.0
+    pairs = np.sort(_near(places, 2.0 * float(radii.max(initial=0.0))), axis=1)
+    depth = radii[pairs].sum(axis=1) - np.linalg.norm(places[pairs[:, 0]] - places[pairs[:, 1]], axis=1)
+    own = (model[pairs[:, 0]] == model[pairs[:, 1]]) & np.isin(model[pairs[:, 0]], nets)
+    wrong = np.where(moving[pairs].all(axis=1) & ~own, depth, 0.0)
+    if len(pairs) and wrong.max() > 1e-9 * radii.max():
+        worst = int(np.argmax(wrong))
+        names = [f"mass {k} of '{bodies.model}'" for bodies in everyone for k in range(bodies.count)]
+        one, other = (names[k] for k in pairs[worst])
+        text = f"{one} and {other} overlap by {wrong[worst]:.3g} m at the start"
+        raise ScriptError(
+            [Diagnostic("masses-overlap", text, assembly.line(), "move them apart, or make them smaller")]
+        )
+    springs = [np.sort(everyone[k].tied, axis=1) + np.searchsorted(model, k) for k in nets]
+    return np.unique(np.concatenate([pairs[own & (depth > 0.0)], *springs]), axis=0)
+
+
+def _partners(tied: NDArray[int64], count: int, start: int) -> tuple[int, ...]:
+    """Of ``count`` masses the tied ones (sphere_pair_kernels), for integers that begin at ``start``."""
+    import numpy as np
+
+    if not len(tied):
+        return ()
+    firsts = start + count + 1 + np.searchsorted(tied[:, 0], np.arange(count + 1))
+    return (*firsts.tolist(), *tied[:, 1].tolist())
+
+
+def _near(places: Floats, reach: float) -> NDArray[int64]:
+    """(m, 2) pairs of places (n, 3) that are no further apart than that [m], and, of a few places, the others too."""
+    import numpy as np
+
+    if len(places) <= FEW:
+        return np.column_stack(np.triu_indices(len(places), 1))
+    from scipy.spatial import cKDTree
+
+    found: NDArray[int64] = cKDTree(places).query_pairs(reach, output_type="ndarray")
+    return found

@@ -1,0 +1,30 @@
+# mypy: ignore-errors
+"""The force of drag."""
+
+import math
+
+from sceneql.compiled.kernels import kernel
+from sceneql.system_kernels import TERM
+
+
+@kernel(TERM, inner=True)
+def drag(t, y, rate, floats, ints):
+    """Adds -(a + b |v|) v, and its power to the work.
+
+    ints: velocity_at, count, work_at, inverse_at, linear_at, quadratic_at.
+    """
+    velocity_at, count, work_at, inverse_at = ints[0], ints[1], ints[2], ints[3]
+    linear, quadratic = floats[ints[4]], floats[ints[5]]
+    power = 0.0
+    for k in range(count):
+        if floats[inverse_at + k] == 0.0:
+            continue
+        at = velocity_at + 3 * k
+        vx, vy, vz = y[at], y[at + 1], y[at + 2]
+        square = vx * vx + vy * vy + vz * vz
+        c = linear + quadratic * math.sqrt(square)
+        rate[at] -= c * vx
+        rate[at + 1] -= c * vy
+        rate[at + 2] -= c * vz
+        power += c * square
+    rate[work_at] += power

@@ -1,0 +1,45 @@
+# mypy: ignore-errors
+"""The force along the gradient of a field."""
+
+import numpy as np
+
+from sceneql.compiled.kernels import kernel
+from sceneql.grids.cell_weights_kernels import CORNERS, around, moved
+from sceneql.system_kernels import TERM
+
+FIELD = 6
+
+
+@kernel(TERM, inner=True)
+def field_gradient(t, y, rate, floats, ints):
+    """Adds factor grad c of the place of every mass, and takes its power from the work.
+
+    ints: position_at, velocity_at, count, work_at, inverse_at, factor, then the field (cell_weights_kernels).
+    """
+    cells, weights, slope = np.empty(CORNERS, dtype=np.int64), np.empty(CORNERS), np.empty(3)
+    field, box = ints[FIELD], ints[FIELD + 5]
+    factor = floats[ints[5]]
+    for k in range(ints[2]):
+        if floats[ints[4] + k] == 0.0:
+            continue
+        place, motion = ints[0] + 3 * k, ints[1] + 3 * k
+        if not around(y[place], y[place + 1], y[place + 2], floats, ints, FIELD, cells, weights):
+            continue
+        for axis in range(3):
+            slope[axis] = 0.0
+            if ints[FIELD + 1 + axis] == 1:
+                continue
+            for corner in range(CORNERS):
+                if weights[corner] > 0.0:
+                    cell = cells[corner]
+                    before, after = (
+                        moved(cell, axis, -1, floats, ints, FIELD),
+                        moved(cell, axis, 1, floats, ints, FIELD),
+                    )
+                    # One-sided where a neighbor is missing.
+                    reach = (before != cell) + (after != cell)
+                    if reach > 0:
+                        slope[axis] += weights[corner] * (y[field + after] - y[field + before]) / reach
+            slope[axis] *= factor / floats[box + 3 + axis]
+            rate[motion + axis] += slope[axis]
+            rate[ints[3]] -= slope[axis] * y[motion + axis]

@@ -1,0 +1,72 @@
+"""force: any force, written as a formula."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated
+
+from sceneql.island.static_rates import On, by_formulas
+from sceneql.kinds import Force as Family
+from sceneql.kinds import Formula, Problem, Symbols, field
+from sceneql.kinds.stable_step import Oscillation
+
+if TYPE_CHECKING:
+    from sceneql.system import Assembly, Bodies, ModelState
+
+SYMBOLS = ("x", "y", "z", "vx", "vy", "vz", "t", "m")
+
+
+class Force(Family):
+    """A force by formula, on every mass: three components in N, or minus the gradient of a potential energy in J.
+
+    x y z (place [m]), vx vy vz (velocity [m/s]), t (time [s]) and m (mass [kg]) are plain numbers in the formulas. What
+    a force by components does to the masses is counted in the work, so that the energy is conserved with both.
+    """
+
+    components: Annotated[Formula, Symbols(SYMBOLS)] | None = field("`[fx, fy, fz]`: its components [N].", None)
+    potential_: Annotated[Formula, Symbols(("x", "y", "z", "t", "m"))] | None = field(
+        "The potential energy of one mass [J].", None
+    )
+
+    def problems(self) -> Iterator[Problem]:
+        """Two formulas or none, and those that are no force."""
+        from sceneql.bodies.point_program import problem
+
+        if (self.components is None) == (self.potential_ is None):
+            yield Problem("a force is said in one way: `components` or `potential`")
+        for name, formula, count in (("components", self.components, 3), ("potential_", self.potential_, 1)):
+            if formula is not None and (text := problem(formula, count)) is not None:
+                yield Problem(text, (name,))
+
+    def fastest(self, name: str, on: On) -> Iterator[Oscillation]:
+        """Swings about the places where masses start, and what acts against their velocities."""
+        from sceneql.bodies.point_program import downhill
+        from sceneql.quantities.derivative import components
+
+        if self.potential_ is not None:
+            yield from by_formulas(downhill(self.potential_), on, f"force '{name}'", "potential")
+        elif self.components is not None:
+            yield from by_formulas(components(self.components.expr), on, f"force '{name}'", "components")
+
+    def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
+        """Add the force to every mass."""
+        from sceneql.bodies.point_program import add_force, downhill, store_links
+        from sceneql.quantities import derivative
+
+        if self.potential_ is not None:
+            assembly.remember(*store_links(assembly, self.potential_))
+            add_force(assembly, bodies, downhill(self.potential_), counted=False)
+        elif self.components is not None:
+            add_force(assembly, bodies, derivative.components(self.components.expr), counted=True)
+
+    def potential(self, bodies: Bodies, state: ModelState) -> float:
+        """The sum of the potential [J]; 0 where the work is counted."""
+        from sceneql.bodies import bodies as masses
+        from sceneql.bodies.point_program import potential_at
+
+        if self.potential_ is None:
+            return 0.0
+        known = {"m": masses.masses(bodies, state)}
+        moving = masses.moving_masses(bodies, state) > 0
+        at = masses.positions(bodies, state)
+        return float(potential_at(self.potential_, at, state, state.ints, known)[moving].sum())

@@ -1,0 +1,67 @@
+"""box: a rectangular block."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from sceneql.failure import RunFailure
+from sceneql.kinds import Collider, FieldBuilder, Moment, Position, Value, field
+from sceneql.quantities.dimension import LENGTH
+from sceneql.quantities.expression import Call, Number, Type
+from sceneql.shapes.placement import compose
+from sceneql.shapes.solid import Solid, block, quadric, triple
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Shape
+    from sceneql.system import Assembly
+
+
+class Box(Solid):
+    """The block |x| <= size.x / 2, |y| <= size.y / 2, |z| <= size.z / 2 about its position.
+
+    Its field is the signed distance in the maximum norm, max(|x| - size.x / 2, ...): exact inside and in front of the
+    sides, less than the distance in front of edges and corners.
+    """
+
+    collides: ClassVar[bool] = True
+
+    size: Position = field("Its sides along its own x, y and z.", "1 1 1 m", above=0)
+
+    @property
+    def traced(self) -> str:
+        """It is met exactly."""
+        return ""
+
+    def _half(self, moment: Moment) -> tuple[float, float, float]:
+        half = triple(0.5 * moment.at(self.size))
+        if not min(half) > 0:
+            raise RunFailure("must be above 0 now", part="size", time=moment.time, span=self.size.span)
+        return half
+
+    def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
+        """Signed distance in the maximum norm."""
+        low, high = self.reach(moment)
+        return block(build, (x, y, z), low, high)
+
+    def reach(self, moment: Moment) -> tuple[Any, Any]:
+        """The box itself."""
+        a, b, c = self._half(moment)
+        return (-a, -b, -c), (a, b, c)
+
+    def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
+        """A quadric without terms: its bounds alone."""
+        surface = moment.surface(name, self.material, self.color)
+        yield quadric(name, surface, compose(place, self.local(moment)), constant=-1.0, half=self._half(moment))
+
+    def collider(self, assembly: Assembly) -> Collider:
+        """Center, rotation and half sides."""
+        half = Call("mul", (Number(0.5), self.size.expr), Type((3,), LENGTH))
+        least = Call("min", (half,), Type((), LENGTH))
+        return Collider(
+            "sceneql.contacts.shapes.box_kernels",
+            assembly.value(self.position),
+            assembly.value(self.rotation),
+            assembly.value(Value(half, self.size.span)),
+            assembly.value(Value(least, self.size.span)),
+        )

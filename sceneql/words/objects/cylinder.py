@@ -1,0 +1,48 @@
+"""cylinder: an upright round column."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+from sceneql.kinds import FieldBuilder, Length, Moment, field
+from sceneql.shapes.checked_values import positive
+from sceneql.shapes.placement import compose
+from sceneql.shapes.solid import INFINITY, Solid, largest, length, less, quadric
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Shape
+
+
+class Cylinder(Solid):
+    """The column x^2 + z^2 <= radius^2, |y| <= height / 2 about its position.
+
+    Its field is max(sqrt(x^2 + z^2) - radius, |y| - height / 2): exact inside and in front of its side and ends, less
+    than the distance in front of its rims.
+    """
+
+    radius: Length = field("Its radius.", "0.5 m", above=0)
+    height: Length = field("Its length along its own y.", "1 m", above=0)
+
+    @property
+    def traced(self) -> str:
+        """It is met exactly."""
+        return ""
+
+    def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
+        """Signed distance in the maximum norm of side and ends."""
+        half = 0.5 * positive(moment, self.height, "height")
+        side = less(build, length(build, x, z), positive(moment, self.radius, "radius"))
+        return largest(build, side, less(build, build.op("abs", y), half))
+
+    def reach(self, moment: Moment) -> tuple[Any, Any]:
+        """The block around it."""
+        r, half = positive(moment, self.radius, "radius"), 0.5 * positive(moment, self.height, "height")
+        return (-r, -half, -r), (r, half, r)
+
+    def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
+        """A quadric cut off at its ends."""
+        r, half = positive(moment, self.radius, "radius"), 0.5 * positive(moment, self.height, "height")
+        surface = moment.surface(name, self.material, self.color)
+        whole = compose(place, self.local(moment))
+        yield quadric(name, surface, whole, squares=(1.0, 0.0, 1.0), constant=-r * r, half=(INFINITY, half, INFINITY))

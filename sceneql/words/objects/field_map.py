@@ -1,0 +1,166 @@
+"""field_map: a field on a grid in colors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Annotated
+
+from sceneql.grids.maps.map_names import ColorMap
+from sceneql.grids.maps.seen import Bounds, Field, Levels, seen, unfit
+from sceneql.kinds import (
+    Color,
+    FixedLength,
+    FixedPosition,
+    Moment,
+    Object,
+    ObjectRef,
+    Problem,
+    Quantity,
+    Record,
+    Ref,
+    Value,
+    field,
+)
+from sceneql.kinds.types import Axis
+from sceneql.quantities.dimension import LENGTH, PLAIN
+from sceneql.shapes.color import linear
+from sceneql.shapes.placement import apply, uniform_scale
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Shape
+    from sceneql.grids.maps.key import ColorKey
+    from sceneql.grids.maps.seen import Seen
+    from sceneql.grids.maps.sheets import Sheet
+
+FOREVER = 1e30
+THIN = 1.5e-3
+"""Radius of a line of one value, in parts of the grid's longest side, where the script does not say."""
+
+
+class Section(Record):
+    """A plane."""
+
+    through: FixedPosition = field("A point of the plane.", "0 0 0 m")
+    normal: Axis = field("The direction that it faces, of any length.", "0 0 1")
+
+    def problems(self) -> Iterator[Problem]:
+        """A normal of no direction."""
+        if not any(self.normal):
+            yield Problem("a plane needs a direction that it faces", ("normal",))
+
+
+class FieldMap(Object):
+    """A field in colors: a flat one on its domain, cut along its shore; a deep one on its domain's surface.
+
+    With `cut` what lies before all these planes is taken away, and the field is seen inside. Between
+    the centers of cells it is linear. Under a sky of one color alone (`sky: {color: white}`) colors come out as the map
+    has them.
+    """
+
+    of: Field = field("The field: `lake.concentration`.")
+    colors: ColorMap = field("The map of colors, from the low to the high end; coolwarm has a middle.", "viridis")
+    range: Bounds | None = field(
+        "The values at the ends of the map; by default the least and the largest at the start.", None
+    )
+    height: Annotated[Value, Quantity(None)] | None = field(
+        "How far a unit of a flat field lifts it along z: `30 m*L/mg`.", None
+    )
+    cut: tuple[Section, ...] = field("A deep domain is cut open: what lies before all these planes is away.", ())
+    surface: bool = field("Of a deep domain; without it the field is seen on the planes of `cut` alone, whole.", True)
+    on: ObjectRef | None = field("An object in a deep domain, drawn by this one, on whose surface it is seen.", None)
+    contours: Levels | None = field("Values whose lines are drawn, one or several.", None)
+    contour_color: Color = field("Color of these lines.", "0.05 0.05 0.06")
+    contour_radius: FixedLength | None = field("Radius of these lines; by default a thin one.", None, above=0)
+
+    def problems(self) -> Iterator[Problem]:
+        """Fields of no part or of several; bounds, contours and heights of other dimensions."""
+        yield from unfit(self.of, {"range": self.range, "contours": self.contours})
+        own = self.of.expr.type.dimension
+        has = None if self.height is None else self.height.expr.type.dimension
+        if own is not None and has is not None and has not in (LENGTH / own, LENGTH):
+            yield Problem("a height is a length for a unit of the field: `30 m*L/mg`", ("height",))
+        if self.on is not None and (self.cut or not self.surface):
+            yield Problem("it is the domain that is cut open, not what the field is seen `on`", ("on",), at_key=True)
+        if not self.surface and not self.cut:
+            yield Problem("without its surface a field is seen on the planes of `cut`, of which there are none")
+
+    def members(self) -> tuple[Ref, ...]:
+        """What it is seen on."""
+        return () if self.on is None else (self.on,)
+
+    def remembers(self) -> Iterable[tuple[Value, float, float]]:
+        """The field at the start, where that gives the range."""
+        if self.range is None:
+            yield self.of, FOREVER, FOREVER
+
+    def scale(self, moment: Moment) -> tuple[float, float]:
+        """The values at the ends of the map. Raises ValueError where they are not in order."""
+        if self.range is not None:
+            low, high = (float(c) for c in moment.at(self.range))
+            if not high > low:
+                raise ValueError(f"the range ends at {high:g}, which is not above {low:g}")
+            return low, high
+        past = moment.past(self.of)
+        values = past[0][1] if past else moment.at(self.of)
+        low, high = float(values.min()), float(values.max())
+        if high == low:  # even at the start: as far as it has come
+            values = moment.at(self.of)
+            low, high = min(low, float(values.min())), max(high, float(values.max()))
+        return (low, high) if high > low else (low, low + 1.0)
+
+    def color_key(self, moment: Moment) -> ColorKey:
+        """What its colors mean, for a legend."""
+        from sceneql.grids.maps.key import ColorKey
+
+        dimension = self.of.expr.type.dimension or PLAIN
+        return ColorKey(self.colors, *self.scale(moment), dimension, self._levels(moment))
+
+    def _levels(self, moment: Moment) -> tuple[float, ...]:
+        import numpy as np
+
+        return () if self.contours is None else tuple(np.ravel(moment.at(self.contours)).tolist())
+
+    def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
+        """A mesh with a color a vertex, and lines as segments. Raises ValueError for a cut through a flat field."""
+        import numpy as np
+
+        from sceneql.frame import Mesh, Segments, Surface
+        from sceneql.grids.maps.colors import colored
+        from sceneql.grids.maps.sheets import contour, raised
+
+        field = seen(self.of, moment)
+        sheet = self._sheet(field, moment)
+        values = field.at(sheet.vertices)
+        if self.height is not None:
+            sheet = raised(sheet, values * float(moment.at(self.height)))
+        vertices = apply(place, sheet.vertices)
+        triangles = sheet.triangles if np.linalg.det(place[:, :3]) > 0 else sheet.triangles[:, ::-1].copy()
+        normals = None
+        if sheet.normals is not None:
+            normals = sheet.normals @ np.linalg.inv(place[:, :3])
+            normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+        matte = Surface(color=(1.0, 1.0, 1.0), roughness=1.0, specular=0.0)
+        look = matte if self.material is None else moment.surface(name, self.material, None)
+        yield Mesh(name, look, vertices, triangles, normals, colored(values, self.scale(moment), self.colors))
+        lines = [contour(sheet, values, level) for level in self._levels(moment)]
+        if sum(map(len, lines)):
+            radius = self.contour_radius or THIN * max(
+                n * h for n, h in zip(field.layout.shape[:2], field.layout.spacing[:2], strict=True)
+            )
+            ends = apply(place, np.concatenate(lines))
+            ink = Surface(color=linear(moment.at(self.contour_color)), roughness=1.0, specular=0.0)
+            yield Segments(f"{name}.contours", ink, ends, np.full(len(ends), radius * uniform_scale(place)))
+
+    def _sheet(self, field: Seen, moment: Moment) -> Sheet:
+        """What the field is seen on, made once for all frames."""
+        from sceneql.grids.maps.domains import sheet_of, skin
+
+        if field.layout.shape[2] == 1 and (self.cut or self.on is not None):
+            raise ValueError("a flat field has no inside to be cut open, or to hold an object")
+        if field.layout.shape[2] > 1 and self.height is not None:
+            raise ValueError("a deep field is not lifted: `height` is for flat ones")
+
+        if self.on is not None:
+            return skin(self.on, field.layout, moment)
+        planes = tuple((one.through, one.normal) for one in self.cut)
+        return sheet_of(field, moment, planes, self.surface)

@@ -1,0 +1,178 @@
+"""implicit: a solid given by a formula of x, y and z."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from math import cos, inf, isfinite, pi, sin, sqrt
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import field_validator
+
+from sceneql.formulas.point_formula import in_coordinates, written_out
+from sceneql.kinds import Axis, FieldBuilder, FixedLength, FixedScalar, Formula, Moment, Problem, Record, Symbols
+from sceneql.kinds import field as described
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Expr, Symbol
+from sceneql.shapes.placement import inverse
+from sceneql.shapes.solid import Solid, block, length, less, traced
+
+if TYPE_CHECKING:
+    from sceneql import frame
+
+PLACES = 200
+"""Of the default bounds, at which a formula is looked at."""
+ROUNDING = 1e-9
+"""Part of what a formula is half way to them, below which it may be 0 there."""
+
+
+class Within(Record):
+    """Where the formula is looked at: a ball about the origin or a box, in units of the formula."""
+
+    ball: FixedScalar | None = described("Radius of a ball about the origin.", None, above=0)
+    box: tuple[Axis, Axis] | None = described("Low and high corner of a box.", None)
+
+    def problems(self) -> Iterator[Problem]:
+        """Two shapes or none, or a box inside out."""
+        if (self.ball is None) == (self.box is None):
+            yield Problem("bounds are one of `ball: radius` and `box: [low, high]`")
+        if self.box is not None and not all(low < high for low, high in zip(*self.box, strict=True)):
+            text = "each component of the box's low corner must be below that of its high corner"
+            yield Problem(text, ("box",))
+
+    @property
+    def corners(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Low and high corner of the box around it."""
+        if self.box is not None:
+            return self.box
+        r = self.ball or 0.0
+        return (-r, -r, -r), (r, r, r)
+
+
+def _on_a_ball(count: int) -> Iterator[tuple[float, float, float]]:
+    """Points on the unit ball, evenly: on the spiral of Fibonacci (Gonzalez 2010)."""
+    for k in range(count):
+        z, turn = 1.0 - (2 * k + 1) / count, pi * (3.0 - sqrt(5.0)) * k
+        aside = sqrt(1.0 - z * z)
+        yield aside * cos(turn), aside * sin(turn), z
+
+
+class Implicit(Solid):
+    """The solid {field < level} within its bounds, or the surface {field = level}.
+
+    The formula takes plain numbers x, y, z and the time t in seconds; x = 1 stands for the length `unit`, so textbook
+    formulas need no dimensions. Where the formula is not defined is outside. Its field is max(unit (field - level),
+    distance to the bounds), which is negative inside but is a distance only where |grad field| = 1.
+
+    As a surface it is drawn as a thin sheet, seen from both sides and open at its bounds, also where the field touches
+    the level and does not pass it, as (x^2 + y^2 - 1)^2 does 0; to contacts, meshes and other objects it is the solid.
+    """
+
+    field: Annotated[Formula, Symbols(("x", "y", "z", "t"))] = described("The formula.")
+    level: FixedScalar = described("The value that the formula has on the surface.", "0")
+    unit: FixedLength = described("The length that x = 1 stands for.", "1 m", above=0)
+    bounds: Within = described(
+        "Where the formula is looked at, in units of the formula; by default the ball of radius 1.", Within(ball=1.0)
+    )
+    mode: Literal["solid", "surface"] = described(
+        "`solid`: all that is below the level; `surface`: a sheet where it is reached.", "solid"
+    )
+
+    @field_validator("field")
+    @classmethod
+    def _is_scalar(cls, given: Formula) -> Formula:
+        in_coordinates(given.expr)
+        return given
+
+    def cut_by_default(self) -> str:
+        """The ball about the origin, where no bounds are given and the solid or surface goes on there at the start."""
+        if "bounds" in self.model_fields_set:
+            return ""
+        low, high, size = inf, -inf, 0.0
+        known: dict[str, float] = {}
+
+        def look_up(node: Symbol) -> float:
+            return known[node.name]
+
+        for place in _on_a_ball(PLACES):
+            try:
+                known |= zip("xyzt", (*(0.5 * x for x in place), 0.0), strict=True)
+                within = evaluate(self.field.expr, look_up)
+                known |= zip("xyzt", (*place, 0.0), strict=True)
+                value = evaluate(self.field.expr, look_up)
+            except (AttributeError, KeyError):  # what only a run knows stands in it
+                return ""
+            low, high = min(low, value), max(high, value)
+            size = max(size, abs(within - self.level) if isfinite(within) else 0.0)
+        # The ball itself, written as a formula, is below the level there by rounding alone.
+        goes_on = low < self.level - ROUNDING * size and (self.mode == "solid" or high > self.level + ROUNDING * size)
+        return "the ball x^2 + y^2 + z^2 = 1" if goes_on else ""
+
+    def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
+        """The formula and its bounds, in meters."""
+        return build.op("mul", build.op("max", *self._parts(build, x, y, z, moment)), build.constant(self.unit))
+
+    def _parts(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> tuple[int, int]:
+        """Registers of the formula less the level, and of the distance to the bounds, in units.
+
+        A formula of a magnitude that no distance has is brought near one by a power of two, so that its bounds and
+        other objects' fields, which are distances, do not pass for it where it is as near 0 as rounding lets it be.
+        """
+        per_unit = build.constant(1.0 / self.unit)
+        u, v, w = (build.op("mul", register, per_unit) for register in (x, y, z))
+        formula = written_out(self.field.expr, moment)
+        value = less(build, build.expression(formula, {"x": u, "y": v, "z": w}), self.level)
+        value = build.op("mul", value, build.constant(self._leveling(formula)))
+        if self.bounds.ball is not None:
+            limit = less(build, length(build, u, v, w), self.bounds.ball)
+        else:
+            limit = block(build, (u, v, w), *self.bounds.corners)
+        return value, limit
+
+    def _leveling(self, formula: Expr) -> float:
+        """The power of two that the formula less the level is multiplied by."""
+        from sceneql.field.tape.magnitude import leveling
+
+        return leveling(self._alone(formula), *self.bounds.corners)
+
+    def _alone(self, formula: Expr) -> frame.Tape:
+        """The tape of the formula less the level, in units and without bounds."""
+        from sceneql.field.tape.builder import TapeBuilder
+
+        alone = TapeBuilder()
+        value = alone.expression(formula, {"x": alone.x, "y": alone.y, "z": alone.z})
+        return alone.finish(less(alone, value, self.level))
+
+    def reach(self, moment: Moment) -> tuple[Any, Any]:
+        """The box around its bounds."""
+        low, high = self.bounds.corners
+        return tuple(self.unit * c for c in low), tuple(self.unit * c for c in high)
+
+    def lower(self, name: str, place: frame.Floats, moment: Moment) -> Iterable[frame.Shape]:
+        """Its tape in the box around its bounds.
+
+        Raises RunFailure where the formula is nowhere defined there, or nowhere finite and yet inside, at any time.
+        """
+        from sceneql.failure import RunFailure
+        from sceneql.field.tape.emptiness import bottomless, nowhere_defined
+
+        for solid in traced(self, name, place, moment):
+            shape = solid if self.mode == "solid" else self._sheet(solid, place, moment)
+            if self.field.constant and nowhere_defined(shape.tape, shape.low, shape.high):
+                message = "the formula is defined nowhere in its bounds, so there is nothing to draw"
+                raise RunFailure(message, part="field", time=moment.time, span=self.field.span)
+            if self.field.constant and bottomless(
+                self._alone(written_out(self.field.expr, moment)), *self.bounds.corners
+            ):
+                message = "the formula is nowhere finite in its bounds, so there is no surface to draw"
+                raise RunFailure(message, part="field", time=moment.time, span=self.field.span)
+            yield shape
+
+    def _sheet(self, solid: frame.Implicit, place: frame.Floats, moment: Moment) -> frame.Implicit:
+        """The surface of the solid that it would be."""
+        from sceneql.field.tape.builder import TapeBuilder
+
+        build = TapeBuilder()
+        world = build.affine(inverse(place), build.x, build.y, build.z)
+        value, limit = self._parts(build, *build.affine(inverse(self.local(moment)), *world), moment)
+        return replace(solid, tape=build.finish(value), within=build.finish(limit))

@@ -1,0 +1,63 @@
+"""sphere: all points within a radius."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from sceneql.kinds import Collider, FieldBuilder, Length, Moment, field
+from sceneql.shapes.checked_values import positive
+from sceneql.shapes.placement import compose
+from sceneql.shapes.solid import Solid, length, less, quadric
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Shape
+    from sceneql.system import Assembly
+
+
+class Sphere(Solid):
+    """The ball |p| <= radius about its position. Its field is the signed distance |p| - radius."""
+
+    collides: ClassVar[bool] = True
+
+    radius: Length = field("Its radius.", "0.5 m", above=0)
+
+    @property
+    def traced(self) -> str:
+        """It is met exactly."""
+        return ""
+
+    def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
+        """Signed distance."""
+        return less(build, length(build, x, y, z), positive(moment, self.radius, "radius"))
+
+    def reach(self, moment: Moment) -> tuple[Any, Any]:
+        """The cube around it."""
+        r = positive(moment, self.radius, "radius")
+        return (-r, -r, -r), (r, r, r)
+
+    def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
+        """The box around the ellipsoid that it is in the world."""
+        import numpy as np
+
+        whole = compose(place, self.local(moment))
+        half = positive(moment, self.radius, "radius") * np.linalg.norm(whole[:, :3], axis=1)
+        return whole[:, 3] - half, whole[:, 3] + half
+
+    def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
+        """A quadric; under an uneven scale an ellipsoid."""
+        r = positive(moment, self.radius, "radius")
+        surface = moment.surface(name, self.material, self.color)
+        whole = compose(place, self.local(moment))
+        yield quadric(name, surface, whole, squares=(1.0, 1.0, 1.0), constant=-r * r, half=(r, r, r))
+
+    def collider(self, assembly: Assembly) -> Collider:
+        """Center, rotation and radius."""
+        radius = assembly.value(self.radius)
+        return Collider(
+            "sceneql.contacts.shapes.sphere_kernels",
+            assembly.value(self.position),
+            assembly.value(self.rotation),
+            radius,
+            radius,
+        )

@@ -1,0 +1,30 @@
+"""torus: a ring."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sceneql.kinds import FieldBuilder, Length, Moment, field
+from sceneql.shapes.checked_values import positive
+from sceneql.shapes.solid import Solid, length, less
+
+
+class Torus(Solid):
+    """A tube around the circle x^2 + z^2 = radius^2 of its own plane y = 0.
+
+    Its field is the signed distance sqrt((sqrt(x^2 + z^2) - radius)^2 + y^2) - tube.
+    """
+
+    radius: Length = field("Radius of the circle in the middle of the tube.", "0.5 m", above=0)
+    tube: Length = field("Radius of the tube.", "0.15 m", above=0)
+
+    def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
+        """Signed distance."""
+        around = less(build, length(build, x, z), positive(moment, self.radius, "radius"))
+        return less(build, length(build, around, y), positive(moment, self.tube, "tube"))
+
+    def reach(self, moment: Moment) -> tuple[Any, Any]:
+        """The flat block around it."""
+        tube = positive(moment, self.tube, "tube")
+        r = positive(moment, self.radius, "radius") + tube
+        return (-r, -tube, -r), (r, tube, r)

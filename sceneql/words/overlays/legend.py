@@ -1,0 +1,105 @@
+"""legend: what the colors of a field mean."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any, Literal
+
+from sceneql.kinds import FixedScalar, Moment, ObjectRef, Overlay, Problem, field
+from sceneql.quantities.diagnostic import ScriptError
+from sceneql.quantities.units import describe, parse_unit, unit_of
+
+if TYPE_CHECKING:
+    from numpy import uint8
+    from numpy.typing import NDArray
+
+    from sceneql.frame import View
+    from sceneql.grids.maps.key import ColorKey
+
+LONG = 0.62
+"""Length of the bar in parts of the picture's height."""
+
+
+class Legend(Overlay):
+    """A bar of the colors of a field with numbers beside it, in the unit that is wanted, and its contours as lines."""
+
+    of: ObjectRef = field("What shows the field in colors: a `field_map`.")
+    unit: str | None = field("The unit of the numbers: `mg/L`; by default that of SI.", None)
+    title: str = field("What is said above the bar; the unit follows.", "")
+    place: Literal["left", "right"] = field("The side of the picture where it stands.", "right")
+    numbers: int = field("About how many numbers there are.", 5, at_least=2, at_most=20)
+    text: FixedScalar = field("Height of its letters in parts of the picture's.", "0.034", above=0, at_most=0.2)
+    panel: FixedScalar = field("Opacity of the panel that it stands on.", "0.7", at_least=0, at_most=1)
+
+    def problems(self) -> Iterator[Problem]:
+        """A unit that there is not."""
+        if self.unit is not None:
+            try:
+                parse_unit(self.unit)
+            except ScriptError as error:
+                yield Problem(error.diagnostics[0].message, ("unit",), code=error.diagnostics[0].code)
+
+    def draw(
+        self,
+        pixels: NDArray[uint8],
+        view: View,
+        moment: Moment,
+        develop: Callable[[Any], NDArray[uint8]],
+    ) -> None:
+        """Draw the bar. Raises ValueError for what shows no field, and for a unit of another dimension."""
+        from sceneql.kinds.texts import shown_unit
+        from sceneql.pictures.lettering import DARK, LIGHT, Letterer, round_numbers
+
+        shows: Any = moment.object(self.of)
+        if not hasattr(shows, "color_key"):
+            raise ValueError(f"'{self.of.name}' shows no field in colors; a field_map does")
+        key: ColorKey = shows.color_key(moment)
+        text = unit_of(key.dimension) if self.unit is None else self.unit
+        unit = parse_unit(text) if text != "1" else parse_unit("%")
+        scale, offset = (1.0, 0.0) if text == "1" else (unit.scale, unit.offset)
+        if text != "1" and unit.dimension != key.dimension:
+            raise ValueError(f"the field is {describe(key.dimension)}, which {text} is no unit of")
+        low, high = (key.low - offset) / scale, (key.high - offset) / scale
+        ticks = [(value, (value - low) / (high - low)) for value in round_numbers(low, high, self.numbers)]
+        lines = [line for line in (self.title, "" if text == "1" else shown_unit(text)) if line]
+        marks = [(mark - key.low) / (key.high - key.low) for mark in key.marks]
+        letters = Letterer(pixels, self.text, DARK if self.dark else LIGHT)
+        self._bar(letters, key, lines, ticks, [mark for mark in marks if 0 < mark < 1], develop)
+        letters.done()
+
+    def _bar(
+        self,
+        letters: Any,
+        key: ColorKey,
+        lines: list[str],
+        ticks: list[tuple[float, float]],
+        marks: list[float],
+        develop: Callable[[Any], NDArray[uint8]],
+    ) -> None:
+        """Draw with ticks (number, place from 0 to 1) and marks (place)."""
+        import numpy as np
+
+        em = letters.em
+        long, wide = round(LONG * letters.height), em
+        words = [f"{value:.6g}".replace("-", "\u2212") for value, _ in ticks]
+        widest = max((letters.extent(word)[0] for word in words), default=0)
+        head = round((1.25 * len(lines) + 0.35) * em) if lines else 0
+        width, height = max(wide + round(0.5 * em) + widest, *(letters.extent(line)[0] for line in lines)), head + long
+        margin, room = round(0.8 * em), round(0.7 * em)
+        left = margin if self.place == "left" else letters.width - margin - width - 2 * room
+        top = (letters.height - height) // 2 - room
+        letters.panel((left, top, left + width + 2 * room, top + height + 2 * room), self.panel)
+        left, top = left + room, top + room
+        for k, line in enumerate(lines):
+            letters.text((left, top + (0.5 + 1.25 * k) * em), line)
+        top += head
+        ramp = key.ramp((np.arange(long, 0, -1) - 0.5) / long).astype(np.float32)
+        letters.paste(develop(np.repeat(ramp[:, None], wide, axis=1)), left, top)
+        thick = max(1, em // 14)
+        for word, (_, place) in zip(words, ticks, strict=True):
+            y = top + (1 - place) * (long - 1)
+            letters.draw.line((left + wide, y, left + wide + 0.25 * em, y), letters.look.ink, thick)
+            letters.text((left + wide + 0.5 * em, y), word)
+        for mark in marks:
+            y = top + (1 - mark) * (long - 1)
+            letters.draw.line((left, y, left + wide, y), letters.look.ink, thick)
