@@ -219,7 +219,7 @@ class Sky:
     """Seen by camera rays in place of the sky, where given (a plain background)."""
 
 
-Light = Sun | PointLight | Sky
+LightSource = Sun | PointLight | Sky
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -245,6 +245,6 @@ class Frame:
     time: float
     """[s] of simulation."""
     shapes: tuple[Shape, ...]
-    lights: tuple[Light, ...]
+    lights: tuple[LightSource, ...]
     view: View
     seed: int = 0

@@ -20,13 +20,13 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.compile import compile_script
 from sceneql.failure import Unsuitable, failing_as
 from sceneql.graph import SimulationGraph
-from sceneql.kinds import FAMILIES, Camera, Clock, Illumination, Object, Output, Overlay, Picture, Renderer, Settings
+from sceneql.kinds import FAMILIES, Camera, Clock, Light, Object, Output, Overlay, Picture, Renderer, Settings
 from sceneql.language.patch import Patch
 from sceneql.language.script import read_script
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
 
 if TYPE_CHECKING:
-    from sceneql.frame import Light, View
+    from sceneql.frame import LightSource, View
     from sceneql.pictures.layout import Panel
     from sceneql.run.run import Instant
 
@@ -360,9 +360,9 @@ def frame_of(
     eye = graph.tasks[camera or graph.cameras[output]]
     with failing_as(eye.name, moment.time, eye.span):
         view = cast(Camera, eye.kind).view(size, moment)
-    lights: list[Light] = []
+    lights: list[LightSource] = []
     for task in graph.tasks.values():
-        if isinstance(task.kind, Illumination):
+        if isinstance(task.kind, Light):
             with failing_as(task.name, moment.time, task.span):
                 lights += task.kind.lower(moment)
     if graph.settings.background is not None:

@@ -277,7 +277,7 @@ class Assembly(Protocol):
     def stop_at(self, time: float) -> None:
         """Say that something happens at an instant [s]: such steps end there."""
 
-    def stop_where_it_turns(self, expr: Expr) -> None:
+    def stop_at_breakpoints(self, expr: Expr) -> None:
         """Say that a formula is read: such steps end where the time switches it. (So they do for each `value`.)"""
 
     def start(self) -> Any:

@@ -11,12 +11,12 @@ I = types.int64[::1]
 TERM = types.void(F, A, A, A, I)
 GAP = types.void(F, A, A, A, I)
 IMPACT = types.void(F, A, N, A, I)
-SETTLE = types.void(F, F, A, A, A, A, I)
+BACK_OFF = types.void(F, F, A, A, A, A, I)
 
 RATE_FUNCTION = types.FunctionType(TERM)
 GAP_FUNCTION = types.FunctionType(GAP)
 IMPACT_FUNCTION = types.FunctionType(IMPACT)
-SETTLE_FUNCTION = types.FunctionType(SETTLE)
+BACK_OFF_FUNCTION = types.FunctionType(BACK_OFF)
 
 JACOBIAN = types.void(I, F, A, A, A, I)
 STEP = types.float64(I, F, F, A, A, A, A, A, I, A, I)

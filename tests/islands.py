@@ -86,7 +86,7 @@ def balls(heights: Sequence[float], restitution: float, g: float = 9.81, mode: s
         kernels = ("solver_kernels:floor_gap", "solver_kernels:floor_impact")
         island.contact("exact", kernels, ints, len(heights))
     else:
-        island.contact("local", ("solver_kernels:floor_settle",), ints, len(heights))
+        island.contact("local", ("solver_kernels:floor_back_off",), ints, len(heights))
     return Balls(island.finish(jacobian=True), ints[3], ints[4])
 
 

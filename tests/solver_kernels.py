@@ -3,7 +3,7 @@
 import math
 
 from sceneql.compiled.kernels import kernel
-from sceneql.system_kernels import GAP, IMPACT, SETTLE, TERM
+from sceneql.system_kernels import BACK_OFF, GAP, IMPACT, TERM
 
 
 @kernel(TERM)
@@ -95,8 +95,8 @@ def floor_impact(t, y, pair, floats, ints):
     y[2 * pair + 1] = after
 
 
-@kernel(SETTLE)
-def floor_settle(t0, t1, y0, rate0, y1, floats, ints):
+@kernel(BACK_OFF)
+def floor_back_off(t0, t1, y0, rate0, y1, floats, ints):
     """Mirrors balls that have gone below 0."""
     for k in range(0, y1.size, 2):
         if y1[k] < 0.0:

@@ -94,7 +94,7 @@ def test_a_late_kernel_that_cannot_be_brought_ends_the_call_with_the_reason_each
 AHEAD = """
 import sys, threading
 THREAD
-from sceneql import ahead
+from sceneql.compiled import compile_beside as ahead
 from sceneql.compiled.kernels import compiled
 wait = ahead.compile_ahead(sys.argv[1:])
 wait()

@@ -31,7 +31,7 @@ from sceneql.mesh.measures import edge_counts, euler_characteristic, volume
 from sceneql.mesh.polygons import Polygons
 from sceneql.mesh.repair.flips import facing
 from sceneql.mesh.repair.folds import folds, winding
-from sceneql.mesh.repair.self_intersections import passing
+from sceneql.mesh.repair.self_intersections import self_intersections
 
 
 @pytest.mark.parametrize("name", CLOSED)
@@ -149,7 +149,7 @@ def test_triangles_that_pass_through_others_are_found_with_them():
          [0.3, 0.1, 1.0], [0.1, 0.3, -1.0]], dtype=float,
     )  # fmt: skip
     triangles = np.array([[0, 1, 2], [3, 4, 5], [6, 7, 8], [0, 9, 10]], dtype=np.int32)
-    first, other = passing(places, triangles, np.array([0]))
+    first, other = self_intersections(places, triangles, np.array([0]))
     assert set(first) == {0}
     assert set(other) == {1, 3}
 

@@ -349,7 +349,7 @@ class _Assembly:
 def test_colliders_store_place_and_size(thing, shape, position, size):
     assembly = _Assembly()
     found = thing.collider(assembly)
-    assert found.shape == shape
+    assert found.kernels == f"sceneql.contacts.shapes.{shape}_kernels"
     np.testing.assert_allclose(assembly.numbers[found.position_at : found.position_at + 3], position)
     np.testing.assert_allclose(assembly.numbers[found.rotation_at : found.rotation_at + 4], (1, 0, 0, 0))
     np.testing.assert_allclose(assembly.numbers[found.size_at : found.size_at + len(size)], size)

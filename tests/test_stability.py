@@ -198,7 +198,7 @@ def few(monkeypatch):
     monkeypatch.setattr(Catalogue, "words", lambda self, family: [w for w in words(self, family) if w in kept])
 
 
-def survey(tmp_path, script, **options):
+def dry_run(tmp_path, script, **options):
     path = tmp_path / "scene.yaml"
     path.write_text(script)
     text = report(lambda more: pipeline.load(path, sets=more), output=tmp_path, **options)
@@ -208,7 +208,7 @@ def survey(tmp_path, script, **options):
 def test_the_map_over_steps_turns_at_the_bound(tmp_path, few):
     """A linear spring: below its bound a run holds, above it fails."""
     script = PENDULUM.replace("forces: [gravity]\n", "").replace("stiffness: k", "stiffness: k, rest: 0 m")
-    _, cells = survey(tmp_path, script, sweep="step=1e-4..1e-2", points=9)
+    _, cells = dry_run(tmp_path, script, sweep="step=1e-4..1e-2", points=9)
     assert {cell["solver"] for cell in cells} >= {"euler", "midpoint", "rk4", "semi_implicit_euler"}
     for cell in cells:
         if cell["solver"] in ("rk4", "semi_implicit_euler"):
@@ -226,7 +226,7 @@ def test_the_map_over_steps_turns_at_the_bound(tmp_path, few):
 def test_the_map_over_stiffness_tells_stable_from_inaccurate_and_failed(tmp_path, few):
     """A spring pendulum from soggy to stiff at 1/60 s."""
     script = PENDULUM.replace("dt: 1 ms", "dt: 1/60 s")
-    _, cells = survey(tmp_path, script, sweep="define.k=1e0..1e6 N/m", points=4)
+    _, cells = dry_run(tmp_path, script, sweep="define.k=1e0..1e6 N/m", points=4)
     by = {(cell["solver"], cell["value"]): cell for cell in cells}
     assert [by["rk4", k]["outcome"] for k in (1.0, 100.0)] == ["stable", "stable"]
     assert {cell["value"] for cell in cells} == {1.0, 100.0, 1e4, 1e6}
@@ -377,7 +377,7 @@ def test_an_island_that_a_method_refuses_is_mapped_by_the_others(tmp_path, few):
     script = "clock: {end: 0.1 s}\nforces: [gravity]\nsolvers: {main: {rk4: {step: 1 ms}}}\n" + ONE_NET.format(
         net="rope", how="{from: 0 0 0 m, to: 1 0 0 m, count: 80}"
     )
-    _, cells = survey(
+    _, cells = dry_run(
         tmp_path, script + "outputs: {data: {record: {of: [net.energy]}}}\n", sweep="step=1e-3..2e-3", points=2
     )
     assert {cell["outcome"] for cell in cells if cell["solver"] == "rk4"} == {"stable"}

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from renderers.rastering.triangles import Triangles
-    from sceneql.frame import RGB, Floats, Frame, Light, View
+    from sceneql.frame import RGB, Floats, Frame, LightSource, View
 
 GAMMA = 2.2
 """What pyrender's shader takes the root of, so that 8 bits reach further down."""
@@ -88,7 +88,7 @@ def _add_camera(gl: Any, scene: Any, view: View, far: float) -> None:
     scene.add(camera, pose=_pose(view.axes.T, origin))
 
 
-def _add_light(gl: Any, scene: Any, light: Light, brightest: float) -> None:
+def _add_light(gl: Any, scene: Any, light: LightSource, brightest: float) -> None:
     if isinstance(light, Sun):
         pose = _pose(_turned(light), np.zeros(3))
         scene.add(gl.DirectionalLight(*_parted(light.irradiance, brightest)), pose=pose)
@@ -118,7 +118,7 @@ def _parted(light: RGB, brightest: float) -> tuple[Floats, float]:
     return np.array(light) / most, most / brightest
 
 
-def _ambient(lights: Iterable[Light]) -> Floats:
+def _ambient(lights: Iterable[LightSource]) -> Floats:
     """(3,) mean radiance of all skies: each is linear in the height of a direction, above and below."""
     means = [np.mean([s.horizon, s.horizon, s.zenith, s.ground], axis=0) for s in lights if isinstance(s, Sky)]
     total: Floats = np.sum([np.zeros(3), *means], axis=0)
@@ -149,7 +149,7 @@ def _places(view: View, depth: Floats, far: float) -> Floats:
     return places
 
 
-def _backdrop(view: View, lights: Iterable[Light], width: int, height: int) -> Floats:
+def _backdrop(view: View, lights: Iterable[LightSource], width: int, height: int) -> Floats:
     """(height, width, 3) radiance that is seen where nothing is."""
     skies = [light for light in lights if isinstance(light, Sky)]
     seen = [sky.visible for sky in skies if sky.visible is not None]

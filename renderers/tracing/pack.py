@@ -47,7 +47,7 @@ from sceneql.frame import Frame, Grid, Implicit, Mesh, Mist, Points, Quadric, Se
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from sceneql.frame import Floats, Ints, Light, Tape
+    from sceneql.frame import Floats, Ints, LightSource, Tape
 
 
 UNBOUNDED = np.repeat([-np.inf, np.inf], 3)
@@ -270,7 +270,7 @@ def _surface(s: Surface) -> Floats:
     return np.array([*s.color, *answer, *s.emission, s.checker_size, *s.checker_color], dtype=np.float64)
 
 
-def _lights(lights: tuple[Light, ...]) -> Floats:
+def _lights(lights: tuple[LightSource, ...]) -> Floats:
     rows = []
     for light in lights:
         if isinstance(light, Sun):
@@ -281,7 +281,7 @@ def _lights(lights: tuple[Light, ...]) -> Floats:
     return np.array(rows, dtype=np.float64).reshape(-1, LIGHT)
 
 
-def _sky(lights: tuple[Light, ...]) -> Floats:
+def _sky(lights: tuple[LightSource, ...]) -> Floats:
     """The sum of all skies; `visible` is the last one's that has it."""
     row = np.zeros(14)
     for sky in lights:

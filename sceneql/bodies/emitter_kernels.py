@@ -7,7 +7,7 @@ import numpy as np
 from numba import types
 
 from sceneql.compiled.kernels import inlined, kernel
-from sceneql.system_kernels import SETTLE
+from sceneql.system_kernels import BACK_OFF
 
 CHANGED_AT = 1
 """floats[1]: above 0 in a settling that is to change nothing (march_kernels)."""
@@ -115,7 +115,7 @@ def catch_up(t0, t1, y0, rate0, y1, floats, ints):
         birth = own_from(birth + 1, ints)
 
 
-@kernel(SETTLE, inner=True)
+@kernel(BACK_OFF, inner=True)
 def emit(t0, t1, y0, rate0, y1, floats, ints):
     """Births and deaths of a step.
 

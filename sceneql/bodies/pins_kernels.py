@@ -7,7 +7,7 @@ they are let go; the number of masses, and the masses. One that has been let go 
 """
 
 from sceneql.compiled.kernels import inlined, kernel
-from sceneql.system_kernels import SETTLE, TERM
+from sceneql.system_kernels import BACK_OFF, TERM
 
 CHANGED_AT = 1
 """floats[1]: above 0 in a settling that is to change nothing (march_kernels)."""
@@ -53,7 +53,7 @@ def lead(t, y, rate, floats, ints):
             rate[ints[1] + 3 * mass + c] = acceleration(floats, ints, c)
 
 
-@kernel(SETTLE, inner=True)
+@kernel(BACK_OFF, inner=True)
 def put(t0, t1, y0, rate0, y1, floats, ints):
     """Put the pins where they must be at the end of a step (keyframes may have kinks), and let go of them in time."""
     if floats[CHANGED_AT] > 0.0:

@@ -58,7 +58,7 @@ def add_force(
     from sceneql.system import Slopes
 
     for row in rows:
-        assembly.stop_where_it_turns(row)
+        assembly.stop_at_breakpoints(row)
     constants = Constants()
     printer = Printer(NAMES, {}, constants)
     forces = [printer.name(row) for row in [constants.lift(row) for row in rows]]

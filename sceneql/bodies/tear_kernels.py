@@ -5,13 +5,13 @@ import math
 
 from sceneql.bodies.mass_spring_kernels import BLOCK
 from sceneql.compiled.kernels import kernel
-from sceneql.system_kernels import SETTLE
+from sceneql.system_kernels import BACK_OFF
 
 CHANGED_AT = 1
 """floats[1]: above 0 in a settling that is to change nothing (march_kernels)."""
 
 
-@kernel(SETTLE, inner=True)
+@kernel(BACK_OFF, inner=True)
 def tear(t0, t1, y0, rate0, y1, floats, ints):
     """Springs longer than they bear lose stiffness and damping; their energy is counted as dissipated.
 

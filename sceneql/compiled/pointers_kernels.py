@@ -12,13 +12,13 @@ import numpy as np
 
 from sceneql.compiled.kernels import address, function_at
 from sceneql.system_kernels import (
+    BACK_OFF_FUNCTION,
     DENSE_FUNCTION,
     EVENT_FUNCTION,
     GAP_FUNCTION,
     IMPACT_FUNCTION,
     JACOBIAN_FUNCTION,
     RATE_FUNCTION,
-    SETTLE_FUNCTION,
     STEP_FUNCTION,
 )
 
@@ -28,11 +28,11 @@ KINDS = (
     RATE_FUNCTION,
     GAP_FUNCTION,
     IMPACT_FUNCTION,
-    SETTLE_FUNCTION,
+    BACK_OFF_FUNCTION,
     JACOBIAN_FUNCTION,
     EVENT_FUNCTION,
 )
-AT_STEP, AT_DENSE, AT_RATE, AT_GAP, AT_IMPACT, AT_SETTLE, AT_JACOBIAN, AT_EVENT = range(len(KINDS))
+AT_STEP, AT_DENSE, AT_RATE, AT_GAP, AT_IMPACT, AT_BACK_OFF, AT_JACOBIAN, AT_EVENT = range(len(KINDS))
 """Places in the array of addresses: ``rate = rate_at(functions[AT_RATE])``."""
 
 
@@ -44,4 +44,6 @@ def addresses(*functions: Any) -> Any:
     return np.array(found, dtype=np.int64)
 
 
-step_at, dense_at, rate_at, gap_at, impact_at, settle_at, jacobian_at, event_at = (function_at(kind) for kind in KINDS)
+step_at, dense_at, rate_at, gap_at, impact_at, back_off_at, jacobian_at, event_at = (
+    function_at(kind) for kind in KINDS
+)

@@ -7,7 +7,7 @@ import re
 from sceneql.compiler.names import Names
 from sceneql.compiler.over_time import momentary
 from sceneql.compiler.values import parsed_text, scalar_expr
-from sceneql.kinds import Interpolated, Text, Told, Value
+from sceneql.kinds import Interpolated, Text, TextValue, Value
 from sceneql.kinds.texts import FORM
 from sceneql.language.tree import Node, Scalar
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
@@ -24,7 +24,7 @@ def read_text(node: Node, mark: Interpolated, what: str, names: Names, found: Di
         return None
     text, start = parsed_text(node), node.content.start
     same = text == node.content.text
-    pieces: list[str | Told] = []
+    pieces: list[str | TextValue] = []
     at, ok = 0, True
     for piece in PIECE.finditer(text):
         pieces.append(text[at : piece.start()])
@@ -46,7 +46,7 @@ def read_text(node: Node, mark: Interpolated, what: str, names: Names, found: Di
 
 def _told(
     node: Scalar, inside: str, start: int | None, mark: Interpolated, names: Names, found: Diagnostics
-) -> Told | None:
+) -> TextValue | None:
     """What stands between two braces; ``start`` is its place in the source, None where that cannot be told."""
     expression, _, rest = inside.partition(":")
     begin, end = node.start, node.end
@@ -75,7 +75,7 @@ def _told(
         message = f"this is {describe(expr.type.dimension)}, which {unit_text.strip()} is no unit of"
         found.error("dimension-mismatch", message, place)
         return None
-    return Told(Value(expr, part.span), form[0], unit)
+    return TextValue(Value(expr, part.span), form[0], unit)
 
 
 def _unit(text: str, dimension: object, place: Span) -> Unit | None:

@@ -39,6 +39,7 @@ from sceneql.contacts.impulse_kernels import (
 from sceneql.contacts.meet_kernels import earliest
 from sceneql.contacts.memory_kernels import (
     ANSWER,
+    BACK_OFF_IN_STAGES,
     EARLIER,
     FREE,
     LIST,
@@ -47,7 +48,6 @@ from sceneql.contacts.memory_kernels import (
     PATH,
     PRESS,
     RESTING,
-    SETTLE_HELD,
     TIED,
     WHOLE,
 )
@@ -56,7 +56,7 @@ from sceneql.contacts.resting_kernels import come_to_rest, set_velocity
 from sceneql.contacts.shape_kernels import DEPTH, MOVING, NEAR, OBJECT, near_at, surface, velocity
 from sceneql.system_kernels import A, F, I, N
 
-settle_found = late("sceneql.contacts.respond_kernels:settle_found", ANSWER)
+back_off_found = late("sceneql.contacts.respond_kernels:back_off_found", ANSWER)
 
 AHEAD = 3.0
 """Steps of the present speed within which what comes near is listed."""
@@ -177,8 +177,8 @@ def list_near(h, y0, y1, found, floats, ints):
     floats[ints[LAST] + RESTING] = count
 
 
-@kernel(SETTLE_HELD, inner=True)
-def settle_held(t0, t1, y0, y1, floats, ints):
+@kernel(BACK_OFF_IN_STAGES, inner=True)
+def back_off_in_stages(t0, t1, y0, y1, floats, ints):
     """Change y1 where masses met something in the step from t0 to t1, and list those that may in the next one."""
     h = t1 - t0
     found, listed = np.zeros(ints[BODIES]), np.zeros(ints[BODIES])
@@ -191,7 +191,7 @@ def settle_held(t0, t1, y0, y1, floats, ints):
         missed = missed or found[k] != 0.0
     if missed:
         floats[ints[LAST] + WHOLE] = h
-        settle_found(t0, t1, y0, y1, found, path, mean, floats, ints)
+        back_off_found(t0, t1, y0, y1, found, path, mean, floats, ints)
     for k in range(ints[BODIES]):
         if listed[k] != 0.0 and found[k] == 0.0:
             for j in range(ints[OBJECTS]):

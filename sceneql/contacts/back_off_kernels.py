@@ -26,6 +26,7 @@ from sceneql.contacts.impulse_kernels import (
 from sceneql.contacts.memory_kernels import (
     ANSWER,
     ASKED,
+    BACK_OFF_IN_STAGES,
     CUTS,
     END,
     FREE,
@@ -35,19 +36,18 @@ from sceneql.contacts.memory_kernels import (
     PAIR,
     PATH,
     RESTING,
-    SETTLE_HELD,
     STAGE,
     SUPPORT,
     WHOLE,
 )
 from sceneql.contacts.shape_kernels import MOVING, NEAR, OBJECT, near_at
-from sceneql.system_kernels import SETTLE, TERM, A, F, I
+from sceneql.system_kernels import BACK_OFF, TERM, A, F, I
 
 cut = late("sceneql.contacts.respond_kernels:cut", ANSWER)
-settle_found = late("sceneql.contacts.respond_kernels:settle_found", ANSWER)
+back_off_found = late("sceneql.contacts.respond_kernels:back_off_found", ANSWER)
 support = late("sceneql.contacts.support_kernels:support", SUPPORT)
 hold = late("sceneql.contacts.stage_contacts_kernels:hold", HOLD)
-settle_held = late("sceneql.contacts.back_off_in_stages_kernels:settle_held", SETTLE_HELD)
+back_off_in_stages = late("sceneql.contacts.back_off_in_stages_kernels:back_off_in_stages", BACK_OFF_IN_STAGES)
 
 LATE_FIRST = (
     "sceneql.contacts.resting_kernels",
@@ -103,13 +103,13 @@ def some(found):
     return False
 
 
-@kernel(SETTLE, inner=True)
-def settle(t0, t1, y0, rate0, y1, floats, ints):
+@kernel(BACK_OFF, inner=True)
+def back_off(t0, t1, y0, rate0, y1, floats, ints):
     """Change y1 so that no body went through a surface in the step from t0 to t1; or only say when it should end."""
     asked = floats[ASKED] > 0.0
     if floats[STAGE] == OUTSIDE:
         if not asked:
-            settle_held(t0, t1, y0, y1, floats, ints)
+            back_off_in_stages(t0, t1, y0, y1, floats, ints)
         return
     if asked and not may_be_cut(t0, t1, floats, ints):
         return
@@ -121,7 +121,7 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
         if asked:
             cut(t0, t1, y0, y1, found, path, mean, floats, ints)
         else:
-            settle_found(t0, t1, y0, y1, found, path, mean, floats, ints)
+            back_off_found(t0, t1, y0, y1, found, path, mean, floats, ints)
     elif not asked:
         floats[ints[LAST] + RESTING] = 0.0
 

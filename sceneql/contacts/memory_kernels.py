@@ -65,7 +65,7 @@ OF_BODY = types.void(N, A, A, A, I)
 """(body, state, rate, floats, ints)."""
 OF_PAIR = types.void(N, N, F, F, F, A, A, A, I)
 """(body, memory of the pair, normal, state, rate, floats, ints)."""
-SETTLE_HELD = types.void(F, F, A, A, A, I)
+BACK_OFF_IN_STAGES = types.void(F, F, A, A, A, I)
 """(start and end of the step, state at both, floats, ints)."""
 SUPPORT = types.void(N, A, A, A, I)
 """(first body whose free pairs are looked at; -1: those that rest alone; state, rate, floats, ints)."""

@@ -234,7 +234,7 @@ def cut(t0, t1, y0, y1, found, path, mean, floats, ints):
 
 
 @lean(ANSWER, inner=True)
-def settle_found(t0, t1, y0, y1, found, path, mean, floats, ints):
+def back_off_found(t0, t1, y0, y1, found, path, mean, floats, ints):
     """Settle the bodies with found[k] = 1, and note which ones rest."""
     h = t1 - t0
     resting = 0

@@ -13,7 +13,7 @@ MOST_CARRIED = {2: 300_000, 3: 30_000}
 """Cells of a flat or deep grid up to which systems with all that a drift ties are made."""
 
 
-def suited(stepper: Stepper, grid: Grid) -> Stepper:
+def grid_or_general(stepper: Stepper, grid: Grid) -> Stepper:
     """What a stepper hands over for grids; where a drift acts, itself if need be.
 
     The systems of grids know the spread and go over what drifts again and again, which is quick but converges up to

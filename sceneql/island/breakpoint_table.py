@@ -11,7 +11,7 @@ from bisect import bisect_right
 from collections.abc import Iterable
 from typing import NamedTuple
 
-Stop = tuple[float, float]
+Breakpoint = tuple[float, float]
 """An instant at which what is new holds, and the period that it comes again with, 0 for none [s]."""
 
 APART = 1e-12
@@ -28,21 +28,21 @@ def before(time: float) -> float:
     return time - 4 * math.ulp(time)
 
 
-class Stops(NamedTuple):
-    """Stops in the order in which they are looked up."""
+class BreakpointTable(NamedTuple):
+    """BreakpointTable in the order in which they are looked up."""
 
     once: tuple[float, ...] = ()
     """Instants without a period, ascending [s]."""
-    again: tuple[Stop, ...] = ()
+    again: tuple[Breakpoint, ...] = ()
 
     @classmethod
-    def of(cls, found: Iterable[Stop]) -> Stops:
+    def of(cls, found: Iterable[Breakpoint]) -> BreakpointTable:
         """Those found, in any order."""
         known = sorted(stop for stop in found if not math.isnan(stop[0]))  # no order holds where one is no number
         return cls(tuple(at for at, period in known if period <= 0.0), tuple(stop for stop in known if stop[1] > 0.0))
 
 
-def next_stop(known: Stops, time: float, end: float) -> float:
+def next_breakpoint(known: BreakpointTable, time: float, end: float) -> float:
     """The first of them after an instant, at most the end of the run [s]."""
     best, least = end, time + APART * end
     first = bisect_right(known.once, least)

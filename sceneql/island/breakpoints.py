@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from sceneql.frame import Floats
-from sceneql.island.breakpoint_table import APART, Stop, after
+from sceneql.island.breakpoint_table import APART, Breakpoint, after
 from sceneql.kinds.values import TIME
 from sceneql.quantities.curves import Table, known_table
 from sceneql.quantities.evaluate import evaluate
@@ -40,7 +40,7 @@ Even = tuple[float, float]
 
 
 @dataclass
-class Turns:
+class Breakpoints:
     """The instants at which expressions turn in a run from 0 to ``end`` [s].
 
     ``formula`` gives a linked output as an expression of time; None for one that is solved.
@@ -48,7 +48,7 @@ class Turns:
 
     formula: Callable[[Link], Expr | None]
     end: float
-    stops: set[Stop] = field(default_factory=set)
+    stops: set[Breakpoint] = field(default_factory=set)
     """Within the run, and those that come again."""
     beyond: list[Span | None] = field(default_factory=list)
     """Where the script writes what turns more often than can be kept."""
@@ -129,7 +129,7 @@ class Turns:
             return None
         return np.broadcast_to(found, times.shape) if found.ndim == 0 else found if found.shape == times.shape else None
 
-    def _keys(self, argument: Expr, table: Table) -> Iterator[Stop]:
+    def _keys(self, argument: Expr, table: Table) -> Iterator[Breakpoint]:
         even = self._evenly(argument)
         if even is None:
             yield from self._sampled(argument, _between(table))
@@ -139,7 +139,7 @@ class Turns:
                 at = (time - here) / slope
                 yield (at if slope > 0.0 else after(at, 2)), table.cycle / abs(slope)
 
-    def _instants(self, number: Expr, cells: Cells) -> Iterator[Stop]:
+    def _instants(self, number: Expr, cells: Cells) -> Iterator[Breakpoint]:
         """Where the cell of a number changes."""
         even = self._evenly(number)
         if even is None:
@@ -154,7 +154,7 @@ class Turns:
             for whole in range(first, last + 1):
                 yield after((whole - here) / slope, 2), 0.0
 
-    def _sampled(self, number: Expr, cells: Cells) -> Iterator[Stop]:
+    def _sampled(self, number: Expr, cells: Cells) -> Iterator[Breakpoint]:
         """Where the cell changes on a grid, and between its points where the number turns round."""
         grid = np.linspace(0.0, self.end, SAMPLES[0] + 1)
         where = self._cell(number, cells, grid)
@@ -196,7 +196,7 @@ class Turns:
             return grid[:0]
         return self._closed_in(number, grid[at - 1], grid[at + 1], way)
 
-    def _bell(self, number: Expr) -> list[Stop]:
+    def _bell(self, number: Expr) -> list[Breakpoint]:
         """Where a number is largest of those around, and has fallen by FALLEN from it to both sides, or does begin."""
         if self._evenly(number) is not None:
             return []
@@ -304,7 +304,7 @@ def _changes(cells: Any) -> Any:
     return cells[..., 1:] != cells[..., :-1]
 
 
-def _again(stop: Stop, end: float) -> Iterator[float]:
+def _again(stop: Breakpoint, end: float) -> Iterator[float]:
     """An instant and those that it comes again at, from the start of the run to its end."""
     time, period = stop
     if period <= 0.0:

@@ -17,8 +17,8 @@ import numpy as np
 
 from sceneql.failure import LimitRefused
 from sceneql.island.blocks_laid import Block, grouped, lay_out
-from sceneql.island.breakpoint_table import Stop, Stops
-from sceneql.island.breakpoints import Turns
+from sceneql.island.breakpoint_table import Breakpoint, BreakpointTable
+from sceneql.island.breakpoints import Breakpoints
 from sceneql.island.inputs import Inputs
 from sceneql.island.jacobian import BY_DIFFERENCES, full, section
 from sceneql.island.memory import LARGEST_MEMORY
@@ -85,7 +85,7 @@ class System:
     ranges: tuple[tuple[int, int, str, tuple[Span | None, ...]], ...]
     largest_step: float = float("inf")
     """[s], of steps that a tolerance chooses."""
-    stops: Stops = field(default_factory=Stops)
+    stops: BreakpointTable = field(default_factory=BreakpointTable)
     """Where such steps end."""
     pattern: Pattern | None = None
     """Of its Jacobian; None: not asked for, or too large to be found by differences."""
@@ -136,7 +136,7 @@ class IslandAssembly:
     _local: list[Block] = field(default_factory=list)
     _varying: list[tuple[int, Value]] = field(default_factory=list)
     _largest_step: float = float("inf")
-    _stops: set[Stop] = field(default_factory=set)
+    _stops: set[Breakpoint] = field(default_factory=set)
     _grids: list[Grid] = field(default_factory=list)
     _apart: bool = True
     _unsloped: str = "a value that reads the state"
@@ -258,15 +258,15 @@ class IslandAssembly:
         """Let steps that a tolerance chooses end at an instant (system.Assembly)."""
         self._stops.add((time, 0.0))
 
-    def stop_where_it_turns(self, expr: Expr) -> None:
+    def stop_at_breakpoints(self, expr: Expr) -> None:
         """Let them end where a formula turns (system.Assembly)."""
         if not self.whole:  # the steps of blocks are given
-            self.turns.follow(expr, expr.span or self.line())
+            self.breakpoints.follow(expr, expr.span or self.line())
 
     @cached_property
-    def turns(self) -> Turns:
+    def breakpoints(self) -> Breakpoints:
         """Where values and formulas turn in the run."""
-        return Turns(self.setting.formula, self.setting.end)
+        return Breakpoints(self.setting.formula, self.setting.end)
 
     def line(self) -> Span | None:
         """Where in the script the word stands that is being assembled."""
@@ -344,7 +344,7 @@ class IslandAssembly:
             partner=partner,
             ranges=tuple(self._ranges),
             largest_step=self._largest_step,
-            stops=Stops.of(self._stops | self.turns.stops),
+            stops=BreakpointTable.of(self._stops | self.breakpoints.stops),
             pattern=found,
             grid=self.only_field,
             unsloped=self._unsloped,
@@ -367,7 +367,7 @@ class IslandAssembly:
         found = Diagnostics()
         for first, value in self._varying:
             with self.word("values", value.span):
-                self.stop_where_it_turns(value.expr)
+                self.stop_at_breakpoints(value.expr)
             try:
                 program += inputs.program(value, first)
             except ScriptError as error:

@@ -8,12 +8,12 @@ from itertools import combinations
 from typing import Any
 
 from sceneql.kinds import Value
-from sceneql.kinds.stable_step import Oscillation, Told, oscillations
+from sceneql.kinds.stable_step import Oscillation, StaticMass, oscillations
 from sceneql.quantities.derivative import differentiate
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import TIME_SYMBOL, Expr, Link, Symbol, Type, Vector, walk
 
-On = Mapping[str, Mapping[str, Told]]
+On = Mapping[str, Mapping[str, StaticMass]]
 """Masses by model and name."""
 MOST = 200
 """Masses of which every one, or every pair, is looked at."""
@@ -25,7 +25,7 @@ def number(value: Value) -> Any:
     return value.number() if value.constant else None
 
 
-def each(on: On) -> list[Told]:
+def each(on: On) -> list[StaticMass]:
     """The first of all masses that move."""
     return [one for masses in on.values() for one in masses.values() if not one.fixed][:MOST]
 
@@ -37,7 +37,7 @@ def slowed(coefficient: float | None, on: On, what: str, at: str) -> Iterator[Os
         yield Oscillation(0.0, coefficient / min(masses), what, (at,))
 
 
-def pulled(square: Callable[[Told, Told], float], on: On, what: str, at: str) -> Iterator[Oscillation]:
+def pulled(square: Callable[[StaticMass, StaticMass], float], on: On, what: str, at: str) -> Iterator[Oscillation]:
     """The fastest of two masses at told places; ``square`` gives (angular frequency)^2 [1/s^2], at most 0: none."""
     placed = [one for masses in on.values() for one in masses.values() if one.position is not None][:MOST]
     squares = [square(a, b) for a, b in combinations(placed, 2) if math.dist(a.position or (), b.position or ()) > 0.0]

@@ -11,9 +11,9 @@ from sceneql.kinds.moment import Moment
 from sceneql.kinds.objects import Collider, FieldBuilder, Object
 from sceneql.kinds.outputs import EachVariant, Output, Picture, Sink, Tools
 from sceneql.kinds.physics import Contact, Force, Model, Solver
-from sceneql.kinds.pictures import Camera, Illumination, Material, Overlay, Renderer
+from sceneql.kinds.pictures import Camera, Light, Material, Overlay, Renderer
 from sceneql.kinds.settings import MOST_MOMENTS, Clock, Exceeds, Expect, Gallery, Settings, Study, bounded_moments
-from sceneql.kinds.texts import Text, Told
+from sceneql.kinds.texts import Text, TextValue
 from sceneql.kinds.types import (
     Acceleration,
     Angle,
@@ -77,7 +77,7 @@ FAMILIES: tuple[type[Kind], ...] = (
     Contact,
     Solver,
     Camera,
-    Illumination,
+    Light,
     Material,
     Renderer,
     Overlay,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from sceneql.kinds.stable_step import Oscillation, Told
+from sceneql.kinds.stable_step import Oscillation, StaticMass
 from sceneql.kinds.types import ModelRef
 from sceneql.kinds.values import Ref, Value
 from sceneql.kinds.word import Kind, field
@@ -78,7 +78,7 @@ class Model(Kind):
         """Bounds on its fastest oscillations by its own fields, for `check`: without numpy, and quickly."""
         return ()
 
-    def told(self) -> Mapping[str, Told]:
+    def static_masses(self) -> Mapping[str, StaticMass]:
         """Masses by name as its fields alone tell them, for `check`; one without a name stands for the lightest."""
         return {}
 
@@ -117,7 +117,7 @@ class Force(Kind):
         """Add its terms for all models at once, where it is `mutual`."""
         raise NotImplementedError
 
-    def fastest(self, name: str, on: Mapping[str, Mapping[str, Told]]) -> Iterable[Oscillation]:
+    def fastest(self, name: str, on: Mapping[str, Mapping[str, StaticMass]]) -> Iterable[Oscillation]:
         """Bounds on the fastest that it makes of its models' masses, for `check`: without numpy, and quickly.
 
         ``on``: by model what is told of the masses that it acts on.

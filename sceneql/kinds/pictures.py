@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from numpy import uint8
     from numpy.typing import NDArray
 
-    from sceneql.frame import RGB, Light, Surface, View
+    from sceneql.frame import RGB, LightSource, Surface, View
     from sceneql.kinds.moment import Moment, Remembered
     from sceneql.kinds.values import Value
 
@@ -35,12 +35,12 @@ class Camera(Kind):
         raise NotImplementedError
 
 
-class Illumination(Kind):
+class Light(Kind):
     """A light (named so because frame.Light is what it lowers to)."""
 
     family: ClassVar[str] = "lights"
 
-    def lower(self, moment: Moment) -> Iterable[Light]:
+    def lower(self, moment: Moment) -> Iterable[LightSource]:
         """Closed-set lights of this instant."""
         raise NotImplementedError
 

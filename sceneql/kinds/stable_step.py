@@ -41,7 +41,7 @@ class Oscillation:
         return max(self.frequency, self.decay, abs(self.turn))
 
 
-class Told(NamedTuple):
+class StaticMass(NamedTuple):
     """A mass, as its model's fields alone tell it at the start."""
 
     mass: float

@@ -22,7 +22,7 @@ POWER = re.compile(r"e([+-])0*(\d+)$")
 
 
 @dataclass(frozen=True, slots=True)
-class Told(Checked):
+class TextValue(Checked):
     """A value inside a text, how its number is written, and its unit (None: a plain number)."""
 
     value: Value
@@ -71,17 +71,17 @@ def shown_unit(text: str) -> str:
 class Text(Checked):
     """A text whose pieces in braces are values: ``{expression:form unit}``."""
 
-    pieces: tuple[str | Told, ...]
+    pieces: tuple[str | TextValue, ...]
 
     @property
     def values(self) -> list[Value]:
         """The values inside."""
-        return [piece.value for piece in self.pieces if isinstance(piece, Told)]
+        return [piece.value for piece in self.pieces if isinstance(piece, TextValue)]
 
     @property
     def courses(self) -> list[Value]:
         """Those that ask for the run so far."""
-        return [piece.value for piece in self.pieces if isinstance(piece, Told) and piece.over_time]
+        return [piece.value for piece in self.pieces if isinstance(piece, TextValue) and piece.over_time]
 
     def at(self, moment: Moment) -> str:
         """The text now."""

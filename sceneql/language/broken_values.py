@@ -48,15 +48,15 @@ class Fault:
 
 
 def swallowed(value: Scalar, text: str) -> Fault | None:
-    """The color behind an empty value, where it was taken for a comment. ``text`` as in `torn_near`."""
+    """The color behind an empty value, where it was taken for a comment. ``text`` as in `broken_near`."""
     if (color := _SWALLOWED.match(text, value.end)) is None:
         return None
     start, end = color.span(1)
     return Fault("comment-color", start, end, start, f'"{color[1]}"')
 
 
-def torn_halves(halves: Iterable[Scalar], text: str) -> list[Fault]:
-    """The expressions that a flow collection's commas cut, from their first halves. ``text`` as in `torn_near`."""
+def broken_halves(halves: Iterable[Scalar], text: str) -> list[Fault]:
+    """The expressions that a flow collection's commas cut, from their first halves. ``text`` as in `broken_near`."""
     faults: list[Fault] = []
     for half in halves:
         if faults and half.start < faults[-1].end:
@@ -69,7 +69,7 @@ def torn_halves(halves: Iterable[Scalar], text: str) -> list[Fault]:
     return faults
 
 
-def torn_near(source: Source, text: str, at: int, opening: int | None) -> list[Fault]:
+def broken_near(source: Source, text: str, at: int, opening: int | None) -> list[Fault]:
     """What tore the text where YAML fails at ``at``, within the flow collection that opens at ``opening`` if any.
 
     ``text`` is the source's with what is mended already blanked out.

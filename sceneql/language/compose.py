@@ -10,11 +10,11 @@ from typing import Any, Final, NoReturn, cast
 
 import yaml
 
-from sceneql.language.broken_values import Fault, report, swallowed, torn_halves, torn_near
+from sceneql.language.broken_values import Fault, broken_halves, broken_near, report, swallowed
 from sceneql.language.encoded import MOST_BYTES, too_large
 from sceneql.language.lines import doubled, lacking, left_out, marked, unparted
 from sceneql.language.plain import cut_off, kind_of
-from sceneql.language.repair import blanked, cut_short, joined, mended
+from sceneql.language.repair import blanked, cut_short, joined, repaired
 from sceneql.language.syntax import explain, place, unprintable
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence, broken, extent, hole
 from sceneql.quantities.diagnostic import LIMITS, Diagnostic, Diagnostics, Note, ScriptError
@@ -124,7 +124,7 @@ class _Composer:
             self.document(start)
         except yaml.YAMLError as error:
             flow = self.flow_start()
-            near = torn_near(self.source, self.text, place(self.source, error), flow)
+            near = broken_near(self.source, self.text, place(self.source, error), flow)
             if not near and flow is None and (line := left_out(self.source, self.text, error)) is not None:
                 near = [line]
             if not near:
@@ -133,7 +133,7 @@ class _Composer:
         except _StopError:
             self.cut_short(len(self.text))
         lacking(self.root, [*self.faults.values()])
-        torn = joined([*torn_halves(self.halves[:MOST_ERRORS], self.text), *self.colors, *self.unparted], near)
+        torn = joined([*broken_halves(self.halves[:MOST_ERRORS], self.text), *self.colors, *self.unparted], near)
         for mapping in self.odd:
             mapping.partial = True
             for name in [name for name in ("", "<<") if name in mapping.keys and not mapping.keys[name].quoted]:
@@ -289,7 +289,7 @@ class _Composer:
     def meant(self, event: Any, node: Scalar) -> Node:
         """What is meant by a scalar that stands in place of something torn; any other one itself."""
         fault = self.faults.get(self.behind_properties(event))
-        return node if fault is None else mended(fault, self.source)
+        return node if fault is None else repaired(fault, self.source)
 
     def behind_properties(self, event: Any) -> int:
         """Where a node starts behind its anchor and tag."""

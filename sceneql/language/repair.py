@@ -31,7 +31,7 @@ def blanked(text: str, faults: Iterable[Fault]) -> str:
     return "".join([*parts, text[at:]])
 
 
-def mended(fault: Fault, source: Source) -> Node:
+def repaired(fault: Fault, source: Source) -> Node:
     """The value that a fault was meant to be; a hole where that cannot be told."""
     span = Span(source, fault.start, fault.end)
     if fault.code == "unit-after-bracket":

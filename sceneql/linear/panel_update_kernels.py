@@ -50,7 +50,7 @@ def _called(builder, name, result, arguments):
     return builder.call(declared, arguments)
 
 
-def _rank(rows, vectors, whole):
+def _panel_update(rows, vectors, whole):
     """The intrinsic for so many rows and vectors; not ``whole``: of the last one so many columns as are left."""
 
     def code(context, builder, signature, given):
@@ -122,14 +122,14 @@ def _rank(rows, vectors, whole):
         return context.get_dummy_value()
 
     @intrinsic
-    def rank(typing, target, at, stride, source, start, height, coefficients, count, left):
+    def panel_update(typing, target, at, stride, source, start, height, coefficients, count, left):
         return types.none(target, N, N, target, N, N, target, N, N), code
 
-    return rank
+    return panel_update
 
 
 def _in_python(rows, vectors, whole):
-    def rank(target, at, stride, source, start, height, coefficients, count, left):
+    def panel_update(target, at, stride, source, start, height, coefficients, count, left):
         most = vectors * (BYTES // target.itemsize)
         for r in range(rows):
             for j in range(most if whole else min(left, most)):
@@ -137,7 +137,7 @@ def _in_python(rows, vectors, whole):
                     place = at + r * stride + j
                     target[place] = fma(coefficients[k * rows + r], source[start + k * height + j], target[place])
 
-    return rank
+    return panel_update
 
 
 @intrinsic
@@ -157,7 +157,7 @@ def _coefficients(typing, like):
 coefficients = (lambda like: np.empty(ROWS * MOST, like.dtype)) if PLAIN else _coefficients
 """Room for the coefficients of MOST terms, of an array's kind of numbers, on the stack of the calling kernel."""
 
-made = _in_python if PLAIN else _rank
+made = _in_python if PLAIN else _panel_update
 strip, strip_of_three, strip_of_two, strip_of_one = made(ROWS, 3, True), *(made(ROWS, k, False) for k in (3, 2, 1))
 row, row_of_three, row_of_two, row_of_one = made(1, 3, True), *(made(1, k, False) for k in (3, 2, 1))
 

@@ -32,7 +32,7 @@ class Driver(NamedTuple):
     rate: Any
     gap: Any
     impact: Any
-    settle: Any
+    back_off: Any
 
 
 def function(name: str) -> Any:
@@ -50,7 +50,7 @@ def driver(structure: Structure) -> Driver:
         gap, impact = source.gap, source.impact
     else:
         gap, impact = module.no_gap, module.no_impact
-    return Driver(source.rate, gap, impact, source.settle if structure.local else module.no_settle)
+    return Driver(source.rate, gap, impact, source.back_off if structure.local else module.no_back_off)
 
 
 def jacobian(system: System) -> Any:
@@ -111,7 +111,7 @@ def text(structure: Structure) -> str:
         *_imports(names),
         "from sceneql.compiled.kernels import lean",
         *(["from sceneql.island.inputs_kernels import refresh"] if structure.varying else []),
-        "from sceneql.system_kernels import GAP, IMPACT, SETTLE, TERM",
+        "from sceneql.system_kernels import GAP, IMPACT, BACK_OFF, TERM",
     ]
     refresh = [REFRESH] if structure.varying else []
     group = GROUPS_AT
@@ -124,7 +124,7 @@ def text(structure: Structure) -> str:
         lines += _contacts(structure, names, group, refresh)
     group += len(structure.exact)
     if structure.local:
-        lines += ["", "", "@lean(SETTLE)", "def settle(t0, t1, y0, rate0, y1, floats, ints):"]
+        lines += ["", "", "@lean(BACK_OFF)", "def back_off(t0, t1, y0, rate0, y1, floats, ints):"]
         lines += [line.replace("(t, y,", "(t1, y1,") for line in refresh]
         for name in structure.local:
             lines += _blocks(group, f"{names[name]}(t0, t1, y0, rate0, y1, floats, ints[ints[b] : ints[b + 1]])")

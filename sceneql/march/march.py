@@ -12,7 +12,7 @@ import numpy as np
 from sceneql.compiled.kernels import compiled
 from sceneql.compiled.pointers_kernels import addresses
 from sceneql.failure import LimitRefused, RunFailure
-from sceneql.island.breakpoint_table import before, next_stop
+from sceneql.island.breakpoint_table import before, next_breakpoint
 from sceneql.island.island import STAGE, IslandAssembly, System
 from sceneql.island.jacobian import BY_DIFFERENCES
 from sceneql.march import march_kernels as kernels
@@ -90,7 +90,7 @@ class March:
         if stepper.stiff is not None and stepper.adaptive and takes_turns:
             self._switch = Switch(stepper, stepper.stiff, int((system.partner < 0).sum()))
         self._last_look = 0
-        self._look_for_stop(0.0)
+        self._look_for_breakpoint(0.0)
         self._engage(stepper)
 
     def _engage(self, stepper: Stepper) -> None:
@@ -129,17 +129,17 @@ class March:
         self._counts[kernels.CONTROLS] = stepper.controls
         self._counts[kernels.HALVES] = stepper.halves
 
-    def _look_for_stop(self, time: float) -> None:
+    def _look_for_breakpoint(self, time: float) -> None:
         """Find what turns next after an instant: a step of chosen length ends before it, by as little as can be."""
-        self._stop = next_stop(self.system.stops, time, self.end) if self.stepper.adaptive else self.end
+        self._stop = next_breakpoint(self.system.stops, time, self.end) if self.stepper.adaptive else self.end
         self._step_end = before(self._stop) if self._stop < self.end else self.end
 
-    def _pass_stop(self) -> None:
+    def _pass_breakpoint(self) -> None:
         """Go on behind what turns: the next step begins with what is there then."""
         self._clock[kernels.T1] = self._stop
         self._rate1[:] = self.rate(self._stop, self._y1)
         self._floats_time = math.nan
-        self._look_for_stop(self._stop)
+        self._look_for_breakpoint(self._stop)
 
     def _change(self, switch: Switch, t: float) -> None:
         """Go on with the method that a switch has chosen, if it takes this island."""
@@ -307,7 +307,7 @@ class March:
             if status == kernels.PAUSED:
                 self._look()
             elif status == kernels.REACHED and target > self._step_end:
-                self._pass_stop()
+                self._pass_breakpoint()
             elif not self._goes_on(status):
                 break
         done = self.statistics

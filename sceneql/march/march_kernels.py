@@ -13,18 +13,18 @@ from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import (
+    AT_BACK_OFF,
     AT_EVENT,
     AT_IMPACT,
     AT_RATE,
-    AT_SETTLE,
     AT_STEP,
+    back_off_at,
     event_at,
     impact_at,
     rate_at,
-    settle_at,
     step_at,
 )
-from sceneql.system_kernels import DENSE, GAP, IMPACT, SETTLE, A, F, I
+from sceneql.system_kernels import BACK_OFF, DENSE, GAP, IMPACT, A, F, I
 
 T0, T1, STEP, ERROR, LARGEST, LIMIT, SLOP, CLOCKS = range(8)
 """Ends of the last step [s]; the step to try next, or the grid's; the last error; largest step [s]; largest |y|; gap
@@ -91,8 +91,8 @@ def no_impact(t, y, pair, floats, ints):
     """Of an island without exact contacts."""
 
 
-@lean(SETTLE, inner=True)
-def no_settle(t0, t1, y0, rate0, y1, floats, ints):
+@lean(BACK_OFF, inner=True)
+def no_back_off(t0, t1, y0, rate0, y1, floats, ints):
     """Of an island without local contacts."""
 
 
@@ -216,7 +216,7 @@ def march(
     back: (clock[T1], y1, rate1) is the last good state, counts[INDEX] the entry of y (STUCK: the pair) at fault.
     """
     step, rate = step_at(functions[AT_STEP]), rate_at(functions[AT_RATE])
-    impact, settle = impact_at(functions[AT_IMPACT]), settle_at(functions[AT_SETTLE])
+    impact, back_off = impact_at(functions[AT_IMPACT]), back_off_at(functions[AT_BACK_OFF])
     n = y0.size
     while clock[T1] < target:
         if counts[LEFT] <= 0:
@@ -270,7 +270,7 @@ def march(
                 t1 = t0 + reached
         if counts[LOCAL] > 0:
             floats[CHANGED_AT] = t1
-            settle(t0, t1, y0, rate0, y1, floats, ints)
+            back_off(t0, t1, y0, rate0, y1, floats, ints)
             if floats[CHANGED_AT] < t1:
                 t1 = floats[CHANGED_AT]
                 counts[PENDING] = -1
@@ -283,7 +283,7 @@ def march(
                     rate(t1, y1, rate1, floats, ints)
             floats[CHANGED_AT] = 0.0
             copy(y1, sample)
-            settle(t0, t1, y0, rate0, y1, floats, ints)
+            back_off(t0, t1, y0, rate0, y1, floats, ints)
             counts[HELD] = floats[CHANGED_AT] == HOLDS
             rate(t1, y1, rate1, floats, ints)
         if leaving.size > 0:

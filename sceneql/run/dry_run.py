@@ -28,7 +28,7 @@ BOUNDS_STEPS = 48
 
 
 @dataclass(frozen=True, slots=True)
-class Survey:
+class DryRun:
     """What a run ahead has seen, up to its end or to where it fails."""
 
     bounds: Bounds | None
@@ -73,7 +73,7 @@ def asked(graph: SimulationGraph) -> dict[tuple[str, int], Value]:
     return {(name, k): value for name, kind in overlays for k, value in enumerate(kind.courses())}
 
 
-def survey(graph: SimulationGraph, *, bounded: bool = True) -> Survey:
+def dry_run(graph: SimulationGraph, *, bounded: bool = True) -> DryRun:
     """Run a graph for what its cameras and overlays ask of the whole run.
 
     Bounds are those of the start alone where the run fails, since what explodes fits into no picture. A part that asks
@@ -112,7 +112,7 @@ def survey(graph: SimulationGraph, *, bounded: bool = True) -> Survey:
             raise
         now = start
     count = len(times)
-    return Survey(now if bounded else None, times, {key: np.array(row[:count]) for key, row in rows.items()})
+    return DryRun(now if bounded else None, times, {key: np.array(row[:count]) for key, row in rows.items()})
 
 
 def _widened(bounds: Bounds, moment: Instant, names: Iterable[str]) -> Bounds:

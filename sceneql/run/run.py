@@ -16,7 +16,7 @@ from sceneql.kinds import Contact, Force, Material, Model, Object, Ref, Solver, 
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Expr, Link, Symbol
-from sceneql.run.dry_run import Survey, asked, survey
+from sceneql.run.dry_run import DryRun, asked, dry_run
 from sceneql.run.history import History
 from sceneql.run.ranges import ranged
 from sceneql.shapes.color import default_color, linear
@@ -50,7 +50,7 @@ class Run:
         self.holders = _holders(graph)
         self.history = History(graph)
         self._ranged = ranged(graph, islands)
-        self._surveys: dict[str | None, Survey] = {}
+        self._dry_runs: dict[str | None, DryRun] = {}
 
     def moments(self, times: Iterable[float]) -> Iterator[Instant]:
         """The instants [s] asked for, in order; times do not decrease. Raises RunFailure."""
@@ -72,9 +72,9 @@ class Run:
 
     def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
         """Low and high corner (3,) of what the parts draw over the whole run, found by a run ahead of its own."""
-        if None not in self._surveys or self._surveys[None].bounds is None:
-            self._surveys[None] = survey(self.graph)
-        known = self._surveys[None].bounds or {}
+        if None not in self._dry_runs or self._dry_runs[None].bounds is None:
+            self._dry_runs[None] = dry_run(self.graph)
+        known = self._dry_runs[None].bounds or {}
         corners = [known[name] for name in names if name in known]
         if not corners:
             return np.full(3, -1.0), np.full(3, 1.0)
@@ -83,18 +83,18 @@ class Run:
 
     def course(self, value: Value, variant: str | None, until: float) -> tuple[Floats, Floats]:
         """Times (n,) [s] and an asked-for value at each (n, ...), up to an instant, in a variant of the script."""
-        ahead, mine = self._survey(variant), value
+        ahead, mine = self._dry_run(variant), value
         if variant is not None:
             key = next(key for key, one in asked(self.graph).items() if one is value)
             mine = asked(self.graph.variant(variant))[key]
         return ahead.course(mine.expr, until)
 
-    def _survey(self, variant: str | None) -> Survey:
+    def _dry_run(self, variant: str | None) -> DryRun:
         """What a run ahead of the script, or of a variant of it, sees."""
-        if variant not in self._surveys:
+        if variant not in self._dry_runs:
             graph = self.graph if variant is None else self.graph.variant(variant)
-            self._surveys[variant] = survey(graph, bounded=False)
-        return self._surveys[variant]
+            self._dry_runs[variant] = dry_run(graph, bounded=False)
+        return self._dry_runs[variant]
 
 
 class IslandRun:
@@ -124,9 +124,9 @@ class IslandRun:
         stepper, end = self.solver.stepper(), graph.settings.clock.end
         if assembly.only_field is not None and stepper.on_grid is not None:
             from sceneql.grids import prepare_stages as on_grid
-            from sceneql.grids.grid_or_general import suited
+            from sceneql.grids.grid_or_general import grid_or_general
 
-            stepper = suited(stepper, assembly.only_field)
+            stepper = grid_or_general(stepper, assembly.only_field)
             compile_ahead(on_grid.likely_kernels(stepper, assembly.only_field))
         # Few masses under error control are followed from impact to impact.
         within = stepper.newton and (not stepper.adaptive or len(assembly.start()) > BY_DIFFERENCES)

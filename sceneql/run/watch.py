@@ -100,7 +100,9 @@ class Watch:
         self._ringing = [found for island in run.islands if (found := ringing(island)) is not None]
         self._fields = [(island, fields) for island in run.islands if (fields := watched(island))]
         self._islands = run.islands
-        self._turning = [span for island in run.islands if _adaptive(island) for span in island.assembly.turns.beyond]
+        self._turning = [
+            span for island in run.islands if _adaptive(island) for span in island.assembly.breakpoints.beyond
+        ]
         self._started, self._spent = time.perf_counter(), 0.0
 
     def look(self, moment: Instant, *, last: bool = False) -> None:

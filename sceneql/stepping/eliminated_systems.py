@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from sceneql.island.island import System
 
 
-def reduction(system: System) -> NDArray[int64]:
+def elimination(system: System) -> NDArray[int64]:
     """The plan for (mu - J) d = r: pairs, held masses and tallies are eliminated. The island has a pattern."""
     pattern = system.pattern
     assert pattern is not None

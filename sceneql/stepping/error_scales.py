@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from sceneql.island.island import System
 
 
-def scales_of(system: System) -> tuple[NDArray[int64], Floats]:
+def error_scales(system: System) -> tuple[NDArray[int64], Floats]:
     """The plan and the scales before the first step. The island has a pattern.
 
     Positions of a model's masses count together, their velocities, and cells of a field; all else by itself. Sums that

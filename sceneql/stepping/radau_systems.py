@@ -36,10 +36,10 @@ class Systems:
 
 def radau_systems(system: System) -> Systems:
     """Analyze an island whose Jacobian was asked for, and has a pattern."""
-    from sceneql.stepping.eliminated_systems import reduction
+    from sceneql.stepping.eliminated_systems import elimination
 
     few = _unknowns(system) <= FULL
-    return _full(reduction(system)) if few else _sparse(system)
+    return _full(elimination(system)) if few else _sparse(system)
 
 
 def step_cost(unknowns: int) -> float:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.passes.touchable import touchable
 from sceneql.graph import Task
-from sceneql.kinds import Camera, Contact, Illumination, Kind, Model, Object, Output, Picture, Solver, Value
+from sceneql.kinds import Camera, Contact, Kind, Light, Model, Object, Output, Picture, Solver, Value
 from sceneql.quantities.expression import Link
 
 
@@ -31,7 +31,7 @@ def expand(tasks: Mapping[str, Task], catalogue: Catalogue) -> dict[str, Task]:
         add("film", "outputs", "video")
     if has(Picture) and not has(Camera):
         add("camera", "cameras", "auto")
-    if has(Picture) and not has(Illumination):
+    if has(Picture) and not has(Light):
         add("light", "lights", "studio")
     if any(isinstance(t.kind, Contact) and not t.kind.ties() for t in result.values()) and not touchable(result):
         add("floor", "objects", "plane")

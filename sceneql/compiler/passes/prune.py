@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from sceneql.graph import Island, LeftOut, Task
-from sceneql.kinds import Illumination, Model, Object, Output, Overlay
+from sceneql.kinds import Light, Model, Object, Output, Overlay
 
 
 def prune(
@@ -15,7 +15,7 @@ def prune(
     cameras: Mapping[str, str],
 ) -> tuple[dict[str, Task], dict[str, tuple[str, ...]], tuple[LeftOut, ...]]:
     """The needed tasks, each behind those it needs; for each the outputs that need it; and the rest with reasons."""
-    seen_by_all = [t.name for t in tasks.values() if isinstance(t.kind, Illumination | Overlay)]
+    seen_by_all = [t.name for t in tasks.values() if isinstance(t.kind, Light | Overlay)]
     island_of = {name: island for island in islands for name in island.models}
     order: dict[str, Task] = {}
     needed_by: dict[str, list[str]] = {}

@@ -71,9 +71,9 @@ def _modes(island: Island, tasks: Mapping[str, Task]) -> Iterator[tuple[str, Ite
     models = {name: cast(Model, tasks[name].kind) for name in island.models}
     for name, model in models.items():
         yield name, model.fastest(name)
-    told = {name: model.told() for name, model in models.items()}
+    known = {name: model.static_masses() for name, model in models.items()}
     for force in dict.fromkeys(force for force, _ in island.forces):
-        on = {model: told[model] for other, model in island.forces if other == force}
+        on = {model: known[model] for other, model in island.forces if other == force}
         yield force, cast(Force, tasks[force].kind).fastest(force, on)
 
 

@@ -25,7 +25,7 @@ from sceneql.contacts.mutual.sphere_pair_kernels import (
     sort_cells,
     tied,
 )
-from sceneql.system_kernels import SETTLE, A, F, I
+from sceneql.system_kernels import BACK_OFF, A, F, I
 
 ASKED = 1
 """floats[1]: above 0 the march only asks when the step should end."""
@@ -88,8 +88,8 @@ def candidates(h, y0, y1, floats, ints):
     return first, others
 
 
-@kernel(SETTLE, inner=True)
-def settle(t0, t1, y0, rate0, y1, floats, ints):
+@kernel(BACK_OFF, inner=True)
+def back_off(t0, t1, y0, rate0, y1, floats, ints):
     """Change y1 so that no mass went through another in the step from t0 to t1."""
     if floats[ASKED] > 0.0:
         return

@@ -175,7 +175,7 @@ def advance(lanes, last, status, n, anywhere):
     " boolean, float64[:, ::1])",
     inner=True,
 )
-def hunt(code, constants, parts, registers, point, status, lanes, ids, asked, queue, count, anywhere, found):
+def search_lanes(code, constants, parts, registers, point, status, lanes, ids, asked, queue, count, anywhere, found):
     """Settle the first ``count`` rays of the ``queue``; returns the enclosures spent.
 
     ``asked`` (ASK, n) and ``found`` (5, n) are by ray. A HIT has a bracket low..high with all before

@@ -20,7 +20,7 @@ from sceneql.field.packets.ray_rows import (
     SETTLED,
     SURE,
 )
-from sceneql.field.packets.search_lanes_kernels import hunt
+from sceneql.field.packets.search_lanes_kernels import search_lanes
 from sceneql.field.packets.slab_kernels import SETTLED as SETTLED_INSIDE
 from sceneql.field.packets.slab_kernels import (
     STOP,
@@ -201,7 +201,9 @@ def tape_roots(
     ask(rays, count, groups, beams, anywhere, safe, unsafe, asked)
     ask_places(rays, count, asked)
     queued = enqueue(rays, count, groups, asked, found, queue)
-    spent += hunt(code, constants, singles, registers, point, status, lanes, ids, asked, queue, queued, anywhere, found)
+    spent += search_lanes(
+        code, constants, singles, registers, point, status, lanes, ids, asked, queue, queued, anywhere, found
+    )
     if not anywhere:
         hits = 0
         for k in range(queued):  # hits to the front of the queue

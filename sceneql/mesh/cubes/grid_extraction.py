@@ -72,7 +72,7 @@ class Found:
     """(v + own, 3) unit gradients, or zero."""
 
 
-class Workshop:
+class GridExtraction:
     """A tape on a grid, and room for each thread."""
 
     def __init__(self, whole: Tape, grid: Grid) -> None:

@@ -8,7 +8,7 @@ from sceneql.mesh.bounded import Corner, bounded
 from sceneql.mesh.cubes.cases import cases
 from sceneql.mesh.cubes.connect_kernels import connect
 from sceneql.mesh.cubes.grid import grid_around
-from sceneql.mesh.cubes.grid_extraction import Found, Room, Workshop
+from sceneql.mesh.cubes.grid_extraction import Found, GridExtraction, Room
 from sceneql.mesh.polygons import Polygons
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Ints, Tape
 
 
-def connected(shop: Workshop, found: Found, blocks: int) -> tuple[Ints, NDArray[np.int8]]:
+def connected(shop: GridExtraction, found: Found, blocks: int) -> tuple[Ints, NDArray[np.int8]]:
     """Triangles of the first so many blocks, and of each cube whether its surface turns much in it (0 or 1).
 
     Fills in the places and normals of the cubes' own vertices.
@@ -45,7 +45,7 @@ def polygonise(tape: Tape, low: Corner, high: Corner, cell: float) -> Polygons:
 
     The bytes do not depend on the number of threads. Raises ValueError as ``grid_around``.
     """
-    shop = Workshop(bounded(tape, low, high), grid_around(low, high, cell))
+    shop = GridExtraction(bounded(tape, low, high), grid_around(low, high, cell))
     found = shop.extracted(shop.met())
     triangles, _ = connected(shop, found, len(found.blocks))
     return Polygons(found.place, triangles, found.normal)

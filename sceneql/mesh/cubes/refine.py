@@ -13,7 +13,7 @@ from sceneql.mesh.bounded import Corner, bounded
 from sceneql.mesh.cubes.cases import cases
 from sceneql.mesh.cubes.faces import Curves, Sides, among, border_curves, face_sides
 from sceneql.mesh.cubes.grid import BLOCK, Grid, grid_around
-from sceneql.mesh.cubes.grid_extraction import Found, Workshop
+from sceneql.mesh.cubes.grid_extraction import Found, GridExtraction
 from sceneql.mesh.cubes.hidden_kernels import DEEPEST
 from sceneql.mesh.cubes.polygonise import connected
 from sceneql.mesh.cubes.stitch import stitched
@@ -61,7 +61,7 @@ class Level:
     """(t,) whether the surface turns much in it."""
 
 
-def level(shop: Workshop, found: Found, blocks: int) -> Level:
+def level(shop: GridExtraction, found: Found, blocks: int) -> Level:
     """The triangles of the first so many blocks."""
     import numpy as np
 
@@ -114,7 +114,7 @@ def refined(
     import numpy as np
 
     whole, grid = bounded(tape, low, high), grid_around(low, high, cell)
-    shop, numbers = Workshop(whole, grid), Numbering(grid)
+    shop, numbers = GridExtraction(whole, grid), Numbering(grid)
     blocks = shop.met()
     coarse, doubt = level(shop, shop.extracted(blocks), len(blocks)), hidden_in(shop, blocks)
     for cells, parts in _to_cut(whole, coarse, tolerance):
@@ -122,7 +122,7 @@ def refined(
         groups = np.unique(np.concatenate([cells, doubt.where]).astype(np.int64) // group, axis=0)
         if len(groups) <= (MANY_GROUPS if parts == FINEST else MOST_GROUPS):
             break
-    fine_shop = Workshop(whole, Grid(grid.low, grid.cell / parts, grid.blocks * parts))
+    fine_shop = GridExtraction(whole, Grid(grid.low, grid.cell / parts, grid.blocks * parts))
     while 0 < len(groups) <= MOST_GROUPS:
         chosen = np.sort(numbers.of(groups))
         owned = _with_owners(groups)

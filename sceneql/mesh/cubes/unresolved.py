@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from sceneql.compiled.kernels import over_tiles
 from sceneql.mesh.bounded import Corner, bounded
 from sceneql.mesh.cubes.grid import BLOCK, grid_around
-from sceneql.mesh.cubes.grid_extraction import BATCH, Workshop
+from sceneql.mesh.cubes.grid_extraction import BATCH, GridExtraction
 from sceneql.mesh.cubes.hidden_kernels import DEEPEST, hidden
 
 if TYPE_CHECKING:
@@ -49,11 +49,11 @@ def unresolved(tape: Tape, low: Corner, high: Corner, cell: float) -> Unresolved
 
     Raises ValueError as ``grid_around``.
     """
-    shop = Workshop(bounded(tape, low, high), grid_around(low, high, cell))
+    shop = GridExtraction(bounded(tape, low, high), grid_around(low, high, cell))
     return hidden_in(shop, shop.met())
 
 
-def hidden_in(shop: Workshop, blocks: Ints, deepest: int = DEEPEST) -> Unresolved:
+def hidden_in(shop: GridExtraction, blocks: Ints, deepest: int = DEEPEST) -> Unresolved:
     """What the cells of some blocks may hide.
 
     A cell is halved up to so many times, each part proved by the interval of f or by the mean value theorem (Moore

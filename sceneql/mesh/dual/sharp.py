@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 from sceneql.mesh.bounded import Corner, bounded
 from sceneql.mesh.cubes.cases import cases
 from sceneql.mesh.cubes.grid import grid_around
-from sceneql.mesh.cubes.grid_extraction import Found, Room, Workshop
+from sceneql.mesh.cubes.grid_extraction import Found, GridExtraction, Room
 from sceneql.mesh.dual.dual_kernels import dual
 from sceneql.mesh.dual.halves import halved
-from sceneql.mesh.dual.split_nonmanifold import pinched
+from sceneql.mesh.dual.split_nonmanifold import split_nonmanifold
 from sceneql.mesh.polygons import Polygons
-from sceneql.mesh.repair.repair_folds import Dual, turned_unfolded, unfolded
+from sceneql.mesh.repair.repair_folds import Dual, repair_folds, repair_turned
 
 if TYPE_CHECKING:
     import numpy as np
@@ -33,12 +33,12 @@ def polygonise_sharp(tape: Tape, low: Corner, high: Corner, cell: float) -> Poly
     import numpy as np
 
     whole = bounded(tape, low, high)
-    shop = Workshop(whole, grid_around(low, high, cell))
+    shop = GridExtraction(whole, grid_around(low, high, cell))
     found = shop.extracted(shop.met())
     places, normals, rings, corners, outward = _vertices(shop, found)
     quads = corners[:, AROUND]
     quads[outward == 0] = quads[outward == 0, ::-1]
-    plain, more_places, more = pinched(quads, rings, found.place, len(places))
+    plain, more_places, more = split_nonmanifold(quads, rings, found.place, len(places))
     ways = np.where(outward == 0, -1, 1) * (found.keys % 3 + 1)
     quads, ways = quads[plain], ways[plain]
     triangles = np.concatenate([halved(whole, places, quads, ways), more]).astype(np.int32)
@@ -46,10 +46,10 @@ def polygonise_sharp(tape: Tape, low: Corner, high: Corner, cell: float) -> Poly
     means = _means(rings, found.place)
     lows = shop.grid.low + np.floor((means - shop.grid.low) / cell) * cell
     dual = Dual(whole, quads, ways, rings, found.place, found.normal, means, lows, cell)
-    return turned_unfolded(whole, unfolded(dual, Polygons(places, triangles, normals)))
+    return repair_turned(whole, repair_folds(dual, Polygons(places, triangles, normals)))
 
 
-def _vertices(shop: Workshop, found: Found) -> tuple[Floats, Floats, Ints, Ints, NDArray[np.int8]]:
+def _vertices(shop: GridExtraction, found: Found) -> tuple[Floats, Floats, Ints, Ints, NDArray[np.int8]]:
     """(places, normals, rings, corners, outward) as of the kernel ``dual``, of all blocks."""
     import numpy as np
 

@@ -19,7 +19,9 @@ if TYPE_CHECKING:
 Side = tuple[int, int]
 
 
-def pinched(quads: Ints, rings: Ints, crossings: Floats, fresh: int) -> tuple[NDArray[np.int64], Floats, Ints]:
+def split_nonmanifold(
+    quads: Ints, rings: Ints, crossings: Floats, fresh: int
+) -> tuple[NDArray[np.int64], Floats, Ints]:
     """(quads that are sound, places (n, 3) [m] of vertices to be added, triangles instead of the other quads).
 
     ``quads`` (e, 4) are the dual vertices around each crossed edge, ``rings`` (v, 12) the crossed edges around each

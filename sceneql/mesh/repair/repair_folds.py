@@ -16,7 +16,7 @@ from sceneql.mesh.dual.planes import onto_planes
 from sceneql.mesh.polygons import Polygons
 from sceneql.mesh.repair.folds import against, doubtful, inverted
 from sceneql.mesh.repair.move_vertices import turned_outward
-from sceneql.mesh.repair.self_intersections import passing
+from sceneql.mesh.repair.self_intersections import self_intersections
 
 if TYPE_CHECKING:
     import numpy as np
@@ -67,7 +67,7 @@ class Dual:
     """[m]"""
 
 
-def unfolded(dual: Dual, polygons: Polygons) -> Polygons:
+def repair_folds(dual: Dual, polygons: Polygons) -> Polygons:
     """The polygons, whose first triangles are the halves of the dual's quads, with corners moved until none folds.
 
     Vertices that follow on the dual's corners stay.
@@ -136,7 +136,7 @@ def _drawn(dual: Dual, polygons: Polygons, rows: Rows) -> Rows:
     count = len(dual.rings)
     off = np.zeros(len(places))
     off[:count] = np.linalg.norm(places[:count] - dual.means, axis=1)
-    first, other = passing(places, triangles, rows)
+    first, other = self_intersections(places, triangles, rows)
     first, other = np.concatenate([rows, first]), np.concatenate([rows, other])
     most = np.zeros(len(triangles))
     np.maximum.at(most, first, off[triangles[other]].max(axis=1))
@@ -157,7 +157,7 @@ def _drawn(dual: Dual, polygons: Polygons, rows: Rows) -> Rows:
     return corners
 
 
-def turned_unfolded(tape: Tape, polygons: Polygons) -> Polygons:
+def repair_turned(tape: Tape, polygons: Polygons) -> Polygons:
     """The polygons with triangles that face inward put right as by ``turned_outward``, but where that folds others.
 
     At edges of the solid, and on sheets nearer to each other than cells tell, the gradient is of another face.
@@ -174,7 +174,7 @@ def turned_unfolded(tape: Tape, polygons: Polygons) -> Polygons:
         if len(folded) > MOST or not len(folded := inverted(turned, folded)):
             return turned
         near[turned.triangles[folded]] = True
-        near[turned.triangles[passing(turned.vertices, turned.triangles, folded)[1]]] = True
+        near[turned.triangles[self_intersections(turned.vertices, turned.triangles, folded)[1]]] = True
         for _ in range(BESIDE):
             near[polygons.triangles[near[polygons.triangles].any(axis=1)]] = True
         rows = rows[~near[polygons.triangles[rows]].any(axis=1)]

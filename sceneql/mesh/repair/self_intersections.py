@@ -22,7 +22,7 @@ CUBES = 128
 """Along the side of the box of some triangles, in which others near them are looked for."""
 
 
-def passing(places: Floats, triangles: Ints, rows: Rows) -> tuple[Rows, Rows]:
+def self_intersections(places: Floats, triangles: Ints, rows: Rows) -> tuple[Rows, Rows]:
     """Pairs of rows: of the triangles ``rows`` (n,), and of those (t, 3) that pass through them without a common side.
 
     One passes through the other where a side of one of them meets the inside of the other. Those in one plane do not.

@@ -121,7 +121,7 @@ class Collision(Contact):
             assembly.contact("exact", (f"{EXACT}:gap", f"{EXACT}:impact"), ints, pairs)
         else:
             assembly.step_at_most(OFTEN)
-            assembly.contact("local", (f"{LOCAL}:settle",), ints, pairs, apart=True)
+            assembly.contact("local", (f"{LOCAL}:back_off",), ints, pairs, apart=True)
         held = None if exact else lambda: _held(bodies)
         constrain = f"{EXACT}:constrain" if exact else f"{LOCAL}:constrain"
         assembly.term("constrain", constrain, ints, held, apart=not exact)

@@ -103,7 +103,7 @@ class MutualCollision(Contact):
             assembly.contact("exact", kernels, ints, n * (n - 1) // 2)
         else:
             assembly.step_at_most(OFTEN)
-            assembly.contact("local", (f"{LOCAL}:settle",), ints, 0)
+            assembly.contact("local", (f"{LOCAL}:back_off",), ints, 0)
         assembly.remember(tally)
 
     def read(self, output: str, state: ModelState) -> Any:

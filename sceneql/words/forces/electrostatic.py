@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 from sceneql.bodies.charges import Charges, each
 from sceneql.island.static_rates import On, number, pulled
 from sceneql.kinds import FixedLength, Force, Quantity, Value, field
-from sceneql.kinds.stable_step import Oscillation, Told
+from sceneql.kinds.stable_step import Oscillation, StaticMass
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.unit_table import CHARGE
 
@@ -44,7 +44,7 @@ class Electrostatic(Force):
         if constant is None or not isinstance(charge, float | int):
             return
 
-        def square(a: Told, b: Told) -> float:
+        def square(a: StaticMass, b: StaticMass) -> float:
             away = math.dist(a.position or (), b.position or ())
             rho = math.hypot(away, self.softening)
             stiffness = constant * charge**2 / rho**3 * (3.0 * (away / rho) ** 2 - 1.0)

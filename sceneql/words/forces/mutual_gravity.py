@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from sceneql.island.static_rates import On, number, pulled
 from sceneql.kinds import FixedLength, FixedScalar, Force, Quantity, Value, field
-from sceneql.kinds.stable_step import Oscillation, Told
+from sceneql.kinds.stable_step import Oscillation, StaticMass
 from sceneql.quantities import dimension as dim
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ class MutualGravity(Force):
         if constant is None:
             return
 
-        def square(a: Told, b: Told) -> float:
+        def square(a: StaticMass, b: StaticMass) -> float:
             rho = math.hypot(math.dist(a.position or (), b.position or ()), self.softening)
             return float(constant * (a.mass * (not b.fixed) + b.mass * (not a.fixed)) / rho**3)
 

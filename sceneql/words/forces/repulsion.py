@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from sceneql.island.static_rates import On, number, pulled
 from sceneql.kinds import FixedLength, FixedScalar, Force, Quantity, Value, field
-from sceneql.kinds.stable_step import Oscillation, Told
+from sceneql.kinds.stable_step import Oscillation, StaticMass
 from sceneql.quantities import dimension as dim
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class Repulsion(Force):
         if strength is None:
             return
 
-        def square(a: Told, b: Told) -> float:
+        def square(a: StaticMass, b: StaticMass) -> float:
             rest = 1.0 - math.dist(a.position or (), b.position or ()) / self.range
             stiffness = strength * self.exponent / self.range * max(rest, 0.0) ** (self.exponent - 1.0)
             return float(stiffness * (a.inverse + b.inverse)) if rest > 0.0 else 0.0

@@ -6,14 +6,14 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from sceneql.kinds import Color, Illumination, Length, Moment, Position, Power, field
+from sceneql.kinds import Color, Length, Light, Moment, Position, Power, field
 from sceneql.shapes.color import linear
 
 if TYPE_CHECKING:
     from sceneql import frame
 
 
-class Point(Illumination):
+class Point(Light):
     """A small glowing ball whose light falls with the square of the distance.
 
     A power P shines P/(4 pi) in every direction, so a white matte surface that faces it at the distance r is as bright
@@ -25,7 +25,7 @@ class Point(Illumination):
     color: Color = field("Color of its light.", "1 1 1")
     radius: Length = field("Its radius; larger: softer shadows. What is within throws none.", "50 mm", at_least=0)
 
-    def lower(self, moment: Moment) -> Iterable[frame.Light]:
+    def lower(self, moment: Moment) -> Iterable[frame.LightSource]:
         """One point light."""
         from sceneql import frame
 

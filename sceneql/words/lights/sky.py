@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from sceneql.kinds import Color, Illumination, Moment, Scalar, Value, field
+from sceneql.kinds import Color, Light, Moment, Scalar, Value, field
 from sceneql.shapes.color import linear
 
 if TYPE_CHECKING:
     from sceneql import frame
 
 
-class Sky(Illumination):
+class Sky(Light):
     """Light from all around. Its color blends from the zenith over the horizon to the ground; `color` is all three.
 
     Under a sky of one color and strength 1, a matte surface in the open is as bright as its own color times the sky's.
@@ -25,7 +25,7 @@ class Sky(Illumination):
     strength: Scalar = field("Factor of its light.", "1", at_least=0)
     background: Color | None = field("What the camera sees where nothing is; by default the sky itself.", None)
 
-    def lower(self, moment: Moment) -> Iterable[frame.Light]:
+    def lower(self, moment: Moment) -> Iterable[frame.LightSource]:
         """One sky."""
         from sceneql import frame
 

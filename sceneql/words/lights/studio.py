@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from sceneql.kinds import Illumination, Moment, Scalar, field
+from sceneql.kinds import Light, Moment, Scalar, field
 
 if TYPE_CHECKING:
     from sceneql import frame
@@ -21,13 +21,13 @@ BACKGROUND = (0.665, 0.665, 0.665)
 """As bright as the stage of a plane without material (words/objects/plane.py), so that its horizon does not show."""
 
 
-class Studio(Illumination):
+class Studio(Light):
     """A picture of a product: a soft key light from the upper left front, a bright dome, a light gray background."""
 
     key: Scalar = field("Factor of the key light.", "1", at_least=0)
     fill: Scalar = field("Factor of the dome's light.", "1", at_least=0)
 
-    def lower(self, moment: Moment) -> Iterable[frame.Light]:
+    def lower(self, moment: Moment) -> Iterable[frame.LightSource]:
         """The key light and the dome."""
         from sceneql import frame
 

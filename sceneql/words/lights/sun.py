@@ -6,14 +6,14 @@ import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from sceneql.kinds import Angle, Color, Direction, Illumination, Moment, Scalar, field
+from sceneql.kinds import Angle, Color, Direction, Light, Moment, Scalar, field
 from sceneql.shapes.color import linear
 
 if TYPE_CHECKING:
     from sceneql import frame
 
 
-class Sun(Illumination):
+class Sun(Light):
     """Light from one direction, everywhere equally strong.
 
     At strength 1 a white matte surface that faces it is as bright as its color: it gets the irradiance pi.
@@ -26,7 +26,7 @@ class Sun(Illumination):
     color: Color = field("Color of its light.", "1 1 1")
     angle: Angle = field("How wide it looks; wider gives softer shadows.", "0.53 deg", at_least=0, at_most=math.pi)
 
-    def lower(self, moment: Moment) -> Iterable[frame.Light]:
+    def lower(self, moment: Moment) -> Iterable[frame.LightSource]:
         """One distant light. Raises ValueError for a direction of zero."""
         from sceneql import frame
 

@@ -21,7 +21,7 @@ from sceneql.kinds import (
     Rotation,
     field,
 )
-from sceneql.kinds.stable_step import Oscillation, Told
+from sceneql.kinds.stable_step import Oscillation, StaticMass
 from sceneql.quantities import dimension as dim
 
 if TYPE_CHECKING:
@@ -75,10 +75,10 @@ class Cloth(SpringModel):
             bend=float(self.bend > 0),
         )
 
-    def told(self) -> Mapping[str, Told]:
+    def static_masses(self) -> Mapping[str, StaticMass]:
         """One at a corner, a quarter of the others' mass."""
         wide, high = (side / cells for side, cells in zip(self.size, self.cells, strict=True))
-        return {"": Told(0.25 * self.mass * wide * high, None, self.velocity)}
+        return {"": StaticMass(0.25 * self.mass * wide * high, None, self.velocity)}
 
     def fastest(self, name: str) -> tuple[Oscillation, ...]:
         """Of a mass inside, by the springs around it: see `stiffest`."""

@@ -160,7 +160,7 @@ class Equations(Model):
         kernel = rate_kernel(system)
         inputs = [assembly.value(Value(expr)) for expr in kernel.inputs]
         for expr in (*rows.rates(), *rows.where.values()):
-            assembly.stop_where_it_turns(expr)
+            assembly.stop_at_breakpoints(expr)
         ints = (assembly.floats(kernel.constants), at, self.count, *inputs)
         assembly.term("internal", kernel.name, ints, lambda: _slopes(system, at, self.count, assembly))
         links = [assembly.value(Value(link)) for link in rows.links()]

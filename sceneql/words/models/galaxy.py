@@ -22,7 +22,7 @@ from sceneql.kinds import (
     field,
     quantity_type,
 )
-from sceneql.kinds.stable_step import Told
+from sceneql.kinds.stable_step import StaticMass
 from sceneql.quantities import dimension as dim
 
 if TYPE_CHECKING:
@@ -68,9 +68,9 @@ class Galaxy(Model):
     material: MaterialRef | None = field("How the stars look.", None)
     color: Color | None = field("Color in place of the material's.", None)
 
-    def told(self) -> Mapping[str, Told]:
+    def static_masses(self) -> Mapping[str, StaticMass]:
         """A star."""
-        return {"": Told(self.disk / self.stars)}
+        return {"": StaticMass(self.disk / self.stars)}
 
     def assemble(self, name: str, assembly: Assembly) -> Bodies:
         """Reserve the center and the stars."""

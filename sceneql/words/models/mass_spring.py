@@ -24,7 +24,7 @@ from sceneql.bodies.nets import (
 from sceneql.bodies.solid_lattice import Filling
 from sceneql.bodies.springs import SpringModel, pin_problems
 from sceneql.kinds import Damping, FixedMass, Gives, Problem, Ref, Stiffness, field, quantity_type
-from sceneql.kinds.stable_step import Oscillation, Told
+from sceneql.kinds.stable_step import Oscillation, StaticMass
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
@@ -201,15 +201,15 @@ class MassSpring(SpringModel):
         own, part = state.floats[blocks_at + BLOCK * k + 1 : blocks_at + BLOCK * k + 3]
         return float((own + part * state.floats[stiffness_at]) * (length - self.rest[k]))
 
-    def told(self) -> Mapping[str, Told]:
+    def static_masses(self) -> Mapping[str, StaticMass]:
         """Named ones; else one for all of them, whose place is not told, and none of a solid's by its density."""
         if self.masses is None:
             alike = self.solid is None or self.solid.density is None
-            return {"": Told(self.mass, None, self.velocity)} if alike else {}
+            return {"": StaticMass(self.mass, None, self.velocity)} if alike else {}
         names = list(self.masses)
         pinned = {names[int(pin)] if pin not in self.masses else pin for pin in self._named_pins()}
         return {
-            name: Told(
+            name: StaticMass(
                 self.mass if one.mass is None else one.mass,
                 one.position,
                 self.velocity if one.velocity is None else one.velocity,
@@ -248,14 +248,14 @@ class MassSpring(SpringModel):
             )
             for spring in self.springs
         ]
-        told = [(k, c) for k, c in given if k is not None and c is not None]
-        if len(told) < len(given) or not told:
+        static_masses = [(k, c) for k, c in given if k is not None and c is not None]
+        if len(static_masses) < len(given) or not static_masses:
             return ()
-        rows = [self._rows([pair[which] for pair in told]) for which in (0, 1)]
+        rows = [self._rows([pair[which] for pair in static_masses]) for which in (0, 1)]
         squares, decays = ([sum(row.values()) for row in each] for each in rows)
         culprits: dict[int, int] = {}
         for sums, each in zip((squares, decays), rows, strict=True):
-            k = max(range(len(told)), key=sums.__getitem__)
+            k = max(range(len(static_masses)), key=sums.__getitem__)
             if sums[k] > 0.0:
                 # The row may be that of a soft spring beside the stiff one that makes it so.
                 culprits[k] = max(each[k], key=each[k].__getitem__)
@@ -271,7 +271,7 @@ class MassSpring(SpringModel):
     def _rows(self, weights: Sequence[float]) -> list[dict[int, float]]:
         """For each spring, of the springs at its ends: weight |cos of the angle between them| / mass."""
         masses = self.masses or {}
-        inverse = {name: one.inverse for name, one in self.told().items()}
+        inverse = {name: one.inverse for name, one in self.static_masses().items()}
         directions: list[tuple[float, ...]] = []
         at: dict[str, list[int]] = {name: [] for name in masses}
         for k, spring in enumerate(self.springs):

@@ -30,7 +30,7 @@ from sceneql.kinds import (
     field,
     quantity_type,
 )
-from sceneql.kinds.stable_step import Told
+from sceneql.kinds.stable_step import StaticMass
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
@@ -130,11 +130,11 @@ class Particles(Model):
         """The object that they fill at a spacing."""
         return () if self.fill is None or self.fill.spacing is None else ((self.fill.object, self.fill.bounded),)
 
-    def told(self) -> Mapping[str, Told]:
+    def static_masses(self) -> Mapping[str, StaticMass]:
         """Listed ones; else one for all of them, whose place is not told."""
         if self.list is None:
-            return {"": Told(self.mass, None, self.velocity if self.emit is None else None)}
-        return {name: Told(one.mass, one.position, one.velocity, one.fixed) for name, one in self.list.items()}
+            return {"": StaticMass(self.mass, None, self.velocity if self.emit is None else None)}
+        return {name: StaticMass(one.mass, one.position, one.velocity, one.fixed) for name, one in self.list.items()}
 
     def assemble(self, name: str, assembly: Assembly) -> Bodies:
         """Reserve the masses."""

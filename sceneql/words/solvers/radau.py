@@ -84,7 +84,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     """What the step works with: see radau_stages_kernels.py."""
     import numpy as np
 
-    from sceneql.stepping.error_scales import scales_of
+    from sceneql.stepping.error_scales import error_scales
     from sceneql.stepping.radau_stages_kernels import MEMORY, VECTORS
     from sceneql.stepping.radau_systems import radau_systems
     from sceneql.system import Prepared
@@ -101,7 +101,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     newton = max(10 * rounding / rtol, min(3e-3, 0.1 * rtol**0.5))
     scaled, scales = np.zeros(0, np.int64), np.broadcast_to(stepper.absolute if stepper.adaptive else rtol, n)
     if stepper.adaptive and stepper.by_scale:
-        scaled, scales = scales_of(system)
+        scaled, scales = error_scales(system)
     systems = radau_systems(system)
     settings = np.concatenate([[rtol, newton, systems.contraction], scales, systems.rows])
     head = [not stepper.adaptive, pattern.room, len(pattern.tallies), len(scaled), len(settings) - len(systems.rows)]

@@ -147,12 +147,12 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     import numpy as np
 
     from sceneql.linear.stage import stage_plan
-    from sceneql.stepping.error_scales import scales_of
+    from sceneql.stepping.error_scales import error_scales
 
     plan = stage_plan(system, exact=True)
     assert system.pattern is not None
     room, stages = system.pattern.room, len(COUPLINGS)
-    scaled, sizes = scales_of(system) if stepper.by_scale else (np.zeros(0, np.int64), np.zeros(0))
+    scaled, sizes = error_scales(system) if stepper.by_scale else (np.zeros(0, np.int64), np.zeros(0))
     at = len(stepper.settings)
     return Prepared(
         settings=np.concatenate([stepper.settings, plan.scales, sizes, [np.nan]]),

@@ -7,8 +7,8 @@ import pytest
 
 from runs import watch
 from sceneql.bodies.time_shift import goes_evenly
-from sceneql.island.breakpoint_table import Stops, next_stop
-from sceneql.island.breakpoints import Turns
+from sceneql.island.breakpoint_table import BreakpointTable, next_breakpoint
+from sceneql.island.breakpoints import Breakpoints
 from sceneql.pipeline import load
 from sceneql.quantities.expression import Call, Key, Keys, Link, Number, Symbol, Type
 from sceneql.run.run import Run
@@ -31,7 +31,7 @@ def call(op, *args):
 
 
 def found(expr, end=10.0, formula=None):
-    turns = Turns(lambda link: formula, end)
+    turns = Breakpoints(lambda link: formula, end)
     turns.follow(expr)
     assert not turns.beyond
     return sorted(turns.stops)
@@ -91,17 +91,17 @@ def test_smooth_numbers_are_closed_in_on_where_they_cross_and_where_they_only_ju
 
 def test_what_turns_more_often_than_can_be_kept_is_told():
     often = call("floor", call("mul", number(1e6), TIME))
-    turns = Turns(lambda link: None, 10.0)
+    turns = Breakpoints(lambda link: None, 10.0)
     turns.follow(call("add", often, call("gt", TIME, number(3.0))))
     assert len(turns.beyond) == 1
     assert len(turns.stops) == 1
 
 
 def test_the_next_stop_is_the_first_one_after_an_instant_and_periods_go_on():
-    known = Stops.of([(2.5, 0.0), (math.nan, 0.0), (1.0, 0.0), (0.25, 2.0), (1.0 + 1e-15, 0.0), (-1.0, 0.0)])
+    known = BreakpointTable.of([(2.5, 0.0), (math.nan, 0.0), (1.0, 0.0), (0.25, 2.0), (1.0 + 1e-15, 0.0), (-1.0, 0.0)])
     passed, time = [], 0.0
     while time < 7.0:
-        time = next_stop(known, time, 7.0)
+        time = next_breakpoint(known, time, 7.0)
         passed.append(time)
     assert passed == [0.25, 1.0, 2.25, 2.5, 4.25, 6.25, 7.0]
 
@@ -120,8 +120,10 @@ def test_the_next_of_many_stops_is_found_without_a_look_at_each():
             looks += 1
             return float(self) > float(other)
 
-    known = Stops(tuple(Counted(time) for time in range(1, 4097)))
-    assert [next_stop(known, float(time), 5000.0) for time in range(100)] == [float(time) for time in range(1, 101)]
+    known = BreakpointTable(tuple(Counted(time) for time in range(1, 4097)))
+    assert [next_breakpoint(known, float(time), 5000.0) for time in range(100)] == [
+        float(time) for time in range(1, 101)
+    ]
     assert looks < 100 * 20
 
 
