@@ -3,7 +3,7 @@
 import math
 
 from sceneql.compiled.kernels import kernel
-from sceneql.system_kernels import BACK_OFF, GAP, IMPACT, TERM
+from sceneql.system.signatures_kernels import BACK_OFF, GAP, IMPACT, TERM
 
 
 @kernel(TERM)

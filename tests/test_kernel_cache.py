@@ -29,7 +29,7 @@ KERNEL = '''
 """The force of even."""
 
 from sceneql.compiled.kernels import lean
-from sceneql.system_kernels import TERM
+from sceneql.system.signatures_kernels import TERM
 IMPORT
 
 
@@ -82,6 +82,6 @@ def test_a_kernel_of_a_words_folder_follows_the_modules_that_it_imports(tmp_path
 
 def test_a_kernel_is_made_of_its_file_and_of_all_that_this_imports():
     files = {path.name for path in _sources("sceneql.words.forces.gravity_kernels")}
-    assert files >= {"gravity_kernels.py", "kernels.py", "system_kernels.py", "shortcuts.py"}
+    assert files >= {"gravity_kernels.py", "kernels.py", "signatures_kernels.py", "shortcuts.py"}
     assert not files & {"gravity.py", "drag_kernels.py", "cli.py"}
     assert all(Path(path).is_file() for path in _sources("sceneql.march.march_kernels"))

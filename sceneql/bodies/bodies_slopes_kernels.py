@@ -2,7 +2,7 @@
 """The derivatives of the closing term of point masses."""
 
 from sceneql.compiled.kernels import lean
-from sceneql.system_kernels import TERM
+from sceneql.system.signatures_kernels import TERM
 
 
 @lean(TERM, inner=True)

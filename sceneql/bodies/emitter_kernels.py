@@ -7,7 +7,7 @@ import numpy as np
 from numba import types
 
 from sceneql.compiled.kernels import inlined, kernel
-from sceneql.system_kernels import BACK_OFF
+from sceneql.system.signatures_kernels import BACK_OFF
 
 CHANGED_AT = 1
 """floats[1]: above 0 in a settling that is to change nothing (march_kernels)."""

@@ -7,7 +7,7 @@ from numba import types
 
 from sceneql.bodies.mass_spring_kernels import BLOCK
 from sceneql.compiled.kernels import kernel
-from sceneql.system_kernels import A, N
+from sceneql.system.signatures_kernels import A, N
 
 
 @kernel(types.float64(A, N, A, N, N, types.int64[:, ::1]))

@@ -4,7 +4,7 @@
 import math
 
 from sceneql.compiled.kernels import kernel
-from sceneql.system_kernels import TERM
+from sceneql.system.signatures_kernels import TERM
 
 BLOCK = 5
 """Floats of a spring: rest length, stiffness, its part of the model's stiffness, damping, its part of the model's."""

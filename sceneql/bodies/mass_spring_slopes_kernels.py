@@ -5,7 +5,7 @@ import math
 
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.threads_kernels import TILE, over_threads
-from sceneql.system_kernels import TERM
+from sceneql.system.signatures_kernels import TERM
 
 BLOCK = 5
 """Floats of a spring (mass_spring_kernels.py)."""

@@ -7,7 +7,7 @@ they are let go; the number of masses, and the masses. One that has been let go 
 """
 
 from sceneql.compiled.kernels import inlined, kernel
-from sceneql.system_kernels import BACK_OFF, TERM
+from sceneql.system.signatures_kernels import BACK_OFF, TERM
 
 CHANGED_AT = 1
 """floats[1]: above 0 in a settling that is to change nothing (march_kernels)."""

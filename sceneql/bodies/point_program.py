@@ -134,7 +134,7 @@ def _kernel(function: str, printer: Printer, outputs: Sequence[str]) -> str:
     lines = [
         *IMPORTS,
         "from sceneql.compiled.kernels import kernel",
-        "from sceneql.system_kernels import TERM",
+        "from sceneql.system.signatures_kernels import TERM",
         "",
         "",
         "@kernel(TERM)",

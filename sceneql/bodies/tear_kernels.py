@@ -5,7 +5,7 @@ import math
 
 from sceneql.bodies.mass_spring_kernels import BLOCK
 from sceneql.compiled.kernels import kernel
-from sceneql.system_kernels import BACK_OFF
+from sceneql.system.signatures_kernels import BACK_OFF
 
 CHANGED_AT = 1
 """floats[1]: above 0 in a settling that is to change nothing (march_kernels)."""

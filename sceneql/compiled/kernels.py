@@ -19,6 +19,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import cache
 from importlib.util import find_spec, resolve_name
+from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
@@ -91,7 +92,8 @@ def _imported(path: Path, package: str, changed: int) -> frozenset[str]:
             continue
         for node in ast.walk(tree):
             if isinstance(node, ast.Import):
-                found |= {alias.name for alias in node.names}
+                for alias in node.names:
+                    found |= {alias.name} if alias.asname else set(accumulate(alias.name.split("."), "{}.{}".format))
             elif isinstance(node, ast.ImportFrom):
                 name = f"{'.' * node.level}{node.module or ''}"
                 source = resolve_name(name, package) if node.level else name
@@ -110,10 +112,8 @@ def _sources(module: str) -> frozenset[Path]:
             continue
         found[name] = None
         package = name.rpartition(".")[0]
-        if package:
-            todo.append(package)
-            if not _has_modules(package):
-                continue  # what a module defines, not a module
+        if package and not _has_modules(package):
+            continue  # what a module defines, not a module
         spec = _spec(name)
         if spec is not None and spec.has_location:
             path = found[name] = Path(spec.origin)

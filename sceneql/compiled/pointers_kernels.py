@@ -11,7 +11,7 @@ import numba
 import numpy as np
 
 from sceneql.compiled.kernels import address, function_at
-from sceneql.system_kernels import (
+from sceneql.system.signatures_kernels import (
     BACK_OFF_FUNCTION,
     DENSE_FUNCTION,
     EVENT_FUNCTION,

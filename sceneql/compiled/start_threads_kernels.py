@@ -11,7 +11,7 @@ from numba.extending import intrinsic
 from sceneql.compiled.arithmetic_kernels import bits, from_bits
 from sceneql.compiled.kernels import KernelCompiler, cache_folder, function_at, kernel
 from sceneql.compiled.threads_kernels import OVER_THREADS, TILE_FUNCTION, uncompiled
-from sceneql.system_kernels import N
+from sceneql.system.signatures_kernels import N
 
 WORD = ir.IntType(64)
 FUNCTION, FIRST, STRIDE, TILES, TIME, ARRAYS, WORDS = 0, 1, 2, 3, 4, 5, 13

@@ -13,7 +13,7 @@ from numba import types
 
 from sceneql.compiled.kernels import address, thread_count
 from sceneql.compiled.numba.lazy_kernels import late
-from sceneql.system_kernels import A, F, I, N
+from sceneql.system.signatures_kernels import A, F, I, N
 
 TILE = types.void(N, F, A, A, A, I)
 """tile(number, t, y, rate, floats, ints): its part of a term."""

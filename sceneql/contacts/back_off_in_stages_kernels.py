@@ -54,7 +54,7 @@ from sceneql.contacts.memory_kernels import (
 from sceneql.contacts.pair_kernels import body_of
 from sceneql.contacts.resting_kernels import come_to_rest, set_velocity
 from sceneql.contacts.shape_kernels import DEPTH, MOVING, NEAR, OBJECT, near_at, surface, velocity
-from sceneql.system_kernels import A, F, I, N
+from sceneql.system.signatures_kernels import A, F, I, N
 
 back_off_found = late("sceneql.contacts.respond_kernels:back_off_found", ANSWER)
 

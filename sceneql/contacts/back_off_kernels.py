@@ -41,7 +41,7 @@ from sceneql.contacts.memory_kernels import (
     WHOLE,
 )
 from sceneql.contacts.shape_kernels import MOVING, NEAR, OBJECT, near_at
-from sceneql.system_kernels import BACK_OFF, TERM, A, F, I
+from sceneql.system.signatures_kernels import BACK_OFF, TERM, A, F, I
 
 cut = late("sceneql.contacts.respond_kernels:cut", ANSWER)
 back_off_found = late("sceneql.contacts.respond_kernels:back_off_found", ANSWER)

@@ -12,7 +12,7 @@ from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import late
 from sceneql.contacts.impulse_kernels import POSITION, VELOCITY
 from sceneql.contacts.shape_kernels import FLAT, clear, facing
-from sceneql.system_kernels import A, F, I, N
+from sceneql.system.signatures_kernels import A, F, I, N
 
 NEVER = 2.0
 SEARCH = types.float64(A, F, A, I, N, F)

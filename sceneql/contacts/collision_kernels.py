@@ -27,7 +27,7 @@ from sceneql.contacts.impulse_kernels import (
 from sceneql.contacts.memory_kernels import ALONG, FREE, KEEP, PAIR, PATH, SLIDES, STICKS, SUPPORT
 from sceneql.contacts.pair_kernels import away, body_of
 from sceneql.contacts.shape_kernels import DEPTH, FROM_TYPE, MOVING, OBJECT, surface, velocity
-from sceneql.system_kernels import GAP, IMPACT, TERM
+from sceneql.system.signatures_kernels import GAP, IMPACT, TERM
 
 hit = late("sceneql.contacts.hit_kernels:hit", IMPACT)
 keep = late("sceneql.contacts.resting_kernels:keep", KEEP)

@@ -18,7 +18,7 @@ from sceneql.contacts.memory_kernels import PAIR, PRESS, SLIDES, STICKS
 from sceneql.contacts.pair_kernels import body_of
 from sceneql.contacts.resting_kernels import come_to_rest, set_velocity
 from sceneql.contacts.shape_kernels import OBJECT, surface, velocity
-from sceneql.system_kernels import IMPACT
+from sceneql.system.signatures_kernels import IMPACT
 
 LOWEST_FLIGHT = 4e-13
 """Height of a bounce, as a part of the coordinates, that rounding can still resolve: below it the body rests."""

@@ -8,7 +8,7 @@ from sceneql.contacts.body_path_kernels import NEVER, first_contact, place
 from sceneql.contacts.impulse_kernels import HEAD, OBJECTS, PAIRS
 from sceneql.contacts.memory_kernels import FREE, PAIR
 from sceneql.contacts.shape_kernels import OBJECT, velocity
-from sceneql.system_kernels import A, F, I, N
+from sceneql.system.signatures_kernels import A, F, I, N
 
 
 @lean_inlined

@@ -11,7 +11,7 @@ from numba import types
 
 from sceneql.compiled.kernels import lean_inlined
 from sceneql.contacts.impulse_kernels import BODIES, LAST
-from sceneql.system_kernels import A, F, I, N
+from sceneql.system.signatures_kernels import A, F, I, N
 
 PRESS, LOAD, PULL, ALONG, EARLIER = 1, 2, 3, 4, 7
 TIED, LET_GO = 8, 9

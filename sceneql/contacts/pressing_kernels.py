@@ -5,7 +5,7 @@ from sceneql.compiled.kernels import lean
 from sceneql.contacts.impulse_kernels import HEAD, VELOCITY
 from sceneql.contacts.pair_kernels import body_of
 from sceneql.contacts.shape_kernels import FOUR, OBJECT, acceleration, bend, surface, velocity
-from sceneql.system_kernels import A, I, N
+from sceneql.system.signatures_kernels import A, I, N
 
 
 @lean(FOUR(N, N, A, A, A, I), inner=True)

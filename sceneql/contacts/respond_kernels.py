@@ -60,7 +60,7 @@ from sceneql.contacts.pair_kernels import is_flat
 from sceneql.contacts.resting_kernels import come_to_rest, keep, lies
 from sceneql.contacts.shape_kernels import OBJECT, clear, surface, velocity
 from sceneql.contacts.slide_kernels import fly_on, slide, start_with
-from sceneql.system_kernels import A, F, I, N
+from sceneql.system.signatures_kernels import A, F, I, N
 
 brake = late("sceneql.contacts.friction_kernels:brake", BRAKE)
 

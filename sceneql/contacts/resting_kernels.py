@@ -42,7 +42,7 @@ from sceneql.contacts.memory_kernels import (
 )
 from sceneql.contacts.pair_kernels import body_of
 from sceneql.contacts.shape_kernels import OBJECT, surface, velocity
-from sceneql.system_kernels import A, F, I, N
+from sceneql.system.signatures_kernels import A, F, I, N
 
 CREEP = 1e-3
 """Speed along the surface [m/s] below which friction goes against the pull."""

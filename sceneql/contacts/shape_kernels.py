@@ -28,7 +28,7 @@ from numba import types
 from sceneql.compiled.kernels import lean_inlined
 from sceneql.compiled.numba.lazy_kernels import late
 from sceneql.compiled.numbered_kernels import kernel_at
-from sceneql.system_kernels import A, F, I, N
+from sceneql.system.signatures_kernels import A, F, I, N
 
 SURFACE, BEND, CLEAR, NEAR, PLACE, ROTATION, SIZE, DEPTH, MOVING, BEFORE = range(10)
 AFTER = BEFORE + 2

@@ -7,7 +7,7 @@ from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.impulse_kernels import (
     STILL,
 )
-from sceneql.system_kernels import A, F
+from sceneql.system.signatures_kernels import A, F
 
 
 @lean_inlined

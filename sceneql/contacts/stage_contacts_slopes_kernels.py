@@ -33,7 +33,7 @@ from sceneql.contacts.memory_kernels import (
 )
 from sceneql.contacts.pair_kernels import body_of
 from sceneql.contacts.shape_kernels import OBJECT, surface, velocity
-from sceneql.system_kernels import TERM
+from sceneql.system.signatures_kernels import TERM
 
 
 @lean_inlined

@@ -6,7 +6,7 @@ from numba import types
 from sceneql.compiled.kernels import lean
 from sceneql.contacts.impulse_kernels import BODIES, HEAD, INVERSE, OBJECTS, POSITION, scale_of
 from sceneql.contacts.shape_kernels import OBJECT, clear, surface
-from sceneql.system_kernels import A, F, I, N
+from sceneql.system.signatures_kernels import A, F, I, N
 
 
 @lean(types.Tuple((F, N, N))(A, A, I))

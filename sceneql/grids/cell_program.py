@@ -93,7 +93,7 @@ def _kernel(function: str, lines: list[str]) -> str:
     text = [
         *IMPORTS,
         "from sceneql.compiled.kernels import kernel",
-        "from sceneql.system_kernels import TERM",
+        "from sceneql.system.signatures_kernels import TERM",
         "",
         "",
         "@kernel(TERM)",

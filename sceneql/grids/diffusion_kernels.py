@@ -9,7 +9,7 @@ import math
 
 from sceneql.compiled.kernels import lean
 from sceneql.grids.multigrid.stencil_kernels import flow
-from sceneql.system_kernels import TERM
+from sceneql.system.signatures_kernels import TERM
 
 
 @lean(TERM, inner=True)

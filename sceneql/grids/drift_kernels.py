@@ -11,7 +11,7 @@ strength (in floats), brought, leaving, both for a strength below 0, entry of th
 """
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.system_kernels import TERM
+from sceneql.system.signatures_kernels import TERM
 
 UPWIND, VAN_LEER, KOREN = range(3)
 

@@ -5,7 +5,7 @@ import math
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.grids.drift_kernels import UPWIND, VAN_LEER, beyond
-from sceneql.system_kernels import TERM
+from sceneql.system.signatures_kernels import TERM
 
 DEFINITE_AT = 2
 """Of floats: whether slopes are to be definite."""

@@ -30,7 +30,7 @@ from sceneql.grids.multigrid.linear_kernels import (
     VOLUME,
     solver_at,
 )
-from sceneql.system_kernels import DENSE, STEP, A, F, I
+from sceneql.system.signatures_kernels import DENSE, STEP, A, F, I
 
 ITERATE = types.boolean(I, F, F, A, A, A, A, A, A, I, A, A, I)
 EMBEDDED_ERROR = types.float64(F, F, A, A, A, A, I, A)

@@ -84,7 +84,7 @@ def _kernel(
     lines = [
         *IMPORTS,
         "from sceneql.compiled.kernels import kernel",
-        "from sceneql.system_kernels import TERM",
+        "from sceneql.system.signatures_kernels import TERM",
         "",
         "",
         "@kernel(TERM)",

@@ -3,7 +3,7 @@
 
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.threads_kernels import TILE, over_threads
-from sceneql.system_kernels import TERM
+from sceneql.system.signatures_kernels import TERM
 
 
 @lean(TILE)

@@ -9,7 +9,7 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean
-from sceneql.system_kernels import A, I, N
+from sceneql.system.signatures_kernels import A, I, N
 
 FACTOR_COMPLEX = types.boolean(A, A, N, I)
 SOLVE_COMPLEX = types.void(A, A, N, I, A, A)

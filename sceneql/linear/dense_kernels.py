@@ -10,7 +10,7 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean
-from sceneql.system_kernels import A, I, N
+from sceneql.system.signatures_kernels import A, I, N
 
 FACTOR = types.boolean(A, N, I)
 SOLVE = types.void(A, N, I, A)

@@ -10,7 +10,7 @@ from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.linear.multifrontal_kernels import FACTOR_GENERAL, SOLVE_GENERAL
 from sceneql.linear.multifrontal_plan_kernels import FIELDS, HEAD
 from sceneql.linear.multifrontal_symmetric_kernels import put
-from sceneql.system_kernels import A, N
+from sceneql.system.signatures_kernels import A, N
 
 TILE = 256
 """Columns of a tile of the update."""

@@ -32,7 +32,7 @@ from sceneql.linear.multifrontal_plan_kernels import (
 from sceneql.linear.multifrontal_solve_kernels import solve_symmetric
 from sceneql.linear.multifrontal_symmetric_kernels import factor_symmetric
 from sceneql.linear.solver_kernels import FACTOR_SYSTEM, SOLVE_SYSTEM
-from sceneql.system_kernels import A, I
+from sceneql.system.signatures_kernels import A, I
 
 RESTS = 7
 """Factorizations in double precision after one in single precision was not good enough."""

@@ -5,7 +5,7 @@ from numba import types
 
 from sceneql.compiled.kernels import lean_inlined
 from sceneql.compiled.numbered_kernels import kernel_at
-from sceneql.system_kernels import A, I, N
+from sceneql.system.signatures_kernels import A, I, N
 
 PIECES_AT, PIECES, ENTRY, THREADS, PIECE_AT, UNIT, FORWARD, BACKWARD = range(8, 16)
 SINGLE_FACTOR, SINGLE_SOLVE, SINGLE_PIECE, SINGLE_FORWARD, SINGLE_BACKWARD = range(16, 21)

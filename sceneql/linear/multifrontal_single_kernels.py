@@ -40,7 +40,7 @@ from sceneql.linear.multifrontal_plan_kernels import (
     WEAK,
 )
 from sceneql.linear.multifrontal_symmetric_kernels import FACTOR_FRONTS, fronts_of
-from sceneql.system_kernels import A, I
+from sceneql.system.signatures_kernels import A, I
 
 USABLE, GOOD = 0.1, 2e-3
 """Parts of a solution that its first refinement may change: of factors that are used, that need no refinement."""

@@ -23,7 +23,7 @@ from sceneql.linear.multifrontal_plan_kernels import (
     PIECES_AT,
     THREADS,
 )
-from sceneql.system_kernels import A, I
+from sceneql.system.signatures_kernels import A, I
 
 WORTH_THREADS = 500_000
 """Numbers of the factors from which on threads share the fronts."""

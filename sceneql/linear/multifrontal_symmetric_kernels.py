@@ -27,7 +27,7 @@ from sceneql.linear.multifrontal_plan_kernels import (
     UNIT,
 )
 from sceneql.linear.panel_update_kernels import MOST, ROWS, add_rows, coefficients
-from sceneql.system_kernels import A, I, N
+from sceneql.system.signatures_kernels import A, I, N
 
 FEW = 4
 """Rows of U that are eliminated in registers."""

@@ -21,7 +21,7 @@ from numba import types
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_JACOBIAN, AT_RATE, jacobian_at, rate_at
 from sceneql.linear.stage_kernels import POSITIONS, POSITIONS_AT, factor_stage, solve_stage
-from sceneql.system_kernels import A, F, I
+from sceneql.system.signatures_kernels import A, F, I
 
 FACTORED, CONTRACTION, RELATIVE, ABSOLUTE, SHARE, CAREFUL, DEFINITE, MEMORY = range(8)
 DEFINITE_AT = 2

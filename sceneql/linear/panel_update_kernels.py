@@ -20,7 +20,7 @@ from numba.np.arrayobj import populate_array
 
 from sceneql.compiled.arithmetic_kernels import fma, widest
 from sceneql.compiled.kernels import lean_inlined
-from sceneql.system_kernels import N
+from sceneql.system.signatures_kernels import N
 
 PLAIN = numba.config.DISABLE_JIT
 MOST = 64

@@ -10,7 +10,7 @@
 from numba import types
 
 from sceneql.compiled.numbered_kernels import kernel_at
-from sceneql.system_kernels import A, I
+from sceneql.system.signatures_kernels import A, I
 
 FACTOR_SYSTEM = types.boolean(I, A, A, A, types.boolean)
 SOLVE_SYSTEM = types.boolean(I, A, A, A, A, types.boolean)

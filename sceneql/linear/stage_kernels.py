@@ -15,7 +15,7 @@ from numba import types
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.threads_kernels import TILE, over_threads
 from sceneql.linear.solver_kernels import factor_at, solve_at
-from sceneql.system_kernels import A, F, I
+from sceneql.system.signatures_kernels import A, F, I
 
 SIZE, UNKNOWNS, VALUES, POSITIONS, TALLIES = range(5)
 CORE_AT, POSITIONS_AT, PARTS_AT, DIAGONAL_AT, TWINS_AT, SOLVER_AT, TALLIES_AT = range(5, 12)

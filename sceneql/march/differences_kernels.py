@@ -5,7 +5,7 @@ import math
 
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
-from sceneql.system_kernels import JACOBIAN
+from sceneql.system.signatures_kernels import JACOBIAN
 
 ROUNDING = 2.2e-16
 

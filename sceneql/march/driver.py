@@ -75,7 +75,7 @@ def jacobian_text(structure: Structure) -> str:
         "from sceneql.compiled.kernels import lean",
         *(["from sceneql.island.inputs_kernels import refresh"] if structure.varying else []),
         "from sceneql.island.jacobian_kernels import gather",
-        "from sceneql.system_kernels import JACOBIAN",
+        "from sceneql.system.signatures_kernels import JACOBIAN",
         *("", "", "@lean(JACOBIAN)", "def jacobian(functions, t, y, values, floats, ints):"),
         *([REFRESH] if structure.varying else []),
         "    s = ints[4]",
@@ -111,7 +111,7 @@ def text(structure: Structure) -> str:
         *_imports(names),
         "from sceneql.compiled.kernels import lean",
         *(["from sceneql.island.inputs_kernels import refresh"] if structure.varying else []),
-        "from sceneql.system_kernels import GAP, IMPACT, BACK_OFF, TERM",
+        "from sceneql.system.signatures_kernels import GAP, IMPACT, BACK_OFF, TERM",
     ]
     refresh = [REFRESH] if structure.varying else []
     group = GROUPS_AT

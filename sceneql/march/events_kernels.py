@@ -23,7 +23,7 @@ from numba import types
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import late
 from sceneql.compiled.pointers_kernels import AT_DENSE, AT_GAP, dense_at, gap_at
-from sceneql.system_kernels import EVENT, A, F, I, N
+from sceneql.system.signatures_kernels import EVENT, A, F, I, N
 
 SAMPLES = 6
 """Places inside a step where the gaps are looked at; a body that enters and leaves between two of them is missed."""

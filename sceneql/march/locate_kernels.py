@@ -8,7 +8,7 @@ from numba import types
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.pointers_kernels import AT_GAP, AT_RATE, AT_STEP, gap_at, rate_at, step_at
 from sceneql.march.events_kernels import FIRST_OF, reference
-from sceneql.system_kernels import A, F, I, N
+from sceneql.system.signatures_kernels import A, F, I, N
 
 ULP = 2.3e-16
 

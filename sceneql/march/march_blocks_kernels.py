@@ -22,7 +22,7 @@ from sceneql.march.march_kernels import (
     T1,
     march,
 )
-from sceneql.system_kernels import A, F, I, N
+from sceneql.system.signatures_kernels import A, F, I, N
 
 Y0, RATE0, Y1, RATE1, SAMPLE, WORK, SETTINGS, FLOATS, GAPS, CLOCK, FLOATS_END = range(11)
 NUMBERS, INTS, LEAVING, COUNTING, PLACES, SUMS, INTS_END = range(11, 18)

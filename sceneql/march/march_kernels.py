@@ -24,7 +24,7 @@ from sceneql.compiled.pointers_kernels import (
     rate_at,
     step_at,
 )
-from sceneql.system_kernels import BACK_OFF, DENSE, GAP, IMPACT, A, F, I
+from sceneql.system.signatures_kernels import BACK_OFF, DENSE, GAP, IMPACT, A, F, I
 
 T0, T1, STEP, ERROR, LARGEST, LIMIT, SLOP, CLOCKS = range(8)
 """Ends of the last step [s]; the step to try next, or the grid's; the last error; largest step [s]; largest |y|; gap

@@ -26,7 +26,7 @@ from sceneql.nbody.weights_kernels import (
     WEIGHTS,
     weights,
 )
-from sceneql.system_kernels import TERM, A, F, I, N
+from sceneql.system.signatures_kernels import TERM, A, F, I, N
 
 FORCES, PARTS, ENTRY, THREADS, TILE_AT, BODIES = range(6, 12)
 """Places in ints after those of weights_kernels: room for 3 ROOM sums of each part, and the number of parts; threads;

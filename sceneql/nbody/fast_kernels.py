@@ -15,7 +15,7 @@ from sceneql.compiled.lanes_kernels import aligned, fma, folded, guess, load, sp
 from sceneql.compiled.threads_kernels import TILE
 from sceneql.nbody.direct_kernels import FORCES, FX, FY, FZ, LANES, PARTS, W, X, Y, Z
 from sceneql.nbody.weights_kernels import POINTS, ROOM, SOFTENING, WEIGHTS
-from sceneql.system_kernels import A, I, N
+from sceneql.system.signatures_kernels import A, I, N
 
 S = types.float32[::1]
 XL, YL, ZL, ROWS = range(7, 11)

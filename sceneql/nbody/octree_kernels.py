@@ -11,7 +11,7 @@ import numpy as np
 from numba import types
 
 from sceneql.compiled.kernels import inlined, kernel
-from sceneql.system_kernels import A, N
+from sceneql.system.signatures_kernels import A, N
 
 X, Y, Z, M, SXX, SXY, SXZ, SYY, SYZ, SZZ, TRACE, RADIUS, CHILD, CHILDREN, BEGIN, END, NODE = range(17)
 """Center of mass; mass; three times the second moments about it; half the sum of SXX, SYY, SZZ; radius of the bodies;

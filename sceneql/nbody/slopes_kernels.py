@@ -7,7 +7,7 @@ from sceneql.compiled.kernels import kernel
 from sceneql.nbody.direct_kernels import BODIES
 from sceneql.nbody.shared_masses_kernels import gather
 from sceneql.nbody.weights_kernels import CONSTANT, POINTS, SIGN, SOFTENING, WEIGHTS, weights
-from sceneql.system_kernels import TERM
+from sceneql.system.signatures_kernels import TERM
 
 
 @kernel(TERM)

@@ -37,7 +37,7 @@ from sceneql.nbody.weights_kernels import (
     WEIGHTS,
     weights,
 )
-from sceneql.system_kernels import TERM
+from sceneql.system.signatures_kernels import TERM
 
 OPENING, NODES, MOST, SORTED, MASSES, ORDER, STARTS, POTENTIALS, ENTRY, THREADS, TILE_AT, BODIES = range(6, 18)
 """Places in ints after those of weights_kernels: offsets of the opening angle and the nodes; room for nodes;

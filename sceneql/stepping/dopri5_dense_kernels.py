@@ -2,7 +2,7 @@
 """Dense output of Dormand & Prince's pair."""
 
 from sceneql.compiled.kernels import lean
-from sceneql.system_kernels import DENSE
+from sceneql.system.signatures_kernels import DENSE
 
 
 @lean(DENSE)

@@ -23,7 +23,7 @@ from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
-from sceneql.system_kernels import A, F, I
+from sceneql.system.signatures_kernels import A, F, I
 
 WEIGH = types.void(types.boolean, F, F, A, A, A, A, I, A)
 LARGEST, SIZES = range(2)

@@ -13,7 +13,7 @@ import math
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.linear.newton_kernels import FACTORED, MEMORY, newton, norm
 from sceneql.linear.stage_kernels import solve_stage
-from sceneql.system_kernels import DENSE, STEP
+from sceneql.system.signatures_kernels import DENSE, STEP
 
 STAGES, EXPLICIT_FIRST, STIFFLY_ACCURATE, EMBEDDED, ERROR_ORDER, SCALES_AT, ROOM, HEAD = range(8)
 KEPT = 1.2

@@ -60,7 +60,7 @@ from sceneql.stepping.radau_stages_kernels import (
     iterate,
 )
 from sceneql.stepping.radau_systems_kernels import factor_at, filter_at
-from sceneql.system_kernels import DENSE, STEP, A, F, I
+from sceneql.system.signatures_kernels import DENSE, STEP, A, F, I
 
 FINISH = types.void(I, F, F, A, A, I, A, I, A, A)
 finish_tallies = late("sceneql.stepping.radau_tallies_kernels:finish_tallies", FINISH)

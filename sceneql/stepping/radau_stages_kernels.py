@@ -18,7 +18,7 @@ from numba import types
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
 from sceneql.stepping.radau_systems_kernels import ALPHA, BETA, REAL, solve_at
-from sceneql.system_kernels import A, F, I, N
+from sceneql.system.signatures_kernels import A, F, I, N
 
 MEMORY = 16
 NEXT, START, LENGTH, BEFORE, GOOD_LENGTH, GOOD_ERROR, ERROR, CONVERGENCE, CONTRACTION, FACTORED = range(10)

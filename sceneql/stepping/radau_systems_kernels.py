@@ -15,7 +15,7 @@ have; ``r`` (3n,): b of the real system, b and c of the complex one; (n,) for `f
 from numba import types
 
 from sceneql.compiled.numbered_kernels import kernel_at
-from sceneql.system_kernels import A, F, I
+from sceneql.system.signatures_kernels import A, F, I
 
 FACTOR_STAGES = types.boolean(I, F, A, A, A)
 SOLVE_STAGES = types.boolean(I, F, A, A, A, A, A)

@@ -7,7 +7,7 @@ to the next step; the state that the forces see.
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
-from sceneql.system_kernels import STEP
+from sceneql.system.signatures_kernels import STEP
 
 
 @lean_inlined

@@ -25,7 +25,7 @@ from sceneql.contacts.mutual.sphere_pair_kernels import (
     sort_cells,
     tied,
 )
-from sceneql.system_kernels import BACK_OFF, A, F, I
+from sceneql.system.signatures_kernels import BACK_OFF, A, F, I
 
 ASKED = 1
 """floats[1]: above 0 the march only asks when the step should end."""

@@ -9,7 +9,7 @@ import math
 from sceneql.compiled.kernels import inlined, kernel
 from sceneql.compiled.numba.lazy_kernels import late
 from sceneql.contacts.mutual.sphere_pair_kernels import COUNT, INVERSE, POINTS, V, X, of, radii
-from sceneql.system_kernels import GAP, IMPACT, A, F, I, N
+from sceneql.system.signatures_kernels import GAP, IMPACT, A, F, I, N
 
 NO_EVENT = 1e300
 INSTANT = 7

@@ -6,7 +6,7 @@ import numpy as np
 from sceneql.compiled.kernels import kernel
 from sceneql.contacts.impulse_kernels import count_hit
 from sceneql.contacts.mutual.sphere_pair_kernels import COUNT, INVERSE, MASS, TALLY, WORK, V, X, impulse, of
-from sceneql.system_kernels import IMPACT
+from sceneql.system.signatures_kernels import IMPACT
 
 
 @kernel(IMPACT, inner=True)

@@ -29,7 +29,7 @@ from sceneql.contacts.mutual.sphere_pair_kernels import (
     radii,
     rests_below,
 )
-from sceneql.system_kernels import A, F, I, N
+from sceneql.system.signatures_kernels import A, F, I, N
 
 MOST_PASSES = 100
 

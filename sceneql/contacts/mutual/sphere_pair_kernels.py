@@ -14,7 +14,7 @@ from numba import types
 
 from sceneql.bodies.neighbors_kernels import cell_of, sort_by_cell
 from sceneql.compiled.kernels import inlined, kernel
-from sceneql.system_kernels import A, F, I, N
+from sceneql.system.signatures_kernels import A, F, I, N
 
 COUNT, RESTITUTION, FRICTION, TALLY, POINTS, SORTED, ORDER, START, SIZE, P, Q, OBJECTS, TIED, HEAD = range(14)
 X, V, WORK, MASS, INVERSE, RADIUS, BODY = range(7)

@@ -33,7 +33,7 @@ from sceneql.contacts.mutual.sphere_pair_kernels import (
     rests_below,
 )
 from sceneql.contacts.shape_kernels import OBJECT, clear, surface, velocity
-from sceneql.system_kernels import A, F, I
+from sceneql.system.signatures_kernels import A, F, I
 
 SWEEPS = 200
 NONE = -1

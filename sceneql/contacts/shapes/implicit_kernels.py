@@ -29,7 +29,7 @@ from sceneql.contacts.shape_kernels import (
 )
 from sceneql.field.enclose.interval_kernels import box
 from sceneql.field.tape.tape_ops import NOWHERE
-from sceneql.system_kernels import A, F, I, N
+from sceneql.system.signatures_kernels import A, F, I, N
 
 nearest = late("sceneql.contacts.shapes.nearest_kernels:nearest", FOUR(A, I, N, F, F, F))
 

@@ -7,7 +7,7 @@ from numba import types
 
 from sceneql.compiled.kernels import lean
 from sceneql.contacts.shapes.mesh_kernels import NORMALS, dot, nearest
-from sceneql.system_kernels import A, I, N
+from sceneql.system.signatures_kernels import A, I, N
 
 
 @lean(types.void(A, I, types.float64[:, ::1], A, N, N))

@@ -24,7 +24,7 @@ from sceneql.contacts.shape_kernels import (
     turn,
     unturn,
 )
-from sceneql.system_kernels import A, F, I, N
+from sceneql.system.signatures_kernels import A, F, I, N
 
 BOXES, TRIANGLES, COUNT, TREE = range(4)
 SKIP, FIRST, HELD, NODE = range(4)

@@ -9,7 +9,7 @@ from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.contacts.shape_kernels import FOUR, SIZE
 from sceneql.contacts.shapes.implicit_kernels import tape_of
 from sceneql.field.tape.gradient_kernels import gradient
-from sceneql.system_kernels import A, F, I, N
+from sceneql.system.signatures_kernels import A, F, I, N
 
 MOST_STEPS = 40
 MOST_NEWTON = 12

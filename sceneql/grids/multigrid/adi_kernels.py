@@ -9,7 +9,7 @@ from numba import types
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
 from sceneql.grids.multigrid.stencil_kernels import dot
-from sceneql.system_kernels import STEP, A, F, N
+from sceneql.system.signatures_kernels import STEP, A, F, N
 
 LINE = types.void(N, N, N, F, F, A, A, A, A, A, A)
 

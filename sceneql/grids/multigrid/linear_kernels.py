@@ -12,7 +12,7 @@ from numba import types
 
 from sceneql.compiled.kernels import lean_inlined
 from sceneql.compiled.numbered_kernels import kernel_at
-from sceneql.system_kernels import A, F, I
+from sceneql.system.signatures_kernels import A, F, I
 
 SOLVER, EXACT, NX, NY, NZ, AT, VOLUME, SINK, GX, GY, GZ, VARYING, MOST, FED, PLAN = range(15)
 """EXACT: 1 where a system is solved to rounding at once."""

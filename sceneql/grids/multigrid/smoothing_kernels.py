@@ -7,7 +7,7 @@ Kernels of their own: where they stand in the cycle twice, they are compiled onc
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.system_kernels import N
+from sceneql.system.signatures_kernels import N
 
 S = types.float32[::1]
 

@@ -4,7 +4,7 @@
 from numba import types
 
 from sceneql.compiled.kernels import lean
-from sceneql.system_kernels import A, N
+from sceneql.system.signatures_kernels import A, N
 
 
 @lean(types.boolean(N, N, A), inner=True)

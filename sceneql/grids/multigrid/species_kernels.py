@@ -20,7 +20,7 @@ from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.grids.multigrid.species_block_kernels import invert_blocks
 from sceneql.linear.krylov_kernels import own_at, solve_system
 from sceneql.linear.solver_kernels import FACTOR_SYSTEM, PRECONDITION
-from sceneql.system_kernels import A, N
+from sceneql.system.signatures_kernels import A, N
 
 LEVELS, SPECIES, DIRECTIONS, SCRATCH, TABLE = range(1, 6)
 __all__ = ["factor_system", "precondition", "solve_system"]

@@ -4,7 +4,7 @@
 import math
 
 from sceneql.compiled.kernels import kernel
-from sceneql.system_kernels import TERM
+from sceneql.system.signatures_kernels import TERM
 
 
 @kernel(TERM, inner=True)

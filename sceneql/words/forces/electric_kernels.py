@@ -2,7 +2,7 @@
 """The force of a uniform electric field."""
 
 from sceneql.compiled.kernels import kernel
-from sceneql.system_kernels import TERM
+from sceneql.system.signatures_kernels import TERM
 
 
 @kernel(TERM, inner=True)

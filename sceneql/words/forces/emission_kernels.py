@@ -5,7 +5,7 @@ import numpy as np
 
 from sceneql.compiled.kernels import kernel
 from sceneql.grids.cell_weights_kernels import CORNERS, around
-from sceneql.system_kernels import TERM
+from sceneql.system.signatures_kernels import TERM
 
 FIELD = 4
 

@@ -6,7 +6,7 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean
-from sceneql.system_kernels import TERM, A, N
+from sceneql.system.signatures_kernels import TERM, A, N
 
 
 @lean(types.UniTuple(types.float64, 3)(A, N, N, N))

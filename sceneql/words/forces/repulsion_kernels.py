@@ -7,7 +7,7 @@ from sceneql.bodies.neighbors_kernels import cell_of, sort_by_cell
 from sceneql.compiled.kernels import kernel
 from sceneql.compiled.threads_kernels import TILE, over_threads
 from sceneql.nbody.shared_masses_kernels import gather, leave_out_massless, velocity_of
-from sceneql.system_kernels import TERM
+from sceneql.system.signatures_kernels import TERM
 
 STRENGTH, NUMBERS, ENERGIES, POINTS, SORTED, ORDER, START, SIZE, P, Q, ENTRY, THREADS, TILE_AT, BODIES = range(14)
 """Places in ints; from BODIES on as together.layout."""

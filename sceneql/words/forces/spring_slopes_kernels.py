@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from sceneql.compiled.kernels import kernel, lean_inlined
-from sceneql.system_kernels import TERM
+from sceneql.system.signatures_kernels import TERM
 
 FORESEEN_AT = 2
 """floats[2]: whether the force is that foreseen, and how far slopes are to be definite (system.Slopes)."""

@@ -17,7 +17,7 @@ import numpy as np
 from sceneql.compiled.arithmetic_kernels import always_inlined, bits, fma, widest
 from sceneql.compiled.kernels import inlined, kernel
 from sceneql.compiled.threads_kernels import TILE, over_threads
-from sceneql.system_kernels import TERM
+from sceneql.system.signatures_kernels import TERM
 
 LANES = 256
 """Particles that are worked on together, in single precision; the cell and the place in it are found in double."""

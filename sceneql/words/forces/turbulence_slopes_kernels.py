@@ -4,7 +4,7 @@
 import numpy as np
 
 from sceneql.compiled.kernels import kernel
-from sceneql.system_kernels import TERM
+from sceneql.system.signatures_kernels import TERM
 from sceneql.words.forces.turbulence_kernels import LANES, ROWS, curl, split
 
 APART = 1e-3

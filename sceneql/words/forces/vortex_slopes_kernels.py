@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from sceneql.compiled.kernels import kernel
-from sceneql.system_kernels import TERM
+from sceneql.system.signatures_kernels import TERM
 from sceneql.words.forces.vortex_kernels import TAU
 
 

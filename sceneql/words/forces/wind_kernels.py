@@ -5,7 +5,7 @@ import math
 
 from sceneql.compiled.chance_kernels import noise_in_time
 from sceneql.compiled.kernels import inlined, kernel
-from sceneql.system_kernels import TERM
+from sceneql.system.signatures_kernels import TERM
 
 
 @inlined

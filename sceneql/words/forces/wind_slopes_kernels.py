@@ -4,7 +4,7 @@
 import math
 
 from sceneql.compiled.kernels import lean
-from sceneql.system_kernels import TERM
+from sceneql.system.signatures_kernels import TERM
 from sceneql.words.forces.wind_kernels import air
 
 

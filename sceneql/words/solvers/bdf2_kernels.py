@@ -15,7 +15,7 @@ import math
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.linear.newton_kernels import MEMORY, newton, norm
 from sceneql.linear.stage_kernels import solve_stage
-from sceneql.system_kernels import STEP
+from sceneql.system.signatures_kernels import STEP
 
 FOLLOWS_ERROR, HAS_BEFORE, ROOM, HEAD = range(4)
 START, END, LENGTH = MEMORY, MEMORY + 1, MEMORY + 2

@@ -12,7 +12,7 @@ import math
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
 from sceneql.stepping.runge_kutta_kernels import add_stages
-from sceneql.system_kernels import DENSE, STEP
+from sceneql.system.signatures_kernels import DENSE, STEP
 
 STAGES = 12
 LAST = 16

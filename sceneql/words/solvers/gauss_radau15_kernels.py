@@ -14,7 +14,7 @@ import math
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
-from sceneql.system_kernels import DENSE, STEP
+from sceneql.system.signatures_kernels import DENSE, STEP
 
 NEXT, BEGAN, TRIED, BEFORE = range(4)
 """Scalars of work: length of the next step; start and length of the last try; length of the step before it [s]."""

@@ -19,7 +19,7 @@ from sceneql.compiled.pointers_kernels import AT_JACOBIAN, AT_RATE, jacobian_at,
 from sceneql.linear.newton_kernels import fail
 from sceneql.linear.stage_kernels import TALLIES, TALLIES_AT, factor_stage, solve_stage
 from sceneql.stepping.error_scales_kernels import foresee, weigh_anew
-from sceneql.system_kernels import DENSE, STEP
+from sceneql.system.signatures_kernels import DENSE, STEP
 
 STAGES, SCALES_AT, ROOM, SIZES_AT, SCALED, HEAD = range(6)
 LOBATTO = 0.27639320225002106

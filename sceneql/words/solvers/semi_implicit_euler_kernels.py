@@ -2,7 +2,7 @@
 """One step of semi-implicit Euler: velocities first, then positions by the new velocities."""
 
 from sceneql.compiled.kernels import lean
-from sceneql.system_kernels import STEP
+from sceneql.system.signatures_kernels import STEP
 
 
 @lean(STEP, inner=True)

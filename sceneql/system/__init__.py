@@ -1,0 +1,49 @@
+"""The system contract: what models, forces and contacts hand to an island, and what a solver sees of it.
+
+An island is a set of models that are solved together. Its state is one vector ``y``; its rate dy/dt = f(t, y) is the
+sum of *terms*: compiled kernels of one signature, each called with its own integers and with the island's one array
+of floats. All numbers of the script are inputs in that array (so a changed number compiles nothing); values that vary
+in time are evaluated into it at every stage time before the terms run.
+
+Kernel signatures (numba; the types are in signatures_kernels.py), all ``-> None`` unless said:
+
+    term(t, y, rate, floats, ints)          adds its part to rate (n,). Forces add newtons to the velocity entries
+    gap(t, y, gaps, floats, ints)           writes signed distances [m] of its contact pairs, > 0 apart (exact mode)
+    impact(t, y, pair, floats, ints)        changes y by the impulse of that pair (exact mode)
+    settle(t0, t1, y0, rate0, y1, floats, ints)   backs each mass off to its own impact within the step (local mode);
+                                            where floats[1] > 0 it only lowers that to when the step should end
+    step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints) -> error   one step of a solver: writes
+                                            y1; the error is scaled by the tolerance (accept when <= 1), 0 for fixed
+                                            steps
+    dense(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out)   the solution inside the step, 0 <= theta <= 1
+
+    slopes(t, y, entries, floats, ints)     adds the derivatives of one term (see Slopes)
+    jacobian(functions, t, y, values, floats, ints)   the derivative of the island's rate (see Pattern)
+
+A step gets what it may call as addresses: ``rate = rate_at(functions[AT_RATE])`` and, of a Stepper with ``jacobian``,
+``jacobian = jacobian_at(functions[AT_JACOBIAN])`` (compiled/pointers_kernels.py); pass `functions` on to jacobian.
+It may be called again from the same start with another h (a rejected step; the search for an event), and `dense`
+belongs to the latest call. After an event y0 is not the y1 of the step before.
+
+Stages: the terms run in the order `internal` (a model's own), `force`, `close` (a model turns newtons into
+accelerations by its inverse masses and writes dx/dt = v), `constrain` (a resting contact removes what pushes in).
+"""
+
+from sceneql.system.assembly import Assembly, Mode
+from sceneql.system.fields import Grid
+from sceneql.system.state import Bodies, ModelState
+from sceneql.system.stepping import Prepared, Stepper
+from sceneql.system.terms import Pattern, Slopes, Stage
+
+__all__ = [
+    "Assembly",
+    "Bodies",
+    "Grid",
+    "Mode",
+    "ModelState",
+    "Pattern",
+    "Prepared",
+    "Slopes",
+    "Stage",
+    "Stepper",
+]
