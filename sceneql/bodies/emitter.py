@@ -190,7 +190,7 @@ class Emit(Record):
             slots,
         )
         assembly.step_at_most(self.lifetime / STEPS)
-        assembly.contact("local", ("sceneql.bodies.emitter_kernels:emit",), ints, 0, apart=True)
+        assembly.after_step("sceneql.bodies.emitter_kernels:emit", ints, apart=True)
         assembly.changing(memory_at, 2 + len(before))
         assembly.remember(*ints)
 

@@ -7,10 +7,7 @@ import numpy as np
 from numba import types
 
 from sceneql.compiled.kernels import inlined, kernel
-from sceneql.system.signatures_kernels import BACK_OFF
-
-CHANGED_AT = 1
-"""floats[1]: above 0 in a settling that is to change nothing (march_kernels)."""
+from sceneql.system.signatures_kernels import AFTER_STEP
 
 RATE, START, TOTAL, LIFETIME, VARIATION, NARROW, MASS, RADIUS, SPEC = range(9)
 """What an emitter is: births a second; the first one's time; how many; mean lifetime, largest relative deviation of it
@@ -98,10 +95,11 @@ def thrown(floats, spec, birth, key, vx, vy, vz):
 
 @inlined
 def catch_up(t0, t1, y0, rate0, y1, floats, ints):
-    """What the last step's births owe: the acceleration, known only now, acts from their birth on."""
+    """What the last step's births owe: the acceleration, known only now, acts from their birth on. Whether any do."""
     position_at, velocity_at, spec, memory = ints[0], ints[1], ints[SPEC_AT], ints[MEMORY_AT]
     born = int(floats[memory + BORN])
     birth = own_from(max(int(floats[memory + FIRST]), born - ints[SLOTS]), ints)
+    owed = birth < born
     while birth < born:
         slot = birth % ints[SLOTS] - ints[FIRST_SLOT]
         s = t0 - birth_time(floats, spec, birth) if floats[ints[4] + slot] > 0.0 else 0.0
@@ -113,11 +111,12 @@ def catch_up(t0, t1, y0, rate0, y1, floats, ints):
             y1[velocity_at + c] += more
             rate0[position_at + c] += more
         birth = own_from(birth + 1, ints)
+    return owed
 
 
-@kernel(BACK_OFF, inner=True)
+@kernel(AFTER_STEP, inner=True)
 def emit(t0, t1, y0, rate0, y1, floats, ints):
-    """Births and deaths of a step.
+    """Births and deaths of a step; whether there were any, or births of the step before owed something.
 
     ints: position_at, velocity_at, count, mass_at, inverse_at, radius_at, spec_at, from_at, mean_at (a velocity),
     pool_at, pool size, memory_at, death_at, key, number of the first slot, slots of all blocks. Birth j takes slot j
@@ -125,15 +124,14 @@ def emit(t0, t1, y0, rate0, y1, floats, ints):
     step has flown straight since, and gets the acceleration that it finds at the step's end in the next step, for the
     whole time: exact under a uniform force, else of third order. One that died in the step before is taken out.
     """
-    if floats[CHANGED_AT] > 0.0:
-        return
     position_at, velocity_at, count = ints[0], ints[1], ints[2]
     mass_at, inverse_at, radius_at = ints[3], ints[4], ints[5]
     spec, place, mean, pool = ints[SPEC_AT], ints[FROM_AT], ints[MEAN_AT], ints[POOL_AT]
     memory, death, key = ints[MEMORY_AT], ints[DEATH_AT], ints[KEY]
-    catch_up(t0, t1, y0, rate0, y1, floats, ints)
+    changed = catch_up(t0, t1, y0, rate0, y1, floats, ints)
     for slot in range(count):
         if floats[death + slot] <= t0:
+            changed = True
             floats[death + slot] = math.inf
             floats[mass_at + slot] = 0.0
             floats[inverse_at + slot] = 0.0
@@ -145,6 +143,7 @@ def emit(t0, t1, y0, rate0, y1, floats, ints):
     floats[memory + BORN] = born_until(floats, spec, t1)
     before = floats[memory + BEFORE]
     birth = own_from(int(floats[memory + FIRST]), ints)
+    changed |= birth < floats[memory + BORN]
     while birth < floats[memory + BORN]:
         t = birth_time(floats, spec, birth)
         w = (t - before) / (t1 - before) if before >= 0.0 else 1.0
@@ -175,3 +174,4 @@ def emit(t0, t1, y0, rate0, y1, floats, ints):
     for c in range(3):
         floats[memory + 3 + c] = floats[place + c]
         floats[memory + 6 + c] = floats[mean + c]
+    return changed

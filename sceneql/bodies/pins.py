@@ -79,7 +79,7 @@ def guide(pins: Mapping[str, Pin], net: Net, assembly: Assembly, bodies: Bodies)
         alone = Slopes("", (), ())
         assembly.term("internal", f"{folder}:toil", ints, alone)
         assembly.term("constrain", f"{folder}:lead", ints, alone)
-        assembly.contact("local", (f"{folder}:put",), ints, 0)
+        assembly.after_step(f"{folder}:put", ints)
 
 
 def _at(shift: Value, by: float, assembly: Assembly) -> Expr:

@@ -7,12 +7,11 @@ they are let go; the number of masses, and the masses. One that has been let go 
 """
 
 from sceneql.compiled.kernels import inlined, kernel
-from sceneql.system.signatures_kernels import BACK_OFF, TERM
-
-CHANGED_AT = 1
-"""floats[1]: above 0 in a settling that is to change nothing (march_kernels)."""
+from sceneql.system.signatures_kernels import AFTER_STEP, TERM
 
 EARLIER, NOW, LATER, APART, STARTS, UNTIL, COUNT, MASSES = range(5, 13)
+EPSILON, SAFE = 2.0**-52, 8.0
+"""Relative rounding of a number, and how many of it a difference may have."""
 
 
 @inlined
@@ -53,17 +52,33 @@ def lead(t, y, rate, floats, ints):
             rate[ints[1] + 3 * mass + c] = acceleration(floats, ints, c)
 
 
-@kernel(BACK_OFF, inner=True)
+@inlined
+def rounding(floats, ints, place, order, h):
+    """What rounding of the differences makes of a place [m], or of its rate of an order, in a step of length h."""
+    apart = floats[ints[APART]]
+    return SAFE * EPSILON * abs(place) * (1.0 + h / apart) / apart**order
+
+
+@kernel(AFTER_STEP, inner=True)
 def put(t0, t1, y0, rate0, y1, floats, ints):
-    """Put the pins where they must be at the end of a step (keyframes may have kinks), and let go of them in time."""
-    if floats[CHANGED_AT] > 0.0:
-        return
+    """Put the pins where they must be at the end of a step (keyframes may have kinks), and let go of them in time.
+
+    Returns whether one was elsewhere, but for rounding, or was let go.
+    """
+    changed = False
     for k in range(ints[COUNT]):
         mass = ints[MASSES + k]
         if floats[ints[4] + mass] > 0.0:
             continue
         for c in range(3):
-            y1[ints[0] + 3 * mass + c] = floats[ints[STARTS] + 3 * k + c] + floats[ints[NOW] + c]
-            y1[ints[1] + 3 * mass + c] = velocity(floats, ints, c)
+            start, shift, speed = floats[ints[STARTS] + 3 * k + c], floats[ints[NOW] + c], velocity(floats, ints, c)
+            x, v = ints[0] + 3 * mass + c, ints[1] + 3 * mass + c
+            size = abs(start) + abs(shift)
+            changed |= abs(start + shift - y1[x]) > rounding(floats, ints, size, 0, t1 - t0)
+            changed |= abs(speed - y1[v]) > rounding(floats, ints, size, 1, t1 - t0)
+            y1[x] = start + shift
+            y1[v] = speed
         if t1 >= floats[ints[UNTIL]]:
             floats[ints[4] + mass] = 1.0 / floats[ints[3] + mass]
+            changed = True
+    return changed

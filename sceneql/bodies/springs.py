@@ -186,7 +186,7 @@ class SpringModel(Model):
             strains *= 1.0 if net.toughness is None else net.toughness
             more = (assembly.floats((1 + strains) * blocks[:, 0]), torn_at)
             torn = (bodies.position_at, bodies.work_at, blocks_at, stiffness_at, *more, m, *ends)
-            assembly.contact("local", ("sceneql.bodies.tear_kernels:tear",), torn, 0)
+            assembly.after_step("sceneql.bodies.tear_kernels:tear", torn)
         if isinstance(self.pins, dict):
             guide(self.pins, net, assembly, bodies)
         assembly.remember(blocks_at, stiffness_at, torn_at)

@@ -5,21 +5,19 @@ import math
 
 from sceneql.bodies.mass_spring_kernels import BLOCK
 from sceneql.compiled.kernels import kernel
-from sceneql.system.signatures_kernels import BACK_OFF
-
-CHANGED_AT = 1
-"""floats[1]: above 0 in a settling that is to change nothing (march_kernels)."""
+from sceneql.system.signatures_kernels import AFTER_STEP
 
 
-@kernel(BACK_OFF, inner=True)
+@kernel(AFTER_STEP, inner=True)
 def tear(t0, t1, y0, rate0, y1, floats, ints):
     """Springs longer than they bear lose stiffness and damping; their energy is counted as dissipated.
+
+    Returns whether any did.
 
     ints: position_at, work_at, blocks_at, stiffness_at, limits_at, torn_at, count, then the two masses of each. The
     energy is added at both ends of the step, as frames inside it see the spring torn already.
     """
-    if floats[CHANGED_AT] > 0.0:
-        return
+    torn = False
     position_at, work_at, blocks_at, limits_at = ints[0], ints[1], ints[2], ints[4]
     for s in range(ints[6]):
         block = blocks_at + BLOCK * s
@@ -37,3 +35,5 @@ def tear(t0, t1, y0, rate0, y1, floats, ints):
         for c in range(1, BLOCK):
             floats[block + c] = 0.0
         floats[ints[5]] += 1.0
+        torn = True
+    return torn

@@ -12,6 +12,7 @@ import numpy as np
 
 from sceneql.compiled.kernels import address, function_at
 from sceneql.system.signatures_kernels import (
+    AFTER_STEP_FUNCTION,
     BACK_OFF_FUNCTION,
     DENSE_FUNCTION,
     EVENT_FUNCTION,
@@ -29,21 +30,22 @@ KINDS = (
     GAP_FUNCTION,
     IMPACT_FUNCTION,
     BACK_OFF_FUNCTION,
+    AFTER_STEP_FUNCTION,
     JACOBIAN_FUNCTION,
     EVENT_FUNCTION,
 )
-AT_STEP, AT_DENSE, AT_RATE, AT_GAP, AT_IMPACT, AT_BACK_OFF, AT_JACOBIAN, AT_EVENT = range(len(KINDS))
+AT_STEP, AT_DENSE, AT_RATE, AT_GAP, AT_IMPACT, AT_BACK_OFF, AT_AFTER_STEP, AT_JACOBIAN, AT_EVENT = range(len(KINDS))
 """Places in the array of addresses: ``rate = rate_at(functions[AT_RATE])``."""
 
 
 def addresses(*functions: Any) -> Any:
-    """(8,) int64 addresses of KINDS; 0 for None, which must not be called. Keep the functions alive."""
+    """(9,) int64 addresses of KINDS; 0 for None, which must not be called. Keep the functions alive."""
     if numba.config.DISABLE_JIT:
         return functions
     found = [0 if f is None else address(f, kind) for f, kind in zip(functions, KINDS, strict=True)]
     return np.array(found, dtype=np.int64)
 
 
-step_at, dense_at, rate_at, gap_at, impact_at, back_off_at, jacobian_at, event_at = (
+step_at, dense_at, rate_at, gap_at, impact_at, back_off_at, after_step_at, jacobian_at, event_at = (
     function_at(kind) for kind in KINDS
 )

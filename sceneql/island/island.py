@@ -54,6 +54,8 @@ class Structure:
     exact: tuple[tuple[str, str], ...]
     """(gap, impact)."""
     local: tuple[str, ...]
+    after: tuple[str, ...]
+    """What acts at the end of steps."""
     varying: bool
     """Whether values vary in time."""
     slopes: tuple[str, ...] | None = None
@@ -134,6 +136,7 @@ class IslandAssembly:
     _terms: dict[Stage, list[Block]] = field(default_factory=lambda: {stage: [] for stage in STAGES})
     _exact: list[Block] = field(default_factory=list)
     _local: list[Block] = field(default_factory=list)
+    _after: list[Block] = field(default_factory=list)
     _varying: list[tuple[int, Value]] = field(default_factory=list)
     _largest_step: float = float("inf")
     _stops: set[Breakpoint] = field(default_factory=set)
@@ -224,6 +227,11 @@ class IslandAssembly:
         self._apart = self._apart and apart and mode == "local"
         (self._exact if mode == "exact" else self._local).append(Block(tuple(kernels), tuple(ints), pairs))
 
+    def after_step(self, kernel: str, ints: Sequence[int], apart: bool = False) -> None:
+        """Add what happens at the end of each step (system.Assembly)."""
+        self._apart = self._apart and apart
+        self._after.append(Block((kernel,), tuple(ints)))
+
     def grid(self, grid: Grid) -> None:
         """Say that part of the state is a field (system.Assembly)."""
         self._grids.append(grid)
@@ -240,7 +248,8 @@ class IslandAssembly:
     def only_field(self) -> Grid | None:
         """The grid of an island that is one field and nothing that acts on it."""
         alone = len(self._grids) == 1 and len(self._ranges) == 1
-        return self._grids[0] if alone and not self._pairs and not self._exact and not self._local else None
+        acted_on = self._pairs or self._exact or self._local or self._after
+        return self._grids[0] if alone and not acted_on else None
 
     def object(self, ref: Ref) -> Object:
         """The kind of an object of the script."""
@@ -316,7 +325,8 @@ class IslandAssembly:
         exact = grouped(self._exact, blocks)
         pairs = [block.pairs for block in blocks[first_exact:]]
         local = grouped(self._local, blocks)
-        first_blocks = list(accumulate((count for _, count in (*groups, *exact, *local)), initial=1))
+        after = grouped(self._after, blocks)
+        first_blocks = list(accumulate((count for _, count in (*groups, *exact, *local, *after)), initial=1))
         ints = lay_out(self._pairs, blocks, first_blocks, pairs)
         found, derived = full(len(y)) if jacobian else None, None
         if slopes is not None:
@@ -326,6 +336,7 @@ class IslandAssembly:
             tuple(kernels[0] for kernels, _ in groups),
             tuple((kernels[0], kernels[1]) for kernels, _ in exact),
             tuple(kernels[0] for kernels, _ in local),
+            tuple(kernels[0] for kernels, _ in after),
             bool(self._varying),
             derived,
         )

@@ -33,6 +33,7 @@ class Driver(NamedTuple):
     gap: Any
     impact: Any
     back_off: Any
+    after_step: Any
 
 
 def function(name: str) -> Any:
@@ -50,7 +51,8 @@ def driver(structure: Structure) -> Driver:
         gap, impact = source.gap, source.impact
     else:
         gap, impact = module.no_gap, module.no_impact
-    return Driver(source.rate, gap, impact, source.back_off if structure.local else module.no_back_off)
+    back_off = source.back_off if structure.local else module.no_back_off
+    return Driver(source.rate, gap, impact, back_off, source.after_step if structure.after else module.no_act)
 
 
 def jacobian(system: System) -> Any:
@@ -92,7 +94,8 @@ def jacobian_text(structure: Structure) -> str:
 
 def modules(structure: Structure) -> tuple[str, ...]:
     """What the kernels of an island are imported from; contacts, as a rule the largest, first."""
-    names = (*structure.local, *chain(*structure.exact), *(structure.slopes or ()), *structure.terms)
+    after = (*(structure.slopes or ()), *structure.after)
+    names = (*structure.local, *chain(*structure.exact), *after, *structure.terms)
     return tuple(dict.fromkeys(name.partition(":")[0] for name in names))
 
 
@@ -105,13 +108,13 @@ def late_first(structure: Structure) -> list[str]:
 def text(structure: Structure) -> str:
     """The module's text."""
     names: dict[str, str] = {}
-    for name in (*structure.terms, *(name for pair in structure.exact for name in pair), *structure.local):
+    for name in (*structure.terms, *chain(*structure.exact), *structure.local, *structure.after):
         names.setdefault(name, f"kernel_{len(names)}")
     lines = [
         *_imports(names),
         "from sceneql.compiled.kernels import lean",
         *(["from sceneql.island.inputs_kernels import refresh"] if structure.varying else []),
-        "from sceneql.system.signatures_kernels import GAP, IMPACT, BACK_OFF, TERM",
+        "from sceneql.system.signatures_kernels import AFTER_STEP, BACK_OFF, GAP, IMPACT, TERM",
     ]
     refresh = [REFRESH] if structure.varying else []
     group = GROUPS_AT
@@ -123,12 +126,19 @@ def text(structure: Structure) -> str:
     if structure.exact:
         lines += _contacts(structure, names, group, refresh)
     group += len(structure.exact)
+    at_the_end = [line.replace("(t, y,", "(t1, y1,") for line in refresh]
+    call = "{}(t0, t1, y0, rate0, y1, floats, ints[ints[b] : ints[b + 1]])"
     if structure.local:
-        lines += ["", "", "@lean(BACK_OFF)", "def back_off(t0, t1, y0, rate0, y1, floats, ints):"]
-        lines += [line.replace("(t, y,", "(t1, y1,") for line in refresh]
-        for name in structure.local:
-            lines += _blocks(group, f"{names[name]}(t0, t1, y0, rate0, y1, floats, ints[ints[b] : ints[b + 1]])")
-            group += 1
+        lines += ["", "", "@lean(BACK_OFF)", "def back_off(t0, t1, y0, rate0, y1, floats, ints):", *at_the_end]
+        for k, name in enumerate(structure.local, group):
+            lines += _blocks(k, call.format(names[name]))
+    group += len(structure.local)
+    if structure.after:
+        lines += ["", "", "@lean(AFTER_STEP)", "def after_step(t0, t1, y0, rate0, y1, floats, ints):", *at_the_end]
+        lines.append("    changed = False")
+        for k, name in enumerate(structure.after, group):
+            lines += _blocks(k, f"changed |= {call.format(names[name])}")
+        lines.append("    return changed")
     return "\n".join(lines) + "\n"
 
 

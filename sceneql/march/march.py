@@ -80,6 +80,7 @@ class March:
         self._clock = np.zeros(kernels.CLOCKS)
         self._counts = np.zeros(kernels.COUNTS, dtype=np.int64)
         self._counts[kernels.LOCAL] = bool(system.structure.local)
+        self._counts[kernels.ACTS] = bool(system.structure.after)
         self._counts[kernels.PENDING] = -1
         self._clock[kernels.ERROR] = 1e-4
         self._clock[kernels.LARGEST] = min(stepper.largest_step, system.largest_step)
@@ -106,8 +107,8 @@ class March:
         between = stepper.jacobian and not stepper.newton
         if local:
             self.floats[STAGE] = system.floats[STAGE] if stepper.jacobian else 0.0
-        self._mixed = local and between
-        # What contacts change after a step, its own dense output does not know.
+        # What is changed after a step, its own dense output does not know: contacts may change it in every one.
+        self._mixed = between and (local or bool(system.structure.after))
         dense = None if local and not between else stepper.dense
         self._dense = kernels.hermite if dense is None else function(dense)
         self._extend = None if stepper.extend is None or local else function(stepper.extend)
@@ -207,12 +208,14 @@ class March:
         if not t < t1:
             return self._y1, True
         h = t1 - t0
-        if self._extend is not None and self._extended != t1:
+        altered = bool(self._counts[kernels.ALTERED]) and not self._mixed
+        if self._extend is not None and self._extended != t1 and not altered:
             self._extend_step(t0, h)
             self._extended = t1
         y = np.empty_like(self._y1)
         steps = (self._y0, self._rate0, self._y1, self._rate1, self._work, self._settings, self._numbers)
-        self._dense((t - t0) / h, h, *steps, y)
+        dense = kernels.hermite if altered else self._dense
+        dense((t - t0) / h, h, *steps, y)
         if self._mixed:
             changed = self._sample != self._y1
             if changed.any():

@@ -11,6 +11,7 @@ from numba import types
 from sceneql.compiled.kernels import kernel, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_DENSE, AT_RATE, dense_at, rate_at
 from sceneql.march.march_kernels import (
+    ALTERED,
     CLOCKS,
     COUNTS,
     HELD,
@@ -20,6 +21,7 @@ from sceneql.march.march_kernels import (
     SWAPPED,
     T0,
     T1,
+    hermite,
     march,
 )
 from sceneql.system.signatures_kernels import A, F, I, N
@@ -83,7 +85,11 @@ def advance(functions, first, last, target, end, most, arena, words, table, y, r
         now, slope = y1, rate1
         if target < clock[T1]:
             h = clock[T1] - clock[T0]
-            dense((target - clock[T0]) / h, h, y0, rate0, y1, rate1, work, settings, numbers, sample)
+            theta = (target - clock[T0]) / h
+            if counts[ALTERED] != 0:
+                hermite(theta, h, y0, rate0, y1, rate1, work, settings, numbers, sample)
+            else:
+                dense(theta, h, y0, rate0, y1, rate1, work, settings, numbers, sample)
             now, slope = sample, np.empty(n)
             counted = floats[0]
             rate_of(target, now, slope, floats, ints)

@@ -13,18 +13,20 @@ from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import (
+    AT_AFTER_STEP,
     AT_BACK_OFF,
     AT_EVENT,
     AT_IMPACT,
     AT_RATE,
     AT_STEP,
+    after_step_at,
     back_off_at,
     event_at,
     impact_at,
     rate_at,
     step_at,
 )
-from sceneql.system.signatures_kernels import BACK_OFF, DENSE, GAP, IMPACT, A, F, I
+from sceneql.system.signatures_kernels import AFTER_STEP, BACK_OFF, DENSE, GAP, IMPACT, A, F, I
 
 T0, T1, STEP, ERROR, LARGEST, LIMIT, SLOP, CLOCKS = range(8)
 """Ends of the last step [s]; the step to try next, or the grid's; the last error; largest step [s]; largest |y|; gap
@@ -34,9 +36,10 @@ STEPS, REJECTED, EVENTS, REPEATS, LEFT, INDEX, GRID, PENDING = range(8)
 """Tallies; impacts since time moved; steps left in this call; the entry that a failure names; grid points passed; the
 pair whose impact is due (-1: none)."""
 
-ADAPTIVE, ORDER, LOCAL, LAST_STAGE, CONTROLS, HALVES, HELD, SWAPPED, COUNTS = range(8, 17)
+ADAPTIVE, ORDER, LOCAL, LAST_STAGE, CONTROLS, HALVES, HELD, SWAPPED, ACTS, ALTERED, COUNTS = range(8, 19)
 """What solver and island are (system.Stepper); whether a local contact holds something (CHANGED_AT); whether the arrays
-of a step's start and end have changed places, for the end of a step is the next one's start."""
+of a step's start and end have changed places, for the end of a step is the next one's start; whether something acts at
+the end of steps (Assembly.after_step), and whether it has changed anything at the end of the last one."""
 
 SHORTEST = 1e-3
 """Part of a step of given length below which it is not halved any more."""
@@ -94,6 +97,12 @@ def no_impact(t, y, pair, floats, ints):
 @lean(BACK_OFF, inner=True)
 def no_back_off(t0, t1, y0, rate0, y1, floats, ints):
     """Of an island without local contacts."""
+
+
+@lean(AFTER_STEP, inner=True)
+def no_act(t0, t1, y0, rate0, y1, floats, ints):
+    """Of an island in which nothing acts at the end of steps."""
+    return False
 
 
 @lean_inlined
@@ -211,12 +220,13 @@ def march(
 ):  # fmt: skip
     """Take steps until clock[T1] >= target; the status. ``functions``: addresses (pointers_kernels).
 
-    y0, rate0, y1, rate1, sample are of y's size, and sample with local contacts is left as the step's end was before
-    these acted; leaving (pairs,), gaps (3 pairs,). On a failure the step is taken
+    y0, rate0, y1, rate1, sample are of y's size, and sample is left as the step's end was before local contacts, and
+    what acts at the end of steps, changed it; leaving (pairs,), gaps (3 pairs,). On a failure the step is taken
     back: (clock[T1], y1, rate1) is the last good state, counts[INDEX] the entry of y (STUCK: the pair) at fault.
     """
     step, rate = step_at(functions[AT_STEP]), rate_at(functions[AT_RATE])
     impact, back_off = impact_at(functions[AT_IMPACT]), back_off_at(functions[AT_BACK_OFF])
+    after_step = after_step_at(functions[AT_AFTER_STEP])
     n = y0.size
     while clock[T1] < target:
         if counts[LEFT] <= 0:
@@ -244,7 +254,7 @@ def march(
             return status
         if counts[LAST_STAGE] >= 0:
             copy(work[counts[LAST_STAGE] * n :], rate1)
-        elif counts[LOCAL] == 0 or leaving.size > 0 or (counts[HELD] > 0 and counts[ORDER] > 1):
+        elif (counts[LOCAL] == 0 and counts[ACTS] == 0) or leaving.size > 0 or (counts[HELD] > 0 and counts[ORDER] > 1):
             # (What a first-order method holds may follow what pressed at the step's start.)
             rate(t1, y1, rate1, floats, ints)
         if leaving.size > 0:
@@ -283,6 +293,13 @@ def march(
                     rate(t1, y1, rate1, floats, ints)
             floats[CHANGED_AT] = 0.0
             copy(y1, sample)
+        if counts[ACTS] > 0:
+            copy(y1, sample)
+            counts[ALTERED] = after_step(t0, t1, y0, rate0, y1, floats, ints)
+            unknown = counts[LAST_STAGE] < 0 and leaving.size == 0
+            if counts[LOCAL] == 0 and (counts[ALTERED] > 0 or unknown):
+                rate(t1, y1, rate1, floats, ints)
+        if counts[LOCAL] > 0:
             back_off(t0, t1, y0, rate0, y1, floats, ints)
             counts[HELD] = floats[CHANGED_AT] == HOLDS
             rate(t1, y1, rate1, floats, ints)

@@ -92,6 +92,8 @@ def _by_runs(
     because = f"our own {word} at tolerance {tight:g}"
     if march.assembly.contact_mode != "none":
         because += ": no other method here knows contacts"
+    elif march.march.system.structure.after:
+        because += ": no other method here knows what happens between steps"
     else:
         with suppress(_TooManyCalls):
             theirs, rough = (_by_dop853(march, tolerance, most_calls) for tolerance in tolerances)

@@ -12,6 +12,9 @@ Kernel signatures (numba; the types are in signatures_kernels.py), all ``-> None
     impact(t, y, pair, floats, ints)        changes y by the impulse of that pair (exact mode)
     settle(t0, t1, y0, rate0, y1, floats, ints)   backs each mass off to its own impact within the step (local mode);
                                             where floats[1] > 0 it only lowers that to when the step should end
+    after_step(t0, t1, y0, rate0, y1, floats, ints) -> bool   acts at the end of an accepted step, before contacts do;
+                                            whether it changed the state or numbers: then frames inside the step are
+                                            read off the cubic through its ends, and the rate is computed anew
     step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints) -> error   one step of a solver: writes
                                             y1; the error is scaled by the tolerance (accept when <= 1), 0 for fixed
                                             steps

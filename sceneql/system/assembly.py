@@ -70,6 +70,13 @@ class Assembly(Protocol):
         ``apart``: as of a term, for local ones.
         """
 
+    def after_step(self, kernel: str, ints: Sequence[int], apart: bool = False) -> None:
+        """Add what happens at the end of each accepted step: springs that tear, particles that are born.
+
+        ``kernel`` is ``"package.module:function"``; it returns whether it has changed anything. ``apart``: as of a
+        term.
+        """
+
     def grid(self, grid: Grid) -> None:
         """Say that the entries of the state from grid.at on are a field, for solvers that know grids.
 

@@ -12,11 +12,13 @@ TERM = types.void(F, A, A, A, I)
 GAP = types.void(F, A, A, A, I)
 IMPACT = types.void(F, A, N, A, I)
 BACK_OFF = types.void(F, F, A, A, A, A, I)
+AFTER_STEP = types.boolean(F, F, A, A, A, A, I)
 
 RATE_FUNCTION = types.FunctionType(TERM)
 GAP_FUNCTION = types.FunctionType(GAP)
 IMPACT_FUNCTION = types.FunctionType(IMPACT)
 BACK_OFF_FUNCTION = types.FunctionType(BACK_OFF)
+AFTER_STEP_FUNCTION = types.FunctionType(AFTER_STEP)
 
 JACOBIAN = types.void(I, F, A, A, A, I)
 STEP = types.float64(I, F, F, A, A, A, A, A, I, A, I)
