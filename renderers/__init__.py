@@ -1,1 +1,1 @@
-"""Renderers: one word a file; a frame's plain values in, a linear picture out."""
+"""Words that draw a frame; pixels and files of it."""

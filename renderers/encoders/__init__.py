@@ -1,1 +1,1 @@
-"""Encoders: one file a format, each with a Writer."""
+"""Files of pictures and films."""

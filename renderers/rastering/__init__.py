@@ -1,1 +1,1 @@
-"""Frames drawn as triangles by OpenGL."""
+"""Triangles drawn by OpenGL."""

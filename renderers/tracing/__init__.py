@@ -1,4 +1,4 @@
-"""The ray tracer behind the words `trace` and `normals`: packing, intersection, light, filtering, edges."""
+"""The ray tracer, rays in waves."""
 
 TOLERANCE = 1e-9
 """Of roots of implicit objects, relative to the searched piece of a ray, where nothing is said: that of packets."""

@@ -1,1 +1,1 @@
-"""Point masses and nets of springs: state, pins, tears, emitters, and how they look."""
+"""Masses and springs, their slopes; pins, tears, emitters."""

@@ -1,1 +1,1 @@
-"""Compiled code: the kernel decorator, its cache, threads, lanes, generated modules."""
+"""Kernels: decorator, cache, threads, generated code."""

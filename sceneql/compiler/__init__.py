@@ -1,1 +1,1 @@
-"""Tree to graph: the catalogue of words, the checker, the passes. Meets words only through the catalogue, as kinds."""
+"""Tree to graph: words found, fields read, limits."""

@@ -1,1 +1,1 @@
-"""Contact of masses with surfaces: event location, backing off within a step, rest and friction."""
+"""Masses on surfaces: impact, friction, rest."""

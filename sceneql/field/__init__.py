@@ -1,1 +1,1 @@
-"""The implicit-field engine: tapes, their evaluators, root isolation."""
+"""Implicit fields: tapes, bounds, first roots along rays."""

@@ -1,1 +1,1 @@
-"""Formulas of a script, of place, time or state, as rows of numbers or as generated programs."""
+"""Formulas of scripts as generated code, as rows."""

@@ -1,1 +1,1 @@
-"""Fields on regular grids: domains and their cells, the diffusion operator, and solvers of its linear systems."""
+"""Fields on grids: diffusion, drift, reactions, implicit stages."""

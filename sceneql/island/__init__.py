@@ -1,1 +1,1 @@
-"""An island under construction: its state, numbers, terms and values in time, and its Jacobian."""
+"""State, numbers, terms, breakpoints, Jacobian."""

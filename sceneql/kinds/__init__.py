@@ -1,4 +1,4 @@
-"""The vocabulary's grammar: what a word of each family is, and the types its fields may have.
+"""What a word of each family is; its fields' types.
 
 A word is one file with one class, named as the file in CamelCase (``mass_spring.py``: ``MassSpring``), derived from a
 family class of this package. The class is the schema and the manual: fields with type, default, range and a line of

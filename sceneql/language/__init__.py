@@ -1,1 +1,1 @@
-"""Text to tree: the composer over PyYAML events, include, templates, patches. Knows no physics and no words."""
+"""Text to tree: YAML, lost brackets, templates."""

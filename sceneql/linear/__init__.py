@@ -1,1 +1,1 @@
-"""Linear systems of implicit methods: factorizations and iterations in compiled code."""
+"""Linear systems, Newton's method of implicit steps."""

@@ -1,1 +1,1 @@
-"""The march of an island in time: its driver, its loop, events, switching, stability and modes."""
+"""An island stepped in time: driver, events, stability."""

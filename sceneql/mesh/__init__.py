@@ -1,1 +1,1 @@
-"""Implicit fields to triangles: marching cubes with the topology of the trilinear interpolant."""
+"""Implicit fields to triangles: extraction, file formats."""

@@ -1,1 +1,1 @@
-"""Forces of 1/r^2 between all masses."""
+"""Forces of 1/r^2 between all masses: sums, trees."""

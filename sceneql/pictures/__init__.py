@@ -1,1 +1,1 @@
-"""The layout of pictures: framing, panels, lettering, plots."""
+"""Layout of pictures: framing, panels, lettering."""

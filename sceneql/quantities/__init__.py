@@ -1,1 +1,1 @@
-"""Spans, diagnostics, units, the one table of operations and the typed expression tree. Standard library only."""
+"""Units, typed expressions, diagnostics; no libraries."""

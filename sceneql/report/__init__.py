@@ -1,1 +1,1 @@
-"""What is told about scenes: plan, error against run time, gallery, manual. Calls the pipeline, writes pages."""
+"""Pages on scenes: plan, errors, gallery, manual."""

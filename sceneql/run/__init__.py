@@ -1,1 +1,1 @@
-"""A graph's run: moments read off the marching islands, what is remembered, measured and watched."""
+"""A run's moments: history, what is watched, warnings."""

@@ -1,1 +1,1 @@
-"""Geometry that object words share: placement, solids and their combination, warps, wires, files of meshes."""
+"""Geometry that objects share: placement, CSG, files."""

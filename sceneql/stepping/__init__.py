@@ -1,1 +1,1 @@
-"""What solver words share: tableaus, splittings, radau's stages, and how errors are measured."""
+"""What solver words share: tableaus, splittings, radau."""

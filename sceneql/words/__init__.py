@@ -1,1 +1,1 @@
-"""The vocabulary: one folder a family, one file a word, and the word's own kernels beside it."""
+"""The vocabulary: a folder a family, a file a word."""

@@ -1,1 +1,1 @@
-"""Pictures put together of samples: filtered visibility, edges, refinement."""
+"""Samples to pixels: edges, noise."""

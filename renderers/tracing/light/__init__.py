@@ -1,1 +1,1 @@
-"""Light at a surface point: visibility, sampling, shading."""
+"""Light, shadow and sky at a point."""

@@ -1,1 +1,1 @@
-"""Rays against what a frame holds: quadrics, triangles, implicit solids, grids."""
+"""Rays against what a frame holds."""

@@ -1,1 +1,1 @@
-"""Objects filled with masses, and with tetrahedra of masses."""
+"""Objects made masses, tetrahedra."""

@@ -1,1 +1,1 @@
-"""How numba compiles kernels: its own pipeline, shortened."""
+"""How numba compiles, shortened."""

@@ -1,1 +1,1 @@
-"""One pass a file; each takes a valid whole and leaves one."""
+"""One pass a file, valid to valid."""

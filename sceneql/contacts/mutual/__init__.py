@@ -1,1 +1,1 @@
-"""Contact of masses with one another."""
+"""Masses against one another."""

@@ -1,4 +1,4 @@
-"""Surfaces that can be collided with, one a file: the contract is in shape_kernels.
+"""Surfaces to collide with.
 
 A file ``<shape>_kernels.py`` has the kernels ``surface``, ``bend`` and ``clear``; a collider names its shape, and
 naming it compiles that file alone.

@@ -1,1 +1,1 @@
-"""Enclosures of tapes: intervals and first-order forms over boxes and along rays."""
+"""Bounds over boxes and along rays."""

@@ -1,1 +1,1 @@
-"""First roots along packets of neighboring rays, in lanes."""
+"""First roots of rays in lanes."""

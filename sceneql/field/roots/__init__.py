@@ -1,1 +1,1 @@
-"""First roots along rays, certified, of tapes, polynomials and densities."""
+"""First roots, certified, ray by ray."""

@@ -1,1 +1,1 @@
-"""Densities of skeletons: values, gradients and enclosures."""
+"""Densities of points and curves."""

@@ -1,1 +1,1 @@
-"""Tapes: straight-line code of implicit fields, its construction and evaluation."""
+"""Formulas as straight-line code."""

@@ -1,1 +1,1 @@
-"""Domains of fields: boxes, outlines, pictures and solids cut into cells."""
+"""Domains cut into cells."""

@@ -1,1 +1,1 @@
-"""Fields on grids as pictures see them: interpolated, on sheets of triangles, in colors."""
+"""Fields as pictures show them."""

@@ -1,1 +1,1 @@
-"""Linear systems of fields on grids: multigrid, relaxation, transforms, factorization."""
+"""Linear systems of grids, solved."""

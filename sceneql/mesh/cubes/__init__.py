@@ -1,1 +1,1 @@
-"""Marching cubes: cells, curves on their faces, triangles, refinement."""
+"""Marching cubes and finer cells."""

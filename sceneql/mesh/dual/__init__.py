@@ -1,1 +1,1 @@
-"""Dual contouring: meshes that keep sharp edges and corners."""
+"""Dual contouring: sharp edges kept."""

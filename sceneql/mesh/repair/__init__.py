@@ -1,1 +1,1 @@
-"""Meshes put right: folded and self-intersecting triangles."""
+"""Folded, crossing triangles mended."""
