@@ -21,9 +21,10 @@ from sceneql.compiler.catalogue import USER_PACKAGE, Catalogue, class_name
 
 ROOT = Path(__file__).parent.parent
 ARCHITECTURE = ROOT / "ARCHITECTURE.md"
+CONTRIBUTING = ROOT / "CONTRIBUTING.md"
 PAGES = sorted(ROOT.glob("*.md"))
 FILE = re.compile(r"^# DIR/(\S+\.py)")
-NAMED = re.compile(r"(?<![\w/<>.~-])(?:[a-z_]{3,}/)*(?:[a-z_]{3,}/|[A-Za-z_0-9]+\.(?:py|md|yaml)\b)")
+NAMED = re.compile(r"(?<![\w/<>.~-])(?:[a-z_]{3,}/)*(?:[a-z_]{3,}/|[A-Za-z]\w*\.(?:py|md|yaml)\b)")
 
 
 def rooms():
@@ -68,8 +69,20 @@ def test_every_file_and_folder_that_a_page_names_is_there(page):
     text = page.read_text()
     code = re.findall(r"`([^`\n]+)`|\]\(([^)]+)\)|^    (.*)", text, re.MULTILINE)
     named = [name for parts in code for name in NAMED.findall("".join(parts))]
-    missing = [name for name in named if not any((ROOT / base / name).exists() for base in ("", "sceneql", "tests"))]
+    missing = [
+        name for name in named if not any((ROOT / base / name).exists() for base in ("", "sceneql", "tests/bench"))
+    ]
     assert not missing
+
+
+def test_every_bench_is_in_the_index_and_every_variable_in_the_table():
+    page = CONTRIBUTING.read_text()
+    benches = {path.name for path in (ROOT / "tests" / "bench").glob("bench_*.py")}
+    assert set(re.findall(r"^\| `(bench_\w+\.py)` \|", page, re.MULTILINE)) == benches
+    read = (path.read_text() for folder in ("sceneql", "renderers") for path in (ROOT / folder).rglob("*.py"))
+    variables = {name for text in read for name in re.findall(r"environ\S*\W(SCENEQL_[A-Z]+)", text)}
+    assert variables
+    assert all(f"`{name}" in page for name in variables)
 
 
 def added():
