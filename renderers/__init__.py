@@ -1,1 +1,1 @@
-"""Words that draw a frame; pixels and files of it."""
+"""Words that draw a frame; its pixels developed."""

@@ -1,4 +1,4 @@
-"""The ray tracer, rays in waves."""
+"""The ray tracer: rays in waves."""
 
 TOLERANCE = 1e-9
 """Of roots of implicit objects, relative to the searched piece of a ray, where nothing is said: that of packets."""

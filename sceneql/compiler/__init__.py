@@ -1,1 +1,1 @@
-"""Tree to graph: words found, fields read, limits."""
+"""Tree to graph: words found, fields read and checked."""

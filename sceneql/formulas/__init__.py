@@ -1,1 +1,1 @@
-"""Formulas of scripts as generated code, as rows."""
+"""Formulas of scripts: rows of numbers, generated code."""

@@ -1,1 +1,1 @@
-"""State, numbers, terms, breakpoints, Jacobian."""
+"""An island's state, numbers, terms, breakpoints, Jacobian."""

@@ -1,1 +1,1 @@
-"""Text to tree: YAML, lost brackets, templates."""
+"""Text to tree: YAML, broken brackets, templates."""

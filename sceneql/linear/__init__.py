@@ -1,1 +1,1 @@
-"""Linear systems, Newton's method of implicit steps."""
+"""Linear systems and Newton's method of implicit steps."""

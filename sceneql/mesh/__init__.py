@@ -1,1 +1,1 @@
-"""Implicit fields to triangles: extraction, file formats."""
+"""Implicit fields to triangles: extraction, formats."""

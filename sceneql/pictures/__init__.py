@@ -1,1 +1,1 @@
-"""Layout of pictures: framing, panels, lettering."""
+"""Layout of pictures: camera framing, panels, lettering."""

@@ -1,1 +1,1 @@
-"""Units, typed expressions, diagnostics; no libraries."""
+"""Units, operations and expressions, diagnostics."""

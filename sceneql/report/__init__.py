@@ -1,1 +1,1 @@
-"""Pages on scenes: plan, errors, gallery, manual."""
+"""Pages on scenes: plan, errors, studies, gallery."""

@@ -1,1 +1,1 @@
-"""A run's moments: history, what is watched, warnings."""
+"""A run's moments, history, dry run, what is watched."""

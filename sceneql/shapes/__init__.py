@@ -1,1 +1,1 @@
-"""Geometry that objects share: placement, CSG, files."""
+"""Geometry of object words: placement, CSG, OBJ files."""

@@ -1,1 +1,1 @@
-"""Objects made masses, tetrahedra."""
+"""Masses, tetrahedra in objects."""

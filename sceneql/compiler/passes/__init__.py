@@ -1,1 +1,1 @@
-"""One pass a file, valid to valid."""
+"""One pass a file: prune, islands, sizes."""

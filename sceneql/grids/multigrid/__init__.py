@@ -1,1 +1,1 @@
-"""Linear systems of grids, solved."""
+"""Linear systems of grids."""

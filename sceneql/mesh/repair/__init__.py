@@ -1,1 +1,1 @@
-"""Folded, crossing triangles mended."""
+"""Folds, crossing triangles mended."""
