@@ -17,10 +17,10 @@ from islands import assembly
 from runs import watch
 from sceneql import pipeline
 from sceneql.compiled import generated, kernels
+from sceneql.compiled.generated import function
 from sceneql.compiled.printer import TEXTS
 from sceneql.formulas.rate_program import RateSystem, jacobian_kernel, rate_kernel
 from sceneql.kinds import Formula
-from sceneql.march.driver import function
 from sceneql.march.march import March
 from sceneql.quantities.bind import bind
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.sparse import block_array, csr_array, diags_array, eye_array, kron
 
-from sceneql.grids.multigrid import species, species_kernels
+from sceneql.linear import species, species_kernels
 from sceneql.linear.stage import _iterated
 from sceneql.system import Grid
 from test_reaction_diffusion import Fields

@@ -13,6 +13,7 @@ import sys
 import tempfile
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 PACKAGE = "sceneql_generated"
 
@@ -38,6 +39,12 @@ def load(name: str) -> ModuleType:
     """Import a module of the package, or any other, by its full name."""
     _package_folder()
     return importlib.import_module(name)
+
+
+def function(name: str) -> Any:
+    """The function of ``"package.module:function"``."""
+    module, _, attribute = name.partition(":")
+    return getattr(load(module), attribute)
 
 
 def _package_folder() -> Path:

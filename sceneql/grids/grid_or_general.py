@@ -12,6 +12,25 @@ if TYPE_CHECKING:
 MOST_CARRIED = {2: 300_000, 3: 30_000}
 """Cells of a flat or deep grid up to which systems with all that a drift ties are made."""
 
+KERNELS = "sceneql.grids.grid_stage_kernels"
+UNSOLVED = "Newton's method finds no solution of this step: take a shorter one"
+UNSOLVED_AS_NAMED = f"{UNSOLVED}, or with a drift `linear: auto`"
+
+
+def either_way(stepper: Stepper) -> Stepper:
+    """An implicit Runge-Kutta method with what takes its place on an island that is one field on a grid."""
+    on_grid = replace(
+        stepper,
+        step=f"{KERNELS}:step",
+        dense=None if stepper.adaptive else f"{KERNELS}:linear",
+        jacobian=False,
+        newton=False,
+        prepare="sceneql.grids.prepare_stages:prepare",
+        unsolved=UNSOLVED if stepper.linear == "auto" else UNSOLVED_AS_NAMED,
+        halves=False,
+    )
+    return replace(stepper, on_grid=on_grid)
+
 
 def grid_or_general(stepper: Stepper, grid: Grid) -> Stepper:
     """What a stepper hands over for grids; where a drift acts, itself if need be.

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 
     from sceneql.frame import Floats
     from sceneql.island.island import System
-    from sceneql.march.march import March
 
 DIRECT_CELLS = {2: 40_000, 3: 4_000}
 """Up to so many cells of a flat or deep grid factors are small: `auto` takes them."""
@@ -68,10 +67,10 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     """What grid_stage_kernels.step works with. Raises LimitRefused where a named linear solver cannot take the grid."""
     import numpy as np
 
+    from sceneql.compiled.generated import function
     from sceneql.compiled.numbered_kernels import number_of
     from sceneql.grids.grid_stage_kernels import SHARE
     from sceneql.grids.multigrid import linear_kernels as linear
-    from sceneql.march.driver import function
 
     grid = system.grid
     assert grid is not None
@@ -109,11 +108,11 @@ def likely_kernels(stepper: Stepper, grid: Grid) -> tuple[str, ...]:
     return (*FIRST.get(name, ()), f"{__package__}.{KERNELS[name].partition(':')[0]}")
 
 
-def report(march: March) -> LinearReport:
-    """What the linear solver of an implicit method on a grid has done so far."""
+def report(scratch: Floats) -> LinearReport:
+    """What the linear solver of an implicit method on a grid has done so far; ``scratch``: what its steps work in."""
     from sceneql.grids.multigrid.linear_kernels import HISTORY, ITERATIONS, RECORD, SOLVES
 
-    record = march.scratch[-RECORD:]
+    record = scratch[-RECORD:]
     residuals = tuple(float(size) for size in record[HISTORY:] if size >= 0.0)
     return LinearReport(int(record[SOLVES]), int(record[ITERATIONS]), residuals)
 

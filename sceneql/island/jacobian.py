@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sceneql.linear.ordering import rising
+from sceneql.island.rising import rising
 from sceneql.system import Pattern, Slopes
 
 if TYPE_CHECKING:

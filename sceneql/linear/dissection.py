@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from sceneql.linear.ordering import postorder, rising
+from sceneql.island.rising import rising
+from sceneql.linear.ordering import postorder
 
 if TYPE_CHECKING:
     from numpy import int64

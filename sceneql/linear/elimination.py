@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sceneql.linear.ordering import rising
+from sceneql.island.rising import rising
 
 if TYPE_CHECKING:
     from numpy import bool_, int64

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
+from sceneql.island.rising import rising
 from sceneql.linear.dissection import dissected
-from sceneql.linear.ordering import Groups, elimination_order, grouped, rising
+from sceneql.linear.ordering import Groups, elimination_order, grouped
 
 if TYPE_CHECKING:
     from numpy import int64

@@ -40,15 +40,6 @@ def grouped(pattern: Any) -> Groups:
     return Groups(members, graph)
 
 
-def rising(keys: NDArray[int64]) -> NDArray[int64]:
-    """Numbers from 0 on in order, each once; numpy's own `unique` hashes them, which takes many times as long."""
-    import numpy as np
-
-    ordered = np.sort(keys)
-    found: NDArray[int64] = ordered[np.flatnonzero(np.diff(ordered, prepend=-1))]
-    return found
-
-
 def minimum_degree(graph: Any) -> NDArray[int64]:
     """(n,) vertices of a symmetric pattern by multiple minimum degree (Liu 1985), as SuperLU has it."""
     import numpy as np

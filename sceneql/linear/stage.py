@@ -12,7 +12,7 @@ from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
 from sceneql.failure import LimitRefused
-from sceneql.grids.multigrid.species import one_grid
+from sceneql.linear.species import one_grid
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -261,7 +261,7 @@ def _over_grids(system: System, core: NDArray[int64], pattern: Any) -> _Solver:
     """The solver of species on one grid."""
     import numpy as np
 
-    from sceneql.grids.multigrid import species, species_kernels
+    from sceneql.linear import species, species_kernels
 
     own, floats, text = species.plan(system, core, pattern)
     numbers = np.concatenate([_iterated(pattern, species_kernels), own])

@@ -36,12 +36,6 @@ class Driver(NamedTuple):
     after_step: Any
 
 
-def function(name: str) -> Any:
-    """The function of ``"package.module:function"``."""
-    module, _, attribute = name.partition(":")
-    return getattr(load(module), attribute)
-
-
 @cache
 def driver(structure: Structure) -> Driver:
     """The driver of a structure, from the cache where it has been compiled before."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sceneql.compiled.generated import function
 from sceneql.compiled.kernels import compiled
 from sceneql.compiled.pointers_kernels import addresses
 from sceneql.failure import LimitRefused, RunFailure
@@ -16,7 +17,7 @@ from sceneql.island.breakpoint_table import before, next_breakpoint
 from sceneql.island.island import STAGE, IslandAssembly, System
 from sceneql.island.jacobian import BY_DIFFERENCES
 from sceneql.march import march_kernels as kernels
-from sceneql.march.driver import driver, function, jacobian
+from sceneql.march.driver import driver, jacobian
 from sceneql.march.switching import Switch
 from sceneql.system import Prepared
 

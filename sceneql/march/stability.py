@@ -8,15 +8,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sceneql.kinds.stable_step import LEAST, MOST, NEUTRAL, first_unstable
 from sceneql.march.mode_blocks import Block, alone, paired, uses_pairs
 from sceneql.march.modes import Modes, jacobian, modes_of
+from sceneql.stepping.tableau import CLASSIC
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from sceneql.frame import Floats
     from sceneql.kinds import Solver
     from sceneql.march.march import March
     from sceneql.quantities.span import Span
@@ -50,7 +54,7 @@ def stability(march: March, solver: Solver) -> Stability:
     by_pairs = uses_pairs(solver)
     simple = [alone(value / fastest) for value in modes.values]
     blocks = paired(march, modes) if by_pairs else simple
-    reduced = _Reduced(solver, blocks)
+    reduced = _Reduced(solver.growth, blocks)
     bound = reduced.bound()
     if 0 < bound < math.inf and by_pairs and len(system.y) <= WHOLE and _mixed(modes):
         bound = _whole(march, solver, bound / fastest, max(0.0, float(modes.values.real.max()))) * fastest
@@ -73,9 +77,7 @@ def stability(march: March, solver: Solver) -> Stability:
 
 def _yardstick(blocks: list[Block], fastest: float) -> str:
     """What the method that everybody knows would ask for: how much another one saves."""
-    from sceneql.words.solvers.rk4 import Rk4
-
-    bound = _Reduced(Rk4(), blocks).bound() / fastest
+    bound = _Reduced(lambda jacobian, partner, step: CLASSIC.growth(jacobian, step), blocks).bound() / fastest
     return f"; rk4 would need steps of at most {bound:.4g} s" if 0 < bound < math.inf else ""
 
 
@@ -97,12 +99,13 @@ def _text(bound: float, script: float, growth: float, mode: str, adaptive: bool)
 class _Reduced:
     """Growth on single modes, time scaled so that the fastest has frequency 1."""
 
-    solver: Solver
+    growth: Callable[[Floats, Any, float], float]
+    """Of a solver (kinds.Solver.growth)."""
     blocks: list[Block]
 
     def growth_of(self, block: Block, step: float) -> float:
         """Beside what the mode grows by itself."""
-        return self.solver.growth(block.jacobian, block.partner, step) * math.exp(-block.own * step)
+        return self.growth(block.jacobian, block.partner, step) * math.exp(-block.own * step)
 
     def bound(self) -> float:
         """Largest stable scaled step; 0 where it is rounding alone that would allow one (below 100 LEAST)."""

@@ -177,7 +177,7 @@ def linear_runs(graph: SimulationGraph, island: Island) -> Iterator[LinearRun]:
                 times.append(march.statistics.seconds)
         except (LimitRefused, RunFailure):
             continue
-        done = report(march)
+        done = report(march.scratch)
         first = done.residuals[0] if done.residuals and done.residuals[0] > 0.0 else 1.0
         shares = tuple(size / first for size in done.residuals)
         yield LinearRun(", ".join(island.models), name, step, done.iterations, statistics.median(times), shares)

@@ -102,11 +102,12 @@ class IslandRun:
 
     def __init__(self, graph: SimulationGraph, island: Island) -> None:
         from sceneql.compiled.compile_beside import compile_ahead
+        from sceneql.compiled.generated import function
         from sceneql.compiled.numba import lazy_kernels
         from sceneql.island.jacobian import BY_DIFFERENCES
         from sceneql.linear.stage import likely_kernels
         from sceneql.march.assembled import blocks_of, models_of
-        from sceneql.march.driver import driver, function, jacobian, late_first, modules
+        from sceneql.march.driver import driver, jacobian, late_first, modules
 
         compile_ahead(("sceneql.march.march_kernels",))  # while the models are made here
         self.graph, self.island = graph, island

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from sceneql.grids.extremes import watched
-from sceneql.grids.ringing import ringing
 from sceneql.island.breakpoints import MOST
 from sceneql.kinds import Force, Model
 from sceneql.quantities.diagnostic import Diagnostic
+from sceneql.run.extremes import watched
 from sceneql.run.invariants import invariants_of
+from sceneql.run.ringing import ringing
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats

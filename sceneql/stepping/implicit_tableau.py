@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from math import inf
 from typing import TYPE_CHECKING
@@ -14,12 +14,9 @@ if TYPE_CHECKING:
     from sceneql.island.island import System
 
 KERNELS = "sceneql.stepping.implicit_runge_kutta_kernels"
-ON_GRIDS = "sceneql.grids.grid_stage_kernels"
 NEWTON = 1e-10
 """Relative and absolute tolerance of Newton's method where steps are fixed."""
 UNSOLVED = "Newton's method finds no solution, not even of a thousandth of this step: take shorter ones"
-UNSOLVED_ON_GRID = "Newton's method finds no solution of this step: take a shorter one"
-UNSOLVED_AS_NAMED = f"{UNSOLVED_ON_GRID}, or with a drift `linear: auto`"
 SHARE = 0.02
 """Part of the tolerance that Newton's method may leave as its own error."""
 
@@ -113,7 +110,7 @@ class ImplicitTableau:
         differences = [b - other for b, other in zip(self.b, self.b_hat or self.b, strict=True)]
         left = (tolerance, absolute, SHARE) if adaptive else (newton, newton, 1.0)
         lower = [entry for i, row in enumerate(self.a) for entry in row[:i]]
-        whole = Stepper(
+        return Stepper(
             step=f"{KERNELS}:step",
             dense=self.dense,
             order=self.order,
@@ -134,17 +131,6 @@ class ImplicitTableau:
             unsolved=UNSOLVED,
             halves=not adaptive,
         )
-        on_grid = replace(
-            whole,
-            step=f"{ON_GRIDS}:step",
-            dense=None if adaptive else f"{ON_GRIDS}:linear",
-            jacobian=False,
-            newton=False,
-            prepare="sceneql.grids.prepare_stages:prepare",
-            unsolved=UNSOLVED_ON_GRID if linear == "auto" else UNSOLVED_AS_NAMED,
-            halves=False,
-        )
-        return replace(whole, on_grid=on_grid)
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
@@ -159,7 +145,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     stages = stepper.numbers[0]
     room = system.pattern.room
     settings, text = np.array(stepper.settings), plan.text
-    if system.grid is not None:  # a field that drifts: grids.suited
+    if system.grid is not None:  # a field that drifts: grids.grid_or_general
         text += ", chosen since a drift may pass many cells in a step"
         if stepper.by_scale:
             settings[ABSOLUTE] *= float(np.abs(system.y).max(initial=0.0)) or 1.0

@@ -60,7 +60,7 @@ def plummer(count: int) -> Floats:
 
 def accelerations(places: Floats, opening: float, fast: bool = False) -> Callable[[], Floats]:
     """A call that gives accelerations (count, 3) for a total mass 1."""
-    from sceneql.march.driver import function
+    from sceneql.compiled.generated import function
 
     count = len(places)
     scratch: Any = Scratch(np.full(count, 1.0 / count))

@@ -26,9 +26,10 @@ class CrankNicolson(Solver):
 
     def stepper(self) -> Stepper:
         """Fixed steps of the tableau."""
+        from sceneql.grids.grid_or_general import either_way
         from sceneql.stepping.implicit_tableau import CRANK_NICOLSON
 
-        return CRANK_NICOLSON.fixed(self.step, self.linear)
+        return either_way(CRANK_NICOLSON.fixed(self.step, self.linear))
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """max |(1 + h lambda/2)/(1 - h lambda/2)|."""

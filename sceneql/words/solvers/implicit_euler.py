@@ -32,9 +32,10 @@ class ImplicitEuler(Solver):
 
     def stepper(self) -> Stepper:
         """Fixed steps of the tableau."""
+        from sceneql.grids.grid_or_general import either_way
         from sceneql.stepping.implicit_tableau import IMPLICIT_EULER
 
-        return IMPLICIT_EULER.fixed(self.step, self.linear, self.newton)
+        return either_way(IMPLICIT_EULER.fixed(self.step, self.linear, self.newton))
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """max |1 / (1 - h lambda)|."""

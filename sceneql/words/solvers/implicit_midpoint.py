@@ -33,9 +33,10 @@ class ImplicitMidpoint(Solver):
 
     def stepper(self) -> Stepper:
         """Fixed steps of the tableau."""
+        from sceneql.grids.grid_or_general import either_way
         from sceneql.stepping.implicit_tableau import IMPLICIT_MIDPOINT
 
-        return IMPLICIT_MIDPOINT.fixed(self.step, self.linear, self.newton)
+        return either_way(IMPLICIT_MIDPOINT.fixed(self.step, self.linear, self.newton))
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """max |(1 + h lambda / 2) / (1 - h lambda / 2)|."""

@@ -42,11 +42,12 @@ class TrBdf2(Solver):
 
     def stepper(self) -> Stepper:
         """Fixed steps, or by the error of the embedded method."""
+        from sceneql.grids.grid_or_general import either_way
         from sceneql.stepping.implicit_tableau import TR_BDF2
 
         if self.step is not None:
-            return TR_BDF2.fixed(self.step, self.linear, self.newton)
-        return TR_BDF2.adaptive(
+            return either_way(TR_BDF2.fixed(self.step, self.linear, self.newton))
+        adaptive = TR_BDF2.adaptive(
             self.tolerance,
             self.tolerance if self.absolute is None else self.absolute,
             first_step=self.first_step or 0.0,
@@ -54,6 +55,7 @@ class TrBdf2(Solver):
             linear=self.linear,
             by_scale=self.absolute is None,
         )
+        return either_way(adaptive)
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """max |R(h lambda)| with the stability function of the tableau."""

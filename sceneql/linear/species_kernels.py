@@ -2,7 +2,7 @@
 """A multigrid cycle for the systems of implicit stages of several species on one grid: blocks of a cell's species.
 
 What preconditions the iterations of linear/krylov_kernels: a symmetric V(2,2)-cycle, red-black Gauss-Seidel by whole
-cells (all species of a cell at once), sums of residuals down, constants up, as multigrid_kernels for one field. A
+cells (all species of a cell at once), sums of residuals down, constants up, as a multigrid of one field does. A
 coarse cell's block has the sums of what its cells are by themselves, and half the sum of their ties where the spacing
 doubles (Braess 1995, Computing 55, 379-393). A drift is in the residuals alone.
 
@@ -17,9 +17,9 @@ import numpy as np
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.grids.multigrid.species_block_kernels import invert_blocks
 from sceneql.linear.krylov_kernels import own_at, solve_system
 from sceneql.linear.solver_kernels import FACTOR_SYSTEM, PRECONDITION
+from sceneql.linear.species_block_kernels import invert_blocks
 from sceneql.system.signatures_kernels import A, N
 
 LEVELS, SPECIES, DIRECTIONS, SCRATCH, TABLE = range(1, 6)
