@@ -28,7 +28,7 @@ from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
 if TYPE_CHECKING:
     from sceneql.frame import LightSource, View
     from sceneql.pictures.layout import Panel
-    from sceneql.run.run import Instant
+    from sceneql.run.instant import Instant
 
 
 def load(

@@ -10,9 +10,10 @@ import pytest
 
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.pipeline import load
-from sceneql.report.bench_grids import grid_section, linear_runs, on_grids
+from sceneql.report.bench_grids import grid_section
 from sceneql.report.bench_schemes import front, scheme_runs
 from sceneql.report.grid_ends import difference, ends_on_grids
+from sceneql.report.grid_runs import linear_runs, on_grids
 from sceneql.report.work_precision import solvers
 from sceneql.words.solvers.exact import Exact
 

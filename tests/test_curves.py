@@ -11,10 +11,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sceneql.quantities.curves import CURVES, keys_table, value_at
+from sceneql.quantities.curves import CURVES
 from sceneql.quantities.derivative import components, differentiate
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Expr, Key, Keys, Number, Symbol, Type, Vector, each_once
+from sceneql.quantities.key_tables import keys_table, value_at
 
 TIME = Symbol("time")
 AXIS = Vector((Number(1.0), Number(2.0), Number(-0.5)), Type((3,)))

@@ -7,7 +7,7 @@ from PIL import Image
 from sceneql import pipeline
 from sceneql.report.expect import outcomes
 from sceneql.report.gallery import check, compare, update
-from sceneql.run.run import Instant
+from sceneql.run.instant import Instant
 
 SCENE = """
 models:

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from renderers.tracing.pack import pack, scratch
+from renderers.tracing.pack import pack
+from renderers.tracing.scratch import scratch
 from renderers.tracing.solids.grids import met
 from renderers.tracing.solids.intersect_kernels import walk
 from renderers.tracing.solids.surface_kernels import normal_at

@@ -16,7 +16,8 @@ from renderers.normals import Normals
 from renderers.trace import Trace
 from renderers.tracing.draw import _kept
 from renderers.tracing.filter.edges_kernels import BEYOND
-from renderers.tracing.pack import pack, scratch
+from renderers.tracing.pack import pack
+from renderers.tracing.scratch import scratch
 from renderers.tracing.solids.intersect_kernels import walk
 from sceneql.frame import Mesh, PointLight, Points, Segments, Sky, Surface
 from stage import GLOW, WHITE, frame, sun, view

@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 import stage
 from renderers.trace import Trace
 from renderers.tracing import TOLERANCE
-from renderers.tracing.pack import pack, scratch
+from renderers.tracing.pack import pack
 from renderers.tracing.probe import probe
 from renderers.tracing.scene_kernels import ANSWERS, ANYWHERE, FAR, FIRST, NEXT, WANT
+from renderers.tracing.scratch import scratch
 from renderers.tracing.solids.bundles import Packets, solids_in_lanes
 from renderers.tracing.solids.intersect_kernels import walk
 from sceneql.field.roots.clips import clips_of

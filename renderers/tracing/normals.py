@@ -9,8 +9,9 @@ import numpy as np
 from renderers.tracing import TOLERANCE
 from renderers.tracing.light.sampling_kernels import subpixels
 from renderers.tracing.normals_kernels import normal_rows, undecided_rows
-from renderers.tracing.pack import pack, scratch
+from renderers.tracing.pack import pack
 from renderers.tracing.picture import Picture, over_rows
+from renderers.tracing.scratch import scratch
 
 if TYPE_CHECKING:
     from sceneql.frame import Frame

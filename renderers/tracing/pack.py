@@ -41,7 +41,7 @@ from renderers.tracing.scene_kernels import (
 from renderers.tracing.scene_kernels import TOLERANCE as ROOT_TOLERANCE
 from renderers.tracing.solids import hierarchy_kernels
 from sceneql.field.tape.plans import ray_plan
-from sceneql.field.tape.tape_ops import SCRATCH_COLUMNS, scratch_rows
+from sceneql.field.tape.tape_ops import scratch_rows
 from sceneql.frame import Frame, Grid, Implicit, Mesh, Mist, Points, Quadric, Segments, Sky, Sun, Surface, View
 
 if TYPE_CHECKING:
@@ -105,11 +105,6 @@ def pack(frame: Frame, tolerance: float = TOLERANCE, samples: int = 0, certain: 
         sheets = any(isinstance(shape, Implicit) and shape.within is not None for shape in frame.shapes)
         scene = prepared(scene, rows, places, sheets=sheets, march=samples > 0, certain=certain)
     return scene, rows
-
-
-def scratch(rows: int) -> Floats:
-    """Working memory of one thread for kernels on a scene."""
-    return np.zeros((rows, SCRATCH_COLUMNS))
 
 
 class Rows:

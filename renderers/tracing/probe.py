@@ -9,10 +9,11 @@ import numpy as np
 
 from renderers.tracing import TOLERANCE
 from renderers.tracing.camera_kernels import TILE
-from renderers.tracing.pack import pack, scratch
+from renderers.tracing.pack import pack
 from renderers.tracing.picture import over_rows
 from renderers.tracing.probe_kernels import probe_rows
 from renderers.tracing.scene_kernels import ANSWERS, ASKING, MODE, NEXT, SHAPE_COUNT, TELLING, WIDTH
+from renderers.tracing.scratch import scratch
 from renderers.tracing.solids.packet_choice import lender, packets_for
 
 if TYPE_CHECKING:

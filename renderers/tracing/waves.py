@@ -16,9 +16,9 @@ from renderers.tracing.filter.edges_kernels import TRIAL, add_samples, begin_sam
 from renderers.tracing.filter.planes_kernels import KEYS, LANES, WIDE
 from renderers.tracing.filter.refine_kernels import refine
 from renderers.tracing.gather_kernels import PATH
-from renderers.tracing.pack import scratch
 from renderers.tracing.record_kernels import COLUMNS
 from renderers.tracing.scene_kernels import ANSWERS, ASKING, MODE, NEXT, SHAPE_COUNT, TELLING, WIDTH
+from renderers.tracing.scratch import scratch
 from renderers.tracing.waves_kernels import (
     advance_paths,
     ask_paths,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from sceneql.bodies.time_shift import APART, goes_evenly, later
 from sceneql.contacts.shapes import implicit
@@ -59,7 +59,7 @@ def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, 
     from sceneql.compiled.numbered_kernels import number_of
     from sceneql.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, NEAR_TYPE, SURFACE_TYPE
 
-    kind = assembly.object(ref)
+    kind = cast(Object, assembly.object(ref))
     try:
         here = _collider(kind, assembly)
         if not is_moving(kind):

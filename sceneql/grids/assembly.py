@@ -9,20 +9,20 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from sceneql.grids.at_points import at_points
 from sceneql.grids.cell_program import FIELD, over_cells, over_faces
 from sceneql.grids.domain.boundary import GIVEN_FLUX, Condition, conditions
 from sceneql.grids.flow import Flow, flow_of
 from sceneql.kinds import Formula
 from sceneql.quantities.derivative import components, differentiate
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
-from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import TIME_SYMBOL, Expr, Link, Number, Symbol, walk
 from sceneql.system import Grid, Slopes
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.grids.domain.cells import Cells
     from sceneql.grids.drift import Drift
+    from sceneql.grids.ground import Ground
     from sceneql.grids.medium import Boundary, Picture
     from sceneql.system import Assembly
 
@@ -55,28 +55,6 @@ class Spreading(Protocol):
         """Whether nothing of it can be below 0."""
 
 
-class Ground:
-    """The cells of a model with their numbers in an island."""
-
-    def __init__(self, cells: Cells, assembly: Assembly) -> None:
-        self.cells = cells
-        self.count = len(cells.volumes)
-        self.inside = cells.volumes > 0.0
-        self.centers = cells.centers()
-        if cells.flat:
-            self.centers[:, 2] = 0.0
-        low_z = -0.5 * cells.spacing[2] if cells.flat else cells.low[2]
-        self.box_at = assembly.floats([*cells.low[:2], low_z, *cells.spacing])
-        self.volumes_at = assembly.floats(cells.volumes)
-        self.divisors_at = assembly.floats(np.where(self.inside, cells.volumes, 1.0))
-        """1 outside, where nothing is divided by it."""
-
-    @property
-    def memory(self) -> tuple[int, ...]:
-        """What medium.layout_of reads."""
-        return (self.volumes_at, self.box_at, *self.cells.shape)
-
-
 def add_field(field: Spreading, boundary: Boundary, drift: Drift | None, ground: Ground, assembly: Assembly) -> Grid:
     """Reserve a number a cell and one for the inflow, and add the terms of the rate.
 
@@ -91,17 +69,6 @@ def varies(formula: Formula | None) -> bool:
         isinstance(node, Link) or (isinstance(node, Symbol) and node.name in (TIME_SYMBOL, FIELD))
         for node in walk(formula.expr)
     )
-
-
-def at_points(formula: Formula, points: Floats, **more: Any) -> Floats:
-    """A formula of the place (and of the symbols in ``more``) at points (k, 3): (k,)."""
-    known = {"x": points[:, 0], "y": points[:, 1], "z": points[:, 2], **more}
-
-    def look_up(node: Any) -> Any:
-        return known[node.name]
-
-    value = evaluate(components(formula.expr)[0], look_up, arrays=True)
-    return np.array(np.broadcast_to(np.asarray(value, dtype=np.float64), len(points)))
 
 
 @dataclass

@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     from numpy import int64
     from numpy.typing import NDArray
 
-    from sceneql.grids.assembly import Ground
     from sceneql.grids.drift import Drift
     from sceneql.grids.flow import Flow
+    from sceneql.grids.ground import Ground
     from sceneql.system import Assembly
 
 KERNELS = "sceneql.grids.drift_kernels:carry"

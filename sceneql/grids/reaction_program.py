@@ -17,7 +17,7 @@ from sceneql.formulas.rate_program import ZERO, RateSystem, derivatives, lifted
 from sceneql.kinds import Value
 
 if TYPE_CHECKING:
-    from sceneql.grids.assembly import Ground
+    from sceneql.grids.ground import Ground
     from sceneql.system import Assembly, Slopes
 
 HEAD = 6

@@ -17,9 +17,10 @@ import numpy as np
 from sceneql.frame import Floats
 from sceneql.island.breakpoint_table import APART, Breakpoint, after
 from sceneql.kinds.values import TIME
-from sceneql.quantities.curves import Table, known_table
+from sceneql.quantities.curves import Table
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Expr, Keys, Link, Number, Symbol, children, each_once
+from sceneql.quantities.key_tables import known_table
 from sceneql.quantities.span import Span
 
 MOST = 10_000

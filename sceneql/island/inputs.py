@@ -14,10 +14,10 @@ import numpy as np
 
 from sceneql.island.lowering import LOWERINGS
 from sceneql.kinds import Value
-from sceneql.quantities.curves import keys_table
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import TIME_SYMBOL, Call, Expr, Keys, Link, Number, Symbol, Vector, walk
+from sceneql.quantities.key_tables import keys_table
 
 if TYPE_CHECKING:
     from numpy import int64

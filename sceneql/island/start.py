@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
+
+from sceneql.kinds import Object
 
 if TYPE_CHECKING:
-    from sceneql.kinds import Object, Ref, Value
+    from sceneql.kinds import Ref, Shaped, Value
     from sceneql.system import Assembly
 
 
@@ -21,6 +23,6 @@ class Start:
         """A value at the start."""
         return self._assembly.initial(value)
 
-    def object(self, ref: Ref) -> Object:
-        """The kind of an object."""
-        return self._assembly.object(ref)
+    def object(self, ref: Ref) -> Shaped:
+        """An object of the script."""
+        return cast(Object, self._assembly.object(ref))

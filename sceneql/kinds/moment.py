@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, Protocol, Union
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, Protocol, Self, Union
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Surface
-    from sceneql.kinds.objects import Object
+    from sceneql.frame import Shape as Drawn
+    from sceneql.kinds.field_builder import FieldBuilder
     from sceneql.kinds.values import Ref, Value
     from sceneql.system import ModelState
 
@@ -17,6 +18,46 @@ class Seen(Protocol):
 
     def at(self, moment: Moment) -> Any:
         """Its value."""
+
+
+class Shaped(Protocol):
+    """An object of the script as those see it that are made of it (Object has the contract of each method)."""
+
+    @property
+    def material(self) -> Ref | None:
+        """How it looks; None: the script does not say."""
+
+    @property
+    def color(self) -> Value | None:
+        """In place of the material's."""
+
+    @property
+    def hidden(self) -> bool:
+        """Whether it is not drawn."""
+
+    @property
+    def traced(self) -> str:
+        """What field it may be drawn by."""
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None) -> Self:
+        """It with other fields."""
+
+    def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Drawn]:
+        """Its shapes."""
+
+    def implicit(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
+        """Register of its field."""
+
+    def hues(
+        self, build: FieldBuilder, x: int, y: int, z: int, surface: Surface, moment: Moment
+    ) -> tuple[int, int, int] | None:
+        """Registers of its color; None: its surface has one."""
+
+    def domain(self) -> Any:
+        """Its inside as a flat domain of fields."""
+
+    def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
+        """Low and high corner (3,) of a world box around it."""
 
 
 Remembered = Union["Value", Seen]
@@ -58,8 +99,8 @@ class Moment(Protocol):
     def state(self, name: str) -> ModelState:
         """The state of a model that is solved, or of a contact, now."""
 
-    def object(self, ref: Ref) -> Object:
-        """The kind of an object."""
+    def object(self, ref: Ref) -> Shaped:
+        """An object of the script."""
 
     def place(self, name: str) -> Floats:
         """(3, 4) map to the world from the coordinates that an object's position is told in: its group's, or these."""

@@ -2,39 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from sceneql.kinds.types import Color, MaterialRef
 from sceneql.kinds.values import Ref, Value
 from sceneql.kinds.word import Kind, field
-from sceneql.quantities.expression import Expr
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Surface
     from sceneql.frame import Shape as Drawn
+    from sceneql.kinds.field_builder import FieldBuilder
     from sceneql.kinds.moment import Moment
     from sceneql.system import Assembly
-
-
-class FieldBuilder(Protocol):
-    """What an object needs to write its implicit field (sceneql.field.tape.builder.TapeBuilder)."""
-
-    def constant(self, value: float) -> int:
-        """Register of a number."""
-
-    def op(self, name: str, *registers: int) -> int:
-        """Register of an operation of the one table."""
-
-    def expression(self, expr: Expr, symbols: Mapping[str, int]) -> int:
-        """Register of a scalar expression whose symbols have registers."""
-
-    def affine(self, matrix: Floats, x: int, y: int, z: int) -> tuple[int, int, int]:
-        """Registers of a point mapped by a (3, 4) matrix."""
-
-    def skeleton(self, skeleton: Any, x: int, y: int, z: int) -> int:
-        """Register of the density of a skeleton (sceneql.field.skeleton.skeleton.Skeleton) at a point."""
 
 
 class Object(Kind):

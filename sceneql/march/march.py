@@ -90,7 +90,7 @@ class March:
         self._switch = None
         takes_turns = not system.structure.local or len(system.y) > BY_DIFFERENCES
         if stepper.stiff is not None and stepper.adaptive and takes_turns:
-            self._switch = Switch(stepper, stepper.stiff, int((system.partner < 0).sum()))
+            self._switch = Switch(stepper, stepper.stiff, self.rate, system.partner)
         self._last_look = 0
         self._look_for_breakpoint(0.0)
         self._engage(stepper)
@@ -254,7 +254,7 @@ class March:
         self._clock[kernels.SLOP] = TOUCHING * positions
         step = self.stepper.first_step or self._first_step()
         if self._switch is not None:
-            self._switch.start(self, y, step)
+            self._switch.start(y, step)
             self._change(self._switch, 0.0)
         self._clock[kernels.STEP] = step
 
@@ -344,9 +344,9 @@ class March:
             return
         self._last_look += steps
         t, step = float(clock[kernels.T1]), float(clock[kernels.STEP])
-        if switch.look(self, t, self._y1, step, steps):
+        if switch.look(t, self._y1, step, steps):
             self._change(switch, t)
-            clock[kernels.STEP] = switch.stable(self, t, self._y1, step)
+            clock[kernels.STEP] = switch.stable(t, self._y1, step)
             clock[kernels.ERROR] = 1e-4
         if self._counts[kernels.HELD]:
             self.rate(t, self._y1)  # what contacts are to read is that of the state again
@@ -367,7 +367,7 @@ class March:
             return False
         self._last_look = int(self._counts[kernels.STEPS])
         self._change(switch, t)
-        clock[kernels.STEP] = switch.stable(self, t, self._y1, float(clock[kernels.STEP]))
+        clock[kernels.STEP] = switch.stable(t, self._y1, float(clock[kernels.STEP]))
         clock[kernels.ERROR] = 1e-4
         return True
 

@@ -117,7 +117,7 @@ def _fastest(march: March) -> tuple[Any, Any]:
     from sceneql.march.spectrum import units_of
 
     y = march.system.y
-    units = units_of(march, 0.0, y, DIFFERENCE * _scale(y))
+    units = units_of(march.rate, march.system.partner, 0.0, y, DIFFERENCE * _scale(y))
 
     def in_units(vector: Floats) -> Floats:
         return product(march, units * np.ravel(vector)) / units

@@ -7,8 +7,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy import int64
+    from numpy.typing import NDArray
+
     from sceneql.frame import Floats
-    from sceneql.march.march import March
+
+    Partners = NDArray[int64]
+    Rate = Callable[[float, Floats], Floats]
+    """dy/dt (n,) at a time [s] and state."""
 
 SMALL = 12
 """Up to so many entries of y the whole Jacobian is found; above, the Krylov space of so many products."""
@@ -16,27 +24,28 @@ MOVE = 1.5e-8
 """Relative size of differences: the root of the rounding unit."""
 
 
-def dominant(march: March, t: float, y: Floats) -> complex:
+def dominant(rate_at: Rate, partner: Partners, t: float, y: Floats) -> complex:
     """The eigenvalue [1/s] of largest modulus of the rate's Jacobian at a state, the upper one of a pair.
 
+    ``partner`` (n,): for a position entry of y the index of its velocity, else -1.
     Above SMALL entries by Arnoldi's iteration (Arnoldi 1951), which finds the outermost eigenvalues first.
     """
     n = len(y)
-    rate = march.rate(t, y)
+    rate = rate_at(t, y)
     if n <= SMALL:
         moves = MOVE * np.maximum(np.abs(y), 1e-3)
-        columns = [(march.rate(t, y + move * unit) - rate) / move for move, unit in zip(moves, np.eye(n), strict=True)]
+        columns = [(rate_at(t, y + move * unit) - rate) / move for move, unit in zip(moves, np.eye(n), strict=True)]
         matrix = np.column_stack(columns)
     else:
         scale = MOVE * max(1e-3, float(np.linalg.norm(y)))
-        units = units_of(march, t, y, scale)
+        units = units_of(rate_at, partner, t, y, scale)
         basis = np.zeros((SMALL + 1, n))
         matrix = np.zeros((SMALL + 1, SMALL))
         start = np.random.Generator(np.random.Philox(1)).standard_normal(n)
         basis[0] = start / np.linalg.norm(start)
         size = 0
         for k in range(SMALL):
-            product = (march.rate(t, y + scale * units * basis[k]) - rate) / (scale * units)
+            product = (rate_at(t, y + scale * units * basis[k]) - rate) / (scale * units)
             matrix[: k + 1, k] = basis[: k + 1] @ product
             product -= matrix[: k + 1, k] @ basis[: k + 1]
             size = k + 1
@@ -52,18 +61,18 @@ def dominant(march: March, t: float, y: Floats) -> complex:
     return complex(found.real, abs(found.imag))
 
 
-def units_of(march: March, t: float, y: Floats, scale: float) -> Floats:
+def units_of(rate_at: Rate, partner: Partners, t: float, y: Floats, scale: float) -> Floats:
     """Units (n,) in which positions and velocities of stiff springs are alike in size.
 
     Without them the Krylov space sees how far the matrix is from a normal one, not its eigenvalues.
     """
     units = np.ones(len(y))
-    positions = np.flatnonzero(march.system.partner >= 0)
+    positions = np.flatnonzero(partner >= 0)
     if len(positions):
-        velocities = march.system.partner[positions]
+        velocities = partner[positions]
         moved = y.copy()
         moved[positions] += scale * np.random.Generator(np.random.Philox(2)).choice([-1.0, 1.0], len(positions))
-        pull = (march.rate(t, moved) - march.rate(t, y))[velocities] / scale
+        pull = (rate_at(t, moved) - rate_at(t, y))[velocities] / scale
         square = float(np.sqrt(np.mean(pull * pull)))
         units[velocities] = np.sqrt(square) if 0.0 < square < np.inf else 1.0
     return units

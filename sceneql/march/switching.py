@@ -14,7 +14,7 @@ from sceneql.stepping.radau_systems import LARGEST, step_cost
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.march.march import March
+    from sceneql.march.spectrum import Partners, Rate
     from sceneql.system import Stepper
 
 HELD = 0.5
@@ -30,16 +30,19 @@ PATIENCE = 1 / 3
 class Switch:
     """The choice for one march."""
 
-    def __init__(self, explicit: Stepper, stiff: Stepper, size: int) -> None:
-        """``size``: unknowns of the stiff method's linear systems."""
-        self.explicit, self.stiff, self.size = explicit, stiff, size
+    def __init__(self, explicit: Stepper, stiff: Stepper, rate_at: Rate, partner: Partners) -> None:
+        """``rate_at``, ``partner``: of the island, see `dominant`."""
+        self.explicit, self.stiff = explicit, stiff
+        self._rate_at, self._partner = rate_at, partner
+        self.size = int((partner < 0).sum())
+        """Unknowns of the stiff method's linear systems."""
         self.active = explicit
         self.history: list[tuple[float, str]] = []
         """When [s] which method was taken, and why."""
         self.until_look = self._between = FIRST
         self._since = 0.0
         self._warming = False
-        self._possible = size <= LARGEST
+        self._possible = self.size <= LARGEST
 
     @property
     def cost(self) -> float:
@@ -51,9 +54,9 @@ class Switch:
         """Stiff steps between two looks: as many as cost what the most of explicit ones do."""
         return max(TRIAL, int(LAST / self.cost))
 
-    def start(self, march: March, y: Floats, step: float) -> None:
+    def start(self, y: Floats, step: float) -> None:
         """Choose the method to begin with; ``step`` [s]: what the tolerance seems to allow at the start."""
-        speed = dominant(march, 0.0, y)
+        speed = self._fastest(0.0, y)
         explicit_steps = self._steps(step, speed)
         if explicit_steps > self.cost and self._possible:
             self._take(self.stiff, 0.0, f"a mode at {abs(speed):.3g}/s makes the scene stiff")
@@ -62,7 +65,7 @@ class Switch:
         else:
             self._take(self.explicit, 0.0, "no mode makes the start stiff")
 
-    def look(self, march: March, t: float, y: Floats, step: float, steps: int) -> bool:
+    def look(self, t: float, y: Floats, step: float, steps: int) -> bool:
         """Whether the other method is taken from t [s] on, with ``step`` to try next, after so many steps."""
         mean = (t - self._since) / max(1, steps)
         self._since = t
@@ -71,7 +74,7 @@ class Switch:
             return False
         self._between = min(LAST, 2 * self._between)
         self.until_look = self._between if self.active is self.explicit else min(self._between, self._often)
-        speed = dominant(march, t, y)
+        speed = self._fastest(t, y)
         if self.active is self.explicit:
             if not self._possible or self._steps(min(step, mean), speed) < HELD:
                 return False
@@ -101,10 +104,13 @@ class Switch:
         self._possible = False
         self._take(self.explicit, t, why)
 
-    def stable(self, march: March, t: float, y: Floats, step: float) -> float:
+    def stable(self, t: float, y: Floats, step: float) -> float:
         """The step [s], or what of it the active method can take."""
-        steps = self._steps(step, dominant(march, t, y)) if self.active is self.explicit else 0.0
+        steps = self._steps(step, self._fastest(t, y)) if self.active is self.explicit else 0.0
         return step * min(1.0, HELD / steps) if steps else step
+
+    def _fastest(self, t: float, y: Floats) -> complex:
+        return dominant(self._rate_at, self._partner, t, y)
 
     def _steps(self, length: float, speed: complex) -> float:
         """Stable explicit steps in a length [s]."""

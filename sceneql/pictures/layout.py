@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from sceneql.graph import SimulationGraph
     from sceneql.kinds.outputs import Row
-    from sceneql.run.run import Instant
+    from sceneql.run.instant import Instant
 
 GAP = 0.008
 """Between panels, in parts of the picture's height."""

@@ -8,10 +8,11 @@ from types import SimpleNamespace
 from typing import Any
 
 from sceneql.quantities import chance
-from sceneql.quantities.curves import interpolate, known_table, table_of, value_at
-from sceneql.quantities.evaluate import item_of
+from sceneql.quantities.curves import interpolate, table_of
 from sceneql.quantities.expression import Call, Expr, Keys, Link, Number, Shape, Symbol, Vector, children, each_once
+from sceneql.quantities.key_tables import known_table, value_at
 from sceneql.quantities.operations import OPERATIONS
+from sceneql.quantities.scalars import item_of
 
 
 def evaluate_arrays(expr: Expr, look_up: Callable[[Any], Any]) -> Any:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -33,39 +32,6 @@ class Table:
     """Period [s]; 0 for none."""
     rotation: bool
     """Components are a quaternion: spherical interpolation."""
-
-
-def keys_table(keys: Keys) -> Table:
-    """The numbers of keyframes whose times and values are constant. Raises KeyError where one is not."""
-    from sceneql.quantities.evaluate import evaluate
-    from sceneql.quantities.operations import FLOATS
-
-    def components(expr: Expr) -> Components:
-        value = evaluate(expr, {})
-        return value if isinstance(value, tuple) else (value,)
-
-    return table_of(FLOATS, keys, lambda expr: float(evaluate(expr, {})), components)
-
-
-_TABLES: dict[tuple[int, int, str, int], tuple[Keys, Table | None]] = {}
-"""By the identity of the keys, with what keeps it theirs."""
-_MOST_TABLES = 10_000
-
-
-def known_table(keys: Keys) -> Table | None:
-    """The table of keyframes whose times and values are constant vectors or numbers, made once; None of others."""
-    if len(keys.type.shape) > 1:
-        return None
-    place = id(keys.keys), id(keys.cycle), keys.curve, len(keys.type.shape)
-    if place not in _TABLES:
-        if len(_TABLES) >= _MOST_TABLES:
-            _TABLES.clear()
-        try:
-            table = keys_table(keys)
-        except (KeyError, TypeError):  # a symbol, a link
-            table = None
-        _TABLES[place] = keys, table
-    return _TABLES[place][1]
 
 
 def table_of(o: Any, keys: Keys, number: Callable[[Expr], float], components: Callable[[Expr], Components]) -> Table:
@@ -116,13 +82,6 @@ def _chords(o: Any, times: tuple[float, ...], values: tuple[Components, ...], cl
         joint = chord((last - 1, last), (0, 1))
         return [joint, *inner, joint]
     return [chord((0, 1)), *inner, chord((last - 1, last))]
-
-
-def value_at(table: Table, t: float) -> tuple[float, ...]:
-    """The components (c,) of a table of floats at a time [s]: held before the first and after the last key."""
-    from sceneql.quantities.operations import FLOATS
-
-    return interpolate(FLOATS, table, t, lambda t, times: bisect_right(times, t) - 1 if t == t else 0)
 
 
 def interpolate(

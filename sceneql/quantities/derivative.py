@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from sceneql.quantities.curves import interpolate, table_of
-from sceneql.quantities.evaluate import apply, evaluate
+from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import (
     Call,
     Expr,
@@ -24,6 +24,7 @@ from sceneql.quantities.expression import (
     each_once,
 )
 from sceneql.quantities.operations import OPERATIONS
+from sceneql.quantities.scalars import apply
 from sceneql.quantities.simplify import FORMS, ONE, TREES, ZERO, made, simplify, tree
 
 __all__ = ["components", "differentiate", "simplify"]

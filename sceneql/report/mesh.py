@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from sceneql.mesh.cubes.tolerance import Within
     from sceneql.mesh.cubes.unresolved import Unresolved
     from sceneql.mesh.polygons import Polygons
-    from sceneql.run.run import Instant
+    from sceneql.run.instant import Instant
 
 CELLS = 128
 """Cells along the longest side of an object's box, where nothing is said."""

@@ -11,8 +11,8 @@ from sceneql.report.bench_schemes import front
 from sceneql.report.plots import MARKS, SMALLEST, explain, figure_at, panel
 
 if TYPE_CHECKING:
-    from sceneql.report.bench_grids import GridRun, LinearRun
     from sceneql.report.bench_schemes import SchemeRun
+    from sceneql.report.grid_runs import GridRun, LinearRun
 
 
 def _panels(figure: Any, title: str, rows: Sequence[Any]) -> Any:

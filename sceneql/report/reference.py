@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats
-    from sceneql.run.run import Instant, IslandRun
+    from sceneql.run.instant import Instant
+    from sceneql.run.run import IslandRun
 
 TOLERANCES = ((1e-13, 1e-12), (1e-10, 1e-9), (1e-7, 1e-6))
 """Of the reference, and of a second run: how far they are apart bounds the error of the first. The next pair is taken

@@ -21,7 +21,8 @@ from sceneql.run.series import Series, measure
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.run.run import Instant
+    from sceneql.run.instant import Instant
+    from sceneql.run.run import Run
 
 REPEATS = 3
 ENOUGH_SECONDS = 0.5
@@ -87,7 +88,7 @@ def _trial(graph: SimulationGraph, name: str, values: tuple[Tried, ...], truth: 
     seconds: list[float] = []
     try:
         while len(seconds) < REPEATS and sum(seconds) < ENOUGH_SECONDS:
-            times, series, moment, taken = _run(graph, wanted, study.longest)
+            times, series, run, taken = _run(graph, wanted, study.longest)
             seconds.append(taken)
     except TooLong as failure:
         return Trial(values, "skipped", failure.message, math.nan, math.nan, 0, 0, {})
@@ -98,7 +99,7 @@ def _trial(graph: SimulationGraph, name: str, values: tuple[Tried, ...], truth: 
     right, why = truth if study.exact is None else (measure(study.exact.expr, series, times), "")
     error = math.nan if right is None else _relative(measure(study.of.expr, series, times), right)
     outcome: Outcome = "skipped" if right is None else "stable" if error <= study.accuracy else "inaccurate"
-    done = [island.march.statistics for island in moment.run.islands]
+    done = [island.march.statistics for island in run.islands]
     more = {each: float(np.max(measure(value.expr, series, times))) for each, value in study.measure.items()}
     return Trial(
         values,
@@ -112,12 +113,11 @@ def _trial(graph: SimulationGraph, name: str, values: tuple[Tried, ...], truth: 
     )
 
 
-def _run(graph: SimulationGraph, values: Sequence[Value], longest: float) -> tuple[list[float], Series, Instant, float]:
-    """Times, what values read at them, the last moment, and the run time [s]. Raises TooLong beyond ``longest`` [s]."""
+def _run(graph: SimulationGraph, values: Sequence[Value], longest: float) -> tuple[list[float], Series, Run, float]:
+    """Times, what values read at them, the run, and its run time [s]. Raises TooLong beyond ``longest`` [s]."""
     from sceneql.run.run import Run
 
     times, run = moments_of(graph, values), Run(graph)
-    last: list[Instant] = []
 
     def spent() -> float:
         return sum(island.march.statistics.seconds for island in run.islands)
@@ -131,11 +131,10 @@ def _run(graph: SimulationGraph, values: Sequence[Value], longest: float) -> tup
                 if spent() > longest:
                     part = ", ".join(name for island in run.islands for name in island.island.models)
                     raise TooLong(f"given up after {longest:g} s of run time", part=part, time=look, span=None)
-            last[:] = [run.at(time)]
-            yield last[0]
+            yield run.at(time)
 
     series = sample(moments(), times, values)
-    return times, series, last[0], spent()
+    return times, series, run, spent()
 
 
 def _relative(found: Floats, right: Floats) -> float:

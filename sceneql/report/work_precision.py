@@ -15,7 +15,8 @@ from sceneql.graph import Island, SimulationGraph
 from sceneql.kinds import Model, Solver
 
 if TYPE_CHECKING:
-    from sceneql.run.run import Instant, IslandRun
+    from sceneql.run.instant import Instant
+    from sceneql.run.run import IslandRun
 
 STEPS = tuple(2**k for k in range(4, 19))
 """Steps of a fixed-step run, until ENOUGH_SECONDS or the reference's own error is reached."""

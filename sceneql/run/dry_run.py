@@ -18,7 +18,7 @@ from sceneql.shapes.world_boxes import box_of
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.run.run import Instant
+    from sceneql.run.instant import Instant, Running
 
     Bounds = dict[str, tuple[Floats, Floats]]
 
@@ -73,20 +73,18 @@ def asked(graph: SimulationGraph) -> dict[tuple[str, int], Value]:
     return {(name, k): value for name, kind in overlays for k, value in enumerate(kind.courses())}
 
 
-def dry_run(graph: SimulationGraph, *, bounded: bool = True) -> DryRun:
-    """Run a graph for what its cameras and overlays ask of the whole run.
+def dry_run(ahead: Running, *, bounded: bool = True) -> DryRun:
+    """Let a fresh run go on to its end for what its cameras and overlays ask of the whole run.
 
     Bounds are those of the start alone where the run fails, since what explodes fits into no picture. A part that asks
     at the start for nothing that may change is looked at there alone.
     """
-    from sceneql.run.run import Run
-
+    graph = ahead.graph
     asked_for = {id(piece): Value(piece) for value in asked(graph).values() for piece in pieces(value.expr)}
     rows: dict[int, list[Any]] = {key: [] for key in asked_for}
     every = BOUNDS_EVERY if asked(graph) else 1
     steps, end = BOUNDS_STEPS * every, graph.settings.clock.end
     bounded = bounded or any(isinstance(t.kind, Camera) and t.kind.looks_ahead() for t in graph.tasks.values())
-    ahead = Run(graph)
     start: Bounds = {}
     now: Bounds = {}
     changing: list[str] = []

@@ -13,7 +13,8 @@ from sceneql.quantities.diagnostic import Diagnostic
 
 if TYPE_CHECKING:
     from sceneql.quantities.span import Span
-    from sceneql.run.run import Instant, IslandRun
+    from sceneql.run.instant import Instant
+    from sceneql.run.run import IslandRun
 
 
 LOST = 1 / 3

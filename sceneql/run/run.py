@@ -2,30 +2,23 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from sceneql.failure import LimitRefused, RunFailure, failing_as
+from sceneql.failure import LimitRefused
 from sceneql.graph import Island, SimulationGraph
-from sceneql.kinds import Contact, Force, Material, Model, Object, Ref, Solver, Value
+from sceneql.kinds import Force, Model, Object, Solver, Value
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
-from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import Expr, Link, Symbol
+from sceneql.quantities.expression import Link
 from sceneql.run.dry_run import DryRun, asked, dry_run
 from sceneql.run.history import History
+from sceneql.run.instant import Instant
 from sceneql.run.ranges import ranged
-from sceneql.shapes.color import default_color, linear
-from sceneql.shapes.placement import Placed, compose
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats, Surface
-    from sceneql.frame import Shape as Drawn
-    from sceneql.kinds.moment import Remembered
+    from sceneql.frame import Floats
     from sceneql.march.march import March
     from sceneql.system import ModelState
 
@@ -70,10 +63,14 @@ class Run:
             one.check(moment)
         return moment
 
+    def state(self, name: str) -> ModelState:
+        """The latest state of a model that is solved, or of a contact."""
+        return self.island_of[name].state(name)
+
     def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
         """Low and high corner (3,) of what the parts draw over the whole run, found by a run ahead of its own."""
         if None not in self._dry_runs or self._dry_runs[None].bounds is None:
-            self._dry_runs[None] = dry_run(self.graph)
+            self._dry_runs[None] = dry_run(Run(self.graph))
         known = self._dry_runs[None].bounds or {}
         corners = [known[name] for name in names if name in known]
         if not corners:
@@ -93,7 +90,7 @@ class Run:
         """What a run ahead of the script, or of a variant of it, sees."""
         if variant not in self._dry_runs:
             graph = self.graph if variant is None else self.graph.variant(variant)
-            self._dry_runs[variant] = dry_run(graph, bounded=False)
+            self._dry_runs[variant] = dry_run(Run(graph), bounded=False)
         return self._dry_runs[variant]
 
 
@@ -223,124 +220,6 @@ def _built(graph: SimulationGraph, island: Island, found: Diagnostics) -> Island
     except ScriptError as error:
         found.extend(error.diagnostics)
         return None
-
-
-@dataclass
-class Instant:
-    """One instant of a run (kinds.Moment)."""
-
-    run: Run
-    now: float
-    """[s]"""
-    asked: bool = False
-    """Whether it was asked for what may be otherwise at another instant."""
-    _states: dict[str, ModelState] = field(default_factory=dict)
-
-    @property
-    def time(self) -> float:
-        """[s]"""
-        self.asked = True
-        return self.now
-
-    @property
-    def end(self) -> float:
-        """When the run ends [s]."""
-        return self.run.graph.settings.clock.end
-
-    @property
-    def variants(self) -> tuple[str, ...]:
-        """The names of the script's variants."""
-        return self.run.graph.variants
-
-    def at(self, value: Value) -> Any:
-        """The value now: float or float64 array, SI. Raises RunFailure if it is not finite."""
-        now = self._evaluate(value.expr)
-        if not np.isfinite(now).all():
-            raise RunFailure("a value is not finite now", part="", time=self.now, span=value.span)
-        return now
-
-    def measure(self, value: Value) -> Any:
-        """The value now, finite or not."""
-        return self._evaluate(value.expr)
-
-    def _evaluate(self, expr: Expr) -> Any:
-        return evaluate(expr, self._look_up, arrays=True)
-
-    def _look_up(self, node: Symbol | Link) -> Any:
-        if isinstance(node, Symbol):
-            if node.name == "time":
-                return self.time
-            raise KeyError(node.name)
-        return self.read(node.task, node.output)
-
-    def past(self, value: Remembered) -> list[tuple[float, Any]]:
-        """(time [s], value) at the instants before that a part asked for, oldest first."""
-        return self.run.history.past(value, self.time)
-
-    def course(self, value: Value, variant: str | None = None, until: float = math.inf) -> tuple[Floats, Floats]:
-        """Times (n,) [s] and a value that an overlay asked for at each of them (n, ...)."""
-        return self.run.course(value, variant, until)
-
-    def read(self, task: str, output: str) -> Any:
-        """An output of a part now."""
-        kind = self.run.graph.tasks[task].kind
-        if isinstance(kind, Model) and kind.kinematic:
-            return self._evaluate(kind.formula(output))
-        if isinstance(kind, Model | Contact):
-            return kind.read(output, self.state(task))
-        if isinstance(kind, Object) and output in kind.gives:
-            return kind.read(output, self)
-        return self._evaluate(getattr(kind, output).expr)
-
-    def state(self, name: str) -> ModelState:
-        """The state of a dynamic model or contact now."""
-        self.asked = True
-        if name not in self._states:
-            self._states[name] = self.run.island_of[name].state(name)
-        return self._states[name]
-
-    def object(self, ref: Ref) -> Object:
-        """The kind of an object."""
-        return cast(Object, self.run.graph.tasks[ref.name].kind)
-
-    def surface(self, name: str, material: Ref | None, color: Value | None) -> Surface:
-        """The surface of a drawn part: its material's, its color in place of that, a default by order."""
-        from sceneql.frame import Surface
-
-        own = None if color is None else linear(self.at(color))
-        if material is None:
-            return Surface(color=own or default_color(self.run.palette.get(name, 0)), roughness=0.35)
-        kind = cast(Material, self.run.graph.tasks[material.name].kind)
-        return kind.surface(self, own)
-
-    def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
-        """Low and high corner (3,) of what the parts draw over the whole film; of all that is drawn for no names."""
-        return self.run.bounds(list(names) or list(self.run.orders))
-
-    def place(self, name: str) -> Floats:
-        """(3, 4) map to the world from the coordinates that an object's position is told in."""
-        holder = self.run.holders.get(name)
-        if holder is None:
-            return IDENTITY
-        kind = self.run.graph.tasks[holder].kind
-        return compose(self.place(holder), kind.local(self)) if isinstance(kind, Placed) else self.place(holder)
-
-    def lower(self, names: Iterable[str]) -> list[Drawn]:
-        """The shapes of the named objects and models."""
-        shapes: list[Drawn] = []
-        for name in names:
-            task = self.run.graph.tasks[name]
-            with failing_as(name, self.now, task.span):
-                if isinstance(task.kind, Object):
-                    shapes += task.kind.lower(name, IDENTITY, self)
-                elif isinstance(task.kind, Model):
-                    shapes += task.kind.lower(name, self.state(name), self)
-        return shapes
-
-    @cached_property
-    def everything(self) -> list[str]:
-        """All that any picture draws, in order."""
-        return list(self.run.orders)
 
 
 def _orders(graph: SimulationGraph) -> dict[str, int]:

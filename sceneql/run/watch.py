@@ -17,7 +17,8 @@ from sceneql.run.ringing import ringing
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.run.run import Instant, IslandRun, Run
+    from sceneql.run.instant import Instant
+    from sceneql.run.run import IslandRun, Run
 
 COST, AT_LEAST = 0.008, 0.005
 """Part of the time of the run that looking may take, and seconds that it may take in any case."""

@@ -21,7 +21,7 @@ def reaches(skeleton: Skeleton, threshold: float) -> Floats:
     """
     import numpy as np
 
-    from sceneql.field.skeleton.skeleton import farthest
+    from sceneql.field.skeleton.profile import farthest
 
     radii, weights = skeleton.largest, skeleton.weights
     giving = weights > 0

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     from sceneql.frame import Surface
-    from sceneql.kinds import FieldBuilder, Moment, Object
+    from sceneql.kinds import FieldBuilder, Moment, Shaped
 
     Registers = tuple[int, int, int]
 
@@ -15,7 +15,7 @@ Bare = Literal["apart", "shared", "first"]
 
 
 def joined(
-    build: FieldBuilder, members: Sequence[tuple[str, Object]], gaps: Sequence[int], at: Registers,
+    build: FieldBuilder, members: Sequence[tuple[str, Shaped]], gaps: Sequence[int], at: Registers,
     surface: Surface, bare: Bare, width: float, moment: Moment,
 ) -> Registers | None:  # fmt: skip
     """Registers of linear RGB at a point of the members' parent's coordinates; None where they have the one color of

@@ -13,7 +13,7 @@ from sceneql.shapes.placement import Placed, compose, inverse, mapped_box
 if TYPE_CHECKING:
     from sceneql import frame
     from sceneql.frame import Floats, Surface
-    from sceneql.kinds import FieldBuilder, Moment, Object
+    from sceneql.kinds import FieldBuilder, Moment, Object, Shaped
 
 INFINITY = float("inf")
 LARGEST, SMALLEST = 1e100, 1e-100
@@ -63,7 +63,7 @@ class Solid(Placed):
         return measure(self, output, moment)
 
 
-def traced(solid: Object, name: str, place: Floats, moment: Moment) -> Iterable[frame.Implicit]:
+def traced(solid: Shaped, name: str, place: Floats, moment: Moment) -> Iterable[frame.Implicit]:
     """Any object with a field, as a tape in a box a little larger than itself; nothing where the box is empty.
 
     Raises TypeError where it is unbounded, ValueError where numbers cannot tell its size.

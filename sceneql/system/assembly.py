@@ -9,7 +9,8 @@ from sceneql.system.terms import Slopes, Stage
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from sceneql.kinds import Object, Ref, Value
+    from sceneql.kinds.values import Ref, Value
+    from sceneql.kinds.word import Kind
     from sceneql.quantities.expression import Expr, Link
     from sceneql.quantities.span import Span
     from sceneql.system.fields import Grid
@@ -89,7 +90,7 @@ class Assembly(Protocol):
     def field_of(self, link: Link) -> Grid | None:
         """Where the field lies that a link is of; None where it is of none of this island."""
 
-    def object(self, ref: Ref) -> Object:
+    def object(self, ref: Ref) -> Kind:
         """The kind of an object of the script."""
 
     def changing(self, at: int, count: int) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from itertools import product
 from typing import TYPE_CHECKING
 
-from renderers.tracing.pack import scratch
 from renderers.tracing.scene_kernels import CELLS, CROSSING, SKIN
+from renderers.tracing.scratch import scratch
 from renderers.tracing.solids.skin_kernels import skin
 from sceneql.compiled.kernels import address, over_tiles
 

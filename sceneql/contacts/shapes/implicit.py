@@ -73,7 +73,7 @@ def place(kind: Object, assembly: Assembly) -> tuple[int, int]:
 def changes(kind: Object, assembly: Assembly) -> bool:
     """Whether any value of it or of its members varies in time."""
     own = any(isinstance(value, Value | Formula) and not value.constant for _, value in kind)
-    return own or any(changes(assembly.object(ref), assembly) for ref in kind.members())
+    return own or any(changes(cast(Object, assembly.object(ref)), assembly) for ref in kind.members())
 
 
 def packed(tape: Tape) -> NDArray[int64]:

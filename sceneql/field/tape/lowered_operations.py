@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from sceneql.field.tape.builder import TapeBuilder
+    from sceneql.kinds.field_builder import FieldBuilder
 
 
 def _sign(a: float) -> float:
@@ -37,26 +37,26 @@ FOLD: dict[str, Callable[..., float]] = {
 """Operations of the tape on numbers; errors of the domain stay errors."""
 
 
-def _times(name: str, factor: float) -> Callable[[TapeBuilder, int], int]:
+def _times(name: str, factor: float) -> Callable[[FieldBuilder, int], int]:
     return lambda tape, a: tape.op("mul", tape.op(name, a), tape.constant(factor))
 
 
-def _tan(tape: TapeBuilder, a: int) -> int:
+def _tan(tape: FieldBuilder, a: int) -> int:
     return tape.op("div", tape.op("sin", a), tape.op("cos", a))
 
 
-def _arc(tape: TapeBuilder, a: int, cosine: bool) -> int:
+def _arc(tape: FieldBuilder, a: int, cosine: bool) -> int:
     other = tape.op("sqrt", tape.op("sub", tape.constant(1.0), tape.op("square", a)))
     return tape.op("atan2", other, a) if cosine else tape.op("atan2", a, other)
 
 
-def _hyperbolic(tape: TapeBuilder, a: int, join: str) -> int:
+def _hyperbolic(tape: FieldBuilder, a: int, join: str) -> int:
     grown = tape.op("exp", a)
     both = tape.op(join, grown, tape.op("div", tape.constant(1.0), grown))
     return tape.op("mul", tape.constant(0.5), both)
 
 
-def _tanh(tape: TapeBuilder, a: int) -> int:
+def _tanh(tape: FieldBuilder, a: int) -> int:
     """1 - 2/(exp(2 a) + 1); from |a| = 20 on that is +-1 in float64, and exp(2 a) need not overflow."""
     held = tape.op("clamp", a, tape.constant(-20.0), tape.constant(20.0))
     grown = tape.op("exp", tape.op("mul", tape.constant(2.0), held))
@@ -64,35 +64,35 @@ def _tanh(tape: TapeBuilder, a: int) -> int:
     return tape.op("sub", tape.constant(1.0), less)
 
 
-def _modulo(tape: TapeBuilder, a: int, b: int) -> int:
+def _modulo(tape: FieldBuilder, a: int, b: int) -> int:
     return tape.op("sub", a, tape.op("mul", b, tape.op("floor", tape.op("div", a, b))))
 
 
-def _mix(tape: TapeBuilder, a: int, b: int, share: int) -> int:
+def _mix(tape: FieldBuilder, a: int, b: int, share: int) -> int:
     return tape.op("add", a, tape.op("mul", tape.op("sub", b, a), share))
 
 
-def _smoothstep(tape: TapeBuilder, low: int, high: int, a: int) -> int:
+def _smoothstep(tape: FieldBuilder, low: int, high: int, a: int) -> int:
     share = tape.op("div", tape.op("sub", a, low), tape.op("sub", high, low))
     share = tape.op("clamp", share, tape.constant(0.0), tape.constant(1.0))
     steep = tape.op("sub", tape.constant(3.0), tape.op("mul", tape.constant(2.0), share))
     return tape.op("mul", tape.op("square", share), steep)
 
 
-def _above(tape: TapeBuilder, a: int, b: int) -> int:
+def _above(tape: FieldBuilder, a: int, b: int) -> int:
     """1 where a > b, else 0."""
     return tape.op("max", tape.op("sign", tape.op("sub", a, b)), tape.constant(0.0))
 
 
-def _not(tape: TapeBuilder, a: int) -> int:
+def _not(tape: FieldBuilder, a: int) -> int:
     return tape.op("sub", tape.constant(1.0), a)
 
 
-def _equal(tape: TapeBuilder, a: int, b: int) -> int:
+def _equal(tape: FieldBuilder, a: int, b: int) -> int:
     return _not(tape, tape.op("abs", tape.op("sign", tape.op("sub", a, b))))
 
 
-def _where(tape: TapeBuilder, condition: int, a: int, b: int) -> int:
+def _where(tape: FieldBuilder, condition: int, a: int, b: int) -> int:
     chosen = tape.op("abs", tape.op("sign", condition))
     return tape.op("add", tape.op("mul", chosen, a), tape.op("mul", _not(tape, chosen), b))
 

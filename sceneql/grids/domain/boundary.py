@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sceneql.grids.at_points import at_points
 from sceneql.grids.domain.cells import SIDES
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
@@ -112,8 +113,6 @@ def _faces_of(name: str, part: Part, cells: Cells, taken: Any) -> Any:
 
 def _chosen(part: Part, points: Floats) -> Any:
     """(m,) bool: whether a part holds at points (m, 3) of the pieces that it is for."""
-    from sceneql.grids.assembly import at_points
-
     found = np.ones(len(points), dtype=bool)
     if part.where is not None:
         found &= at_points(part.where, points) > 0.0

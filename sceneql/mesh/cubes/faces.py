@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sceneql.frame import Ints
-    from sceneql.mesh.cubes.refine import Level, Numbering
+    from sceneql.mesh.cubes.levels import Level, Numbering
 
     Keys = NDArray[np.int64]
 

@@ -6,16 +6,14 @@ neighbor sees more than it does is refined too. The coarse triangles then follow
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from sceneql.mesh.bounded import Corner, bounded
-from sceneql.mesh.cubes.cases import cases
 from sceneql.mesh.cubes.faces import Curves, Sides, among, border_curves, face_sides
 from sceneql.mesh.cubes.grid import BLOCK, Grid, grid_around
-from sceneql.mesh.cubes.grid_extraction import Found, GridExtraction
+from sceneql.mesh.cubes.grid_extraction import GridExtraction
 from sceneql.mesh.cubes.hidden_kernels import DEEPEST
-from sceneql.mesh.cubes.polygonise import connected
+from sceneql.mesh.cubes.levels import Level, Numbering, level
 from sceneql.mesh.cubes.stitch import stitched
 from sceneql.mesh.cubes.tolerance import distances_off
 from sceneql.mesh.cubes.triangle_kernels import most_turn
@@ -43,62 +41,6 @@ AT_CREASE = 5 / 16
 tan(30 deg) / 2 of its length. Of an arc that is more than twice too much."""
 MOST_GROUPS = 2**15
 """Groups to be refined; more are a field of noise, or a grid far too coarse."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Level:
-    """Triangles of the cells of one size."""
-
-    places: Floats
-    normals: Floats
-    triangles: Ints
-    """(t, 3)"""
-    doubled: Keys
-    """(v, 3) middles of the crossed edges in half cells, for the vertices on edges."""
-    cells: Keys
-    """(t, 3) the cell of each triangle."""
-    bent: NDArray[np.bool_]
-    """(t,) whether the surface turns much in it."""
-
-
-def level(shop: GridExtraction, found: Found, blocks: int) -> Level:
-    """The triangles of the first so many blocks."""
-    import numpy as np
-
-    triangles, bent = connected(shop, found, blocks)
-    key = found.keys.astype(np.int64)
-    owner = np.repeat(found.blocks.astype(np.int64), np.diff(found.begin), axis=0)
-    doubled = 2 * (BLOCK * owner + _within(key // 3))
-    doubled[np.arange(len(key)), key % 3] += 1
-    cube = found.cubes[: len(bent)]
-    inside = np.repeat(found.blocks[:blocks].astype(np.int64), np.diff(found.cube_at[: blocks + 1]), axis=0)
-    cells = BLOCK * inside + _within(cube[:, 0].astype(np.int64))
-    counts = np.diff(cases().start)[cube[:, 1]]
-    return Level(
-        found.place, found.normal, triangles, doubled, np.repeat(cells, counts, axis=0), np.repeat(bent == 1, counts)
-    )
-
-
-def _within(place: Keys) -> Keys:
-    """(n, 3) of places (n,) in a block."""
-    import numpy as np
-
-    return np.stack([place % BLOCK, place // BLOCK % BLOCK, place // BLOCK**2], axis=1)
-
-
-class Numbering:
-    """Cells, groups and edges of a grid as single numbers."""
-
-    def __init__(self, grid: Grid) -> None:
-        import numpy as np
-
-        size = 2 * BLOCK * (grid.blocks.astype(np.int64) + 2)
-        self.strides = np.array([1, size[0], size[0] * size[1]])
-
-    def of(self, places: Keys) -> Keys:
-        """(n,) of (n, 3), distinct for cells, for groups, and for middles of edges in half cells."""
-        found: Keys = (places + 1) @ self.strides
-        return found
 
 
 def refined(

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from sceneql.frame import Tape
     from sceneql.mesh.cubes.faces import Curves, Sides
-    from sceneql.mesh.cubes.refine import Level
+    from sceneql.mesh.cubes.levels import Level
 
 
 def stitched(tape: Tape, coarse: Level, kept: NDArray[np.bool_], fine: Level, sides: Sides, curves: Curves) -> Polygons:

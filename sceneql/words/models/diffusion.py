@@ -74,8 +74,9 @@ class Diffusion(Medium):
 
     def assemble(self, name: str, assembly: Assembly) -> None:
         """Reserve a number a cell and one for the inflow, and add the terms of the rate. Raises ScriptError."""
-        from sceneql.grids.assembly import Ground, add_field
+        from sceneql.grids.assembly import add_field
         from sceneql.grids.domain.domain import cells_of
+        from sceneql.grids.ground import Ground
 
         ground = Ground(cells_of(self, assembly), assembly)
         grid = add_field(self, self.boundary, self.drift, ground, assembly)

@@ -17,7 +17,7 @@ from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Expr, Link, Number, Symbol, Type, walk
 
 if TYPE_CHECKING:
-    from sceneql.grids.assembly import Ground
+    from sceneql.grids.ground import Ground
     from sceneql.system import Assembly, ModelState
 
 PLACES = ("x", "y", "z")
@@ -142,8 +142,9 @@ class ReactionDiffusion(Medium):
     def assemble(self, name: str, assembly: Assembly) -> None:
         """Reserve every species' cells and inflow, and add their spread and reactions. Raises ScriptError."""
         from sceneql.formulas.rate_program import RateSystem
-        from sceneql.grids.assembly import Ground, add_field
+        from sceneql.grids.assembly import add_field
         from sceneql.grids.domain.domain import cells_of
+        from sceneql.grids.ground import Ground
         from sceneql.grids.reaction_program import add_reaction
 
         ground = Ground(cells_of(self, assembly), assembly)

@@ -152,7 +152,7 @@ class Blobby(Object):
 
     def implicit(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
         """(threshold - density) times a length. Raises RunFailure as ``parts`` does."""
-        from sceneql.field.skeleton.skeleton import steepness
+        from sceneql.field.skeleton.profile import steepness
 
         skeleton = self.parts(moment)
         mean = float(skeleton.radii.mean()) if len(skeleton.weights) else 1.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from sceneql.kinds import FieldBuilder, Moment, Object, ObjectRef, Ref, field
+from sceneql.kinds import FieldBuilder, Moment, ObjectRef, Ref, Shaped, field
 from sceneql.shapes.placement import Placed, Scale, affine, compose, inverse
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ class Group(Placed):
         """Its objects."""
         return tuple(self.children.values()) if isinstance(self.children, dict) else self.children
 
-    def _objects(self, moment: Moment) -> Iterable[tuple[str, Object]]:
+    def _objects(self, moment: Moment) -> Iterable[tuple[str, Shaped]]:
         for ref in self.members():
             child = moment.object(ref)
             if child.material is None and child.color is None:

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
-from sceneql.kinds import Color, FieldBuilder, FixedLength, Moment, Object, ObjectRef, Ref, field
+from sceneql.kinds import Color, FieldBuilder, FixedLength, Moment, Object, ObjectRef, Ref, Shaped, field
 from sceneql.shapes.solid import traced
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ class Polygonised(Object):
         """Its object."""
         return (self.of,)
 
-    def _object(self, moment: Moment) -> Object:
+    def _object(self, moment: Moment) -> Shaped:
         child = moment.object(self.of)
         if child.material is None and child.color is None:
             return child.model_copy(update={"material": self.material, "color": self.color})

@@ -1,0 +1,48 @@
+"""How the density of one part falls off, by its kernel: values, where it ends, how steep it is. Imports numpy."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.field.skeleton.skeleton import Skeleton
+from sceneql.field.tape.builder import TapeBuilder
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Tape
+
+
+@cache
+def _unit(kernel: int) -> Tape:
+    """The tape of one point of radius 1 at the origin."""
+    build = TapeBuilder()
+    one = Skeleton(np.zeros((1, 3, 3)), np.ones((1, 2)), np.ones(1), np.zeros(1), kernel)
+    return build.finish(build.skeleton(one, build.x, build.y, build.z))
+
+
+def profile(kernel: int, r: Floats) -> Floats:
+    """K at r = d/R (n,)."""
+    from sceneql.field.tape.tape_solid import field_values
+
+    return field_values(_unit(kernel), np.stack([r, 0.0 * r, 0.0 * r], axis=1))
+
+
+def farthest(kernel: int, density: Floats) -> Floats:
+    """(n,) the r = d/R within which a kernel is above a density (n,) > 0; 0 where it never is. By bisection."""
+    densities, where = np.unique(density, return_inverse=True)
+    low, high = np.zeros(len(densities)), np.ones(len(densities))
+    for _ in range(54):
+        middle = 0.5 * (low + high)
+        above = profile(kernel, middle) > densities
+        low, high = np.where(above, middle, low), np.where(above, high, middle)
+    found: Floats = np.where(densities < 1.0, high, 0.0)[where]
+    return found
+
+
+def steepness(kernel: int, density: float) -> float:
+    """-R dK/dd where a kernel has a density."""
+    r = farthest(kernel, np.array([density]))
+    step = 1e-6 * min(r[0], 1.0 - r[0])
+    return float((profile(kernel, r - step) - profile(kernel, r + step))[0] / (2.0 * step))

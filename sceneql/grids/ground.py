@@ -1,0 +1,33 @@
+"""The cells of a model with their numbers in an island."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from sceneql.grids.domain.cells import Cells
+    from sceneql.system import Assembly
+
+
+class Ground:
+    """Centers, volumes and what is divided by them, as offsets into the floats of the island."""
+
+    def __init__(self, cells: Cells, assembly: Assembly) -> None:
+        self.cells = cells
+        self.count = len(cells.volumes)
+        self.inside = cells.volumes > 0.0
+        self.centers = cells.centers()
+        if cells.flat:
+            self.centers[:, 2] = 0.0
+        low_z = -0.5 * cells.spacing[2] if cells.flat else cells.low[2]
+        self.box_at = assembly.floats([*cells.low[:2], low_z, *cells.spacing])
+        self.volumes_at = assembly.floats(cells.volumes)
+        self.divisors_at = assembly.floats(np.where(self.inside, cells.volumes, 1.0))
+        """1 outside, where nothing is divided by it."""
+
+    @property
+    def memory(self) -> tuple[int, ...]:
+        """What medium.layout_of reads."""
+        return (self.volumes_at, self.box_at, *self.cells.shape)

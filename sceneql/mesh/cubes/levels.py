@@ -1,0 +1,75 @@
+"""Triangles of the cells of one size, and the cells, groups and edges of a grid as numbers. Imports numpy and numba."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from sceneql.mesh.cubes.cases import cases
+from sceneql.mesh.cubes.grid import BLOCK, Grid
+from sceneql.mesh.cubes.grid_extraction import Found, GridExtraction
+from sceneql.mesh.cubes.polygonise import connected
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats, Ints
+
+    Keys = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Level:
+    """Triangles of the cells of one size."""
+
+    places: Floats
+    normals: Floats
+    triangles: Ints
+    """(t, 3)"""
+    doubled: Keys
+    """(v, 3) middles of the crossed edges in half cells, for the vertices on edges."""
+    cells: Keys
+    """(t, 3) the cell of each triangle."""
+    bent: NDArray[np.bool_]
+    """(t,) whether the surface turns much in it."""
+
+
+def level(shop: GridExtraction, found: Found, blocks: int) -> Level:
+    """The triangles of the first so many blocks."""
+    import numpy as np
+
+    triangles, bent = connected(shop, found, blocks)
+    key = found.keys.astype(np.int64)
+    owner = np.repeat(found.blocks.astype(np.int64), np.diff(found.begin), axis=0)
+    doubled = 2 * (BLOCK * owner + _within(key // 3))
+    doubled[np.arange(len(key)), key % 3] += 1
+    cube = found.cubes[: len(bent)]
+    inside = np.repeat(found.blocks[:blocks].astype(np.int64), np.diff(found.cube_at[: blocks + 1]), axis=0)
+    cells = BLOCK * inside + _within(cube[:, 0].astype(np.int64))
+    counts = np.diff(cases().start)[cube[:, 1]]
+    return Level(
+        found.place, found.normal, triangles, doubled, np.repeat(cells, counts, axis=0), np.repeat(bent == 1, counts)
+    )
+
+
+def _within(place: Keys) -> Keys:
+    """(n, 3) of places (n,) in a block."""
+    import numpy as np
+
+    return np.stack([place % BLOCK, place // BLOCK % BLOCK, place // BLOCK**2], axis=1)
+
+
+class Numbering:
+    """Cells, groups and edges of a grid as single numbers."""
+
+    def __init__(self, grid: Grid) -> None:
+        import numpy as np
+
+        size = 2 * BLOCK * (grid.blocks.astype(np.int64) + 2)
+        self.strides = np.array([1, size[0], size[0] * size[1]])
+
+    def of(self, places: Keys) -> Keys:
+        """(n,) of (n, 3), distinct for cells, for groups, and for middles of edges in half cells."""
+        found: Keys = (places + 1) @ self.strides
+        return found

@@ -1,0 +1,171 @@
+"""One instant of a run: values, states, shapes and surfaces of its parts then."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Protocol, cast
+
+import numpy as np
+
+from sceneql.failure import RunFailure, failing_as
+from sceneql.kinds import Contact, Material, Model, Object, Ref, Value
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Expr, Link, Symbol
+from sceneql.shapes.color import default_color, linear
+from sceneql.shapes.placement import Placed, compose
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Surface
+    from sceneql.frame import Shape as Drawn
+    from sceneql.graph import SimulationGraph
+    from sceneql.kinds.moment import Remembered
+    from sceneql.run.history import History
+    from sceneql.system import ModelState
+
+IDENTITY = np.eye(3, 4)
+
+
+class Running(Protocol):
+    """What instants need of their run, and a run ahead of it (run.Run)."""
+
+    graph: SimulationGraph
+    orders: dict[str, int]
+    """All that any picture draws, in order."""
+    palette: dict[str, int]
+    """For every object and model its place in the row of default colors."""
+    holders: dict[str, str]
+    """For every object inside another the one that draws it."""
+    history: History
+
+    def moments(self, times: Iterable[float]) -> Iterator[Instant]:
+        """The instants [s] asked for, in order."""
+
+    def state(self, name: str) -> ModelState:
+        """The latest state of a model that is solved, or of a contact."""
+
+    def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
+        """Low and high corner (3,) of what the parts draw over the whole run."""
+
+    def course(self, value: Value, variant: str | None, until: float) -> tuple[Floats, Floats]:
+        """Times (n,) [s] and an asked-for value at each (n, ...), up to an instant, in a variant of the script."""
+
+
+@dataclass
+class Instant:
+    """One instant of a run (kinds.Moment)."""
+
+    run: Running
+    now: float
+    """[s]"""
+    asked: bool = False
+    """Whether it was asked for what may be otherwise at another instant."""
+    _states: dict[str, ModelState] = field(default_factory=dict)
+
+    @property
+    def time(self) -> float:
+        """[s]"""
+        self.asked = True
+        return self.now
+
+    @property
+    def end(self) -> float:
+        """When the run ends [s]."""
+        return self.run.graph.settings.clock.end
+
+    @property
+    def variants(self) -> tuple[str, ...]:
+        """The names of the script's variants."""
+        return self.run.graph.variants
+
+    def at(self, value: Value) -> Any:
+        """The value now: float or float64 array, SI. Raises RunFailure if it is not finite."""
+        now = self._evaluate(value.expr)
+        if not np.isfinite(now).all():
+            raise RunFailure("a value is not finite now", part="", time=self.now, span=value.span)
+        return now
+
+    def measure(self, value: Value) -> Any:
+        """The value now, finite or not."""
+        return self._evaluate(value.expr)
+
+    def _evaluate(self, expr: Expr) -> Any:
+        return evaluate(expr, self._look_up, arrays=True)
+
+    def _look_up(self, node: Symbol | Link) -> Any:
+        if isinstance(node, Symbol):
+            if node.name == "time":
+                return self.time
+            raise KeyError(node.name)
+        return self.read(node.task, node.output)
+
+    def past(self, value: Remembered) -> list[tuple[float, Any]]:
+        """(time [s], value) at the instants before that a part asked for, oldest first."""
+        return self.run.history.past(value, self.time)
+
+    def course(self, value: Value, variant: str | None = None, until: float = math.inf) -> tuple[Floats, Floats]:
+        """Times (n,) [s] and a value that an overlay asked for at each of them (n, ...)."""
+        return self.run.course(value, variant, until)
+
+    def read(self, task: str, output: str) -> Any:
+        """An output of a part now."""
+        kind = self.run.graph.tasks[task].kind
+        if isinstance(kind, Model) and kind.kinematic:
+            return self._evaluate(kind.formula(output))
+        if isinstance(kind, Model | Contact):
+            return kind.read(output, self.state(task))
+        if isinstance(kind, Object) and output in kind.gives:
+            return kind.read(output, self)
+        return self._evaluate(getattr(kind, output).expr)
+
+    def state(self, name: str) -> ModelState:
+        """The state of a dynamic model or contact now."""
+        self.asked = True
+        if name not in self._states:
+            self._states[name] = self.run.state(name)
+        return self._states[name]
+
+    def object(self, ref: Ref) -> Object:
+        """The kind of an object."""
+        return cast(Object, self.run.graph.tasks[ref.name].kind)
+
+    def surface(self, name: str, material: Ref | None, color: Value | None) -> Surface:
+        """The surface of a drawn part: its material's, its color in place of that, a default by order."""
+        from sceneql.frame import Surface
+
+        own = None if color is None else linear(self.at(color))
+        if material is None:
+            return Surface(color=own or default_color(self.run.palette.get(name, 0)), roughness=0.35)
+        kind = cast(Material, self.run.graph.tasks[material.name].kind)
+        return kind.surface(self, own)
+
+    def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
+        """Low and high corner (3,) of what the parts draw over the whole film; of all that is drawn for no names."""
+        return self.run.bounds(list(names) or list(self.run.orders))
+
+    def place(self, name: str) -> Floats:
+        """(3, 4) map to the world from the coordinates that an object's position is told in."""
+        holder = self.run.holders.get(name)
+        if holder is None:
+            return IDENTITY
+        kind = self.run.graph.tasks[holder].kind
+        return compose(self.place(holder), kind.local(self)) if isinstance(kind, Placed) else self.place(holder)
+
+    def lower(self, names: Iterable[str]) -> list[Drawn]:
+        """The shapes of the named objects and models."""
+        shapes: list[Drawn] = []
+        for name in names:
+            task = self.run.graph.tasks[name]
+            with failing_as(name, self.now, task.span):
+                if isinstance(task.kind, Object):
+                    shapes += task.kind.lower(name, IDENTITY, self)
+                elif isinstance(task.kind, Model):
+                    shapes += task.kind.lower(name, self.state(name), self)
+        return shapes
+
+    @cached_property
+    def everything(self) -> list[str]:
+        """All that any picture draws, in order."""
+        return list(self.run.orders)
