@@ -1,4 +1,3 @@
-# mypy: ignore-errors
 """Where compiled code begins: the one decorator, the cache folder, the compile account and the thread pool.
 
 Imports numba; only ``*_kernels.py`` files and those that run them import this module.
@@ -18,19 +17,15 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import cache
+from importlib import import_module
 from importlib.util import find_spec, resolve_name
 from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
-try:
-    import fcntl
-except ImportError:  # not on Windows
-    fcntl = None
-
 import numba
 from numba import types
-from numba.core import cgutils, event
+from numba.core.event import Listener
 from numba.extending import intrinsic
 
 from sceneql.compiled.numba.kernel_compiler import (
@@ -40,6 +35,12 @@ from sceneql.compiled.numba.kernel_compiler import (
     call_by_name,
     collecting_later,
 )
+
+fcntl: Any = import_module("fcntl") if find_spec("fcntl") else None  # not on Windows
+config: Any = numba.config
+njit: Any = numba.njit
+cgutils: Any = import_module("numba.core.cgutils")
+numba_event: Any = import_module("numba.core.event")
 
 OURS = ("sceneql", "renderers", "sceneql_generated")
 _IMPORTS = re.compile(r"^[ \t]*((?:from|import)\b[^\n(]*(?:\([^)]*\))?)", re.MULTILINE)
@@ -51,7 +52,7 @@ _HIDDEN_IMPORTS = re.compile(r"[;:][ \t]*(?:from|import)\b|\\\n")
 def _cache_home() -> Path:
     """Folder of all compiled code of this version of numba; SCENEQL_CACHE moves it."""
     home = os.environ.get("SCENEQL_CACHE") or os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    mode = "plain" if numba.config.DISABLE_JIT else "compiled"
+    mode = "plain" if config.DISABLE_JIT else "compiled"
     folder = Path(home) / "sceneql" / f"numba-{numba.__version__}-{mode}"
     folder.mkdir(parents=True, exist_ok=True)
     return folder
@@ -142,7 +143,7 @@ def _folder(module: str) -> Path:
     return CACHE / f"{module.rpartition('.')[2]}-{digest.hexdigest()[:16]}"
 
 
-class CompileAccount(event.Listener):
+class CompileAccount(Listener):
     """Counts numba compilations (not loads from the cache) and the seconds they took, nested ones once."""
 
     def __init__(self) -> None:
@@ -183,13 +184,13 @@ class CompileAccount(event.Listener):
 
 
 compiled = CompileAccount()
-event.register("numba:compile", compiled)
+numba_event.register("numba:compile", compiled)
 
 
 @contextmanager
 def alone(path: Path) -> Iterator[None]:
     """Let one process at a time through, where the system has such locks: what it compiles the next one loads."""
-    if fcntl is None or numba.config.DISABLE_JIT:
+    if fcntl is None or config.DISABLE_JIT:
         yield
         return
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -211,11 +212,11 @@ def kernel(signature: Any, *, inner: bool = False, **options: Any) -> Callable[[
 
         def made(folder: Path, compiler: Any) -> Any:
             with alone(folder / function.__name__), collecting_later():
-                numba.config.CACHE_DIR = str(folder)
-                return numba.njit(signature, cache=True, pipeline_class=compiler, **options)(function)
+                config.CACHE_DIR = str(folder)
+                return njit(signature, cache=True, pipeline_class=compiler, **options)(function)
 
         whole = made(folder, KernelCompiler)
-        if not numba.config.DISABLE_JIT:
+        if not config.DISABLE_JIT:
             call_by_name(whole, None if inner else lambda: made(folder / "from_python", WayInCompiler))
         return whole
 
@@ -225,10 +226,10 @@ def kernel(signature: Any, *, inner: bool = False, **options: Any) -> Callable[[
 COMMON = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 HELPER = {**COMMON, "no_cpython_wrapper": True, "pipeline_class": HelperCompiler}
 
-inlined = numba.njit(**HELPER)
+inlined = njit(**HELPER)
 """A helper of kernels: compiled with its caller, for the types it is called with; not callable from Python."""
 
-woven = numba.njit(inline="always", **COMMON)
+woven = njit(inline="always", **COMMON)
 """Put into its caller before compilation: for small functions around a large one, whose code they would repeat."""
 
 
@@ -237,13 +238,13 @@ def lean(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     return kernel(signature, _nrt=False, **options)
 
 
-lean_inlined = numba.njit(_nrt=False, **HELPER)
+lean_inlined = njit(_nrt=False, **HELPER)
 """A helper of lean kernels."""
 
 
 def address(function: Any, kind: Any) -> Any:
     """Address of a compiled kernel of FunctionType ``kind``, for ``function_at``. Keep the kernel alive."""
-    if numba.config.DISABLE_JIT:
+    if config.DISABLE_JIT:
         return function
     compiled = function.overloads[kind.signature.args]
     return compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
@@ -255,7 +256,7 @@ def function_at(kind: Any) -> Any:
     numba can take functions as arguments, but asks Python for their addresses at every call (50 us each). Kernels call
     by name what is always the same one (compiling.call_by_name).
     """
-    if numba.config.DISABLE_JIT:
+    if config.DISABLE_JIT:
         return lambda function: function
 
     @intrinsic
@@ -276,7 +277,7 @@ def function_at(kind: Any) -> Any:
 
 def compiles() -> bool:
     """Whether kernels are compiled; NUMBA_DISABLE_JIT=1 lets Python run them as they are written."""
-    return not numba.config.DISABLE_JIT
+    return not config.DISABLE_JIT
 
 
 def thread_count() -> int:

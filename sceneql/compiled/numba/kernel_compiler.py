@@ -6,8 +6,10 @@ kernels compute nor what they may contain, but for closures, comprehensions, ``w
 """
 
 import gc
+from collections.abc import Callable
 from contextlib import contextmanager
 from copy import copy
+from typing import Any
 
 from llvmlite import binding
 from llvmlite.binding import ffi
@@ -179,7 +181,7 @@ class WayInCompiler(CompilerBase):
         return _pipeline(LowerWayIn, NoPythonBackend)
 
 
-def call_by_name(kernel, way_in):
+def call_by_name(kernel: Any, way_in: Callable[[], Any] | None) -> None:
     """Let other kernels call this one by its name, where numba would put its code into each of them once more.
 
     The name is the function's own: what numba makes of it differs from process to process, and callers are cached.
