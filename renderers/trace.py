@@ -26,7 +26,7 @@ class Trace(Renderer):
 
     def kernels(self, traced: Collection[str]) -> tuple[str, ...]:
         """Of the tracer."""
-        from renderers.tracing import TOLERANCE, certified
+        from renderers.tracing.certified import TOLERANCE, certified
 
         if not traced:
             return ("renderers.tracing.draw",)

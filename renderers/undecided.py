@@ -21,7 +21,7 @@ class Undecided(Renderer):
 
     def kernels(self, traced: Collection[str]) -> tuple[str, ...]:
         """Of the tracer."""
-        from renderers.tracing import certified
+        from renderers.tracing.certified import certified
 
         return certified("renderers.tracing.normals") if traced else ("renderers.tracing.normals",)
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import stage
 from renderers.trace import Trace
-from renderers.tracing import TOLERANCE
+from renderers.tracing.certified import TOLERANCE
 from renderers.tracing.pack import pack
 from renderers.tracing.probe import probe
 from renderers.tracing.scene_kernels import ANSWERS, ANYWHERE, FAR, FIRST, NEXT, WANT

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from renderers.tracing import TOLERANCE
+from renderers.tracing.certified import TOLERANCE
 from renderers.tracing.filter.filter_kernels import deepen, widen
 from renderers.tracing.filter.planes_kernels import KEYS, LANES, WIDE, lay_out
 from renderers.tracing.filter.refine_kernels import shade_rows

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from renderers.tracing import TOLERANCE
+from renderers.tracing.certified import TOLERANCE
 from renderers.tracing.light.sampling_kernels import subpixels
 from renderers.tracing.normals_kernels import normal_rows, undecided_rows
 from renderers.tracing.pack import pack

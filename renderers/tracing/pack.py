@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from renderers.tracing import TOLERANCE
+from renderers.tracing.certified import TOLERANCE
 from renderers.tracing.scene_kernels import (
     CAMERA,
     CELLS,

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from renderers.tracing import TOLERANCE
 from renderers.tracing.camera_kernels import TILE
+from renderers.tracing.certified import TOLERANCE
 from renderers.tracing.pack import pack
 from renderers.tracing.picture import over_rows
 from renderers.tracing.probe_kernels import probe_rows

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from typing import TYPE_CHECKING, TypeVar
 
-from renderers.tracing import TOLERANCE
+from renderers.tracing.certified import TOLERANCE
 from sceneql.frame import Implicit
 
 if TYPE_CHECKING:
