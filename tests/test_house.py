@@ -1,0 +1,59 @@
+"""The house in numbers (house.py): rooms, arrows and contracts stay within what is good for them."""
+
+import pytest
+
+from house import BARS, lazy_links
+from modules import House
+
+LAZY = {
+    "compiled.threads_kernels": {"compiled.start_threads_kernels": "where a first term is large enough for threads"},
+    "contacts.back_off_kernels": {"contacts.back_off_in_stages_kernels": "for methods whose stages Newton solves"},
+    "contacts.body_path_kernels": {"contacts.search_kernels": "when the first body comes near"},
+    "contacts.shape_kernels": {"contacts.moving_kernels": "for surfaces that move"},
+    "contacts.shapes.implicit_kernels": {"contacts.shapes.nearest_kernels": "when a body has come near the surface"},
+    "field.packets.packet_kernels": {
+        "field.packets.enclose_kernels": "for fields that are more than a density",
+        "field.packets.inside_kernels": "for solids that one with an exact form is cut by",
+        "field.packets.packet_near_kernels": "for bundles of rays at skeletons",
+        "field.packets.packet_skeleton_kernels": "for fields with skeletons",
+        "field.packets.tape_bundle_kernels": "for bundles of rays at a tape",
+    },
+    "field.packets.polynomial_search_kernels": {
+        "field.packets.polynomial_bundle_kernels": "for bundles of rays at a polynomial",
+    },
+    "field.roots.density_roots_kernels": {"field.packets.density_bundle_kernels": "for bundles of rays at a density"},
+    "field.roots.isolation_kernels": {"field.roots.jumps_kernels": "for fields that jump, or end"},
+    "grids.grid_stage_kernels": {
+        "grids.embedded_kernels": "for steps that a tolerance chooses",
+        "grids.iterate_kernels": "for stages that are not solved to rounding at once",
+    },
+    "linear.multifrontal_kernels": {"linear.multifrontal_general_kernels": "when a matrix comes that is not symmetric"},
+    "march.events_kernels": {"march.locate_kernels": "when the first event is met"},
+    "stepping.radau_kernels": {"stepping.radau_tallies_kernels": "when the first tally changes"},
+}
+"""Strings that close a circle, by the module where they stand: what they name, and when, or for what, it is called."""
+
+
+@pytest.fixture(scope="module")
+def house():
+    """All files, read once."""
+    return House()
+
+
+@pytest.mark.parametrize("bar", [bar for bar in BARS if bar.today is None], ids=lambda bar: bar.name)
+def test_the_house_stays_within_its_bars(house, bar):
+    assert bar.value(house) <= bar.goal
+
+
+def test_every_string_that_closes_a_circle_is_known(house):
+    known = {(f"sceneql.{one}", f"sceneql.{other}") for one, named in LAZY.items() for other in named}
+    assert set(lazy_links(house)) == known
+
+
+def test_words_are_found_by_one_rule(house):
+    from sceneql.compiler.catalogue import Catalogue
+
+    catalogue = Catalogue()
+    assert {family: set(words) for family, words in house.words.items()} == {
+        family: set(catalogue.words(family)) for family in catalogue.families
+    }
