@@ -4,6 +4,7 @@ import json
 import re
 import subprocess
 import sys
+from importlib.metadata import packages_distributions
 from pathlib import Path
 
 import pytest
@@ -45,6 +46,13 @@ def test_check_imports_neither_numpy_nor_numba(tmp_path):
     names = modules_after(tmp_path, FALL, "check")
     assert not names & {"numpy", "numba", "scipy", "trimesh", "imageio", "av", "matplotlib", "rich", "PIL"}
     assert "importlib.metadata" not in names  # an eighth of the time that a check takes
+
+
+def test_check_imports_three_libraries_and_what_these_import(tmp_path):
+    theirs = {"annotated_types", "pydantic_core", "typing_extensions", "typing_inspection"}
+    installed = {name for name in packages_distributions() if not name.startswith("_")} - {"sceneql", "renderers"}
+    tops = {name.partition(".")[0] for name in modules_after(tmp_path, FALL, "check")}
+    assert tops & installed <= {"click", "pydantic", "yaml"} | theirs
 
 
 def test_check_imports_nothing_that_only_runs_need(tmp_path):
