@@ -132,7 +132,7 @@ def check(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path |
 
     graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
     found = Diagnostics()
-    patched: list[tuple[str | None, Sequence[Any]]] = [(name, sets) for name in graph.variants if variant is None]
+    patched: list[tuple[str | None, Sequence[Any]]] = [(name, sets) for name in graph.variants.names if variant is None]
     patched += [(variant, (*sets, *more)) for study in graph.settings.studies.values() for more in alone(study)]
     for name, patches in patched:
         try:

@@ -57,6 +57,17 @@ class LeftOut:
 
 
 @dataclass(frozen=True, slots=True)
+class Variants:
+    """The variants of a script, of which a graph may be one."""
+
+    names: tuple[str, ...] = ()
+    may_fail: bool = False
+    """Whether the script says that the run of this one may fail."""
+    load: Callable[[str], SimulationGraph] | None = field(default=None, compare=False)
+    """The graph of one by its name."""
+
+
+@dataclass(frozen=True, slots=True)
 class SimulationGraph:
     """Everything the run needs, and an account of the rest."""
 
@@ -77,15 +88,10 @@ class SimulationGraph:
     left_out: tuple[LeftOut, ...] = ()
     warnings: tuple[Diagnostic, ...] = ()
     script_hash: str = ""
-    variants: tuple[str, ...] = ()
-    """Names of the script's variants."""
-    may_fail: bool = False
-    """Whether the script says that the run of this variant of it may fail."""
-    variant_of: Callable[[str], SimulationGraph] | None = field(default=None, compare=False)
-    """Loads a variant of the script."""
+    variants: Variants = Variants()
 
     def variant(self, name: str) -> SimulationGraph:
         """The graph of a variant of the script. Raises ScriptError."""
-        if self.variant_of is None:
+        if self.variants.load is None:
             raise LookupError("the graph does not know its script")
-        return self.variant_of(name)
+        return self.variants.load(name)

@@ -49,10 +49,9 @@ def load(
         settings=(*Settings.model_fields, "sceneql", "define", "variants"),
         found=found,
     )
-    return replace(
-        compile_script(script, Catalogue(words), found, pruned=pruned),
-        variant_of=cache(lambda name: load(path, variant=name, sets=sets, words=words, pruned=pruned)),
-    )
+    graph = compile_script(script, Catalogue(words), found, pruned=pruned)
+    of_name = cache(lambda name: load(path, variant=name, sets=sets, words=words, pruned=pruned))
+    return replace(graph, variants=replace(graph.variants, load=of_name))
 
 
 @dataclass
@@ -271,7 +270,7 @@ class Tools:
         from sceneql.pictures.layout import boxes, page
 
         pixels = page(output.pixels)
-        for item, (left, top, wide, high) in boxes(output.layout, self.graph.variants, output.pixels):
+        for item, (left, top, wide, high) in boxes(output.layout, self.graph.variants.names, output.pixels):
             block, scale = pixels[top : top + high, left : left + wide], len(pixels) / high
             if isinstance(item, str):
                 block[:] = self._variant(item, (wide, high), moment.time, scale)

@@ -11,7 +11,7 @@ from scipy.sparse import block_array, csr_array, diags_array, eye_array, kron
 
 from sceneql.linear import species, species_kernels
 from sceneql.linear.stage import _iterated
-from sceneql.system import Grid
+from sceneql.system import Cells, Grid
 from test_reaction_diffusion import Fields
 
 
@@ -38,9 +38,8 @@ def system(shape, stiffness, periodic=False, rates=((-0.3, 2.0), (-1.5, 0.4))):
     matrix = csr_array(block_array(blocks))
     matrix.sort_indices()
     ways = (periodic,) * 3
-    grids = tuple(
-        Grid(shape, k * n, 0, 0, (0, 0, 0), ways, False, -1, np.zeros(n, dtype=bool), 0, 0, False) for k in range(2)
-    )
+    cells = Cells(shape, ways, np.zeros(n, dtype=bool), 0, 0)
+    grids = tuple(Grid(cells, k * n, 0, 0, (0, 0, 0), False, -1, False) for k in range(2))
     made = SimpleNamespace(grids=grids, y=np.zeros(2 * n), floats=np.ones(n))
     own, floats, _ = species.plan(made, np.arange(2 * n), matrix)
     return matrix, np.concatenate([_iterated(matrix, species_kernels), own]), np.zeros(floats)

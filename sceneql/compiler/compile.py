@@ -18,7 +18,7 @@ from sceneql.compiler.passes.prune import prune
 from sceneql.compiler.passes.sizes import check_sizes
 from sceneql.compiler.passes.stable_steps import warn_of_steps
 from sceneql.compiler.studies import check_studies
-from sceneql.graph import SimulationGraph, Task
+from sceneql.graph import SimulationGraph, Task, Variants
 from sceneql.kinds import Camera, Clock, Exceeds, Model, Object, Output, Picture
 from sceneql.language.script import Script
 from sceneql.language.tree import unsure
@@ -68,8 +68,7 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
         ),
         warnings=found.warnings,
         script_hash=script.hash,
-        variants=script.variants,
-        may_fail=script.may_fail,
+        variants=Variants(script.variants, script.may_fail),
     )
 
 

@@ -20,7 +20,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
         _, _, part, spans = system.ranges[0]
         message = f"alternating directions march a field on a grid, and '{part}' is none"
         raise ScriptError([Diagnostic("no-grid", message, spans[0], "let auto march it")])
-    numbers = [grid.at, *grid.shape, grid.volumes_at, grid.sink_at, *grid.faces_at]
-    axes = "x, y and z" if grid.shape[2] > 1 else "x and y"
+    numbers = [grid.at, *grid.cells.shape, grid.volumes_at, grid.sink_at, *grid.faces_at]
+    axes = "x, y and z" if grid.cells.shape[2] > 1 else "x and y"
     text = f"tridiagonal systems along {axes} in turn"
     return Prepared(np.zeros(1), np.array(numbers, dtype=np.int64), 4 * len(system.y), text)

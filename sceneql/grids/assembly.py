@@ -17,7 +17,7 @@ from sceneql.kinds import Formula
 from sceneql.quantities.derivative import components, differentiate
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import TIME_SYMBOL, Expr, Link, Number, Symbol, walk
-from sceneql.system import Grid, Slopes
+from sceneql.system import Cells, Grid, Slopes
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -104,17 +104,13 @@ class _Builder:
         if self.drift is not None:
             self._drifts(self.drift, flow_of(self.drift, cells, ties, given, periodic), given, periodic)
         return Grid(
-            shape=cells.shape,
+            cells=Cells(cells.shape, periodic, ~self.inside, self.ground.volumes_at, self.ground.box_at),
             at=self.at,
             volumes_at=volumes,
             sink_at=sink,
             faces_at=(faces[0], faces[1], faces[2]),
-            periodic=periodic,
             varying=varying or reaction > 0,
             fed_at=-1 if varying or self.feeding or self.drift is not None else fed,
-            outside=~self.inside,
-            insides_at=self.ground.volumes_at,
-            box_at=self.ground.box_at,
             carried=self.drift is not None,
             keeps=self._keeps(given),
         )

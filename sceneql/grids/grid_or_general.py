@@ -41,7 +41,7 @@ def grid_or_general(stepper: Stepper, grid: Grid) -> Stepper:
     """
     if stepper.on_grid is None:
         return stepper
-    many = prod(grid.shape) > MOST_CARRIED[3 if grid.shape[2] > 1 else 2]
+    many = prod(grid.cells.shape) > MOST_CARRIED[3 if grid.cells.shape[2] > 1 else 2]
     if not grid.carried or many or stepper.linear != "auto":
         return stepper.on_grid
     if stepper.adaptive:

@@ -32,4 +32,4 @@ def numbers(of: Value, assembly: Assembly) -> tuple[int, ...]:
     if grid is None:
         text = f"'{of.expr.task}.{of.expr.output}' is no field on a grid"
         raise ScriptError([Diagnostic("no-field", text, of.span, "name one of a `diffusion` or `reaction_diffusion`")])
-    return (grid.at, *grid.shape, grid.insides_at, grid.box_at, *map(int, grid.periodic))
+    return (grid.at, *grid.cells.shape, grid.cells.insides_at, grid.cells.box_at, *map(int, grid.cells.periodic))

@@ -81,12 +81,12 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     absolute *= largest if stepper.by_scale else 1.0
     separated = separate(grid, system.floats) if _may_separate(grid, stepper.linear) else None
     name, why = _choice(grid, stepper.linear, separated is not None)
-    cells = grid.shape[0] * grid.shape[1] * grid.shape[2]
+    cells = grid.cells.shape[0] * grid.cells.shape[1] * grid.cells.shape[2]
     plan = _PLANS[name](grid) if separated is None or name != "fast_transform" else _transform(grid, separated)
     solver = number_of(function(KERNELS[name]), linear.SOLVE)
     exact = int(MOST[name] == 1)
     offsets = (grid.volumes_at, grid.sink_at, *grid.faces_at)
-    head = [solver, exact, *grid.shape, grid.at, *offsets, int(grid.varying), MOST[name], grid.fed_at]
+    head = [solver, exact, *grid.cells.shape, grid.at, *offsets, int(grid.varying), MOST[name], grid.fed_at]
     assert len(head) == linear.PLAN
     store = 2 * cells + plan.room + linear.RECORD
     return Prepared(
@@ -119,7 +119,7 @@ def report(scratch: Floats) -> LinearReport:
 
 def _choice(grid: Grid, asked: str, separable: bool) -> tuple[str, str]:
     """The linear solver by name, and why."""
-    nx, ny, nz = grid.shape
+    nx, ny, nz = grid.cells.shape
     dims, cells = (3 if nz > 1 else 2), nx * ny * nz
     if asked == "direct" and cells > LARGEST_FACTORED[dims]:
         raise LimitRefused(
@@ -136,7 +136,7 @@ def _choice(grid: Grid, asked: str, separable: bool) -> tuple[str, str]:
         )
     if asked != "auto":
         return asked, "as the script says"
-    if separable and grid.shape[0] <= LONGEST_ROW:
+    if separable and grid.cells.shape[0] <= LONGEST_ROW:
         return "fast_transform", "chosen since the box and its coefficient are the same in every row"
     if cells > DIRECT_CELLS[dims]:
         return "multigrid", f"chosen since {cells} cells are more than {DIRECT_CELLS[dims]} (factors fill up)"
@@ -146,7 +146,7 @@ def _choice(grid: Grid, asked: str, separable: bool) -> tuple[str, str]:
 
 
 def _multigrid(grid: Grid) -> _Plan:
-    shapes = [grid.shape]
+    shapes = [grid.cells.shape]
     while any(n > COARSEST for n in shapes[-1]):
         nx, ny, nz = ((n + 1) // 2 if n > COARSEST else n for n in shapes[-1])
         shapes.append((nx, ny, nz))
@@ -154,11 +154,11 @@ def _multigrid(grid: Grid) -> _Plan:
     starts = list(accumulate(sizes, initial=0))
     table = [number for shape, start in zip(shapes, starts, strict=False) for number in (*shape, start)]
     text = f"conjugate gradients with a V-cycle over {len(shapes)} grids"
-    return _Plan([len(shapes), *table], (starts[-1] + grid.shape[0] + 1) // 2 + 1, text)
+    return _Plan([len(shapes), *table], (starts[-1] + grid.cells.shape[0] + 1) // 2 + 1, text)
 
 
 def _iterations(grid: Grid) -> _Plan:
-    nx, ny, nz = grid.shape
+    nx, ny, nz = grid.cells.shape
     return _Plan([], nx * ny * nz, "an iteration over all cells")
 
 
@@ -176,9 +176,9 @@ def _direct(grid: Grid) -> _Plan:
 
 def _may_separate(grid: Grid, asked: str) -> bool:
     """Whether it is worth looking for modes of rows."""
-    nx, _, nz = grid.shape
+    nx, _, nz = grid.cells.shape
     wanted = asked == "fast_transform" or (asked == "auto" and nx <= LONGEST_ROW)
-    deep_or_bent = nz > 1 or grid.varying or grid.periodic[1] or nx > 4 * LONGEST_ROW or grid.outside.any()
+    deep_or_bent = nz > 1 or grid.varying or grid.cells.periodic[1] or nx > 4 * LONGEST_ROW or grid.cells.outside.any()
     return wanted and not deep_or_bent
 
 
@@ -186,7 +186,7 @@ def separate(grid: Grid, floats: Floats) -> tuple[Floats, ...] | None:
     """Modes of a row (nx, nx), transposed, eigenvalues, conductances and sinks along y, volume; None: rows differ."""
     import numpy as np
 
-    nx, ny, _ = grid.shape
+    nx, ny, _ = grid.cells.shape
     n = nx * ny
     offsets = (grid.volumes_at, grid.sink_at, *grid.faces_at[:2])
     volume, sink, gx, gy = (floats[at : at + n].reshape(ny, nx) for at in offsets)
@@ -208,7 +208,7 @@ def _transform(grid: Grid, separated: tuple[Floats, ...]) -> _Plan:
     import numpy as np
 
     table = np.concatenate([np.ravel(part) for part in separated]).view(np.int64)
-    cells = grid.shape[0] * grid.shape[1]
+    cells = grid.cells.shape[0] * grid.cells.shape[1]
     return _Plan(table, 3 * cells, "modes of the rows along x and tridiagonal systems along y")
 
 
@@ -217,13 +217,13 @@ def _pattern(grid: Grid) -> tuple[Any, NDArray[int64]]:
     import numpy as np
     from scipy.sparse import csr_array
 
-    n = int(np.prod(grid.shape))
-    cells = np.arange(n, dtype=np.int64).reshape(grid.shape[::-1])
+    n = int(np.prod(grid.cells.shape))
+    cells = np.arange(n, dtype=np.int64).reshape(grid.cells.shape[::-1])
     rows, columns, faces = [cells.ravel()], [cells.ravel()], [np.zeros(n, dtype=np.int64)]
-    for axis in range(3 if grid.shape[2] > 1 else 2):
+    for axis in range(3 if grid.cells.shape[2] > 1 else 2):
         before = np.roll(cells, 1, axis=2 - axis)
         tied = np.ones(cells.shape, dtype=bool)
-        if not grid.periodic[axis]:
+        if not grid.cells.periodic[axis]:
             tied[tuple(slice(1) if k == 2 - axis else slice(None) for k in range(3))] = False
         high, low = cells[tied], before[tied]
         rows += [high, low]

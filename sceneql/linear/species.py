@@ -20,9 +20,9 @@ FEWEST = {2: 30_000, 3: 2_000}
 def one_grid(system: System, core: NDArray[int64]) -> bool:
     """Whether unknowns are species on one grid that do not drift, and enough of them."""
     grids = system.grids
-    if not grids or any(grid.carried or grid.shape != grids[0].shape for grid in grids):
+    if not grids or any(grid.carried or grid.cells.shape != grids[0].cells.shape for grid in grids):
         return False
-    shape = grids[0].shape
+    shape = grids[0].cells.shape
     return prod(shape) >= FEWEST[3 if shape[2] > 1 else 2] and bool((_places(grids, len(system.y))[core] >= 0).all())
 
 
@@ -35,8 +35,8 @@ def plan(system: System, core: NDArray[int64], pattern: Any) -> tuple[NDArray[in
 
     grids = system.grids
     s, first = len(grids), grids[0]
-    n, sides = prod(first.shape), (3 if first.shape[2] > 1 else 2)
-    shapes = [first.shape]
+    n, sides = prod(first.cells.shape), (3 if first.cells.shape[2] > 1 else 2)
+    shapes = [first.cells.shape]
     while any(count > 1 for count in shapes[-1]):  # what is even over the whole grid is solved by the last cell
         nx, ny, nz = ((count + 1) // 2 for count in shapes[-1])
         shapes.append((nx, ny, nz))
@@ -47,7 +47,7 @@ def plan(system: System, core: NDArray[int64], pattern: Any) -> tuple[NDArray[in
     at = np.full(s * n, -1, dtype=np.int64)
     at[places] = np.arange(len(core))
     entry = _Entries(pattern, at.reshape(s, n))
-    cells = np.arange(n).reshape(first.shape[::-1])
+    cells = np.arange(n).reshape(first.cells.shape[::-1])
     blocks = [entry.of(m, cells.ravel(), q, cells.ravel()) for m in range(s) for q in range(s)]
     ties = []
     for direction in range(2 * sides):
@@ -58,7 +58,7 @@ def plan(system: System, core: NDArray[int64], pattern: Any) -> tuple[NDArray[in
     head = [len(shapes), s, 2 * sides, starts[-1], *table]
     numbers = np.concatenate([head, places, *blocks, *ties, volumes.view(np.int64)]).astype(np.int64)
     text = f"multigrid over {len(shapes)} grids, {s} species of a cell at once, for {len(core)} unknowns"
-    return numbers, starts[-1] + s * first.shape[0], text
+    return numbers, starts[-1] + s * first.cells.shape[0], text
 
 
 def _places(grids: tuple[Grid, ...], size: int) -> NDArray[int64]:
@@ -66,7 +66,7 @@ def _places(grids: tuple[Grid, ...], size: int) -> NDArray[int64]:
     import numpy as np
 
     found = np.full(size, -1, dtype=np.int64)
-    n = prod(grids[0].shape)
+    n = prod(grids[0].cells.shape)
     for number, grid in enumerate(grids):
         found[grid.at : grid.at + n] = number * n + np.arange(n)
     return found

@@ -52,7 +52,7 @@ class ExactMarch(March):
         return self.end
 
     def _fields(self, values: Floats) -> Any:
-        shape = self._grid.shape[::-1]
+        shape = self._grid.cells.shape[::-1]
         return values.reshape(shape if len(self._axes) == 3 else shape[1:])
 
     def _weights(self, values: Floats) -> Any:
@@ -67,7 +67,7 @@ class ExactMarch(March):
             self._start()
         started = time.perf_counter()
         grid, y = self._grid, self._y1.copy()
-        n = grid.shape[0] * grid.shape[1] * grid.shape[2]
+        n = grid.cells.shape[0] * grid.cells.shape[1] * grid.cells.shape[2]
         cells = slice(grid.at, grid.at + n)
         volume = float(self.floats[grid.volumes_at])
         if self._modes is None:

@@ -116,7 +116,7 @@ class Panel:
             try:
                 self._last = self.run.at(time)
             except RunFailure as failure:
-                if not self.graph.may_fail:
+                if not self.graph.variants.may_fail:
                     raise
                 self.failure = failure
         if self._last is None:

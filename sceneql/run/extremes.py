@@ -33,7 +33,7 @@ class Extremes:
     def look(self, time: float, y: Floats) -> None:
         """Note the field of a state."""
         low, high = self.grid.keeps
-        field = y[self.grid.at : self.grid.at + len(self.grid.outside)][~self.grid.outside]
+        field = y[self.grid.at : self.grid.at + len(self.grid.cells.outside)][~self.grid.cells.outside]
         least, largest = float(field.min(initial=math.inf)), float(field.max(initial=-math.inf))
         way = high - low if high > low and math.isfinite(high - low) else max(abs(least), abs(largest))
         for value, beyond in ((least, low - least), (largest, largest - high)):

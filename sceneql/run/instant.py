@@ -78,7 +78,7 @@ class Instant:
     @property
     def variants(self) -> tuple[str, ...]:
         """The names of the script's variants."""
-        return self.run.graph.variants
+        return self.run.graph.variants.names
 
     def at(self, value: Value) -> Any:
         """The value now: float or float64 array, SI. Raises RunFailure if it is not finite."""

@@ -27,13 +27,13 @@ def ringing(island: IslandRun) -> Diagnostic | None:
     step = march.stepper.first_step
     if grid is None or march.stepper.adaptive or step <= 0.0:
         return None
-    n = grid.shape[0] * grid.shape[1] * grid.shape[2]
+    n = grid.cells.shape[0] * grid.cells.shape[1] * grid.cells.shape[2]
     field = march.system.y[grid.at : grid.at + n]
     rate = march.rate(0.0, march.system.y)[grid.at : grid.at + n]
-    inside = field[~grid.outside]
+    inside = field[~grid.cells.outside]
     change = float(np.abs(rate).max(initial=0.0))
     spread = float(np.ptp(inside)) or float(np.abs(inside).max(initial=0.0))
-    faces = sum(march.floats[at : at + n] for at in grid.faces_at[: 3 if grid.shape[2] > 1 else 2])
+    faces = sum(march.floats[at : at + n] for at in grid.faces_at[: 3 if grid.cells.shape[2] > 1 else 2])
     allowed = 4.0 * float((faces / march.floats[grid.volumes_at : grid.volumes_at + n]).max())
     decay = min(change / spread, allowed) if spread > 0.0 else (allowed if change > 0.0 else 0.0)
     if step * decay <= FAST:

@@ -29,7 +29,7 @@ def error_scales(system: System) -> tuple[NDArray[int64], Floats]:
             group[members] = shared
             shared += 1
     for grid in system.grids:
-        group[grid.at : grid.at + int(np.prod(grid.shape))] = shared
+        group[grid.at : grid.at + int(np.prod(grid.cells.shape))] = shared
         shared += 1
     tallies = system.pattern.tallies[group[system.pattern.tallies] < 0]
     group[tallies] = shared + np.arange(len(tallies))

@@ -33,7 +33,7 @@ accelerations by its inverse masses and writes dx/dt = v), `constrain` (a restin
 """
 
 from sceneql.system.assembly import Assembly, Mode
-from sceneql.system.fields import Grid
+from sceneql.system.fields import Cells, Grid
 from sceneql.system.state import Bodies, ModelState
 from sceneql.system.stepping import Prepared, Stepper
 from sceneql.system.terms import Pattern, Slopes, Stage
@@ -41,6 +41,7 @@ from sceneql.system.terms import Pattern, Slopes, Stage
 __all__ = [
     "Assembly",
     "Bodies",
+    "Cells",
     "Grid",
     "Mode",
     "ModelState",

@@ -101,9 +101,9 @@ class Axis:
 
 def axes_of(grid: Grid, floats: Floats) -> tuple[Axis, ...] | None:
     """The axes z (of a deep grid), y, x of a box, as its arrays stand; None where it is none of these boxes."""
-    if grid.varying or grid.fed_at < 0 or grid.outside.any():
+    if grid.varying or grid.fed_at < 0 or grid.cells.outside.any():
         return None
-    nx, ny, nz = grid.shape
+    nx, ny, nz = grid.cells.shape
     n = nx * ny * nz
 
     def array(at: int) -> Floats:
@@ -117,7 +117,7 @@ def axes_of(grid: Grid, floats: Floats) -> tuple[Axis, ...] | None:
     sinks = np.zeros_like(sink)
     for axis in range(0 if nz > 1 else 1, 3):
         faces = np.moveaxis(array(grid.faces_at[2 - axis]), axis, 0)
-        count, periodic = len(faces), grid.periodic[2 - axis]
+        count, periodic = len(faces), grid.cells.periodic[2 - axis]
         rate = float(faces[-1].flat[0]) / size if count > 1 else 0.0
         between = faces if periodic else faces[1:]
         if not (np.abs(between - rate * size) <= SAME * rate * size).all() or not (periodic or not faces[0].any()):
