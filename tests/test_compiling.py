@@ -66,39 +66,39 @@ def test_the_way_from_python_into_a_kernel_is_made_once_and_takes_what_the_kerne
         acceleration(floats, 0)
 
 
-def test_a_late_kernel_is_there_from_its_first_call_on_and_not_before():
-    import late_kernels
+def test_a_lazy_kernel_is_there_from_its_first_call_on_and_not_before():
+    import lazy_calling_kernels
 
-    assert late_kernels.half_of_positive(-3.0) == 0.0
-    assert "late_called_kernels" not in sys.modules
+    assert lazy_calling_kernels.half_of_positive(-3.0) == 0.0
+    assert "lazy_called_kernels" not in sys.modules
     with ThreadPoolExecutor(4) as pool:
-        assert list(pool.map(late_kernels.half_of_positive, [3.0, 5.0, 7.0, 9.0])) == [1.5, 2.5, 3.5, 4.5]
-    assert "late_called_kernels" in sys.modules
+        assert list(pool.map(lazy_calling_kernels.half_of_positive, [3.0, 5.0, 7.0, 9.0])) == [1.5, 2.5, 3.5, 4.5]
+    assert "lazy_called_kernels" in sys.modules
     if not numba.config.DISABLE_JIT:
         with pytest.raises(TypeError, match="halved is for kernels only"):
-            late_kernels.halved(3.0, 2)
+            lazy_calling_kernels.halved(3.0, 2)
 
 
 @pytest.mark.skipif(numba.config.DISABLE_JIT, reason="where numba is switched off, nothing is linked")
-def test_a_late_kernel_that_cannot_be_brought_ends_the_call_with_the_reason_each_time():
-    import late_kernels
+def test_a_lazy_kernel_that_cannot_be_brought_ends_the_call_with_the_reason_each_time():
+    import lazy_calling_kernels
 
-    assert late_kernels.twice_by_mistake(-1.0) == 0.0
+    assert lazy_calling_kernels.twice_by_mistake(-1.0) == 0.0
     for _ in range(2):
         with pytest.raises(TypeError, match=r"doubles is called as .* but is .*Array"):
-            late_kernels.twice_by_mistake(1.0)
+            lazy_calling_kernels.twice_by_mistake(1.0)
     with ThreadPoolExecutor(2) as pool, pytest.raises(TypeError, match="doubles is called as"):
-        list(pool.map(late_kernels.twice_by_mistake, [1.0, 2.0]))
+        list(pool.map(lazy_calling_kernels.twice_by_mistake, [1.0, 2.0]))
 
 
-AHEAD = """
+BESIDE = """
 import sys, threading
 THREAD
-from sceneql.compiled import compile_beside as ahead
+from sceneql.compiled import compile_beside as beside
 from sceneql.compiled.kernels import compiled
-wait = ahead.compile_ahead(sys.argv[1:])
+wait = beside.compile_beside(sys.argv[1:])
 wait()
-print(compiled.count, ahead._beside.cache_info().currsize)
+print(compiled.count, beside._beside.cache_info().currsize)
 """
 
 
@@ -111,13 +111,13 @@ print(compiled.count, ahead._beside.cache_info().currsize)
         pytest.param(2, "threading.Thread(target=threading.Event().wait, daemon=True).start()", id="a new process"),
     ],
 )
-def test_what_is_compiled_ahead_is_there_and_asks_for_no_process_again(tmp_path, threads, begun):
+def test_what_is_compiled_beside_is_there_and_asks_for_no_process_again(tmp_path, threads, begun):
     modules = [f"sceneql.words.forces.{word}_kernels" for word in ("gravity", "drag")]
     environment = {**os.environ, "SCENEQL_CACHE": str(tmp_path), "SCENEQL_THREADS": str(threads)}
 
     def run():
         said = subprocess.run(
-            [sys.executable, "-c", AHEAD.replace("THREAD", begun), *modules],
+            [sys.executable, "-c", BESIDE.replace("THREAD", begun), *modules],
             env=environment,
             capture_output=True,
             text=True,

@@ -31,7 +31,7 @@ from numba.extending import intrinsic
 from sceneql.compiled.numba.kernel_compiler import (
     HelperCompiler,
     KernelCompiler,
-    WayInCompiler,
+    PythonEntryCompiler,
     call_by_name,
     collecting_later,
 )
@@ -217,7 +217,7 @@ def kernel(signature: Any, *, inner: bool = False, **options: Any) -> Callable[[
 
         whole = made(folder, KernelCompiler)
         if not config.DISABLE_JIT:
-            call_by_name(whole, None if inner else lambda: made(folder / "from_python", WayInCompiler))
+            call_by_name(whole, None if inner else lambda: made(folder / "from_python", PythonEntryCompiler))
         return whole
 
     return compile

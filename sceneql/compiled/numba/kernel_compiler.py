@@ -34,7 +34,7 @@ from numba.core.untyped_passes import (
 
 from sceneql.compiled.numba.builtin_calls import take_words
 from sceneql.compiled.numba.elements import take_elements
-from sceneql.compiled.numba.python_entry import WayIn, lead_in
+from sceneql.compiled.numba.python_entry import PythonEntry, add_python_entry
 from sceneql.compiled.numba.shortcuts import take_shortcuts
 from sceneql.compiled.numba.statements import Free, KernelLower
 
@@ -161,10 +161,10 @@ class HelperCompiler(CompilerBase):
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
-class LowerWayIn(WayIn):
+class LowerPythonEntry(PythonEntry):
     """Lower the way into a kernel to a KernelLibrary."""
 
-    _name = "lower_way_in"
+    _name = "lower_python_entry"
 
     def run_pass(self, state):
         """Leave the code in state.library, to be cached."""
@@ -173,19 +173,19 @@ class LowerWayIn(WayIn):
         return super().run_pass(state)
 
 
-class WayInCompiler(CompilerBase):
+class PythonEntryCompiler(CompilerBase):
     """For ``pipeline_class`` of what leads from Python into a kernel that is there."""
 
     def define_pipelines(self):
         """The one list of passes."""
-        return _pipeline(LowerWayIn, NoPythonBackend)
+        return _pipeline(LowerPythonEntry, NoPythonBackend)
 
 
-def call_by_name(kernel: Any, way_in: Callable[[], Any] | None) -> None:
+def call_by_name(kernel: Any, python_entry: Callable[[], Any] | None) -> None:
     """Let other kernels call this one by its name, where numba would put its code into each of them once more.
 
     The name is the function's own: what numba makes of it differs from process to process, and callers are cached.
-    ``way_in()`` gives what Python calls the kernel by, when it does; where there is None, calls raise TypeError.
+    ``python_entry()`` gives what Python calls the kernel by, when it does; where there is None, calls raise TypeError.
     """
     (made,) = kernel.overloads.values()  # of one signature: a name stands for one function
     called = copy(made.fndesc)
@@ -194,8 +194,8 @@ def call_by_name(kernel: Any, way_in: Callable[[], Any] | None) -> None:
     context = made.target_context
     context.remove_user_function(made.entry_point)
     context.insert_user_function(made.entry_point, called, [])
-    if way_in is not None:
-        lead_in(kernel, called, way_in)
+    if python_entry is not None:
+        add_python_entry(kernel, called, python_entry)
     else:
         kernel._clear()
         kernel._explain_matching_error = _refusal(kernel.__name__)

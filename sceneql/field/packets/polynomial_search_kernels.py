@@ -8,7 +8,7 @@ import numpy as np
 from numba import types
 
 from sceneql.compiled.kernels import inlined
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.field.packets.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS, SETTLED
 from sceneql.field.roots.polynomial_kernels import ABREAST
 from sceneql.field.roots.polynomial_steps_kernels import (
@@ -32,7 +32,7 @@ _f, _i, _ids, _wide = types.float64, types.int64, types.int64[::1], types.float6
 POLYNOMIAL_ROOTS = types.UniTuple(_i, 2)(
     types.int32[:, ::1], _f[::1], _wide, _i, types.boolean, _wide, _ids, _ids, _ids, _wide, _f[::1]
 )
-polynomial_roots = late("sceneql.field.packets.polynomial_bundle_kernels:polynomial_roots", POLYNOMIAL_ROOTS)
+polynomial_roots = lazy("sceneql.field.packets.polynomial_bundle_kernels:polynomial_roots", POLYNOMIAL_ROOTS)
 
 
 @inlined
