@@ -13,11 +13,13 @@ import numpy as np
 import pytest
 from numba import types
 
-from sceneql.compiled.kernels import HELPER, KernelCompiler
-from sceneql.compiled.numba.kernel_compiler import collecting_later
+from sceneql.compiled.kernels import HELPER, MODE, PIPELINE
+from sceneql.compiled.numba.collecting import collecting_later
 from sceneql.words.forces.gravity_kernels import acceleration, gravity
 
 helper = numba.njit(**HELPER)
+compiled = pytest.mark.skipif(MODE == "uncompiled", reason="nothing is compiled")
+shortened = pytest.mark.skipif(MODE != "shortcuts", reason="without the shortcuts Python may call every function")
 
 
 @helper
@@ -33,28 +35,28 @@ def norm(values):
     return math.sqrt(total)
 
 
-@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+@compiled
 def test_helpers_of_helpers_reach_the_machine_code_of_the_kernel_that_calls_them():
-    kernel = numba.njit(types.float64(types.float64[::1]), pipeline_class=KernelCompiler)(lambda v: norm(v) + norm(-v))
+    kernel = numba.njit(types.float64(types.float64[::1]), **PIPELINE)(lambda v: norm(v) + norm(-v))
     values = np.random.default_rng(1).normal(size=100)
     assert kernel(values) == pytest.approx(2.0 * np.linalg.norm(values), rel=1e-14)
 
 
-@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+@shortened
 def test_a_helper_refuses_to_be_called_from_python():
-    kernel = numba.njit(types.float64(types.float64[::1]), pipeline_class=KernelCompiler)(lambda v: norm(v))
+    kernel = numba.njit(types.float64(types.float64[::1]), **PIPELINE)(lambda v: norm(v))
     assert kernel(np.ones(4)) == 2.0
     with pytest.raises(KeyError, match="norm is for kernels only"):
         norm(np.ones(4))
 
 
-@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+@shortened
 def test_an_inner_kernel_is_called_by_kernels_and_refuses_python():
     with pytest.raises(TypeError, match="gravity is for kernels only"):
         gravity(0.0, *[np.zeros(3)] * 3, np.zeros(3, np.int64))
 
 
-@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+@compiled
 def test_the_way_from_python_into_a_kernel_is_made_once_and_takes_what_the_kernel_does():
     floats = np.array([0.0, -3.0, 4.0, 10.0])
     with ThreadPoolExecutor(4) as pool:
@@ -102,7 +104,7 @@ print(compiled.count, beside._beside.cache_info().currsize)
 """
 
 
-@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+@compiled
 @pytest.mark.parametrize(
     ("threads", "begun"),
     [
@@ -131,11 +133,11 @@ def test_what_is_compiled_beside_is_there_and_asks_for_no_process_again(tmp_path
     assert run() == (0, 0)
 
 
-@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+@compiled
 def test_numbers_of_another_type_get_another_signature():
     of = {}
     for kind in (types.int64, types.float64, types.float32):
-        kernel = numba.njit((kind, kind), pipeline_class=KernelCompiler)(lambda a, b: larger(a, b) * b + a)
+        kernel = numba.njit((kind, kind), **PIPELINE)(lambda a, b: larger(a, b) * b + a)
         of[kind] = kernel.nopython_signatures[0].return_type
     assert of == {types.int64: types.int64, types.float64: types.float64, types.float32: types.float32}
 
@@ -152,9 +154,9 @@ def test_the_collector_is_on_again_after_a_failure():
     assert gc.isenabled()
 
 
-@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+@compiled
 def test_new_arrays_are_as_numpy_makes_them():
-    @numba.njit(pipeline_class=KernelCompiler)
+    @numba.njit(**PIPELINE)
     def made(n, m):
         plain, whole, table = np.zeros(n), np.zeros(m, dtype=np.int32), np.zeros((n, m), np.uint8)
         room = np.empty((m, n, 2), dtype=np.float32)
@@ -171,9 +173,9 @@ def test_new_arrays_are_as_numpy_makes_them():
         made(1, 2**62)
 
 
-@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+@compiled
 def test_least_and_most_are_those_of_python_of_nan_and_of_mixed_types():
-    @numba.njit(pipeline_class=KernelCompiler)
+    @numba.njit(**PIPELINE)
     def found(a, b, c):
         return min(a, b), max(a, b), min(a, b, c), max(c, b, a), min(a, 2), max(3, b)
 

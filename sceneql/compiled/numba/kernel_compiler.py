@@ -5,9 +5,7 @@ Most of the time that numba takes is spent in Python. What is left out here is h
 kernels compute nor what they may contain, but for closures, comprehensions, ``with`` and raises of computed errors.
 """
 
-import gc
 from collections.abc import Callable
-from contextlib import contextmanager
 from copy import copy
 from typing import Any
 
@@ -181,6 +179,10 @@ class PythonEntryCompiler(CompilerBase):
         return _pipeline(LowerPythonEntry, NoPythonBackend)
 
 
+PIPELINES = tuple({"pipeline_class": compiler} for compiler in (KernelCompiler, HelperCompiler, PythonEntryCompiler))
+"""The option of numba.jit for a kernel, for a helper, and for the Python entry of a kernel."""
+
+
 def call_by_name(kernel: Any, python_entry: Callable[[], Any] | None) -> None:
     """Let other kernels call this one by its name, where numba would put its code into each of them once more.
 
@@ -210,34 +212,6 @@ def _refusal(name):
     return refuse
 
 
-MANY, VERY_MANY = 20_000, 3_000_000
-"""Objects that a compilation makes, a load from the cache does not; and how many of them memory has room for."""
-out_of_sight: list[int] = []
-
-
-@contextmanager
-def collecting_later():
-    """Leave the garbage collector off: a compilation makes millions of objects that live on, looked over in vain.
-
-    Afterwards they are kept out of its sight too, or it would look them over at once, until there are very many.
-    """
-    was_on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            made = gc.get_count()[0]
-            if made > MANY:
-                out_of_sight.append(made)
-                if sum(out_of_sight) > VERY_MANY:
-                    out_of_sight.clear()
-                    gc.unfreeze()
-                    gc.collect()
-                gc.freeze()
-            gc.enable()
-
-
 def widen():
     """Let LLVM use vectors of 512 bits where they do not slow the clock, which is from AVX512-VBMI2 on (Ice Lake)."""
     if config.CPU_NAME is None and config.CPU_FEATURES is None and config.ENABLE_AVX:
@@ -246,8 +220,10 @@ def widen():
             config.CPU_FEATURES = f"{features.flatten()},-prefer-256-bit"
 
 
-take_elements()
-take_shortcuts()
-take_words()
-widen()
-ffi.lib._lock._cblist.clear()  # LLVM's calls are many, and how long it is held asks nobody here
+def take_all():
+    """Replace the parts of numba that this package has others for; what compiles kernels is named in `kernels`."""
+    take_elements()
+    take_shortcuts()
+    take_words()
+    widen()
+    ffi.lib._lock._cblist.clear()  # LLVM's calls are many, and how long it is held asks nobody here

@@ -14,8 +14,8 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.compiled.numba.elements import rows_of
 from sceneql.compiled.numba.lazy_kernels import lazy
+from sceneql.compiled.rows_kernels import rows_of
 from sceneql.contacts.shape_kernels import (
     BEND_TYPE,
     CLEAR_TYPE,
