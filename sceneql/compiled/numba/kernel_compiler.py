@@ -30,10 +30,10 @@ from numba.core.untyped_passes import (
     TranslateByteCode,
 )
 
-from sceneql.compiled.numba.builtin_calls import take_words
+from sceneql.compiled.numba.builtin_calls import take_builtin_calls
 from sceneql.compiled.numba.elements import take_elements
 from sceneql.compiled.numba.python_entry import PythonEntry, add_python_entry
-from sceneql.compiled.numba.shortcuts import take_shortcuts
+from sceneql.compiled.numba.shortcuts import SHORTCUTS
 from sceneql.compiled.numba.statements import Free, KernelLower
 
 FRONT = (
@@ -220,10 +220,16 @@ def widen():
             config.CPU_FEATURES = f"{features.flatten()},-prefer-256-bit"
 
 
+def forget_lock_times():
+    """LLVM's calls are many, and how long each of them holds its lock asks nobody here."""
+    ffi.lib._lock._cblist.clear()
+
+
+REPLACEMENTS = [take_elements, *SHORTCUTS, take_builtin_calls, forget_lock_times, widen]
+"""What replaces parts of numba for all that this process compiles; the passes above are only for our kernels."""
+
+
 def take_all():
-    """Replace the parts of numba that this package has others for; what compiles kernels is named in `kernels`."""
-    take_elements()
-    take_shortcuts()
-    take_words()
-    widen()
-    ffi.lib._lock._cblist.clear()  # LLVM's calls are many, and how long it is held asks nobody here
+    """Replace those parts, once, before anything is compiled."""
+    for replace in REPLACEMENTS:
+        replace()

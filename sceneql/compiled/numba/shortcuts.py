@@ -142,6 +142,16 @@ def propagate(self, inference):
     return found
 
 
+def propagate_quickly():
+    """One round of type inference asks no constraint for what an error of it would say."""
+    typeinfer.ConstraintNetwork.propagate = propagate
+
+
+def describe_rarely():
+    """What an error has happened in is described only where there is one (errors.new_error_context)."""
+    typeinfer.new_error_context = lowering.new_error_context = Context
+
+
 def list_quickly():
     """A statement's variables by looking at the types of its parts in one step, not in up to six."""
     slowly = ir.Inst._rec_list_vars
@@ -298,6 +308,11 @@ def look_for_extensions():
     entrypoints.init_all = look
 
 
+def remember_places():
+    """Which kinds of errors take a place in a file."""
+    base._has_loc = cache(base._has_loc)
+
+
 def silence():
     """The log of what passes do, which nobody reads."""
     for module in (byteflow, interpreter, ssa, transforms, typeinfer):
@@ -311,22 +326,23 @@ def _say_nothing(*_, **__):
 ABSENT = {"peep_hole_delete_with_exit", "peep_hole_fuse_dict_add_updates"}
 
 
-def take_shortcuts():
-    """Take all shortcuts."""
-    remember_signatures()
-    remember_attributes()
-    resolve_once()
-    list_quickly()
-    remember_misses()
-    refresh_rarely()
-    look_once()
-    name_quickly()
-    pass_over()
-    look_for_print()
-    remember_sizes()
-    believe_in_scipy()
-    look_for_extensions()
-    silence()
-    typeinfer.ConstraintNetwork.propagate = propagate
-    typeinfer.new_error_context = lowering.new_error_context = Context
-    base._has_loc = cache(base._has_loc)
+SHORTCUTS = (
+    remember_signatures,
+    remember_attributes,
+    resolve_once,
+    propagate_quickly,
+    describe_rarely,
+    list_quickly,
+    remember_misses,
+    refresh_rarely,
+    look_once,
+    name_quickly,
+    pass_over,
+    look_for_print,
+    remember_sizes,
+    remember_places,
+    believe_in_scipy,
+    look_for_extensions,
+    silence,
+)
+"""All of them, in the order in which they are taken."""
