@@ -50,6 +50,24 @@ def test_a_helper_refuses_to_be_called_from_python():
         norm(np.ones(4))
 
 
+@pytest.mark.parametrize(("asked", "told"), [("plain", ""), ("", ""), ("fast", "SCENEQL_NUMBA is 'fast'")])
+def test_numba_is_taken_as_it_is_where_that_is_asked_for(tmp_path, asked, told):
+    code = """if True:
+        import numba.core.typeinfer as numba, sys
+        own = numba.ConstraintNetwork.propagate
+        from sceneql.compiled.kernels import CACHE
+        print(own is numba.ConstraintNetwork.propagate, "sceneql.compiled.numba.shortcuts" in sys.modules, CACHE.name)
+    """
+    environment = {**os.environ, "SCENEQL_NUMBA": asked, "SCENEQL_CACHE": str(tmp_path), "NUMBA_DISABLE_JIT": "0"}
+    run = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
+    if told:
+        assert told in run.stderr
+    else:
+        kept, shortened, cache = run.stdout.split()
+        assert (kept, shortened) == (("True", "False") if asked else ("False", "True"))
+        assert cache == f"numba-{numba.__version__}-{asked or 'shortcuts'}"
+
+
 @shortened
 def test_an_inner_kernel_is_called_by_kernels_and_refuses_python():
     with pytest.raises(TypeError, match="gravity is for kernels only"):
