@@ -31,13 +31,15 @@ from numba.extending import intrinsic
 from sceneql.compiled.numba.collecting import collecting_later
 from sceneql.failure import Unsuitable
 
+config: Any = numba.config
+
 
 def _mode() -> str:
     """How kernels run: by numba with our shortcuts, by numba as it is, or as Python functions (NUMBA_DISABLE_JIT)."""
     asked = os.environ.get("SCENEQL_NUMBA")
     if asked and asked != "plain":
         raise Unsuitable(f"SCENEQL_NUMBA is {asked!r}: it may be 'plain', for numba without our shortcuts, or unset")
-    if numba.config.DISABLE_JIT:
+    if config.DISABLE_JIT:
         return "uncompiled"
     return asked or "shortcuts"
 
@@ -53,7 +55,6 @@ else:
     PIPELINE = HELPER_PIPELINE = {}
 
 fcntl: Any = import_module("fcntl") if find_spec("fcntl") else None  # not on Windows
-config: Any = numba.config
 njit: Any = numba.njit
 cgutils: Any = import_module("numba.core.cgutils")
 numba_event: Any = import_module("numba.core.event")

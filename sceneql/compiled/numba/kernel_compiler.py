@@ -229,7 +229,7 @@ REPLACEMENTS = [take_elements, *SHORTCUTS, take_builtin_calls, forget_lock_times
 """What replaces parts of numba for all that this process compiles; the passes above are only for our kernels."""
 
 
-def take_all():
+def take_all() -> None:
     """Replace those parts, once, before anything is compiled."""
     for replace in REPLACEMENTS:
         replace()

@@ -1,5 +1,8 @@
 # mypy: ignore-errors
-"""The code by which Python calls a kernel: made, and cached, when Python first does. Most kernels only kernels call."""
+"""The code by which Python calls a kernel, compiled and cached at the first call from Python.
+
+Most kernels are called by kernels alone and never need it. numba makes it with every function.
+"""
 
 import threading
 from copy import copy
@@ -16,9 +19,10 @@ _one_by_one = threading.RLock()
 
 
 def add_python_entry(kernel, called, make):
-    """Let the first call of a dispatcher from Python ``make`` the way into the kernel so ``called``, and take it.
+    """Let the first call of a kernel from Python compile its Python entry, or load it, and go through it.
 
-    ``make()`` compiles a dispatcher's function by the pass below, or loads it.
+    ``called`` is the description under which kernels call the kernel by name; ``make()`` gives a dispatcher that was
+    compiled by the pass below.
     """
     _called[called.mangled_name] = called
     kernel._clear()

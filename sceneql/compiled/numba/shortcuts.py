@@ -1,7 +1,8 @@
 # mypy: ignore-errors
-"""Shortcuts through numba: what it asks again and again, always with the same answer, is remembered or not asked.
+"""Shortcuts through numba's type inference and code generation: answers that never change are remembered or not asked.
 
-None of them changes what is compiled. Each names the function of numba that it stands in for.
+None of them changes what is compiled. Each replaces the function of numba that its last lines assign to;
+tests/bench/bench_shortcuts.py measures what each of them saves.
 """
 
 import operator
