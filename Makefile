@@ -20,6 +20,8 @@ test-long: $(VENV)/installed-test
 	SCENEQL_LONG=1 $(BIN)/python -m pytest tests/test_same_bytes.py
 	@# Kernels that look at every index, compiled into a cache of their own.
 	NUMBA_BOUNDSCHECK=1 SCENEQL_CACHE=$(VENV)/checked $(BIN)/python -m pytest -n auto --dist worksteal
+	@# Kernels compiled by numba as it is, without what compiled/numba replaces of it; they have a cache of their own.
+	SCENEQL_NUMBA=plain $(BIN)/python -m pytest -n auto --dist worksteal
 
 gallery: $(VENV)/installed
 	$(BIN)/sceneql gallery update

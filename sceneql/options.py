@@ -16,7 +16,6 @@ def as_length(context: click.Context, parameter: click.Parameter, value: Any) ->
     """A length as scripts write it to meters, above 0; a bare number is in meters."""
     if value is None:
         return None
-    from sceneql.kinds import Quantity
     from sceneql.kinds.word import literal
     from sceneql.quantities.diagnostic import ScriptError
     from sceneql.quantities.dimension import LENGTH, PLAIN
@@ -24,7 +23,7 @@ def as_length(context: click.Context, parameter: click.Parameter, value: Any) ->
 
     wrong = click.BadParameter(f"'{value}' is no length above 0, as 2mm or 0.5")
     try:
-        read = literal(value, Quantity(LENGTH))
+        read = literal(value)
         number = read.number()
     except (ScriptError, ArithmeticError, ValueError):
         raise wrong from None

@@ -323,7 +323,7 @@ class Tools:
     def prepare(self, output: Picture) -> Callable[[], None]:
         """Start compiling what the output is drawn with, beside the physics; call the result to wait for it."""
         modules = self._renderer(output).kernels(self._traced(self.graph.drawn[self.name]))
-        return _compile_ahead(modules) if modules else lambda: None
+        return _compile_beside(modules) if modules else lambda: None
 
     def _traced(self, names: Iterable[str]) -> set[str]:
         """By which fields parts, or what these draw, are drawn."""
@@ -341,11 +341,11 @@ class Tools:
 
 
 @cache
-def _compile_ahead(modules: tuple[str, ...]) -> Callable[[], None]:
+def _compile_beside(modules: tuple[str, ...]) -> Callable[[], None]:
     """Start compiling a renderer's kernels, once for all outputs that it draws."""
-    from sceneql.compiled.compile_beside import compile_ahead
+    from sceneql.compiled.compile_beside import compile_beside
 
-    return compile_ahead(modules)
+    return compile_beside(modules)
 
 
 def frame_of(

@@ -13,11 +13,13 @@ import numpy as np
 import pytest
 from numba import types
 
-from sceneql.compiled.kernels import HELPER, KernelCompiler
-from sceneql.compiled.numba.kernel_compiler import collecting_later
+from sceneql.compiled.kernels import HELPER, MODE, PIPELINE
+from sceneql.compiled.numba.collecting import collecting_later
 from sceneql.words.forces.gravity_kernels import acceleration, gravity
 
 helper = numba.njit(**HELPER)
+compiled = pytest.mark.skipif(MODE == "uncompiled", reason="nothing is compiled")
+shortened = pytest.mark.skipif(MODE != "shortcuts", reason="without the shortcuts Python may call every function")
 
 
 @helper
@@ -33,28 +35,46 @@ def norm(values):
     return math.sqrt(total)
 
 
-@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+@compiled
 def test_helpers_of_helpers_reach_the_machine_code_of_the_kernel_that_calls_them():
-    kernel = numba.njit(types.float64(types.float64[::1]), pipeline_class=KernelCompiler)(lambda v: norm(v) + norm(-v))
+    kernel = numba.njit(types.float64(types.float64[::1]), **PIPELINE)(lambda v: norm(v) + norm(-v))
     values = np.random.default_rng(1).normal(size=100)
     assert kernel(values) == pytest.approx(2.0 * np.linalg.norm(values), rel=1e-14)
 
 
-@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+@shortened
 def test_a_helper_refuses_to_be_called_from_python():
-    kernel = numba.njit(types.float64(types.float64[::1]), pipeline_class=KernelCompiler)(lambda v: norm(v))
+    kernel = numba.njit(types.float64(types.float64[::1]), **PIPELINE)(lambda v: norm(v))
     assert kernel(np.ones(4)) == 2.0
     with pytest.raises(KeyError, match="norm is for kernels only"):
         norm(np.ones(4))
 
 
-@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+@pytest.mark.parametrize(("asked", "told"), [("plain", ""), ("", ""), ("fast", "SCENEQL_NUMBA is 'fast'")])
+def test_numba_is_taken_as_it_is_where_that_is_asked_for(tmp_path, asked, told):
+    code = """if True:
+        import numba.core.typeinfer as numba, sys
+        own = numba.ConstraintNetwork.propagate
+        from sceneql.compiled.kernels import CACHE
+        print(own is numba.ConstraintNetwork.propagate, "sceneql.compiled.numba.shortcuts" in sys.modules, CACHE.name)
+    """
+    environment = {**os.environ, "SCENEQL_NUMBA": asked, "SCENEQL_CACHE": str(tmp_path), "NUMBA_DISABLE_JIT": "0"}
+    run = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)
+    if told:
+        assert told in run.stderr
+    else:
+        kept, shortened, cache = run.stdout.split()
+        assert (kept, shortened) == (("True", "False") if asked else ("False", "True"))
+        assert cache == f"numba-{numba.__version__}-{asked or 'shortcuts'}"
+
+
+@shortened
 def test_an_inner_kernel_is_called_by_kernels_and_refuses_python():
     with pytest.raises(TypeError, match="gravity is for kernels only"):
         gravity(0.0, *[np.zeros(3)] * 3, np.zeros(3, np.int64))
 
 
-@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+@compiled
 def test_the_way_from_python_into_a_kernel_is_made_once_and_takes_what_the_kernel_does():
     floats = np.array([0.0, -3.0, 4.0, 10.0])
     with ThreadPoolExecutor(4) as pool:
@@ -66,43 +86,43 @@ def test_the_way_from_python_into_a_kernel_is_made_once_and_takes_what_the_kerne
         acceleration(floats, 0)
 
 
-def test_a_late_kernel_is_there_from_its_first_call_on_and_not_before():
-    import late_kernels
+def test_a_lazy_kernel_is_there_from_its_first_call_on_and_not_before():
+    import lazy_calling_kernels
 
-    assert late_kernels.half_of_positive(-3.0) == 0.0
-    assert "late_called_kernels" not in sys.modules
+    assert lazy_calling_kernels.half_of_positive(-3.0) == 0.0
+    assert "lazy_called_kernels" not in sys.modules
     with ThreadPoolExecutor(4) as pool:
-        assert list(pool.map(late_kernels.half_of_positive, [3.0, 5.0, 7.0, 9.0])) == [1.5, 2.5, 3.5, 4.5]
-    assert "late_called_kernels" in sys.modules
+        assert list(pool.map(lazy_calling_kernels.half_of_positive, [3.0, 5.0, 7.0, 9.0])) == [1.5, 2.5, 3.5, 4.5]
+    assert "lazy_called_kernels" in sys.modules
     if not numba.config.DISABLE_JIT:
         with pytest.raises(TypeError, match="halved is for kernels only"):
-            late_kernels.halved(3.0, 2)
+            lazy_calling_kernels.halved(3.0, 2)
 
 
 @pytest.mark.skipif(numba.config.DISABLE_JIT, reason="where numba is switched off, nothing is linked")
-def test_a_late_kernel_that_cannot_be_brought_ends_the_call_with_the_reason_each_time():
-    import late_kernels
+def test_a_lazy_kernel_that_cannot_be_brought_ends_the_call_with_the_reason_each_time():
+    import lazy_calling_kernels
 
-    assert late_kernels.twice_by_mistake(-1.0) == 0.0
+    assert lazy_calling_kernels.twice_by_mistake(-1.0) == 0.0
     for _ in range(2):
         with pytest.raises(TypeError, match=r"doubles is called as .* but is .*Array"):
-            late_kernels.twice_by_mistake(1.0)
+            lazy_calling_kernels.twice_by_mistake(1.0)
     with ThreadPoolExecutor(2) as pool, pytest.raises(TypeError, match="doubles is called as"):
-        list(pool.map(late_kernels.twice_by_mistake, [1.0, 2.0]))
+        list(pool.map(lazy_calling_kernels.twice_by_mistake, [1.0, 2.0]))
 
 
-AHEAD = """
+BESIDE = """
 import sys, threading
 THREAD
-from sceneql.compiled import compile_beside as ahead
+from sceneql.compiled import compile_beside as beside
 from sceneql.compiled.kernels import compiled
-wait = ahead.compile_ahead(sys.argv[1:])
+wait = beside.compile_beside(sys.argv[1:])
 wait()
-print(compiled.count, ahead._beside.cache_info().currsize)
+print(compiled.count, beside._beside.cache_info().currsize)
 """
 
 
-@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+@compiled
 @pytest.mark.parametrize(
     ("threads", "begun"),
     [
@@ -111,13 +131,13 @@ print(compiled.count, ahead._beside.cache_info().currsize)
         pytest.param(2, "threading.Thread(target=threading.Event().wait, daemon=True).start()", id="a new process"),
     ],
 )
-def test_what_is_compiled_ahead_is_there_and_asks_for_no_process_again(tmp_path, threads, begun):
+def test_what_is_compiled_beside_is_there_and_asks_for_no_process_again(tmp_path, threads, begun):
     modules = [f"sceneql.words.forces.{word}_kernels" for word in ("gravity", "drag")]
     environment = {**os.environ, "SCENEQL_CACHE": str(tmp_path), "SCENEQL_THREADS": str(threads)}
 
     def run():
         said = subprocess.run(
-            [sys.executable, "-c", AHEAD.replace("THREAD", begun), *modules],
+            [sys.executable, "-c", BESIDE.replace("THREAD", begun), *modules],
             env=environment,
             capture_output=True,
             text=True,
@@ -131,11 +151,11 @@ def test_what_is_compiled_ahead_is_there_and_asks_for_no_process_again(tmp_path,
     assert run() == (0, 0)
 
 
-@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+@compiled
 def test_numbers_of_another_type_get_another_signature():
     of = {}
     for kind in (types.int64, types.float64, types.float32):
-        kernel = numba.njit((kind, kind), pipeline_class=KernelCompiler)(lambda a, b: larger(a, b) * b + a)
+        kernel = numba.njit((kind, kind), **PIPELINE)(lambda a, b: larger(a, b) * b + a)
         of[kind] = kernel.nopython_signatures[0].return_type
     assert of == {types.int64: types.int64, types.float64: types.float64, types.float32: types.float32}
 
@@ -152,9 +172,9 @@ def test_the_collector_is_on_again_after_a_failure():
     assert gc.isenabled()
 
 
-@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+@compiled
 def test_new_arrays_are_as_numpy_makes_them():
-    @numba.njit(pipeline_class=KernelCompiler)
+    @numba.njit(**PIPELINE)
     def made(n, m):
         plain, whole, table = np.zeros(n), np.zeros(m, dtype=np.int32), np.zeros((n, m), np.uint8)
         room = np.empty((m, n, 2), dtype=np.float32)
@@ -171,9 +191,9 @@ def test_new_arrays_are_as_numpy_makes_them():
         made(1, 2**62)
 
 
-@pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
+@compiled
 def test_least_and_most_are_those_of_python_of_nan_and_of_mixed_types():
-    @numba.njit(pipeline_class=KernelCompiler)
+    @numba.njit(**PIPELINE)
     def found(a, b, c):
         return min(a, b), max(a, b), min(a, b, c), max(c, b, a), min(a, 2), max(3, b)
 

@@ -10,7 +10,8 @@ from pydantic import BaseModel
 
 from sceneql import pipeline
 from sceneql.compiler.catalogue import ROOT, Catalogue, class_name
-from sceneql.kinds import FAMILIES, GRAMMAR, REQUIRED, Paint, Quantity, Turn, Value, literal
+from sceneql.compiler.defaults import check_defaults
+from sceneql.kinds import FAMILIES, REQUIRED, Settings, Value
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.report.manual import manual
 from sceneql.report.schema import schema
@@ -99,12 +100,12 @@ def plainly(default):
 
 
 @each_word
-def test_defaults_inside_records_are_read_by_their_types(family, word):
-    for record in with_records(CATALOGUE.load(family, word))[1:]:
-        for name, info in record.model_fields.items():
-            marks = [mark for mark in info.metadata if isinstance(mark, Quantity | Paint | Turn)]
-            if isinstance(info.default, str) and marks and not getattr(marks[0], "direction", False):
-                assert literal(info.default, GRAMMAR.get(type(marks[0]), marks[0])).constant, (record, name)
+def test_defaults_of_words_and_of_their_records_are_what_their_fields_take(family, word):
+    check_defaults.__wrapped__(CATALOGUE.load(family, word))
+
+
+def test_defaults_of_settings_are_what_their_fields_take():
+    check_defaults(Settings)
 
 
 @each_word

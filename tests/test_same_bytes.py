@@ -1,4 +1,4 @@
-"""What is made has the same bytes on processors of another kind."""
+"""What is made has the same bytes on processors of another kind, and by numba without its shortcuts."""
 
 import os
 import subprocess
@@ -8,16 +8,28 @@ from pathlib import Path
 import pytest
 
 from bytes_made import MADE, digests
+from sceneql.compiled.kernels import MODE
 
 AVX2 = "haswell"
 """A processor without AVX-512."""
 
 
-@pytest.mark.parametrize("name", MADE)
-def test_same_bytes_with_the_processor_restricted_to_avx2(name):
+def digests_of_a_process(name, **environment):
+    """The digests that a process of its own makes, told by environment variables how to compile."""
     script = Path(__file__).with_name("bytes_made.py")
-    environment = {**os.environ, "NUMBA_CPU_NAME": AVX2, "PYTHONPATH": os.pathsep.join(sys.path)}
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path), **environment}
     run = subprocess.run(
         [sys.executable, str(script), name], env=environment, capture_output=True, text=True, check=True
     )
-    assert run.stdout.split() == digests([name])
+    return run.stdout.split()
+
+
+@pytest.mark.parametrize("name", MADE)
+def test_same_bytes_with_the_processor_restricted_to_avx2(name):
+    assert digests_of_a_process(name, NUMBA_CPU_NAME=AVX2) == digests([name])
+
+
+@pytest.mark.skipif("SCENEQL_LONG" not in os.environ, reason="without the shortcuts it compiles for minutes")
+@pytest.mark.parametrize("name", MADE)
+def test_same_bytes_with_and_without_the_shortcuts_through_numba(name):
+    assert digests_of_a_process(name, SCENEQL_NUMBA="" if MODE == "plain" else "plain") == digests([name])

@@ -7,7 +7,7 @@ TOLERANCE = 1e-9
 
 
 def certified(module: str) -> tuple[str, ...]:
-    """A module of the tracer and what finds implicit objects by certified roots, in an order for `compile_ahead`."""
+    """A module of the tracer and what finds implicit objects by certified roots, in an order for `compile_beside`."""
     return (
         "sceneql.field.enclose.enclosure_kernels",
         module,

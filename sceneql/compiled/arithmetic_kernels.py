@@ -9,7 +9,7 @@ from numba.extending import intrinsic
 
 from sceneql.compiled.kernels import inlined
 
-PLAIN = numba.config.DISABLE_JIT
+UNCOMPILED = numba.config.DISABLE_JIT
 WIDEST = '"prefer-vector-width"="512"'
 
 
@@ -51,15 +51,15 @@ def _fma_in_python(a, b, c):
     return type(a)(np.longdouble(a) * np.longdouble(b) + np.longdouble(c))
 
 
-fma = _fma_in_python if PLAIN else _fma
+fma = _fma_in_python if UNCOMPILED else _fma
 """a b + c, rounded once."""
-bits = (lambda x: int(np.float64(x).view(np.int64))) if PLAIN else _bits
+bits = (lambda x: int(np.float64(x).view(np.int64))) if UNCOMPILED else _bits
 """The 64 bits of a float64 as an integer."""
-from_bits = (lambda n: float(np.int64(n).view(np.float64))) if PLAIN else _from_bits
+from_bits = (lambda n: float(np.int64(n).view(np.float64))) if UNCOMPILED else _from_bits
 """The float64 of 64 bits."""
-widest = (lambda: None) if PLAIN else _widest
+widest = (lambda: None) if UNCOMPILED else _widest
 """Ask for the widest vectors in the calling kernel, where the compiler would be shy of them. The bits do not change."""
-always_inlined = (lambda: None) if PLAIN else _always_inlined
+always_inlined = (lambda: None) if UNCOMPILED else _always_inlined
 """Put the calling helper into its callers, however large it is: loops with calls in them make no vectors."""
 
 

@@ -23,7 +23,7 @@ from typing import IO, NoReturn, cast
 from sceneql.compiled.kernels import OURS, cache_folder, compiled, compiles, thread_count
 
 
-def compile_ahead(modules: Iterable[str]) -> Callable[..., None]:
+def compile_beside(modules: Iterable[str]) -> Callable[..., None]:
     """Have modules' kernels compiled beside, in this order, unless they were before; call the result to have them all.
 
     The call imports them from the last one on, less those that it names, and counts as compilation. Generated modules

@@ -28,16 +28,33 @@ from numba import types
 from numba.core.event import Listener
 from numba.extending import intrinsic
 
-from sceneql.compiled.numba.kernel_compiler import (
-    HelperCompiler,
-    KernelCompiler,
-    WayInCompiler,
-    call_by_name,
-    collecting_later,
-)
+from sceneql.compiled.numba.collecting import collecting_later
+from sceneql.failure import Unsuitable
+
+config: Any = numba.config
+
+
+def _mode() -> str:
+    """How kernels run: by numba with our shortcuts, by numba as it is, or as Python functions (NUMBA_DISABLE_JIT)."""
+    asked = os.environ.get("SCENEQL_NUMBA")
+    if asked and asked != "plain":
+        raise Unsuitable(f"SCENEQL_NUMBA is {asked!r}: it may be 'plain', for numba without our shortcuts, or unset")
+    if config.DISABLE_JIT:
+        return "uncompiled"
+    return asked or "shortcuts"
+
+
+MODE = _mode()
+"""``"shortcuts"``, ``"plain"`` or ``"uncompiled"``; only the first imports what replaces parts of numba."""
+if MODE == "shortcuts":
+    from sceneql.compiled.numba.kernel_compiler import PIPELINES, call_by_name, take_all
+
+    take_all()
+    PIPELINE, HELPER_PIPELINE, ENTRY_PIPELINE = PIPELINES
+else:
+    PIPELINE = HELPER_PIPELINE = {}
 
 fcntl: Any = import_module("fcntl") if find_spec("fcntl") else None  # not on Windows
-config: Any = numba.config
 njit: Any = numba.njit
 cgutils: Any = import_module("numba.core.cgutils")
 numba_event: Any = import_module("numba.core.event")
@@ -50,10 +67,9 @@ _HIDDEN_IMPORTS = re.compile(r"[;:][ \t]*(?:from|import)\b|\\\n")
 
 
 def _cache_home() -> Path:
-    """Folder of all compiled code of this version of numba; SCENEQL_CACHE moves it."""
+    """Folder of all compiled code of this version of numba and of this mode; SCENEQL_CACHE moves it."""
     home = os.environ.get("SCENEQL_CACHE") or os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    mode = "plain" if config.DISABLE_JIT else "compiled"
-    folder = Path(home) / "sceneql" / f"numba-{numba.__version__}-{mode}"
+    folder = Path(home) / "sceneql" / f"numba-{numba.__version__}-{MODE}"
     folder.mkdir(parents=True, exist_ok=True)
     return folder
 
@@ -205,26 +221,28 @@ def kernel(signature: Any, *, inner: bool = False, **options: Any) -> Callable[[
     Fastmath stays off, so that the bits do not depend on the machine. Only kernels call an ``inner`` one, by its name
     or its address. The code for calls from Python is made when the first one comes.
     """
-    options |= COMMON | {"no_cpython_wrapper": True}
+    options |= COMMON | UNWRAPPED
 
     def compile(function: Callable[..., Any]) -> Any:
         folder = cache_folder(function.__module__)
 
-        def made(folder: Path, compiler: Any) -> Any:
+        def made(folder: Path, pipeline: dict[str, Any]) -> Any:
             with alone(folder / function.__name__), collecting_later():
                 config.CACHE_DIR = str(folder)
-                return njit(signature, cache=True, pipeline_class=compiler, **options)(function)
+                return njit(signature, cache=True, **pipeline, **options)(function)
 
-        whole = made(folder, KernelCompiler)
-        if not config.DISABLE_JIT:
-            call_by_name(whole, None if inner else lambda: made(folder / "from_python", WayInCompiler))
+        whole = made(folder, PIPELINE)
+        if MODE == "shortcuts":
+            call_by_name(whole, None if inner else lambda: made(folder / "from_python", ENTRY_PIPELINE))
         return whole
 
     return compile
 
 
 COMMON = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
-HELPER = {**COMMON, "no_cpython_wrapper": True, "pipeline_class": HelperCompiler}
+UNWRAPPED = {"no_cpython_wrapper": MODE == "shortcuts"}
+"""numba as it is makes code for calls from Python with every function, and would crash without it."""
+HELPER = {**COMMON, **UNWRAPPED, **HELPER_PIPELINE}
 
 inlined = njit(**HELPER)
 """A helper of kernels: compiled with its caller, for the types it is called with; not callable from Python."""
@@ -254,7 +272,7 @@ def function_at(kind: Any) -> Any:
     """What makes of an ``address`` a function that kernels can call.
 
     numba can take functions as arguments, but asks Python for their addresses at every call (50 us each). Kernels call
-    by name what is always the same one (compiling.call_by_name).
+    by name what is always the same one.
     """
     if config.DISABLE_JIT:
         return lambda function: function

@@ -16,7 +16,7 @@ from numba.extending import intrinsic, lower_builtin, models, register_model
 
 from sceneql.compiled.kernels import inlined
 
-PLAIN = numba.config.DISABLE_JIT
+UNCOMPILED = numba.config.DISABLE_JIT
 BYTES = 64
 MAGIC = {64: 0x5FE6AB50C7B537A9, 32: 0x5F375A86}
 INDEX = ir.IntType(32)
@@ -258,29 +258,29 @@ def _below_in_python(a, b, x, y):
     return np.where(a < b, x, y).astype(kind)
 
 
-load = _load_in_python if PLAIN else _load
+load = _load_in_python if UNCOMPILED else _load
 """load(array, at): the lanes at array[at:]."""
-store = _store_in_python if PLAIN else _store
+store = _store_in_python if UNCOMPILED else _store
 """store(array, at, lanes): float64 may be rounded to float32."""
-spread = (lambda number: np.full(BYTES // np.asarray(number).itemsize, number)) if PLAIN else _spread
+spread = (lambda number: np.full(BYTES // np.asarray(number).itemsize, number)) if UNCOMPILED else _spread
 """A number in all lanes."""
-fma = _fma_in_python if PLAIN else _fma
+fma = _fma_in_python if UNCOMPILED else _fma
 """a b + c, rounded once."""
-below = _below_in_python if PLAIN else _below
+below = _below_in_python if UNCOMPILED else _below
 """below(a, b, x, y): x where a < b, else y."""
-bits_below = _bits_below_in_python if PLAIN else _bits_below
+bits_below = _bits_below_in_python if UNCOMPILED else _bits_below
 """bits_below(a, b): the bits of an integer, the first for the first lane, that are set where a < b."""
-first_bit = _first_bit_in_python if PLAIN else _first_bit
+first_bit = _first_bit_in_python if UNCOMPILED else _first_bit
 """The place of the first bit that is set, of an integer that is not 0."""
-least = np.min if PLAIN else _least
+least = np.min if UNCOMPILED else _least
 """The least of all lanes, none of which is NaN."""
-most = np.max if PLAIN else _most
+most = np.max if UNCOMPILED else _most
 """The largest of all lanes, none of which is NaN."""
-root = np.sqrt if PLAIN else _root
+root = np.sqrt if UNCOMPILED else _root
 """The square root."""
-guess = _guess_in_python if PLAIN else _guess
+guess = _guess_in_python if UNCOMPILED else _guess
 """s^(-1/2) for s > 0, within some 4 %, by halving the exponent (Lomont 2003)."""
-folded = _folded_in_python if PLAIN else _folded
+folded = _folded_in_python if UNCOMPILED else _folded
 """The sum of all lanes, half by half."""
 
 

@@ -9,7 +9,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from sceneql.compiled.arithmetic_kernels import bits, from_bits
-from sceneql.compiled.kernels import KernelCompiler, cache_folder, function_at, kernel
+from sceneql.compiled.kernels import PIPELINE, cache_folder, function_at, kernel
 from sceneql.compiled.threads_kernels import OVER_THREADS, TILE_FUNCTION, uncompiled
 from sceneql.system.signatures_kernels import N
 
@@ -59,7 +59,7 @@ def _entry(told):
 
 if not numba.config.DISABLE_JIT:
     numba.config.CACHE_DIR = str(cache_folder(__name__))
-    ENTRY = numba.cfunc(N(types.CPointer(N)), cache=True, pipeline_class=KernelCompiler)(_entry)
+    ENTRY = numba.cfunc(N(types.CPointer(N)), cache=True, **PIPELINE)(_entry)
     binding.add_symbol(f"{__name__}.entry", ENTRY.address)
 
 

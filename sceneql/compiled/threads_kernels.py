@@ -12,7 +12,7 @@ import numba
 from numba import types
 
 from sceneql.compiled.kernels import address, thread_count
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.system.signatures_kernels import A, F, I, N
 
 TILE = types.void(N, F, A, A, A, I)
@@ -23,7 +23,7 @@ OVER_THREADS = types.void(N, N, N, N, F, A, A, A, I)
 uncompiled: dict[int, Any] = {}
 """Functions by their addresses where numba is switched off."""
 
-over_threads = late("sceneql.compiled.start_threads_kernels:over_threads", OVER_THREADS)
+over_threads = lazy("sceneql.compiled.start_threads_kernels:over_threads", OVER_THREADS)
 """over_threads(several, count, function, tiles, t, y, rate, floats, ints); small islands never call it."""
 
 

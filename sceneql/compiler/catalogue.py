@@ -15,6 +15,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from sceneql.compiler.defaults import check_defaults
 from sceneql.kinds import FAMILIES, Kind
 
 ROOT = Path(__file__).parent.parent
@@ -69,18 +70,20 @@ class Catalogue:
         return sorted(word for name in (family, *also) for word in self.words(name))
 
     def load(self, family: str, word: str) -> type[Kind] | None:
-        """The class of a word that may stand in a family's section, or None if there is none."""
+        """The class of a word that may stand in a family's section, or None if there is none.
+
+        Raises ScriptError where a default in the word's file is none.
+        """
         key = (family, word)
         if key not in self._loaded and _may_be_word(word):
             for package, folder in self._places(family):
                 if _is_word(folder / f"{word}.py"):
-                    module = importlib.import_module(f"{package}.{word}")
-                    self._loaded[key] = getattr(module, class_name(word))
+                    self._loaded[key] = _class(importlib.import_module(f"{package}.{word}"), word)
                     break
             else:
                 entry = self._installed.get(f"{family}.{word}")
                 if entry is not None:
-                    self._loaded[key] = getattr(entry.load(), class_name(word))
+                    self._loaded[key] = _class(entry.load(), word)
         return self._loaded.get(key)
 
     def families_of(self, word: str) -> list[str]:
@@ -98,6 +101,12 @@ class Catalogue:
         from importlib.metadata import entry_points
 
         return {entry.name: entry for entry in entry_points(group="sceneql.words")}
+
+
+def _class(module: ModuleType, word: str) -> type[Kind]:
+    cls: type[Kind] = getattr(module, class_name(word))
+    check_defaults(cls)
+    return cls
 
 
 def _may_be_word(text: str) -> bool:

@@ -34,7 +34,7 @@ COMPONENTS = ("x", "y", "z")
 def read_value(node: Node, quantity: Quantity, what: str, names: Names, found: Diagnostics) -> Value | None:
     """A value of the quantity's type, or None after reporting what is wrong."""
     expr = read_expr(node, quantity.shape, quantity.dimension, what, names, found)
-    if expr is None or not _fits(expr, quantity, what, node.span, found):
+    if expr is None or not fits(expr, quantity, what, node.span, found):
         return None
     if not quantity.over_time and not momentary(expr, node.span, found):
         return None
@@ -154,7 +154,8 @@ def time_reader(names: Names, found: Diagnostics) -> ReadTime:
     return lambda node, what: read_value(node, Quantity(TIME), what, names, found)
 
 
-def _fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnostics) -> bool:
+def fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnostics) -> bool:
+    """Whether a bound tree is of a quantity's shape and dimension; what is wrong is reported at the span."""
     if quantity.shape is not None and not _shape_fits(expr.type.shape, quantity.shape):
         found.error(
             "wrong-shape",

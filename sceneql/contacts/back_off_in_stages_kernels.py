@@ -13,7 +13,7 @@ import numpy as np
 from numba import types
 
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.back_off_kernels import find_near
 from sceneql.contacts.body_path_kernels import NEVER, set_out
 from sceneql.contacts.impulse_kernels import (
@@ -56,7 +56,7 @@ from sceneql.contacts.resting_kernels import come_to_rest, set_velocity
 from sceneql.contacts.shape_kernels import DEPTH, MOVING, NEAR, OBJECT, near_at, surface, velocity
 from sceneql.system.signatures_kernels import A, F, I, N
 
-back_off_found = late("sceneql.contacts.respond_kernels:back_off_found", ANSWER)
+back_off_found = lazy("sceneql.contacts.respond_kernels:back_off_found", ANSWER)
 
 AHEAD = 3.0
 """Steps of the present speed within which what comes near is listed."""

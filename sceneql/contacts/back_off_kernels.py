@@ -9,7 +9,7 @@ import numpy as np
 from numba import types
 
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.impulse_kernels import (
     BODIES,
     HEAD,
@@ -43,19 +43,19 @@ from sceneql.contacts.memory_kernels import (
 from sceneql.contacts.shape_kernels import MOVING, NEAR, OBJECT, near_at
 from sceneql.system.signatures_kernels import BACK_OFF, TERM, A, F, I
 
-cut = late("sceneql.contacts.respond_kernels:cut", ANSWER)
-back_off_found = late("sceneql.contacts.respond_kernels:back_off_found", ANSWER)
-support = late("sceneql.contacts.support_kernels:support", SUPPORT)
-hold = late("sceneql.contacts.stage_contacts_kernels:hold", HOLD)
-back_off_in_stages = late("sceneql.contacts.back_off_in_stages_kernels:back_off_in_stages", BACK_OFF_IN_STAGES)
+cut = lazy("sceneql.contacts.respond_kernels:cut", ANSWER)
+back_off_found = lazy("sceneql.contacts.respond_kernels:back_off_found", ANSWER)
+support = lazy("sceneql.contacts.support_kernels:support", SUPPORT)
+hold = lazy("sceneql.contacts.stage_contacts_kernels:hold", HOLD)
+back_off_in_stages = lazy("sceneql.contacts.back_off_in_stages_kernels:back_off_in_stages", BACK_OFF_IN_STAGES)
 
-LATE_FIRST = (
+LAZY_FIRST = (
     "sceneql.contacts.resting_kernels",
     "sceneql.contacts.slide_kernels",
     "sceneql.contacts.support_kernels",
     "sceneql.contacts.search_kernels",
 )
-"""Of what is compiled late, modules that a process beside does best to begin with (driver.late_first)."""
+"""Of what is compiled lazily, modules that a process beside does best to begin with (driver.lazy_first)."""
 
 
 @lean(types.void(F, A, A, A, A, I), inner=True)

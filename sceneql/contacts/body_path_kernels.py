@@ -9,7 +9,7 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.impulse_kernels import POSITION, VELOCITY
 from sceneql.contacts.shape_kernels import FLAT, clear, facing
 from sceneql.system.signatures_kernels import A, F, I, N
@@ -17,7 +17,7 @@ from sceneql.system.signatures_kernels import A, F, I, N
 NEVER = 2.0
 SEARCH = types.float64(A, F, A, I, N, F)
 
-search = late("sceneql.contacts.search_kernels:search", SEARCH)
+search = lazy("sceneql.contacts.search_kernels:search", SEARCH)
 
 
 @lean_inlined

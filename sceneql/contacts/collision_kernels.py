@@ -8,7 +8,7 @@ body's memory in the floats: the last accepted instant, its place and velocity t
 import numpy as np
 
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.body_path_kernels import NEVER, first_contact, moving, place
 from sceneql.contacts.impulse_kernels import (
     BODIES,
@@ -29,10 +29,10 @@ from sceneql.contacts.pair_kernels import away, body_of
 from sceneql.contacts.shape_kernels import DEPTH, FROM_TYPE, MOVING, OBJECT, surface, velocity
 from sceneql.system.signatures_kernels import GAP, IMPACT, TERM
 
-hit = late("sceneql.contacts.hit_kernels:hit", IMPACT)
-keep = late("sceneql.contacts.resting_kernels:keep", KEEP)
-from_object = late("sceneql.contacts.moving_kernels:from_object", FROM_TYPE)
-support = late("sceneql.contacts.support_kernels:support", SUPPORT)
+hit = lazy("sceneql.contacts.hit_kernels:hit", IMPACT)
+keep = lazy("sceneql.contacts.resting_kernels:keep", KEEP)
+from_object = lazy("sceneql.contacts.moving_kernels:from_object", FROM_TYPE)
+support = lazy("sceneql.contacts.support_kernels:support", SUPPORT)
 
 CHANGED = 1
 """floats[1] tells the march that the state or a flag was changed."""

@@ -13,7 +13,7 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.body_path_kernels import NEVER, moving, place, set_out
 from sceneql.contacts.impulse_kernels import (
     BODIES,
@@ -62,7 +62,7 @@ from sceneql.contacts.shape_kernels import OBJECT, clear, surface, velocity
 from sceneql.contacts.slide_kernels import fly_on, slide, start_with
 from sceneql.system.signatures_kernels import A, F, I, N
 
-brake = late("sceneql.contacts.friction_kernels:brake", BRAKE)
+brake = lazy("sceneql.contacts.friction_kernels:brake", BRAKE)
 
 MOST_IMPACTS = 8
 """Impacts of a body in one step; after that it is only kept outside."""

@@ -26,7 +26,7 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean_inlined
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.compiled.numbered_kernels import kernel_at
 from sceneql.system.signatures_kernels import A, F, I, N
 
@@ -48,8 +48,8 @@ BEND_TYPE = F(A, I, N, F, F, F, F, F, F)
 CLEAR_TYPE = types.boolean(A, I, N, F, F, F, F)
 NEAR_TYPE = types.void(A, I, N, F, A, A, A, A, A, F, A)
 
-moving_velocity = late("sceneql.contacts.moving_kernels:moving_velocity", MOTION_TYPE)
-moving_acceleration = late("sceneql.contacts.moving_kernels:moving_acceleration", MOTION_TYPE)
+moving_velocity = lazy("sceneql.contacts.moving_kernels:moving_velocity", MOTION_TYPE)
+moving_acceleration = lazy("sceneql.contacts.moving_kernels:moving_acceleration", MOTION_TYPE)
 surface_at, bend_at, clear_at, near_at = (kernel_at(kind) for kind in (SURFACE_TYPE, BEND_TYPE, CLEAR_TYPE, NEAR_TYPE))
 
 

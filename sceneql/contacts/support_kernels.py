@@ -2,7 +2,7 @@
 """The normal force that carries bodies that rest, and Coulomb's friction: compiled when the first body needs them."""
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.impulse_kernels import (
     BODIES,
     FRICTION,
@@ -30,10 +30,10 @@ from sceneql.contacts.pair_kernels import away, is_flat
 from sceneql.contacts.pressing_kernels import pressing
 from sceneql.contacts.shape_kernels import facing
 
-rub = late("sceneql.contacts.friction_kernels:rub", OF_BODY)
-carry = late("sceneql.contacts.carry_kernels:carry", OF_BODY)
-tie = late("sceneql.contacts.resting_ties_kernels:tie", OF_BODY)
-tie_one = late("sceneql.contacts.resting_ties_kernels:tie_one", OF_PAIR)
+rub = lazy("sceneql.contacts.friction_kernels:rub", OF_BODY)
+carry = lazy("sceneql.contacts.carry_kernels:carry", OF_BODY)
+tie = lazy("sceneql.contacts.resting_ties_kernels:tie", OF_BODY)
+tie_one = lazy("sceneql.contacts.resting_ties_kernels:tie_one", OF_PAIR)
 
 
 @lean_inlined

@@ -17,7 +17,7 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
 from sceneql.grids.multigrid.linear_kernels import (
     AT,
@@ -35,8 +35,8 @@ from sceneql.system.signatures_kernels import DENSE, STEP, A, F, I
 ITERATE = types.boolean(I, F, F, A, A, A, A, A, A, I, A, A, I)
 EMBEDDED_ERROR = types.float64(F, F, A, A, A, A, I, A)
 
-iterate = late("sceneql.grids.iterate_kernels:iterate", ITERATE)
-embedded_error = late("sceneql.grids.embedded_kernels:embedded_error", EMBEDDED_ERROR)
+iterate = lazy("sceneql.grids.iterate_kernels:iterate", ITERATE)
+embedded_error = lazy("sceneql.grids.embedded_kernels:embedded_error", EMBEDDED_ERROR)
 
 STAGES, EXPLICIT_FIRST, EMBEDDED, ERROR_ORDER, HEAD = range(5)
 RELATIVE, ABSOLUTE, DIAGONAL, TABLEAU = range(4)

@@ -12,7 +12,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 from sceneql.kinds.values import Paint, Quantity, Turn, Value
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.bind import bind
-from sceneql.quantities.diagnostic import Diagnostics, ScriptError
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
 from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.expression import Shape, Type
 from sceneql.quantities.parser import parse_value
@@ -49,14 +49,16 @@ def field(
     return Field(default=default, description=doc, json_schema_extra=extra)
 
 
-def literal(text: str, quantity: Quantity) -> Value:
-    """The Value of a text without names, as in a default. Raises ScriptError."""
-    source = Source("default", text)
+def literal(text: str, place: Span | None = None) -> Value:
+    """The Value of a text without names, as in a default, of any type. Raises ScriptError, told at ``place``."""
+
+    def unknown(parts: tuple[str, ...], span: Span) -> Diagnostic:
+        return Diagnostic("unknown-name", f"nothing is called '{'.'.join(parts)}'", span)
+
     found = Diagnostics()
-    expr = bind(parse_value(text, Span(source, 0, len(text))), lambda parts, span: None, found)
-    found.raise_errors()
+    expr = bind(parse_value(text, place or Span(Source("default", text), 0, len(text))), unknown, found)
     if expr is None:
-        raise ScriptError([])
+        raise ScriptError(found.errors)
     return Value(expr)
 
 
@@ -102,7 +104,7 @@ class Record(BaseModel):
                 continue
             for mark in info.metadata:
                 if isinstance(mark, Quantity | Paint | Turn):
-                    value = literal(info.default, GRAMMAR.get(type(mark), mark))
+                    value = literal(info.default)
                     filled[name] = value if info.annotation is Value else value.number()
         return filled
 

@@ -19,7 +19,7 @@ the same block of rows alone.
 from numba import types
 
 from sceneql.compiled.kernels import lean
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.linear.multifrontal_plan_kernels import (
     IN_SINGLE,
     NEW,
@@ -40,8 +40,8 @@ RESTS = 7
 FACTOR_GENERAL = types.boolean(I, A, A, A)
 SOLVE_GENERAL = types.void(I, A, A, A)
 
-factor_general = late("sceneql.linear.multifrontal_general_kernels:factor_general", FACTOR_GENERAL)
-solve_general = late("sceneql.linear.multifrontal_general_kernels:solve_general", SOLVE_GENERAL)
+factor_general = lazy("sceneql.linear.multifrontal_general_kernels:factor_general", FACTOR_GENERAL)
+solve_general = lazy("sceneql.linear.multifrontal_general_kernels:solve_general", SOLVE_GENERAL)
 
 
 @lean(FACTOR_SYSTEM)

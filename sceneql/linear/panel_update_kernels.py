@@ -22,7 +22,7 @@ from sceneql.compiled.arithmetic_kernels import fma, widest
 from sceneql.compiled.kernels import lean_inlined
 from sceneql.system.signatures_kernels import N
 
-PLAIN = numba.config.DISABLE_JIT
+UNCOMPILED = numba.config.DISABLE_JIT
 MOST = 64
 """Terms of a sum at a time: what of the source belongs to them stays in the caches."""
 WIDE = bool(binding.get_host_cpu_features().get("avx512f"))
@@ -154,10 +154,10 @@ def _coefficients(typing, like):
     return like(like), code
 
 
-coefficients = (lambda like: np.empty(ROWS * MOST, like.dtype)) if PLAIN else _coefficients
+coefficients = (lambda like: np.empty(ROWS * MOST, like.dtype)) if UNCOMPILED else _coefficients
 """Room for the coefficients of MOST terms, of an array's kind of numbers, on the stack of the calling kernel."""
 
-made = _in_python if PLAIN else _panel_update
+made = _in_python if UNCOMPILED else _panel_update
 strip, strip_of_three, strip_of_two, strip_of_one = made(ROWS, 3, True), *(made(ROWS, k, False) for k in (3, 2, 1))
 row, row_of_three, row_of_two, row_of_one = made(1, 3, True), *(made(1, k, False) for k in (3, 2, 1))
 

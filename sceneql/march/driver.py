@@ -93,10 +93,10 @@ def modules(structure: Structure) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name.partition(":")[0] for name in names))
 
 
-def late_first(structure: Structure) -> list[str]:
+def lazy_first(structure: Structure) -> list[str]:
     """Modules that contacts will soon ask for, in their order, when this process will be busy with the others."""
     local = dict.fromkeys(name.partition(":")[0] for name in structure.local)
-    return [first for module in local for first in getattr(load(module), "LATE_FIRST", ())]
+    return [first for module in local for first in getattr(load(module), "LAZY_FIRST", ())]
 
 
 def text(structure: Structure) -> str:

@@ -21,7 +21,7 @@ What contact kernels may count on, and owe:
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.compiled.pointers_kernels import AT_DENSE, AT_GAP, dense_at, gap_at
 from sceneql.system.signatures_kernels import EVENT, A, F, I, N
 
@@ -30,7 +30,7 @@ SAMPLES = 6
 
 FIRST_OF = types.Tuple((N, F))(I, N, F, F, F, A, A, A, A, A, A, I, A, I, A, A, A, I, F)
 
-first_of = late("sceneql.march.locate_kernels:first_of", FIRST_OF)
+first_of = lazy("sceneql.march.locate_kernels:first_of", FIRST_OF)
 
 
 @lean_inlined

@@ -98,15 +98,15 @@ class IslandRun:
     """An island on its way: its assembly, its march and its latest state."""
 
     def __init__(self, graph: SimulationGraph, island: Island) -> None:
-        from sceneql.compiled.compile_beside import compile_ahead
+        from sceneql.compiled.compile_beside import compile_beside
         from sceneql.compiled.generated import function
         from sceneql.compiled.numba import lazy_kernels
         from sceneql.island.jacobian import BY_DIFFERENCES
         from sceneql.linear.stage import likely_kernels
         from sceneql.march.assembled import blocks_of, models_of
-        from sceneql.march.driver import driver, jacobian, late_first, modules
+        from sceneql.march.driver import driver, jacobian, lazy_first, modules
 
-        compile_ahead(("sceneql.march.march_kernels",))  # while the models are made here
+        compile_beside(("sceneql.march.march_kernels",))  # while the models are made here
         self.graph, self.island = graph, island
         self.solver = cast(Solver, graph.tasks[island.solver].kind)
         made = models_of(graph, island)
@@ -114,7 +114,7 @@ class IslandRun:
         self.assembly = assembly = made.assembly
         assembly.places = self._places
         if not assembly.fields:  # then the solver's step is known before what acts is made
-            compile_ahead((self.solver.stepper().step.partition(":")[0],))
+            compile_beside((self.solver.stepper().step.partition(":")[0],))
         made.act()
         made.found.raise_errors()
         if assembly.only_field is not None:
@@ -125,7 +125,7 @@ class IslandRun:
             from sceneql.grids.grid_or_general import grid_or_general
 
             stepper = grid_or_general(stepper, assembly.only_field)
-            compile_ahead(on_grid.likely_kernels(stepper, assembly.only_field))
+            compile_beside(on_grid.likely_kernels(stepper, assembly.only_field))
         # Few masses under error control are followed from impact to impact.
         within = stepper.newton and (not stepper.adaptive or len(assembly.start()) > BY_DIFFERENCES)
         system = assembly.finish(stepper.jacobian, within)
@@ -134,9 +134,9 @@ class IslandRun:
         solving = (stepper.step.partition(":")[0], *likely(system))
         read = stepper.jacobian or not system.structure.local
         dense = (stepper.dense.partition(":")[0],) if stepper.dense is not None and read else ()
-        acting = compile_ahead((*solving, *modules(system.structure), *events, *dense))
+        acting = compile_beside((*solving, *modules(system.structure), *events, *dense))
         acting(*solving)
-        compile_ahead(late_first(system.structure))
+        compile_beside(lazy_first(system.structure))
         if stepper.march is None:  # while the process beside compiles what solves
             driver(system.structure)
             if stepper.jacobian:
@@ -144,7 +144,7 @@ class IslandRun:
         acting()
         from sceneql.march.march import March
 
-        compile_ahead(lazy_kernels.modules())  # nobody waits for what may never be called
+        compile_beside(lazy_kernels.modules())  # nobody waits for what may never be called
         blocks = blocks_of(made, system, stepper)
         self.march: March
         try:

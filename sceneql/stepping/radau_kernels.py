@@ -13,7 +13,7 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.compiled.pointers_kernels import AT_JACOBIAN, jacobian_at
 from sceneql.stepping.error_scales_kernels import foresee, weigh
 from sceneql.stepping.radau_stages_kernels import (
@@ -63,7 +63,7 @@ from sceneql.stepping.radau_systems_kernels import factor_at, filter_at
 from sceneql.system.signatures_kernels import DENSE, STEP, A, F, I
 
 FINISH = types.void(I, F, F, A, A, I, A, I, A, A)
-finish_tallies = late("sceneql.stepping.radau_tallies_kernels:finish_tallies", FINISH)
+finish_tallies = lazy("sceneql.stepping.radau_tallies_kernels:finish_tallies", FINISH)
 
 SAFETY = 0.9
 E1, E2, E3 = (-13.0 - 7.0 * ROOT6) / 3.0, (-13.0 + 7.0 * ROOT6) / 3.0, -1.0 / 3.0

@@ -16,7 +16,7 @@ from renderers.tracing.scene_kernels import (
 from renderers.tracing.solids.ranges_kernels import box_part, cells_at, plan_at, tape_of
 from renderers.tracing.solids.solids_kernels import NONE, inverse
 from sceneql.compiled.kernels import kernel
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.field.roots.isolation_kernels import exit_root, isolate
 from sceneql.field.tape.plans import NO_FORM
 from sceneql.field.tape.tape_ops import HIT, UNDECIDED
@@ -25,7 +25,7 @@ _f = types.float64
 RAY_ROOT = types.Tuple((types.int64, _f))(
     types.int32[:, ::1], _f[::1], _f[:, ::1], SCRATCH, types.int32[::1], *[_f] * 9, types.boolean
 )
-polynomial_root = late("sceneql.field.roots.ray_polynomial_kernels:polynomial_root", RAY_ROOT)
+polynomial_root = lazy("sceneql.field.roots.ray_polynomial_kernels:polynomial_root", RAY_ROOT)
 
 RETRIES = 8
 """Undecided places passed on one ray before it counts as a miss."""

@@ -49,12 +49,8 @@ def _of_shape(typing_context, args, keywords):
 
 
 BY_NAME = utils.pysignature(lambda shape, dtype: None)
-RESOLVED = {
-    min: (LEAST, _of_numbers),
-    max: (MOST, _of_numbers),
-    np.empty: (EMPTY, _of_shape),
-    np.zeros: (ZEROS, _of_shape),
-}
+RESOLVED = {}
+"""By the function called: what lowers a call, and the rule of its signature."""
 
 
 def resolve(function, typing_context, args, keywords):
@@ -133,6 +129,10 @@ def zeros(context, builder, signature, arguments):
     return impl_ret_new_ref(context, builder, signature.return_type, made._getvalue())
 
 
-def take_words():
-    """Let numba's other makers of arrays use the same."""
+def take_builtin_calls():
+    """Let calls of these functions be resolved here, and numba's other makers of arrays use the same."""
+    RESOLVED[min] = LEAST, _of_numbers
+    RESOLVED[max] = MOST, _of_numbers
+    RESOLVED[np.empty] = EMPTY, _of_shape
+    RESOLVED[np.zeros] = ZEROS, _of_shape
     arrayobj._empty_nd_impl = new_array

@@ -9,21 +9,14 @@ import operator
 from functools import cache
 
 from llvmlite import ir
-from numba import config
 from numba.core import cgutils, types
 from numba.core.imputils import impl_ret_borrowed, lower_builtin, lower_getattr
-from numba.extending import intrinsic
 from numba.np import arrayobj
-from numba.np.numpy_support import as_dtype
+
+from sceneql.compiled.rows_kernels import field
 
 WHOLE = arrayobj.getitem_arraynd_intp, arrayobj.getitem_array_tuple, arrayobj.setitem_array, arrayobj.make_array
 """numba's own ways."""
-
-
-def field(context, builder, kind, array, name, *more):
-    """A field of an array's value."""
-    position = context.data_model_manager[kind].get_field_position(name)
-    return builder.extract_value(array, (position, *more))
 
 
 def wrapped(context, builder, kind, index, size):
@@ -57,8 +50,6 @@ def parts(builder, kind, index):
     return (kind,), (index,)
 
 
-@lower_builtin(operator.getitem, types.Array, types.Integer)
-@lower_builtin(operator.getitem, types.Array, types.BaseTuple)
 def element(context, builder, signature, arguments):
     """``array[i]`` and ``array[i, j]``."""
     kind, index_kind = signature.args
@@ -72,8 +63,6 @@ def element(context, builder, signature, arguments):
     return impl_ret_borrowed(context, builder, signature.return_type, arrayobj.load_item(context, builder, kind, at))
 
 
-@lower_builtin(operator.setitem, types.Array, types.Integer, types.Any)
-@lower_builtin(operator.setitem, types.Array, types.BaseTuple, types.Any)
 def set_element(context, builder, signature, arguments):
     """``array[i] = value`` and ``array[i, j] = value``."""
     kind, index_kind, value_kind = signature.args
@@ -87,7 +76,6 @@ def set_element(context, builder, signature, arguments):
         arrayobj.store_item(context, builder, kind, context.cast(builder, value, value_kind, kind.dtype), at)
 
 
-@lower_builtin(operator.getitem, types.Array, types.SliceType)
 def section(context, builder, signature, arguments):
     """``array[i:j]``."""
     kind, slice_kind = signature.args
@@ -113,56 +101,19 @@ def section(context, builder, signature, arguments):
     return impl_ret_borrowed(context, builder, signature.return_type, array)
 
 
-@lower_getattr(types.Array, "size")
 def count(context, builder, kind, array):
     """``array.size``."""
     return field(context, builder, kind, array, "nitems")
 
 
-@lower_getattr(types.Array, "shape")
 def shape(context, builder, kind, array):
     """``array.shape``."""
     return field(context, builder, kind, array, "shape")
 
 
-@lower_builtin(len, types.Array)
 def length(context, builder, signature, arguments):
     """``len(array)``."""
     return field(context, builder, signature.args[0], arguments[0], "shape", 0)
-
-
-def rows_of(kind, columns):
-    """A function of an array of numbers in a row: the same memory as an array (n, columns) of numbers of ``kind``."""
-    if config.DISABLE_JIT:
-        return lambda numbers: numbers.view(as_dtype(kind)).reshape(-1, columns)
-    table = types.Array(kind, 2, "C")
-
-    @intrinsic
-    def rows(typing, numbers):
-        def code(context, builder, signature, arguments):
-            (array,) = arguments
-            words, size = context.get_value_type(types.intp), kind.bitwidth // 8
-            length = builder.mul(field(context, builder, numbers, array, "nitems"), words(numbers.dtype.bitwidth // 8))
-            count = builder.udiv(length, words(size * columns))
-            data = field(context, builder, numbers, array, "data")
-            fields = {
-                "meminfo": field(context, builder, numbers, array, "meminfo"),
-                "parent": field(context, builder, numbers, array, "parent"),
-                "nitems": builder.mul(count, words(columns)),
-                "itemsize": words(size),
-                "data": builder.bitcast(data, context.get_data_type(kind).as_pointer()),
-                "shape": cgutils.pack_array(builder, [count, words(columns)]),
-                "strides": cgutils.pack_array(builder, [words(size * columns), words(size)]),
-            }
-            made = ir.Constant(context.get_value_type(table), ir.Undefined)
-            model = context.data_model_manager[table]
-            for name, value in fields.items():
-                made = builder.insert_value(made, value, model.get_field_position(name))
-            return impl_ret_borrowed(context, builder, table, made)
-
-        return table(numbers), code
-
-    return rows
 
 
 @cache
@@ -175,5 +126,12 @@ def make_array(kind):
 
 
 def take_elements():
-    """Let numba take its structure of an array from here too; the rest it finds by itself."""
+    """Let numba lower what is done with arrays by the functions of this file."""
+    for index in (types.Integer, types.BaseTuple):
+        lower_builtin(operator.getitem, types.Array, index)(element)
+        lower_builtin(operator.setitem, types.Array, index, types.Any)(set_element)
+    lower_builtin(operator.getitem, types.Array, types.SliceType)(section)
+    lower_builtin(len, types.Array)(length)
+    lower_getattr(types.Array, "size")(count)
+    lower_getattr(types.Array, "shape")(shape)
     arrayobj.make_array = make_array

@@ -5,9 +5,7 @@ Most of the time that numba takes is spent in Python. What is left out here is h
 kernels compute nor what they may contain, but for closures, comprehensions, ``with`` and raises of computed errors.
 """
 
-import gc
 from collections.abc import Callable
-from contextlib import contextmanager
 from copy import copy
 from typing import Any
 
@@ -32,10 +30,10 @@ from numba.core.untyped_passes import (
     TranslateByteCode,
 )
 
-from sceneql.compiled.numba.builtin_calls import take_words
+from sceneql.compiled.numba.builtin_calls import take_builtin_calls
 from sceneql.compiled.numba.elements import take_elements
-from sceneql.compiled.numba.python_entry import WayIn, lead_in
-from sceneql.compiled.numba.shortcuts import take_shortcuts
+from sceneql.compiled.numba.python_entry import PythonEntry, add_python_entry
+from sceneql.compiled.numba.shortcuts import SHORTCUTS
 from sceneql.compiled.numba.statements import Free, KernelLower
 
 FRONT = (
@@ -161,10 +159,10 @@ class HelperCompiler(CompilerBase):
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
-class LowerWayIn(WayIn):
+class LowerPythonEntry(PythonEntry):
     """Lower the way into a kernel to a KernelLibrary."""
 
-    _name = "lower_way_in"
+    _name = "lower_python_entry"
 
     def run_pass(self, state):
         """Leave the code in state.library, to be cached."""
@@ -173,19 +171,23 @@ class LowerWayIn(WayIn):
         return super().run_pass(state)
 
 
-class WayInCompiler(CompilerBase):
+class PythonEntryCompiler(CompilerBase):
     """For ``pipeline_class`` of what leads from Python into a kernel that is there."""
 
     def define_pipelines(self):
         """The one list of passes."""
-        return _pipeline(LowerWayIn, NoPythonBackend)
+        return _pipeline(LowerPythonEntry, NoPythonBackend)
 
 
-def call_by_name(kernel: Any, way_in: Callable[[], Any] | None) -> None:
+PIPELINES = tuple({"pipeline_class": compiler} for compiler in (KernelCompiler, HelperCompiler, PythonEntryCompiler))
+"""The option of numba.jit for a kernel, for a helper, and for the Python entry of a kernel."""
+
+
+def call_by_name(kernel: Any, python_entry: Callable[[], Any] | None) -> None:
     """Let other kernels call this one by its name, where numba would put its code into each of them once more.
 
     The name is the function's own: what numba makes of it differs from process to process, and callers are cached.
-    ``way_in()`` gives what Python calls the kernel by, when it does; where there is None, calls raise TypeError.
+    ``python_entry()`` gives what Python calls the kernel by, when it does; where there is None, calls raise TypeError.
     """
     (made,) = kernel.overloads.values()  # of one signature: a name stands for one function
     called = copy(made.fndesc)
@@ -194,8 +196,8 @@ def call_by_name(kernel: Any, way_in: Callable[[], Any] | None) -> None:
     context = made.target_context
     context.remove_user_function(made.entry_point)
     context.insert_user_function(made.entry_point, called, [])
-    if way_in is not None:
-        lead_in(kernel, called, way_in)
+    if python_entry is not None:
+        add_python_entry(kernel, called, python_entry)
     else:
         kernel._clear()
         kernel._explain_matching_error = _refusal(kernel.__name__)
@@ -210,34 +212,6 @@ def _refusal(name):
     return refuse
 
 
-MANY, VERY_MANY = 20_000, 3_000_000
-"""Objects that a compilation makes, a load from the cache does not; and how many of them memory has room for."""
-out_of_sight: list[int] = []
-
-
-@contextmanager
-def collecting_later():
-    """Leave the garbage collector off: a compilation makes millions of objects that live on, looked over in vain.
-
-    Afterwards they are kept out of its sight too, or it would look them over at once, until there are very many.
-    """
-    was_on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            made = gc.get_count()[0]
-            if made > MANY:
-                out_of_sight.append(made)
-                if sum(out_of_sight) > VERY_MANY:
-                    out_of_sight.clear()
-                    gc.unfreeze()
-                    gc.collect()
-                gc.freeze()
-            gc.enable()
-
-
 def widen():
     """Let LLVM use vectors of 512 bits where they do not slow the clock, which is from AVX512-VBMI2 on (Ice Lake)."""
     if config.CPU_NAME is None and config.CPU_FEATURES is None and config.ENABLE_AVX:
@@ -246,8 +220,16 @@ def widen():
             config.CPU_FEATURES = f"{features.flatten()},-prefer-256-bit"
 
 
-take_elements()
-take_shortcuts()
-take_words()
-widen()
-ffi.lib._lock._cblist.clear()  # LLVM's calls are many, and how long it is held asks nobody here
+def forget_lock_times():
+    """LLVM's calls are many, and how long each of them holds its lock asks nobody here."""
+    ffi.lib._lock._cblist.clear()
+
+
+REPLACEMENTS = [take_elements, *SHORTCUTS, take_builtin_calls, forget_lock_times, widen]
+"""What replaces parts of numba for all that this process compiles; the passes above are only for our kernels."""
+
+
+def take_all() -> None:
+    """Replace those parts, once, before anything is compiled."""
+    for replace in REPLACEMENTS:
+        replace()

@@ -1,7 +1,9 @@
 # mypy: ignore-errors
 """Kernels that others call, but that are compiled only when the first call comes: most scenes may do without.
 
-The callers are linked to a place in memory, not to code. While it is empty a call asks for the kernel's module first.
+The callers are linked to a place in memory that holds the address of the kernel's code. While it is empty, a call
+imports the kernel's module first. This extends numba by its registries of functions and LLVM's table of symbols, and
+replaces nothing: it works with SCENEQL_NUMBA=plain too.
 """
 
 import ctypes
@@ -34,7 +36,7 @@ class NotBrought(Exception):
         raise failures[name]
 
 
-def late(name, signature):
+def lazy(name, signature):
     """The kernel ``"package.module:function"``, to be called by kernels alone; ``signature`` is what it has."""
     module, _, function = name.partition(":")
 
@@ -51,7 +53,7 @@ def late(name, signature):
     places[ctypes.addressof(place)] = name, place
     expected[ctypes.addressof(place)] = signature
     binding.add_symbol(symbol, ctypes.addressof(place))
-    template = type(f"Late_{function}", (ConcreteTemplate,), {"key": symbol, "cases": [signature]})
+    template = type(f"Lazy_{function}", (ConcreteTemplate,), {"key": symbol, "cases": [signature]})
     infer_global(stub, typing_key=symbol)(template)
 
     @lower_builtin(symbol, *signature.args)
@@ -78,7 +80,7 @@ def late(name, signature):
 
 
 def modules() -> list[str]:
-    """The modules of all late kernels that are named so far and have not been called."""
+    """The modules of all lazy kernels that are named so far and have not been called."""
     return [name.partition(":")[0] for name, place in list(places.values()) if place.value is None]
 
 

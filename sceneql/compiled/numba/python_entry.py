@@ -1,5 +1,8 @@
 # mypy: ignore-errors
-"""The code by which Python calls a kernel: made, and cached, when Python first does. Most kernels only kernels call."""
+"""The code by which Python calls a kernel, compiled and cached at the first call from Python.
+
+Most kernels are called by kernels alone and never need it. numba makes it with every function.
+"""
 
 import threading
 from copy import copy
@@ -15,10 +18,11 @@ _called = {}
 _one_by_one = threading.RLock()
 
 
-def lead_in(kernel, called, make):
-    """Let the first call of a dispatcher from Python ``make`` the way into the kernel so ``called``, and take it.
+def add_python_entry(kernel, called, make):
+    """Let the first call of a kernel from Python compile its Python entry, or load it, and go through it.
 
-    ``make()`` compiles a dispatcher's function by the pass below, or loads it.
+    ``called`` is the description under which kernels call the kernel by name; ``make()`` gives a dispatcher that was
+    compiled by the pass below.
     """
     _called[called.mangled_name] = called
     kernel._clear()
@@ -27,7 +31,7 @@ def lead_in(kernel, called, make):
         with _one_by_one:
             if kernel._can_compile:
                 (way,) = make().overloads.values()
-                kernel.way_in = way  # which keeps it: numba's table does not
+                kernel.python_entry = way  # which keeps it: numba's table does not
                 kernel._insert([one._code for one in way.signature.args], way.entry_point, False)
                 kernel._can_compile = False
         return kernel
@@ -38,10 +42,10 @@ def lead_in(kernel, called, make):
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)
-class WayIn(LoweringPass):
+class PythonEntry(LoweringPass):
     """Instead of all that makes a kernel of a function: what takes Python's arguments, and calls the kernel by name."""
 
-    _name = "way_in"
+    _name = "python_entry"
 
     def __init__(self):
         LoweringPass.__init__(self)

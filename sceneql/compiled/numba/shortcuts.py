@@ -1,7 +1,8 @@
 # mypy: ignore-errors
-"""Shortcuts through numba: what it asks again and again, always with the same answer, is remembered or not asked.
+"""Shortcuts through numba's type inference and code generation: answers that never change are remembered or not asked.
 
-None of them changes what is compiled. Each names the function of numba that it stands in for.
+None of them changes what is compiled. Each replaces the function of numba that its last lines assign to;
+tests/bench/bench_shortcuts.py measures what each of them saves.
 """
 
 import operator
@@ -140,6 +141,16 @@ def propagate(self, inference):
             told.__cause__ = error
             found.append(told)
     return found
+
+
+def propagate_quickly():
+    """One round of type inference asks no constraint for what an error of it would say."""
+    typeinfer.ConstraintNetwork.propagate = propagate
+
+
+def describe_rarely():
+    """What an error has happened in is described only where there is one (errors.new_error_context)."""
+    typeinfer.new_error_context = lowering.new_error_context = Context
 
 
 def list_quickly():
@@ -298,6 +309,11 @@ def look_for_extensions():
     entrypoints.init_all = look
 
 
+def remember_places():
+    """Which kinds of errors take a place in a file."""
+    base._has_loc = cache(base._has_loc)
+
+
 def silence():
     """The log of what passes do, which nobody reads."""
     for module in (byteflow, interpreter, ssa, transforms, typeinfer):
@@ -311,22 +327,23 @@ def _say_nothing(*_, **__):
 ABSENT = {"peep_hole_delete_with_exit", "peep_hole_fuse_dict_add_updates"}
 
 
-def take_shortcuts():
-    """Take all shortcuts."""
-    remember_signatures()
-    remember_attributes()
-    resolve_once()
-    list_quickly()
-    remember_misses()
-    refresh_rarely()
-    look_once()
-    name_quickly()
-    pass_over()
-    look_for_print()
-    remember_sizes()
-    believe_in_scipy()
-    look_for_extensions()
-    silence()
-    typeinfer.ConstraintNetwork.propagate = propagate
-    typeinfer.new_error_context = lowering.new_error_context = Context
-    base._has_loc = cache(base._has_loc)
+SHORTCUTS = (
+    remember_signatures,
+    remember_attributes,
+    resolve_once,
+    propagate_quickly,
+    describe_rarely,
+    list_quickly,
+    remember_misses,
+    refresh_rarely,
+    look_once,
+    name_quickly,
+    pass_over,
+    look_for_print,
+    remember_sizes,
+    remember_places,
+    believe_in_scipy,
+    look_for_extensions,
+    silence,
+)
+"""All of them, in the order in which they are taken."""

@@ -10,7 +10,7 @@ import numpy as np
 from numba import types
 
 from sceneql.compiled.kernels import inlined, kernel
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.mutual.sphere_pair_kernels import (
     COUNT,
     INVERSE,
@@ -30,7 +30,7 @@ from sceneql.system.signatures_kernels import BACK_OFF, A, F, I
 ASKED = 1
 """floats[1]: above 0 the march only asks when the step should end."""
 
-meet_all = late("sceneql.contacts.mutual.sphere_meet_kernels:meet_all", MEET)
+meet_all = lazy("sceneql.contacts.mutual.sphere_meet_kernels:meet_all", MEET)
 
 
 @inlined

@@ -7,14 +7,14 @@ floats[ints[POINTS] + 7 k:] has the last accepted instant of mass k, its place a
 import math
 
 from sceneql.compiled.kernels import inlined, kernel
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.mutual.sphere_pair_kernels import COUNT, INVERSE, POINTS, V, X, of, radii
 from sceneql.system.signatures_kernels import GAP, IMPACT, A, F, I, N
 
 NO_EVENT = 1e300
 INSTANT = 7
 
-hit = late("sceneql.contacts.mutual.sphere_hit_kernels:hit", IMPACT)
+hit = lazy("sceneql.contacts.mutual.sphere_hit_kernels:hit", IMPACT)
 
 
 @kernel(F(N, N, F, A, A, I), inner=True)

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from sceneql.compiled.kernels import inlined, kernel
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.impulse_kernels import count_hit
 from sceneql.contacts.mutual.sphere_pair_kernels import (
     COUNT,
@@ -33,7 +33,7 @@ from sceneql.system.signatures_kernels import A, F, I, N
 
 MOST_PASSES = 100
 
-rest = late("sceneql.contacts.mutual.sphere_rest_kernels:rest", REST)
+rest = lazy("sceneql.contacts.mutual.sphere_rest_kernels:rest", REST)
 
 
 @inlined

@@ -14,8 +14,8 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.compiled.numba.elements import rows_of
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
+from sceneql.compiled.rows_kernels import rows_of
 from sceneql.contacts.shape_kernels import (
     BEND_TYPE,
     CLEAR_TYPE,
@@ -31,7 +31,7 @@ from sceneql.field.enclose.interval_kernels import box
 from sceneql.field.tape.tape_ops import NOWHERE
 from sceneql.system.signatures_kernels import A, F, I, N
 
-nearest = late("sceneql.contacts.shapes.nearest_kernels:nearest", FOUR(A, I, N, F, F, F))
+nearest = lazy("sceneql.contacts.shapes.nearest_kernels:nearest", FOUR(A, I, N, F, F, F))
 
 CONSTANTS, PARTS, SCRATCH, CODE = 0, 2, 4, 6
 HEAD = CODE + 1

@@ -11,7 +11,7 @@ SIGN, REST = np.int64(63), np.int64(0x7FFFFFFFFFFFFFFF)
 @inlined
 def number_of(key):
     """The number with a key."""
-    return (key ^ ((key >> SIGN) & REST)).view(np.float64)
+    return np.int64(key ^ ((key >> SIGN) & REST)).view(np.float64)
 
 
 @inlined
@@ -19,7 +19,7 @@ def extent(row, n):
     """(least, largest) of the first n > 0 numbers; NaN where one is."""
     least, largest = REST, -REST
     for i in range(n):
-        bits = row[i].view(np.int64)
+        bits = np.float64(row[i]).view(np.int64)
         key = bits ^ ((bits >> SIGN) & REST)
         least = key if key < least else least
         largest = key if key > largest else largest

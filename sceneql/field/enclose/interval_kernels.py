@@ -8,7 +8,7 @@ import numpy as np
 from numba import types
 
 from sceneql.compiled.kernels import inlined, kernel
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.field.enclose.forms_kernels import never_negative
 from sceneql.field.enclose.sine_kernels import sine_cosine
 from sceneql.field.tape.order_kernels import sign_of
@@ -51,8 +51,8 @@ TURN = 2.0 * np.pi
 OF_PARTS = types.UniTuple(types.float64, 2)(
     types.float64[:, ::1], types.int64, types.int64, types.float64[:, ::1], types.int64
 )
-density_box = late("sceneql.field.skeleton.parts_box_kernels:density_box", OF_PARTS)
-skeleton_box = late("sceneql.field.skeleton.parts_box_kernels:skeleton_box", OF_PARTS)
+density_box = lazy("sceneql.field.skeleton.parts_box_kernels:density_box", OF_PARTS)
+skeleton_box = lazy("sceneql.field.skeleton.parts_box_kernels:skeleton_box", OF_PARTS)
 
 
 @inlined

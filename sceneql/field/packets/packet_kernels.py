@@ -12,7 +12,7 @@ from numba.core.sigutils import normalize_signature
 
 from sceneql.compiled.kernels import inlined
 from sceneql.compiled.lanes_kernels import load, store
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.field.enclose.affine_kernels import (
     GROW,
     PAD,
@@ -66,10 +66,10 @@ TWICE, FIVE_TIMES = F(1.2e-7), F(3.0e-7)
 PACKET = "int32[:, ::1], float64[::1], float32[:, ::1], float32[:, ::1], float32[:, ::1]"
 """Types of (code, constants, parts, registers, point)."""
 ENCLOSE = types.void(*normalize_signature(f"void({PACKET}, float32[::1], int64)")[0])
-enclose = late("sceneql.field.packets.enclose_kernels:enclose", ENCLOSE)
+enclose = lazy("sceneql.field.packets.enclose_kernels:enclose", ENCLOSE)
 _singles, _row, _many = types.float32[:, ::1], types.float32[::1], types.int64
 SKELETON_LANES = types.void(_singles, _many, _many, _row, _row, _row, _row, _many)
-skeleton_lanes = late("sceneql.field.packets.packet_skeleton_kernels:skeleton_lanes", SKELETON_LANES)
+skeleton_lanes = lazy("sceneql.field.packets.packet_skeleton_kernels:skeleton_lanes", SKELETON_LANES)
 BUNDLE = f"{PACKET}, float32[::1], float32[::1], int64[::1], float64[:, ::1], float32[:, ::1], int64[::1]"
 MEMORY = "float64[:, ::1]," * 6 + "int32[:, ::1], float32[:, ::1], float64[:, ::1]"
 """Types of a bundle of rays, and of what a tape works in: see ``packets.Memory``."""
@@ -77,12 +77,12 @@ _wide = types.float64[:, ::1]
 KEEP_SKELETON = types.UniTuple(_many, 2)(
     _many, _many, _row, _row, _row, _row, _many, _many, _singles, _wide, _many, _singles, _wide
 )  # fmt: skip
-keep_skeleton = late("sceneql.field.packets.packet_near_kernels:keep_skeleton", KEEP_SKELETON)
+keep_skeleton = lazy("sceneql.field.packets.packet_near_kernels:keep_skeleton", KEEP_SKELETON)
 _place = types.float64
 TAPE_ROOTS = types.Tuple((types.int64, types.int64, types.int64, _place, _place, _place))(
     *normalize_signature(f"void({BUNDLE}, int64, int64, boolean, {MEMORY}, int64[::1])")[0]
 )
-tape_roots = late("sceneql.field.packets.tape_bundle_kernels:tape_roots", TAPE_ROOTS)
+tape_roots = lazy("sceneql.field.packets.tape_bundle_kernels:tape_roots", TAPE_ROOTS)
 CHECK_INSIDE = types.void(
     types.int32[:, ::1],
     types.float64[::1],
@@ -96,7 +96,7 @@ CHECK_INSIDE = types.void(
     types.float64,
     _wide,
 )
-check_inside = late("sceneql.field.packets.inside_kernels:check_inside", CHECK_INSIDE)
+check_inside = lazy("sceneql.field.packets.inside_kernels:check_inside", CHECK_INSIDE)
 
 
 @lane

@@ -11,7 +11,7 @@ from numba import types
 from numba.core.sigutils import normalize_signature
 
 from sceneql.compiled.kernels import inlined, lean
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.field.packets.packet_kernels import BUNDLE, MEMORY, check_inside, tape_roots
 from sceneql.field.packets.polynomial_search_kernels import polynomial_roots
 from sceneql.field.packets.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS, SETTLED
@@ -25,7 +25,7 @@ _rows, _side = types.float64[:, ::1], types.float64
 BOX_OF = types.Tuple((_side, _side, types.int64))(
     types.int32[:, ::1], types.float64[::1], _rows, _rows, _side, _side, _side, _side, _side, _side
 )  # fmt: skip
-box = late("sceneql.field.enclose.interval_kernels:box", BOX_OF)
+box = lazy("sceneql.field.enclose.interval_kernels:box", BOX_OF)
 GROUP = 16
 TOLERANCE = 1e-9
 """Of the certified routine, relative to the searched piece of the ray."""

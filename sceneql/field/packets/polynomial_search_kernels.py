@@ -7,8 +7,9 @@ The rays that have a length are packed, and go through lanes together.
 import numpy as np
 from numba import types
 
+from sceneql.compiled.arithmetic_kernels import bits, from_bits
 from sceneql.compiled.kernels import inlined
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.field.packets.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS, SETTLED
 from sceneql.field.roots.polynomial_kernels import ABREAST
 from sceneql.field.roots.polynomial_steps_kernels import (
@@ -32,7 +33,7 @@ _f, _i, _ids, _wide = types.float64, types.int64, types.int64[::1], types.float6
 POLYNOMIAL_ROOTS = types.UniTuple(_i, 2)(
     types.int32[:, ::1], _f[::1], _wide, _i, types.boolean, _wide, _ids, _ids, _ids, _wide, _f[::1]
 )
-polynomial_roots = late("sceneql.field.packets.polynomial_bundle_kernels:polynomial_roots", POLYNOMIAL_ROOTS)
+polynomial_roots = lazy("sceneql.field.packets.polynomial_bundle_kernels:polynomial_roots", POLYNOMIAL_ROOTS)
 
 
 @inlined
@@ -64,14 +65,14 @@ def reach(wide, n, axis):
     most, way = np.int64(0), np.int64(0)
     for i in range(n):
         # Numbers that are not negative are in the order of their bits; loops over integers vectorize.
-        near, far = abs(o[i] + t0[i] * d[i]).view(np.int64), abs(o[i] + t1[i] * d[i]).view(np.int64)
+        near, far = bits(abs(o[i] + t0[i] * d[i])), bits(abs(o[i] + t1[i] * d[i]))
         near = near if near > far else far
         most = near if near > most else most
-        first, last = abs(t0[i] * d[i]).view(np.int64), abs(t1[i] * d[i]).view(np.int64)
+        first, last = bits(abs(t0[i] * d[i])), bits(abs(t1[i] * d[i]))
         first = first if first > last else last
         way = first if first > way else way
-    size = most.view(np.float64)
-    return size, 8.0 + 8.0 * way.view(np.float64) / max(size, 1e-300)
+    size = from_bits(most)
+    return size, 8.0 + 8.0 * from_bits(way) / max(size, 1e-300)
 
 
 @inlined

@@ -10,7 +10,7 @@ import numpy as np
 from numba import types
 
 from sceneql.compiled.kernels import inlined
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.field.packets.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS
 from sceneql.field.roots.beam_kernels import (
     BEAM,
@@ -75,7 +75,7 @@ DENSITY_ROOTS = types.UniTuple(types.int64, 2)(
     types.int32[:, ::1], types.float64[::1], _wide, _ids, _wide, types.int64, types.int64, types.boolean, _wide, _ids,
     _ids, _wide, types.float32[:, ::1], types.float32[::1], types.int32[:, ::1], _wide
 )  # fmt: skip
-density_roots = late("sceneql.field.packets.density_bundle_kernels:density_roots", DENSITY_ROOTS)
+density_roots = lazy("sceneql.field.packets.density_bundle_kernels:density_roots", DENSITY_ROOTS)
 
 
 @inlined

@@ -10,7 +10,7 @@ from numba import types
 from numba.core.sigutils import normalize_signature
 
 from sceneql.compiled.kernels import kernel, woven
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.field.enclose.enclosure_kernels import segment
 from sceneql.field.enclose.slope_kernels import on_ray
 from sceneql.field.roots.bracket_kernels import FINE, along
@@ -22,9 +22,9 @@ ARGUMENTS, OUTCOME = normalize_signature(
     " float64, float64, float64, float64, boolean, boolean)"
 )
 BEYOND = OUTCOME(*ARGUMENTS)
-beyond = late("sceneql.field.roots.jumps_kernels:beyond", BEYOND)
+beyond = lazy("sceneql.field.roots.jumps_kernels:beyond", BEYOND)
 LEAPS = types.boolean(*ARGUMENTS[:12])
-leaps = late("sceneql.field.roots.jumps_kernels:leaps", LEAPS)
+leaps = lazy("sceneql.field.roots.jumps_kernels:leaps", LEAPS)
 EVALUATIONS = 2000
 """Enclosures spent on one ray before it is left undecided."""
 BACK = 2.0e-3

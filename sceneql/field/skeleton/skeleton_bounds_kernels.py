@@ -8,7 +8,7 @@ import numpy as np
 from numba import types
 
 from sceneql.compiled.kernels import inlined
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.field.skeleton.falloff_kernels import falloff, falloff_slope
 from sceneql.field.skeleton.skeleton_kernels import outside_node, radius_at, to_part
 from sceneql.field.skeleton.skeleton_parts_kernels import (
@@ -27,7 +27,7 @@ from sceneql.field.skeleton.skeleton_parts_kernels import (
 
 ULPS = 1.2e-15
 F = types.float64
-curve_way = late(
+curve_way = lazy(
     "sceneql.field.skeleton.curve_kernels:curve_way", types.UniTuple(F, 2)(F[:, ::1], types.int64, F, F, F, F)
 )
 

@@ -11,7 +11,7 @@ import numpy as np
 from numba import types
 
 from sceneql.compiled.kernels import inlined
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.field.skeleton.falloff_kernels import falloff, falloff_slope
 from sceneql.field.skeleton.skeleton_parts_kernels import (
     CURVE,
@@ -29,7 +29,7 @@ from sceneql.field.skeleton.skeleton_parts_kernels import (
 )
 
 F = types.float64
-to_curve = late("sceneql.field.skeleton.curve_kernels:to_curve", types.UniTuple(F, 4)(F[:, ::1], types.int64, F, F, F))
+to_curve = lazy("sceneql.field.skeleton.curve_kernels:to_curve", types.UniTuple(F, 4)(F[:, ::1], types.int64, F, F, F))
 
 
 @inlined

@@ -5,7 +5,7 @@ import numpy as np
 from numba import types
 
 from sceneql.compiled.kernels import inlined, kernel
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.field.skeleton.density_kernels import density_gradient
 from sceneql.field.tape.tape_kernels import value
 from sceneql.field.tape.tape_ops import (
@@ -38,7 +38,7 @@ from sceneql.field.tape.tape_ops import (
 OF_PARTS = types.UniTuple(types.float64, 3)(
     types.float64[:, ::1], types.int64, types.int64, types.float64, types.float64, types.float64
 )
-skeleton_gradient = late("sceneql.field.skeleton.skeleton_point_kernels:gradient", OF_PARTS)
+skeleton_gradient = lazy("sceneql.field.skeleton.skeleton_point_kernels:gradient", OF_PARTS)
 
 
 @inlined

@@ -84,7 +84,7 @@ def exponential(x):
 @lane
 def logarithm(x):
     """log x of a positive normal number."""
-    bits = x.view(np.int32)
+    bits = np.float32(x).view(np.int32)
     turns = F(np.int32((bits >> np.int32(23)) & np.int32(255)) - np.int32(126))
     m = np.int32((bits & np.int32(0x7FFFFF)) | np.int32(0x3F000000)).view(np.float32)
     small = m < ROOT_HALF

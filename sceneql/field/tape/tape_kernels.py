@@ -5,7 +5,7 @@ import numpy as np
 from numba import types
 
 from sceneql.compiled.kernels import kernel
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.field.enclose.sine_kernels import sine_cosine
 from sceneql.field.skeleton.density_kernels import density_value
 from sceneql.field.tape.order_kernels import larger, sign_of, smaller
@@ -39,7 +39,7 @@ from sceneql.field.tape.tape_ops import (
 )
 
 OF_PARTS = types.float64(types.float64[:, ::1], types.int64, types.int64, types.float64, types.float64, types.float64)
-skeleton_value = late("sceneql.field.skeleton.skeleton_point_kernels:value", OF_PARTS)
+skeleton_value = lazy("sceneql.field.skeleton.skeleton_point_kernels:value", OF_PARTS)
 
 
 @kernel(f"float64({TAPE}, float64, float64, float64)", _nrt=False)

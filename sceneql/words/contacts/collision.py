@@ -77,7 +77,7 @@ class Collision(Contact):
         """Add the contacts of one model with the objects. Raises ScriptError for one that cannot be collided with."""
         import numpy as np
 
-        from sceneql.compiled.compile_beside import compile_ahead
+        from sceneql.compiled.compile_beside import compile_beside
         from sceneql.compiled.numba import lazy_kernels
         from sceneql.contacts.colliders import OFTEN, must_be_outside, surfaces
         from sceneql.contacts.impulse_kernels import HEAD, INSTANT, MOST_CUTS
@@ -85,7 +85,7 @@ class Collision(Contact):
         if not others:
             return
         exact = self.mode == "exact" or (self.mode == "auto" and assembly.body_count() <= MOST_EXACT)
-        compile_ahead(
+        compile_beside(
             (EXACT if exact else LOCAL,)
         )  # the largest of the island, while what the objects are looked at with compiles here
         from sceneql.contacts.memory_kernels import PAIR
@@ -94,7 +94,7 @@ class Collision(Contact):
         touched = [written.get(ref.name, ref) for ref in others]
         objects = surfaces(touched, assembly, HEAD)
         if exact:
-            compile_ahead(
+            compile_beside(
                 one for one in lazy_kernels.modules() if one.startswith(f"{SHAPES}.")
             )  # every gap asks for them
         nan = float("nan")

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""What late_kernels calls."""
+"""What lazy_calling_kernels calls."""
 
 from numba import types
 

@@ -1,15 +1,15 @@
 # mypy: ignore-errors
-"""A kernel that may call one that is compiled late, for test_compiling."""
+"""A kernel that may call one that is compiled lazily, for test_compiling."""
 
 from numba import types
 
 from sceneql.compiled.kernels import lean
-from sceneql.compiled.numba.lazy_kernels import late
+from sceneql.compiled.numba.lazy_kernels import lazy
 
 F = types.float64
 MISTAKEN = types.UniTuple(F, 2)(F, F)
-mistaken = late("lanes_of_numbers_kernels:doubles", MISTAKEN)
-halved = late("late_called_kernels:halved", types.UniTuple(F, 2)(F, types.int64))
+mistaken = lazy("lanes_of_numbers_kernels:doubles", MISTAKEN)
+halved = lazy("lazy_called_kernels:halved", types.UniTuple(F, 2)(F, types.int64))
 
 
 @lean(F(F))

@@ -1,0 +1,111 @@
+"""Defaults of a word's fields, checked when the word is loaded: what a script could not write there is an error.
+
+It is told in the word's own file, as errors of scripts are in the script.
+"""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Annotated, Any, get_args
+
+from pydantic import BaseModel
+
+from sceneql.compiler.limits import check_limits
+from sceneql.compiler.values import fits
+from sceneql.kinds import GRAMMAR, Paint, Quantity, Turn, Value, literal, written_name
+from sceneql.quantities.diagnostic import Diagnostics, ScriptError
+from sceneql.quantities.span import Source, Span
+
+
+@cache
+def check_defaults(cls: type[BaseModel]) -> None:
+    """Read the defaults of a word and of the records in its fields. Raises ScriptError with all that are wrong."""
+    found = Diagnostics()
+    for record in _with_records(cls):
+        for name, info in record.model_fields.items():
+            if _mistakes(name, info, None):
+                found.extend(_mistakes(name, info, _place(record, name)))
+    found.raise_errors()
+
+
+def _mistakes(name: str, info: Any, place: Span | None) -> tuple[Any, ...]:
+    """What is wrong with a field's default, told at a place of a file, or of the default's text alone."""
+    default, what, found = info.default, written_name(name), Diagnostics()
+    mark = next((mark for mark in info.metadata if isinstance(mark, Quantity | Paint | Turn)), None)
+    span = place or Span(Source("default", str(default)), 0, len(str(default)))
+    if isinstance(default, str):
+        if mark is None:
+            return ()  # a text or a choice, or read by what the field holds besides quantities
+        quantity = GRAMMAR[type(mark)] if isinstance(mark, Paint | Turn) else mark
+        try:
+            value = literal(default, span)
+        except ScriptError as error:
+            return error.diagnostics
+        if not fits(value.expr, quantity, what, span, found):
+            return found.errors
+        default = value if info.annotation is Value else value.number()
+    limits = (info.json_schema_extra or {}).get("limits", {})
+    annotation = Annotated[(info.annotation, *info.metadata)] if info.metadata else info.annotation
+    check_limits(default, limits, what, annotation, span, found)
+    return found.errors
+
+
+def _place(record: type[BaseModel], name: str) -> Span:
+    """The default of a field in its class's file, quotes left out; the whole class where it is not a text there."""
+    owner = next(one for one in record.__mro__ if name in vars(one).get("__annotations__", {}))
+    path = Path(sys.modules[owner.__module__].__file__ or "")
+    text = path.read_text(encoding="utf-8")
+    source = Source(str(path), text)
+    of_class = next(
+        node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.ClassDef) and node.name == owner.__name__
+    )
+    for node in of_class.body:
+        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name) and node.target.id == name:
+            return _default_of(node, source)
+    return _span(of_class, source)
+
+
+def _default_of(node: ast.AnnAssign, source: Source) -> Span:
+    """The second argument of ``field(...)``."""
+    call = node.value
+    if isinstance(call, ast.Call):
+        named = [keyword.value for keyword in call.keywords if keyword.arg == "default"]
+        for default in (*call.args[1:2], *named):
+            whole = _span(default, source)
+            inside = whole.part(1, len(whole.text) - 1)
+            return inside if isinstance(default, ast.Constant) and default.value == inside.text else whole
+    return _span(node, source)
+
+
+def _span(node: ast.stmt | ast.expr, source: Source) -> Span:
+    """The characters of a node; Python counts a line's bytes."""
+
+    def offset(line: int, column: int) -> int:
+        return source.line_starts[line - 1] + len(source.line(line).encode()[:column].decode())
+
+    end = (node.end_lineno or node.lineno, node.end_col_offset or node.col_offset)
+    return Span(source, offset(node.lineno, node.col_offset), offset(*end))
+
+
+def _with_records(cls: type[BaseModel]) -> list[type[BaseModel]]:
+    """A class and the records that its fields hold, at any depth."""
+    found: list[type[BaseModel]] = []
+    todo = [cls]
+    while todo:
+        one = todo.pop()
+        if one not in found:
+            found.append(one)
+            todo += [record for info in one.model_fields.values() for record in _records(info.annotation)]
+    return found
+
+
+def _records(annotation: Any) -> Iterator[type[BaseModel]]:
+    """The records that a type names."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for part in get_args(annotation):
+        yield from _records(part)
