@@ -2,12 +2,17 @@
 
 Space is right-handed, y up, meters; a camera looks along its -z; pixel (0, 0) is top left; the front of a triangle
 is counterclockwise. Colors are linear, scene-referred RGB. Arrays are numpy arrays; this module imports none.
+
+An array of a shape that never changes is read-only (``held``), and it is the same object from frame to frame for as
+long as its numbers are the same. So ``mesh.vertices is before.vertices`` says that nothing has moved, and what is made
+of arrays that ``is_held`` is good for as long as these live (``shapes.held_arrays``). All other arrays tell nothing
+about those of the next frame: what is made of them goes with the frame.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 if TYPE_CHECKING:
     from numpy import float64, int32
@@ -19,6 +24,22 @@ else:  # names to import where numpy is not
     Floats = Ints = object
 
 RGB = tuple[float, float, float]
+
+
+def held(array: Any) -> Any:
+    """The array, read-only from now on, as those are that it is a view of: a promise that its numbers never change."""
+    one = array
+    while hasattr(one, "flags"):
+        one.flags.writeable = False
+        one = one.base
+    return array
+
+
+def is_held(array: Any) -> bool:
+    """Whether an array never changes: it is read-only, and so are all that it is a view of."""
+    while hasattr(array, "flags") and not array.flags.writeable:
+        array = array.base
+    return array is None
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +62,10 @@ class Surface:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Mesh:
-    """Triangles; with ``normals`` they are shaded smooth, without they are flat."""
+    """Triangles; with ``normals`` they are shaded smooth, without they are flat.
+
+    Of one that holds still the arrays are held (``is_held``), each by itself: colors may change where places do not.
+    """
 
     name: str
     surface: Surface
@@ -239,12 +263,19 @@ class View:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Frame:
-    """All that a renderer needs to know of one instant."""
+    """What is drawn at one instant: what an output gets that makes no picture (`Tools.frame`)."""
 
     index: int
+    """Of the output's frames, from 0."""
     time: float
     """[s] of simulation."""
     shapes: tuple[Shape, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SeenFrame(Frame):
+    """A frame in its light, from a camera: all that a renderer needs to know of one instant."""
+
     lights: tuple[LightSource, ...]
     view: View
     seed: int = 0

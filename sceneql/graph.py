@@ -80,7 +80,7 @@ class SimulationGraph:
     """For each task the outputs that need it."""
     islands: tuple[Island, ...]
     drawn: Mapping[str, tuple[str, ...]]
-    """For each output with pictures, the objects and models it draws."""
+    """For each output that draws, the objects and models it draws."""
     cameras: Mapping[str, str]
     """For each output with pictures, its camera's task."""
     palette: tuple[str, ...] = ()

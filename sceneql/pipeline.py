@@ -26,7 +26,7 @@ from sceneql.language.script import read_script
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
 
 if TYPE_CHECKING:
-    from sceneql.frame import LightSource, View
+    from sceneql.frame import Frame, LightSource, SeenFrame, View
     from sceneql.pictures.layout import Panel
     from sceneql.run.instant import Instant
 
@@ -312,6 +312,19 @@ class Tools:
                     if task.kind.show is None or moment.at(task.kind.show) != 0:
                         task.kind.draw(pixels, view, moment, develop)
 
+    def frame(self, moment: Any, *, fields: bool = False) -> Frame:
+        """The shapes that the output draws now. Raises Unsuitable for one that does not draw, and RunFailure."""
+        from sceneql.run.never_drawn import look, solids
+
+        if self.name not in self.graph.drawn:
+            raise Unsuitable(f"'{self.name}' gets no shapes: its word does not say that it `draws`")
+        names = self.graph.drawn[self.name]
+        frame = shapes_of(names, moment, self._frames, fields=fields)
+        look(frame.shapes, solids(names, self.graph.tasks), self.graph.tasks, self.report.present)
+        self._frames += 1
+        self.report.frames += 1
+        return frame
+
     def encoder(self, word: str, **settings: Any) -> Any:
         """A writer of the encoders' folder."""
         from importlib import import_module
@@ -348,14 +361,21 @@ def _compile_beside(modules: tuple[str, ...]) -> Callable[[], None]:
     return compile_beside(modules)
 
 
+def shapes_of(names: Iterable[str], moment: Instant, index: int = 0, *, fields: bool = False) -> Frame:
+    """The Frame of some parts at a moment (kinds.Tools.frame). Raises RunFailure."""
+    from sceneql.frame import Frame
+
+    return Frame(index, moment.now, tuple(moment.lower(names, fields=fields)))
+
+
 def frame_of(
     graph: SimulationGraph, output: str, size: tuple[int, int], moment: Instant, index: int, camera: str | None = None
-) -> Any:
-    """The Frame that a renderer gets for an output at a moment; by default of the output's own camera."""
-    from sceneql.frame import Frame, Sky
+) -> SeenFrame:
+    """The frame that a renderer gets for an output at a moment; by default of the output's own camera."""
+    from sceneql.frame import SeenFrame, Sky
     from sceneql.shapes.color import linear
 
-    shapes = tuple(moment.lower(graph.drawn[output]))  # first: what cannot be drawn is no failure of the camera's
+    drawn = shapes_of(graph.drawn[output], moment, index)  # first: what cannot be drawn is no failure of the camera's
     eye = graph.tasks[camera or graph.cameras[output]]
     with failing_as(eye.name, moment.time, eye.span):
         view = cast(Camera, eye.kind).view(size, moment)
@@ -370,10 +390,10 @@ def frame_of(
         skies = [light for light in lights if isinstance(light, Sky)] or [Sky((0, 0, 0), (0, 0, 0), (0, 0, 0))]
         lights = [light for light in lights if not isinstance(light, Sky)]
         lights += [replace(sky, visible=seen) for sky in skies]
-    return Frame(
-        index=index,
-        time=moment.time,
-        shapes=shapes,
+    return SeenFrame(
+        index=drawn.index,
+        time=drawn.time,
+        shapes=drawn.shapes,
         lights=tuple(lights),
         view=view,
         seed=graph.settings.clock.seed,

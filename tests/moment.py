@@ -62,6 +62,9 @@ class FakeMoment:
     def surface(self, name: str, material: Ref | None, color: Value | None) -> Surface:
         return Surface() if color is None else Surface(color=tuple(self.at(color)))
 
+    def kept(self, name: str, key: Any, make: Callable[[], Any]) -> Any:
+        return make()
+
     def bounds(self, names: Iterable[str]) -> tuple[Any, Any]:
         return np.array(self.box[0], dtype=float), np.array(self.box[1], dtype=float)
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from sceneql.field.tape.builder import TapeBuilder
-from sceneql.frame import Frame, Implicit, Mesh, Points, Quadric, Segments, Sun, Surface, View
+from sceneql.frame import Implicit, Mesh, Points, Quadric, SeenFrame, Segments, Sun, Surface, View
 
 INF = math.inf
 EVERYWHERE = ((-INF,) * 3, (INF,) * 3)
@@ -100,7 +100,7 @@ def view(eye=(0.0, 0.0, 5.0), target=(0.0, 0.0, 0.0), size=(96, 96), half_height
 
 
 def frame(*shapes, lights=(), seen=None):
-    return Frame(0, 0.0, tuple(shapes), tuple(lights), seen or view())
+    return SeenFrame(0, 0.0, tuple(shapes), tuple(lights), seen or view())
 
 
 def sun(direction, irradiance=(1.0, 1.0, 1.0), angle=0.0):

@@ -13,7 +13,7 @@ from renderers.tracing.solids.grids import met
 from renderers.tracing.solids.intersect_kernels import walk
 from renderers.tracing.solids.surface_kernels import normal_at
 from sceneql.failure import Unsuitable
-from sceneql.frame import Frame, Grid, Sky, Surface, View
+from sceneql.frame import Grid, SeenFrame, Sky, Surface, View
 from sceneql.grids.maps.interpolation import trilinear
 from sceneql.grids.maps.iso_mesh import meshed
 from sceneql.mesh.measures import euler_characteristic
@@ -37,7 +37,7 @@ class Rays:
     """What rays meet in a grid."""
 
     def __init__(self, shape):
-        self.scene, rows = pack(Frame(0, 0.0, (shape,), (WHITE,), VIEW))
+        self.scene, rows = pack(SeenFrame(0, 0.0, (shape,), (WHITE,), VIEW))
         self.scratch = scratch(rows)
 
     def first(self, start, way, near=0.0):

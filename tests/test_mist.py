@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from renderers.tracing.draw import draw
 from renderers.tracing.mist_kernels import depths
 from runs import complaint
-from sceneql.frame import Frame, Mist, Points, Quadric, Sky, Surface, View
+from sceneql.frame import Mist, Points, Quadric, SeenFrame, Sky, Surface, View
 from sceneql.pipeline import frame_of, load
 from sceneql.run.run import Run
 from sceneql.shapes.world_boxes import box_of
@@ -96,7 +96,7 @@ def block(strength, color=(0.0, 0.0, 0.0)):
 
 def seen(*shapes, orthographic=True):
     view = View((0.0, 0.0, 6.0), np.eye(3), (SIDE, SIDE), 0.9 if orthographic else 0.3, orthographic)
-    return draw(Frame(0, 0.0, tuple(shapes), (WHITE,), view), samples=1).linear
+    return draw(SeenFrame(0, 0.0, tuple(shapes), (WHITE,), view), samples=1).linear
 
 
 def test_what_is_left_of_the_light_is_an_exponential_of_the_depth():
@@ -130,7 +130,7 @@ def test_edges_in_mist_are_as_smooth_as_without():
                     low=(-3.0, -3.0, -3.0), high=(0.0, 3.0, 3.0), **shape)  # fmt: skip
     view = View((0.0, 0.0, 6.0), np.eye(3), (SIDE, SIDE), 0.9, True)
     scenes = (thing,), (thing, block(1.0)), (thing, block(0.4), block(0.6))
-    plain, dimmed, twice = (draw(Frame(0, 0.0, one, (WHITE,), view), samples=64).linear[..., 0] for one in scenes)
+    plain, dimmed, twice = (draw(SeenFrame(0, 0.0, one, (WHITE,), view), samples=64).linear[..., 0] for one in scenes)
     share = (plain - 0.2) / 0.8  # of the sky behind
     edge = (share > 0.02) & (share < 0.98)
     assert edge.sum() > 15

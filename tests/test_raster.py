@@ -14,7 +14,7 @@ from renderers.tracing.draw import draw as traced
 from renderers.tracing.normals import draw_normals
 from sceneql import pipeline
 from sceneql.failure import RunFailure
-from sceneql.frame import Frame, Mist, Points, Sky, Sun, Surface, View
+from sceneql.frame import Mist, Points, SeenFrame, Sky, Sun, Surface, View
 from stage import GLOW, WHITE
 
 
@@ -34,7 +34,7 @@ def _opengl():
 
 
 def framed(*shapes, lights=(), seen=None):
-    return Frame(0, 0.0, shapes, tuple(lights), seen or window())
+    return SeenFrame(0, 0.0, shapes, tuple(lights), seen or window())
 
 
 def window(origin=(0.0, 0.0, 3.0), half=1.5, size=(120, 120), toward=(0.0, 0.0, 0.0), up=(0.0, 1.0, 0.0), flat=True):

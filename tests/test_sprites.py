@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from renderers.tracing.draw import draw
-from sceneql.frame import Frame, Points, Sky, Surface, View
+from sceneql.frame import Points, SeenFrame, Sky, Surface, View
 
 BLACK = Sky(zenith=(0, 0, 0), horizon=(0, 0, 0), ground=(0, 0, 0))
 SIDE = 96
@@ -21,7 +21,7 @@ def seen(*shapes, orthographic=False):
     """The picture from (0, 0, 4) towards the origin, where a pixel is 1/48 m of the plane z = 0."""
     half = 1.0 if orthographic else 0.25
     view = View((0.0, 0.0, 4.0), np.eye(3), (SIDE, SIDE), half, orthographic)
-    return draw(Frame(0, 0.0, tuple(shapes), (BLACK,), view), samples=1).linear
+    return draw(SeenFrame(0, 0.0, tuple(shapes), (BLACK,), view), samples=1).linear
 
 
 @pytest.mark.parametrize("orthographic", [False, True])

@@ -12,6 +12,7 @@ from renderers.rastering.surfaces import primitive
 from renderers.rastering.triangles import boundless, triangles
 from renderers.tracing.picture import Picture
 from sceneql.frame import PointLight, Sky, Sun
+from sceneql.shapes.held_arrays import OfHeld
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -20,15 +21,16 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from renderers.rastering.triangles import Triangles
-    from sceneql.frame import RGB, Floats, Frame, LightSource, View
+    from sceneql.frame import RGB, Floats, LightSource, SeenFrame, View
 
 GAMMA = 2.2
 """What pyrender's shader takes the root of, so that 8 bits reach further down."""
 NEAR, REACH = 1e-3, 50.0
 """Where seeing begins, and how far planes go: in units of the way to the far end of all that is bounded."""
+_meshes: OfHeld[Any] = OfHeld()
 
 
-def draw(frame: Frame, cells: int, sharp: bool, samples: int, shadows: bool, brightest: float) -> Picture:
+def draw(frame: SeenFrame, cells: int, sharp: bool, samples: int, shadows: bool, brightest: float) -> Picture:
     """The Picture of a frame: linear (h, w, 3). Raises ValueError for what cannot be drawn.
 
     ``samples`` in a pixel, a square number; light above ``brightest`` is not told apart.
@@ -41,7 +43,7 @@ def draw(frame: Frame, cells: int, sharp: bool, samples: int, shadows: bool, bri
     made += [part for shape in frame.shapes if boundless(shape) for part in triangles(shape, cells, sharp, REACH * far)]
     scene = gl.Scene(bg_color=(0.0, 0.0, 0.0, 0.0), ambient_light=_ambient(frame.lights) / brightest)
     for part in made:
-        scene.add(gl.Mesh([primitive(gl, part, brightest)]))
+        scene.add(_mesh(gl, part, brightest))
     for light in frame.lights:
         _add_light(gl, scene, light, brightest)
     _add_camera(gl, scene, frame.view, far)
@@ -59,6 +61,13 @@ def draw(frame: Frame, cells: int, sharp: bool, samples: int, shadows: bool, bri
     linear = np.where(depth[..., None] > 0, linear, _backdrop(frame.view, frame.lights, width, height))
     folded = linear.reshape(height // fine, fine, width // fine, fine, 3).mean(axis=(1, 3))
     return Picture(np.ascontiguousarray(folded, dtype=np.float32))
+
+
+def _mesh(gl: Any, part: Triangles, brightest: float) -> Any:
+    """What pyrender draws triangles as: that of the frame before, which OpenGL still has, where all is the same."""
+    arrays = part.vertices, part.triangles, part.normals, part.colors
+    key = part.surface, part.flat, brightest
+    return _meshes.get(arrays, key, lambda: gl.Mesh([primitive(gl, part, brightest)]))
 
 
 def _bounds(made: Iterable[Triangles]) -> tuple[Floats, Floats]:

@@ -10,7 +10,8 @@ import numpy as np
 
 from renderers.rastering.skins import skin
 from renderers.rastering.solids import capsule_sides, ellipsoid, faces, round_column, unit_ball
-from sceneql.frame import Implicit, Mesh, Points, Quadric, Segments
+from sceneql.frame import Implicit, Mesh, Points, Quadric, Segments, held
+from sceneql.shapes.held_arrays import OfHeld
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints, Shape, Surface
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
 MOST_BALLS = 500_000
 DETAIL = ((100, 4), (1_000, 3), (8_000, 2), (40_000, 1), (MOST_BALLS, 0))
 """Up to how many balls each is subdivided so often."""
+
+
+_flat: OfHeld[tuple[Floats, Floats, Ints]] = OfHeld()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,11 +72,17 @@ def triangles(shape: Shape, cells: int, sharp: bool = False, reach: float = 0.0)
 def _of_mesh(mesh: Mesh) -> Triangles:
     if mesh.normals is not None:
         return Triangles(mesh.surface, mesh.vertices, mesh.normals, mesh.triangles, mesh.colors)
+    points, normals, order = _flat.get((mesh.vertices, mesh.triangles), None, lambda: _parted(mesh))
+    colors = None if mesh.colors is None else mesh.colors[mesh.triangles].reshape(-1, 3)
+    return Triangles(mesh.surface, points, normals, order, colors)
+
+
+def _parted(mesh: Mesh) -> tuple[Floats, Floats, Ints]:
+    """Corners (3 m, 3), their normals and triangles (m, 3) of a mesh whose faces are flat; held."""
     corners = mesh.vertices[mesh.triangles]
     normals = np.repeat(_unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])), 3, axis=0)
     order = np.arange(3 * len(corners), dtype=np.int32).reshape(-1, 3)
-    colors = None if mesh.colors is None else mesh.colors[mesh.triangles].reshape(-1, 3)
-    return Triangles(mesh.surface, corners.reshape(-1, 3), normals, order, colors)
+    return held(corners.reshape(-1, 3)), held(normals), held(order)
 
 
 def _of_quadric(shape: Quadric, reach: float) -> Triangles:

@@ -24,7 +24,7 @@ from renderers.tracing.waves import Waves
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from sceneql.frame import Floats, Frame
+    from sceneql.frame import Floats, SeenFrame
 
 
 class Buffers:
@@ -51,7 +51,7 @@ def _buffers(*shape: int) -> Buffers:
     return kept if kept is not None and kept.shape == shape else Buffers(*shape)
 
 
-def draw(frame: Frame, samples: int = 8, tolerance: float = TOLERANCE, march: int = 0) -> Picture:
+def draw(frame: SeenFrame, samples: int = 8, tolerance: float = TOLERANCE, march: int = 0) -> Picture:
     """Ray-trace a frame; ``samples``, a power of two from 1 to 64: rays in a pixel in which things meet.
 
     ``tolerance`` is that of roots of implicit surfaces; with ``march`` they are looked for at so many places of a ray.

@@ -14,10 +14,10 @@ from renderers.tracing.picture import Picture, over_rows
 from renderers.tracing.scratch import scratch
 
 if TYPE_CHECKING:
-    from sceneql.frame import Frame
+    from sceneql.frame import SeenFrame
 
 
-def draw_normals(frame: Frame, samples: int = 1) -> Picture:
+def draw_normals(frame: SeenFrame, samples: int = 1) -> Picture:
     """(n + 1)/2 of the world normals that a frame shows, 0 where it shows nothing; ``samples`` rays in a pixel."""
     scene, rows = pack(frame)
     width, height = frame.view.size
@@ -32,7 +32,7 @@ def draw_normals(frame: Frame, samples: int = 1) -> Picture:
     return Picture(picture, sum(undecided))
 
 
-def draw_undecided(frame: Frame, tolerance: float = TOLERANCE) -> Picture:
+def draw_undecided(frame: SeenFrame, tolerance: float = TOLERANCE) -> Picture:
     """Orange where a root could not be decided at the ``tolerance``, else gray, black where nothing is shown."""
     scene, rows = pack(frame, tolerance)
     width, height = frame.view.size

@@ -39,10 +39,25 @@ from renderers.tracing.scene_kernels import (
     Scene,
 )
 from renderers.tracing.scene_kernels import TOLERANCE as ROOT_TOLERANCE
-from renderers.tracing.solids import hierarchy_kernels
+from renderers.tracing.solids.hierarchy import hierarchy
+from renderers.tracing.solids.triangles import LARGE, Packed, boxes_of, corners_of, rows_of, still_mesh
 from sceneql.field.tape.plans import ray_plan
 from sceneql.field.tape.tape_ops import scratch_rows
-from sceneql.frame import Frame, Grid, Implicit, Mesh, Mist, Points, Quadric, Segments, Sky, Sun, Surface, View
+from sceneql.frame import (
+    Grid,
+    Implicit,
+    Mesh,
+    Mist,
+    Points,
+    Quadric,
+    SeenFrame,
+    Segments,
+    Sky,
+    Sun,
+    Surface,
+    View,
+    is_held,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -53,7 +68,7 @@ if TYPE_CHECKING:
 UNBOUNDED = np.repeat([-np.inf, np.inf], 3)
 
 
-def pack(frame: Frame, tolerance: float = TOLERANCE, samples: int = 0, certain: bool = False) -> tuple[Scene, int]:
+def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certain: bool = False) -> tuple[Scene, int]:
     """The scene of a frame, and the rows of scratch that its kernels need.
 
     With ``samples`` rays are not searched for roots of implicit objects but sampled at so many places; ``certain``:
@@ -65,7 +80,8 @@ def pack(frame: Frame, tolerance: float = TOLERANCE, samples: int = 0, certain: 
     boxes = np.concatenate([np.empty((0, 6)), *tables.boxes])
     bounded = np.isfinite(boxes).all(axis=1)
     inner, endless = np.flatnonzero(bounded), np.flatnonzero(~bounded)
-    order, nodes, links = hierarchy(boxes[inner], np.array(frame.view.origin, dtype=np.float64))
+    trees = [packed.tree for packed, _ in tables.still]
+    order, nodes, links = hierarchy(boxes[inner], np.array(frame.view.origin, dtype=np.float64), trees)
     nodes = np.concatenate([UNBOUNDED[None, :], nodes])
     first = np.array([[0, -len(endless), len(endless)]])
     links = np.concatenate([first, links]) + np.array([1, len(endless), 0])
@@ -78,7 +94,7 @@ def pack(frame: Frame, tolerance: float = TOLERANCE, samples: int = 0, certain: 
     nodes_at = surfaces_at + SURFACE_SIZE * len(frame.shapes)
     reals_at = nodes_at + nodes.size
     items = np.concatenate([np.empty((0, 4), np.int64), *tables.items])
-    items = items[np.concatenate([endless, inner[order]])]
+    items = np.concatenate([items[endless], np.concatenate([items[inner], *(own for _, own in tables.still)])[order]])
     items[:, REALS_AT] += reals_at
     items[:, SURFACE_AT] = surfaces_at + SURFACE_SIZE * items[:, SHAPE]
     links_at = ITEMS + items.size
@@ -118,6 +134,8 @@ class Rows:
         self.ranges: list[NDArray[np.int64]] = []
         self.codes: list[NDArray[np.int32]] = []
         self.implicits: list[int] = []
+        self.still: list[tuple[Packed, NDArray[np.int64]]] = []
+        """Of meshes with trees of their own: what is kept of them, and their items, which are not among the others."""
         self.rows = 0
         self._size = 0
         self._code_size = 0
@@ -149,12 +167,16 @@ class Rows:
 
     def _items(self, index: int, kind: int, boxes: Floats, reals: Floats) -> None:
         """Items with bounds (n, 6) and reals (n, r)."""
+        self.items.append(self._rows(index, kind, reals))
+        self.boxes.append(boxes)
+
+    def _rows(self, index: int, kind: int, reals: Floats) -> NDArray[np.int64]:
+        """(n, 4) items with reals (n, r)."""
         count, columns = reals.shape
         items = np.zeros((count, 4), dtype=np.int64)
         items[:, KIND], items[:, SHAPE] = kind, index
         items[:, REALS_AT] = self._place(reals) + columns * np.arange(count)
-        self.items.append(items)
-        self.boxes.append(boxes)
+        return items
 
     def _place(self, reals: Floats) -> int:
         """Append reals; where they begin."""
@@ -164,15 +186,12 @@ class Rows:
         return begin
 
     def _mesh(self, index: int, mesh: Mesh) -> None:
-        places = np.asarray(mesh.vertices, dtype=np.float64)[mesh.triangles]
-        rows = np.full((len(places), 27), np.nan)
-        rows[:, :3] = places[:, 0]
-        rows[:, 3:9] = (places[:, 1:] - places[:, :1]).reshape(-1, 6)
-        if mesh.normals is not None:
-            rows[:, 9:18] = np.asarray(mesh.normals)[mesh.triangles].reshape(-1, 9)
-        if mesh.colors is not None:
-            rows[:, 18:] = np.asarray(mesh.colors)[mesh.triangles].reshape(-1, 9)
-        self._items(index, TRIANGLE, np.concatenate([places.min(axis=1), places.max(axis=1)], axis=1), rows)
+        if len(mesh.triangles) >= LARGE and is_held(mesh.vertices) and is_held(mesh.triangles):
+            packed = still_mesh(mesh)
+            self.still.append((packed, self._rows(index, TRIANGLE, packed.rows)))
+        else:
+            corners = corners_of(mesh)
+            self._items(index, TRIANGLE, boxes_of(corners), rows_of(mesh, corners))
 
     def _rounds(self, index: int, ends: Floats, axes: Floats, radii: Floats, colors: Floats | None) -> None:
         shades = np.full((len(ends), 3), np.nan) if colors is None else colors
@@ -210,21 +229,6 @@ class Rows:
         self.codes.append(code.ravel())
         self._code_size += code.size
         return begin
-
-
-def hierarchy(boxes: Floats, eye: Floats) -> tuple[NDArray[np.int64], Floats, Ints]:
-    """(order (m,), nodes (n, 6), links (n, 3)) for items with bounds ``boxes`` (m, 6); see hierarchy_kernels."""
-    count = len(boxes)
-    order = np.arange(count)
-    nodes = np.empty((2 * count, 6))
-    links = np.empty((2 * count, 3), dtype=np.int32)
-    stack = np.empty((2 * count + 2, 2), dtype=np.int64)
-    bins = np.empty((hierarchy_kernels.BINS + 1, 7))
-    right = np.zeros(hierarchy_kernels.BINS + 1)
-    first_at = np.zeros(count + 1, dtype=np.int64)
-    boxes = np.ascontiguousarray(boxes)
-    n = hierarchy_kernels.build(boxes, order, eye, nodes, links, stack, bins, right, first_at)
-    return order, nodes[:n], links[:n]
 
 
 def quadric_box(shape: Quadric) -> Floats:

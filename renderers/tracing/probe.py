@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from renderers.tracing.scene_kernels import Scene
     from renderers.tracing.solids.bundles import Packets
-    from sceneql.frame import Floats, Frame
+    from sceneql.frame import Floats, SeenFrame
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,7 +56,7 @@ class Lines:
         probe_rows(self.scene, self.scratch, self.asked, start, stop, *out)
 
 
-def probe(frame: Frame, tolerance: float = TOLERANCE, *, march: int = 0, certain: bool = False) -> Probe:
+def probe(frame: SeenFrame, tolerance: float = TOLERANCE, *, march: int = 0, certain: bool = False) -> Probe:
     """Look through every pixel's center: as `trace` does, by ``march`` samples, or by certified intervals alone."""
     scene, rows = pack(frame, tolerance, march, certain)
     width, height = frame.view.size

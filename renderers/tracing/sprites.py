@@ -13,13 +13,13 @@ if TYPE_CHECKING:
     from numpy import float32
     from numpy.typing import NDArray
 
-    from sceneql.frame import Floats, Frame, View
+    from sceneql.frame import Floats, SeenFrame, View
 
 SMALLEST = 1.25
 """Radius [pixels] below which a disc is drawn larger and as much fainter, so that none slips between pixels."""
 
 
-def over(frame: Frame, records: NDArray[float32], radiance: NDArray[float32], linear: NDArray[float32]) -> None:
+def over(frame: SeenFrame, records: NDArray[float32], radiance: NDArray[float32], linear: NDArray[float32]) -> None:
     """Draw the frame's mists, then its soft discs over ``linear`` (pixels, 3), shapes in their order.
 
     ``records``, ``radiance``: what the middle of each pixel shows. Discs of one shape that cover are drawn from the

@@ -73,7 +73,7 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
 
 
 def _drawn(tasks: Mapping[str, Task]) -> dict[str, tuple[str, ...]]:
-    """What each picture draws: objects that are not hidden and no child of another, and models that nothing draws.
+    """What each output draws: objects that are not hidden and no child of another, and models that nothing draws.
 
     What decorates (a trail, an arrow) does not draw the model that it belongs to.
     """
@@ -96,9 +96,9 @@ def _drawn(tasks: Mapping[str, Task]) -> dict[str, tuple[str, ...]]:
     ]
     result = {}
     for task in tasks.values():
-        if isinstance(task.kind, Picture):
-            show = task.kind.show
-            result[task.name] = tuple(ref.name for ref in show) if show else (*objects, *models)
+        if isinstance(task.kind, Output) and task.kind.draws:
+            only = task.kind.shown()
+            result[task.name] = (*objects, *models) if only is None else tuple(ref.name for ref in only)
     return result
 
 

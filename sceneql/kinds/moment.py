@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, Protocol, Self, Union
+from collections.abc import Callable, Hashable, Iterable, Mapping
+from typing import TYPE_CHECKING, Any, Protocol, Self, TypeVar, Union
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Surface
@@ -11,6 +11,8 @@ if TYPE_CHECKING:
     from sceneql.kinds.field_builder import FieldBuilder
     from sceneql.kinds.values import Ref, Value
     from sceneql.system import ModelState
+
+T = TypeVar("T")
 
 
 class Seen(Protocol):
@@ -107,6 +109,13 @@ class Moment(Protocol):
 
     def surface(self, name: str, material: Ref | None, color: Value | None) -> Surface:
         """The surface of object ``name``: its material's, with the color replaced where given; a default by order."""
+
+    def kept(self, name: str, key: Hashable, make: Callable[[], T]) -> T:
+        """What ``make`` made for a part when it was last asked for, if the key was equal, else what it makes now.
+
+        So arrays of shapes are the same from frame to frame (frame.is_held): the key says all that they are made of.
+        One result a part is kept, and no longer than the run.
+        """
 
     def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
         """Low and high corner (3,) of what the named objects draw over the whole film (infinite planes left out)."""

@@ -9,6 +9,7 @@ from sceneql.kinds.types import CameraRef, DrawnRef, FixedScalar, PanelRef, Rend
 from sceneql.kinds.word import Kind, Problem, Record, field
 
 if TYPE_CHECKING:
+    from sceneql.frame import Frame
     from sceneql.kinds.moment import Moment
     from sceneql.kinds.settings import Clock
     from sceneql.kinds.values import Ref
@@ -30,6 +31,14 @@ class Tools(Protocol):
         Of several ``parts`` of one exposure the light is added up; there is a picture after the last, else None.
         """
 
+    def frame(self, moment: Moment, *, fields: bool = False) -> Frame:
+        """The shapes (the closed set of sceneql.frame, in the world) that an output draws now, of one that ``draws``.
+
+        With ``fields`` objects that have an inside come as their field in a box (frame.Implicit), whatever they are
+        drawn as: what is to be polygonised. Arrays of shapes that are held (frame.is_held) are the same objects in the
+        next frame where they are the same. Raises RunFailure, with ``fields`` also for what is unbounded.
+        """
+
     def encoder(self, word: str, **settings: Any) -> Any:
         """A writer with ``write``, ``close`` (whole under its final name) and ``abort`` (what was made, beside it)."""
 
@@ -48,9 +57,19 @@ class Sink(Protocol):
 
 
 class Output(Kind):
-    """Something that is made: a film, a picture, a table."""
+    """Something that is made: a film, a picture, a table, a file of shapes.
+
+    One that ``draws`` gets the shapes of a moment from `Tools.frame`, and the graph keeps what these need: no camera,
+    no light and no overlay, which are for pictures alone.
+    """
 
     family: ClassVar[str] = "outputs"
+    draws: ClassVar[bool] = False
+    """Whether it asks for shapes (`Tools.frame`)."""
+
+    def shown(self) -> tuple[Ref, ...] | None:
+        """Of one that draws: the parts that it draws; None: all that is not hidden. (`show`, where it is a field.)"""
+        return None
 
     def times(self, clock: Clock) -> list[float]:
         """The instants [s] of the simulation that it wants, increasing, from 0 to ``clock.end``."""
@@ -75,6 +94,8 @@ Row = EachVariant | tuple[PanelRef, ...]
 class Picture(Output):
     """An output that draws frames: what every picture has."""
 
+    draws: ClassVar[bool] = True
+
     size: tuple[int, int] | Literal["360p", "480p", "720p", "1080p", "4k"] = field(
         "Width and height [pixels], or the name of a 16:9 size.", (960, 540), at_least=2, at_most=16384
     )
@@ -93,6 +114,10 @@ class Picture(Output):
         for k, row in enumerate(self.layout):
             if row == ():
                 yield Problem("this row has no panel", ("layout", k))
+
+    def shown(self) -> tuple[Ref, ...] | None:
+        """The parts that it draws; None: all that is not hidden."""
+        return self.show or None
 
     @property
     def laid_out(self) -> tuple[Ref, ...]:

@@ -17,7 +17,7 @@ from sceneql.report.plots import surface_errors
 from sceneql.report.surface_measures import MeshRun, RayRun, mesh_runs, ray_runs
 
 if TYPE_CHECKING:
-    from sceneql.frame import Frame
+    from sceneql.frame import SeenFrame
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class Section:
     data: dict[str, Any]
 
 
-def surface_section(frames: Sequence[Frame], title: str, stem: Path) -> Section:
+def surface_section(frames: Sequence[SeenFrame], title: str, stem: Path) -> Section:
     """Measure the implicit objects of a frame in its sizes; write CSVs and a plot beside ``stem``."""
     by_size = [list(ray_runs(frame)) for frame in frames]
     rays = [run for runs in by_size for run in runs]

@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING
 
 from sceneql import pipeline
 from sceneql.failure import Unsuitable, failing_as
+from sceneql.frame import Grid, Implicit
 from sceneql.kinds import Object
 from sceneql.quantities.diagnostic import suggestion
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
-    from sceneql.frame import Grid, Implicit, Tape
+    from sceneql.frame import Shape, Tape
     from sceneql.graph import SimulationGraph, Task
     from sceneql.mesh.bounded import Corner
     from sceneql.mesh.cubes.tolerance import Within
@@ -97,8 +99,9 @@ def mesh(
         raise Unsuitable(f"the scene ends at {graph.settings.clock.end:g} s, so there is nothing at {time:g} s")
     task = _object(graph, name)
     moment = next(pipeline.simulate(graph, [time]))
+    shapes = pipeline.shapes_of([name], moment, fields=True).shapes
     colors = None
-    if grids := _on_grids(task, name, moment):
+    if grids := [shape for shape in shapes if isinstance(shape, Grid)]:
         if cell is not None or tolerance is not None or sharp:
             raise Unsuitable(f"'{name}' is meshed between the cells of its field, so nothing can be said of cells here")
         from sceneql.grids.maps.iso_mesh import polygons_of
@@ -109,7 +112,7 @@ def mesh(
         from sceneql.mesh.bounded import bounded
         from sceneql.mesh.repair.folds import folds
 
-        solid = _solid(task, name, moment)
+        solid = _solid(shapes, task, name, moment)
         polygons, hidden, cell, missed = _of_solid(solid, task, name, moment.time, cell, tolerance, sharp)
         folded = len(folds(bounded(solid.tape, solid.low, solid.high), polygons))
         missed = missed if tolerance is not None and missed > tolerance else 0.0
@@ -147,21 +150,6 @@ def _of_solid(
         if not len(made.polygons.triangles):
             raise ValueError(_why_empty(*box, made.cell))
     return made
-
-
-def _on_grids(task: Task, name: str, moment: Instant) -> list[Grid]:
-    """The surfaces on grids that an object without an inside is drawn as. Raises RunFailure for an empty one."""
-    from sceneql.frame import Grid
-
-    kind = task.kind
-    assert isinstance(kind, Object)
-    if type(kind).implicit is not Object.implicit:
-        return []
-    with failing_as(name, moment.time, task.span):
-        shapes = list(kind.lower(name, moment.place(name), moment))
-        if not shapes:
-            raise ValueError("it is empty")
-    return [shape for shape in shapes if isinstance(shape, Grid)]
 
 
 def _account(
@@ -218,16 +206,12 @@ def _object(graph: SimulationGraph, name: str) -> Task:
     return task
 
 
-def _solid(task: Task, name: str, moment: Instant) -> Implicit:
+def _solid(shapes: Sequence[Shape], task: Task, name: str, moment: Instant) -> Implicit:
     """An object's field in its box in the world. Raises RunFailure where it has none."""
-    from sceneql.field.tape.builder import TapeBuilder
-    from sceneql.shapes.solid import traced
-
     with failing_as(name, moment.time, task.span):
-        assert isinstance(task.kind, Object)
-        build = TapeBuilder()
-        task.kind.implicit(build, build.x, build.y, build.z, moment)  # refused here where there is no inside
-        found = list(traced(task.kind, name, moment.place(name), moment))
-        if not found:
+        if not shapes:
             raise ValueError("it is empty")
-    return found[0]
+        solid = shapes[0]
+        if not isinstance(solid, Implicit) or solid.within is not None:
+            raise TypeError(f"`{task.word}` has no inside")
+    return solid

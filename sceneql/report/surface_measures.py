@@ -16,7 +16,7 @@ from sceneql.kinds import Picture
 
 if TYPE_CHECKING:
     from renderers.tracing.probe import Probe
-    from sceneql.frame import Frame, Implicit
+    from sceneql.frame import Implicit, SeenFrame
     from sceneql.graph import SimulationGraph
 
 TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)
@@ -78,16 +78,16 @@ class MeshRun:
     area_error: float
 
 
-def pictured(graph: SimulationGraph) -> list[Frame]:
+def pictured(graph: SimulationGraph) -> list[SeenFrame]:
     """The first picture of a scene with the implicit objects in it alone, in rising sizes; none where it shows none.
 
     Raises RunFailure where nothing of any of them is there.
     """
     from sceneql.frame import Implicit
 
-    for name, drawn in graph.drawn.items():
+    for name in graph.cameras:
         moment = next(pipeline.simulate(graph, [0.0]))
-        shapes = [shape for shape in moment.lower(drawn) if isinstance(shape, Implicit)]
+        shapes = [shape for shape in moment.lower(graph.drawn[name]) if isinstance(shape, Implicit)]
         if not shapes:
             continue  # before a camera is asked, which may run the physics ahead
         _there(graph, shapes)
@@ -95,7 +95,7 @@ def pictured(graph: SimulationGraph) -> list[Frame]:
         width, height = output.pixels
         shares = (min(1.0, math.sqrt(pixels / (width * height))) for pixels in SIZES)
         sizes = dict.fromkeys((max(1, round(share * width)), max(1, round(share * height))) for share in shares)
-        frames: list[Frame] = [pipeline.frame_of(graph, name, size, moment, 0) for size in sizes]
+        frames: list[SeenFrame] = [pipeline.frame_of(graph, name, size, moment, 0) for size in sizes]
         return [
             replace(frame, shapes=tuple(shape for shape in frame.shapes if isinstance(shape, Implicit)))
             for frame in frames
@@ -124,7 +124,7 @@ def timed(work: Callable[[], Any]) -> tuple[Any, float]:
     return found, statistics.median(times)
 
 
-def ray_runs(frame: Frame) -> Iterator[RayRun]:
+def ray_runs(frame: SeenFrame) -> Iterator[RayRun]:
     """`trace` over tolerances and `march` over samples, against the certified intervals alone.
 
     What `trace` meets in packets, at its usual tolerance, is met in packets here.

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, cast
 
 import numpy as np
 
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from sceneql.system import ModelState
 
 IDENTITY = np.eye(3, 4)
+T = TypeVar("T")
 
 
 class Running(Protocol):
@@ -39,6 +40,8 @@ class Running(Protocol):
     holders: dict[str, str]
     """For every object inside another the one that draws it."""
     history: History
+    kept: dict[str, tuple[Hashable, Any]]
+    """By part the last that was made for it (Instant.kept), and of what."""
 
     def moments(self, times: Iterable[float]) -> Iterator[Instant]:
         """The instants [s] asked for, in order."""
@@ -153,13 +156,25 @@ class Instant:
         kind = self.run.graph.tasks[holder].kind
         return compose(self.place(holder), kind.local(self)) if isinstance(kind, Placed) else self.place(holder)
 
-    def lower(self, names: Iterable[str]) -> list[Drawn]:
-        """The shapes of the named objects and models."""
+    def kept(self, name: str, key: Hashable, make: Callable[[], T]) -> T:
+        """What was made for a part when it was last asked for, where the key was equal, else what is made now."""
+        known, made = self.run.kept.get(name, (None, None))
+        if made is None or known != key:
+            made = make()
+            self.run.kept[name] = key, made
+        return cast(T, made)
+
+    def lower(self, names: Iterable[str], *, fields: bool = False) -> list[Drawn]:
+        """The shapes of the named objects and models; with ``fields`` objects with an inside by their fields."""
         shapes: list[Drawn] = []
         for name in names:
             task = self.run.graph.tasks[name]
             with failing_as(name, self.now, task.span):
-                if isinstance(task.kind, Object):
+                if isinstance(task.kind, Object) and fields:
+                    from sceneql.shapes.solid import by_field
+
+                    shapes += by_field(task.kind, name, self.place(name), self)
+                elif isinstance(task.kind, Object):
                     shapes += task.kind.lower(name, IDENTITY, self)
                 elif isinstance(task.kind, Model):
                     shapes += task.kind.lower(name, self.state(name), self)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Hashable, Iterable, Iterator
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.march.march import March
     from sceneql.system import ModelState
-
-IDENTITY = np.eye(3, 4)
 
 
 class Run:
@@ -44,6 +42,8 @@ class Run:
         self.history = History(graph)
         self._ranged = ranged(graph, islands)
         self._dry_runs: dict[str | None, DryRun] = {}
+        self.kept: dict[str, tuple[Hashable, Any]] = {}
+        """By part the last that was made for it (Instant.kept), and of what."""
 
     def moments(self, times: Iterable[float]) -> Iterator[Instant]:
         """The instants [s] asked for, in order; times do not decrease. Raises RunFailure."""
@@ -224,7 +224,7 @@ def _built(graph: SimulationGraph, island: Island, found: Diagnostics) -> Island
 
 def _orders(graph: SimulationGraph) -> dict[str, int]:
     """All that any picture draws, in order."""
-    return {name: k for k, name in enumerate(dict.fromkeys(name for drawn in graph.drawn.values() for name in drawn))}
+    return {name: k for k, name in enumerate(dict.fromkeys(name for of in graph.cameras for name in graph.drawn[of]))}
 
 
 def _holders(graph: SimulationGraph) -> dict[str, str]:

@@ -92,6 +92,18 @@ def traced(solid: Shaped, name: str, place: Floats, moment: Moment) -> Iterable[
     yield frame.Implicit(name, surface, build.finish(value), *box, None if hues is None else colored.finish(*hues))
 
 
+def by_field(kind: Object, name: str, place: Floats, moment: Moment) -> Iterable[frame.Shape]:
+    """An object that has an inside as ``traced``, whatever it is drawn as; another as it is drawn."""
+    from sceneql.field.tape.builder import TapeBuilder
+    from sceneql.kinds import Object
+
+    if type(kind).implicit is Object.implicit:
+        return kind.lower(name, place, moment)
+    build = TapeBuilder()
+    kind.implicit(build, build.x, build.y, build.z, moment)  # refused here where a part of it has no inside
+    return traced(kind, name, place, moment)
+
+
 def told_by_numbers(low: Floats, high: Floats) -> None:
     """Raise ValueError where a solid in a box is so far from 1 m that its squares overflow or vanish."""
     import numpy as np

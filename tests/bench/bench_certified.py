@@ -14,14 +14,14 @@ from bench_polygonise import SCENES, register, scene_tape
 
 from renderers.tracing.probe import probe
 from sceneql.field.tape.builder import TapeBuilder
-from sceneql.frame import Frame, Implicit, Surface, View
+from sceneql.frame import Implicit, SeenFrame, Surface, View
 from sceneql.report.surface_measures import compared
 
 PITCH, YAW = np.radians([25.0, 35.0])
 SIZE = (640, 360)
 
 
-def frame_of(name: str) -> Frame:
+def frame_of(name: str) -> SeenFrame:
     """A common scene, seen as its file says."""
     scene = SCENES[name]
     clip = scene["clip"]
@@ -35,7 +35,7 @@ def frame_of(name: str) -> Frame:
         shape = Implicit(name, Surface(), tape, *box, within=within)
     else:
         shape = Implicit(name, Surface(), scene_tape(name), *box)
-    return Frame(0, 0.0, (shape,), (), View((0.0, 0.0, 0.0), about_x @ about_y, SIZE, 1.05 * clip, True))
+    return SeenFrame(0, 0.0, (shape,), (), View((0.0, 0.0, 0.0), about_x @ about_y, SIZE, 1.05 * clip, True))
 
 
 def main() -> None:

@@ -10,6 +10,10 @@ from sceneql.compiled.kernels import kernel
 LEAF = 4
 """Items above which a node is always split."""
 BINS = 16
+BOX, AXIS, BIN, LOW, SCALE, CHILD, SPLIT_SIZE = 0, 6, 7, 8, 9, 10, 11
+"""Columns of how a node was split: its box; along which axis (-1: it is a leaf), behind which bin, the lowest middle of
+its items (twice) and bins a length; the row of its lower child, before that of the upper one. Whatever the eye, items
+are split in the same way, only the order of children is another."""
 
 _rows = types.float64[:, ::1]
 
@@ -82,15 +86,25 @@ def best_split(boxes, order, start, stop, bins, right):
 
 
 @part
-def divide(boxes, order, start, stop, axis, bin, eye):
-    """Part the items behind ``bin`` from the others, those on the eye's side to the front; where they end."""
+def bins_along(boxes, order, start, stop, axis):
+    """(low, scale) of the bins of some items along an axis."""
     low, high = np.inf, -np.inf
     for i in range(start, stop):
         middle = boxes[order[i], axis] + boxes[order[i], 3 + axis]
         low = min(low, middle)
         high = max(high, middle)
-    scale = BINS / (high - low)
-    upper = 2.0 * eye[axis] > low + (bin + 1) / scale
+    return low, BINS / (high - low)
+
+
+@part
+def on_the_upper_side(axis, bin, low, scale, eye):
+    """Whether the eye is on the upper side of a split."""
+    return 2.0 * eye[axis] > low + (bin + 1) / scale
+
+
+@part
+def divide(boxes, order, start, stop, axis, bin, low, scale, upper):
+    """Part the items behind ``bin`` from the others, those on the side ``upper`` to the front; where they end."""
     end = start
     for i in range(start, stop):
         if (bin_of(boxes, order[i], axis, low, scale) > bin) == upper:
@@ -110,44 +124,69 @@ def divide(boxes, order, start, stop, axis, bin, eye):
         _rows,
         types.float64[::1],
         types.int64[::1],
+        _rows,
+        types.boolean,
     ),
     _nrt=False,
 )
-def build(boxes, order, eye, nodes, links, stack, bins, right, first_at):
+def build(boxes, order, eye, nodes, links, stack, bins, right, first_at, splits, known):
     """Number of nodes written for items with bounds ``boxes`` (m, 6); ``order`` (m,) becomes the order by leaf.
 
     Nodes stand in depth-first order, the child on the side of ``eye`` first, so that a walk without a stack meets near
-    things early. ``nodes`` (2m, 6) and ``links`` (2m, 3) as in Scene; ``stack`` (2m + 2, 2), ``bins`` (BINS + 1, 7),
-    ``right`` (BINS + 1,) and ``first_at`` (m + 1,) are working memory.
+    things early. ``nodes`` (2m, 6) and ``links`` (2m, 3) as in Scene; ``stack`` (2m + 2, 3), ``bins`` (BINS + 1, 7),
+    ``right`` (BINS + 1,) and ``first_at`` (m + 1,) are working memory. ``splits`` (2m, SPLIT_SIZE) becomes how nodes
+    are split, unless it has no rows; with ``known`` it says so, for any eye, and nothing is looked for.
     """
     count = len(order)
     n = 0
     top = 0
+    rows = 1
     if count:
-        stack[0, 0], stack[0, 1] = 0, count
+        stack[0, 0], stack[0, 1], stack[0, 2] = 0, count, 0
         top = 1
     while top:
         top -= 1
-        start, stop = stack[top, 0], stack[top, 1]
-        clear_bins(bins, 1)
-        for i in range(start, stop):
-            grow(bins, 0, boxes, order[i])
-        for column in range(6):
-            nodes[n, column] = bins[0, column]
-        area = half_area(bins, 0)
+        start, stop, row = stack[top, 0], stack[top, 1], stack[top, 2]
         links[n, 0] = stop  # the end of its items for now
         links[n, 1] = start
         links[n, 2] = 0
         n += 1
-        axis, bin, cost = -1, 0, np.inf
-        if stop - start > 1:
-            axis, bin, cost = best_split(boxes, order, start, stop, bins, right)
-        if axis < 0 or (stop - start <= LEAF and cost + area >= area * (stop - start)):
+        axis, bin, low, scale = -1, 0, 0.0, 0.0
+        if known:
+            for column in range(6):
+                nodes[n - 1, column] = splits[row, BOX + column]
+            axis, bin = int(splits[row, AXIS]), int(splits[row, BIN])
+            low, scale = splits[row, LOW], splits[row, SCALE]
+        else:
+            clear_bins(bins, 1)
+            for i in range(start, stop):
+                grow(bins, 0, boxes, order[i])
+            for column in range(6):
+                nodes[n - 1, column] = bins[0, column]
+            area = half_area(bins, 0)
+            if stop - start > 1:
+                axis, bin, cost = best_split(boxes, order, start, stop, bins, right)
+                if axis >= 0 and stop - start <= LEAF and cost + area >= area * (stop - start):
+                    axis = -1
+            if axis >= 0:
+                low, scale = bins_along(boxes, order, start, stop, axis)
+        child = rows
+        if known:
+            child = int(splits[row, CHILD])
+        elif len(splits):
+            for column in range(6):
+                splits[row, BOX + column] = nodes[n - 1, column]
+            splits[row, AXIS], splits[row, BIN] = axis, bin
+            splits[row, LOW], splits[row, SCALE], splits[row, CHILD] = low, scale, child
+        if axis < 0:
             links[n - 1, 2] = stop - start
             continue
-        middle = divide(boxes, order, start, stop, axis, bin, eye)
-        stack[top, 0], stack[top, 1] = middle, stop
-        stack[top + 1, 0], stack[top + 1, 1] = start, middle
+        rows += 2
+        upper = on_the_upper_side(axis, bin, low, scale, eye)
+        middle = divide(boxes, order, start, stop, axis, bin, low, scale, upper)
+        near, far = (child + 1, child) if upper else (child, child + 1)
+        stack[top, 0], stack[top, 1], stack[top, 2] = middle, stop, far
+        stack[top + 1, 0], stack[top + 1, 1], stack[top + 1, 2] = start, middle, near
         top += 2
     first_at[count] = n
     for k in range(n - 1, -1, -1):

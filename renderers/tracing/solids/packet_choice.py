@@ -12,13 +12,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from renderers.tracing.solids.bundles import Packets
-    from sceneql.frame import Frame
+    from sceneql.frame import SeenFrame
 
 Made = TypeVar("Made")
 Result = TypeVar("Result")
 
 
-def packets_for(frame: Frame, tolerance: float) -> Callable[[], Packets] | None:
+def packets_for(frame: SeenFrame, tolerance: float) -> Callable[[], Packets] | None:
     """What makes a thread's Packets; None where they know no shape. Their kernels are for implicit shapes alone."""
     if tolerance != TOLERANCE or not any(isinstance(shape, Implicit) for shape in frame.shapes):
         return None

@@ -39,7 +39,9 @@ def expand(tasks: Mapping[str, Task], catalogue: Catalogue) -> dict[str, Task]:
         not any(isinstance(t.kind, Solver) and t.kind.on is None for t in result.values())
     ):
         add("solver", "solvers", "auto")
-    return _show(_drive(result), catalogue) if has(Picture) else _drive(result)
+    driven = _drive(result)
+    draws = any(isinstance(task.kind, Output) and task.kind.draws for task in driven.values())
+    return _show(driven, catalogue) if draws else driven
 
 
 def _show(tasks: dict[str, Task], catalogue: Catalogue) -> dict[str, Task]:

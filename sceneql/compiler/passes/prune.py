@@ -36,9 +36,9 @@ def prune(
         order.setdefault(name, task)
 
     for output in [t for t in tasks.values() if isinstance(t.kind, Output)]:
-        if output.name in drawn:
-            for name in (*drawn[output.name], *seen_by_all, cameras[output.name]):
-                visit(name, output.name, ())
+        seen = (*seen_by_all, cameras[output.name]) if output.name in cameras else ()
+        for name in (*drawn.get(output.name, ()), *seen):
+            visit(name, output.name, ())
         visit(output.name, output.name, ())
 
     left = tuple(LeftOut(t.name, t.word, _reason(t, tasks)) for t in tasks.values() if t.name not in order)

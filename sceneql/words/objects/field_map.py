@@ -127,21 +127,18 @@ class FieldMap(Object):
         from sceneql.frame import Mesh, Segments, Surface
         from sceneql.grids.maps.colors import colored
         from sceneql.grids.maps.sheets import contour, raised
+        from sceneql.shapes.placed_triangles import placed, still
 
         field = seen(self.of, moment)
         sheet = self._sheet(field, moment)
         values = field.at(sheet.vertices)
         if self.height is not None:
             sheet = raised(sheet, values * float(moment.at(self.height)))
-        vertices = apply(place, sheet.vertices)
-        triangles = sheet.triangles if np.linalg.det(place[:, :3]) > 0 else sheet.triangles[:, ::-1].copy()
-        normals = None
-        if sheet.normals is not None:
-            normals = sheet.normals @ np.linalg.inv(place[:, :3])
-            normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+        made = placed(sheet, place) if self.height is not None else still(sheet, name, place, moment)
         matte = Surface(color=(1.0, 1.0, 1.0), roughness=1.0, specular=0.0)
         look = matte if self.material is None else moment.surface(name, self.material, None)
-        yield Mesh(name, look, vertices, triangles, normals, colored(values, self.scale(moment), self.colors))
+        colors = colored(values, self.scale(moment), self.colors)
+        yield Mesh(name, look, made.vertices, made.triangles, made.normals, colors)
         lines = [contour(sheet, values, level) for level in self._levels(moment)]
         if sum(map(len, lines)):
             radius = self.contour_radius or THIN * max(

@@ -62,17 +62,12 @@ class Mesh(Placed):
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """Its triangles in the world. Raises ValueError for a file that is no mesh, LimitRefused for too many."""
-        import numpy as np
-
         from sceneql.frame import Mesh as Triangles
+        from sceneql.shapes.placed_triangles import still
 
-        whole = compose(place, self.local(moment))
-        loaded = self._load()
-        triangles = loaded.triangles if np.linalg.det(whole[:, :3]) > 0 else loaded.triangles[:, ::-1].copy()
-        normals = loaded.normals @ np.linalg.inv(whole[:, :3])
-        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+        made = still(self._load(), name, compose(place, self.local(moment)), moment)
         surface = moment.surface(name, self.material, self.color)
-        yield Triangles(name, surface, apply(whole, loaded.vertices), triangles, normals)
+        yield Triangles(name, surface, made.vertices, made.triangles, made.normals)
 
     def collider(self, assembly: Assembly) -> Collider:
         """Its triangles. Raises ValueError for a mesh that is open, or whose scale varies."""

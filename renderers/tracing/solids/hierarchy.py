@@ -1,0 +1,109 @@
+"""The hierarchy of a scene's boxes: one of all items, but for meshes that are held, which have trees of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from renderers.tracing.solids import hierarchy_kernels
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats, Ints
+
+
+class Hierarchy(NamedTuple):
+    """Items by leaf, and nodes in depth-first order, for an eye (hierarchy_kernels.build)."""
+
+    order: NDArray[int64]
+    """(m,)"""
+    nodes: Floats
+    """(n, 6) low and high corners."""
+    links: Ints
+    """(n, 3) next node that is not inside, first item, number of items."""
+
+
+class Tree:
+    """How items with bounds are split, which is the same for all eyes; and their hierarchy for the last one."""
+
+    def __init__(self, boxes: Floats) -> None:
+        """``boxes`` (m, 6)."""
+        self.boxes = boxes
+        self.bounds = np.concatenate([boxes[:, :3].min(axis=0), boxes[:, 3:].max(axis=0)])
+        self._splits: Floats | None = None
+        self._seen: tuple[bytes, Hierarchy] | None = None
+
+    def seen_from(self, eye: Floats) -> Hierarchy:
+        """That of the items for an eye (3,), the same as if it were made anew."""
+        if self._seen is None or self._seen[0] != eye.tobytes():
+            splits = np.empty((2 * len(self.boxes), hierarchy_kernels.SPLIT_SIZE))
+            known = self._splits is not None
+            made = _built(self.boxes, eye, splits if self._splits is None else self._splits, known)
+            if not known:
+                self._splits = splits[: len(made.nodes)].copy()
+            self._seen = eye.tobytes(), made
+        return self._seen[1]
+
+
+def hierarchy(boxes: Floats, eye: Floats, trees: Sequence[Tree] = ()) -> Hierarchy:
+    """That of items with bounds ``boxes`` (m, 6), and behind these those of trees, for an eye (3,).
+
+    A tree is an item of the hierarchy of all others, and its nodes follow the leaf that it stands in.
+    """
+    count = len(boxes)
+    order, nodes, links = _built(np.concatenate([boxes, *(tree.bounds[None] for tree in trees)]), eye)
+    if not trees:
+        return Hierarchy(order, nodes, links)
+    own = order >= count
+    which = order[own] - count  # in the order in which they are met
+    seen = [trees[k].seen_from(eye) for k in which]
+    starts = count + np.cumsum([0, *(len(tree.boxes) for tree in trees)])
+    leaves = np.flatnonzero(links[:, 2])
+    at = leaves[np.searchsorted(links[leaves, 1], np.flatnonzero(own), side="right") - 1]
+    sizes = [len(one.nodes) for one in seen]
+    before = np.zeros(len(nodes) + 1, dtype=np.int64)  # nodes of trees that come before a node
+    np.add.at(before, at + 1, sizes)
+    before = np.cumsum(before)
+    ahead = np.concatenate([[0], np.cumsum(own)])  # items of this hierarchy that are trees
+    first, last = links[:, 1], links[:, 1] + links[:, 2]
+    links = np.stack(
+        [links[:, 0] + before[links[:, 0]], first - ahead[first], links[:, 2] - ahead[last] + ahead[first]], axis=1
+    )
+    node_at = at + 1 + np.cumsum([0, *sizes])[:-1]
+    item_at = count + np.cumsum([0, *(len(one.order) for one in seen)])[:-1]
+    inside = [one.links + np.array([node, item, 0]) for one, node, item in zip(seen, node_at, item_at, strict=True)]
+    within = [one.order + starts[k] for one, k in zip(seen, which, strict=True)]
+    return Hierarchy(
+        np.concatenate([order[~own], *within]),
+        _followed(nodes, at, [one.nodes for one in seen]),
+        _followed(links, at, inside),
+    )
+
+
+def _followed(rows: NDArray[Any], at: NDArray[int64], blocks: Sequence[NDArray[Any]]) -> NDArray[Any]:
+    """Rows with blocks of others behind those of them whose numbers, none below the one before, are given."""
+    parts, done = [], 0
+    for row, block in zip(at, blocks, strict=True):
+        parts += [rows[done : row + 1], block]
+        done = row + 1
+    return np.concatenate([*parts, rows[done:]])
+
+
+def _built(boxes: Floats, eye: Floats, splits: Floats | None = None, known: bool = False) -> Hierarchy:
+    """For items with bounds ``boxes`` (m, 6); see hierarchy_kernels."""
+    count = len(boxes)
+    order = np.arange(count)
+    nodes = np.empty((2 * count, 6))
+    links = np.empty((2 * count, 3), dtype=np.int32)
+    stack = np.empty((2 * count + 2, 3), dtype=np.int64)
+    bins = np.empty((hierarchy_kernels.BINS + 1, 7))
+    right = np.zeros(hierarchy_kernels.BINS + 1)
+    first_at = np.zeros(count + 1, dtype=np.int64)
+    boxes = np.ascontiguousarray(boxes)
+    splits = np.empty((0, hierarchy_kernels.SPLIT_SIZE)) if splits is None else splits
+    n = hierarchy_kernels.build(boxes, order, eye, nodes, links, stack, bins, right, first_at, splits, known)
+    return Hierarchy(order, nodes[:n], links[:n])

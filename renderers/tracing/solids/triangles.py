@@ -1,0 +1,58 @@
+"""Meshes as items; of large ones that are held what is made of them is kept from frame to frame."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from renderers.tracing.solids.hierarchy import Tree
+from sceneql.shapes.held_arrays import OfHeld
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Mesh
+
+LARGE = 4096
+"""Triangles from which a mesh that is held has a tree of its own: below it would save less than it costs."""
+
+
+class Packed(NamedTuple):
+    """A mesh with a tree of its own."""
+
+    tree: Tree
+    rows: Floats
+    """(m, 27) reals of its items."""
+
+
+_trees: OfHeld[Tree] = OfHeld()
+_rows: OfHeld[Floats] = OfHeld()
+
+
+def still_mesh(mesh: Mesh) -> Packed:
+    """The tree and the reals of a mesh that is held: those of the frame before, where it is the same."""
+    tree = _trees.get((mesh.vertices, mesh.triangles), None, lambda: Tree(boxes_of(corners_of(mesh))))
+    whole = mesh.vertices, mesh.triangles, mesh.normals, mesh.colors
+    return Packed(tree, _rows.get(whole, None, lambda: rows_of(mesh, corners_of(mesh))))
+
+
+def corners_of(mesh: Mesh) -> Floats:
+    """(m, 3, 3) places of the corners of triangles."""
+    return np.asarray(mesh.vertices, dtype=np.float64)[mesh.triangles]
+
+
+def boxes_of(corners: Floats) -> Floats:
+    """(m, 6) low and high ends of triangles (m, 3, 3)."""
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    return np.concatenate([np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)], axis=1)
+
+
+def rows_of(mesh: Mesh, corners: Floats) -> Floats:
+    """(m, 27) reals of triangles (m, 3, 3): a corner, two edges, normals and colors at the corners (NaN: none)."""
+    rows = np.full((len(corners), 27), np.nan)
+    rows[:, :3] = corners[:, 0]
+    rows[:, 3:9] = (corners[:, 1:] - corners[:, :1]).reshape(-1, 6)
+    if mesh.normals is not None:
+        rows[:, 9:18] = np.asarray(mesh.normals)[mesh.triangles].reshape(-1, 9)
+    if mesh.colors is not None:
+        rows[:, 18:] = np.asarray(mesh.colors)[mesh.triangles].reshape(-1, 9)
+    return rows
