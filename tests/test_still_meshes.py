@@ -206,6 +206,16 @@ def test_a_tree_for_one_eye_after_another_is_that_of_a_new_one(made, several):
             np.testing.assert_array_equal(old, new)
 
 
+def test_items_whose_middles_differ_by_the_least_number_are_in_one_hierarchy():
+    made = np.zeros((9, 6))
+    made[1::2, 3:] = 5e-324
+    made[2::3, 3] = 1e-310
+    order, nodes, links = hierarchy(made, np.ones(3))
+    assert sorted(order) == list(range(9))
+    assert links[:, 2].sum() == 9
+    np.testing.assert_array_equal(nodes[0, 3:], made[:, 3:].max(axis=0))
+
+
 @settings(max_examples=50)
 @given(st.one_of(boxes, st.just(np.empty((0, 6)))), st.lists(boxes, max_size=3), eyes)
 def test_a_hierarchy_with_trees_has_every_item_once_inside_of_its_nodes(loose, own, eye):
@@ -249,3 +259,11 @@ def test_raster_draws_a_film_as_its_frames_one_by_one(load, case):
     alone = [drawn(frames(graph, [time])[0]) for time in TIMES]
     np.testing.assert_array_equal(film, alone)
     np.testing.assert_array_equal(again[::-1], alone)
+
+
+def test_of_arrays_that_may_change_nothing_is_kept():
+    made, array = OfHeld(), np.zeros(3)
+    assert made.get((array,), None, array.sum) == 0.0
+    array += 1.0
+    assert made.get((array,), None, array.sum) == 3.0
+    assert len(made) == 0

@@ -64,6 +64,8 @@ def best_split(boxes, order, start, stop, bins, right):
         if not high > low:
             continue
         scale = BINS / (high - low)
+        if scale == np.inf:  # middles so near to each other that no bin can be told
+            continue
         clear_bins(bins, BINS + 1)
         for i in range(start, stop):
             b = bin_of(boxes, order[i], axis, low, scale)
