@@ -1,8 +1,8 @@
 """A mesh of 100,000 triangles that holds still, in a film of 20 frames: processor time of a frame after the first.
 
 Run as ``python tests/bench/bench_still_mesh.py [RENDERER]``, `trace` or `raster`. The camera stands, or goes around;
-the mesh stands, or is moved, so that all is made anew for every frame. Compiled code is warm. Prints the least and the
-median of the frames, and of `trace` how much of it is packing.
+the mesh stands, or is moved, so that all is made anew for every frame. Compiled code is warm. Prints the least and
+the median of the frames.
 """
 
 from __future__ import annotations
@@ -63,24 +63,12 @@ def main() -> None:
             path.write_text(SCENE.format(camera=camera, position=position, renderer=renderer))
             graph = pipeline.load(path)
             tools = pipeline.Tools(graph, "film", pipeline.Report(), path)
-            times, packing = [], []
+            times = []
             for moment in Run(graph).moments([k / FRAMES for k in range(FRAMES)]):
                 started = time.process_time()
                 tools.pixels(graph.tasks["film"].kind, moment)
                 times.append(time.process_time() - started)
-                if renderer == "trace":
-                    packing.append(packed(graph, moment))
-            text = f"{case:24s} least {min(times[1:]):.3f} s, median {statistics.median(times[1:]):.3f} s a frame"
-            print(text + (f", packing {statistics.median(packing[1:]):.3f} s" if packing else ""), flush=True)
-
-
-def packed(graph: object, moment: object) -> float:
-    """Processor time [s] of lowering and packing the frame again."""
-    from renderers.tracing.pack import pack
-
-    started = time.process_time()
-    pack(pipeline.frame_of(graph, "film", (640, 360), moment, 0))
-    return time.process_time() - started
+            print(f"{case:24s} least {min(times[1:]):.3f} s, median {statistics.median(times[1:]):.3f} s", flush=True)
 
 
 if __name__ == "__main__":

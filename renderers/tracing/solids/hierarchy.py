@@ -40,10 +40,13 @@ class Tree:
     def seen_from(self, eye: Floats) -> Hierarchy:
         """That of the items for an eye (3,), the same as if it were made anew."""
         if self._seen is None or self._seen[0] != eye.tobytes():
-            splits = np.empty((2 * len(self.boxes), hierarchy_kernels.SPLIT_SIZE))
-            known = self._splits is not None
-            made = _built(self.boxes, eye, splits if self._splits is None else self._splits, known)
-            if not known:
+            if self._splits is not None:
+                made = _built(self.boxes, eye, self._splits, True)
+            elif self._seen is None:
+                made = _built(self.boxes, eye)
+            else:  # the eye moves: from now on it is known how items are split
+                splits = np.empty((2 * len(self.boxes), hierarchy_kernels.SPLIT_SIZE))
+                made = _built(self.boxes, eye, splits)
                 self._splits = splits[: len(made.nodes)].copy()
             self._seen = eye.tobytes(), made
         return self._seen[1]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -30,9 +31,10 @@ _rows: OfHeld[Floats] = OfHeld()
 
 def still_mesh(mesh: Mesh) -> Packed:
     """The tree and the reals of a mesh that is held: those of the frame before, where it is the same."""
-    tree = _trees.get((mesh.vertices, mesh.triangles), None, lambda: Tree(boxes_of(corners_of(mesh))))
+    corners = cache(lambda: corners_of(mesh))
+    tree = _trees.get((mesh.vertices, mesh.triangles), None, lambda: Tree(boxes_of(corners())))
     whole = mesh.vertices, mesh.triangles, mesh.normals, mesh.colors
-    return Packed(tree, _rows.get(whole, None, lambda: rows_of(mesh, corners_of(mesh))))
+    return Packed(tree, _rows.get(whole, None, lambda: rows_of(mesh, corners())))
 
 
 def corners_of(mesh: Mesh) -> Floats:
