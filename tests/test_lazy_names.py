@@ -33,7 +33,12 @@ def test_no_name_is_put_together_from_what_is_known_in_a_run_alone():
         for node in file.nodes[ast.JoinedStr]:
             if text_of(node, file.texts) is None:
                 texts = [part.value for part in node.values if isinstance(part, ast.Constant)]
-                started = [text for text in texts if re.match(r"(sceneql|renderers)\.", text) or "_kernels" in text]
+                texts += [name.id for name in ast.walk(node) if isinstance(name, ast.Name) and name.id == "__package__"]
+                started = [
+                    text
+                    for text in texts
+                    if re.match(r"(sceneql|renderers)\.", text) or "_kernels" in text or text == "__package__"
+                ]
                 fits = allowed.get(file.path.as_posix(), ())
                 wrong += [(file.path.name, node.lineno, text) for text in started if text not in fits]
     assert wrong == []

@@ -105,7 +105,7 @@ def likely_kernels(stepper: Stepper, grid: Grid) -> tuple[str, ...]:
         name = _choice(grid, stepper.linear, _may_separate(grid, stepper.linear))[0]
     except LimitRefused:
         return ()
-    return (*FIRST.get(name, ()), f"{__package__}.{KERNELS[name].partition(':')[0]}")
+    return (*FIRST.get(name, ()), KERNELS[name].partition(":")[0])
 
 
 def report(scratch: Floats) -> LinearReport:
