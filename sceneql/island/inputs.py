@@ -186,17 +186,3 @@ def _depth(value: Lowered) -> int:
 def _component(value: Lowered, k: int) -> Lowered:
     """Component k of a vector or of every vector of a list."""
     return [_component(item, k) for item in value] if _depth(value) > 1 else value[k]
-
-
-def places(read: Callable[[Floats], Any], size: int) -> NDArray[int64] | None:
-    """Where in y an output stands that copies entries of y: an array of its shape, or None where it computes.
-
-    ``read`` is the output as a function of y; it is asked on two states that number their own entries.
-    """
-    numbers = np.arange(size, dtype=np.float64)
-    with np.errstate(all="ignore"):
-        found = np.asarray(read(numbers), dtype=np.float64)
-        again = np.asarray(read(3.0 * numbers + 0.5), dtype=np.float64)
-    if not np.all((found >= 0) & (found < size) & (found == np.floor(found))) or np.any(again != 3.0 * found + 0.5):
-        return None
-    return found.astype(np.int64)
