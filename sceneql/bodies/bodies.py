@@ -10,6 +10,9 @@ from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Type
 
 if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
     from sceneql.frame import Floats
     from sceneql.quantities.span import Span
     from sceneql.system import Assembly, Bodies, ModelState
@@ -187,3 +190,27 @@ def read_named(output: str, names: Sequence[str], bodies: Bodies, state: ModelSt
         raise KeyError(output)
     rows = {"position": positions, "velocity": velocities, "acceleration": accelerations}[what]
     return rows(bodies, state)[names.index(name)].copy()
+
+
+def places(output: str, bodies: Bodies) -> NDArray[int64] | None:
+    """Where in y an output of BODY_OUTPUTS stands (kinds.Model.places)."""
+    import numpy as np
+
+    rows: NDArray[int64] = np.arange(3 * bodies.count).reshape(-1, 3)
+    match output:
+        case "positions":
+            return bodies.position_at + rows
+        case "velocities":
+            return bodies.velocity_at + rows
+        case "center" if bodies.count == 1:
+            return bodies.position_at + rows.ravel()
+        case "dissipated":
+            return np.array(bodies.work_at)
+    return None
+
+
+def places_named(output: str, names: Sequence[str], bodies: Bodies) -> NDArray[int64] | None:
+    """Where in y an output ``name.position`` or ``name.velocity`` stands."""
+    name, _, what = output.rpartition(".")
+    found = places({"position": "positions", "velocity": "velocities"}.get(what, ""), bodies)
+    return None if found is None or name not in names else found[names.index(name)]

@@ -30,6 +30,9 @@ from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Type
 
 if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
     from sceneql.bodies.nets import Net
     from sceneql.frame import Floats, Shape
     from sceneql.system import Assembly, Bodies, ModelState, Slopes
@@ -232,6 +235,14 @@ class SpringModel(Model):
             stretched = rest > 0
             return float(np.max(np.abs(lengths[stretched] / rest[stretched] - 1), initial=0.0))
         raise KeyError(output)
+
+    def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
+        """Of the masses, and of the ends of springs where none tears."""
+        assert state.bodies is not None
+        if output != "springs":
+            return point_masses.places(output, state.bodies)
+        found = point_masses.places("positions", state.bodies)
+        return None if found is None or self.tear is not None else found[self.net.pairs]
 
     def triangles(self, state: ModelState) -> Any:
         """(k, 3) triangles of its surface that have no torn side; None where it has no surface."""

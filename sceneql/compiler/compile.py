@@ -16,6 +16,7 @@ from sceneql.compiler.passes.islands import islands
 from sceneql.compiler.passes.layouts import check_layouts
 from sceneql.compiler.passes.prune import prune
 from sceneql.compiler.passes.sizes import check_sizes
+from sceneql.compiler.passes.slopes import warn_of_values
 from sceneql.compiler.passes.stable_steps import warn_of_steps
 from sceneql.compiler.studies import check_studies
 from sceneql.graph import SimulationGraph, Task, Variants
@@ -49,6 +50,7 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
     check_fillings(tasks, found)
     warn_of_bounds(tasks, found)
     warn_of_steps(script, tasks, groups, checked.settings.clock.end, found)
+    warn_of_values(tasks, groups, found)
     found.raise_errors()
     order, needed_by, left_out = prune(tasks, groups, drawn, cameras)
     expected = {link.task for value in values_of(checked.settings.expect) for link in value.links}

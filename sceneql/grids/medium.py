@@ -32,6 +32,9 @@ from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Link, Symbol, walk
 
 if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
     from sceneql.frame import Floats
     from sceneql.system import Assembly, ModelState
 
@@ -249,6 +252,17 @@ class Medium(Model):
             case "mean":
                 return float(np.average(field, weights=volumes))
         return float(field[layout.cell(self.probes[what])])
+
+    def places_of(self, what: str, layout: FieldLayout, state: ModelState) -> NDArray[int64] | None:
+        """Where in y a measure of a field stands (kinds.Model.places)."""
+        import numpy as np
+
+        if what == "field":
+            volumes = state.floats[layout.volumes_at : layout.volumes_at + layout.count]
+            return layout.at + np.flatnonzero(volumes > 0.0)
+        if what == "inflow":
+            return np.array(layout.at + layout.count)
+        return np.array(layout.at + layout.cell(self.probes[what])) if what in self.probes else None
 
 
 def gives_of(field: str, unit: Dimension, written: Mapping[str, Any]) -> Mapping[str, Gives]:

@@ -30,6 +30,8 @@ class Block:
     slopes: Slopes | Callable[[], Slopes | None] | None = None
     part: str = ""
     span: Span | None = None
+    model: str | None = None
+    """That a force acts on."""
 
 
 def grouped(blocks: list[Block], laid: list[Block]) -> list[tuple[tuple[str, ...], int]]:

@@ -6,7 +6,8 @@ solved in the same island (entries of y).
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import partial, reduce
 from typing import TYPE_CHECKING, Any
 
@@ -14,10 +15,24 @@ import numpy as np
 
 from sceneql.island.lowering import LOWERINGS
 from sceneql.kinds import Value
+from sceneql.kinds.values import MOST_READ
+from sceneql.quantities.derivative import components, differentiate
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import TIME_SYMBOL, Call, Expr, Keys, Link, Number, Symbol, Vector, walk
+from sceneql.quantities.expression import (
+    TIME_SYMBOL,
+    Call,
+    Expr,
+    Keys,
+    Link,
+    Number,
+    Symbol,
+    Vector,
+    each_once,
+    walk,
+)
 from sceneql.quantities.key_tables import keys_table
+from sceneql.quantities.simplify import ZERO
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -28,6 +43,26 @@ if TYPE_CHECKING:
 Register = int
 Lowered = Any
 """A register, or a list of lowered components."""
+
+
+Word = tuple[str, str | None]
+"""A part, and the model that a force acts on."""
+Stored = tuple[int, Value, Word]
+"""A value that varies: its first float, and who reads it."""
+
+
+class WithoutSlopes(Exception):
+    """A part or value whose derivatives are not known: its name."""
+
+
+@dataclass(frozen=True, slots=True)
+class ValueSlopes:
+    """The derivatives of a value by the state."""
+
+    program: list[int]
+    """The rows that evaluate them."""
+    readings: list[list[tuple[int, Register]]]
+    """For each of its floats the entries of y that it reads, and where in the floats its derivative by each stands."""
 
 
 class Inputs:
@@ -71,6 +106,34 @@ class Inputs:
             self._row(COPY, first + k, register)
         return self._rows
 
+    def reading(self, values: Sequence[Stored]) -> list[Stored]:
+        """Those that read the state."""
+        return [one for one in values if self.reads_state(one[1].expr)]
+
+    def slopes(self, value: Value) -> ValueSlopes:
+        """The derivatives of a value that reads the state. Raises WithoutSlopes."""
+        self._rows = []
+        self._known = {}
+        readings = []
+        try:
+            parts = components(value.expr, self._meaning)
+            read = [{node for node in each_once(part) if isinstance(node, Symbol)} for part in parts]
+            count = sum(_place(symbol) >= 0 for symbol in set().union(*read))
+            if count > MOST_READ:
+                raise WithoutSlopes(f"a value that reads {count} numbers of the state")
+            for part, symbols in zip(parts, read, strict=True):
+                entries = sorted((symbol for symbol in symbols if _place(symbol) >= 0), key=_place)
+                slopes = [(_place(entry), differentiate(part, entry)) for entry in entries]
+                readings.append([(at, self._lower(slope)) for at, slope in slopes if slope != ZERO])
+        except TypeError:
+            raise WithoutSlopes("a value that reads the state") from None
+        return ValueSlopes(self._rows, readings)
+
+    def _meaning(self, link: Link) -> Any:
+        """What a link stands for: a formula, or symbols of entries of y whose names are their numbers."""
+        formula = self._formula(link)
+        return _mapped(lambda place: Symbol(str(place)), self._found(link).tolist()) if formula is None else formula
+
     def _look_up(self, node: Symbol | Link) -> Any:
         if isinstance(node, Symbol):
             return {TIME_SYMBOL: 0.0}[node.name]
@@ -99,7 +162,7 @@ class Inputs:
             return self._constant(evaluate(expr, {}, arrays=True))
         match expr:
             case Symbol():
-                return self._emit(TIME)
+                return self._emit(TIME) if _place(expr) < 0 else self._emit(STATE, _place(expr))
             case Link():
                 formula = self._formula(expr)
                 if formula is not None:
@@ -170,6 +233,11 @@ class Inputs:
         self._rows += [code, out, *rest, *(0,) * (5 - len(rest))]
 
 
+def _place(symbol: Symbol) -> int:
+    """The entry of y that a symbol stands for; -1: the time."""
+    return int(symbol.name) if symbol.name.isdecimal() else -1
+
+
 def _mapped(function: Callable[[Any], Any], value: Any) -> Any:
     """A function on every number of nested lists."""
     return [_mapped(function, item) for item in value] if isinstance(value, list) else function(value)
@@ -186,17 +254,3 @@ def _depth(value: Lowered) -> int:
 def _component(value: Lowered, k: int) -> Lowered:
     """Component k of a vector or of every vector of a list."""
     return [_component(item, k) for item in value] if _depth(value) > 1 else value[k]
-
-
-def places(read: Callable[[Floats], Any], size: int) -> NDArray[int64] | None:
-    """Where in y an output stands that copies entries of y: an array of its shape, or None where it computes.
-
-    ``read`` is the output as a function of y; it is asked on two states that number their own entries.
-    """
-    numbers = np.arange(size, dtype=np.float64)
-    with np.errstate(all="ignore"):
-        found = np.asarray(read(numbers), dtype=np.float64)
-        again = np.asarray(read(3.0 * numbers + 0.5), dtype=np.float64)
-    if not np.all((found >= 0) & (found < size) & (found == np.floor(found))) or np.any(again != 3.0 * found + 0.5):
-        return None
-    return found.astype(np.int64)

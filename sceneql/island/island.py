@@ -19,9 +19,10 @@ from sceneql.failure import LimitRefused
 from sceneql.island.blocks_laid import Block, grouped, lay_out
 from sceneql.island.breakpoint_table import Breakpoint, BreakpointTable
 from sceneql.island.breakpoints import Breakpoints
-from sceneql.island.inputs import Inputs
+from sceneql.island.inputs import Inputs, WithoutSlopes
 from sceneql.island.jacobian import BY_DIFFERENCES, full, section
 from sceneql.island.memory import LARGEST_MEMORY
+from sceneql.island.value_slopes import Layout, own_slopes, value_slopes
 from sceneql.kinds import Object, Ref, Value
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.expression import Expr, Link
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats
+    from sceneql.island.inputs import Word
     from sceneql.island.setting import Setting
     from sceneql.quantities.span import Span
     from sceneql.system import Grid, Mode, Pattern, Slopes, Stage
@@ -137,12 +139,12 @@ class IslandAssembly:
     _exact: list[Block] = field(default_factory=list)
     _local: list[Block] = field(default_factory=list)
     _after: list[Block] = field(default_factory=list)
-    _varying: list[tuple[int, Value]] = field(default_factory=list)
+    _varying: list[tuple[int, Value, Word]] = field(default_factory=list)
     _largest_step: float = float("inf")
     _stops: set[Breakpoint] = field(default_factory=set)
     _grids: list[Grid] = field(default_factory=list)
     _apart: bool = True
-    _unsloped: str = "a value that reads the state"
+    _unsloped: str = ""
     _word: tuple[str, Span | None, str | None] = ("island", None, None)
     _remembered: dict[tuple[str, str | None], tuple[int, ...]] = field(default_factory=dict)
 
@@ -199,7 +201,7 @@ class IslandAssembly:
         # The output of a model that is solved may have no place yet.
         later = None not in shape and self._inputs().reads_state(value.expr)
         first = self.floats(np.zeros([k or 0 for k in shape]) if later else self.initial(value))
-        self._varying.append((first, value))
+        self._varying.append((first, value, (self._word[0], self._word[2])))
         return first
 
     def initial(self, value: Value) -> Any:
@@ -216,7 +218,7 @@ class IslandAssembly:
     ) -> None:
         """Add a term to the rate."""
         self._apart = self._apart and apart
-        self._terms[stage].append(Block((kernel,), tuple(ints), 0, jacobian, *self._word[:2]))
+        self._terms[stage].append(Block((kernel,), tuple(ints), 0, jacobian, *self._word))
 
     def inertia(self, velocity_at: int, inverse_at: int, count: int) -> None:
         """Say which rows of the Jacobian inverse masses multiply (system.Assembly)."""
@@ -301,7 +303,7 @@ class IslandAssembly:
     @property
     def apart(self) -> bool:
         """Whether no body feels another one, by what its terms and contacts say."""
-        return self._apart and not any(self._inputs().reads_state(value.expr) for _, value in self._varying)
+        return self._apart and not self._inputs().reading(self._varying)
 
     @property
     def contact_mode(self) -> str:
@@ -376,7 +378,7 @@ class IslandAssembly:
         """What evaluates the values that vary."""
         program: list[int] = []
         found = Diagnostics()
-        for first, value in self._varying:
+        for first, value, _ in self._varying:
             with self.word("values", value.span):
                 self.stop_at_breakpoints(value.expr)
             try:
@@ -388,15 +390,13 @@ class IslandAssembly:
 
     def _slopes(self, newton: bool) -> list[tuple[Slopes, Sequence[int]]] | None:
         """The slopes of all terms with their integers; None where those of one are not known."""
-        found = []
-        for block in (block for stage in STAGES for block in self._terms[stage]):
-            slopes = block.slopes() if callable(block.slopes) else block.slopes
-            if slopes is None or (slopes.in_stages and not newton and self._size <= BY_DIFFERENCES):
-                self._unsloped = block.part
-                return None
-            found.append((slopes, block.ints if slopes.ints is None else slopes.ints))
         inputs = self._inputs()
-        if any(inputs.reads_state(value.expr) for _, value in self._varying):
+        layout = Layout(self._size, self._ranges, self._pairs, self._masses, [*self._grids, *self.fields.values()])
+        try:
+            found = own_slopes(self._terms, newton or self._size > BY_DIFFERENCES)
+            found += value_slopes(inputs.reading(self._varying), self._terms, [one for one, _ in found], layout, inputs)
+        except (WithoutSlopes, ScriptError) as error:  # the latter is told with all others by `_program`
+            self._unsloped = str(error)
             return None
         return [one for one in found if len(one[0].rows)]
 

@@ -12,6 +12,9 @@ from sceneql.kinds.word import Kind, field
 from sceneql.quantities.expression import Expr
 
 if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
     from sceneql.frame import Floats
     from sceneql.frame import Shape as Drawn
     from sceneql.kinds.moment import Moment
@@ -46,6 +49,15 @@ class Model(Kind):
     def read(self, output: str, state: ModelState) -> Any:
         """An output at a state: float or float64 array."""
         raise TypeError(f"{type(self).__name__} gives no {output}")
+
+    def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
+        """Where in the state an output stands: indices into `state.y`, of the output's shape; None: it is computed.
+
+        ``state``: at the start of the run, for its bodies, ints and floats; the same all the time. Values that are
+        evaluated at stage times, as the place of an attractor, read such outputs of models of their island. Of a model
+        that does not say it they read none: such a link is refused. All that is read between steps is `read`.
+        """
+        return None
 
     def items(self, output: str) -> int | None:
         """How many items an output has, where its fields tell."""

@@ -17,6 +17,10 @@ TIME = ("t", "time")
 """What formulas call the time."""
 
 
+MOST_READ = 600
+"""Numbers of the state by which a value of it is differentiated, for implicit solvers."""
+
+
 class Checked:
     """What the compiler has made and checked: pydantic asks only whether it is one, since looking inside takes time."""
 

@@ -6,6 +6,7 @@ it as `component` calls; so do parts that have no scalar form (reductions of lis
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from sceneql.quantities.curves import interpolate, table_of
@@ -34,23 +35,35 @@ class _Unknown:
     """Stands for a list whose length is not known."""
 
 
-def components(expr: Expr) -> tuple[Expr, ...]:
+Meaning = Callable[[Link], Any]
+"""What a link stands for: an expression, nested lists of scalar trees, or None for the link itself."""
+
+
+def components(expr: Expr, meaning: Meaning | None = None) -> tuple[Expr, ...]:
     """The scalar trees of a vector (n,), or (of a scalar) its one tree. Keyframes become `where` of their pieces.
 
     Raises TypeError for a list of unknown length.
     """
-    value = _taken_apart(expr)
+    value = _taken_apart(expr, meaning)
     if isinstance(value, _Unknown) or len(expr.type.shape) > 1:
         raise TypeError("a list has no components to write down")
     return value if isinstance(value, tuple) else (value,)
 
 
-def _taken_apart(expr: Expr) -> Any:
+def _taken_apart(expr: Expr, meaning: Meaning | None = None) -> Any:
     """Nested tuples of scalar trees."""
     values: dict[int, Any] = {}
     for node in each_once(expr):
-        values[id(node)] = _node(node, values)
+        found = meaning(node) if meaning is not None and isinstance(node, Link) else None
+        if found is None:
+            values[id(node)] = _node(node, values)
+        else:
+            values[id(node)] = _tuples(found) if isinstance(found, list) else _taken_apart(found, meaning)
     return values[id(expr)]
+
+
+def _tuples(value: Any) -> Any:
+    return tuple(_tuples(item) for item in value) if isinstance(value, list) else value
 
 
 def _node(node: Expr, values: dict[int, Any]) -> Any:

@@ -164,17 +164,13 @@ class IslandRun:
 
     def _places(self, link: Link) -> Any:
         """Where in the state an output of one of the models stands, for values that read it at stage times."""
-        from sceneql.island.inputs import places
         from sceneql.system import ModelState
 
-        kind = cast(Model, self.graph.tasks[link.task].kind)
-        bodies, ints = self.bodies.get(link.task), self.assembly.remembered(link.task)
-        floats = self.assembly.numbers()
-
-        def read(y: Floats) -> Any:
-            return kind.read(link.output, ModelState(0.0, y, y, floats, bodies, ints))
-
-        return places(read, len(self.assembly.start()))
+        if link.task not in self.bodies:
+            return None
+        start, ints = self.assembly.start(), self.assembly.remembered(link.task)
+        state = ModelState(0.0, start, start, self.assembly.numbers(), self.bodies[link.task], ints)
+        return cast(Model, self.graph.tasks[link.task].kind).places(link.output, state)
 
     def advance(self, time: float) -> None:
         """March to an instant [s]."""

@@ -35,7 +35,11 @@ class Assembly(Protocol):
         """Store numbers; the offset of the first."""
 
     def value(self, value: Value) -> int:
-        """Store a value of the script, a varying one to be evaluated at stage times; the offset of its first float."""
+        """Store a value of the script, a varying one to be evaluated at stage times; the offset of its first float.
+
+        It is read by terms and contacts of the word that is being assembled: where it depends on the state, what these
+        terms do by it is part of the Jacobian (system.Slopes).
+        """
 
     def initial(self, value: Value) -> Any:
         """The value at the start of the run: float or float64 array."""

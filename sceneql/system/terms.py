@@ -22,6 +22,9 @@ class Slopes:
     (their entries are summed) and stay the same for the run; rows of the energy taken out (Bodies.work_at) are left
     out. It stands in a kernel file of its own, which explicit solvers then never load.
 
+    What it adds by values that read the state is not asked for: the island has it from differences of the term itself
+    by the floats of these values (island/value_slopes.py).
+
     While floats[2] is above 0, Newton's method asks for what serves it best. The force itself, where slopes contain it,
     is then to be that which the latest change foresaw: floats[-2n : -n] is the state whose slopes that came from,
     floats[-n:] the state after it. Far from a solution floats[2] is finite, and systems are to be positive definite: a

@@ -12,6 +12,9 @@ from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Link, Type
 
 if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
     from sceneql.system import Assembly, ModelState
 
 UNITS = {"concentration": dim.DENSITY, "temperature": dim.TEMPERATURE, "number": dim.PLAIN}
@@ -96,3 +99,7 @@ class Diffusion(Medium):
     def read(self, output: str, state: ModelState) -> Any:
         """An output: (cells of the domain,), (cells, 3) or float."""
         return self.measure("field" if output == "concentration" else output, self.layout(state), state)
+
+    def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
+        """Of the cells, of probes, and of what has come in."""
+        return self.places_of("field" if output == "concentration" else output, self.layout(state), state)

@@ -19,6 +19,9 @@ from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Expr, Link, Symbol
 
 if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
     from sceneql.formulas.rate_program import RateSystem
     from sceneql.frame import Floats
     from sceneql.system import Assembly, ModelState, Slopes
@@ -204,6 +207,20 @@ class Equations(Model):
         else:
             result = column(rows.invariants[output] if output in rows.invariants else Symbol(output))
         return result if self.copies is not None else result[0]
+
+    def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
+        """Of the states, and of outputs that are made of nothing else."""
+        import numpy as np
+
+        rows = self.rows
+        expr = rows.gives.get(output, rows.invariants.get(output, Symbol(output)))
+        parts = [part.name if isinstance(part, Symbol) else "" for part in components(expr)]
+        if not set(parts) <= set(rows.states) or (expr.type.shape and self.unit != 1.0):
+            return None
+        first = state.ints[0] + len(rows.states) * np.arange(self.count)
+        found: NDArray[int64] = np.add.outer(first, [rows.states.index(part) for part in parts])
+        found = found if expr.type.shape else found[:, 0]
+        return found if self.copies is not None else np.array(found[0])
 
     def size_of(self, output: str, state: ModelState) -> Any:
         """The sum of the magnitudes of the terms of an invariant's formula."""

@@ -26,6 +26,9 @@ from sceneql.kinds.stable_step import StaticMass
 from sceneql.quantities import dimension as dim
 
 if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
     from sceneql.frame import Floats
     from sceneql.frame import Points as Spheres
     from sceneql.system import Assembly, Bodies, ModelState
@@ -120,6 +123,12 @@ class Galaxy(Model):
         if output == "core":
             return masses.positions(state.bodies, state)[0].copy()
         return masses.read(output, state.bodies, state)
+
+    def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
+        """Of the stars, and of the center, which is the first."""
+        assert state.bodies is not None
+        found = masses.places("positions" if output == "core" else output, state.bodies)
+        return found[0] if found is not None and output == "core" else found
 
     def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Spheres]:
         """Spheres."""

@@ -30,6 +30,9 @@ from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
 
 if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
     from sceneql.frame import Floats
     from sceneql.system import Assembly, ModelState
 
@@ -200,6 +203,13 @@ class MassSpring(SpringModel):
             return length
         own, part = state.floats[blocks_at + BLOCK * k + 1 : blocks_at + BLOCK * k + 3]
         return float((own + part * state.floats[stiffness_at]) * (length - self.rest[k]))
+
+    def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
+        """Of the masses, those with names too."""
+        assert state.bodies is not None
+        if output in self.gives:
+            return super().places(output, state)
+        return point_masses.places_named(output, tuple(self.masses or ()), state.bodies)
 
     def static_masses(self) -> Mapping[str, StaticMass]:
         """Named ones; else one for all of them, whose place is not told, and none of a solid's by its density."""

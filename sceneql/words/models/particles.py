@@ -35,6 +35,9 @@ from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
 if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
     from sceneql.frame import Floats
     from sceneql.frame import Points as Spheres
     from sceneql.system import Assembly, Bodies, ModelState
@@ -215,6 +218,16 @@ class Particles(Model):
         if "." not in output:
             return masses.read_named(f"of.{output}", ("of",), bodies, state)
         return masses.read_named(output, tuple(self.list or ()), bodies, state)
+
+    def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
+        """Of the masses, and those with names; none where they come and go."""
+        assert state.bodies is not None
+        if self.emit is not None:
+            return None
+        if "." in output:
+            return masses.places_named(output, tuple(self.list or ()), state.bodies)
+        named = masses.places_named(f"of.{output}", ("of",), state.bodies)
+        return masses.places(output, state.bodies) if named is None else named
 
     def _seen(self, state: ModelState) -> tuple[Bodies, ModelState, Floats]:
         """The particles that are there, as bodies of a state, and their ages (n,) [s]."""

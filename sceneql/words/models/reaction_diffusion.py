@@ -17,6 +17,9 @@ from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Expr, Link, Number, Symbol, Type, walk
 
 if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
     from sceneql.grids.ground import Ground
     from sceneql.system import Assembly, ModelState
 
@@ -200,6 +203,11 @@ class ReactionDiffusion(Medium):
             return self.measure(output, self.layout(state, next(iter(self.species))), state)
         name, _, what = output.partition(".")
         return self.measure(what or "field", self.layout(state, name), state)
+
+    def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
+        """Of the cells of a species, of probes, and of what has come in."""
+        name, _, what = output.partition(".")
+        return None if name not in self.species else self.places_of(what or "field", self.layout(state, name), state)
 
 
 def _written_out(expr: Expr, meanings: Mapping[str, Expr]) -> Expr:
