@@ -8,6 +8,7 @@ resting_kernels and support_kernels: code that is compiled when the first body c
 import numpy as np
 from numba import types
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.impulse_kernels import (
@@ -25,18 +26,15 @@ from sceneql.contacts.impulse_kernels import (
 )
 from sceneql.contacts.memory_kernels import (
     ANSWER,
-    ASKED,
     BACK_OFF_IN_STAGES,
     CUTS,
     END,
     FREE,
     HOLD,
     LIST,
-    OUTSIDE,
     PAIR,
     PATH,
     RESTING,
-    STAGE,
     SUPPORT,
     WHOLE,
 )
@@ -106,8 +104,8 @@ def some(found):
 @kernel(BACK_OFF, inner=True)
 def back_off(t0, t1, y0, rate0, y1, floats, ints):
     """Change y1 so that no body went through a surface in the step from t0 to t1; or only say when it should end."""
-    asked = floats[ASKED] > 0.0
-    if floats[STAGE] == OUTSIDE:
+    asked = floats[channels.STEP_END] > 0.0
+    if floats[channels.STAGE] == channels.OUTSIDE:
         if not asked:
             back_off_in_stages(t0, t1, y0, y1, floats, ints)
         return
@@ -130,7 +128,7 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
 def constrain(t, y, rate, floats, ints):
     """What the surfaces do to the accelerations; free pairs cost nothing."""
     if floats[ints[LAST] + RESTING] > 0.0:
-        if floats[STAGE] > 0.0:
+        if floats[channels.STAGE] > 0.0:
             hold(y, rate, floats, ints)
         else:
             support(-1, y, rate, floats, ints)

@@ -7,6 +7,7 @@ body's memory in the floats: the last accepted instant, its place and velocity t
 
 import numpy as np
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.body_path_kernels import NEVER, first_contact, moving, place
@@ -33,9 +34,6 @@ hit = lazy("sceneql.contacts.hit_kernels:hit", IMPACT)
 keep = lazy("sceneql.contacts.resting_kernels:keep", KEEP)
 from_object = lazy("sceneql.contacts.moving_kernels:from_object", FROM_TYPE)
 support = lazy("sceneql.contacts.support_kernels:support", SUPPORT)
-
-CHANGED = 1
-"""floats[1] tells the march that the state or a flag was changed."""
 
 NO_EVENT = 1e300
 
@@ -108,7 +106,7 @@ def hold(t, y, floats, ints):
     for k in range(ints[BODIES]):
         for j in range(ints[OBJECTS]):
             if floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)] != FREE and keep(t, k, j, y, floats, ints):
-                floats[CHANGED] = 1.0
+                floats[channels.CHANGED] = 1.0
         note_instant(t, k, y, floats, ints)
 
 

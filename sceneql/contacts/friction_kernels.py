@@ -3,6 +3,7 @@
 
 import math
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.impulse_kernels import (
     FRICTION,
@@ -17,7 +18,6 @@ from sceneql.contacts.impulse_kernels import (
 )
 from sceneql.contacts.memory_kernels import (
     ALONG,
-    BETWEEN,
     BRAKE,
     CREEPS,
     EARLIER,
@@ -27,7 +27,6 @@ from sceneql.contacts.memory_kernels import (
     PAIR,
     PULL,
     SLIDES,
-    STAGE,
     STICKS,
     tightness,
 )
@@ -73,7 +72,7 @@ def rub(k, y, rate, floats, ints):
         dx, dy, dz = dx - dn * nx, dy - dn * ny, dz - dn * nz
         size = math.sqrt(dx * dx + dy * dy + dz * dz)
         floats[memory + PULL] = size
-        if floats[memory] == STICKS and floats[STAGE] == BETWEEN:
+        if floats[memory] == STICKS and floats[channels.STAGE] == channels.BETWEEN:
             # To the end of the step, which sees whether the pull was too much.
             hold_still(memory, vx, vy, vz, nx, ny, nz, dx, dy, dz, size, to, rate, floats, ints)
             continue

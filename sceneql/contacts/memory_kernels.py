@@ -16,8 +16,8 @@ from sceneql.system.signatures_kernels import A, F, I, N
 PRESS, LOAD, PULL, ALONG, EARLIER = 1, 2, 3, 4, 7
 TIED, LET_GO = 8, 9
 SLACK = 8
-"""Where ties last whole steps (BETWEEN), in TIED's place: by how much the pull along the surface could have been larger
-at the end of the step before [m/s^2], NaN where nothing stuck."""
+"""Where ties last whole steps (channels.BETWEEN), in TIED's place: by how much the pull along the surface could have
+been larger at the end of the step before [m/s^2], NaN where nothing stuck."""
 PAIR = 10
 FREE, SLIDES, STICKS, CREEPS = 0.0, 1.0, 2.0, 3.0
 """CREEPS, in `local` mode: slides, but so slowly that friction is left to the end of the step (slide_kernels)."""
@@ -29,24 +29,11 @@ RESTING, LIST = 3, 4
 numbers: most bodies fly, and the others are found without looking at all."""
 
 
-STAGE = 3
-"""floats[3]: a [s] in a stage of Newton's method, y = base + a f(t, y), whose base stands at floats[-3n : -2n]; -1
-outside, where contacts act within such stages; 0 where they act between steps; BETWEEN where they do, but a solver
-asks for slopes."""
-OUTSIDE = -1.0
-BETWEEN = -2.0
-"""Then what rests at a step's start stays tied to its end, so that the rate is smooth there, and slopes are known."""
-NUMBER = 4
-"""floats[4]: how many stages there were."""
 FIRM = 1e3
 """How much more than inertia and springs a tie holds within a stage, as the linear systems see it."""
 
 PATH = 13
 """Floats of a path (body_path_kernels)."""
-ASKED = 1
-"""floats[1]: above 0 the march only asks when the step, planned up to that time, should end; else it settles, and
-sets it to HOLDS where bodies rest: then the rate at the next step's end must be known (march_kernels)."""
-HOLDS = -1.0
 
 ANSWER = types.void(F, F, A, A, A, A, A, A, I)
 """(start and end of the step, state at both, bodies found, room for a path and its mean acceleration, floats, ints)."""

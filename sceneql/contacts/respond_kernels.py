@@ -12,6 +12,7 @@ import math
 
 from numba import types
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.body_path_kernels import NEVER, moving, place, set_out
@@ -36,14 +37,11 @@ from sceneql.contacts.impulse_kernels import (
 from sceneql.contacts.meet_kernels import earliest, seen
 from sceneql.contacts.memory_kernels import (
     ANSWER,
-    ASKED,
-    BETWEEN,
     BRAKE,
     CREEPS,
     CUTS,
     EARLIER,
     FREE,
-    HOLDS,
     LIST,
     LOAD,
     PAIR,
@@ -52,7 +50,6 @@ from sceneql.contacts.memory_kernels import (
     RESTING,
     SLACK,
     SLIDES,
-    STAGE,
     STICKS,
     WHOLE,
 )
@@ -208,7 +205,7 @@ def cut(t0, t1, y0, y1, found, path, mean, floats, ints):
     """
     h = t1 - t0
     memory = ints[LAST]
-    ties = floats[STAGE] == BETWEEN
+    ties = floats[channels.STAGE] == channels.BETWEEN
     impact = torn = 1.0
     count = 0
     for k in range(ints[BODIES]):
@@ -228,8 +225,8 @@ def cut(t0, t1, y0, y1, found, path, mean, floats, ints):
                 return
     first = min(torn, impact) if count <= FEW else torn
     end = first * h + AFTER_IMPACT * floats[memory + WHOLE]
-    if first < 1.0 and end < h * (1.0 - AFTER_IMPACT) and t0 + end < floats[ASKED]:
-        floats[ASKED] = t0 + end
+    if first < 1.0 and end < h * (1.0 - AFTER_IMPACT) and t0 + end < floats[channels.STEP_END]:
+        floats[channels.STEP_END] = t0 + end
         floats[memory + CUTS] += 1.0
 
 
@@ -238,7 +235,7 @@ def back_off_found(t0, t1, y0, y1, found, path, mean, floats, ints):
     """Settle the bodies with found[k] = 1, and note which ones rest."""
     h = t1 - t0
     resting = 0
-    ties = floats[STAGE] == BETWEEN
+    ties = floats[channels.STAGE] == channels.BETWEEN
     flat = is_flat(ints) and not ties
     level, nx, ny, nz = surface(floats, ints, HEAD, 0.0, 0.0, 0.0)
     for k in range(ints[BODIES]):
@@ -276,4 +273,4 @@ def back_off_found(t0, t1, y0, y1, found, path, mean, floats, ints):
             resting += 1
     floats[ints[LAST] + RESTING] = resting
     if resting > 0:
-        floats[ASKED] = HOLDS
+        floats[channels.HOLDS] = 1.0

@@ -15,6 +15,7 @@ import math
 
 import numpy as np
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import kernel, lean_inlined
 from sceneql.contacts.impulse_kernels import (
     BODIES,
@@ -39,20 +40,16 @@ from sceneql.contacts.memory_kernels import (
     LET_GO,
     LIST,
     LOAD,
-    NUMBER,
     PAIR,
     PRESS,
     PULL,
     RESTING,
-    STAGE,
     TIED,
     firmness,
 )
 from sceneql.contacts.pair_kernels import body_of
 from sceneql.contacts.shape_kernels import OBJECT, surface, velocity
 
-DEFINITE_AT = 2
-"""floats[2]: above 0 while slopes are asked for, and ties are to stay (system.Slopes)."""
 SWEEPS = 50
 """Over the objects that a mass touches at once."""
 PATIENCE = 3
@@ -159,20 +156,20 @@ def rub(k, j, a, base, firm, nx, ny, nz, y, rate, floats, ints):
 def begins(floats, ints):
     """Whether the stage is another one than last time."""
     at = ints[LAST] + LIST + ints[BODIES] + 1
-    other = floats[at] != floats[NUMBER]
-    floats[at] = floats[NUMBER]
+    other = floats[at] != floats[channels.STAGES]
+    floats[at] = floats[channels.STAGES]
     return other
 
 
 @kernel(HOLD, inner=True)
 def hold(y, rate, floats, ints):
     """Add what the surfaces do to the accelerations of listed masses within a stage."""
-    a = floats[STAGE]
-    base = floats.size - 3 * y.size
+    a = floats[channels.STAGE]
+    base = floats.size - channels.BASE * y.size
     firm = firmness(a, floats, ints)
     objects = ints[OBJECTS]
     seen = np.empty(4 * objects)
-    fresh = floats[DEFINITE_AT] == 0.0
+    fresh = floats[channels.DEFINITE] == 0.0  # ties are to stay while slopes are asked for
     first = begins(floats, ints)
     for i in range(int(floats[ints[LAST] + RESTING])):
         k = int(floats[ints[LAST] + LIST + i])

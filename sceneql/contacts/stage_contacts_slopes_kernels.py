@@ -3,6 +3,7 @@
 
 import math
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.impulse_kernels import (
     FRICTION,
@@ -17,7 +18,6 @@ from sceneql.contacts.impulse_kernels import (
 )
 from sceneql.contacts.memory_kernels import (
     ALONG,
-    BETWEEN,
     FREE,
     LIST,
     LOAD,
@@ -25,7 +25,6 @@ from sceneql.contacts.memory_kernels import (
     PULL,
     RESTING,
     SLIDES,
-    STAGE,
     STICKS,
     TIED,
     firmness,
@@ -79,10 +78,10 @@ def grip(memory, k, j, nx, ny, nz, y, floats, ints):
 @lean(TERM, inner=True)
 def holds(t, y, entries, floats, ints):
     """Of body k, the block by its own velocity from 9 k on: ties, as firm as `hold` has left them in the memory."""
-    between = floats[STAGE] == BETWEEN
-    if floats[STAGE] <= 0.0 and not between:
+    between = floats[channels.STAGE] == channels.BETWEEN
+    if floats[channels.STAGE] <= 0.0 and not between:
         return
-    firm = tightness(floats, ints) if between else firmness(floats[STAGE], floats, ints)
+    firm = tightness(floats, ints) if between else firmness(floats[channels.STAGE], floats, ints)
     for i in range(int(floats[ints[LAST] + RESTING])):
         k = int(floats[ints[LAST] + LIST + i])
         if floats[ints[INVERSE] + k] == 0.0:

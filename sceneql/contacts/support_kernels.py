@@ -1,6 +1,7 @@
 # mypy: ignore-errors
 """The normal force that carries bodies that rest, and Coulomb's friction: compiled when the first body needs them."""
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.impulse_kernels import (
@@ -14,7 +15,6 @@ from sceneql.contacts.impulse_kernels import (
     VELOCITY,
 )
 from sceneql.contacts.memory_kernels import (
-    BETWEEN,
     FREE,
     LIST,
     LOAD,
@@ -23,7 +23,6 @@ from sceneql.contacts.memory_kernels import (
     PAIR,
     PRESS,
     RESTING,
-    STAGE,
     SUPPORT,
 )
 from sceneql.contacts.pair_kernels import away, is_flat
@@ -92,7 +91,7 @@ def support(first, y, rate, floats, ints):
     With ``first`` at least 0, bodies from that one on are looked at, and it is also noted how free pairs would press.
     """
     near = first >= 0
-    ties = floats[STAGE] == BETWEEN
+    ties = floats[channels.STAGE] == channels.BETWEEN
     if not near and not ties and is_flat(ints):
         bear_lying(y, rate, floats, ints)
         return

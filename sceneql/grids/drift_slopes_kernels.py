@@ -3,12 +3,10 @@
 
 import math
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.grids.drift_kernels import UPWIND, VAN_LEER, beyond
 from sceneql.system.signatures_kernels import TERM
-
-DEFINITE_AT = 2
-"""Of floats: whether slopes are to be definite."""
 
 
 @lean_inlined
@@ -61,7 +59,7 @@ def carry(t, y, entries, floats, ints):
                 up, down, up_column, down_column, behind_column = cell, before, 2, 1, 3
                 behind = beyond(cell, place, count, stride, 1, periodic, floats, volumes)
             by_behind = by_ahead = 0.0
-            if behind >= 0 and not 0.0 < floats[DEFINITE_AT] < math.inf:
+            if behind >= 0 and not 0.0 < floats[channels.DEFINITE] < math.inf:
                 by_behind, by_ahead = bends(kind, c[up] - c[behind], c[down] - c[up])
             for row in range(2):
                 weight = -flow / floats[divisors + before] if row == 0 else flow / floats[divisors + cell]

@@ -18,6 +18,7 @@ from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import sceneql.system.channels as channels
 from sceneql.compiled.generated import load, write
 from sceneql.island.blocks_laid import GROUPS_AT
 from sceneql.island.island import Structure, System
@@ -112,7 +113,8 @@ def text(structure: Structure) -> str:
     ]
     refresh = [REFRESH] if structure.varying else []
     group = GROUPS_AT
-    lines += ["", "", "@lean(TERM)", "def rate(t, y, rate, floats, ints):", "    floats[0] += 1.0", *refresh]
+    lines += ["", "", "@lean(TERM)", "def rate(t, y, rate, floats, ints):"]
+    lines += [f"    floats[{channels.RATES}] += 1.0", *refresh]
     lines += ["    for k in range(rate.size):", "        rate[k] = 0.0"]
     for name in structure.terms:
         lines += _blocks(group, f"{names[name]}(t, y, rate, floats, ints[ints[b] : ints[b + 1]])")

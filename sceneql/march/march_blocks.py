@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import compiled, over_tiles, thread_count
 from sceneql.march import march_blocks_kernels as kernels
 from sceneql.march.march import ENTRIES_A_CALL, March
@@ -102,7 +103,7 @@ class BlockMarch(March):
     def _add_up(self, seconds: float) -> None:
         """The cost so far: all blocks take the same steps."""
         done, first = self.statistics, self._blocks[0]
-        done.steps, done.evaluations = int(first._counts[STEPS]), int(first.floats[0])
+        done.steps, done.evaluations = int(first._counts[STEPS]), int(first.floats[channels.RATES])
         done.rejected = sum(int(block._counts[REJECTED]) for block in self._blocks)
         done.seconds += seconds
 

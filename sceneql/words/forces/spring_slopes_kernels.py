@@ -5,11 +5,10 @@ import math
 
 import numpy as np
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import kernel, lean_inlined
 from sceneql.system.signatures_kernels import TERM
 
-FORESEEN_AT = 2
-"""floats[2]: whether the force is that foreseen, and how far slopes are to be definite (system.Slopes)."""
 SPEEDS_AT, INVERSES_AT = 9, 11
 
 
@@ -41,10 +40,10 @@ def spring(t, y, entries, floats, ints):
     opening = n[0] * v[0] + n[1] * v[1] + n[2] * v[2]
     stiffness, damping, rest = floats[ints[6]], floats[ints[7]], floats[ints[8]]
     across, turning = (stiffness * (length - rest) + damping * opening) / length, damping / length
-    if floats[FORESEEN_AT] > 0.0:
+    if floats[channels.DEFINITE] > 0.0:
         old, d, w = np.zeros(3), np.zeros(3), np.zeros(3)
-        between(floats[floats.size - 2 * y.size :], floats, ints, old, w)
-        between(floats[floats.size - y.size :], floats, ints, d, w)
+        between(floats[floats.size - channels.BEFORE * y.size :], floats, ints, old, w)
+        between(floats[floats.size - channels.AFTER * y.size :], floats, ints, d, w)
         before = math.sqrt(old[0] * old[0] + old[1] * old[1] + old[2] * old[2])
         seen = old[0] * d[0] + old[1] * d[1] + old[2] * d[2]
         seen_opening = old[0] * w[0] + old[1] * w[1] + old[2] * w[2]
@@ -55,7 +54,7 @@ def spring(t, y, entries, floats, ints):
         for end in range(2):
             if ints[INVERSES_AT + end] >= 0:
                 inverse = max(inverse, floats[ints[INVERSES_AT + end]])
-        across = max(-floats[FORESEEN_AT] / inverse if inverse > 0.0 else 0.0, across)
+        across = max(-floats[channels.DEFINITE] / inverse if inverse > 0.0 else 0.0, across)
     block = 0
     for one in range(2):
         for by_velocity in range(2):
