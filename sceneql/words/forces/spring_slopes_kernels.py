@@ -8,8 +8,10 @@ import numpy as np
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import kernel, lean_inlined
 from sceneql.system.signatures_kernels import TERM
+from sceneql.words.forces import spring_kernels as force
 
-SPEEDS_AT, INVERSES_AT = 9, 11
+INVERSES_AT = force.SPEEDS_AT + 2
+"""Behind the integers of the force, where each end has its inverse mass (-1: none)."""
 
 
 @lean_inlined
@@ -18,17 +20,17 @@ def between(y, floats, ints, d, v):
     for c in range(3):
         d[c] = v[c] = 0.0
         for end in range(2):
-            sign, at, velocity = 2.0 * end - 1.0, ints[3 * end], ints[3 * end + 1]
+            sign, own = 2.0 * end - 1.0, force.END * end
+            at, velocity = ints[own + force.POSITION_AT], ints[own + force.VELOCITY_AT]
             d[c] += sign * (y[at + c] if at >= 0 else floats[velocity + c])
-            v[c] += sign * (y[velocity + c] if at >= 0 else floats[ints[SPEEDS_AT + end] + c])
+            v[c] += sign * (y[velocity + c] if at >= 0 else floats[ints[force.SPEEDS_AT + end] + c])
 
 
 @kernel(TERM, inner=True)
 def spring(t, y, entries, floats, ints):
     """Blocks of 3x3: for each end that is a mass, its force by the places of both masses, then by their velocities.
 
-    ints: those of spring_kernels.spring, then the places of the inverse masses (-1: none). For Newton's method as
-    mass_spring_slopes_kernels: without what turns the damping, and with the force foreseen.
+    For Newton's method as mass_spring_slopes_kernels: without what turns the damping, and with the force foreseen.
     """
     n, v = np.zeros(3), np.zeros(3)
     between(y, floats, ints, n, v)
@@ -38,7 +40,8 @@ def spring(t, y, entries, floats, ints):
     for c in range(3):
         n[c] /= length
     opening = n[0] * v[0] + n[1] * v[1] + n[2] * v[2]
-    stiffness, damping, rest = floats[ints[6]], floats[ints[7]], floats[ints[8]]
+    stiffness, damping = floats[ints[force.STIFFNESS_AT]], floats[ints[force.DAMPING_AT]]
+    rest = floats[ints[force.REST_AT]]
     across, turning = (stiffness * (length - rest) + damping * opening) / length, damping / length
     if floats[channels.DEFINITE] > 0.0:
         old, d, w = np.zeros(3), np.zeros(3), np.zeros(3)
@@ -59,7 +62,7 @@ def spring(t, y, entries, floats, ints):
     for one in range(2):
         for by_velocity in range(2):
             for other in range(2):
-                if ints[3 * one] < 0 or ints[3 * other] < 0:
+                if ints[force.END * one] < 0 or ints[force.END * other] < 0:
                     continue
                 sign = 1.0 if one != other else -1.0
                 for i in range(3):
