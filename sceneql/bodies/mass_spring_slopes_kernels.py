@@ -4,16 +4,16 @@
 import math
 
 import sceneql.system.channels as channels
+from sceneql.bodies.mass_spring_kernels import BLOCK
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.threads_kernels import TILE, over_threads
 from sceneql.system.signatures_kernels import TERM
 
-BLOCK = 5
-"""Floats of a spring (mass_spring_kernels.py)."""
 ENTRIES = 9
 """Of a spring: a block of 3x3."""
 POSITION_AT, VELOCITY_AT, INVERSE_AT, COUNT, DAMPED, TILES, ENTRY, THREADS, TILE_AT = range(9)
 BLOCKS_AT, STIFFNESS_AT, DAMPING_AT, PAIRS_AT = range(9, 13)
+"""From PAIRS_AT on the two masses of each spring."""
 
 
 @lean(TILE)
@@ -73,8 +73,8 @@ def tile(number, t, y, entries, floats, ints):
 def springs(t, y, entries, floats, ints):
     """Of the force that pulls each spring's first mass towards its second, by the second's position, then velocity.
 
-    ints: those named above, then the two masses of each spring. For spring s the 3x3 entries by position from 9 s on,
-    if damped by velocity from 9 (count + s) on; those by the first mass, and of the other force, are the negatives.
+    For spring s the 3x3 entries by position from 9 s on, if damped by velocity from 9 (count + s) on; those by the
+    first mass, and of the other force, are the negatives.
     With u along the spring, w the relative velocity and p = w . u: d(force)/dx = k u u + (k (L - L0) + c p)/L (1 - u u)
     + c u (w - p u)/L, d(force)/dv = c u u.
     For Newton's method without the third part (Choi & Ko 2002), and with the force by the length and speed that the

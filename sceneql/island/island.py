@@ -74,7 +74,7 @@ class System:
     """(n,) the start."""
     floats: Floats
     ints: NDArray[int64]
-    """Offsets, then the integers of every block (driver.py says how they are laid out)."""
+    """Offsets, then the integers of every block (layout.py says how they lie)."""
     pairs: int
     """Contact pairs of exact contacts."""
     partner: NDArray[int64]
