@@ -62,3 +62,17 @@ def test_a_slot_by_name_is_none_without(text):
 
 def test_nobody_but_the_channels_says_where_a_slot_is():
     assert {str(path): found for path, text in TEXTS.items() if (found := slots_without_a_name(text))} == {}
+
+
+LEFT_WITH_NUMBERS = {"emitter_kernels.py", "pins_kernels.py", "tear_kernels.py"}
+"""Kernels that still read their integers by number: none may be added."""
+
+
+def integers_without_a_name(text):
+    """Integers of kernels that a text reads by number."""
+    return [ast.unparse(index) for index in subscripts(text, "ints") if isinstance(index, ast.Constant)]
+
+
+def test_kernels_read_their_integers_by_name():
+    assert integers_without_a_name("a, b = ints[2], ints[COUNT]") == ["2"]
+    assert {path.name for path, text in TEXTS.items() if integers_without_a_name(text)} == LEFT_WITH_NUMBERS
