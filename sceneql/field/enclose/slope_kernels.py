@@ -208,8 +208,8 @@ def differentiate(code, parts, scratch, columns, dx, dy, dz):
 
 
 @lean(
-    f"Tuple((float64, float64, float64, float64, int64))({ops.TAPE}, float64, float64, float64, float64, float64, float64,"
-    " float64, float64, float64)"
+    f"Tuple((float64, float64, float64, float64, int64))({ops.TAPE}, float64, float64, float64, float64, float64,"
+    " float64, float64, float64, float64)"
 )
 def on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, sign):
     """(low, high, least, most, status) on the piece o + t d, t in [t0, t1], of a ray: g = sign f lies in low..high

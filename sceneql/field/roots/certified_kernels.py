@@ -55,8 +55,8 @@ def told(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, least,
 
 
 @lean(
-    f"Tuple((int64, int64, float64, float64, float64))({ops.TAPE}, float64, float64, float64, float64, float64, float64,"
-    " float64, float64, float64, float64, float64, float64)",
+    f"Tuple((int64, int64, float64, float64, float64))({ops.TAPE}, float64, float64, float64, float64, float64,"
+    " float64, float64, float64, float64, float64, float64, float64)",
     inner=True,
 )
 def hidden(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, t0, t1, least, sign):
@@ -104,8 +104,8 @@ def hidden(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, t0, t1
 
 
 @lean(
-    f"Tuple((int64, float64))({ops.TAPE}, float64, float64, float64, float64, float64, float64,"
-    " float64, float64, float64, float64, boolean, boolean)"
+    f"Tuple((int64, float64))({ops.TAPE}, float64, float64, float64, float64, float64,"
+    " float64, float64, float64, float64, float64, boolean, boolean)"
 )
 def certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, finest, sign, anywhere, touching):
     """(status, t) of the first place in [t0, t1] where sign f < 0 begins, or with ``anywhere`` of any place of it.

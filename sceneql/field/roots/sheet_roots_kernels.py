@@ -88,7 +88,8 @@ def is_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
 
 
 @lean(
-    f"Tuple((int64, float64))({ops.TAPE}, float64, float64, float64, float64, float64, float64, float64, float64, float64)"
+    f"Tuple((int64, float64))({ops.TAPE}, float64, float64, float64, float64, float64, float64, float64, float64,"
+    " float64)"
 )
 def surface_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance):
     """(status, t) of the first root of f on the ray o + t d, t in [t0, t1], with or without a change of sign.
