@@ -64,10 +64,6 @@ def test_nobody_but_the_channels_says_where_a_slot_is():
     assert {str(path): found for path, text in TEXTS.items() if (found := slots_without_a_name(text))} == {}
 
 
-LEFT_WITH_NUMBERS = {"emitter_kernels.py", "pins_kernels.py", "tear_kernels.py"}
-"""Kernels that still read their integers by number: none may be added."""
-
-
 def integers_without_a_name(text):
     """Integers of kernels that a text reads by number."""
     found = (node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Subscript))
@@ -77,4 +73,4 @@ def integers_without_a_name(text):
 
 def test_kernels_read_their_integers_by_name():
     assert integers_without_a_name("a, b = ints[2], ints[COUNT]") == ["ints[2]"]
-    assert {path.name for path, text in TEXTS.items() if integers_without_a_name(text)} == LEFT_WITH_NUMBERS
+    assert {str(path): found for path, text in TEXTS.items() if (found := integers_without_a_name(text))} == {}
