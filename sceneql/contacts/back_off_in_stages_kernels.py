@@ -19,8 +19,7 @@ from sceneql.contacts.back_off_kernels import find_near
 from sceneql.contacts.body_path_kernels import NEVER, set_out
 from sceneql.contacts.impulse_kernels import bounce, count_hit, scale_of
 from sceneql.contacts.meet_kernels import earliest
-from sceneql.contacts.memory_kernels import ANSWER, BACK_OFF_IN_STAGES
-from sceneql.contacts.pair_kernels import body_of
+from sceneql.contacts.pair_kernels import ANSWER, BACK_OFF_IN_STAGES, body_of
 from sceneql.contacts.resting_kernels import come_to_rest, set_velocity
 from sceneql.contacts.shape_kernels import near_at, surface, velocity
 from sceneql.system.signatures_kernels import A, F, I, N

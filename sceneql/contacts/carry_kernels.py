@@ -3,7 +3,7 @@
 
 from sceneql.compiled.kernels import lean
 from sceneql.contacts import layout
-from sceneql.contacts.memory_kernels import OF_BODY
+from sceneql.contacts.pair_kernels import OF_BODY
 from sceneql.contacts.pressing_kernels import pressing
 
 SWEEPS = 50

@@ -12,8 +12,7 @@ from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts import layout
 from sceneql.contacts.body_path_kernels import NEVER, first_contact, moving, place
-from sceneql.contacts.memory_kernels import KEEP, SUPPORT
-from sceneql.contacts.pair_kernels import away, body_of
+from sceneql.contacts.pair_kernels import KEEP, SUPPORT, away, body_of
 from sceneql.contacts.shape_kernels import FROM_TYPE, surface, velocity
 from sceneql.system.signatures_kernels import GAP, IMPACT, TERM
 

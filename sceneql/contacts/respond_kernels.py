@@ -19,8 +19,7 @@ from sceneql.contacts import layout
 from sceneql.contacts.body_path_kernels import NEVER, moving, place, set_out
 from sceneql.contacts.impulse_kernels import bounce, count_hit
 from sceneql.contacts.meet_kernels import earliest, seen
-from sceneql.contacts.memory_kernels import ANSWER, BRAKE
-from sceneql.contacts.pair_kernels import is_flat
+from sceneql.contacts.pair_kernels import ANSWER, BRAKE, is_flat
 from sceneql.contacts.resting_kernels import come_to_rest, keep, lies
 from sceneql.contacts.shape_kernels import clear, surface, velocity
 from sceneql.contacts.slide_kernels import fly_on, slide, start_with

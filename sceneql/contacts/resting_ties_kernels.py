@@ -10,8 +10,7 @@ at the solution, but slopes that have it say that the mass is held, and lose no 
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts import layout
-from sceneql.contacts.memory_kernels import OF_BODY, OF_PAIR, tightness
-from sceneql.contacts.pair_kernels import body_of
+from sceneql.contacts.pair_kernels import OF_BODY, OF_PAIR, body_of, tightness
 from sceneql.contacts.pressing_kernels import pressing
 from sceneql.contacts.shape_kernels import surface, velocity
 

@@ -18,8 +18,7 @@ import numpy as np
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import kernel, lean_inlined
 from sceneql.contacts import layout
-from sceneql.contacts.memory_kernels import HOLD, firmness
-from sceneql.contacts.pair_kernels import body_of
+from sceneql.contacts.pair_kernels import HOLD, body_of, firmness
 from sceneql.contacts.shape_kernels import surface, velocity
 
 SWEEPS = 50

@@ -5,8 +5,7 @@ import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts import layout
-from sceneql.contacts.memory_kernels import OF_BODY, OF_PAIR, SUPPORT
-from sceneql.contacts.pair_kernels import away, is_flat
+from sceneql.contacts.pair_kernels import OF_BODY, OF_PAIR, SUPPORT, away, is_flat
 from sceneql.contacts.pressing_kernels import pressing
 from sceneql.contacts.shape_kernels import facing
 
