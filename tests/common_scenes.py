@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from sceneql.field.roots.certified_kernels import certify
+from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.builder import TapeBuilder
-from sceneql.field.tape.tape_ops import HIT, INSIDE, MISS, UNDECIDED
 from sceneql.field.tape.tape_solid import scratch
 from sceneql.quantities.bind import bind
 from sceneql.quantities.diagnostic import Diagnostics
@@ -23,7 +23,7 @@ COMMON = json.loads(FILE.read_text(encoding="utf-8"))
 SCENES = COMMON["scenes"]
 RAYS = 1000
 TOLERANCE = 1e-9
-OUTCOMES = {MISS: "miss", HIT: "hit", INSIDE: "inside", UNDECIDED: "undecided"}
+OUTCOMES = {ops.MISS: "miss", ops.HIT: "hit", ops.INSIDE: "inside", ops.UNDECIDED: "undecided"}
 
 
 def tape_of(text, where=()):
@@ -82,7 +82,7 @@ def check(status, t, expected, t0, t1, inside_is_hit=False):
     """What was found is what is there; how many rays were left undecided."""
     undecided = 0
     for k, (outcome, place) in enumerate(expected):
-        if status[k] == UNDECIDED:
+        if status[k] == ops.UNDECIDED:
             undecided += 1
             continue
         if outcome == "inside" and inside_is_hit:

@@ -205,7 +205,7 @@ BARS = (
     Bar("names shared by files that are no word's", lambda house: len(shared_names(house)), 8),
     Bar("fields of the largest contract record", lambda house: max(record_fields(house).values()), 12, 28),
     Bar("words named in contracts", lambda house: len(named_words(house)), 0, 2),
-    Bar("files that define slots of `floats`", lambda house: len(slot_definitions(house)), 1, 15),
+    Bar("files that define slots of `floats`", lambda house: len(slot_definitions(house)), 1),
     Bar("files exempt from type checking", lambda house: len(untyped(house)), 0),
     Bar("strings that name nothing", lambda house: len(unresolved(house)), 0),
     Bar("rooms that do not say in a sentence what they hold", lambda house: len(unsaid(house)), 0),

@@ -9,8 +9,8 @@ from common_scenes import TOLERANCE, certified, tape_of
 from sceneql.field.enclose.interval_kernels import box
 from sceneql.field.enclose.slope_kernels import on_ray
 from sceneql.field.packets.packets import cast_together, tape_of_rows
+from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.simplify_kernels import simplify
-from sceneql.field.tape.tape_ops import ATAN2, HIT, MISS, UNDECIDED
 from sceneql.field.tape.tape_solid import cast, field_values, scratch
 
 
@@ -22,7 +22,7 @@ def test_the_cut_of_an_angle_is_a_jump():
             cast(tape_of("atan2(y, x)"), *segments, TOLERANCE),
             certified(tape_of("atan2(y, x)"), *segments),
         ):
-            assert status[0] == HIT
+            assert status[0] == ops.HIT
             assert t[0] == pytest.approx(1.0, abs=1e-8)
 
 
@@ -42,11 +42,11 @@ def test_angles_in_waves_have_no_cut(angle):
     tape = tape_of(f"hypot(x, y) - 0.6 - 0.2*cos({angle})")
     origins, ways = over_the_cut(100)
     status, t = cast(tape, origins, ways, 0.0, 3.0, TOLERANCE)
-    assert (status != UNDECIDED).all()
+    assert (status != ops.UNDECIDED).all()
     places = np.linspace(0.0, 3.0, 1001)
     inside = field_values(tape, (origins[:, None] + places[:, None] * ways[:, None]).reshape(-1, 3)) < -1e-9
     inside = inside.reshape(100, -1)
-    assert not (inside.any(axis=1) & (status == MISS)).any()
+    assert not (inside.any(axis=1) & (status == ops.MISS)).any()
     assert not (inside & (places < t[:, None] - 1e-6)).any()
     program = tape.code, tape.constants, tape.parts, scratch(tape)
     for o, d in zip(origins[:20], ways[:20], strict=True):
@@ -64,7 +64,7 @@ def test_angles_in_shorter_tapes_have_no_cut_either(angle):
     origins, ways = over_the_cut(1000)
     order = np.argsort(origins[:, 0])
     status, _ = cast_together(whole, origins[order], ways[order], np.zeros(1000), np.full(1000, 3.0))
-    assert (status != UNDECIDED).all()
+    assert (status != ops.UNDECIDED).all()
     room, place = scratch(whole), (-1.0, -0.99, -0.001, 0.001, 0.1, 0.101)
     expected = box(whole.code, whole.constants, whole.parts, room, *place)
     short = np.zeros_like(whole.code)
@@ -76,11 +76,11 @@ def test_angles_in_shorter_tapes_have_no_cut_either(angle):
 def test_the_tape_of_a_row_knows_of_which_angles_whole_turns_do_not_matter():
     whole = tape_of("max(cos(5*atan2(z, y)), x)")
     wave = tape_of_rows(whole, [int(whole.code[-1, 1:3].max())])
-    assert wave[wave[:, 0] == ATAN2, 3].tolist() == [1]
+    assert wave[wave[:, 0] == ops.ATAN2, 3].tolist() == [1]
 
 
 @pytest.mark.parametrize(
     "formula", ["cos(2.5*atan2(y, x))", "atan2(y, x)", "atan2(y, x)*cos(atan2(y, x))", "atan2(y, x)^2"]
 )
 def test_angles_of_which_whole_turns_matter_keep_their_cut(formula):
-    assert not (tape_of(formula).code[:, 3] * (tape_of(formula).code[:, 0] == ATAN2)).any()
+    assert not (tape_of(formula).code[:, 3] * (tape_of(formula).code[:, 0] == ops.ATAN2)).any()

@@ -15,8 +15,8 @@ from random_tapes import rays as some_rays
 from sceneql.field.enclose.enclosure_kernels import segment
 from sceneql.field.enclose.slope_kernels import on_ray
 from sceneql.field.roots.isolation_kernels import any_root
+from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.gradient_kernels import gradient
-from sceneql.field.tape.tape_ops import HIT, INSIDE, MISS, NOWHERE, UNDECIDED, WHOLE
 from sceneql.field.tape.tape_solid import cast, field_values, scratch
 
 POLYNOMIALS = ("barth_sextic", "kummer", "steiner", "double_root")
@@ -88,9 +88,9 @@ def test_powers_and_roots_of_what_is_never_negative_are_defined_all_over(text):
         return segment(tape.code, tape.constants, tape.parts, room, -1.0, 0.1, 0.2, 1.0, 0.0, 0.0, 0.75, 1.5, True)
 
     c0, c1, e, status = enclosed(tape_of(text))
-    assert status == WHOLE
+    assert status == ops.WHOLE
     assert c0 + abs(c1) + e >= 0.5**2.5
-    assert enclosed(tape_of("x^2.5"))[3] != WHOLE
+    assert enclosed(tape_of("x^2.5"))[3] != ops.WHOLE
 
 
 PHI = (1 + 5**0.5) / 2
@@ -149,7 +149,7 @@ def test_every_pixel_of_a_multiple_root_is_found(formula):
     origins = np.column_stack([x, y, np.full(len(x), 2.0)])
     status, t = cast(tape, origins, [[0.0, 0.0, -1.0]], 0.0, 4.0, TOLERANCE, surface=True)
     depth = 0.49 - x * x - y * y
-    assert (status == np.where(depth > 0.0, HIT, MISS)).all()
+    assert (status == np.where(depth > 0.0, ops.HIT, ops.MISS)).all()
     # At a root of multiplicity m rounding leaves a place uncertain by the m-th root of it, but for that of df/dt.
     assert t[depth > 0.0] == pytest.approx(2.0 - np.sqrt(depth[depth > 0.0]), abs=1e-5)
 
@@ -157,7 +157,7 @@ def test_every_pixel_of_a_multiple_root_is_found(formula):
 def test_poles_and_jumps_are_no_part_of_a_surface():
     for formula, places in [("1/z", []), ("1/z - 2", [0.5]), ("tan(z)", [0.0])]:
         status, t = cast(tape_of(formula), [[0.1, 0.2, 1.0]], [[0.0, 0.0, -1.0]], 0.0, 2.5, surface=True)
-        assert status[0] == (HIT if places else MISS)
+        assert status[0] == (ops.HIT if places else ops.MISS)
         if places:
             assert t[0] == pytest.approx(1.0 - places[0], abs=1e-9)
 
@@ -181,8 +181,8 @@ def test_what_overflows_or_has_a_pole_is_told_from_zero(formula):
     tape = tape_of(formula)
     origins = np.column_stack([np.full(9, -2.0), np.linspace(-0.8, 0.8, 9), np.full(9, 0.1)])
     segments = origins, np.array([[1.0, 0.0, 0.05]]).repeat(9, axis=0), np.zeros(9), np.full(9, 4.0)
-    assert (cast(tape, *segments, TOLERANCE)[0] == MISS).all()
-    assert (cast(tape, *segments, TOLERANCE, surface=True)[0] == MISS).all()
+    assert (cast(tape, *segments, TOLERANCE)[0] == ops.MISS).all()
+    assert (cast(tape, *segments, TOLERANCE, surface=True)[0] == ops.MISS).all()
 
 
 @pytest.mark.parametrize(("formula", "begin"), [("1.5 - floor(y) + x", 0.25), ("1.5 - floor(y) - x", -0.25)])
@@ -190,21 +190,21 @@ def test_a_ray_in_a_plane_of_jumps_misses_nothing(formula, begin):
     """Of floor(2) rounding makes 1 or 2: what is inside must not be proved to be outside."""
     segments = [[begin, 2.0, 0.0]], [[1.0, 0.0, 0.0]], np.zeros(1), np.full(1, 0.6)
     assert field_values(tape_of(formula), np.array(segments[0]))[0] < 0.0
-    assert cast(tape_of(formula), *segments, TOLERANCE)[0][0] != MISS
+    assert cast(tape_of(formula), *segments, TOLERANCE)[0][0] != ops.MISS
 
 
 def test_what_is_zero_all_along_is_undecided():
     """A polynomial that is zero but for its rounding."""
     tape = tape_of("(x + 1)^4 - x^4 - 4*x^3 - 6*x^2 - 4*x - 1")
     for surface in (False, True):
-        assert cast(tape, [[0.3, 0.2, 1.0]], [[0.1, 0.2, -1.0]], 0.0, 2.0, surface=surface)[0][0] == UNDECIDED
+        assert cast(tape, [[0.3, 0.2, 1.0]], [[0.1, 0.2, -1.0]], 0.0, 2.0, surface=surface)[0][0] == ops.UNDECIDED
 
 
 def test_a_ray_that_begins_on_a_surface_does_not_meet_it_there():
     for formula in ("x^2 + y^2 + z^2 - 0.49", "(x^2 + y^2 + z^2 - 0.49)^2"):
         tape = tape_of(formula)
         status, t = cast(tape, [[0.0, 0.0, 0.7]], [[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]], 0.0, 2.0, surface=True)
-        assert status.tolist() == [HIT, MISS]
+        assert status.tolist() == [ops.HIT, ops.MISS]
         assert t[0] == pytest.approx(1.4, abs=1e-9)
 
 
@@ -224,11 +224,11 @@ def test_bounds_on_a_ray_contain_values_and_slopes(tape, ray):
     low, high, least, most, status = on_ray(*program, *origin, *direction, t0, t1, -1.0)
     t = np.linspace(t0, t1, 41)
     f = -field_values(tape, origin + t[:, None] * direction)
-    if status == NOWHERE:
+    if status == ops.NOWHERE:
         assert np.isnan(f).all()
         return
     known = ~np.isnan(f)
-    assert known.all() or status != WHOLE
+    assert known.all() or status != ops.WHOLE
     assert ((f >= low) & (f <= high))[known].all()
     if np.isfinite([least, most]).all() and t1 > t0:
         # What the slopes bound is the change between any two places, but for the rounding of values at these: what is
@@ -251,9 +251,9 @@ def test_no_root_of_a_surface_is_missed(tape, ray):
     places, signs = places[sure], np.sign(f[sure])
     changes = np.flatnonzero(signs[1:] != signs[:-1])
     if len(changes):
-        assert status[0] != MISS
+        assert status[0] != ops.MISS
         assert t[0] <= places[changes[0] + 1] + TOLERANCE * (t1 - t0)
-    if status[0] == HIT:
+    if status[0] == ops.HIT:
         around = t[0] + TOLERANCE * (t1 - t0) * np.array([-1.0, 1.0])
         low, high, *_ = on_ray(tape.code, tape.constants, tape.parts, scratch(tape), *origin, *direction, *around, 1.0)
         assert low <= 0.0 <= high
@@ -276,9 +276,9 @@ def test_no_pixel_of_a_common_scene_is_wrong(name):
     segments = (origins, *chords(origins, np.tile(-axes[2], (len(places), 1)), clip))
     surface = SCENES[name].get("mode") == "surface"
     status, t = cast(tape, *segments, TOLERANCE, surface=surface)
-    assert (status != UNDECIDED).all()
+    assert (status != ops.UNDECIDED).all()
     truth, place = certified(tape, *segments, touching=surface)
-    assert (np.where(status == INSIDE, HIT, status) == truth).all()
+    assert (np.where(status == ops.INSIDE, ops.HIT, status) == truth).all()
     assert (np.abs(t - place) <= TOLERANCE * (segments[3] - segments[2])).all()
     if not surface:
         program = tape.code, tape.constants, tape.parts, scratch(tape)
@@ -286,4 +286,4 @@ def test_no_pixel_of_a_common_scene_is_wrong(name):
         blocked = [
             any_root(*program, *origins[k], *segments[1][k], segments[2][k], segments[3][k], TOLERANCE) for k in some
         ]
-        assert all((found == MISS) == (truth[k] == MISS) for found, k in zip(blocked, some, strict=True))
+        assert all((found == ops.MISS) == (truth[k] == ops.MISS) for found, k in zip(blocked, some, strict=True))

@@ -15,15 +15,10 @@ from plain_tapes import fan, implicit
 from random_tapes import ARGUMENTS, COORDINATES, JUMPS, NAMES, NUMBERS, PARTS, arguments, of_one, rays, tapes
 from sceneql.field.enclose.enclosure_kernels import segment
 from sceneql.field.enclose.interval_kernels import box
+from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.builder import TapeBuilder
 from sceneql.field.tape.gradient_kernels import gradient
 from sceneql.field.tape.tape_kernels import value
-from sceneql.field.tape.tape_ops import (
-    NOWHERE,
-    PARTIAL,
-    WHOLE,
-    scratch_rows,
-)
 from sceneql.field.tape.tape_solid import cast, field_gradients, field_values, scratch
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Number, Symbol, Vector
@@ -38,9 +33,9 @@ def check_segment(tape, origin, direction, t0, t1):
     t = 0.5 * (t0 + t1) + 0.5 * (t1 - t0) * tau
     f = field_values(tape, origin + t[:, None] * direction)
     defined = ~np.isnan(f)
-    if status == WHOLE:
+    if status == ops.WHOLE:
         assert defined.all()
-    if status == NOWHERE:
+    if status == ops.NOWHERE:
         assert not defined.any()
     elif e < math.inf:
         off = np.abs(f - (c0 + c1 * tau))[defined]
@@ -53,8 +48,8 @@ def check_box(tape, low, high):
     corners = np.array([low, high])
     grid = np.stack(np.meshgrid(*[np.linspace(*corners[:, k], 6) for k in range(3)]), axis=-1).reshape(-1, 3)
     f = field_values(tape, grid)
-    f = f[~np.isnan(f)] if status != WHOLE else f
-    assert not (status == NOWHERE and len(f))
+    f = f[~np.isnan(f)] if status != ops.WHOLE else f
+    assert not (status == ops.NOWHERE and len(f))
     assert ((f >= below) & (f <= above)).all(), (below, above, f.min(), f.max())
 
 
@@ -135,9 +130,9 @@ def test_nothing_is_claimed_of_what_is_not_finite(bad):
     tape = implicit(lambda b, op, c: op("mul", op("square", b.x), op("square", b.y)))
     for where in [(bad, 0.0, 0.0), (0.0, bad, 0.0)]:
         _, _, e, status = segment(*arguments(tape), *where, 1.0, 1.0, 0.0, -1.0, 1.0, True)
-        assert (e, status) == (math.inf, PARTIAL)
+        assert (e, status) == (math.inf, ops.PARTIAL)
     low, high, status = box(*arguments(tape), 0.0, bad, 0.0, bad, 0.0, 1.0)
-    assert (low <= 0.0, high, status) == (True, math.inf, PARTIAL)
+    assert (low <= 0.0, high, status) == (True, math.inf, ops.PARTIAL)
     assert box(*arguments(tape), 1.0, 0.0, 0.0, 1.0, 0.0, 1.0)[:2] == (-math.inf, math.inf)
 
 
@@ -220,7 +215,7 @@ def test_density_parts_of_many_fields_stay_apart():
     (status, t), (expected, place) = (cast(one, origins, directions, 0.0, 12.0) for one in (tape, plain))
     assert (status == expected).all()
     assert t == pytest.approx(place, abs=1e-11)
-    assert scratch(tape).shape[0] == scratch_rows(len(tape.code), 3)
+    assert scratch(tape).shape[0] == ops.scratch_rows(len(tape.code), 3)
 
 
 PLAIN_PYTHON = """

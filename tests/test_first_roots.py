@@ -9,12 +9,7 @@ from hypothesis import given, settings
 from plain_tapes import fan, implicit, kernels, sphere
 from random_tapes import SMOOTH, arguments, rays, tapes
 from sceneql.field.roots.isolation_kernels import any_root, exit_root, first_root
-from sceneql.field.tape.tape_ops import (
-    HIT,
-    INSIDE,
-    MISS,
-    UNDECIDED,
-)
+from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.tape_solid import cast, field_values, scratch
 from search_kernels import searched
 
@@ -29,19 +24,19 @@ def test_no_crossing_is_missed_and_none_invented(tape, ray):
     inside = field_values(tape, origin + places[:, None] * direction) < 0.0
     near = 1e-9 * (t1 - t0) + 1e-14
     if inside.any():
-        assert status != MISS
-        assert blocked != MISS
+        assert status != ops.MISS
+        assert blocked != ops.MISS
         assert t <= places[np.argmax(inside)] + near
-    if status == INSIDE:
+    if status == ops.INSIDE:
         assert t == t0
         assert inside[0]
-    if status == HIT:
+    if status == ops.HIT:
         around = np.clip(t + near * np.array([0.0, 1e-3, 0.1, 1.0, 2.0]), t0, t1)
         assert (field_values(tape, origin + around[:, None] * direction) < 0.0).any()
-    if status == MISS:
-        assert blocked == MISS
-    if status in (HIT, INSIDE):
-        assert blocked != MISS
+    if status == ops.MISS:
+        assert blocked == ops.MISS
+    if status in (ops.HIT, ops.INSIDE):
+        assert blocked != ops.MISS
 
 
 @settings(max_examples=200)
@@ -51,7 +46,7 @@ def test_the_way_out_is_the_way_into_the_negated_field(tape, ray):
     status, t = exit_root(*arguments(tape), *origin, *direction, t0, t1, 1e-9)
     places = np.linspace(t0, t1, 401)
     outside = field_values(tape, origin + places[:, None] * direction) > 0.0
-    assert not (status == MISS and outside.any())
+    assert not (status == ops.MISS and outside.any())
     if outside.any():
         assert t <= places[np.argmax(outside)] + 1e-9 * (t1 - t0) + 1e-14
 
@@ -61,9 +56,9 @@ def test_sphere_roots_are_exact():
     status, t = cast(sphere(0.8), origins, directions, 0.0, 12.0)
     along = -np.einsum("ij,ij->i", origins, directions)
     left = 0.64 - (np.einsum("ij,ij->i", origins, origins) - along**2)
-    assert ((status == HIT) == (left > 0)).all()
-    assert (status != UNDECIDED).all()
-    hit = status == HIT
+    assert ((status == ops.HIT) == (left > 0)).all()
+    assert (status != ops.UNDECIDED).all()
+    hit = status == ops.HIT
     assert t[hit] == pytest.approx(along[hit] - np.sqrt(left[hit]), rel=1e-12)
 
 
@@ -80,14 +75,14 @@ def test_torus_roots_are_exact():
         flat = np.polynomial.Polynomial([o[0] ** 2 + o[2] ** 2, 2 * (o[0] * d[0] + o[2] * d[2]), d[0] ** 2 + d[2] ** 2])
         roots = (whole * whole - 4.0 * flat).roots()
         real = sorted(root.real for root in roots if abs(root.imag) < 1e-9)
-        assert (s == HIT) == bool(real)
+        assert (s == ops.HIT) == bool(real)
         if real:
             assert found == pytest.approx(real[0], rel=1e-9)
 
 
 def test_radius_of_one_kernel():
     status, t = cast(kernels([(0, 0, 0)], 0.3), [[0, 0, 5]], [[0, 0, -1]], 0.0, 10.0)
-    assert status[0] == HIT
+    assert status[0] == ops.HIT
     assert 5.0 - t[0] == pytest.approx(math.sqrt(1.0 - 0.3 ** (1 / 3)), abs=1e-12)
     assert 5.0 - t[0] == pytest.approx(0.5749496064, abs=1e-10)
 
@@ -100,7 +95,7 @@ def test_two_kernels_merge_at_their_exact_distance(gap, merged):
     apart *= 1.0 + gap
     tape = kernels([(-apart / 2, 0, 0), (apart / 2, 0, 0)], 0.3, radius)
     status, _ = cast(tape, [[0, 0, 4]], [[0, 0, -1]], 0.0, 8.0)
-    assert status[0] == (HIT if merged else MISS)
+    assert status[0] == (ops.HIT if merged else ops.MISS)
 
 
 def test_thin_shell_is_whole_and_its_four_roots_are_exact():
@@ -122,7 +117,7 @@ def test_thin_shell_is_whole_and_its_four_roots_are_exact():
         found, start = [], 0.0
         for function in [first_root, exit_root] * (len(expected) // 2):
             status, t = function(*arguments(tape), b, 0.0, 2.0, 0.0, 0.0, -1.0, start, 4.0, 1e-9)
-            assert status == HIT
+            assert status == ops.HIT
             found.append(t)
             start = t + 1e-6
         assert found == pytest.approx(expected, abs=1e-11)
@@ -135,20 +130,20 @@ def test_a_double_root_is_no_way_in():
 
     ray = [[0.1, 0.2, 3]], [[0, 0, -1]], 0.0, 6.0
     factored = implicit(lambda b, op, c: op("square", op("sub", squared(b, op), c(0.49))))
-    assert cast(factored, *ray)[0][0] == MISS
+    assert cast(factored, *ray)[0][0] == ops.MISS
     # Where rounding makes values below zero of r^4 - 0.98 r^2 + 0.2401 there, that is not known.
     expanded = implicit(
         lambda b, op, c: op("add", op("mul", squared(b, op), op("sub", squared(b, op), c(0.98))), c(0.2401))
     )
     status, t = cast(expanded, *ray)
-    assert status[0] == UNDECIDED
+    assert status[0] == ops.UNDECIDED
     assert t[0] == pytest.approx(3.0 - math.sqrt(0.49 - 0.05), abs=1e-6)
 
 
 @pytest.mark.parametrize("length", [1e-9, 1.0, 1e3])
 def test_a_touch_at_the_start_is_no_hit(length):
     tape = implicit(lambda b, op, c: op("square", b.z))
-    assert cast(tape, [[0, 0, 0]], [[0, 0, 1]], 0.0, length)[0][0] in (MISS, UNDECIDED)
+    assert cast(tape, [[0, 0, 0]], [[0, 0, 1]], 0.0, length)[0][0] in (ops.MISS, ops.UNDECIDED)
 
 
 def test_what_is_undefined_stays_so():
@@ -164,17 +159,17 @@ def test_a_capsule_of_the_field_is_round_and_straight():
     origins = np.column_stack([x, np.zeros(6), np.full(6, 3.0)])
     status, t = cast(tape, origins, np.array([[0, 0, -1.0]]), 0.0, 6.0)
     beyond = np.maximum(np.abs(x) - 0.5, 0.0)
-    assert status.tolist() == [HIT] * 5 + [MISS]
+    assert status.tolist() == [ops.HIT] * 5 + [ops.MISS]
     assert 3.0 - t[:5] == pytest.approx(np.sqrt(reach**2 - beyond[:5] ** 2), abs=1e-10)
 
 
 def test_where_a_field_is_undefined_is_outside():
     tape = implicit(lambda b, op, c: op("sub", op("sqrt", b.z), c(2.0)))
     status, t = cast(tape, [[0, 0, 1]], [[0, 0, 1]], -4.0, 1.0)
-    assert status[0] == HIT
+    assert status[0] == ops.HIT
     assert t[0] == pytest.approx(-1.0, abs=1e-8)
     logarithm = implicit(lambda b, op, c: op("log", op("sub", b.x, c(10.0))))
-    assert cast(logarithm, [[0, 0, 1]], [[1, 0, 0]], 0.0, 9.0)[0][0] == MISS
+    assert cast(logarithm, [[0, 0, 1]], [[1, 0, 0]], 0.0, 9.0)[0][0] == ops.MISS
 
 
 @pytest.mark.parametrize("noise", [0.0, 1e3, 1e4, 1e5])
@@ -188,14 +183,14 @@ def test_a_bracket_within_the_tolerance_is_a_hit_though_rounding_leaves_none_nar
     for tolerance in (1e-9, 1e-8, 1e-6):
         program = tape.code, tape.constants, tape.parts, scratch(tape), *where
         status, t = searched(*program, 0.0, 2.0, tolerance, False)
-        assert status == HIT
+        assert status == ops.HIT
         assert t == pytest.approx(1.3, abs=2.0 * tolerance)
-        assert searched(*program, 0.0, 1.3 - 2.0 * tolerance, tolerance, False)[0] == MISS
+        assert searched(*program, 0.0, 1.3 - 2.0 * tolerance, tolerance, False)[0] == ops.MISS
 
 
 def test_what_rounding_hides_beyond_the_tolerance_is_left_to_the_certified_intervals():
     tape = implicit(lambda build, op, c: op("sub", op("add", op("sub", c(0.3), build.x), c(1e9)), c(1e9)))
     ray = np.array([-1.0, 0.0, 0.0]), np.array([1.0, 0.0, 0.0]), 0.0, 2.0, 1e-9
     status, t = searched(tape.code, tape.constants, tape.parts, scratch(tape), *ray, False)
-    assert status == UNDECIDED
+    assert status == ops.UNDECIDED
     assert t < 1.3

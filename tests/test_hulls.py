@@ -8,8 +8,8 @@ import pytest
 
 from common_scenes import SCENES, tape_of
 from hulls_kernels import hull
+from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.plans import degrees_of, places_of
-from sceneql.field.tape.tape_ops import CONSTANT, X, Y, Z
 
 
 def bernstein(c, m, h):
@@ -46,7 +46,8 @@ def test_what_is_still_needed_is_never_overwritten(name):
     for k, degree in enumerate(degrees[:-1]):
         if degree < 0:
             continue
-        operands = [] if tape.code[k, 0] in (CONSTANT, X, Y, Z) else [int(row) for row in tape.code[k, 1:3]]
+        leaf = tape.code[k, 0] in (ops.CONSTANT, ops.X, ops.Y, ops.Z)
+        operands = [] if leaf else [int(row) for row in tape.code[k, 1:3]]
         assert all(holder[places[row] + i] == row for row in operands for i in range(degrees[row] + 1))
         own = {places[k] + i: k for i in range(degree + 1)}
         assert not any(places[row] + i in own for row in operands for i in range(degrees[row] + 1))

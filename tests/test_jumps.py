@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from common_scenes import tape_of
+from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.builder import TapeBuilder
-from sceneql.field.tape.tape_ops import HIT, INSIDE, MISS, UNDECIDED
 from sceneql.field.tape.tape_solid import cast, field_values
 
 FIELDS = [
@@ -44,14 +44,14 @@ def test_rays_across_jumps_are_decided_as_samples_tell(text, seed):
     tape = tape_of(text)
     origins, directions = rays(seed)
     status, t = cast(tape, origins, directions, 0.0, 1.0)
-    assert (status != UNDECIDED).all()
+    assert (status != ops.UNDECIDED).all()
     for i in range(len(origins)):
         values = field_values(tape, origins[i] + TIMES[:, None] * directions[i])
         below = np.flatnonzero(values < 0.0)
         if len(below):
-            assert status[i] == (HIT if below[0] else INSIDE)
+            assert status[i] == (ops.HIT if below[0] else ops.INSIDE)
             assert t[i] <= TIMES[below[0]]
-        if status[i] == HIT:
+        if status[i] == ops.HIT:
             behind = t[i] + np.array([0.0, 1e-12, 1e-11, 1e-10, 1e-9])
             assert (field_values(tape, origins[i] + behind[:, None] * directions[i]) < 0.0).any()
 
@@ -78,14 +78,14 @@ def test_surfaces_have_no_part_where_a_field_jumps(text):
     tape = tape_of(text)
     origins, directions = rays(0, 400)
     status, t = cast(tape, origins, directions, 0.0, 1.0, surface=True)
-    assert (status != UNDECIDED).all()
-    assert (status == HIT).any()
-    for i in np.flatnonzero(status == HIT):
+    assert (status != ops.UNDECIDED).all()
+    assert (status == ops.HIT).any()
+    for i in np.flatnonzero(status == ops.HIT):
         ends, least = around_sign(
             lambda s, i=i: float(field_values(tape, origins[i, None] + s * directions[i])[0]), t[i]
         )
         assert least <= 1e-3 * ends + 1e-9
-    for i in np.flatnonzero(status != HIT):
+    for i in np.flatnonzero(status != ops.HIT):
         values = field_values(tape, origins[i] + TIMES[:, None] * directions[i])
         turned = np.flatnonzero(values[1:] * values[:-1] < 0.0)
         assert (np.abs(values[1:] - values[:-1])[turned] > 0.05).all()
@@ -94,7 +94,7 @@ def test_surfaces_have_no_part_where_a_field_jumps(text):
 def test_a_side_that_is_below_zero_is_no_miss():
     """Of sign(0) = 0 alone, of which no sample tells: a point of the ray is inside, so that nothing may be claimed."""
     status, _ = cast(tape_of("abs(sign(x)) - 0.5"), [[-1.0, 0.3, 0.2]], [[2.0, 0.0, 0.0]], 0.0, 1.0)
-    assert status[0] != MISS
+    assert status[0] != ops.MISS
 
 
 def test_parts_about_a_place_that_jumps_are_met_where_they_are():
@@ -108,7 +108,7 @@ def test_parts_about_a_place_that_jumps_are_met_where_they_are():
     status, t = cast(tape, origins, [[7.0, 0.0, 0.0]], 0.0, 1.0)
     radius = 0.4 * np.sqrt(1 - 0.3 ** (1 / 3))
     inside = np.abs(height) < radius
-    assert (status == np.where(inside, HIT, MISS)).all()
+    assert (status == np.where(inside, ops.HIT, ops.MISS)).all()
     assert 7.0 * t[inside] == pytest.approx(0.5 - np.sqrt(radius**2 - height[inside] ** 2), abs=1e-8)
 
 
@@ -124,7 +124,7 @@ def test_a_root_far_along_a_ray_is_no_jump(text, distance):
     before, behind = 10.0 ** chance.uniform(-5, -0.6, (2, 200))
     origins = np.column_stack([np.full(200, 0.3 + distance), aside])
     status, t = cast(tape, origins, [[-1.0, 0.0, 0.0]], distance - before, distance + behind, surface=True)
-    assert (status == HIT).all()
+    assert (status == ops.HIT).all()
     assert np.abs(t / distance - 1).max() < 2e-12
 
 
@@ -135,7 +135,7 @@ def test_a_root_at_an_edge_of_what_is_defined_is_no_miss(text):
     origins[:, 0] = np.abs(origins[:, 0]) + 0.1
     directions[:, 0] = -origins[:, 0] - np.linspace(0.01, 0.9, 200)
     status, t = cast(tape_of(text), origins, directions, 0.0, 1.0, surface=True)
-    assert (status != MISS).all()
+    assert (status != ops.MISS).all()
     assert np.abs((origins + t[:, None] * directions)[:, 0]).max() < 1e-7
 
 
@@ -145,4 +145,4 @@ def test_an_edge_of_what_is_defined_is_no_root(text):
     origins[:, 0] = 0.1 + 0.3 * (np.abs(origins[:, 0]) % 1.0)
     directions[:, 0] = -origins[:, 0] - np.linspace(0.01, 0.4, 200)
     status, _ = cast(tape_of(text), origins, directions, 0.0, 1.0, surface=True)
-    assert (status == MISS).all()
+    assert (status == ops.MISS).all()

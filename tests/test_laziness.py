@@ -1,11 +1,9 @@
 """What a scene does not need is not imported, run or drawn: seen through sys.modules of fresh processes."""
 
 import json
-import re
 import subprocess
 import sys
 from importlib.metadata import packages_distributions
-from pathlib import Path
 
 import pytest
 
@@ -151,13 +149,3 @@ def test_an_error_in_an_unused_part_is_an_error(tmp_path):
     scene.write_text(FALL + "materials: {unused: {glossy: {rougness: 1}}}\n")
     with pytest.raises(Exception, match="rougness"):
         pipeline.load(scene)
-
-
-def test_the_hash_of_compiled_code_sees_every_kernel_that_it_calls():
-    """It follows ``from MODULE import NAME`` at the beginning of a line: a kernel file imports no module otherwise."""
-    root = Path(pipeline.__file__).parents[1]
-    for path in [*root.glob("sceneql/**/*_kernels.py"), *root.glob("renderers/**/*_kernels.py")]:
-        for line in path.read_text().splitlines():
-            assert not re.match(
-                r"\s*from (sceneql|renderers)[\w.]* import .*_kernels|\s*import (sceneql|renderers)", line
-            ), path

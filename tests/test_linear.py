@@ -16,7 +16,7 @@ from sceneql.linear import dense_complex_kernels as dense_complex
 from sceneql.linear import dense_kernels as dense
 from sceneql.linear import krylov_kernels as krylov
 from sceneql.linear import multifrontal, multifrontal_kernels
-from sceneql.linear.multifrontal_plan_kernels import IN_SINGLE, PIECES, RESTING, TRIED
+from sceneql.linear import multifrontal_layout as layout
 from sceneql.linear.solver_kernels import PRECONDITION
 
 UNIT = 2.3e-16
@@ -159,7 +159,7 @@ def test_factors_in_single_precision_solve_to_rounding_when_refined(monkeypatch,
         multifrontal_kernels.solve_system(plan.numbers, values, factors, x, work, True)
         known = spsolve(matrix.tocsc(), right)
         wrong = np.abs(x - known).max() / np.abs(known).max()
-        assert plan.numbers[IN_SINGLE] > 0
+        assert plan.numbers[layout.IN_SINGLE] > 0
         assert wrong <= (1e-14 * max(1.0, stiffness) + 1e-13 if exact else 0.02)
 
 
@@ -173,14 +173,14 @@ def test_factors_that_are_too_poor_in_single_precision_are_made_in_double(monkey
             assert multifrontal_kernels.factor_system(plan.numbers, values, factors, work, True)
             x = np.ones(matrix.shape[0])
             assert multifrontal_kernels.solve_system(plan.numbers, values, factors, x, work, True)
-            assert plan.numbers[IN_SINGLE] == 0
+            assert plan.numbers[layout.IN_SINGLE] == 0
             assert np.abs(matrix @ x - 1.0).max() <= 1e-14 * np.abs(values).max()
         # After some time they are tried again.
-        plan.numbers[RESTING] = 0
+        plan.numbers[layout.RESTING] = 0
         easy = sheet(14, 11, 1.0)[1]
         assert multifrontal_kernels.factor_system(plan.numbers, easy, factors, work, True)
         assert multifrontal_kernels.solve_system(plan.numbers, easy, factors, x, work, True)
-    assert plan.numbers[IN_SINGLE] == TRIED
+    assert plan.numbers[layout.IN_SINGLE] == layout.TRIED
 
 
 @pytest.mark.parametrize("single", [True, False])
@@ -198,13 +198,13 @@ def test_threads_share_fronts_to_the_same_bytes(monkeypatch, dissected, single):
         plan = multifrontal.plan(pattern, points=places.repeat(3, axis=0).astype(float) if dissected else None)
         factors, work = np.zeros(plan.factors), np.zeros(plan.work)
         numbers = plan.numbers.copy()
-        assert numbers[PIECES] >= 2
+        assert numbers[layout.PIECES] >= 2
         assert multifrontal_kernels.factor_system(numbers, matrix.data, factors, work, True)
         x = np.ones(matrix.shape[0])
         multifrontal_kernels.solve_system(numbers, matrix.data, factors, x, work, True)
         assert np.abs(matrix @ x - 1.0).max() <= 1e-12
         made.append(x.tobytes())
-        assert numbers[IN_SINGLE] == (TRIED if single else 0)
+        assert numbers[layout.IN_SINGLE] == (layout.TRIED if single else 0)
         assert not multifrontal_kernels.factor_system(numbers, np.zeros(pattern.nnz), factors, work, True)
     assert made[0] == made[1] == made[2]
 

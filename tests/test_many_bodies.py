@@ -6,7 +6,7 @@ import pytest
 from sceneql.bodies.neighbors import table
 from sceneql.compiled.threads_kernels import threads, tile_address
 from sceneql.nbody import direct_kernels, fast_kernels, octree_kernels, tree_kernels
-from sceneql.nbody.shared_masses import layout
+from sceneql.nbody.shared_masses import integers_of
 from sceneql.system import Bodies
 from sceneql.words.forces import repulsion_kernels, turbulence_kernels
 
@@ -44,7 +44,7 @@ def gravity(n, softening=0.05, count=2, kernel=direct_kernels.direct_tile, meter
     tile = tile_address(kernel)
     numbers = (0, 1, 1, after, after + 3 * room, room, after + 4 * room, parts, entry, count, tile)
     weights = (HEAD, 1, HEAD + models[0].count, 1)
-    ints = np.array([*numbers, *layout(models), *weights], dtype=np.int64)
+    ints = np.array([*numbers, *integers_of(models), *weights], dtype=np.int64)
     rate = np.zeros_like(y)
     direct_kernels.direct(0.0, y, rate, floats, ints)
     apart = places[None] - places[:, None]
@@ -81,7 +81,7 @@ def test_fast_sums_know_near_bodies_from_one_another():
     after = HEAD + 64
     numbers = (0, 1, 1, after, after + 3 * room, room, after + 4 * room, 1, entry, 1)
     weights = (HEAD, 1, HEAD + models[0].count, 1)
-    ints = np.array([*numbers, tile_address(fast_kernels.fast_tile), *layout(models), *weights], dtype=np.int64)
+    ints = np.array([*numbers, tile_address(fast_kernels.fast_tile), *integers_of(models), *weights], dtype=np.int64)
     rate = np.zeros_like(y)
     direct_kernels.direct(0.0, y, rate, floats, ints)
     apart = y[3] - y[0]
@@ -105,7 +105,7 @@ def test_bodies_at_one_place_do_not_pull_each_other():
     entry, count = threads()
     tile = tile_address(direct_kernels.direct_tile)
     numbers = (0, 1, 1, 44, 44 + 3 * room, room, 44 + 4 * room, 1, entry, count, tile)
-    ints = np.array([*numbers, *layout(models), HEAD, 1, HEAD + models[0].count, 1], dtype=np.int64)
+    ints = np.array([*numbers, *integers_of(models), HEAD, 1, HEAD + models[0].count, 1], dtype=np.int64)
     rate = np.zeros_like(y)
     direct_kernels.direct(0.0, y, rate, floats, ints)
     assert np.isfinite(rate).all()
@@ -133,7 +133,7 @@ def test_repulsion_finds_every_pair_of_masses_in_reach_once(n):
     floats[:HEAD] = [3.0, 0.0, reach, exponent]
     floats[HEAD : HEAD + n] = m
     numbers = [0, 2, *at[:5].tolist(), size, p, q, *threads(), tile_address(repulsion_kernels.repulsion_tile)]
-    ints = np.array([*numbers, *layout(models)], dtype=np.int64)
+    ints = np.array([*numbers, *integers_of(models)], dtype=np.int64)
     rate = np.zeros_like(y)
     repulsion_kernels.repulsion(0.0, y, rate, floats, ints)
     expected, energy = np.zeros((n, 3)), 0.0
@@ -198,7 +198,7 @@ def tree(n, opening, count=2):
     numbers = [0, 1, 1, at[0], at[1], n, 2, at[2], most, *at[3:8].tolist()]
     entry, _ = threads()
     numbers += [entry, count, tile_address(tree_kernels.tree_tile)]
-    ints = np.array([*numbers, *layout(models), HEAD, 1, HEAD + models[0].count, 1], dtype=np.int64)
+    ints = np.array([*numbers, *integers_of(models), HEAD, 1, HEAD + models[0].count, 1], dtype=np.int64)
     rate = np.zeros_like(y)
     tree_kernels.tree(0.0, y, rate, floats, ints)
     apart = places[None] - places[:, None]

@@ -16,20 +16,7 @@ from sceneql.field.packets.packets import Memory, cast_together, plan_of
 from sceneql.field.packets.ray_rows import FOUND_ROOT, FOUND_STATUS
 from sceneql.field.roots.clips import clip_rows
 from sceneql.field.skeleton.skeleton import Skeleton
-from sceneql.field.tape.tape_ops import (
-    CONSTANT,
-    COPY,
-    DENSITY,
-    HIT,
-    INSIDE,
-    MISS,
-    POW,
-    SQRT,
-    SQUARE,
-    SUB,
-    UNDECIDED,
-    X,
-)
+from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.tape_solid import cast, field_values
 from sceneql.shapes.solid import traced
 from sceneql.words.objects.blobby import Blobby
@@ -49,20 +36,21 @@ def test_no_crossing_of_any_tape_is_missed_in_packets(tape, ray, spread, seed):
     points = origins[:, None] + places[:, :, None] * directions[:, None]
     inside = field_values(tape, points.reshape(-1, 3)).reshape(places.shape) < 0.0
     met = inside.any(axis=1) & (t1 > t0)
-    assert not (met & (status == MISS)).any()
-    assert not (met & (blocked == MISS)).any()
-    assert not ((status == MISS) & (blocked == HIT)).any()
+    assert not (met & (status == ops.MISS)).any()
+    assert not (met & (blocked == ops.MISS)).any()
+    assert not ((status == ops.MISS) & (blocked == ops.HIT)).any()
     first = np.take_along_axis(places, inside.argmax(axis=1)[:, None], axis=1)[:, 0]
     assert (t[met] <= first[met] + 1e-6 * (t1 - t0)[met] + 1e-12).all()
     certified, _ = cast(tape, origins, directions, t0, t1)
-    settled = (status != UNDECIDED) & (certified != UNDECIDED) & (t1 > t0)
-    assert ((status == HIT) == ((certified == HIT) | (certified == INSIDE)))[settled].all()
+    settled = (status != ops.UNDECIDED) & (certified != ops.UNDECIDED) & (t1 > t0)
+    assert ((status == ops.HIT) == ((certified == ops.HIT) | (certified == ops.INSIDE)))[settled].all()
 
 
 def test_parts_about_a_place_that_is_not_everywhere_a_number_are_kept():
     # The density of (x, x, sqrt(1 - x^(2x))): the bundle's beam has places where that is enclosed by no numbers.
-    code = [[X, 0, 0, 0], [POW, 0, 0, 0], [CONSTANT, 0, 0, 0], [SQUARE, 1, 1, 0], [SUB, 2, 3, 0], [SQRT, 4, 4, 0]]
-    code += [[COPY, 0, 0, 0], [COPY, 0, 0, 0], [COPY, 5, 5, 0], [DENSITY, 0, 1, 6]]
+    code = [[ops.X, 0, 0, 0], [ops.POW, 0, 0, 0], [ops.CONSTANT, 0, 0, 0], [ops.SQUARE, 1, 1, 0]]
+    code += [[ops.SUB, 2, 3, 0], [ops.SQRT, 4, 4, 0]]
+    code += [[ops.COPY, 0, 0, 0], [ops.COPY, 0, 0, 0], [ops.COPY, 5, 5, 0], [ops.DENSITY, 0, 1, 6]]
     part = np.array([[0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 1.5, -0.5]])
     tape = replace(tape_of("x"), code=np.array(code, dtype=np.int32), constants=np.array([1.0]), parts=part)
     generator = np.random.default_rng(0)
@@ -71,7 +59,7 @@ def test_parts_about_a_place_that_is_not_everywhere_a_number_are_kept():
     status, _ = cast_together(tape, origins, directions, t0, t1)
     inside = field_values(tape, origins) < 0.0
     assert inside.sum() > 30
-    assert (status[inside] != MISS).all()
+    assert (status[inside] != ops.MISS).all()
 
 
 @pytest.mark.parametrize(("centers", "radius"), [(1, 1.0), (30, 0.6)])
@@ -85,10 +73,10 @@ def test_blobs_in_packets_have_the_certified_roots(centers, radius):
     status, t = cast_together(tape, origins, directions, near, far)
     exact, places = cast(tape, origins, directions, near, far)
     assert (status == exact).all()
-    hit = status == HIT
+    hit = status == ops.HIT
     assert hit.sum() > 100
     assert t[hit] == pytest.approx(places[hit], abs=1e-7)
-    assert ((cast_together(tape, origins, directions, near, far, anywhere=True)[0] == HIT) == hit).all()
+    assert ((cast_together(tape, origins, directions, near, far, anywhere=True)[0] == ops.HIT) == hit).all()
 
 
 @settings(max_examples=60)
@@ -139,8 +127,8 @@ def test_shadow_rays_from_a_hair_off_a_density_need_no_certified_routine(height)
     _, certified = memory.settle(256, anywhere=True)
     assert certified == 0
     status, _ = cast(tape, begins, ways, np.zeros(256), np.full(256, 2.0))
-    hits = (status == HIT) | (status == INSIDE)
-    assert ((memory.found[0] == HIT) == hits).all()
+    hits = (status == ops.HIT) | (status == ops.INSIDE)
+    assert ((memory.found[0] == ops.HIT) == hits).all()
     assert hits.all() if height < 0.0 else not hits.all()
 
 
@@ -212,7 +200,7 @@ def test_rays_that_begin_where_they_are_cut_need_no_certified_routine():
     for anywhere in (False, True):
         _, certified = memory.settle(256, anywhere)
         assert certified == 0
-        assert (memory.found[FOUND_STATUS] == HIT).all()
+        assert (memory.found[FOUND_STATUS] == ops.HIT).all()
         if not anywhere:
             assert memory.found[FOUND_ROOT] == pytest.approx(along - reach, abs=1e-9)
 
@@ -243,8 +231,8 @@ def test_shadow_rays_that_end_on_the_ball_inside_a_polynomial_need_no_certified_
     _, certified = memory.settle(256, anywhere=True)
     assert certified == 0
     status, _ = cast(tape, begins, ways, np.zeros(256), ends)
-    hits = (status == HIT) | (status == INSIDE)
-    assert ((memory.found[0] == HIT) == hits).all()
+    hits = (status == ops.HIT) | (status == ops.INSIDE)
+    assert ((memory.found[0] == ops.HIT) == hits).all()
     assert hits.sum() > 100
 
 
@@ -264,7 +252,7 @@ def test_roots_of_polynomials_are_polished_to_float64(seed, far):
     left = along**2 - (centers**2).sum(axis=1) + 1.0
     middle = far + along
     status, t = cast_together(tape_of("x^2 + y^2 + z^2 - 1"), origins, ways, middle - 2.0, middle + 2.0)
-    assert ((status == HIT) == (left > 0.0))[abs(left) > 1e-9].all()
+    assert ((status == ops.HIT) == (left > 0.0))[abs(left) > 1e-9].all()
     clear = left > 0.01
     assert t[clear] == pytest.approx((middle - np.sqrt(np.maximum(left, 0.0)))[clear], abs=1e-14 * far)
 
@@ -338,6 +326,6 @@ def test_a_thin_shell_has_no_holes_in_packets():
     origins = np.column_stack([points, np.full(1000, 2.0)])
     status, t = cast_together(tape, origins, np.tile([0.0, 0, -1], (1000, 1)), np.zeros(1000), np.full(1000, 4.0))
     off = (points**2).sum(axis=1)
-    assert ((status == HIT) == (off < 0.7005**2)).all()
-    hit = status == HIT
+    assert ((status == ops.HIT) == (off < 0.7005**2)).all()
+    hit = status == ops.HIT
     assert t[hit] == pytest.approx(2.0 - np.sqrt(0.7005**2 - off[hit]), abs=1e-6)

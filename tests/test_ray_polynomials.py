@@ -7,8 +7,8 @@ import pytest
 from common_scenes import SCENES, rays, tape_of
 from exact_rays import along, exact, first_entry, roots_of
 from sceneql.field.roots.ray_polynomial_kernels import polynomial_root
+from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.plans import CLIP, NO_FORM, POLYNOMIAL, RADIUS, ray_plan
-from sceneql.field.tape.tape_ops import HIT, INSIDE, MISS, UNDECIDED
 from sceneql.field.tape.tape_solid import scratch
 
 RAYS = 120
@@ -56,13 +56,13 @@ def test_entries_ways_out_and_shadows_agree_with_exact_arithmetic(name, radius):
 
         truth, place = first_entry(inside, places, t0, t1)
         status, t = ask(t0, 1.0, False)
-        undecided += status == UNDECIDED
-        if status != UNDECIDED:
-            assert (status == MISS) == (truth == "miss")
+        undecided += status == ops.UNDECIDED
+        if status != ops.UNDECIDED:
+            assert (status == ops.MISS) == (truth == "miss")
             assert truth == "miss" or t == pytest.approx(place, abs=1e-9)
         status, t = ask(t0, 1.0, True)
-        undecided += status == UNDECIDED
-        assert status == UNDECIDED or (status == MISS) == (truth == "miss")
+        undecided += status == ops.UNDECIDED
+        assert status == ops.UNDECIDED or (status == ops.MISS) == (truth == "miss")
         if truth != "hit":
             continue
         met += 1
@@ -72,11 +72,11 @@ def test_entries_ways_out_and_shadows_agree_with_exact_arithmetic(name, radius):
             continue
         truth, place = first_entry(lambda t, p=polynomials: any(q(t) > 0 for q in p), places, begin, t1)
         status, t = ask(begin, -1.0, False)
-        undecided += status == UNDECIDED
-        if status != UNDECIDED:
-            assert (status == MISS) == (truth == "miss")
+        undecided += status == ops.UNDECIDED
+        if status != ops.UNDECIDED:
+            assert (status == ops.MISS) == (truth == "miss")
             assert truth == "miss" or t == pytest.approx(place, abs=1e-9)
-            left += status == HIT
+            left += status == ops.HIT
     assert undecided <= 0.02 * RAYS
     assert met > 0.1 * RAYS or name in OUTSIDE
     assert left > 0.05 * RAYS or name in OUTSIDE
@@ -94,9 +94,9 @@ def test_rays_far_away_are_told_or_undecided_but_never_told_wrong():
         status, t = polynomial_root(
             tape.code, tape.constants, tape.parts, memory, plan, *far, *direction, t0, t1, 1.0, False
         )
-        if status != UNDECIDED:
+        if status != ops.UNDECIDED:
             told += 1
-            assert (status == MISS) == (truth == "miss")
+            assert (status == ops.MISS) == (truth == "miss")
             assert truth == "miss" or t == pytest.approx(place, abs=1e-6)
     assert told > 40
 
@@ -109,12 +109,12 @@ def test_a_ray_that_begins_inside_is_told_so():
             field.code, field.constants, field.parts, scratch(field), ray_plan(field),
             begin, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 3.0, 1.0, False,
         )  # fmt: skip
-        assert (status, t) == (HIT, 0.0)
+        assert (status, t) == (ops.HIT, 0.0)
     status, _ = polynomial_root(
         tape.code, tape.constants, tape.parts, scratch(tape), ray_plan(tape),
         0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 3.0, -1.0, False,
     )  # fmt: skip
-    assert status == INSIDE
+    assert status == ops.INSIDE
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from common_scenes import tape_of
 from sceneql.field.packets.packets import cast_together
-from sceneql.field.tape.tape_ops import HIT, INSIDE, MISS, UNDECIDED
+from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.tape_solid import cast
 
 X, Y, Z = np.eye(3)
@@ -58,7 +58,7 @@ def test_solids_end_where_their_field_does(text, seed):
     begin, _, end, _ = crossed([BLOCKS[text], *SIDES], origins, directions)
     met = np.maximum(begin, 0.0) < np.minimum(end, 1.0)
     status, t = cast(tape, origins, directions, 0.0, 1.0)
-    assert (status == np.where(met, np.where(begin > 0.0, HIT, INSIDE), MISS)).all()
+    assert (status == np.where(met, np.where(begin > 0.0, ops.HIT, ops.INSIDE), ops.MISS)).all()
     assert t[met] == pytest.approx(np.maximum(begin, 0.0)[met], abs=2e-9)
     outside = begin > 0.0
     ends = np.zeros(outside.sum()), np.ones(outside.sum())
@@ -77,8 +77,8 @@ def test_rims_are_no_part_of_a_surface(text):
     enters = (begin < end) & (begin > 0.0) & (begin < 1.0) & ~at_begin
     leaves = (begin < end) & (end > 0.0) & (end < 1.0) & ~at_end
     status, t = cast(tape, origins, directions, 0.0, 1.0, surface=True)
-    assert (status == np.where(enters | leaves, HIT, MISS)).all()
-    assert t[status == HIT] == pytest.approx(np.where(enters, begin, end)[status == HIT], abs=2e-9)
+    assert (status == np.where(enters | leaves, ops.HIT, ops.MISS)).all()
+    assert t[status == ops.HIT] == pytest.approx(np.where(enters, begin, end)[status == ops.HIT], abs=2e-9)
 
 
 def test_the_rim_of_a_cup_is_met():
@@ -99,6 +99,6 @@ def test_the_rim_of_a_cup_is_met():
     last = np.fmax(high, (ball_reach - ball_b) / ball_a)  # the two of them are convex together
     met = (last > 0.0) & (first < 1.0)
     status, t = cast(tape, origins, directions, 0.0, 1.0)
-    assert (status != UNDECIDED).all()
-    assert (status == np.where(met, np.where(first > 0.0, HIT, INSIDE), MISS)).all()
+    assert (status != ops.UNDECIDED).all()
+    assert (status == np.where(met, np.where(first > 0.0, ops.HIT, ops.INSIDE), ops.MISS)).all()
     assert t[met] == pytest.approx(np.maximum(first[met], 0.0), abs=2e-9)

@@ -12,8 +12,8 @@ from ray_bundles import agree_with_the_certified, bundle
 from sceneql.field.packets.packets import Memory, cast_together, enclosures
 from sceneql.field.roots.clips import clip_rows
 from sceneql.field.skeleton.skeleton import KERNELS, Skeleton
+from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.own_coordinates import in_own_coordinates
-from sceneql.field.tape.tape_ops import HIT, MISS, SKELETON, UNDECIDED
 from sceneql.field.tape.tape_solid import cast, field_values
 from sceneql.shapes.spline import smooth
 from test_curved_skeletons import curves
@@ -50,7 +50,7 @@ def window(size=1.2, count=32):
 @pytest.mark.parametrize("matrix", [None, AFFINE], ids=["at rest", "moved"])
 def test_roots_of_crowds_are_the_certified_ones(kernel, matrix):
     tape = solid(crowd(kernel), matrix=matrix)
-    assert SKELETON in tape.code[:, 0]
+    assert ops.SKELETON in tape.code[:, 0]
     agree_with_the_certified(tape, *window(), within=1e-9)
 
 
@@ -92,7 +92,7 @@ def test_no_root_of_any_skeleton_is_missed(seed, spread, kernel, threshold):
     places = t0[:, None] + (t1 - t0)[:, None] * np.linspace(0.0, 1.0, 101)
     points = origins[:, None] + places[:, :, None] * directions[:, None]
     inside = field_values(tape, points.reshape(-1, 3)).reshape(places.shape) < 0.0
-    assert not (inside.any(axis=1) & (status == MISS)).any()
+    assert not (inside.any(axis=1) & (status == ops.MISS)).any()
 
 
 def test_long_segments_beside_a_short_one_claim_nothing_wrong():
@@ -137,7 +137,7 @@ def settle(tape, origins, directions, t0, t1, anywhere=False):
 def test_lanes_settle_what_passes_near_each_other(skeleton):
     origins, directions, t0, t1 = window(0.15, 16)
     _, certified, outcomes = settle(solid(skeleton), origins, directions, t0, t1)
-    assert (outcomes != UNDECIDED).all()
+    assert (outcomes != ops.UNDECIDED).all()
     assert certified < 0.05 * len(t0)
 
 
@@ -155,7 +155,7 @@ def test_rays_that_spread_over_far_more_parts_than_each_of_them_meets_are_certif
     assert (outcomes == exact).all()
     *_, blocked = settle(tape, origins, targets - origins, t0, t1, anywhere=True)
     assert (blocked == exact).all()
-    assert 20 < (outcomes == HIT).sum() < 236
+    assert 20 < (outcomes == ops.HIT).sum() < 236
 
 
 def test_a_moved_tape_is_looked_at_in_its_own_coordinates():

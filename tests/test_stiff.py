@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import sceneql.system.channels as channels
 from sceneql.failure import LimitRefused, RunFailure
 from sceneql.march.driver import jacobian
 from sceneql.march.march import March
@@ -79,9 +80,9 @@ def test_definite_slopes_leave_a_spring_what_inertia_holds(tmp_path):
     march, bodies = lone_spring(tmp_path)
     y = march.system.y
     row, column = bodies.velocity_at + 4, bodies.position_at + 4
-    march.floats[-2 * len(y) :] = np.concatenate([y, y])
+    march.floats[-channels.BEFORE * len(y) :] = np.concatenate([y, y])
     for rate, expected in ((0.0, 500 / 9), (1e6, 500 / 9), (20.0, 40.0), (1e-300, 0.0)):
-        march.floats[2] = rate
+        march.floats[channels.DEFINITE] = rate
         found = dense(march, 0.0, y)
         assert found[row, column] == pytest.approx(expected / 2)
         assert found[row - 1, column - 1] == pytest.approx(-500 / 2)
@@ -93,8 +94,8 @@ def test_definite_slopes_take_the_force_that_the_latest_change_foresaw(tmp_path)
     old, new = march.system.y, march.system.y.copy()
     new[bodies.position_at + 3] += 0.3
     new[bodies.position_at + 4] += 0.4
-    march.floats[-2 * len(old) :] = np.concatenate([old, new])
-    march.floats[2] = 1.0
+    march.floats[-channels.BEFORE * len(old) :] = np.concatenate([old, new])
+    march.floats[channels.DEFINITE] = 1.0
     found = dense(march, 0.0, new)
     across = np.array([-0.4, 1.2, 0.0]) / np.hypot(0.4, 1.2)
     at = bodies.position_at + 3, bodies.velocity_at + 3

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 
 import stage
 from renderers.trace import Trace
+from renderers.tracing import layout
 from renderers.tracing.certified import TOLERANCE
 from renderers.tracing.pack import pack
 from renderers.tracing.probe import probe
-from renderers.tracing.scene_kernels import ANSWERS, ANYWHERE, FAR, FIRST, NEXT, WANT
 from renderers.tracing.scratch import scratch
 from renderers.tracing.solids.bundles import Packets, solids_in_lanes
 from renderers.tracing.solids.intersect_kernels import walk
@@ -110,9 +110,10 @@ def told(shape, rays, far, want):
     """What packets tell of rays (n, 6)."""
     packets = Packets((shape,), solids_in_lanes((shape,)))
     asked = packets.asked(len(rays))
-    asked[1:, :FAR], asked[1:, FAR], asked[1:, WANT], asked[0, NEXT] = rays, far, want, len(rays) + 1
+    asked[1:, : layout.FAR], asked[1:, layout.FAR] = rays, far
+    asked[1:, layout.WANT], asked[0, layout.NEXT] = want, len(rays) + 1
     packets.meet(asked)
-    return asked[1:, ANSWERS]
+    return asked[1:, layout.ANSWERS]
 
 
 def one_by_one(shape, rays, far, anywhere):
@@ -139,7 +140,7 @@ def test_what_is_told_of_rays_is_what_they_find_one_by_one(name, seed, spread, c
     rays[:, :3] -= back * rays[:, 3:]
     far = back + np.where(random.random(count) < 0.7, math.inf, random.uniform(0.1, 4.0, count))
 
-    first, single = told(shape, rays, far, FIRST), one_by_one(shape, rays, far, False)
+    first, single = told(shape, rays, far, layout.FIRST), one_by_one(shape, rays, far, False)
     sure = ~np.isnan(first)
     assert (np.isfinite(first) == np.isfinite(single))[sure].all()
     hit = sure & np.isfinite(single)
@@ -147,7 +148,7 @@ def test_what_is_told_of_rays_is_what_they_find_one_by_one(name, seed, spread, c
     outside = one_by_one(shape, rays, np.full(count, 1e-7), True) == math.inf
     assert sure[outside].all()
 
-    shaded, single = told(shape, rays, far, ANYWHERE), one_by_one(shape, rays, far, True)
+    shaded, single = told(shape, rays, far, layout.ANYWHERE), one_by_one(shape, rays, far, True)
     sure = ~np.isnan(shaded)
     assert (np.isfinite(shaded) == np.isfinite(single))[sure].all()
     assert sure[outside].all()
@@ -159,7 +160,8 @@ def test_what_is_looked_at_is_met_in_packets(monkeypatch):
     """At the usual tolerance: see `bench` of surfaces."""
     asked = []
     meet = Packets.meet
-    monkeypatch.setattr(Packets, "meet", lambda self, rays: asked.append(int(rays[0, NEXT]) - 1) or meet(self, rays))
+    count = layout.NEXT
+    monkeypatch.setattr(Packets, "meet", lambda self, rays: asked.append(int(rays[0, count]) - 1) or meet(self, rays))
     scene = frame(*(SOLIDS[name] for name in ("lattice", "cubic", "blob")), seen=view(size=(70, 45)))
     single, together = probe(scene, ONE_BY_ONE), probe(scene)
     assert sum(asked) == 70 * 45

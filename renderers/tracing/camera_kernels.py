@@ -3,7 +3,8 @@
 
 import numpy as np
 
-from renderers.tracing.scene_kernels import CAMERA, HEIGHT, WIDTH, part
+from renderers.tracing import layout
+from renderers.tracing.scene_kernels import part
 
 TILE, BLOCK = 16, 4
 """Pixels are taken in tiles of 16 x 16, blocks of 4 x 4 of them together: a packet's rays are neighbors."""
@@ -15,31 +16,32 @@ def camera_ray(reals, px, py):
 
     The ray stands for a cone: half a pixel's width is ``radius`` + ``spread`` t at distance t.
     """
-    width, height, half_height = reals[WIDTH], reals[HEIGHT], reals[CAMERA + 12]
+    camera = layout.CAMERA
+    width, height, half_height = reals[layout.WIDTH], reals[layout.HEIGHT], reals[camera + 12]
     u = (2.0 * px - width) / height * half_height
     v = (1.0 - 2.0 * py / height) * half_height
     pixel = half_height / height
-    if reals[CAMERA + 13] != 0.0:
+    if reals[camera + 13] != 0.0:
         # The window lies in the plane of the origin; what stands before it is seen as well.
         back = 1e4 * max(1.0, half_height)
         return (
-            reals[CAMERA] + u * reals[CAMERA + 3] + v * reals[CAMERA + 6] + back * reals[CAMERA + 9],
-            reals[CAMERA + 1] + u * reals[CAMERA + 4] + v * reals[CAMERA + 7] + back * reals[CAMERA + 10],
-            reals[CAMERA + 2] + u * reals[CAMERA + 5] + v * reals[CAMERA + 8] + back * reals[CAMERA + 11],
-            -reals[CAMERA + 9],
-            -reals[CAMERA + 10],
-            -reals[CAMERA + 11],
+            reals[camera] + u * reals[camera + 3] + v * reals[camera + 6] + back * reals[camera + 9],
+            reals[camera + 1] + u * reals[camera + 4] + v * reals[camera + 7] + back * reals[camera + 10],
+            reals[camera + 2] + u * reals[camera + 5] + v * reals[camera + 8] + back * reals[camera + 11],
+            -reals[camera + 9],
+            -reals[camera + 10],
+            -reals[camera + 11],
             pixel,
             0.0,
         )
-    dx = u * reals[CAMERA + 3] + v * reals[CAMERA + 6] - reals[CAMERA + 9]
-    dy = u * reals[CAMERA + 4] + v * reals[CAMERA + 7] - reals[CAMERA + 10]
-    dz = u * reals[CAMERA + 5] + v * reals[CAMERA + 8] - reals[CAMERA + 11]
+    dx = u * reals[camera + 3] + v * reals[camera + 6] - reals[camera + 9]
+    dy = u * reals[camera + 4] + v * reals[camera + 7] - reals[camera + 10]
+    dz = u * reals[camera + 5] + v * reals[camera + 8] - reals[camera + 11]
     length = np.sqrt(dx * dx + dy * dy + dz * dz)
     return (
-        reals[CAMERA],
-        reals[CAMERA + 1],
-        reals[CAMERA + 2],
+        reals[camera],
+        reals[camera + 1],
+        reals[camera + 2],
         dx / length,
         dy / length,
         dz / length,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from renderers.tracing import layout
 from renderers.tracing.certified import TOLERANCE
 from renderers.tracing.filter.filter_kernels import deepen, widen
 from renderers.tracing.filter.planes_kernels import KEYS, LANES, WIDE, lay_out
@@ -16,7 +17,6 @@ from renderers.tracing.light.visibility_kernels import FIRST_LIGHT
 from renderers.tracing.pack import pack
 from renderers.tracing.picture import Picture, over_rows
 from renderers.tracing.record_kernels import COLUMNS
-from renderers.tracing.scene_kernels import LIGHT_COUNT
 from renderers.tracing.solids.packet_choice import lender, packets_for
 from renderers.tracing.sprites import over
 from renderers.tracing.waves import Waves
@@ -62,7 +62,7 @@ def draw(frame: SeenFrame, samples: int = 8, tolerance: float = TOLERANCE, march
     """
     scene, rows = pack(frame, tolerance, march)
     width, height = frame.view.size
-    columns = FIRST_LIGHT + 2 * int(scene.ints[LIGHT_COUNT])
+    columns = FIRST_LIGHT + 2 * int(scene.ints[layout.LIGHT_COUNT])
     buffers = _buffers(width, height, columns)
     counts: list[tuple[int, int]] = []
     together = None if march else packets_for(frame, tolerance)

@@ -7,25 +7,14 @@ It finds the point's records, and the light that needs no filtering.
 import numpy as np
 from numba import types
 
+from renderers.tracing import layout
 from renderers.tracing.camera_kernels import camera_ray
 from renderers.tracing.light.light_kernels import backdrop, dielectric, sharpness, sky_radiance, smoothstep
 from renderers.tracing.light.shade_kernels import facing_ratio, mean_specular, shade
 from renderers.tracing.light.visibility_kernels import look_around
 from renderers.tracing.path_kernels import behind, bend, describe, faded, mirrored, refracted
 from renderers.tracing.record_kernels import TINT, TRACED, WEIGHT, copy_record, erase, start_of
-from renderers.tracing.scene_kernels import (
-    INDEX,
-    ITEMS,
-    METALLIC,
-    ROUGHNESS,
-    ROW,
-    SCENE,
-    SCRATCH,
-    SURFACE_AT,
-    TOLD,
-    TRANSMISSION,
-    part,
-)
+from renderers.tracing.scene_kernels import ROW, SCENE, SCRATCH, part
 from renderers.tracing.solids.intersect_kernels import walk
 from sceneql.compiled.kernels import kernel
 
@@ -83,7 +72,7 @@ def advance(scene, scratch, path, first, second, spare):
     counter = scratch.shape[0] - 1
     scratch[counter, 0] = 0.0
     t, item, _ = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, np.inf, False)
-    scratch[counter, TOLD] = 0.0
+    scratch[counter, layout.TOLD] = 0.0
     goes_on = False
     if item < 0:
         r, g, b = backdrop(scene.reals, dy) if straight else sky_radiance(scene.reals, dy)
@@ -97,8 +86,8 @@ def advance(scene, scratch, path, first, second, spare):
             cr, cg, cb = cr + (1.0 - fade) * wr * r, cg + (1.0 - fade) * wg * g, cb + (1.0 - fade) * wb * b
             wr, wg, wb = fade * wr, fade * wg, fade * wb
         spare[WEIGHT], spare[WEIGHT + 1], spare[WEIGHT + 2] = wr, wg, wb
-        s = scene.ints[ITEMS + 4 * item + SURFACE_AT]
-        clear = scene.reals[s + TRANSMISSION]
+        s = scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT]
+        clear = scene.reals[s + layout.TRANSMISSION]
         glass = clear > (0.0 if bounce == 0 else 0.5)
         nv = facing_ratio(spare)
         sr, sg, sb = 0.0, 0.0, 0.0
@@ -106,14 +95,14 @@ def advance(scene, scratch, path, first, second, spare):
         if glass:
             traced = 1.0 if bounce == 0 or not outside else 0.0
         elif bounce < BOUNCES:
-            traced = sharpness(scene.reals[s + ROUGHNESS])
+            traced = sharpness(scene.reals[s + layout.ROUGHNESS])
             if traced > 0.0:
                 sr, sg, sb = mean_specular(scene.reals, spare, nv)
             traced *= smoothstep(FAINT, 2.0 * FAINT, traced * max(wr * sr, max(wg * sg, wb * sb)))
         spare[TRACED] = traced
         if bounce == 0:
             copy_record(spare, first)
-        elif keep and not glass and scene.reals[s + METALLIC] < 0.5:
+        elif keep and not glass and scene.reals[s + layout.METALLIC] < 0.5:
             copy_record(spare, second)
             keep = False
         elif outside or not glass:
@@ -123,7 +112,7 @@ def advance(scene, scratch, path, first, second, spare):
             turn = bend(scene, scratch, spare)
             back = 1.0
             if glass:
-                ratio = 1.0 / scene.reals[s + INDEX] if outside else scene.reals[s + INDEX]
+                ratio = 1.0 / scene.reals[s + layout.INDEX] if outside else scene.reals[s + layout.INDEX]
                 back = dielectric(nv, ratio)
                 sr, sg, sb = back, back, back
             if back < 1.0 and glass:

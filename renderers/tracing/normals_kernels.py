@@ -4,8 +4,9 @@
 import numpy as np
 from numba import types
 
+from renderers.tracing import layout
 from renderers.tracing.camera_kernels import camera_ray
-from renderers.tracing.scene_kernels import CAMERA, SCENE, SCRATCH, WIDTH, part
+from renderers.tracing.scene_kernels import SCENE, SCRATCH, part
 from renderers.tracing.solids.intersect_kernels import walk
 from renderers.tracing.solids.surface_kernels import normal_at
 from sceneql.compiled.kernels import kernel
@@ -35,11 +36,11 @@ def undecided_rows(scene, scratch, start, stop, picture):
     counter = scratch.shape[0] - 1
     undecided = 0
     for y in range(start, stop):
-        for x in range(int(scene.reals[WIDTH])):
+        for x in range(int(scene.reals[layout.WIDTH])):
             scratch[counter, 0] = 0.0
             hit, nx, ny, nz = seen_normal(scene, scratch, x + 0.5, y + 0.5)
             c = scene.reals
-            facing = abs(nx * c[CAMERA + 9] + ny * c[CAMERA + 10] + nz * c[CAMERA + 11])
+            facing = abs(nx * c[layout.CAMERA + 9] + ny * c[layout.CAMERA + 10] + nz * c[layout.CAMERA + 11])
             for channel in range(3):
                 picture[y, x, channel] = 0.2 + 0.5 * facing if hit else 0.0
             if scratch[counter, 0] > 0.0:
@@ -59,7 +60,7 @@ def normal_rows(scene, scratch, start, stop, points, picture):
     counter = scratch.shape[0] - 1
     undecided = 0
     for y in range(start, stop):
-        for x in range(int(scene.reals[WIDTH])):
+        for x in range(int(scene.reals[layout.WIDTH])):
             scratch[counter, 0] = 0.0
             red, green, blue = 0.0, 0.0, 0.0
             for s in range(len(points)):

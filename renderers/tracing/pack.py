@@ -7,38 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from renderers.tracing import layout
 from renderers.tracing.certified import TOLERANCE
-from renderers.tracing.scene_kernels import (
-    CAMERA,
-    CELLS,
-    CELLS_AT,
-    GRID,
-    HALF_SPACE,
-    IMPLICIT,
-    ITEMS,
-    KIND,
-    LIGHT,
-    LIGHTS,
-    MIXED,
-    PAINT,
-    PLAN,
-    POINT,
-    QUADRIC,
-    RANGES,
-    REALS_AT,
-    ROUND,
-    SAMPLES,
-    SHAPE,
-    SHEET,
-    SKY,
-    SUN,
-    SURFACE_AT,
-    SURFACE_SIZE,
-    TRIANGLE,
-    WITHIN,
-    Scene,
-)
-from renderers.tracing.scene_kernels import TOLERANCE as ROOT_TOLERANCE
+from renderers.tracing.scene_kernels import Scene
 from renderers.tracing.solids.hierarchy import hierarchy
 from renderers.tracing.solids.triangles import LARGE, Packed, boxes_of, corners_of, rows_of, still_mesh
 from sceneql.field.tape.plans import ray_plan
@@ -86,27 +57,28 @@ def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certa
     first = np.array([[0, -len(endless), len(endless)]])
     links = np.concatenate([first, links]) + np.array([1, len(endless), 0])
     lights = _lights(frame.lights)
-    head = np.zeros(LIGHTS)
-    head[SKY : SKY + 14] = _sky(frame.lights)
-    head[[ROOT_TOLERANCE, SAMPLES]] = tolerance, samples
-    head[CAMERA : CAMERA + 16] = _camera(frame.view)
-    surfaces_at = LIGHTS + lights.size
-    nodes_at = surfaces_at + SURFACE_SIZE * len(frame.shapes)
+    head = np.zeros(layout.LIGHTS)
+    head[layout.SKY : layout.SKY + 14] = _sky(frame.lights)
+    head[[layout.TOLERANCE, layout.SAMPLES]] = tolerance, samples
+    head[layout.CAMERA : layout.CAMERA + 16] = _camera(frame.view)
+    surfaces_at = layout.LIGHTS + lights.size
+    nodes_at = surfaces_at + layout.SURFACE_SIZE * len(frame.shapes)
     reals_at = nodes_at + nodes.size
     items = np.concatenate([np.empty((0, 4), np.int64), *tables.items])
     items = np.concatenate([items[endless], np.concatenate([items[inner], *(own for _, own in tables.still)])[order]])
-    items[:, REALS_AT] += reals_at
-    items[:, SURFACE_AT] = surfaces_at + SURFACE_SIZE * items[:, SHAPE]
-    links_at = ITEMS + items.size
+    items[:, layout.REALS_AT] += reals_at
+    items[:, layout.SURFACE_AT] = surfaces_at + layout.SURFACE_SIZE * items[:, layout.SHAPE]
+    links_at = layout.ITEMS + items.size
     ranges_at = links_at + links.size
     reals = np.concatenate([head, lights.ravel(), *tables.surfaces, nodes.ravel(), *tables.reals])
     header = [len(nodes), len(items), len(endless), len(lights), nodes_at, links_at, len(frame.shapes), 0]
     ints = np.concatenate([header, items.ravel(), links.ravel(), *tables.ranges, *tables.codes], dtype=np.int32)
     for k in range(len(tables.implicits)):
-        place = ranges_at + RANGES * k
-        ranges = ints[place : place + RANGES]
-        ranges[[0, CELLS_AT, PAINT, WITHIN, PLAN]] += ranges_at + sum(map(len, tables.ranges))
-        ranges[[2, 4, PAINT + 2, PAINT + 4, WITHIN + 2, WITHIN + 4]] += reals_at
+        place = ranges_at + layout.RANGES * k
+        ranges = ints[place : place + layout.RANGES]
+        code = [0, layout.CELLS_AT, layout.PAINT, layout.WITHIN, layout.PLAN]
+        ranges[code] += ranges_at + sum(map(len, tables.ranges))
+        ranges[[2, 4, layout.PAINT + 2, layout.PAINT + 4, layout.WITHIN + 2, layout.WITHIN + 4]] += reals_at
         reals[reals_at + tables.implicits[k] + 6] = place
     scene = Scene(reals, ints, 0, 0, 0, 0, 0)
     if any(isinstance(shape, Grid) for shape in frame.shapes):
@@ -148,9 +120,9 @@ class Rows:
         elif isinstance(shape, Quadric):
             plane = _half_space(shape)
             if plane is None:
-                self._items(index, QUADRIC, quadric_box(shape)[None, :], _quadric(shape))
+                self._items(index, layout.QUADRIC, quadric_box(shape)[None, :], _quadric(shape))
             else:
-                self._items(index, HALF_SPACE, UNBOUNDED[None, :], plane)
+                self._items(index, layout.HALF_SPACE, UNBOUNDED[None, :], plane)
         elif isinstance(shape, Implicit):
             self._implicit(index, shape)
         elif isinstance(shape, Grid):
@@ -174,8 +146,8 @@ class Rows:
         """(n, 4) items with reals (n, r)."""
         count, columns = reals.shape
         items = np.zeros((count, 4), dtype=np.int64)
-        items[:, KIND], items[:, SHAPE] = kind, index
-        items[:, REALS_AT] = self._place(reals) + columns * np.arange(count)
+        items[:, layout.KIND], items[:, layout.SHAPE] = kind, index
+        items[:, layout.REALS_AT] = self._place(reals) + columns * np.arange(count)
         return items
 
     def _place(self, reals: Floats) -> int:
@@ -188,26 +160,26 @@ class Rows:
     def _mesh(self, index: int, mesh: Mesh) -> None:
         if len(mesh.triangles) >= LARGE and is_held(mesh.vertices) and is_held(mesh.triangles):
             packed = still_mesh(mesh)
-            self.still.append((packed, self._rows(index, TRIANGLE, packed.rows)))
+            self.still.append((packed, self._rows(index, layout.TRIANGLE, packed.rows)))
         else:
             corners = corners_of(mesh)
-            self._items(index, TRIANGLE, boxes_of(corners), rows_of(mesh, corners))
+            self._items(index, layout.TRIANGLE, boxes_of(corners), rows_of(mesh, corners))
 
     def _rounds(self, index: int, ends: Floats, axes: Floats, radii: Floats, colors: Floats | None) -> None:
         shades = np.full((len(ends), 3), np.nan) if colors is None else colors
         radii = np.asarray(radii, dtype=np.float64)[:, None]
         low, high = np.minimum(ends, ends + axes) - radii, np.maximum(ends, ends + axes) + radii
         rows = np.concatenate([ends, axes, radii, shades], axis=1)
-        self._items(index, ROUND, np.concatenate([low, high], axis=1), rows)
+        self._items(index, layout.ROUND, np.concatenate([low, high], axis=1), rows)
 
     def _implicit(self, index: int, shape: Implicit) -> None:
         box = np.array([[*shape.low, *shape.high, 0.0]], dtype=np.float64)
         self.implicits.append(self._size)
-        self._items(index, IMPLICIT if shape.within is None else SHEET, box[:, :6], box)
+        self._items(index, layout.IMPLICIT if shape.within is None else layout.SHEET, box[:, :6], box)
         ranges = self._tape(shape.tape)
-        ranges.append(self._code(np.full(CELLS**3, MIXED, dtype=np.int32)))
+        ranges.append(self._code(np.full(layout.CELLS**3, layout.MIXED, dtype=np.int32)))
         for other in (shape.paint, shape.within):
-            ranges += [0] * (WITHIN - PAINT) if other is None else self._tape(other)
+            ranges += [0] * (layout.WITHIN - layout.PAINT) if other is None else self._tape(other)
         plan = ray_plan(shape.tape)
         ranges += [self._code(plan), len(plan)]
         self.ranges.append(np.array(ranges))
@@ -215,7 +187,7 @@ class Rows:
     def _grid(self, index: int, shape: Grid) -> None:
         from renderers.tracing.solids.grids import box, row
 
-        self._items(index, GRID, box(shape), row(shape))
+        self._items(index, layout.GRID, box(shape), row(shape))
 
     def _tape(self, tape: Tape) -> list[int]:
         """Append a tape; its ranges."""
@@ -274,10 +246,10 @@ def _lights(lights: tuple[LightSource, ...]) -> Floats:
     for light in lights:
         if isinstance(light, Sun):
             direction = np.array(light.direction) / np.linalg.norm(light.direction)
-            rows.append([SUN, *direction, *light.irradiance, light.angle, math.tan(0.5 * light.angle)])
+            rows.append([layout.SUN, *direction, *light.irradiance, light.angle, math.tan(0.5 * light.angle)])
         elif not isinstance(light, Sky):
-            rows.append([POINT, *light.position, *light.intensity, light.radius, light.radius])
-    return np.array(rows, dtype=np.float64).reshape(-1, LIGHT)
+            rows.append([layout.POINT, *light.position, *light.intensity, light.radius, light.radius])
+    return np.array(rows, dtype=np.float64).reshape(-1, layout.LIGHT)
 
 
 def _sky(lights: tuple[LightSource, ...]) -> Floats:

@@ -3,6 +3,7 @@
 
 import numpy as np
 
+from renderers.tracing import layout
 from renderers.tracing.light.shade_kernels import facing_ratio
 from renderers.tracing.record_kernels import (
     ITEM,
@@ -17,7 +18,7 @@ from renderers.tracing.record_kernels import (
     put,
     start_of,
 )
-from renderers.tracing.scene_kernels import ENDLESS_COUNT, ITEMS, SHAPE, SURFACE_AT, part
+from renderers.tracing.scene_kernels import part
 from renderers.tracing.solids.surface_kernels import color_at, normal_at
 
 FADE = 0.04
@@ -34,8 +35,8 @@ def describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, radius, record):
         nx, ny, nz, lift = -nx, -ny, -nz, 0.0
     r, g, b = color_at(scene, item, (red, green, blue), x, y, z, nx, ny, nz, dx, dy, dz, radius)
     put(record, x, y, z, nx, ny, nz, -dx, -dy, -dz, r, g, b)
-    record[SURFACE] = scene.ints[ITEMS + 4 * item + SURFACE_AT]
-    record[OWNER] = scene.ints[ITEMS + 4 * item + SHAPE] + 1
+    record[SURFACE] = scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT]
+    record[OWNER] = scene.ints[layout.ITEMS + 4 * item + layout.SHAPE] + 1
     record[RADIUS] = radius
     record[LIFT] = lift
     record[TRACED] = 0.0
@@ -46,7 +47,7 @@ def describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, radius, record):
 @part
 def faded(scene, item, record):
     """Share of an endless item that is seen, rather than the backdrop in front of which it vanishes."""
-    if item >= scene.ints[ENDLESS_COUNT]:
+    if item >= scene.ints[layout.ENDLESS_COUNT]:
         return 1.0
     ratio = FADE / facing_ratio(record)
     return np.exp(-ratio * ratio)

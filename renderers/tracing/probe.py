@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from renderers.tracing import layout
 from renderers.tracing.camera_kernels import TILE
 from renderers.tracing.certified import TOLERANCE
 from renderers.tracing.pack import pack
 from renderers.tracing.picture import over_rows
 from renderers.tracing.probe_kernels import probe_rows
-from renderers.tracing.scene_kernels import ANSWERS, ASKING, MODE, NEXT, SHAPE_COUNT, TELLING, WIDTH
 from renderers.tracing.scratch import scratch
 from renderers.tracing.solids.packet_choice import lender, packets_for
 
@@ -42,17 +42,17 @@ class Lines:
     def __init__(self, scene: Scene, packets: Packets | None, rows: int) -> None:
         """``packets``: what meets solids in them; ``rows`` of scratch."""
         self.scene, self.packets, self.scratch = scene, packets, scratch(rows)
-        self.scratch[-1 - int(scene.ints[SHAPE_COUNT]) : -1, 0] = np.nan
-        pixels = (int(scene.reals[WIDTH]) + TILE) * TILE
-        self.asked = np.zeros((1, ANSWERS)) if packets is None else packets.asked(pixels)
+        self.scratch[-1 - int(scene.ints[layout.SHAPE_COUNT]) : -1, 0] = np.nan
+        pixels = (int(scene.reals[layout.WIDTH]) + TILE) * TILE
+        self.asked = np.zeros((1, layout.ANSWERS)) if packets is None else packets.asked(pixels)
 
     def look(self, start: int, stop: int, *out: Any) -> None:
         """As probe_kernels.probe_rows: once, or twice where packets are asked."""
         if self.packets is not None:
-            self.asked[0, [MODE, NEXT]] = ASKING, 1
+            self.asked[0, [layout.MODE, layout.NEXT]] = layout.ASKING, 1
             probe_rows(self.scene, self.scratch, self.asked, start, stop, *out)
             self.packets.meet(self.asked)
-            self.asked[0, [MODE, NEXT]] = TELLING, 1
+            self.asked[0, [layout.MODE, layout.NEXT]] = layout.TELLING, 1
         probe_rows(self.scene, self.scratch, self.asked, start, stop, *out)
 
 

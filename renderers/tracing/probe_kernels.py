@@ -4,8 +4,9 @@
 import numpy as np
 from numba import types
 
+from renderers.tracing import layout
 from renderers.tracing.camera_kernels import TILE, camera_ray, place_of
-from renderers.tracing.scene_kernels import ASKED, ASKING, MODE, SCENE, SCRATCH, WIDTH
+from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH
 from renderers.tracing.solids.intersect_kernels import ask
 from renderers.tracing.solids.surface_kernels import normal_at
 from sceneql.compiled.kernels import kernel
@@ -30,7 +31,7 @@ def probe_rows(scene, scratch, asked, start, stop, depth, normals, undecided):
     The way to what is met [m] (h, w), infinite without; its outward unit normal (h, w, 3).
     """
     counter = scratch.shape[0] - 1
-    width = int(scene.reals[WIDTH])
+    width = int(scene.reals[layout.WIDTH])
     for i in range((width + TILE - 1) // TILE * TILE * TILE):
         x, y = place_of(i)
         y += start
@@ -39,7 +40,7 @@ def probe_rows(scene, scratch, asked, start, stop, depth, normals, undecided):
         ox, oy, oz, dx, dy, dz, _, _ = camera_ray(scene.reals, x + 0.5, y + 0.5)
         scratch[counter, 0] = 0.0
         t, item, _ = ask(scene, scratch, asked, ox, oy, oz, dx, dy, dz, np.inf, False)
-        if asked[0, MODE] == ASKING:
+        if asked[0, layout.MODE] == layout.ASKING:
             continue
         undecided[y, x] = scratch[counter, 0] > 0.0
         depth[y, x] = t

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from renderers.tracing import layout
 from renderers.tracing.camera_kernels import TILE
 from renderers.tracing.filter.edges_kernels import TRIAL, add_samples, begin_samples, list_edges, look_from_samples
 from renderers.tracing.filter.planes_kernels import KEYS, LANES, WIDE
 from renderers.tracing.filter.refine_kernels import refine
 from renderers.tracing.gather_kernels import PATH
 from renderers.tracing.record_kernels import COLUMNS
-from renderers.tracing.scene_kernels import ANSWERS, ASKING, MODE, NEXT, SHAPE_COUNT, TELLING, WIDTH
 from renderers.tracing.scratch import scratch
 from renderers.tracing.waves_kernels import (
     advance_paths,
@@ -51,10 +51,10 @@ class Waves:
         """``packets``: what meets solids in them; ``rows`` of scratch and ``columns`` of visibility."""
         self.scene, self.packets = scene, packets
         self.scratch = scratch(rows)
-        self.scratch[-1 - int(scene.ints[SHAPE_COUNT]) : -1, 0] = np.nan
-        width = -(-int(scene.reals[WIDTH]) // TILE) * TILE
+        self.scratch[-1 - int(scene.ints[layout.SHAPE_COUNT]) : -1, 0] = np.nan
+        width = -(-int(scene.reals[layout.WIDTH]) // TILE) * TILE
         self.pixels = width * TILE
-        self.asked = np.zeros((1 + RAYS, ANSWERS)) if packets is None else packets.asked(RAYS)
+        self.asked = np.zeros((1 + RAYS, layout.ANSWERS)) if packets is None else packets.asked(RAYS)
         self.paths, self.at = np.zeros((ROOM, PATH)), np.arange(ROOM, dtype=np.int64)
         self.marks, self.same = np.zeros((TILE, width + LANES), np.float32), np.zeros(LANES, np.float32)
         self.edges, self.sums = np.zeros(self.pixels, dtype=np.int64), np.zeros((ROOM, 4))
@@ -95,7 +95,7 @@ class Waves:
         visibility: Array, picture: Array,
     ) -> None:  # fmt: skip
         """Fill rows start..stop of ``picture`` (n, 3): as ``radiance``; edges by one ray a point (s, 2)."""
-        width, size = int(self.scene.reals[WIDTH]), KEYS + visibility.shape[2] * WIDE
+        width, size = int(self.scene.reals[layout.WIDTH]), KEYS + visibility.shape[2] * WIDE
         light, own = (records, radiance), (self.marks, self.same, self.edges)
         count = list_edges(start, stop, width, size, undecided, planes, *light, picture, *own)
         some = len(self.paths) // TRIAL
@@ -143,9 +143,9 @@ class Waves:
             work(start, stop)
             return
         while start < stop:
-            self.asked[0, [MODE, NEXT]] = ASKING, 1
+            self.asked[0, [layout.MODE, layout.NEXT]] = layout.ASKING, 1
             end = work(start, stop)
             self.packets.meet(self.asked)
-            self.asked[0, [MODE, NEXT]] = TELLING, 1
+            self.asked[0, [layout.MODE, layout.NEXT]] = layout.TELLING, 1
             work(start, end)
             start = end

@@ -4,22 +4,13 @@
 import numpy as np
 from numba import types
 
+from renderers.tracing import layout
 from renderers.tracing.camera_kernels import place_of
 from renderers.tracing.gather_kernels import DARK, DOUBTED, GATHERED, LIVE, QUICK, advance, begin, light_behind
 from renderers.tracing.light.sampling_kernels import sample_of
 from renderers.tracing.light.visibility_kernels import look_around
 from renderers.tracing.record_kernels import OWNER, UNSURE
-from renderers.tracing.scene_kernels import (
-    ASKED,
-    ASKING,
-    FIRST,
-    LIGHT_COUNT,
-    MODE,
-    NEXT,
-    SCENE,
-    SCRATCH,
-    WIDTH,
-)
+from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH
 from renderers.tracing.solids.intersect_kernels import put_ray, tell
 from sceneql.compiled.kernels import kernel
 
@@ -36,7 +27,7 @@ def begin_paths(scene, start, stop, first, records, paths, at):
 
     As many as there is room for; how many, and ``at`` which pixel each is.
     """
-    width = int(scene.reals[WIDTH])
+    width = int(scene.reals[layout.WIDTH])
     n = 0
     for i in range(first, first + paths.shape[0]):
         x, y = place_of(i)
@@ -55,9 +46,9 @@ def ask_paths(paths, asked):
     for i in range(paths.shape[0]):
         if paths[i, LIVE] != 0.0:
             path = paths[i]
-            put_ray(asked, row, path[0], path[1], path[2], path[3], path[4], path[5], np.inf, FIRST)
+            put_ray(asked, row, path[0], path[1], path[2], path[3], path[4], path[5], np.inf, layout.FIRST)
             row += 1
-    asked[0, NEXT] = row
+    asked[0, layout.NEXT] = row
     return row - 1
 
 
@@ -85,12 +76,12 @@ def light_paths(scene, scratch, asked, first, last, paths, spares, visibility):
 
     Returns where it ends. ``visibility`` (n, V) is working memory.
     """
-    room = asked.shape[0] - QUICK * (1 + scene.ints[LIGHT_COUNT])
+    room = asked.shape[0] - QUICK * (1 + scene.ints[layout.LIGHT_COUNT])
     counter = scratch.shape[0] - 1
     for i in range(first, last):
         if paths[i, DARK] == 0.0:
             continue
-        if asked[0, MODE] == ASKING and asked[0, NEXT] > room:
+        if asked[0, layout.MODE] == layout.ASKING and asked[0, layout.NEXT] > room:
             return i
         scratch[counter, 0] = 0.0
         if light_behind(scene, scratch, asked, paths[i], spares[i], visibility[i]):
@@ -122,10 +113,10 @@ def look_from(scene, scratch, asked, first, last, at, records, visibility):
 
     Of as many as ``asked`` has room for the rays of; returns where it ends.
     """
-    width = int(scene.reals[WIDTH])
-    room = asked.shape[0] - 2 * (1 + scene.ints[LIGHT_COUNT])
+    width = int(scene.reals[layout.WIDTH])
+    room = asked.shape[0] - 2 * (1 + scene.ints[layout.LIGHT_COUNT])
     for i in range(first, last):
-        if asked[0, MODE] == ASKING and asked[0, NEXT] > room:
+        if asked[0, layout.MODE] == layout.ASKING and asked[0, layout.NEXT] > room:
             return i
         k = at[i]
         number = sample_of(k % width, k // width)

@@ -4,14 +4,16 @@
 from sceneql.compiled.kernels import lean
 from sceneql.system.signatures_kernels import TERM
 
+POSITION_AT, VELOCITY_AT, COUNT, INVERSE_AT = range(4)
+
 
 @lean(TERM, inner=True)
 def close(t, y, rate, floats, ints):
     """Newton's second law: newtons in ``rate`` become accelerations, and dx/dt = v.
 
-    ints: position_at, velocity_at, count, inverse_at. A fixed mass (inverse 0) has rate 0.
+    A fixed mass (inverse 0) has rate 0.
     """
-    position_at, velocity_at, count, inverse_at = ints[0], ints[1], ints[2], ints[3]
+    position_at, velocity_at, count, inverse_at = ints[POSITION_AT], ints[VELOCITY_AT], ints[COUNT], ints[INVERSE_AT]
     # Slices, since the compiler makes vectors of indices that surely are not negative.
     change, moves = rate[velocity_at : velocity_at + 3 * count], rate[position_at : position_at + 3 * count]
     velocity, inverse = y[velocity_at : velocity_at + 3 * count], floats[inverse_at : inverse_at + count]

@@ -17,8 +17,9 @@ FIRST, BORN, BEFORE, MEMORY = 0, 1, 2, 9
 """Memory: births before the last step, births so far; time of the last settling (below 0: none
 is known), place and velocity (3 each) then."""
 
+POSITION_AT, VELOCITY_AT, COUNT, MASS_AT, INVERSE_AT, RADIUS_AT = range(6)
 SPEC_AT, FROM_AT, MEAN_AT, POOL_AT, POOL, MEMORY_AT, DEATH_AT, KEY, FIRST_SLOT, SLOTS = range(6, 16)
-"""Places in the kernel's integers, behind those of the bodies."""
+"""Places in the kernel's integers; at MEAN_AT a velocity, POOL the size of the pool, SLOTS those of all blocks."""
 
 AZIMUTH, POLAR, SPEED, AGE, PLACE = range(5)
 """The draws of a birth."""
@@ -61,7 +62,7 @@ def own_from(birth, ints):
     slot, first = birth % ints[SLOTS], ints[FIRST_SLOT]
     if slot < first:
         return birth + first - slot
-    return birth if slot < first + ints[2] else birth + ints[SLOTS] - slot + first
+    return birth if slot < first + ints[COUNT] else birth + ints[SLOTS] - slot + first
 
 
 @inlined
@@ -96,13 +97,13 @@ def thrown(floats, spec, birth, key, vx, vy, vz):
 @inlined
 def catch_up(t0, t1, y0, rate0, y1, floats, ints):
     """What the last step's births owe: the acceleration, known only now, acts from their birth on. Whether any do."""
-    position_at, velocity_at, spec, memory = ints[0], ints[1], ints[SPEC_AT], ints[MEMORY_AT]
+    position_at, velocity_at, spec, memory = ints[POSITION_AT], ints[VELOCITY_AT], ints[SPEC_AT], ints[MEMORY_AT]
     born = int(floats[memory + BORN])
     birth = own_from(max(int(floats[memory + FIRST]), born - ints[SLOTS]), ints)
     owed = birth < born
     while birth < born:
         slot = birth % ints[SLOTS] - ints[FIRST_SLOT]
-        s = t0 - birth_time(floats, spec, birth) if floats[ints[4] + slot] > 0.0 else 0.0
+        s = t0 - birth_time(floats, spec, birth) if floats[ints[INVERSE_AT] + slot] > 0.0 else 0.0
         for c in range(3 * slot, 3 * slot + 3):
             more = rate0[velocity_at + c] * s
             y0[position_at + c] += 0.5 * more * s
@@ -118,14 +119,12 @@ def catch_up(t0, t1, y0, rate0, y1, floats, ints):
 def emit(t0, t1, y0, rate0, y1, floats, ints):
     """Births and deaths of a step; whether there were any, or births of the step before owed something.
 
-    ints: position_at, velocity_at, count, mass_at, inverse_at, radius_at, spec_at, from_at, mean_at (a velocity),
-    pool_at, pool size, memory_at, death_at, key, number of the first slot, slots of all blocks. Birth j takes slot j
-    mod slots, and is the matter of the block that has it. A particle that is born inside the
-    step has flown straight since, and gets the acceleration that it finds at the step's end in the next step, for the
-    whole time: exact under a uniform force, else of third order. One that died in the step before is taken out.
+    Birth j takes slot j mod SLOTS, and is the matter of the block that has it. A particle that is born inside the step
+    has flown straight since, and gets the acceleration that it finds at the step's end in the next step, for the whole
+    time: exact under a uniform force, else of third order. One that died in the step before is taken out.
     """
-    position_at, velocity_at, count = ints[0], ints[1], ints[2]
-    mass_at, inverse_at, radius_at = ints[3], ints[4], ints[5]
+    position_at, velocity_at, count = ints[POSITION_AT], ints[VELOCITY_AT], ints[COUNT]
+    mass_at, inverse_at, radius_at = ints[MASS_AT], ints[INVERSE_AT], ints[RADIUS_AT]
     spec, place, mean, pool = ints[SPEC_AT], ints[FROM_AT], ints[MEAN_AT], ints[POOL_AT]
     memory, death, key = ints[MEMORY_AT], ints[DEATH_AT], ints[KEY]
     changed = catch_up(t0, t1, y0, rate0, y1, floats, ints)

@@ -6,6 +6,9 @@ import math
 from sceneql.compiled.kernels import kernel
 from sceneql.system.signatures_kernels import TERM
 
+POSITION_AT, VELOCITY_AT, WORK_AT, BLOCKS_AT, STIFFNESS_AT, DAMPING_AT, COUNT, PAIRS_AT = range(8)
+"""From PAIRS_AT on the two masses of each spring."""
+
 BLOCK = 5
 """Floats of a spring: rest length, stiffness, its part of the model's stiffness, damping, its part of the model's."""
 
@@ -14,14 +17,13 @@ BLOCK = 5
 def springs(t, y, rate, floats, ints):
     """Adds -(k (L - L0) + c dL/dt) along each spring, and the dampers' power c (dL/dt)^2 to the work.
 
-    ints: position_at, velocity_at, work_at, blocks_at, stiffness_at, damping_at, count, then the two masses of each.
     A spring of length 0 pulls nowhere, by symmetry.
     """
-    position_at, velocity_at, work_at, blocks_at = ints[0], ints[1], ints[2], ints[3]
-    model_stiffness, model_damping = floats[ints[4]], floats[ints[5]]
+    position_at, velocity_at, work_at, blocks_at = ints[POSITION_AT], ints[VELOCITY_AT], ints[WORK_AT], ints[BLOCKS_AT]
+    model_stiffness, model_damping = floats[ints[STIFFNESS_AT]], floats[ints[DAMPING_AT]]
     power = 0.0
-    for s in range(ints[6]):
-        a, b = 3 * ints[7 + 2 * s], 3 * ints[8 + 2 * s]
+    for s in range(ints[COUNT]):
+        a, b = 3 * ints[PAIRS_AT + 2 * s], 3 * ints[PAIRS_AT + 2 * s + 1]
         block = blocks_at + BLOCK * s
         k = floats[block + 1] + floats[block + 2] * model_stiffness
         c = floats[block + 3] + floats[block + 4] * model_damping

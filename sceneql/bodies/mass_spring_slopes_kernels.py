@@ -3,18 +3,17 @@
 
 import math
 
+import sceneql.system.channels as channels
+from sceneql.bodies.mass_spring_kernels import BLOCK
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.threads_kernels import TILE, over_threads
 from sceneql.system.signatures_kernels import TERM
 
-BLOCK = 5
-"""Floats of a spring (mass_spring_kernels.py)."""
 ENTRIES = 9
 """Of a spring: a block of 3x3."""
-DEFINITE_AT = 2
-"""floats[2]: whether forces are those foreseen, and how far slopes are to be definite (system.Slopes)."""
 POSITION_AT, VELOCITY_AT, INVERSE_AT, COUNT, DAMPED, TILES, ENTRY, THREADS, TILE_AT = range(9)
 BLOCKS_AT, STIFFNESS_AT, DAMPING_AT, PAIRS_AT = range(9, 13)
+"""From PAIRS_AT on the two masses of each spring."""
 
 
 @lean(TILE)
@@ -23,8 +22,8 @@ def tile(number, t, y, entries, floats, ints):
     position_at, velocity_at, inverse_at = ints[POSITION_AT], ints[VELOCITY_AT], ints[INVERSE_AT]
     model_stiffness, model_damping = floats[ints[STIFFNESS_AT]], floats[ints[DAMPING_AT]]
     count, tiles, damped = ints[COUNT], ints[TILES], ints[DAMPED] == 1
-    foreseen = floats[DEFINITE_AT] > 0.0
-    old, new = floats.size - 2 * y.size, floats.size - y.size
+    foreseen = floats[channels.DEFINITE] > 0.0
+    old, new = floats.size - channels.BEFORE * y.size, floats.size - channels.AFTER * y.size
     for s in range(count * number // tiles, count * (number + 1) // tiles):
         first, second = ints[PAIRS_AT + 2 * s], ints[PAIRS_AT + 2 * s + 1]
         a, b = 3 * first, 3 * second
@@ -58,7 +57,7 @@ def tile(number, t, y, entries, floats, ints):
             if seen_length > 0.0:
                 seen_length = math.sqrt(seen_length)
                 pull = (k * (seen / seen_length - floats[block]) + c * seen_speed / seen_length) / length
-            across, turning = max(-floats[DEFINITE_AT] / inverse if inverse > 0.0 else 0.0, pull), 0.0
+            across, turning = max(-floats[channels.DEFINITE] / inverse if inverse > 0.0 else 0.0, pull), 0.0
         for i in range(3):
             for j in range(3):
                 along = u[i] * u[j]
@@ -74,13 +73,13 @@ def tile(number, t, y, entries, floats, ints):
 def springs(t, y, entries, floats, ints):
     """Of the force that pulls each spring's first mass towards its second, by the second's position, then velocity.
 
-    ints: those named above, then the two masses of each spring. For spring s the 3x3 entries by position from 9 s on,
-    if damped by velocity from 9 (count + s) on; those by the first mass, and of the other force, are the negatives.
+    For spring s the 3x3 entries by position from 9 s on, if damped by velocity from 9 (count + s) on; those by the
+    first mass, and of the other force, are the negatives.
     With u along the spring, w the relative velocity and p = w . u: d(force)/dx = k u u + (k (L - L0) + c p)/L (1 - u u)
     + c u (w - p u)/L, d(force)/dv = c u u.
     For Newton's method without the third part (Choi & Ko 2002), and with the force by the length and speed that the
     latest change foresaw, along the spring as it lay before. Definite ones: of what pushes across a pressed spring only
-    so much as the lighter mass holds at the rate of floats[2]: springs that buckle slowly keep their true slopes.
+    so much as the lighter mass holds (channels.DEFINITE): springs that buckle slowly keep their true slopes.
     """
     if ints[TILES] == 1:
         tile(0, t, y, entries, floats, ints)

@@ -1,15 +1,16 @@
 # mypy: ignore-errors
 """Pins that move.
 
-ints of all kernels: position_at, velocity_at, work_at, mass_at, inverse_at, then floats' places of the shift a little
-earlier, now and a little later (3 each), of that little time, of the masses' starts (3 each) and of the time at which
-they are let go; the number of masses, and the masses. One that has been let go has an inverse mass above 0.
+One that has been let go has an inverse mass above 0.
 """
 
 from sceneql.compiled.kernels import inlined, kernel
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM
 
+POSITION_AT, VELOCITY_AT, WORK_AT, MASS_AT, INVERSE_AT = range(5)
 EARLIER, NOW, LATER, APART, STARTS, UNTIL, COUNT, MASSES = range(5, 13)
+"""Floats' places of the shift a little earlier, now and a little later (3 each), of that little time, of the masses'
+starts (3 each) and of the time at which they are let go; the number of masses, and from MASSES on the masses."""
 EPSILON, SAFE = 2.0**-52, 8.0
 """Relative rounding of a number, and how many of it a difference may have."""
 
@@ -33,11 +34,11 @@ def toil(t, y, rate, floats, ints):
     """The power that leads the pins against their springs, taken off the work; after the springs, before all else."""
     for k in range(ints[COUNT]):
         mass = ints[MASSES + k]
-        if floats[ints[4] + mass] > 0.0:
+        if floats[ints[INVERSE_AT] + mass] > 0.0:
             continue
         for c in range(3):
-            at = ints[1] + 3 * mass + c
-            rate[ints[2]] += (rate[at] - floats[ints[3] + mass] * acceleration(floats, ints, c)) * y[at]
+            at = ints[VELOCITY_AT] + 3 * mass + c
+            rate[ints[WORK_AT]] += (rate[at] - floats[ints[MASS_AT] + mass] * acceleration(floats, ints, c)) * y[at]
 
 
 @kernel(TERM, inner=True)
@@ -45,11 +46,11 @@ def lead(t, y, rate, floats, ints):
     """The prescribed velocity and acceleration."""
     for k in range(ints[COUNT]):
         mass = ints[MASSES + k]
-        if floats[ints[4] + mass] > 0.0:
+        if floats[ints[INVERSE_AT] + mass] > 0.0:
             continue
         for c in range(3):
-            rate[ints[0] + 3 * mass + c] = velocity(floats, ints, c)
-            rate[ints[1] + 3 * mass + c] = acceleration(floats, ints, c)
+            rate[ints[POSITION_AT] + 3 * mass + c] = velocity(floats, ints, c)
+            rate[ints[VELOCITY_AT] + 3 * mass + c] = acceleration(floats, ints, c)
 
 
 @inlined
@@ -68,17 +69,17 @@ def put(t0, t1, y0, rate0, y1, floats, ints):
     changed = False
     for k in range(ints[COUNT]):
         mass = ints[MASSES + k]
-        if floats[ints[4] + mass] > 0.0:
+        if floats[ints[INVERSE_AT] + mass] > 0.0:
             continue
         for c in range(3):
             start, shift, speed = floats[ints[STARTS] + 3 * k + c], floats[ints[NOW] + c], velocity(floats, ints, c)
-            x, v = ints[0] + 3 * mass + c, ints[1] + 3 * mass + c
+            x, v = ints[POSITION_AT] + 3 * mass + c, ints[VELOCITY_AT] + 3 * mass + c
             size = abs(start) + abs(shift)
             changed |= abs(start + shift - y1[x]) > rounding(floats, ints, size, 0, t1 - t0)
             changed |= abs(speed - y1[v]) > rounding(floats, ints, size, 1, t1 - t0)
             y1[x] = start + shift
             y1[v] = speed
         if t1 >= floats[ints[UNTIL]]:
-            floats[ints[4] + mass] = 1.0 / floats[ints[3] + mass]
+            floats[ints[INVERSE_AT] + mass] = 1.0 / floats[ints[MASS_AT] + mass]
             changed = True
     return changed

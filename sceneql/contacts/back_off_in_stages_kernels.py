@@ -14,46 +14,14 @@ from numba import types
 
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
+from sceneql.contacts import layout
 from sceneql.contacts.back_off_kernels import find_near
 from sceneql.contacts.body_path_kernels import NEVER, set_out
-from sceneql.contacts.impulse_kernels import (
-    BODIES,
-    FRICTION,
-    HEAD,
-    INVERSE,
-    LAST,
-    MASS,
-    OBJECTS,
-    PAIRS,
-    POSITION,
-    RADIUS,
-    RESTITUTION,
-    TALLY,
-    THICKNESS,
-    VELOCITY,
-    WORK,
-    bounce,
-    count_hit,
-    scale_of,
-)
+from sceneql.contacts.impulse_kernels import bounce, count_hit, scale_of
 from sceneql.contacts.meet_kernels import earliest
-from sceneql.contacts.memory_kernels import (
-    ANSWER,
-    BACK_OFF_IN_STAGES,
-    EARLIER,
-    FREE,
-    LIST,
-    LOAD,
-    PAIR,
-    PATH,
-    PRESS,
-    RESTING,
-    TIED,
-    WHOLE,
-)
-from sceneql.contacts.pair_kernels import body_of
+from sceneql.contacts.pair_kernels import ANSWER, BACK_OFF_IN_STAGES, body_of
 from sceneql.contacts.resting_kernels import come_to_rest, set_velocity
-from sceneql.contacts.shape_kernels import DEPTH, MOVING, NEAR, OBJECT, near_at, surface, velocity
+from sceneql.contacts.shape_kernels import near_at, surface, velocity
 from sceneql.system.signatures_kernels import A, F, I, N
 
 back_off_found = lazy("sceneql.contacts.respond_kernels:back_off_found", ANSWER)
@@ -75,16 +43,16 @@ def find_missed(h, y0, y1, found, listed, path, mean, floats, ints):
     """Leave found[k] = 1 where a mass met something that no stage has stopped it at."""
     find_near(h, y0, y1, found, floats, ints)
     thinnest = math.inf
-    for j in range(ints[OBJECTS]):
-        thinnest = min(thinnest, floats[ints[HEAD + OBJECT * j + DEPTH]])
-    for k in range(ints[BODIES]):
+    for j in range(ints[layout.OBJECTS]):
+        thinnest = min(thinnest, floats[ints[layout.HEAD + layout.OBJECT * j + layout.DEPTH]])
+    for k in range(ints[layout.BODIES]):
         if found[k] == 0.0:
             continue
         set_out(k, h, y0, y1, path, mean, ints)
-        reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
+        reach = floats[ints[layout.RADIUS] + k] + floats[ints[layout.THICKNESS]]
         held = False
-        for j in range(ints[OBJECTS]):
-            held = held or floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j) + LOAD] > 0.0
+        for j in range(ints[layout.OBJECTS]):
+            held = held or floats[ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j) + layout.LOAD] > 0.0
         if listed[k] != 0.0 and (held or whole_way(path) < thinnest):
             found[k] = 0.0
         elif earliest(k, reach, path, floats, ints)[0] == NEVER:
@@ -98,9 +66,9 @@ def arrive(t1, h, k, j, y0, y1, floats, ints):
     What the stages took of the speed of approach, and the other forces' work along the normal, are counted here: what
     loads at the ends of stages say of that is off by as much as an impact has.
     """
-    memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
-    at = HEAD + OBJECT * j
-    reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
+    memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
+    at = layout.HEAD + layout.OBJECT * j
+    reach = floats[ints[layout.RADIUS] + k] + floats[ints[layout.THICKNESS]]
     px, py, pz, vx, vy, vz = body_of(ints, k, y1)
     _, nx, ny, nz = surface(floats, ints, at, px, py, pz)
     ux, uy, uz = velocity(floats, ints, at, px, py, pz)
@@ -109,91 +77,92 @@ def arrive(t1, h, k, j, y0, y1, floats, ints):
     rx, ry, rz = vx - ux, vy - uy, vz - uz
     now = rx * nx + ry * ny + rz * nz
     rx, ry, rz = rx - now * nx, ry - now * ny, rz - now * nz
-    if before < 2.0 * min(0.0, floats[memory + PRESS]) * h:
+    if before < 2.0 * min(0.0, floats[memory + layout.PRESS]) * h:
         gap = surface(floats, ints, at, qx, qy, qz)[0] - reach
-        count_hit(floats, ints[TALLY], t1 - h * max(0.0, 1.0 + gap / (before * h)), -before)
+        count_hit(floats, ints[layout.TALLY], t1 - h * max(0.0, 1.0 + gap / (before * h)), -before)
         rx, ry, rz = rx + before * nx, ry + before * ny, rz + before * nz
-        rx, ry, rz = bounce(rx, ry, rz, nx, ny, nz, floats[ints[RESTITUTION]], floats[ints[FRICTION]])
-    if before >= 0.0 or floats[ints[RESTITUTION]] == 0.0 or rx * nx + ry * ny + rz * nz <= 0.0:
+        rx, ry, rz = bounce(rx, ry, rz, nx, ny, nz, floats[ints[layout.RESTITUTION]], floats[ints[layout.FRICTION]])
+    if before >= 0.0 or floats[ints[layout.RESTITUTION]] == 0.0 or rx * nx + ry * ny + rz * nz <= 0.0:
         come_to_rest(t1, memory, rx, ry, rz, nx, ny, nz, floats, ints)
     set_velocity(k, rx + ux, ry + uy, rz + uz, y1, floats, ints)
     way = (px - qx - h * ux) * nx + (py - qy - h * uy) * ny + (pz - qz - h * uz) * nz
-    stopped = 0.5 * (before * before - now * now) + floats[memory + PRESS] * way
-    y1[ints[WORK]] += floats[ints[MASS] + k] * stopped
+    stopped = 0.5 * (before * before - now * now) + floats[memory + layout.PRESS] * way
+    y1[ints[layout.WORK]] += floats[ints[layout.MASS] + k] * stopped
 
 
 @lean(types.void(F, F, N, N, A, A, A, I), inner=True)
 def put_right(t1, h, k, j, y0, y1, floats, ints):
     """What a step of length h has made of a listed pair: it arrives, rests on or is let go, and is outside."""
-    memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
-    at = HEAD + OBJECT * j
-    load = floats[memory + LOAD]
-    if floats[memory + TIED] > 0.0 and floats[memory] == FREE:
+    memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
+    at = layout.HEAD + layout.OBJECT * j
+    load = floats[memory + layout.LOAD]
+    if floats[memory + layout.TIED] > 0.0 and floats[memory] == layout.FREE:
         arrive(t1, h, k, j, y0, y1, floats, ints)
-        floats[memory + EARLIER] = max(0.0, -floats[memory + PRESS])
-        floats[memory + TIED] = 0.0 if floats[memory] == FREE else 1.0
+        floats[memory + layout.EARLIER] = max(0.0, -floats[memory + layout.PRESS])
+        floats[memory + layout.TIED] = 0.0 if floats[memory] == layout.FREE else 1.0
     elif load > 0.0:
         px, py, pz, vx, vy, vz = body_of(ints, k, y1)
         _, nx, ny, nz = surface(floats, ints, at, px, py, pz)
         ux, uy, uz = velocity(floats, ints, at, px, py, pz)
         come_to_rest(t1, memory, vx - ux, vy - uy, vz - uz, nx, ny, nz, floats, ints)
-        floats[memory + EARLIER] = load
+        floats[memory + layout.EARLIER] = load
     else:
-        floats[memory], floats[memory + TIED] = FREE, 0.0
+        floats[memory], floats[memory + layout.TIED] = layout.FREE, 0.0
     px, py, pz, _, _, _ = body_of(ints, k, y1)
     d, nx, ny, nz = surface(floats, ints, at, px, py, pz)
-    d -= floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
+    d -= floats[ints[layout.RADIUS] + k] + floats[ints[layout.THICKNESS]]
     if d < -TOUCH * scale_of(px, py, pz):
-        to = ints[POSITION] + 3 * k
+        to = ints[layout.POSITION] + 3 * k
         y1[to], y1[to + 1], y1[to + 2] = px - d * nx, py - d * ny, pz - d * nz
-        y1[ints[WORK]] -= floats[ints[MASS] + k] * min(0.0, floats[memory + PRESS]) * d
+        y1[ints[layout.WORK]] -= floats[ints[layout.MASS] + k] * min(0.0, floats[memory + layout.PRESS]) * d
 
 
 @lean(types.void(F, A, A, A, A, I), inner=True)
 def list_near(h, y0, y1, found, floats, ints):
     """List the masses that may touch something in the next step; found (bodies,) is scratch."""
-    n = ints[BODIES]
-    at, to = ints[POSITION], ints[VELOCITY]
+    n = ints[layout.BODIES]
+    at, to = ints[layout.POSITION], ints[layout.VELOCITY]
     x1, v1 = y1[at : at + 3 * n], y1[to : to + 3 * n]
     change = 0.0
     for c in range(3 * n):
         change = max(change, abs(v1[c] - y0[to + c]))
-    more = floats[ints[THICKNESS]] + 2.0 * h * change
-    radii = floats[ints[RADIUS] : ints[RADIUS] + n]
+    more = floats[ints[layout.THICKNESS]] + 2.0 * h * change
+    radii = floats[ints[layout.RADIUS] : ints[layout.RADIUS] + n]
     for k in range(n):
         found[k] = 0.0
-    for j in range(ints[OBJECTS]):
-        place = HEAD + OBJECT * j
-        if ints[place + MOVING] == 0:
-            near_at(ints[place + NEAR])(floats, ints, place, AHEAD * h, x1, v1, x1, v1, radii, more, found)
+    for j in range(ints[layout.OBJECTS]):
+        place = layout.HEAD + layout.OBJECT * j
+        if ints[place + layout.MOVING] == 0:
+            near_at(ints[place + layout.NEAR])(floats, ints, place, AHEAD * h, x1, v1, x1, v1, radii, more, found)
         for k in range(n):
-            if ints[place + MOVING] != 0 or floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)] != FREE:
+            memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
+            if ints[place + layout.MOVING] != 0 or floats[memory] != layout.FREE:
                 found[k] = 1.0
     count = 0
     for k in range(n):
-        if found[k] != 0.0 and floats[ints[INVERSE] + k] != 0.0:
-            floats[ints[LAST] + LIST + count] = k
+        if found[k] != 0.0 and floats[ints[layout.INVERSE] + k] != 0.0:
+            floats[ints[layout.LAST] + layout.LIST + count] = k
             count += 1
-    floats[ints[LAST] + RESTING] = count
+    floats[ints[layout.LAST] + layout.RESTING] = count
 
 
 @kernel(BACK_OFF_IN_STAGES, inner=True)
 def back_off_in_stages(t0, t1, y0, y1, floats, ints):
     """Change y1 where masses met something in the step from t0 to t1, and list those that may in the next one."""
     h = t1 - t0
-    found, listed = np.zeros(ints[BODIES]), np.zeros(ints[BODIES])
-    path, mean = np.empty(PATH), np.empty(3)
-    for i in range(int(floats[ints[LAST] + RESTING])):
-        listed[int(floats[ints[LAST] + LIST + i])] = 1.0
+    found, listed = np.zeros(ints[layout.BODIES]), np.zeros(ints[layout.BODIES])
+    path, mean = np.empty(layout.PATH), np.empty(3)
+    for i in range(int(floats[ints[layout.LAST] + layout.RESTING])):
+        listed[int(floats[ints[layout.LAST] + layout.LIST + i])] = 1.0
     find_missed(h, y0, y1, found, listed, path, mean, floats, ints)
     missed = False
     for k in range(found.size):
         missed = missed or found[k] != 0.0
     if missed:
-        floats[ints[LAST] + WHOLE] = h
+        floats[ints[layout.LAST] + layout.WHOLE] = h
         back_off_found(t0, t1, y0, y1, found, path, mean, floats, ints)
-    for k in range(ints[BODIES]):
+    for k in range(ints[layout.BODIES]):
         if listed[k] != 0.0 and found[k] == 0.0:
-            for j in range(ints[OBJECTS]):
+            for j in range(ints[layout.OBJECTS]):
                 put_right(t1, h, k, j, y0, y1, floats, ints)
     list_near(h, y0, y1, found, floats, ints)

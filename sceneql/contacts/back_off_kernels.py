@@ -8,39 +8,13 @@ resting_kernels and support_kernels: code that is compiled when the first body c
 import numpy as np
 from numba import types
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
-from sceneql.contacts.impulse_kernels import (
-    BODIES,
-    HEAD,
-    INVERSE,
-    LAST,
-    MOST_CUTS,
-    OBJECTS,
-    PAIRS,
-    POSITION,
-    RADIUS,
-    THICKNESS,
-    VELOCITY,
-)
-from sceneql.contacts.memory_kernels import (
-    ANSWER,
-    ASKED,
-    BACK_OFF_IN_STAGES,
-    CUTS,
-    END,
-    FREE,
-    HOLD,
-    LIST,
-    OUTSIDE,
-    PAIR,
-    PATH,
-    RESTING,
-    STAGE,
-    SUPPORT,
-    WHOLE,
-)
-from sceneql.contacts.shape_kernels import MOVING, NEAR, OBJECT, near_at
+from sceneql.contacts import layout
+from sceneql.contacts.impulse_kernels import MOST_CUTS
+from sceneql.contacts.pair_kernels import ANSWER, BACK_OFF_IN_STAGES, HOLD, SUPPORT
+from sceneql.contacts.shape_kernels import near_at
 from sceneql.system.signatures_kernels import BACK_OFF, TERM, A, F, I
 
 cut = lazy("sceneql.contacts.respond_kernels:cut", ANSWER)
@@ -64,34 +38,35 @@ def find_near(h, y0, y1, found, floats, ints):
 
     found (bodies,): zeros.
     """
-    n = ints[BODIES]
-    at, to = ints[POSITION], ints[VELOCITY]
+    n = ints[layout.BODIES]
+    at, to = ints[layout.POSITION], ints[layout.VELOCITY]
     x0, v0, x1, v1 = y0[at : at + 3 * n], y0[to : to + 3 * n], y1[at : at + 3 * n], y1[to : to + 3 * n]
-    radii = floats[ints[RADIUS] : ints[RADIUS] + n]
-    for j in range(ints[OBJECTS]):
-        place = HEAD + OBJECT * j
-        if ints[place + MOVING] != 0:
+    radii = floats[ints[layout.RADIUS] : ints[layout.RADIUS] + n]
+    for j in range(ints[layout.OBJECTS]):
+        place = layout.HEAD + layout.OBJECT * j
+        if ints[place + layout.MOVING] != 0:
             for k in range(n):
                 found[k] = 1.0
         else:
-            near_at(ints[place + NEAR])(floats, ints, place, h, x0, v0, x1, v1, radii, floats[ints[THICKNESS]], found)
-    memory = ints[LAST]
-    for i in range(int(floats[memory + RESTING])):
-        found[int(floats[memory + LIST + i])] = 1.0
+            near = near_at(ints[place + layout.NEAR])
+            near(floats, ints, place, h, x0, v0, x1, v1, radii, floats[ints[layout.THICKNESS]], found)
+    memory = ints[layout.LAST]
+    for i in range(int(floats[memory + layout.RESTING])):
+        found[int(floats[memory + layout.LIST + i])] = 1.0
     for k in range(n):
-        if floats[ints[INVERSE] + k] == 0.0:
+        if floats[ints[layout.INVERSE] + k] == 0.0:
             found[k] = 0.0
-            for j in range(ints[OBJECTS]):
-                floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)] = FREE
+            for j in range(ints[layout.OBJECTS]):
+                floats[ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)] = layout.FREE
 
 
 @lean_inlined
 def may_be_cut(t0, t1, floats, ints):
     """Whether the step may end sooner, and note it if it is a new one."""
-    memory = ints[LAST]
-    if t1 > floats[memory + END]:
-        floats[memory + END], floats[memory + WHOLE], floats[memory + CUTS] = t1, t1 - t0, 0.0
-    return floats[memory + CUTS] < MOST_CUTS
+    memory = ints[layout.LAST]
+    if t1 > floats[memory + layout.END]:
+        floats[memory + layout.END], floats[memory + layout.WHOLE], floats[memory + layout.CUTS] = t1, t1 - t0, 0.0
+    return floats[memory + layout.CUTS] < MOST_CUTS
 
 
 @lean_inlined
@@ -106,31 +81,31 @@ def some(found):
 @kernel(BACK_OFF, inner=True)
 def back_off(t0, t1, y0, rate0, y1, floats, ints):
     """Change y1 so that no body went through a surface in the step from t0 to t1; or only say when it should end."""
-    asked = floats[ASKED] > 0.0
-    if floats[STAGE] == OUTSIDE:
+    asked = floats[channels.STEP_END] > 0.0
+    if floats[channels.STAGE] == channels.OUTSIDE:
         if not asked:
             back_off_in_stages(t0, t1, y0, y1, floats, ints)
         return
     if asked and not may_be_cut(t0, t1, floats, ints):
         return
-    found = np.zeros(ints[BODIES])
+    found = np.zeros(ints[layout.BODIES])
     find_near(t1 - t0, y0, y1, found, floats, ints)
     if some(found):
-        path = np.empty(PATH)
+        path = np.empty(layout.PATH)
         mean = np.empty(3)
         if asked:
             cut(t0, t1, y0, y1, found, path, mean, floats, ints)
         else:
             back_off_found(t0, t1, y0, y1, found, path, mean, floats, ints)
     elif not asked:
-        floats[ints[LAST] + RESTING] = 0.0
+        floats[ints[layout.LAST] + layout.RESTING] = 0.0
 
 
 @lean(TERM, inner=True)
 def constrain(t, y, rate, floats, ints):
     """What the surfaces do to the accelerations; free pairs cost nothing."""
-    if floats[ints[LAST] + RESTING] > 0.0:
-        if floats[STAGE] > 0.0:
+    if floats[ints[layout.LAST] + layout.RESTING] > 0.0:
+        if floats[channels.STAGE] > 0.0:
             hold(y, rate, floats, ints)
         else:
             support(-1, y, rate, floats, ints)

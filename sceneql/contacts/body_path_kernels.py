@@ -10,8 +10,8 @@ from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
-from sceneql.contacts.impulse_kernels import POSITION, VELOCITY
-from sceneql.contacts.shape_kernels import FLAT, clear, facing
+from sceneql.contacts import layout
+from sceneql.contacts.shape_kernels import clear, facing
 from sceneql.system.signatures_kernels import A, F, I, N
 
 NEVER = 2.0
@@ -23,7 +23,7 @@ search = lazy("sceneql.contacts.search_kernels:search", SEARCH)
 @lean_inlined
 def set_out(k, h, y0, y1, path, mean, ints):
     """The path of body k in a step of length h, and its mean acceleration."""
-    at, to = ints[POSITION] + 3 * k, ints[VELOCITY] + 3 * k
+    at, to = ints[layout.POSITION] + 3 * k, ints[layout.VELOCITY] + 3 * k
     for c in range(3):
         path[c], path[3 + c] = y0[at + c], y0[to + c]
         path[6 + c], path[9 + c] = y1[at + c], y1[to + c]
@@ -94,7 +94,7 @@ def first_contact(path, floats, ints, at, reach):
 
     A body that touches at the start and approaches has s = 0; one that leaves is followed until it comes back.
     """
-    if ints[at + FLAT] != 0 and stays_above(path, floats, ints, at, reach):
+    if ints[at + layout.FLAT] != 0 and stays_above(path, floats, ints, at, reach):
         return NEVER
     length = length_bound(path)
     if clear_piece(path, length, 0.0, 1.0, floats, ints, at, reach):

@@ -2,8 +2,8 @@
 """What carries a body that rests on several objects at once, compiled when the first one does."""
 
 from sceneql.compiled.kernels import lean
-from sceneql.contacts.impulse_kernels import OBJECTS, PAIRS, VELOCITY
-from sceneql.contacts.memory_kernels import FREE, LOAD, OF_BODY, PAIR
+from sceneql.contacts import layout
+from sceneql.contacts.pair_kernels import OF_BODY
 from sceneql.contacts.pressing_kernels import pressing
 
 SWEEPS = 50
@@ -12,17 +12,17 @@ SWEEPS = 50
 @lean(OF_BODY, inner=True)
 def carry(k, y, rate, floats, ints):
     """Normal forces, none negative, that leave no resting pair pressing: projected Gauss-Seidel over the pairs."""
-    to = ints[VELOCITY] + 3 * k
+    to = ints[layout.VELOCITY] + 3 * k
     for _ in range(SWEEPS):
         change = 0.0
-        for j in range(ints[OBJECTS]):
-            memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
-            if floats[memory] == FREE:
+        for j in range(ints[layout.OBJECTS]):
+            memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
+            if floats[memory] == layout.FREE:
                 continue
             press, nx, ny, nz = pressing(k, j, y, rate, floats, ints)
-            load = max(0.0, floats[memory + LOAD] - press)
-            add = load - floats[memory + LOAD]
-            floats[memory + LOAD] = load
+            load = max(0.0, floats[memory + layout.LOAD] - press)
+            add = load - floats[memory + layout.LOAD]
+            floats[memory + layout.LOAD] = load
             rate[to] += add * nx
             rate[to + 1] += add * ny
             rate[to + 2] += add * nz

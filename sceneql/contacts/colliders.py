@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, cast
 
 from sceneql.bodies.time_shift import APART, goes_evenly, later
+from sceneql.contacts import layout
 from sceneql.contacts.shapes import implicit
 from sceneql.kinds import Collider, Object, Ref, Value
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
@@ -29,13 +30,11 @@ def surfaces(refs: Sequence[Ref], assembly: Assembly, at: int) -> tuple[int, ...
 
     Raises ScriptError for an object that cannot be collided with.
     """
-    from sceneql.contacts.shape_kernels import OBJECT
-
     heads: list[int] = []
     tail: list[int] = []
     for ref in refs:
         head, data = _surface(ref, assembly)
-        heads += [*head, at + len(refs) * OBJECT + len(tail)]
+        heads += [*head, at + len(refs) * layout.OBJECT + len(tail)]
         tail += data
     return (*heads, *tail)
 

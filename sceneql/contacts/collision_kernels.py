@@ -7,26 +7,13 @@ body's memory in the floats: the last accepted instant, its place and velocity t
 
 import numpy as np
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
+from sceneql.contacts import layout
 from sceneql.contacts.body_path_kernels import NEVER, first_contact, moving, place
-from sceneql.contacts.impulse_kernels import (
-    BODIES,
-    FRICTION,
-    HEAD,
-    INSTANT,
-    INVERSE,
-    LAST,
-    OBJECTS,
-    PAIRS,
-    POSITION,
-    RADIUS,
-    THICKNESS,
-    VELOCITY,
-)
-from sceneql.contacts.memory_kernels import ALONG, FREE, KEEP, PAIR, PATH, SLIDES, STICKS, SUPPORT
-from sceneql.contacts.pair_kernels import away, body_of
-from sceneql.contacts.shape_kernels import DEPTH, FROM_TYPE, MOVING, OBJECT, surface, velocity
+from sceneql.contacts.pair_kernels import KEEP, SUPPORT, away, body_of
+from sceneql.contacts.shape_kernels import FROM_TYPE, surface, velocity
 from sceneql.system.signatures_kernels import GAP, IMPACT, TERM
 
 hit = lazy("sceneql.contacts.hit_kernels:hit", IMPACT)
@@ -34,16 +21,13 @@ keep = lazy("sceneql.contacts.resting_kernels:keep", KEEP)
 from_object = lazy("sceneql.contacts.moving_kernels:from_object", FROM_TYPE)
 support = lazy("sceneql.contacts.support_kernels:support", SUPPORT)
 
-CHANGED = 1
-"""floats[1] tells the march that the state or a flag was changed."""
-
 NO_EVENT = 1e300
 
 
 @lean_inlined
 def swept(t, k, at, x, y, z, vx, vy, vz, distance, reach, path, floats, ints):
     """The gap; negative also where the path since the last accepted instant went through the object."""
-    last = ints[LAST] + INSTANT * k
+    last = ints[layout.LAST] + layout.INSTANT * k
     gap = distance - reach
     if not t > floats[last]:
         return gap
@@ -51,10 +35,10 @@ def swept(t, k, at, x, y, z, vx, vy, vz, distance, reach, path, floats, ints):
         path[c] = floats[last + 1 + c]
     path[6], path[7], path[8], path[9], path[10], path[11] = x, y, z, vx, vy, vz
     path[12] = t - floats[last]
-    if ints[at + MOVING] != 0:
+    if ints[at + layout.MOVING] != 0:
         # So far in that what the path is off by cannot feign it.
         off = from_object(floats, ints, at, path)
-        if not off < 0.5 * (floats[ints[at + DEPTH]] + reach):
+        if not off < 0.5 * (floats[ints[at + layout.DEPTH]] + reach):
             return gap
         reach -= off
     s = first_contact(path, floats, ints, at, reach)
@@ -70,22 +54,23 @@ def swept(t, k, at, x, y, z, vx, vy, vz, distance, reach, path, floats, ints):
 @kernel(GAP, inner=True)
 def gap(t, y, gaps, floats, ints):
     """Signed distances [m] of all pairs; of a sliding one its speed [m/s]; none for one that rests or is fixed."""
-    objects = ints[OBJECTS]
-    path = np.empty(PATH)
-    for k in range(ints[BODIES]):
+    objects = ints[layout.OBJECTS]
+    path = np.empty(layout.PATH)
+    for k in range(ints[layout.BODIES]):
         px, py, pz, vx, vy, vz = body_of(ints, k, y)
-        reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
+        reach = floats[ints[layout.RADIUS] + k] + floats[ints[layout.THICKNESS]]
         for j in range(objects):
             pair = k * objects + j
-            memory = ints[PAIRS] + PAIR * pair
-            at = HEAD + OBJECT * j
+            memory = ints[layout.PAIRS] + layout.PAIR * pair
+            at = layout.HEAD + layout.OBJECT * j
             gaps[pair] = NO_EVENT
-            if floats[ints[INVERSE] + k] == 0.0 or floats[memory] == STICKS:
+            if floats[ints[layout.INVERSE] + k] == 0.0 or floats[memory] == layout.STICKS:
                 continue
-            if floats[memory] == SLIDES:
-                if floats[ints[FRICTION]] > 0.0:
+            if floats[memory] == layout.SLIDES:
+                if floats[ints[layout.FRICTION]] > 0.0:
                     ux, uy, uz = velocity(floats, ints, at, px, py, pz)
-                    ax, ay, az = floats[memory + ALONG], floats[memory + ALONG + 1], floats[memory + ALONG + 2]
+                    slide = memory + layout.ALONG
+                    ax, ay, az = floats[slide], floats[slide + 1], floats[slide + 2]
                     gaps[pair] = (vx - ux) * ax + (vy - uy) * ay + (vz - uz) * az
                 continue
             d = surface(floats, ints, at, px, py, pz)[0]
@@ -95,20 +80,21 @@ def gap(t, y, gaps, floats, ints):
 @lean_inlined
 def note_instant(t, k, y, floats, ints):
     """Remember where body k is and how fast, at an accepted instant."""
-    last = ints[LAST] + INSTANT * k
+    last = ints[layout.LAST] + layout.INSTANT * k
     floats[last] = t
     for c in range(3):
-        floats[last + 1 + c] = y[ints[POSITION] + 3 * k + c]
-        floats[last + 4 + c] = y[ints[VELOCITY] + 3 * k + c]
+        floats[last + 1 + c] = y[ints[layout.POSITION] + 3 * k + c]
+        floats[last + 4 + c] = y[ints[layout.VELOCITY] + 3 * k + c]
 
 
 @lean_inlined
 def hold(t, y, floats, ints):
     """Keep what rests on its surface, let go what has left it, and note the accepted instant."""
-    for k in range(ints[BODIES]):
-        for j in range(ints[OBJECTS]):
-            if floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)] != FREE and keep(t, k, j, y, floats, ints):
-                floats[CHANGED] = 1.0
+    for k in range(ints[layout.BODIES]):
+        for j in range(ints[layout.OBJECTS]):
+            memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
+            if floats[memory] != layout.FREE and keep(t, k, j, y, floats, ints):
+                floats[channels.CHANGED] = 1.0
         note_instant(t, k, y, floats, ints)
 
 
@@ -119,17 +105,18 @@ def impact(t, y, pair, floats, ints):
         hold(t, y, floats, ints)
     else:
         hit(t, y, pair, floats, ints)
-        note_instant(t, pair // ints[OBJECTS], y, floats, ints)
+        note_instant(t, pair // ints[layout.OBJECTS], y, floats, ints)
 
 
 @lean_inlined
 def first_near(y, floats, ints):
     """The first body that rests or is so near to an object that it matters how it would press; -1 for none."""
-    for k in range(ints[BODIES]):
-        if floats[ints[INVERSE] + k] == 0.0:
+    for k in range(ints[layout.BODIES]):
+        if floats[ints[layout.INVERSE] + k] == 0.0:
             continue
-        for j in range(ints[OBJECTS]):
-            if floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)] != FREE or not away(k, j, y, floats, ints):
+        for j in range(ints[layout.OBJECTS]):
+            memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
+            if floats[memory] != layout.FREE or not away(k, j, y, floats, ints):
                 return k
     return -1
 

@@ -3,37 +3,13 @@
 
 import math
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.contacts.impulse_kernels import (
-    FRICTION,
-    HEAD,
-    MASS,
-    OBJECTS,
-    PAIRS,
-    POSITION,
-    STILL,
-    VELOCITY,
-    WORK,
-)
-from sceneql.contacts.memory_kernels import (
-    ALONG,
-    BETWEEN,
-    BRAKE,
-    CREEPS,
-    EARLIER,
-    FREE,
-    LOAD,
-    OF_BODY,
-    PAIR,
-    PULL,
-    SLIDES,
-    STAGE,
-    STICKS,
-    tightness,
-)
-from sceneql.contacts.pair_kernels import body_of
+from sceneql.contacts import layout
+from sceneql.contacts.impulse_kernels import STILL
+from sceneql.contacts.pair_kernels import BRAKE, OF_BODY, body_of, tightness
 from sceneql.contacts.resting_kernels import come_to_rest, set_velocity
-from sceneql.contacts.shape_kernels import OBJECT, acceleration, surface, velocity
+from sceneql.contacts.shape_kernels import acceleration, surface, velocity
 from sceneql.contacts.slide_kernels import tangential
 
 FAST = 4.0
@@ -44,7 +20,8 @@ FAST = 4.0
 def hold_still(memory, vx, vy, vz, nx, ny, nz, dx, dy, dz, pull, to, rate, floats, ints):
     """Take away all of a pull d along the surface, and what slip is left of a velocity v relative to it."""
     if pull > 0.0:
-        floats[memory + ALONG], floats[memory + ALONG + 1], floats[memory + ALONG + 2] = dx / pull, dy / pull, dz / pull
+        along = memory + layout.ALONG
+        floats[along], floats[along + 1], floats[along + 2] = dx / pull, dy / pull, dz / pull
     vx, vy, vz = tangential(vx, vy, vz, nx, ny, nz)
     tight = tightness(floats, ints)
     rate[to] -= dx + tight * vx
@@ -55,14 +32,14 @@ def hold_still(memory, vx, vy, vz, nx, ny, nz, dx, dy, dz, pull, to, rate, float
 @lean(OF_BODY, inner=True)
 def rub(k, y, rate, floats, ints):
     """Coulomb's friction of resting pairs: against the sliding, or up to its bound against the pull."""
-    mu = floats[ints[FRICTION]]
-    to = ints[VELOCITY] + 3 * k
-    for j in range(ints[OBJECTS]):
-        memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
-        most = mu * floats[memory + LOAD]
-        if floats[memory] == FREE or floats[memory] == CREEPS:
+    mu = floats[ints[layout.FRICTION]]
+    to = ints[layout.VELOCITY] + 3 * k
+    for j in range(ints[layout.OBJECTS]):
+        memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
+        most = mu * floats[memory + layout.LOAD]
+        if floats[memory] == layout.FREE or floats[memory] == layout.CREEPS:
             continue
-        at = HEAD + OBJECT * j
+        at = layout.HEAD + layout.OBJECT * j
         px, py, pz, vx, vy, vz = body_of(ints, k, y)
         ux, uy, uz = velocity(floats, ints, at, px, py, pz)
         vx, vy, vz = vx - ux, vy - uy, vz - uz
@@ -72,15 +49,16 @@ def rub(k, y, rate, floats, ints):
         dn = dx * nx + dy * ny + dz * nz
         dx, dy, dz = dx - dn * nx, dy - dn * ny, dz - dn * nz
         size = math.sqrt(dx * dx + dy * dy + dz * dz)
-        floats[memory + PULL] = size
-        if floats[memory] == STICKS and floats[STAGE] == BETWEEN:
+        floats[memory + layout.PULL] = size
+        if floats[memory] == layout.STICKS and floats[channels.STAGE] == channels.BETWEEN:
             # To the end of the step, which sees whether the pull was too much.
             hold_still(memory, vx, vy, vz, nx, ny, nz, dx, dy, dz, size, to, rate, floats, ints)
             continue
-        if floats[memory] == STICKS:
+        if floats[memory] == layout.STICKS:
             most = min(most, size)
         else:
-            ax, ay, az = floats[memory + ALONG], floats[memory + ALONG + 1], floats[memory + ALONG + 2]
+            slide = memory + layout.ALONG
+            ax, ay, az = floats[slide], floats[slide + 1], floats[slide + 2]
             vn = vx * nx + vy * ny + vz * nz
             dx, dy, dz = vx - vn * nx, vy - vn * ny, vz - vn * nz
             size = math.sqrt(dx * dx + dy * dy + dz * dz)
@@ -95,7 +73,7 @@ def rub(k, y, rate, floats, ints):
         rate[to] -= most * dx
         rate[to + 1] -= most * dy
         rate[to + 2] -= most * dz
-        rate[ints[WORK]] += floats[ints[MASS] + k] * most * (dx * vx + dy * vy + dz * vz)
+        rate[ints[layout.WORK]] += floats[ints[layout.MASS] + k] * most * (dx * vx + dy * vy + dz * vz)
 
 
 @lean(BRAKE, inner=True)
@@ -105,27 +83,27 @@ def brake(t, k, j, h, y0, y1, floats, ints):
     It goes against the slip at the end: implicit, so no step is too long (Moreau 1988). The way that it takes back does
     work for what pulls. A pair that has become fast slides, one that has become slow creeps.
     """
-    memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
-    mu = floats[ints[FRICTION]]
-    if floats[memory] == FREE or floats[memory] == STICKS or mu == 0.0:
+    memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
+    mu = floats[ints[layout.FRICTION]]
+    if floats[memory] == layout.FREE or floats[memory] == layout.STICKS or mu == 0.0:
         return
-    to, at = ints[VELOCITY] + 3 * k, ints[POSITION] + 3 * k
+    to, at = ints[layout.VELOCITY] + 3 * k, ints[layout.POSITION] + 3 * k
     x, y, z = y1[at], y1[at + 1], y1[at + 2]
-    _, nx, ny, nz = surface(floats, ints, HEAD + OBJECT * j, x, y, z)
-    ux, uy, uz = velocity(floats, ints, HEAD + OBJECT * j, x, y, z)
+    _, nx, ny, nz = surface(floats, ints, layout.HEAD + layout.OBJECT * j, x, y, z)
+    ux, uy, uz = velocity(floats, ints, layout.HEAD + layout.OBJECT * j, x, y, z)
     vx, vy, vz = tangential(y1[to] - ux, y1[to + 1] - uy, y1[to + 2] - uz, nx, ny, nz)
     bx, by, bz = tangential(y0[to] - ux, y0[to + 1] - uy, y0[to + 2] - uz, nx, ny, nz)
     speed, before = math.sqrt(vx * vx + vy * vy + vz * vz), math.sqrt(bx * bx + by * by + bz * bz)
-    most = mu * floats[memory + LOAD] * h
-    if floats[memory] == SLIDES:
+    most = mu * floats[memory + layout.LOAD] * h
+    if floats[memory] == layout.SLIDES:
         if speed < FAST * most:
-            floats[memory], floats[memory + EARLIER] = CREEPS, floats[memory + LOAD]
+            floats[memory], floats[memory + layout.EARLIER] = layout.CREEPS, floats[memory + layout.LOAD]
         return
     if speed > 2.0 * FAST * most:
         come_to_rest(t, memory, vx, vy, vz, nx, ny, nz, floats, ints)
-    if not math.isnan(floats[memory + EARLIER]):
-        most = 0.5 * (most + mu * floats[memory + EARLIER] * h)
-    floats[memory + EARLIER] = floats[memory + LOAD]
+    if not math.isnan(floats[memory + layout.EARLIER]):
+        most = 0.5 * (most + mu * floats[memory + layout.EARLIER] * h)
+    floats[memory + layout.EARLIER] = floats[memory + layout.LOAD]
     back = 0.0
     if speed <= most:  # it stops: where the slip from the start would, slowed down evenly
         cx, cy, cz = -vx, -vy, -vz
@@ -133,12 +111,12 @@ def brake(t, k, j, h, y0, y1, floats, ints):
             bx, by, bz = bx / before, by / before, bz / before
             after = vx * bx + vy * by + vz * bz - most
             back = 0.5 * h * (after * after / (before - after) + after)
-        floats[memory] = STICKS
+        floats[memory] = layout.STICKS
     else:
         part = most / speed
         cx, cy, cz = -part * vx, -part * vy, -part * vz
     sx, sy, sz = 0.5 * h * cx + back * bx, 0.5 * h * cy + back * by, 0.5 * h * cz + back * bz
     work = (y1[to] - y0[to]) * sx + (y1[to + 1] - y0[to + 1]) * sy + (y1[to + 2] - y0[to + 2]) * sz
-    y1[ints[WORK]] += floats[ints[MASS] + k] * work / h
+    y1[ints[layout.WORK]] += floats[ints[layout.MASS] + k] * work / h
     y1[at], y1[at + 1], y1[at + 2] = x + sx, y + sy, z + sz
     set_velocity(k, y1[to] + cx, y1[to + 1] + cy, y1[to + 2] + cz, y1, floats, ints)

@@ -2,22 +2,11 @@
 """What an impact does in `exact` mode, compiled when the first one comes (collision_kernels)."""
 
 from sceneql.compiled.kernels import lean
-from sceneql.contacts.impulse_kernels import (
-    FRICTION,
-    HEAD,
-    OBJECTS,
-    PAIRS,
-    RESTITUTION,
-    STILL,
-    TALLY,
-    bounce,
-    count_hit,
-    scale_of,
-)
-from sceneql.contacts.memory_kernels import PAIR, PRESS, SLIDES, STICKS
+from sceneql.contacts import layout
+from sceneql.contacts.impulse_kernels import STILL, bounce, count_hit, scale_of
 from sceneql.contacts.pair_kernels import body_of
 from sceneql.contacts.resting_kernels import come_to_rest, set_velocity
-from sceneql.contacts.shape_kernels import OBJECT, surface, velocity
+from sceneql.contacts.shape_kernels import surface, velocity
 from sceneql.system.signatures_kernels import IMPACT
 
 LOWEST_FLIGHT = 4e-13
@@ -27,27 +16,27 @@ LOWEST_FLIGHT = 4e-13
 @lean(IMPACT, inner=True)
 def hit(t, y, pair, floats, ints):
     """The impulse of a pair at its impact, or the end of its sliding."""
-    k, j = pair // ints[OBJECTS], pair % ints[OBJECTS]
-    at = HEAD + OBJECT * j
-    memory = ints[PAIRS] + PAIR * pair
+    k, j = pair // ints[layout.OBJECTS], pair % ints[layout.OBJECTS]
+    at = layout.HEAD + layout.OBJECT * j
+    memory = ints[layout.PAIRS] + layout.PAIR * pair
     px, py, pz, vx, vy, vz = body_of(ints, k, y)
     ux, uy, uz = velocity(floats, ints, at, px, py, pz)
     _, nx, ny, nz = surface(floats, ints, at, px, py, pz)
     vx, vy, vz = vx - ux, vy - uy, vz - uz
     vn = vx * nx + vy * ny + vz * nz
-    press = floats[memory + PRESS]
-    if floats[memory] == SLIDES:
+    press = floats[memory + layout.PRESS]
+    if floats[memory] == layout.SLIDES:
         tx, ty, tz = vx - vn * nx, vy - vn * ny, vz - vn * nz
         if tx * tx + ty * ty + tz * tz < 1e-12:
             set_velocity(k, ux + vn * nx, uy + vn * ny, uz + vn * nz, y, floats, ints)
-            floats[memory] = STICKS
+            floats[memory] = layout.STICKS
         else:
             come_to_rest(t, memory, vx, vy, vz, nx, ny, nz, floats, ints)
     elif vn < -STILL:
-        e = floats[ints[RESTITUTION]]
+        e = floats[ints[layout.RESTITUTION]]
         up = -e * vn
-        count_hit(floats, ints[TALLY], t, -vn)
-        vx, vy, vz = bounce(vx, vy, vz, nx, ny, nz, e, floats[ints[FRICTION]])
+        count_hit(floats, ints[layout.TALLY], t, -vn)
+        vx, vy, vz = bounce(vx, vy, vz, nx, ny, nz, e, floats[ints[layout.FRICTION]])
         if up <= STILL or (press < 0.0 and up * up < -2.0 * press * LOWEST_FLIGHT * scale_of(px, py, pz)):
             vx, vy, vz = vx - up * nx, vy - up * ny, vz - up * nz
             # What is left of the bouncing is a geometric series of flights.

@@ -4,17 +4,7 @@
 import math
 
 from sceneql.compiled.kernels import lean_inlined
-
-POSITION, VELOCITY, WORK, MASS, INVERSE, RADIUS, BODIES = range(7)
-RESTITUTION, FRICTION, THICKNESS, TALLY, PAIRS, LAST, OBJECTS = range(7, 14)
-HEAD = 14
-"""The integers of a contact: offsets of the bodies, of its numbers and its memory; the objects follow."""
-
-INSTANT = 7
-"""Floats of a body's memory in `exact` mode: the last accepted instant, its place and velocity then."""
-
-HITS, FIRST_TIME, LAST_TIME, LAST_SPEED, REST_TIME, TALLIES = range(6)
-"""The tally in the floats; times are NaN before there was one."""
+from sceneql.contacts import layout
 
 MOST_CUTS = 16
 """Times that one step is cut. Where it stands from the beginning with an END that never comes, none is (collision)."""
@@ -43,12 +33,12 @@ def bounce(vx, vy, vz, nx, ny, nz, restitution, friction):
 @lean_inlined
 def count_hit(floats, at, t, speed):
     """Enter an impact at time t with this speed of approach into the tally."""
-    floats[at + HITS] += 1.0
-    if math.isnan(floats[at + FIRST_TIME]):
-        floats[at + FIRST_TIME] = t
-    floats[at + LAST_TIME] = t
-    floats[at + LAST_SPEED] = speed
-    floats[at + REST_TIME] = math.nan
+    floats[at + layout.HITS] += 1.0
+    if math.isnan(floats[at + layout.FIRST_TIME]):
+        floats[at + layout.FIRST_TIME] = t
+    floats[at + layout.LAST_TIME] = t
+    floats[at + layout.LAST_SPEED] = speed
+    floats[at + layout.REST_TIME] = math.nan
 
 
 @lean_inlined

@@ -4,10 +4,9 @@
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.contacts import layout
 from sceneql.contacts.body_path_kernels import NEVER, first_contact, place
-from sceneql.contacts.impulse_kernels import HEAD, OBJECTS, PAIRS
-from sceneql.contacts.memory_kernels import FREE, PAIR
-from sceneql.contacts.shape_kernels import OBJECT, velocity
+from sceneql.contacts.shape_kernels import velocity
 from sceneql.system.signatures_kernels import A, F, I, N
 
 
@@ -44,10 +43,10 @@ def earliest(k, reach, path, floats, ints):
     best = NEVER
     first = 0
     h = path[12]
-    for j in range(ints[OBJECTS]):
-        if floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)] != FREE:
+    for j in range(ints[layout.OBJECTS]):
+        if floats[ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)] != layout.FREE:
             continue
-        at = HEAD + OBJECT * j
+        at = layout.HEAD + layout.OBJECT * j
         ux, uy, uz = velocity(floats, ints, at, path[0], path[1], path[2])
         shift(path, -ux, -uy, -uz, h)
         s = first_contact(path, floats, ints, at, reach)

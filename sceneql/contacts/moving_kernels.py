@@ -4,7 +4,8 @@
 import math
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.contacts.shape_kernels import AFTER, BEFORE, FROM_TYPE, MOTION_TYPE, MOVING, inward, turn
+from sceneql.contacts import layout
+from sceneql.contacts.shape_kernels import FROM_TYPE, MOTION_TYPE, inward, turn
 
 
 @lean_inlined
@@ -19,18 +20,18 @@ def carried(floats, ints, at, pose, x, y, z):
 @lean(MOTION_TYPE, inner=True)
 def moving_velocity(floats, ints, at, x, y, z):
     """Velocity [m/s] of the point at (x, y, z) of one that moves."""
-    apart = floats[ints[at + MOVING]]
-    a, b, c = carried(floats, ints, at, BEFORE, x, y, z)
-    p, q, r = carried(floats, ints, at, AFTER, x, y, z)
+    apart = floats[ints[at + layout.MOVING]]
+    a, b, c = carried(floats, ints, at, layout.BEFORE, x, y, z)
+    p, q, r = carried(floats, ints, at, layout.AFTER, x, y, z)
     return (p - a) / (2.0 * apart), (q - b) / (2.0 * apart), (r - c) / (2.0 * apart)
 
 
 @lean(MOTION_TYPE, inner=True)
 def moving_acceleration(floats, ints, at, x, y, z):
     """Acceleration [m/s^2] of the same."""
-    apart = floats[ints[at + MOVING]]
-    a, b, c = carried(floats, ints, at, BEFORE, x, y, z)
-    p, q, r = carried(floats, ints, at, AFTER, x, y, z)
+    apart = floats[ints[at + layout.MOVING]]
+    a, b, c = carried(floats, ints, at, layout.BEFORE, x, y, z)
+    p, q, r = carried(floats, ints, at, layout.AFTER, x, y, z)
     square = apart * apart
     return (p - 2.0 * x + a) / square, (q - 2.0 * y + b) / square, (r - 2.0 * z + c) / square
 

@@ -2,13 +2,14 @@
 """Which bodies may touch a surface, for shapes that say no more than whether they are clear of a ball."""
 
 from sceneql.compiled.kernels import lean
-from sceneql.contacts.shape_kernels import CLEAR, NEAR_TYPE, clear_at
+from sceneql.contacts import layout
+from sceneql.contacts.shape_kernels import NEAR_TYPE, clear_at
 
 
 @lean(NEAR_TYPE, inner=True)
 def near(floats, ints, at, h, x0, v0, x1, v1, radii, more, found):
     """One by one: a ball about the path's end that it does not leave."""
-    clear_of = clear_at(ints[at + CLEAR])
+    clear_of = clear_at(ints[at + layout.CLEAR])
     for k in range(radii.size):
         way = 0.0
         for c in range(3 * k, 3 * k + 3):

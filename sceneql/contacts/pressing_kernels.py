@@ -2,17 +2,17 @@
 """How a pair presses, if nothing holds it."""
 
 from sceneql.compiled.kernels import lean
-from sceneql.contacts.impulse_kernels import HEAD, VELOCITY
+from sceneql.contacts import layout
 from sceneql.contacts.pair_kernels import body_of
-from sceneql.contacts.shape_kernels import FOUR, OBJECT, acceleration, bend, surface, velocity
+from sceneql.contacts.shape_kernels import FOUR, acceleration, bend, surface, velocity
 from sceneql.system.signatures_kernels import A, I, N
 
 
 @lean(FOUR(N, N, A, A, A, I), inner=True)
 def pressing(k, j, y, rate, floats, ints):
     """Second derivative of the gap [m/s^2] and the normal (3) there."""
-    at = HEAD + OBJECT * j
-    to = ints[VELOCITY] + 3 * k
+    at = layout.HEAD + layout.OBJECT * j
+    to = ints[layout.VELOCITY] + 3 * k
     px, py, pz, vx, vy, vz = body_of(ints, k, y)
     ux, uy, uz = velocity(floats, ints, at, px, py, pz)
     ax, ay, az = acceleration(floats, ints, at, px, py, pz)

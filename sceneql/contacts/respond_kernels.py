@@ -12,53 +12,16 @@ import math
 
 from numba import types
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
+from sceneql.contacts import layout
 from sceneql.contacts.body_path_kernels import NEVER, moving, place, set_out
-from sceneql.contacts.impulse_kernels import (
-    BODIES,
-    FRICTION,
-    HEAD,
-    LAST,
-    MASS,
-    OBJECTS,
-    PAIRS,
-    POSITION,
-    RADIUS,
-    RESTITUTION,
-    TALLY,
-    THICKNESS,
-    VELOCITY,
-    WORK,
-    bounce,
-    count_hit,
-)
+from sceneql.contacts.impulse_kernels import bounce, count_hit
 from sceneql.contacts.meet_kernels import earliest, seen
-from sceneql.contacts.memory_kernels import (
-    ANSWER,
-    ASKED,
-    BETWEEN,
-    BRAKE,
-    CREEPS,
-    CUTS,
-    EARLIER,
-    FREE,
-    HOLDS,
-    LIST,
-    LOAD,
-    PAIR,
-    PRESS,
-    PULL,
-    RESTING,
-    SLACK,
-    SLIDES,
-    STAGE,
-    STICKS,
-    WHOLE,
-)
-from sceneql.contacts.pair_kernels import is_flat
+from sceneql.contacts.pair_kernels import ANSWER, BRAKE, is_flat
 from sceneql.contacts.resting_kernels import come_to_rest, keep, lies
-from sceneql.contacts.shape_kernels import OBJECT, clear, surface, velocity
+from sceneql.contacts.shape_kernels import clear, surface, velocity
 from sceneql.contacts.slide_kernels import fly_on, slide, start_with
 from sceneql.system.signatures_kernels import A, F, I, N
 
@@ -75,7 +38,7 @@ AFTER_IMPACT = 1e-4
 @lean(types.boolean(F, F, N, A, A, A, I), inner=True)
 def hits(s, whole, j, path, mean, floats, ints):
     """Whether the contact at s with object j is an impact, not the beginning of rest."""
-    at = HEAD + OBJECT * j
+    at = layout.HEAD + layout.OBJECT * j
     x, y, z = seen(path, s, floats, ints, at)
     vx, vy, vz = moving(path, s)
     ux, uy, uz = velocity(floats, ints, at, x, y, z)
@@ -93,7 +56,7 @@ def fly(k, t1, whole, reach, path, mean, floats, ints):
         s, j = earliest(k, reach, path, floats, ints)
         if s == NEVER:
             break
-        at = HEAD + OBJECT * j
+        at = layout.HEAD + layout.OBJECT * j
         px, py, pz = place(path, s)
         vx, vy, vz = moving(path, s)
         qx, qy, qz = seen(path, s, floats, ints, at)
@@ -110,19 +73,19 @@ def fly(k, t1, whole, reach, path, mean, floats, ints):
         path[0], path[1], path[2] = px - d * nx, py - d * ny, pz - d * nz
         path[3], path[4], path[5] = vx, vy, vz
         if impact:
-            rx, ry, rz = bounce(rx, ry, rz, nx, ny, nz, floats[ints[RESTITUTION]], floats[ints[FRICTION]])
+            rx, ry, rz = bounce(rx, ry, rz, nx, ny, nz, floats[ints[layout.RESTITUTION]], floats[ints[layout.FRICTION]])
             lost += start_with(path, rx + ux, ry + uy, rz + uz)
-            count_hit(floats, ints[TALLY], t, -vn)
+            count_hit(floats, ints[layout.TALLY], t, -vn)
             fly_on(path, mean[0], mean[1], mean[2], path[12])
         else:
             rx, ry, rz = rx - vn * nx, ry - vn * ny, rz - vn * nz
             lost += start_with(path, rx + ux, ry + uy, rz + uz)
-            lost += slide(path, mean, nx, ny, nz, ux, uy, uz, press, floats[ints[FRICTION]])
-            memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
+            lost += slide(path, mean, nx, ny, nz, ux, uy, uz, press, floats[ints[layout.FRICTION]])
+            memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
             rx, ry, rz = path[9] - ux, path[10] - uy, path[11] - uz
             come_to_rest(t, memory, rx, ry, rz, nx, ny, nz, floats, ints)
-            if floats[memory] == SLIDES and floats[ints[FRICTION]] > 0.0:
-                floats[memory] = CREEPS
+            if floats[memory] == layout.SLIDES and floats[ints[layout.FRICTION]] > 0.0:
+                floats[memory] = layout.CREEPS
         if path[12] <= 1e-14 * length:
             break
     return lost
@@ -135,8 +98,8 @@ def push_out(reach, path, mean, floats, ints):
     before = path[9] ** 2 + path[10] ** 2 + path[11] ** 2
     for _ in range(3):
         apart = True
-        for j in range(ints[OBJECTS]):
-            at = HEAD + OBJECT * j
+        for j in range(ints[layout.OBJECTS]):
+            at = layout.HEAD + layout.OBJECT * j
             if clear(floats, ints, at, path[6], path[7], path[8], reach):
                 continue
             d, nx, ny, nz = surface(floats, ints, at, path[6], path[7], path[8])
@@ -158,9 +121,9 @@ def push_out(reach, path, mean, floats, ints):
 @lean_inlined
 def slack(memory, floats, ints):
     """By how much the pull on a pair along its surface may grow [m/s^2]; NaN where it does not stick."""
-    if floats[memory] != STICKS or floats[ints[FRICTION]] == 0.0:
+    if floats[memory] != layout.STICKS or floats[ints[layout.FRICTION]] == 0.0:
         return math.nan
-    return floats[ints[FRICTION]] * floats[memory + LOAD] - floats[memory + PULL]
+    return floats[ints[layout.FRICTION]] * floats[memory + layout.LOAD] - floats[memory + layout.PULL]
 
 
 @lean_inlined
@@ -175,29 +138,29 @@ def crossing(before, after):
 def torn_off(k, floats, ints):
     """Where in a step the first tie of body k began to pull, or to ask too much of friction; 1 where none does."""
     first = 1.0
-    for j in range(ints[OBJECTS]):
-        memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
-        if floats[memory] != FREE and not math.isnan(floats[memory + EARLIER]):
-            first = min(first, crossing(floats[memory + EARLIER], -floats[memory + PRESS]))
-            first = min(first, crossing(floats[memory + SLACK], slack(memory, floats, ints)))
+    for j in range(ints[layout.OBJECTS]):
+        memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
+        if floats[memory] != layout.FREE and not math.isnan(floats[memory + layout.EARLIER]):
+            first = min(first, crossing(floats[memory + layout.EARLIER], -floats[memory + layout.PRESS]))
+            first = min(first, crossing(floats[memory + layout.SLACK], slack(memory, floats, ints)))
     return first
 
 
 @lean_inlined
 def let_go(k, floats, ints):
     """End the ties of body k that pull, or that friction could not hold; of the others the load is noted."""
-    for j in range(ints[OBJECTS]):
-        memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
-        if floats[memory] == FREE:
+    for j in range(ints[layout.OBJECTS]):
+        memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
+        if floats[memory] == layout.FREE:
             continue
         left = slack(memory, floats, ints)
-        floats[memory + SLACK] = left
-        if floats[memory + PRESS] > 0.0:
-            floats[memory] = FREE
+        floats[memory + layout.SLACK] = left
+        if floats[memory + layout.PRESS] > 0.0:
+            floats[memory] = layout.FREE
         elif left < 0.0:
-            floats[memory] = SLIDES
-        if floats[memory] != CREEPS:
-            floats[memory + EARLIER] = floats[memory + LOAD]
+            floats[memory] = layout.SLIDES
+        if floats[memory] != layout.CREEPS:
+            floats[memory + layout.EARLIER] = floats[memory + layout.LOAD]
 
 
 @lean(ANSWER, inner=True)
@@ -207,30 +170,30 @@ def cut(t0, t1, y0, y1, found, path, mean, floats, ints):
     Or after the first tie is torn off, however many are: mostly they are at one instant, or few.
     """
     h = t1 - t0
-    memory = ints[LAST]
-    ties = floats[STAGE] == BETWEEN
+    memory = ints[layout.LAST]
+    ties = floats[channels.STAGE] == channels.BETWEEN
     impact = torn = 1.0
     count = 0
-    for k in range(ints[BODIES]):
+    for k in range(ints[layout.BODIES]):
         if found[k] == 0.0:
             continue
         if ties:
             torn = min(torn, torn_off(k, floats, ints))
         if count > FEW:
             continue
-        reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
+        reach = floats[ints[layout.RADIUS] + k] + floats[ints[layout.THICKNESS]]
         set_out(k, h, y0, y1, path, mean, ints)
         s, j = earliest(k, reach, path, floats, ints)
-        if s != NEVER and hits(s, floats[memory + WHOLE], j, path, mean, floats, ints):
+        if s != NEVER and hits(s, floats[memory + layout.WHOLE], j, path, mean, floats, ints):
             impact = min(impact, s)
             count += 1
             if count > FEW and not ties:
                 return
     first = min(torn, impact) if count <= FEW else torn
-    end = first * h + AFTER_IMPACT * floats[memory + WHOLE]
-    if first < 1.0 and end < h * (1.0 - AFTER_IMPACT) and t0 + end < floats[ASKED]:
-        floats[ASKED] = t0 + end
-        floats[memory + CUTS] += 1.0
+    end = first * h + AFTER_IMPACT * floats[memory + layout.WHOLE]
+    if first < 1.0 and end < h * (1.0 - AFTER_IMPACT) and t0 + end < floats[channels.STEP_END]:
+        floats[channels.STEP_END] = t0 + end
+        floats[memory + layout.CUTS] += 1.0
 
 
 @lean(ANSWER, inner=True)
@@ -238,42 +201,42 @@ def back_off_found(t0, t1, y0, y1, found, path, mean, floats, ints):
     """Settle the bodies with found[k] = 1, and note which ones rest."""
     h = t1 - t0
     resting = 0
-    ties = floats[STAGE] == BETWEEN
+    ties = floats[channels.STAGE] == channels.BETWEEN
     flat = is_flat(ints) and not ties
-    level, nx, ny, nz = surface(floats, ints, HEAD, 0.0, 0.0, 0.0)
-    for k in range(ints[BODIES]):
+    level, nx, ny, nz = surface(floats, ints, layout.HEAD, 0.0, 0.0, 0.0)
+    for k in range(ints[layout.BODIES]):
         if found[k] == 0.0:
             continue
         if flat and lies(k, level, nx, ny, nz, y1, floats, ints):
-            floats[ints[LAST] + LIST + resting] = k
+            floats[ints[layout.LAST] + layout.LIST + resting] = k
             resting += 1
             continue
-        reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
+        reach = floats[ints[layout.RADIUS] + k] + floats[ints[layout.THICKNESS]]
         if ties:
             let_go(k, floats, ints)
-        for j in range(ints[OBJECTS]):
-            if floats[ints[FRICTION]] > 0.0:
+        for j in range(ints[layout.OBJECTS]):
+            if floats[ints[layout.FRICTION]] > 0.0:
                 brake(t1, k, j, h, y0, y1, floats, ints)
             keep(t1, k, j, y1, floats, ints)
-        pair = ints[PAIRS] + PAIR * k
-        if ints[OBJECTS] == 1 and floats[pair] != FREE and floats[pair + PRESS] < 0.0:
+        pair = ints[layout.PAIRS] + layout.PAIR * k
+        if ints[layout.OBJECTS] == 1 and floats[pair] != layout.FREE and floats[pair + layout.PRESS] < 0.0:
             # Held on the only thing that it can meet.
-            floats[ints[LAST] + LIST + resting] = k
+            floats[ints[layout.LAST] + layout.LIST + resting] = k
             resting += 1
             continue
         set_out(k, h, y0, y1, path, mean, ints)
-        at, to = ints[POSITION] + 3 * k, ints[VELOCITY] + 3 * k
-        lost = fly(k, t1, max(h, floats[ints[LAST] + WHOLE]), reach, path, mean, floats, ints)
+        at, to = ints[layout.POSITION] + 3 * k, ints[layout.VELOCITY] + 3 * k
+        lost = fly(k, t1, max(h, floats[ints[layout.LAST] + layout.WHOLE]), reach, path, mean, floats, ints)
         lost += push_out(reach, path, mean, floats, ints)
-        y1[ints[WORK]] += floats[ints[MASS] + k] * lost
+        y1[ints[layout.WORK]] += floats[ints[layout.MASS] + k] * lost
         for c in range(3):
             y1[at + c], y1[to + c] = path[6 + c], path[9 + c]
         rests = False
-        for j in range(ints[OBJECTS]):
-            rests = rests or floats[ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)] != FREE
+        for j in range(ints[layout.OBJECTS]):
+            rests = rests or floats[ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)] != layout.FREE
         if rests:
-            floats[ints[LAST] + LIST + resting] = k
+            floats[ints[layout.LAST] + layout.LIST + resting] = k
             resting += 1
-    floats[ints[LAST] + RESTING] = resting
+    floats[ints[layout.LAST] + layout.RESTING] = resting
     if resting > 0:
-        floats[ASKED] = HOLDS
+        floats[channels.HOLDS] = 1.0

@@ -11,37 +11,10 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.contacts.impulse_kernels import (
-    FRICTION,
-    HEAD,
-    MASS,
-    OBJECTS,
-    PAIRS,
-    POSITION,
-    RADIUS,
-    REST_TIME,
-    STILL,
-    TALLY,
-    THICKNESS,
-    VELOCITY,
-    WORK,
-    scale_of,
-)
-from sceneql.contacts.memory_kernels import (
-    ALONG,
-    CREEPS,
-    EARLIER,
-    FREE,
-    KEEP,
-    LOAD,
-    PAIR,
-    PRESS,
-    PULL,
-    SLIDES,
-    STICKS,
-)
-from sceneql.contacts.pair_kernels import body_of
-from sceneql.contacts.shape_kernels import OBJECT, surface, velocity
+from sceneql.contacts import layout
+from sceneql.contacts.impulse_kernels import STILL, scale_of
+from sceneql.contacts.pair_kernels import KEEP, body_of
+from sceneql.contacts.shape_kernels import surface, velocity
 from sceneql.system.signatures_kernels import A, F, I, N
 
 CREEP = 1e-3
@@ -51,62 +24,62 @@ CREEP = 1e-3
 @lean_inlined
 def set_velocity(k, x, y, z, state, floats, ints):
     """Give body k a velocity; the kinetic energy that this takes is counted as dissipated."""
-    at = ints[VELOCITY] + 3 * k
+    at = ints[layout.VELOCITY] + 3 * k
     before = state[at] ** 2 + state[at + 1] ** 2 + state[at + 2] ** 2
     after = x * x + y * y + z * z
-    state[ints[WORK]] += 0.5 * floats[ints[MASS] + k] * (before - after)
+    state[ints[layout.WORK]] += 0.5 * floats[ints[layout.MASS] + k] * (before - after)
     state[at], state[at + 1], state[at + 2] = x, y, z
 
 
 @lean(types.void(F, N, F, F, F, F, F, F, A, I), inner=True)
 def come_to_rest(t, memory, vx, vy, vz, nx, ny, nz, floats, ints):
     """Note that a pair rests from t on: sliding along v (relative to the surface), or sticking."""
-    if math.isnan(floats[ints[TALLY] + REST_TIME]):
-        floats[ints[TALLY] + REST_TIME] = t
+    if math.isnan(floats[ints[layout.TALLY] + layout.REST_TIME]):
+        floats[ints[layout.TALLY] + layout.REST_TIME] = t
     vn = vx * nx + vy * ny + vz * nz
     tx, ty, tz = vx - vn * nx, vy - vn * ny, vz - vn * nz
     slip = math.sqrt(tx * tx + ty * ty + tz * tz)
-    slides = slip >= CREEP or floats[ints[FRICTION]] == 0.0
-    floats[memory] = SLIDES if slides else STICKS
-    floats[memory + EARLIER] = math.nan
+    slides = slip >= CREEP or floats[ints[layout.FRICTION]] == 0.0
+    floats[memory] = layout.SLIDES if slides else layout.STICKS
+    floats[memory + layout.EARLIER] = math.nan
     if slip > 0.0:
-        floats[memory + ALONG] = tx / slip
-        floats[memory + ALONG + 1] = ty / slip
-        floats[memory + ALONG + 2] = tz / slip
+        floats[memory + layout.ALONG] = tx / slip
+        floats[memory + layout.ALONG + 1] = ty / slip
+        floats[memory + layout.ALONG + 2] = tz / slip
 
 
 @lean(KEEP, inner=True)
 def keep(t, k, j, y, floats, ints):
     """Hold a resting pair on its surface, or let it go when it has left: whether anything changed."""
-    memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
-    if floats[memory] == FREE:
+    memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
+    if floats[memory] == layout.FREE:
         return False
-    at = HEAD + OBJECT * j
+    at = layout.HEAD + layout.OBJECT * j
     px, py, pz, vx, vy, vz = body_of(ints, k, y)
     ux, uy, uz = velocity(floats, ints, at, px, py, pz)
     d, nx, ny, nz = surface(floats, ints, at, px, py, pz)
-    d -= floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
+    d -= floats[ints[layout.RADIUS] + k] + floats[ints[layout.THICKNESS]]
     rx, ry, rz = vx - ux, vy - uy, vz - uz
     vn = rx * nx + ry * ny + rz * nz
     small = 1e-12 * scale_of(px, py, pz)
-    if d > small and vn > STILL and floats[memory + PRESS] >= 0.0:
-        floats[memory] = FREE
+    if d > small and vn > STILL and floats[memory + layout.PRESS] >= 0.0:
+        floats[memory] = layout.FREE
         return True
-    changed = floats[memory + PRESS] < 0.0 and (abs(d) > small or abs(vn) > small)
+    changed = floats[memory + layout.PRESS] < 0.0 and (abs(d) > small or abs(vn) > small)
     if changed:
-        to = ints[POSITION] + 3 * k
+        to = ints[layout.POSITION] + 3 * k
         y[to], y[to + 1], y[to + 2] = px - d * nx, py - d * ny, pz - d * nz
         # What presses does work on that way.
-        y[ints[WORK]] -= floats[ints[MASS] + k] * floats[memory + PRESS] * d
+        y[ints[layout.WORK]] -= floats[ints[layout.MASS] + k] * floats[memory + layout.PRESS] * d
         set_velocity(k, vx - vn * nx, vy - vn * ny, vz - vn * nz, y, floats, ints)
-    if floats[memory] == CREEPS:
+    if floats[memory] == layout.CREEPS:
         return changed
     rx, ry, rz = rx - vn * nx, ry - vn * ny, rz - vn * nz
     slip = math.sqrt(rx * rx + ry * ry + rz * rz)
-    most = floats[ints[FRICTION]] * floats[memory + LOAD]
-    if slip >= CREEP or (floats[memory] == SLIDES and floats[memory + PULL] > 0.5 * most):
+    most = floats[ints[layout.FRICTION]] * floats[memory + layout.LOAD]
+    if slip >= CREEP or (floats[memory] == layout.SLIDES and floats[memory + layout.PULL] > 0.5 * most):
         come_to_rest(t, memory, rx, ry, rz, nx, ny, nz, floats, ints)
-    elif floats[memory] == STICKS and floats[memory + PULL] <= most and slip > 0.0:
+    elif floats[memory] == layout.STICKS and floats[memory + layout.PULL] <= most and slip > 0.0:
         set_velocity(k, vx - vn * nx - rx, vy - vn * ny - ry, vz - vn * nz - rz, y, floats, ints)
         changed = True
     return changed
@@ -118,15 +91,15 @@ def lies(k, level, nx, ny, nz, y, floats, ints):
 
     Then `keep` and `brake` would change nothing.
     """
-    memory = ints[PAIRS] + PAIR * k
+    memory = ints[layout.PAIRS] + layout.PAIR * k
     px, py, pz, vx, vy, vz = body_of(ints, k, y)
-    if floats[memory + PRESS] >= 0.0:
+    if floats[memory + layout.PRESS] >= 0.0:
         return False
-    if floats[memory] == STICKS:
+    if floats[memory] == layout.STICKS:
         if vx != 0.0 or vy != 0.0 or vz != 0.0:
             return False
-    elif floats[memory] != SLIDES or floats[ints[FRICTION]] != 0.0:
+    elif floats[memory] != layout.SLIDES or floats[ints[layout.FRICTION]] != 0.0:
         return False
-    d = level + (px * nx + py * ny + pz * nz) - floats[ints[RADIUS] + k] - floats[ints[THICKNESS]]
+    d = level + (px * nx + py * ny + pz * nz) - floats[ints[layout.RADIUS] + k] - floats[ints[layout.THICKNESS]]
     small = 1e-12 * scale_of(px, py, pz)
     return abs(d) <= small and abs(vx * nx + vy * ny + vz * nz) <= small

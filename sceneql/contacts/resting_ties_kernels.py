@@ -9,11 +9,10 @@ at the solution, but slopes that have it say that the mass is held, and lose no 
 """
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.contacts.impulse_kernels import HEAD, OBJECTS, PAIRS, VELOCITY
-from sceneql.contacts.memory_kernels import FREE, LOAD, OF_BODY, OF_PAIR, PAIR, PRESS, tightness
-from sceneql.contacts.pair_kernels import body_of
+from sceneql.contacts import layout
+from sceneql.contacts.pair_kernels import OF_BODY, OF_PAIR, body_of, tightness
 from sceneql.contacts.pressing_kernels import pressing
-from sceneql.contacts.shape_kernels import OBJECT, surface, velocity
+from sceneql.contacts.shape_kernels import surface, velocity
 
 SWEEPS = 50
 """Over the objects that a body rests on at once."""
@@ -24,12 +23,12 @@ CLOSE = 1e-12
 @lean_inlined
 def restrain(k, memory, nx, ny, nz, y, rate, floats, ints):
     """Note what the pair bears, and take its normal velocity away."""
-    floats[memory + PRESS] = -floats[memory + LOAD]
-    floats[memory + LOAD] = max(0.0, floats[memory + LOAD])
-    to = ints[VELOCITY] + 3 * k
+    floats[memory + layout.PRESS] = -floats[memory + layout.LOAD]
+    floats[memory + layout.LOAD] = max(0.0, floats[memory + layout.LOAD])
+    to = ints[layout.VELOCITY] + 3 * k
     px, py, pz, vx, vy, vz = body_of(ints, k, y)
-    j = (memory - ints[PAIRS]) // PAIR - k * ints[OBJECTS]
-    ux, uy, uz = velocity(floats, ints, HEAD + OBJECT * j, px, py, pz)
+    j = (memory - ints[layout.PAIRS]) // layout.PAIR - k * ints[layout.OBJECTS]
+    ux, uy, uz = velocity(floats, ints, layout.HEAD + layout.OBJECT * j, px, py, pz)
     speed = tightness(floats, ints) * ((vx - ux) * nx + (vy - uy) * ny + (vz - uz) * nz)
     rate[to] -= speed * nx
     rate[to + 1] -= speed * ny
@@ -39,9 +38,9 @@ def restrain(k, memory, nx, ny, nz, y, rate, floats, ints):
 @lean(OF_PAIR, inner=True)
 def tie_one(k, memory, nx, ny, nz, y, rate, floats, ints):
     """Tie body k to the only thing that it rests on, whose pressing is known."""
-    to = ints[VELOCITY] + 3 * k
-    press = floats[memory + PRESS]
-    floats[memory + LOAD] = -press
+    to = ints[layout.VELOCITY] + 3 * k
+    press = floats[memory + layout.PRESS]
+    floats[memory + layout.LOAD] = -press
     rate[to] -= press * nx
     rate[to + 1] -= press * ny
     rate[to + 2] -= press * nz
@@ -51,17 +50,17 @@ def tie_one(k, memory, nx, ny, nz, y, rate, floats, ints):
 @lean(OF_BODY, inner=True)
 def tie(k, y, rate, floats, ints):
     """Tie body k to all that it rests on."""
-    to = ints[VELOCITY] + 3 * k
-    objects = ints[OBJECTS]
+    to = ints[layout.VELOCITY] + 3 * k
+    objects = ints[layout.OBJECTS]
     size = abs(rate[to]) + abs(rate[to + 1]) + abs(rate[to + 2])
     for _ in range(SWEEPS):
         change = 0.0
         for j in range(objects):
-            memory = ints[PAIRS] + PAIR * (k * objects + j)
-            if floats[memory] == FREE:
+            memory = ints[layout.PAIRS] + layout.PAIR * (k * objects + j)
+            if floats[memory] == layout.FREE:
                 continue
             press, nx, ny, nz = pressing(k, j, y, rate, floats, ints)
-            floats[memory + LOAD] -= press
+            floats[memory + layout.LOAD] -= press
             rate[to] -= press * nx
             rate[to + 1] -= press * ny
             rate[to + 2] -= press * nz
@@ -70,7 +69,7 @@ def tie(k, y, rate, floats, ints):
             break
     px, py, pz, _, _, _ = body_of(ints, k, y)
     for j in range(objects):
-        memory = ints[PAIRS] + PAIR * (k * objects + j)
-        if floats[memory] != FREE:
-            _, nx, ny, nz = surface(floats, ints, HEAD + OBJECT * j, px, py, pz)
+        memory = ints[layout.PAIRS] + layout.PAIR * (k * objects + j)
+        if floats[memory] != layout.FREE:
+            _, nx, ny, nz = surface(floats, ints, layout.HEAD + layout.OBJECT * j, px, py, pz)
             restrain(k, memory, nx, ny, nz, y, rate, floats, ints)

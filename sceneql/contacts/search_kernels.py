@@ -2,9 +2,10 @@
 """Where a path that is not proved to be clear of a surface first meets it: compiled when the first comes near."""
 
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.contacts import layout
 from sceneql.contacts.body_path_kernels import NEVER, SEARCH, clear_piece, place
 from sceneql.contacts.impulse_kernels import STILL
-from sceneql.contacts.shape_kernels import DEPTH, surface
+from sceneql.contacts.shape_kernels import surface
 
 TOUCH = 1e-12
 """Distance, as a part of the coordinates (or of a meter), below which a body touches."""
@@ -62,7 +63,7 @@ def search(path, length, floats, ints, at, reach):
         return 0.0
     if length == 0.0:
         return NEVER
-    smallest = min(0.125, (floats[ints[at + DEPTH]] + reach) / length)
+    smallest = min(0.125, (floats[ints[at + layout.DEPTH]] + reach) / length)
     contact = min(start, 0.0)
     slack = touch if leaving else 0.0
     low, s, ds = 0.0, 0.0, 0.5

@@ -28,13 +28,8 @@ from numba import types
 from sceneql.compiled.kernels import lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.compiled.numbered_kernels import kernel_at
+from sceneql.contacts import layout
 from sceneql.system.signatures_kernels import A, F, I, N
-
-SURFACE, BEND, CLEAR, NEAR, PLACE, ROTATION, SIZE, DEPTH, MOVING, BEFORE = range(10)
-AFTER = BEFORE + 2
-FLAT = AFTER + 2
-DATA = FLAT + 1
-OBJECT = DATA + 1
 
 UNIT = 4e-16
 """How far from 1 the square of a normal may be that counts as of unit length: an ulp or two."""
@@ -66,10 +61,10 @@ def turn(floats, at, x, y, z):
 @lean_inlined
 def facing(floats, ints, at, x, y, z):
     """Signed distance from a plane, and its normal."""
-    place, size = ints[at + PLACE], ints[at + SIZE]
+    place, size = ints[at + layout.PLACE], ints[at + layout.SIZE]
     a, b, c = floats[size], floats[size + 1], floats[size + 2]
-    if floats[ints[at + ROTATION]] != 1.0:
-        a, b, c = turn(floats, ints[at + ROTATION], a, b, c)
+    if floats[ints[at + layout.ROTATION]] != 1.0:
+        a, b, c = turn(floats, ints[at + layout.ROTATION], a, b, c)
     square = a * a + b * b + c * c
     if abs(square - 1.0) > UNIT:
         scale = 1.0 / math.sqrt(square)
@@ -80,25 +75,25 @@ def facing(floats, ints, at, x, y, z):
 @lean_inlined
 def surface(floats, ints, at, x, y, z):
     """Signed distance and normal of the object at ints[at:]."""
-    if ints[at + FLAT] != 0:
+    if ints[at + layout.FLAT] != 0:
         return facing(floats, ints, at, x, y, z)
-    return surface_at(ints[at + SURFACE])(floats, ints, at, x, y, z)
+    return surface_at(ints[at + layout.SURFACE])(floats, ints, at, x, y, z)
 
 
 @lean_inlined
 def bend(floats, ints, at, x, y, z, vx, vy, vz):
     """How fast a straight path leaves the surface of the object at ints[at:]."""
-    if ints[at + FLAT] != 0:
+    if ints[at + layout.FLAT] != 0:
         return 0.0
-    return bend_at(ints[at + BEND])(floats, ints, at, x, y, z, vx, vy, vz)
+    return bend_at(ints[at + layout.BEND])(floats, ints, at, x, y, z, vx, vy, vz)
 
 
 @lean_inlined
 def clear(floats, ints, at, x, y, z, radius):
     """Whether it is proved that the object at ints[at:] has no point within a radius."""
-    if ints[at + FLAT] != 0:
+    if ints[at + layout.FLAT] != 0:
         return facing(floats, ints, at, x, y, z)[0] > radius
-    return clear_at(ints[at + CLEAR])(floats, ints, at, x, y, z, radius)
+    return clear_at(ints[at + layout.CLEAR])(floats, ints, at, x, y, z, radius)
 
 
 @lean_inlined
@@ -114,14 +109,14 @@ def unturn(floats, at, x, y, z):
 @lean_inlined
 def inward(floats, ints, at, x, y, z):
     """A point in the object's own coordinates."""
-    p = ints[at + PLACE]
-    return unturn(floats, ints[at + ROTATION], x - floats[p], y - floats[p + 1], z - floats[p + 2])
+    p = ints[at + layout.PLACE]
+    return unturn(floats, ints[at + layout.ROTATION], x - floats[p], y - floats[p + 1], z - floats[p + 2])
 
 
 @lean_inlined
 def velocity(floats, ints, at, x, y, z):
     """Velocity [m/s] of the object's own point at (x, y, z)."""
-    if ints[at + MOVING] == 0:
+    if ints[at + layout.MOVING] == 0:
         return 0.0, 0.0, 0.0
     return moving_velocity(floats, ints, at, x, y, z)
 
@@ -129,6 +124,6 @@ def velocity(floats, ints, at, x, y, z):
 @lean_inlined
 def acceleration(floats, ints, at, x, y, z):
     """Acceleration [m/s^2] of the object's own point at (x, y, z)."""
-    if ints[at + MOVING] == 0:
+    if ints[at + layout.MOVING] == 0:
         return 0.0, 0.0, 0.0
     return moving_acceleration(floats, ints, at, x, y, z)

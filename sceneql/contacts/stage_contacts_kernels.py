@@ -15,44 +15,12 @@ import math
 
 import numpy as np
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import kernel, lean_inlined
-from sceneql.contacts.impulse_kernels import (
-    BODIES,
-    FRICTION,
-    HEAD,
-    INVERSE,
-    LAST,
-    MASS,
-    OBJECTS,
-    PAIRS,
-    POSITION,
-    RADIUS,
-    THICKNESS,
-    VELOCITY,
-    WORK,
-)
-from sceneql.contacts.memory_kernels import (
-    ALONG,
-    EARLIER,
-    FREE,
-    HOLD,
-    LET_GO,
-    LIST,
-    LOAD,
-    NUMBER,
-    PAIR,
-    PRESS,
-    PULL,
-    RESTING,
-    STAGE,
-    TIED,
-    firmness,
-)
-from sceneql.contacts.pair_kernels import body_of
-from sceneql.contacts.shape_kernels import OBJECT, surface, velocity
+from sceneql.contacts import layout
+from sceneql.contacts.pair_kernels import HOLD, body_of, firmness
+from sceneql.contacts.shape_kernels import surface, velocity
 
-DEFINITE_AT = 2
-"""floats[2]: above 0 while slopes are asked for, and ties are to stay (system.Slopes)."""
 SWEEPS = 50
 """Over the objects that a mass touches at once."""
 PATIENCE = 3
@@ -64,17 +32,17 @@ MOST_LET_GO = 2
 @lean_inlined
 def change_tie(memory, gap, floats):
     """Tie a pair that is inside; let go one that has been pulling."""
-    tied = floats[memory + TIED]
+    tied = floats[memory + layout.TIED]
     if tied == 0.0:
         if gap < 0.0:
-            floats[memory + TIED] = 1.0
-    elif floats[memory + LOAD] >= 0.0:
-        floats[memory + TIED] = 1.0
-    elif tied < PATIENCE or floats[memory + LET_GO] >= MOST_LET_GO:
-        floats[memory + TIED] = tied + 1.0
+            floats[memory + layout.TIED] = 1.0
+    elif floats[memory + layout.LOAD] >= 0.0:
+        floats[memory + layout.TIED] = 1.0
+    elif tied < PATIENCE or floats[memory + layout.LET_GO] >= MOST_LET_GO:
+        floats[memory + layout.TIED] = tied + 1.0
     else:
-        floats[memory + TIED] = 0.0
-        floats[memory + LET_GO] += 1.0
+        floats[memory + layout.TIED] = 0.0
+        floats[memory + layout.LET_GO] += 1.0
 
 
 @lean_inlined
@@ -83,30 +51,30 @@ def press(k, a, base, fresh, y, rate, seen, floats, ints):
 
     ``seen`` (4 objects,): gap and normal of each.
     """
-    objects = ints[OBJECTS]
-    at, to = ints[POSITION] + 3 * k, ints[VELOCITY] + 3 * k
-    reach = floats[ints[RADIUS] + k] + floats[ints[THICKNESS]]
+    objects = ints[layout.OBJECTS]
+    at, to = ints[layout.POSITION] + 3 * k, ints[layout.VELOCITY] + 3 * k
+    reach = floats[ints[layout.RADIUS] + k] + floats[ints[layout.THICKNESS]]
     ties = 0
     for j in range(objects):
-        d, nx, ny, nz = surface(floats, ints, HEAD + OBJECT * j, y[at], y[at + 1], y[at + 2])
+        d, nx, ny, nz = surface(floats, ints, layout.HEAD + layout.OBJECT * j, y[at], y[at + 1], y[at + 2])
         seen[4 * j], seen[4 * j + 1], seen[4 * j + 2], seen[4 * j + 3] = d - reach, nx, ny, nz
-        memory = ints[PAIRS] + PAIR * (k * objects + j)
+        memory = ints[layout.PAIRS] + layout.PAIR * (k * objects + j)
         if fresh:
             change_tie(memory, d - reach, floats)
-        ties += floats[memory + TIED] > 0.0
-        floats[memory + LOAD] = floats[memory + PULL] = 0.0
-        floats[memory + PRESS] = rate[to] * nx + rate[to + 1] * ny + rate[to + 2] * nz
+        ties += floats[memory + layout.TIED] > 0.0
+        floats[memory + layout.LOAD] = floats[memory + layout.PULL] = 0.0
+        floats[memory + layout.PRESS] = rate[to] * nx + rate[to + 1] * ny + rate[to + 2] * nz
     for _ in range(SWEEPS if ties > 1 else ties):
         change = 0.0
         for j in range(objects):
-            memory = ints[PAIRS] + PAIR * (k * objects + j)
-            if floats[memory + TIED] == 0.0:
+            memory = ints[layout.PAIRS] + layout.PAIR * (k * objects + j)
+            if floats[memory + layout.TIED] == 0.0:
                 continue
             wanted = -seen[4 * j] / a
             for c in range(3):
                 wanted += seen[4 * j + 1 + c] * (y[to + c] - floats[base + to + c] - a * rate[to + c])
             add = wanted / a
-            floats[memory + LOAD] += add
+            floats[memory + layout.LOAD] += add
             for c in range(3):
                 rate[to + c] += add * seen[4 * j + 1 + c]
             change = max(change, abs(add))
@@ -122,14 +90,15 @@ def rub(k, j, a, base, firm, nx, ny, nz, y, rate, floats, ints):
     Its bound is by the load of the step before, where there was one, so that slopes are symmetric. A mass that only
     arrives has it from its impact.
     """
-    memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
-    to = ints[VELOCITY] + 3 * k
-    load = max(0.0, floats[memory + LOAD]) if math.isnan(floats[memory + EARLIER]) else floats[memory + EARLIER]
-    most = floats[ints[FRICTION]] * load
-    if floats[memory] == FREE or not most > 0.0:
+    memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
+    to = ints[layout.VELOCITY] + 3 * k
+    earlier = floats[memory + layout.EARLIER]
+    load = max(0.0, floats[memory + layout.LOAD]) if math.isnan(earlier) else earlier
+    most = floats[ints[layout.FRICTION]] * load
+    if floats[memory] == layout.FREE or not most > 0.0:
         return
     px, py, pz, vx, vy, vz = body_of(ints, k, y)
-    ux, uy, uz = velocity(floats, ints, HEAD + OBJECT * j, px, py, pz)
+    ux, uy, uz = velocity(floats, ints, layout.HEAD + layout.OBJECT * j, px, py, pz)
     vx, vy, vz = vx - ux, vy - uy, vz - uz
     vn = vx * nx + vy * ny + vz * nz
     vx, vy, vz = vx - vn * nx, vy - vn * ny, vz - vn * nz
@@ -146,56 +115,56 @@ def rub(k, j, a, base, firm, nx, ny, nz, y, rate, floats, ints):
     else:
         part, tie = most / slip, min(firm, most / (slip - a * most))
         dx, dy, dz = sx / slip, sy / slip, sz / slip
-    floats[memory + PULL] = tie
-    floats[memory + ALONG], floats[memory + ALONG + 1], floats[memory + ALONG + 2] = dx, dy, dz
+    floats[memory + layout.PULL] = tie
+    floats[memory + layout.ALONG], floats[memory + layout.ALONG + 1], floats[memory + layout.ALONG + 2] = dx, dy, dz
     along = vx * dx + vy * dy + vz * dz
     rate[to] -= part * sx + tie * (vx - along * dx)
     rate[to + 1] -= part * sy + tie * (vy - along * dy)
     rate[to + 2] -= part * sz + tie * (vz - along * dz)
-    rate[ints[WORK]] += floats[ints[MASS] + k] * part * (sx * vx + sy * vy + sz * vz)
+    rate[ints[layout.WORK]] += floats[ints[layout.MASS] + k] * part * (sx * vx + sy * vy + sz * vz)
 
 
 @lean_inlined
 def begins(floats, ints):
     """Whether the stage is another one than last time."""
-    at = ints[LAST] + LIST + ints[BODIES] + 1
-    other = floats[at] != floats[NUMBER]
-    floats[at] = floats[NUMBER]
+    at = ints[layout.LAST] + layout.LIST + ints[layout.BODIES] + 1
+    other = floats[at] != floats[channels.STAGES]
+    floats[at] = floats[channels.STAGES]
     return other
 
 
 @kernel(HOLD, inner=True)
 def hold(y, rate, floats, ints):
     """Add what the surfaces do to the accelerations of listed masses within a stage."""
-    a = floats[STAGE]
-    base = floats.size - 3 * y.size
+    a = floats[channels.STAGE]
+    base = floats.size - channels.BASE * y.size
     firm = firmness(a, floats, ints)
-    objects = ints[OBJECTS]
+    objects = ints[layout.OBJECTS]
     seen = np.empty(4 * objects)
-    fresh = floats[DEFINITE_AT] == 0.0
+    fresh = floats[channels.DEFINITE] == 0.0  # ties are to stay while slopes are asked for
     first = begins(floats, ints)
-    for i in range(int(floats[ints[LAST] + RESTING])):
-        k = int(floats[ints[LAST] + LIST + i])
-        if floats[ints[INVERSE] + k] == 0.0:
+    for i in range(int(floats[ints[layout.LAST] + layout.RESTING])):
+        k = int(floats[ints[layout.LAST] + layout.LIST + i])
+        if floats[ints[layout.INVERSE] + k] == 0.0:
             continue
-        to = ints[VELOCITY] + 3 * k
+        to = ints[layout.VELOCITY] + 3 * k
         for j in range(objects if first else 0):
-            memory = ints[PAIRS] + PAIR * (k * objects + j)
+            memory = ints[layout.PAIRS] + layout.PAIR * (k * objects + j)
             # What an earlier stage has stopped stays to the end of the step, for its impact.
-            stopped = floats[memory] == FREE and floats[memory + TIED] > 0.0
-            floats[memory + LET_GO] = MOST_LET_GO if stopped else 0.0
+            stopped = floats[memory] == layout.FREE and floats[memory + layout.TIED] > 0.0
+            floats[memory + layout.LET_GO] = MOST_LET_GO if stopped else 0.0
         if press(k, a, base, fresh, y, rate, seen, floats, ints) == 0:
             continue
         for j in range(objects):
-            memory = ints[PAIRS] + PAIR * (k * objects + j)
-            if floats[memory + TIED] > 0.0:
+            memory = ints[layout.PAIRS] + layout.PAIR * (k * objects + j)
+            if floats[memory + layout.TIED] > 0.0:
                 gap, nx, ny, nz = seen[4 * j], seen[4 * j + 1], seen[4 * j + 2], seen[4 * j + 3]
                 rub(k, j, a, base, firm, nx, ny, nz, y, rate, floats, ints)
                 px, py, pz, vx, vy, vz = body_of(ints, k, y)
-                ux, uy, uz = velocity(floats, ints, HEAD + OBJECT * j, px, py, pz)
+                ux, uy, uz = velocity(floats, ints, layout.HEAD + layout.OBJECT * j, px, py, pz)
                 speed = (vx - ux) * nx + (vy - uy) * ny + (vz - uz) * nz
-                if floats[memory] != FREE:  # what an impact takes is told when the step is done
-                    rate[ints[WORK]] -= floats[ints[MASS] + k] * floats[memory + LOAD] * speed
+                if floats[memory] != layout.FREE:  # what an impact takes is told when the step is done
+                    rate[ints[layout.WORK]] -= floats[ints[layout.MASS] + k] * floats[memory + layout.LOAD] * speed
                 tie = firm * gap / a
                 rate[to] -= tie * nx
                 rate[to + 1] -= tie * ny

@@ -3,36 +3,12 @@
 
 import math
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.contacts.impulse_kernels import (
-    FRICTION,
-    HEAD,
-    INVERSE,
-    LAST,
-    MASS,
-    OBJECTS,
-    PAIRS,
-    POSITION,
-    STILL,
-)
-from sceneql.contacts.memory_kernels import (
-    ALONG,
-    BETWEEN,
-    FREE,
-    LIST,
-    LOAD,
-    PAIR,
-    PULL,
-    RESTING,
-    SLIDES,
-    STAGE,
-    STICKS,
-    TIED,
-    firmness,
-    tightness,
-)
-from sceneql.contacts.pair_kernels import body_of
-from sceneql.contacts.shape_kernels import OBJECT, surface, velocity
+from sceneql.contacts import layout
+from sceneql.contacts.impulse_kernels import STILL
+from sceneql.contacts.pair_kernels import body_of, firmness, tightness
+from sceneql.contacts.shape_kernels import surface, velocity
 from sceneql.system.signatures_kernels import TERM
 
 
@@ -62,41 +38,42 @@ def add_around(entries, at, across, along, nx, ny, nz, dx, dy, dz):
 @lean_inlined
 def grip(memory, k, j, nx, ny, nz, y, floats, ints):
     """How friction turns with the slip [1/s], and the slip's direction, of a pair that rests between steps."""
-    if floats[ints[FRICTION]] > 0.0 and floats[memory] == STICKS:
+    if floats[ints[layout.FRICTION]] > 0.0 and floats[memory] == layout.STICKS:
         return tightness(floats, ints), 0.0, 0.0, 0.0
-    if floats[ints[FRICTION]] > 0.0 and floats[memory] == SLIDES:
+    if floats[ints[layout.FRICTION]] > 0.0 and floats[memory] == layout.SLIDES:
         px, py, pz, vx, vy, vz = body_of(ints, k, y)
-        ux, uy, uz = velocity(floats, ints, HEAD + OBJECT * j, px, py, pz)
+        ux, uy, uz = velocity(floats, ints, layout.HEAD + layout.OBJECT * j, px, py, pz)
         vx, vy, vz = vx - ux, vy - uy, vz - uz
         vn = vx * nx + vy * ny + vz * nz
         vx, vy, vz = vx - vn * nx, vy - vn * ny, vz - vn * nz
         slip = math.sqrt(vx * vx + vy * vy + vz * vz)
         if slip > STILL:
-            return floats[ints[FRICTION]] * floats[memory + LOAD] / slip, vx / slip, vy / slip, vz / slip
+            return floats[ints[layout.FRICTION]] * floats[memory + layout.LOAD] / slip, vx / slip, vy / slip, vz / slip
     return 0.0, 0.0, 0.0, 0.0
 
 
 @lean(TERM, inner=True)
 def holds(t, y, entries, floats, ints):
     """Of body k, the block by its own velocity from 9 k on: ties, as firm as `hold` has left them in the memory."""
-    between = floats[STAGE] == BETWEEN
-    if floats[STAGE] <= 0.0 and not between:
+    between = floats[channels.STAGE] == channels.BETWEEN
+    if floats[channels.STAGE] <= 0.0 and not between:
         return
-    firm = tightness(floats, ints) if between else firmness(floats[STAGE], floats, ints)
-    for i in range(int(floats[ints[LAST] + RESTING])):
-        k = int(floats[ints[LAST] + LIST + i])
-        if floats[ints[INVERSE] + k] == 0.0:
+    firm = tightness(floats, ints) if between else firmness(floats[channels.STAGE], floats, ints)
+    for i in range(int(floats[ints[layout.LAST] + layout.RESTING])):
+        k = int(floats[ints[layout.LAST] + layout.LIST + i])
+        if floats[ints[layout.INVERSE] + k] == 0.0:
             continue
-        at, mass = ints[POSITION] + 3 * k, floats[ints[MASS] + k]
-        for j in range(ints[OBJECTS]):
-            memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
-            if floats[memory + TIED] == 0.0 if not between else floats[memory] == FREE:
+        at, mass = ints[layout.POSITION] + 3 * k, floats[ints[layout.MASS] + k]
+        for j in range(ints[layout.OBJECTS]):
+            memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
+            if floats[memory + layout.TIED] == 0.0 if not between else floats[memory] == layout.FREE:
                 continue
-            _, nx, ny, nz = surface(floats, ints, HEAD + OBJECT * j, y[at], y[at + 1], y[at + 2])
+            _, nx, ny, nz = surface(floats, ints, layout.HEAD + layout.OBJECT * j, y[at], y[at + 1], y[at + 2])
             if between:
                 across, dx, dy, dz = grip(memory, k, j, nx, ny, nz, y, floats, ints)
             else:
                 # Across the slip, or both ways where the mass sticks.
-                across = floats[memory + PULL]
-                dx, dy, dz = floats[memory + ALONG], floats[memory + ALONG + 1], floats[memory + ALONG + 2]
+                across = floats[memory + layout.PULL]
+                slide = memory + layout.ALONG
+                dx, dy, dz = floats[slide], floats[slide + 1], floats[slide + 2]
             add_around(entries, 9 * k, mass * across, mass * firm, nx, ny, nz, dx, dy, dz)

@@ -1,32 +1,11 @@
 # mypy: ignore-errors
 """The normal force that carries bodies that rest, and Coulomb's friction: compiled when the first body needs them."""
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
-from sceneql.contacts.impulse_kernels import (
-    BODIES,
-    FRICTION,
-    HEAD,
-    INVERSE,
-    LAST,
-    OBJECTS,
-    PAIRS,
-    VELOCITY,
-)
-from sceneql.contacts.memory_kernels import (
-    BETWEEN,
-    FREE,
-    LIST,
-    LOAD,
-    OF_BODY,
-    OF_PAIR,
-    PAIR,
-    PRESS,
-    RESTING,
-    STAGE,
-    SUPPORT,
-)
-from sceneql.contacts.pair_kernels import away, is_flat
+from sceneql.contacts import layout
+from sceneql.contacts.pair_kernels import OF_BODY, OF_PAIR, SUPPORT, away, is_flat
 from sceneql.contacts.pressing_kernels import pressing
 from sceneql.contacts.shape_kernels import facing
 
@@ -44,14 +23,14 @@ def press_of_pairs(k, near, y, rate, floats, ints):
     """
     resting, last = 0, 0
     nx, ny, nz = 0.0, 0.0, 0.0
-    for j in range(ints[OBJECTS]):
-        memory = ints[PAIRS] + PAIR * (k * ints[OBJECTS] + j)
-        rests = floats[memory] != FREE
+    for j in range(ints[layout.OBJECTS]):
+        memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
+        rests = floats[memory] != layout.FREE
         if not rests and (not near or away(k, j, y, floats, ints)):
             continue
         press, ax, ay, az = pressing(k, j, y, rate, floats, ints)
-        floats[memory + LOAD] = 0.0
-        floats[memory + PRESS] = press
+        floats[memory + layout.LOAD] = 0.0
+        floats[memory + layout.PRESS] = press
         if rests:
             resting += 1
             last, nx, ny, nz = memory, ax, ay, az
@@ -61,9 +40,9 @@ def press_of_pairs(k, near, y, rate, floats, ints):
 @lean_inlined
 def bear(k, memory, nx, ny, nz, rate, floats, ints):
     """The normal force that leaves a single resting pair not pressing."""
-    to = ints[VELOCITY] + 3 * k
-    load = max(0.0, -floats[memory + PRESS])
-    floats[memory + LOAD] = load
+    to = ints[layout.VELOCITY] + 3 * k
+    load = max(0.0, -floats[memory + layout.PRESS])
+    floats[memory + layout.LOAD] = load
     rate[to] += load * nx
     rate[to + 1] += load * ny
     rate[to + 2] += load * nz
@@ -72,16 +51,16 @@ def bear(k, memory, nx, ny, nz, rate, floats, ints):
 @lean_inlined
 def bear_lying(y, rate, floats, ints):
     """What `support` does, on a single plane that never moves."""
-    _, nx, ny, nz = facing(floats, ints, HEAD, 0.0, 0.0, 0.0)
-    resting_at = ints[LAST] + LIST
-    for i in range(int(floats[ints[LAST] + RESTING])):
+    _, nx, ny, nz = facing(floats, ints, layout.HEAD, 0.0, 0.0, 0.0)
+    resting_at = ints[layout.LAST] + layout.LIST
+    for i in range(int(floats[ints[layout.LAST] + layout.RESTING])):
         k = int(floats[resting_at + i])
-        memory, to = ints[PAIRS] + PAIR * k, ints[VELOCITY] + 3 * k
-        if floats[memory] == FREE or floats[ints[INVERSE] + k] == 0.0:
+        memory, to = ints[layout.PAIRS] + layout.PAIR * k, ints[layout.VELOCITY] + 3 * k
+        if floats[memory] == layout.FREE or floats[ints[layout.INVERSE] + k] == 0.0:
             continue
-        floats[memory + PRESS] = rate[to] * nx + rate[to + 1] * ny + rate[to + 2] * nz
+        floats[memory + layout.PRESS] = rate[to] * nx + rate[to + 1] * ny + rate[to + 2] * nz
         bear(k, memory, nx, ny, nz, rate, floats, ints)
-        if floats[ints[FRICTION]] > 0.0:
+        if floats[ints[layout.FRICTION]] > 0.0:
             rub(k, y, rate, floats, ints)
 
 
@@ -92,15 +71,15 @@ def support(first, y, rate, floats, ints):
     With ``first`` at least 0, bodies from that one on are looked at, and it is also noted how free pairs would press.
     """
     near = first >= 0
-    ties = floats[STAGE] == BETWEEN
+    ties = floats[channels.STAGE] == channels.BETWEEN
     if not near and not ties and is_flat(ints):
         bear_lying(y, rate, floats, ints)
         return
-    resting_at = ints[LAST] + LIST
-    count = ints[BODIES] if near else int(floats[ints[LAST] + RESTING])
+    resting_at = ints[layout.LAST] + layout.LIST
+    count = ints[layout.BODIES] if near else int(floats[ints[layout.LAST] + layout.RESTING])
     for i in range(max(first, 0), count):
         k = i if near else int(floats[resting_at + i])
-        if floats[ints[INVERSE] + k] == 0.0:
+        if floats[ints[layout.INVERSE] + k] == 0.0:
             continue
         resting, memory, nx, ny, nz = press_of_pairs(k, near, y, rate, floats, ints)
         if resting > 1 and ties:
@@ -111,5 +90,5 @@ def support(first, y, rate, floats, ints):
             carry(k, y, rate, floats, ints)
         elif resting == 1:
             bear(k, memory, nx, ny, nz, rate, floats, ints)
-        if resting > 0 and floats[ints[FRICTION]] > 0.0:
+        if resting > 0 and floats[ints[layout.FRICTION]] > 0.0:
             rub(k, y, rate, floats, ints)

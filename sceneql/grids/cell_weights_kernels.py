@@ -1,37 +1,39 @@
 # mypy: ignore-errors
 """The cells around a point, and their weights in the linear interpolant between the centers of cells.
 
-ints of a field, from ``first`` on: at, nx, ny, nz, volumes (0 outside), box (low corner and sides: 6 floats), 1 where
-periodic along x, y, z. Cells outside the domain have no weight; the others' sum to 1, or there are none.
+Cells outside the domain have no weight; the others' sum to 1, or there are none.
 """
 
 import math
 
 from sceneql.compiled.kernels import lean_inlined
 
+AT, NX, NY, NZ, VOLUMES_AT, BOX_AT, PERIODIC = range(7)
+"""Integers of a field, from ``first`` on: volumes are 0 outside, a box is low corner and sides (6 floats), and from
+PERIODIC on stands 1 where it is periodic along x, y, z."""
 CORNERS = 8
 
 
 @lean_inlined
 def moved(cell, axis, way, floats, ints, first):
     """The neighbor of a cell along an axis, round a periodic grid; the cell itself where that is outside."""
-    nx, ny, nz = ints[first + 1], ints[first + 2], ints[first + 3]
+    nx, ny, nz = ints[first + NX], ints[first + NY], ints[first + NZ]
     count = nx if axis == 0 else (ny if axis == 1 else nz)
     stride = 1 if axis == 0 else (nx if axis == 1 else nx * ny)
     place = cell // stride % count
     found = cell + way * stride
     if place + way < 0 or place + way >= count:
-        if ints[first + 6 + axis] == 0:
+        if ints[first + PERIODIC + axis] == 0:
             return cell
         found = cell - way * (count - 1) * stride
-    return found if floats[ints[first + 4] + found] > 0.0 else cell
+    return found if floats[ints[first + VOLUMES_AT] + found] > 0.0 else cell
 
 
 @lean_inlined
 def around(x, y, z, floats, ints, first, cells, weights):
     """Fill cells and weights (CORNERS,); False where the point lies outside, half a cell away from its last cells."""
-    nx, ny, nz = ints[first + 1], ints[first + 2], ints[first + 3]
-    box, volumes = ints[first + 5], ints[first + 4]
+    nx, ny, nz = ints[first + NX], ints[first + NY], ints[first + NZ]
+    box, volumes = ints[first + BOX_AT], ints[first + VOLUMES_AT]
     total = 0.0
     for corner in range(CORNERS):
         weight = 1.0
@@ -48,7 +50,7 @@ def around(x, y, z, floats, ints, first, cells, weights):
             below = math.floor(place)
             weight *= place - below if high else 1.0 - (place - below)
             index = int(below) + high
-            if ints[first + 6 + axis] == 1:
+            if ints[first + PERIODIC + axis] == 1:
                 index %= count
             if index < 0 or index >= count:
                 weight = 0.0

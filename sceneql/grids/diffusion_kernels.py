@@ -11,19 +11,24 @@ from sceneql.compiled.kernels import lean
 from sceneql.grids.multigrid.stencil_kernels import flow
 from sceneql.system.signatures_kernels import TERM
 
+AT, NX, NY, NZ, VOLUMES, SINK, FED, GX, GY, GZ, INFLOW = range(11)
+"""Of `spread`: the first cell in y, and the entry of the inflow."""
+COEFFICIENTS, FACES, TIES, SINKS, OWNERS, AREAS, DISTANCES, RESISTANCES, WEIGHTS, OWNERS_AT = 0, 4, 7, *range(10, 17)
+"""Of `conduct`, around NX, NY, NZ: conductances along x, y, z, the same of area/distance; how many faces the boundary
+has, and from OWNERS_AT on the cell of each."""
+CELLS, BASE, TARGET = range(3)
+"""Of `begin`."""
+
 
 @lean(TERM, inner=True)
 def spread(t, y, rate, floats, ints):
-    """V dc/dt = sum of g (neighbor - c) + fed - sink c; the last two, summed over all cells, are what comes in.
-
-    ints: at, nx, ny, nz, volumes, sink, fed, gx, gy, gz, entry of the inflow.
-    """
-    at, nx, ny, nz = ints[0], ints[1], ints[2], ints[3]
+    """V dc/dt = sum of g (neighbor - c) + fed - sink c; the last two, summed over all cells, are what comes in."""
+    at, nx, ny, nz = ints[AT], ints[NX], ints[NY], ints[NZ]
     n = nx * ny * nz
-    volume, sink = floats[ints[4] : ints[4] + n], floats[ints[5] : ints[5] + n]
-    fed, x = floats[ints[6] : ints[6] + n], y[at : at + n]
-    gx, gy = floats[ints[7] : ints[7] + n], floats[ints[8] : ints[8] + n]
-    gz = floats[ints[9] : ints[9] + (n if nz > 1 else 0)]
+    volume, sink = floats[ints[VOLUMES] : ints[VOLUMES] + n], floats[ints[SINK] : ints[SINK] + n]
+    fed, x = floats[ints[FED] : ints[FED] + n], y[at : at + n]
+    gx, gy = floats[ints[GX] : ints[GX] + n], floats[ints[GY] : ints[GY] + n]
+    gz = floats[ints[GZ] : ints[GZ] + (n if nz > 1 else 0)]
     deep, plane = nz > 1, nx * ny
     inflow = 0.0
     own = rate[at : at + n]
@@ -42,7 +47,7 @@ def spread(t, y, rate, floats, ints):
                 own[c] += (total + fed[c] - sink[c] * x[c]) / volume[c]
             for c in range(row, last + 1):
                 inflow += fed[c] - sink[c] * x[c]
-    rate[ints[10]] += inflow
+    rate[ints[INFLOW]] += inflow
 
 
 @lean(TERM, inner=True)
@@ -50,38 +55,36 @@ def conduct(t, y, rate, floats, ints):
     """Conductances, boundary exchange and its weights from the coefficients of cells, which vary.
 
     A face has the mean of its cells' coefficients times area/distance; a boundary face, through the way to it and its
-    own resistance r, the weight A D / (D r + distance). ints: coefficients, nx, ny, nz, gx, gy, gz, the same of
-    area/distance, sink, then the boundary: its count, cells (in ints from the end of this head on), areas, distances,
-    resistances, weights.
+    own resistance r, the weight A D / (D r + distance).
     """
-    d, nx, ny, nz = ints[0], ints[1], ints[2], ints[3]
+    d, nx, ny, nz = ints[COEFFICIENTS], ints[NX], ints[NY], ints[NZ]
     plane = nx * ny
     n = plane * nz
     for c in range(n):
         if not floats[d + c] >= 0.0:
             floats[d + c] = math.nan
-        floats[ints[10] + c] = 0.0
+        floats[ints[SINKS] + c] = 0.0
     for c in range(n):
         i, j, k = c % nx, c // nx % ny, c // plane
         left = c - 1 if i > 0 else c + nx - 1
         below = c - nx if j > 0 else c + plane - nx
-        floats[ints[4] + c] = floats[ints[7] + c] * 0.5 * (floats[d + c] + floats[d + left])
-        floats[ints[5] + c] = floats[ints[8] + c] * 0.5 * (floats[d + c] + floats[d + below])
+        floats[ints[FACES] + c] = floats[ints[TIES] + c] * 0.5 * (floats[d + c] + floats[d + left])
+        floats[ints[FACES + 1] + c] = floats[ints[TIES + 1] + c] * 0.5 * (floats[d + c] + floats[d + below])
         if nz > 1:
             back = c - plane if k > 0 else c + n - plane
-            floats[ints[6] + c] = floats[ints[9] + c] * 0.5 * (floats[d + c] + floats[d + back])
-    for k in range(ints[11]):
-        cell = ints[16 + k]
+            floats[ints[FACES + 2] + c] = floats[ints[TIES + 2] + c] * 0.5 * (floats[d + c] + floats[d + back])
+    for k in range(ints[OWNERS]):
+        cell = ints[OWNERS_AT + k]
         own = floats[d + cell]
-        if floats[ints[14] + k] < 0.0:
+        if floats[ints[RESISTANCES] + k] < 0.0:
             continue  # a given flux
-        weight = floats[ints[12] + k] * own / (own * floats[ints[14] + k] + floats[ints[13] + k])
-        floats[ints[15] + k] = weight
-        floats[ints[10] + cell] += weight
+        weight = floats[ints[AREAS] + k] * own / (own * floats[ints[RESISTANCES] + k] + floats[ints[DISTANCES] + k])
+        floats[ints[WEIGHTS] + k] = weight
+        floats[ints[SINKS] + cell] += weight
 
 
 @lean(TERM, inner=True)
 def begin(t, y, rate, floats, ints):
-    """What is fed, before what varies is added: floats[ints[2] + c] = floats[ints[1] + c], c below ints[0]."""
-    for c in range(ints[0]):
-        floats[ints[2] + c] = floats[ints[1] + c]
+    """What is fed, before what varies is added."""
+    for c in range(ints[CELLS]):
+        floats[ints[TARGET] + c] = floats[ints[BASE] + c]

@@ -2,27 +2,28 @@
 """The derivatives of the rate of a field on a grid."""
 
 from sceneql.compiled.kernels import lean
+from sceneql.grids import diffusion_kernels as term
 from sceneql.system.signatures_kernels import TERM
+
+BEND, TIES, REACTION = term.INFLOW + 1, term.INFLOW + 2, term.INFLOW + 5
+"""Behind the integers of the term: dD/dc, and area/distance along x, y, z (all 0 where the coefficient does not depend
+on the field); d(source)/dc times the volume (0: none)."""
 
 
 @lean(TERM, inner=True)
 def spread(t, y, entries, floats, ints):
-    """Of diffusion_kernels.spread: n diagonal entries, then of every axis the entries (cell, before), (before, cell).
-
-    ints: those of the term, then the offset of dD/dc and of area/distance along x, y, z (all 0 where the coefficient
-    does not depend on the field), and the offset of d(source)/dc times the volume (0: none).
-    """
-    at, nx, ny, nz = ints[0], ints[1], ints[2], ints[3]
+    """Of the term `spread`: n diagonal entries, then of every axis the entries (cell, before), (before, cell)."""
+    at, nx, ny, nz = ints[term.AT], ints[term.NX], ints[term.NY], ints[term.NZ]
     plane = nx * ny
     n = plane * nz
-    volume, sink, bend = ints[4], ints[5], ints[11]
+    volume, sink, bend = ints[term.VOLUMES], ints[term.SINK], ints[BEND]
     for c in range(n):
         entries[c] -= floats[sink + c] / floats[volume + c]
-        if ints[15] > 0:
-            entries[c] += floats[ints[15] + c] / floats[volume + c]
+        if ints[REACTION] > 0:
+            entries[c] += floats[ints[REACTION] + c] / floats[volume + c]
     first = n
     for axis in range(3 if nz > 1 else 2):
-        g = ints[7 + axis]
+        g = ints[term.GX + axis]
         for c in range(n):
             i, j, k = c % nx, c // nx % ny, c // plane
             if axis == 0:
@@ -33,7 +34,7 @@ def spread(t, y, entries, floats, ints):
                 before = c - plane if k > 0 else c + n - plane
             own = other = floats[g + c]
             if bend > 0:
-                half = 0.5 * floats[ints[12 + axis] + c] * (y[at + c] - y[at + before])
+                half = 0.5 * floats[ints[TIES + axis] + c] * (y[at + c] - y[at + before])
                 own += half * floats[bend + c]
                 other -= half * floats[bend + before]
             entries[c] -= own / floats[volume + c]

@@ -5,15 +5,15 @@ A face's flow [m^3/s] stands with the cell on its high side (system.Grid), posit
 is the upstream cell's and half a limited slope (Sweby 1984, SIAM J. Numer. Anal. 21, 995-1011), of order 2 (van Leer
 1974, J. Comput. Phys. 14, 361-370) or 3 (Koren 1993, Notes on Numerical Fluid Mechanics 45, 117-138) where the field is
 smooth; where the cell behind it is missing, or none is asked for, the upstream cell's alone.
-
-ints: at, nx, ny, nz, divisors, volumes (0 outside), flows along x, y, z, 1 where periodic along x, y, z, limiter,
-strength (in floats), brought, leaving, both for a strength below 0, entry of the inflow.
 """
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.system.signatures_kernels import TERM
 
 UPWIND, VAN_LEER, KOREN = range(3)
+AT, NX, NY, NZ, DIVISORS, VOLUMES, FLOWS, PERIODIC, LIMITER = *range(7), 9, 12
+STRENGTH, BROUGHT, LEAVING, BROUGHT_BACK, LEAVING_BACK, INFLOW = range(13, 19)
+"""Volumes are 0 outside; flows, and 1 where periodic, along x, y, z; BACK: for a strength below 0."""
 
 
 @lean_inlined
@@ -43,13 +43,13 @@ def beyond(cell, place, count, stride, way, periodic, floats, volumes):
 @lean(TERM, inner=True)
 def carry(t, y, rate, floats, ints):
     """V dc/dt = what flows in less what flows out, and what goes through the boundary, which is inflow."""
-    at, nx, ny, nz = ints[0], ints[1], ints[2], ints[3]
-    divisors, volumes, kind = ints[4], ints[5], ints[12]
-    strength = floats[ints[13]]
+    at, nx, ny, nz = ints[AT], ints[NX], ints[NY], ints[NZ]
+    divisors, volumes, kind = ints[DIVISORS], ints[VOLUMES], ints[LIMITER]
+    strength = floats[ints[STRENGTH]]
     n = nx * ny * nz
     c = y[at : at + n]
     for axis in range(3 if nz > 1 else 2):
-        flows, periodic = ints[6 + axis], ints[9 + axis] == 1
+        flows, periodic = ints[FLOWS + axis], ints[PERIODIC + axis] == 1
         count = nx if axis == 0 else (ny if axis == 1 else nz)
         stride = 1 if axis == 0 else (nx if axis == 1 else nx * ny)
         for k in range(nz):
@@ -74,10 +74,11 @@ def carry(t, y, rate, floats, ints):
                     rate[at + before] -= flow * value / floats[divisors + before]
                     rate[at + cell] += flow * value / floats[divisors + cell]
     inflow = 0.0
-    brought, leaving = (ints[14], ints[15]) if strength >= 0.0 else (ints[16], ints[17])
+    brought = ints[BROUGHT] if strength >= 0.0 else ints[BROUGHT_BACK]
+    leaving = ints[LEAVING] if strength >= 0.0 else ints[LEAVING_BACK]
     for cell in range(n):
         through = abs(strength) * (floats[brought + cell] - floats[leaving + cell] * c[cell])
         if through != 0.0:
             rate[at + cell] += through / floats[divisors + cell]
             inflow += through
-    rate[ints[18]] += inflow
+    rate[ints[INFLOW]] += inflow

@@ -3,20 +3,18 @@
 
 import math
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.grids.drift_kernels import UPWIND, VAN_LEER, beyond
+from sceneql.grids import drift_kernels as term
 from sceneql.system.signatures_kernels import TERM
-
-DEFINITE_AT = 2
-"""Of floats: whether slopes are to be definite."""
 
 
 @lean_inlined
 def bends(kind, behind, ahead):
     """The derivatives of drift_kernels.half_slope by its two differences."""
-    if behind * ahead <= 0.0 or kind == UPWIND:
+    if behind * ahead <= 0.0 or kind == term.UPWIND:
         return 0.0, 0.0
-    if kind == VAN_LEER:
+    if kind == term.VAN_LEER:
         share = behind / (behind + ahead)
         return (1.0 - share) * (1.0 - share), share * share
     a, b = abs(behind), abs(ahead)
@@ -33,17 +31,17 @@ def carry(t, y, entries, floats, ints):
     Rows before and cell, each by the columns before the one before, before, cell, after the cell. Where slopes are to
     be definite (system.Slopes), those without a limiter: with them steps are found where its bends are in the way.
     """
-    at, nx, ny, nz = ints[0], ints[1], ints[2], ints[3]
-    divisors, volumes, kind = ints[4], ints[5], ints[12]
-    strength = floats[ints[13]]
+    at, nx, ny, nz = ints[term.AT], ints[term.NX], ints[term.NY], ints[term.NZ]
+    divisors, volumes, kind = ints[term.DIVISORS], ints[term.VOLUMES], ints[term.LIMITER]
+    strength = floats[ints[term.STRENGTH]]
     n = nx * ny * nz
     c = y[at : at + n]
-    leaving = ints[15] if strength >= 0.0 else ints[17]
+    leaving = ints[term.LEAVING] if strength >= 0.0 else ints[term.LEAVING_BACK]
     for cell in range(n):
         entries[cell] -= abs(strength) * floats[leaving + cell] / floats[divisors + cell]
     first = n
     for axis in range(3 if nz > 1 else 2):
-        flows, periodic = ints[6 + axis], ints[9 + axis] == 1
+        flows, periodic = ints[term.FLOWS + axis], ints[term.PERIODIC + axis] == 1
         count = nx if axis == 0 else (ny if axis == 1 else nz)
         stride = 1 if axis == 0 else (nx if axis == 1 else nx * ny)
         for cell in range(n):
@@ -55,13 +53,13 @@ def carry(t, y, entries, floats, ints):
             before = cell - stride if place > 0 else cell + (count - 1) * stride
             if flow > 0.0:
                 up, down, up_column, down_column, behind_column = before, cell, 1, 2, 0
-                behind = beyond(before, place - 1 if place > 0 else count - 1, count, stride, -1, periodic,
-                                floats, volumes)  # fmt: skip
+                behind = term.beyond(before, place - 1 if place > 0 else count - 1, count, stride, -1, periodic,
+                                     floats, volumes)  # fmt: skip
             else:
                 up, down, up_column, down_column, behind_column = cell, before, 2, 1, 3
-                behind = beyond(cell, place, count, stride, 1, periodic, floats, volumes)
+                behind = term.beyond(cell, place, count, stride, 1, periodic, floats, volumes)
             by_behind = by_ahead = 0.0
-            if behind >= 0 and not 0.0 < floats[DEFINITE_AT] < math.inf:
+            if behind >= 0 and not 0.0 < floats[channels.DEFINITE] < math.inf:
                 by_behind, by_ahead = bends(kind, c[up] - c[behind], c[down] - c[up])
             for row in range(2):
                 weight = -flow / floats[divisors + before] if row == 0 else flow / floats[divisors + cell]

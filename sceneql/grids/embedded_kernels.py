@@ -14,7 +14,8 @@ from sceneql.grids.grid_stage_kernels import (
     STAGES,
     TABLEAU,
 )
-from sceneql.grids.multigrid.linear_kernels import AT, NX, NY, NZ, SOLVER, VOLUME, solver_at
+from sceneql.grids.multigrid import layout
+from sceneql.grids.multigrid.linear_kernels import solver_at
 
 KEPT = 1.2
 """A longer step by less than that is not worth new factors."""
@@ -27,18 +28,18 @@ def embedded_error(h, a, y0, y1, work, settings, numbers, floats):
     base, scratch = work[:n], work[(1 + stages) * n : (2 + stages) * n]
     change, store = work[(2 + stages) * n : (3 + stages) * n], work[(3 + stages) * n :]
     plan = numbers[HEAD:]
-    solve = solver_at(plan[SOLVER])
+    solve = solver_at(plan[layout.SOLVER])
     e = TABLEAU + 2 * stages
-    at = plan[AT]
+    at = plan[layout.AT]
     size = 0.0
     for k in range(n):
         total = 0.0
         for j in range(stages):
             total += settings[e + j] * work[(1 + j) * n + k]
         base[k] = h * total
-    cells = plan[NX] * plan[NY] * plan[NZ]
+    cells = plan[layout.NX] * plan[layout.NY] * plan[layout.NZ]
     for c in range(cells):
-        scratch[c] = floats[plan[VOLUME] + c] / a * base[at + c]
+        scratch[c] = floats[plan[layout.VOLUME] + c] / a * base[at + c]
         size += scratch[c] * scratch[c]
     if size > 0.0 and not solve(plan, a, 1e-2 * math.sqrt(size), floats, scratch, change, store):
         work[0] = 0.25 * h

@@ -19,17 +19,8 @@ from numba import types
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
-from sceneql.grids.multigrid.linear_kernels import (
-    AT,
-    EXACT,
-    FED,
-    NX,
-    NY,
-    NZ,
-    SOLVER,
-    VOLUME,
-    solver_at,
-)
+from sceneql.grids.multigrid import layout
+from sceneql.grids.multigrid.linear_kernels import solver_at
 from sceneql.system.signatures_kernels import DENSE, STEP, A, F, I
 
 ITERATE = types.boolean(I, F, F, A, A, A, A, A, A, I, A, A, I)
@@ -48,15 +39,16 @@ SHARE = 0.02
 @lean_inlined
 def solve_stage(functions, t, a, base, y, slope, r, d, store, plan, settings, floats, ints):
     """y = base + a f(t, y) from a guess, and slope = f(t, y) of what was found; False where it was not."""
-    at = plan[AT]
-    n = plan[NX] * plan[NY] * plan[NZ]
+    at = plan[layout.AT]
+    n = plan[layout.NX] * plan[layout.NY] * plan[layout.NZ]
     r, d = r[:n], d[:n]
-    if plan[EXACT] == 1 and plan[FED] >= 0:
+    if plan[layout.EXACT] == 1 and plan[layout.FED] >= 0:
         # Linear and solved to rounding: once is enough.
-        volume, fed = floats[plan[VOLUME] : plan[VOLUME] + n], floats[plan[FED] : plan[FED] + n]
+        volume = floats[plan[layout.VOLUME] : plan[layout.VOLUME] + n]
+        fed = floats[plan[layout.FED] : plan[layout.FED] + n]
         for c in range(n):
             r[c] = volume[c] * base[at + c] / a + fed[c]
-        if not solver_at(plan[SOLVER])(plan, a, 0.0, floats, r, d, store):
+        if not solver_at(plan[layout.SOLVER])(plan, a, 0.0, floats, r, d, store):
             return False
         for c in range(n):
             y[at + c] = d[c]
@@ -103,7 +95,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         if not solve_stage(
             functions, t_stage, a, base, y1, slope, scratch, change, store, plan, settings, floats, ints
         ):
-            y1[plan[AT]] = math.nan
+            y1[plan[layout.AT]] = math.nan
             work[0] = 0.25 * h
             return math.inf
         for k in range(n):

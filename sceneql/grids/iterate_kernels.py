@@ -6,7 +6,8 @@ import math
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
 from sceneql.grids.grid_stage_kernels import ABSOLUTE, ITERATE, RELATIVE
-from sceneql.grids.multigrid.linear_kernels import AT, GX, GY, GZ, NX, NY, NZ, SINK, SOLVER, VARYING, VOLUME, solver_at
+from sceneql.grids.multigrid import layout
+from sceneql.grids.multigrid.linear_kernels import solver_at
 from sceneql.grids.multigrid.stencil_kernels import dot
 
 MOST_NEWTON = 40
@@ -32,22 +33,22 @@ def residual(n, a, volume, base, y, slope, r, d):
 @lean_inlined
 def stiffest(plan, floats):
     """Largest (faces + sink)/V of a cell, but for a factor of 2."""
-    n = plan[NX] * plan[NY] * plan[NZ]
+    n = plan[layout.NX] * plan[layout.NY] * plan[layout.NZ]
     most = 0.0
     for c in range(n):
-        total = floats[plan[GX] + c] + floats[plan[GY] + c] + floats[plan[SINK] + c]
-        if plan[NZ] > 1:
-            total += floats[plan[GZ] + c]
-        most = max(most, total / floats[plan[VOLUME] + c])
+        total = floats[plan[layout.GX] + c] + floats[plan[layout.GY] + c] + floats[plan[layout.SINK] + c]
+        if plan[layout.NZ] > 1:
+            total += floats[plan[layout.GZ] + c]
+        most = max(most, total / floats[plan[layout.VOLUME] + c])
     return most
 
 
 @lean(ITERATE, inner=True)
 def iterate(functions, t, a, base, y, slope, r, d, store, plan, settings, floats, ints):
     """y = base + a f(t, y) from a guess, and slope = f(t, y) of what was found; False where it was not."""
-    rate, solve = rate_at(functions[AT_RATE]), solver_at(plan[SOLVER])
-    at, n = plan[AT], r.size
-    volume, x = floats[plan[VOLUME] : plan[VOLUME] + n], y[at : at + n]
+    rate, solve = rate_at(functions[AT_RATE]), solver_at(plan[layout.SOLVER])
+    at, n = plan[layout.AT], r.size
+    volume, x = floats[plan[layout.VOLUME] : plan[layout.VOLUME] + n], y[at : at + n]
     cells = math.sqrt(dot(volume, volume))
     before = math.inf
     for iteration in range(MOST_NEWTON):
@@ -55,7 +56,7 @@ def iterate(functions, t, a, base, y, slope, r, d, store, plan, settings, floats
         size, whole, largest = residual(n, a, volume, base[at:], x, slope[at:], r, d)
         if not size < math.inf:
             return False
-        if iteration == 0 and size > 2.0 * whole and plan[VARYING] == 0:
+        if iteration == 0 and size > 2.0 * whole and plan[layout.VARYING] == 0:
             # Far from the solution: nothing is a better guess than what changes fast.
             for c in range(n):
                 x[c] = 0.0

@@ -7,6 +7,7 @@ from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
 from sceneql.failure import LimitRefused
+from sceneql.grids.multigrid import layout
 from sceneql.system import Grid, Prepared, Stepper
 
 if TYPE_CHECKING:
@@ -87,8 +88,8 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     exact = int(MOST[name] == 1)
     offsets = (grid.volumes_at, grid.sink_at, *grid.faces_at)
     head = [solver, exact, *grid.cells.shape, grid.at, *offsets, int(grid.varying), MOST[name], grid.fed_at]
-    assert len(head) == linear.PLAN
-    store = 2 * cells + plan.room + linear.RECORD
+    assert len(head) == layout.PLAN
+    store = 2 * cells + plan.room + layout.RECORD
     return Prepared(
         settings=np.array([share * relative, share * absolute if stepper.adaptive else 0.0, *tableau]),
         numbers=np.concatenate([[stages, explicit_first, embedded, error_order], head, plan.numbers]).astype(np.int64),
@@ -110,11 +111,9 @@ def likely_kernels(stepper: Stepper, grid: Grid) -> tuple[str, ...]:
 
 def report(scratch: Floats) -> LinearReport:
     """What the linear solver of an implicit method on a grid has done so far; ``scratch``: what its steps work in."""
-    from sceneql.grids.multigrid.linear_kernels import HISTORY, ITERATIONS, RECORD, SOLVES
-
-    record = scratch[-RECORD:]
-    residuals = tuple(float(size) for size in record[HISTORY:] if size >= 0.0)
-    return LinearReport(int(record[SOLVES]), int(record[ITERATIONS]), residuals)
+    record = scratch[-layout.RECORD :]
+    residuals = tuple(float(size) for size in record[layout.HISTORY :] if size >= 0.0)
+    return LinearReport(int(record[layout.SOLVES]), int(record[layout.ITERATIONS]), residuals)
 
 
 def _choice(grid: Grid, asked: str, separable: bool) -> tuple[str, str]:

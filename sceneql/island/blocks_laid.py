@@ -9,15 +9,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sceneql.island import layout
+
 if TYPE_CHECKING:
     from numpy import int64
     from numpy.typing import NDArray
 
     from sceneql.quantities.span import Span
     from sceneql.system import Slopes
-
-GROUPS_AT = 5
-"""Integers before those of the groups (driver.py)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,9 +46,9 @@ def grouped(blocks: list[Block], laid: list[Block]) -> list[tuple[tuple[str, ...
 def lay_out(
     triples: list[tuple[int, int, int]], blocks: list[Block], first_blocks: list[int], pairs: list[int]
 ) -> NDArray[int64]:
-    """The one array of integers: see driver.py."""
-    triples_at = GROUPS_AT + len(first_blocks)
-    table_at = triples_at + 3 * len(triples)
+    """The one array of integers: see layout.py."""
+    triples_at = layout.GROUPS_AT + len(first_blocks)
+    table_at = triples_at + layout.TRIPLE * len(triples)
     ranges_at = table_at + len(blocks) + 1
     table = list(accumulate((len(block.ints) for block in blocks), initial=ranges_at + len(pairs) + 1))
     parts = [

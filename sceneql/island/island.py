@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+import sceneql.system.channels as channels
 from sceneql.failure import LimitRefused
 from sceneql.island.blocks_laid import Block, grouped, lay_out
 from sceneql.island.breakpoint_table import Breakpoint, BreakpointTable
@@ -40,12 +41,6 @@ if TYPE_CHECKING:
 STAGES: tuple[Stage, ...] = ("internal", "force", "close", "constrain")
 VECTORS = 12
 """Arrays of the state's size that a run keeps: ends and rates of a step, and the stages of a solver."""
-RESERVED_FLOATS = 5
-"""floats[0] counts rate evaluations; floats[1] is set by a contact that changed the state (march_kernels); floats[2] is
-above 0 while slopes are to serve Newton's method; floats[3] is not 0 where terms may act within its stages, whose
-number is floats[4], or give slopes of how they act between steps (system.Slopes)."""
-STAGE = 3
-WITHIN, BETWEEN = -1.0, -2.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +76,7 @@ class System:
     """(n,) the start."""
     floats: Floats
     ints: NDArray[int64]
-    """Offsets, then the integers of every block (driver.py says how they are laid out)."""
+    """Offsets, then the integers of every block (layout.py says how they lie)."""
     pairs: int
     """Contact pairs of exact contacts."""
     partner: NDArray[int64]
@@ -133,8 +128,8 @@ class IslandAssembly:
     _ranges: list[tuple[int, int, str, tuple[Span | None, ...]]] = field(default_factory=list)
     _pairs: list[tuple[int, int, int]] = field(default_factory=list)
     _masses: list[tuple[int, int, int]] = field(default_factory=list)
-    _numbers: list[Floats] = field(default_factory=lambda: [np.zeros(RESERVED_FLOATS)])
-    _stored: int = RESERVED_FLOATS
+    _numbers: list[Floats] = field(default_factory=lambda: [np.zeros(channels.HEAD)])
+    _stored: int = channels.HEAD
     _terms: dict[Stage, list[Block]] = field(default_factory=lambda: {stage: [] for stage in STAGES})
     _exact: list[Block] = field(default_factory=list)
     _local: list[Block] = field(default_factory=list)
@@ -345,9 +340,9 @@ class IslandAssembly:
         partner = np.full(len(y), -1, dtype=np.int64)
         for position, velocity, count in self._pairs:
             partner[position : position + count] = np.arange(velocity, velocity + count)
-        floats = np.concatenate([*self._numbers, np.zeros(0 if found is None else 3 * len(y))])
+        floats = np.concatenate([*self._numbers, np.zeros(0 if found is None else len(channels.ARRAYS) * len(y))])
         if slopes is not None and self._local:
-            floats[STAGE] = WITHIN if newton else BETWEEN
+            floats[channels.STAGE] = channels.OUTSIDE if newton else channels.BETWEEN
         return System(
             structure=structure,
             y=y,

@@ -1,14 +1,4 @@
-"""An island's Jacobian as it is laid out: its pattern, and the section of integers that its kernel works by.
-
-The section, at ints[4], all indices absolute: [values, entries, blocks, tiles of blocks, masses_at, mass_triples,
-where the blocks' table starts, and their parts; singles, tiles of them, their table, their parts; the numbers of
-threads_kernels.threads, the addresses of the tiles' kernels (jacobian_kernels), first term of every group and the end
-of the last, ...]; a term is (first and last of its integers, first and last of its entries, which stand behind the
-values). The blocks' table: where the parts of each start, and which of the floats is the inverse mass of its rows (-1:
-none). Singles are the values outside blocks, and those inside to which single entries are added: value, inverse mass,
-where its parts start. A part is an entry, k (of a block its first), or, to be taken away, -1 - k. At masses_at triples
-(velocity_at, inverse_at, count).
-"""
+"""An island's Jacobian as it is laid out: its pattern, and the section of integers that its kernel works by."""
 
 from __future__ import annotations
 
@@ -18,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sceneql.island import layout
 from sceneql.island.rising import rising
 from sceneql.system import Pattern, Slopes
 
@@ -30,8 +21,6 @@ if TYPE_CHECKING:
 
 BY_DIFFERENCES = 400
 """Up to so many entries of y a Jacobian is found by differences where a term does not know its own."""
-HEAD = 16
-"""Integers of a section before its groups."""
 TILE = 20_000
 """Values that a thread sums at a time; fewer are not worth threads."""
 _NONE = np.zeros(0, dtype=np.int64)
@@ -64,7 +53,7 @@ def section(
 
     found, lists = _pattern(size, [one for one, _ in ordered], masses, pairs)
     count, blocks, singles = found.count, len(found.blocks), len(lists[2]) // 3 - 1
-    groups_at = at + HEAD
+    groups_at = at + layout.HEAD
     terms_at = groups_at + len(by_kernel) + 1
     starts = list(accumulate((len(part) for part in lists), initial=terms_at + 4 * len(ordered)))
     masses_at = starts.pop()

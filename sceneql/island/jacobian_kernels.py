@@ -3,17 +3,16 @@
 
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.threads_kernels import TILE, over_threads
+from sceneql.island import layout
 from sceneql.system.signatures_kernels import TERM
 
 
 @lean(TILE)
 def block_tile(number, t, y, values, floats, ints):
-    """The blocks of a tile as sums of their entries, which stand behind the values, times inverse masses.
-
-    See jacobian.py.
-    """
-    at = ints[4]
-    count, blocks, tiles, table, parts = ints[at], ints[at + 2], ints[at + 3], ints[at + 6], ints[at + 7]
+    """The blocks of a tile as sums of their entries, which stand behind the values, times inverse masses."""
+    at = ints[layout.SLOPES_AT]
+    count, blocks, tiles = ints[at + layout.VALUES], ints[at + layout.BLOCKS], ints[at + layout.BLOCK_TILES]
+    table, parts = ints[at + layout.BLOCKS_AT], ints[at + layout.BLOCK_PARTS_AT]
     for b in range(blocks * number // tiles, blocks * (number + 1) // tiles):
         s0 = s1 = s2 = s3 = s4 = s5 = s6 = s7 = s8 = 0.0
         for k in range(parts + ints[table + 2 * b], parts + ints[table + 2 * b + 2]):
@@ -39,10 +38,11 @@ def block_tile(number, t, y, values, floats, ints):
 @lean(TILE)
 def single_tile(number, t, y, values, floats, ints):
     """The singles of a tile likewise; those inside blocks are added to them."""
-    at = ints[4]
-    count, singles, tiles, parts = ints[at], ints[at + 8], ints[at + 9], ints[at + 11]
+    at = ints[layout.SLOPES_AT]
+    count, singles, tiles = ints[at + layout.VALUES], ints[at + layout.SINGLES], ints[at + layout.SINGLE_TILES]
+    table, parts = ints[at + layout.SINGLES_AT], ints[at + layout.SINGLE_PARTS_AT]
     for s in range(singles * number // tiles, singles * (number + 1) // tiles):
-        row = ints[at + 10] + 3 * s
+        row = table + 3 * s
         total = 0.0
         for k in range(parts + ints[row + 2], parts + ints[row + 5]):
             if ints[k] >= 0:
@@ -51,18 +51,20 @@ def single_tile(number, t, y, values, floats, ints):
                 total -= values[count - 1 - ints[k]]
         if ints[row + 1] >= 0:
             total *= floats[ints[row + 1]]
-        values[ints[row]] = total + (values[ints[row]] if ints[row] < 9 * ints[at + 2] else 0.0)
+        values[ints[row]] = total + (values[ints[row]] if ints[row] < 9 * ints[at + layout.BLOCKS] else 0.0)
 
 
 @lean(TERM, inner=True)
 def gather(t, y, values, floats, ints):
     """Sum the entries to values and multiply their rows by inverse masses: any number of threads, the same bytes."""
-    at = ints[4]
-    if ints[at + 3] == 1:
+    at = ints[layout.SLOPES_AT]
+    entry, threads = ints[at + layout.ENTRY], ints[at + layout.THREADS]
+    block_tiles, single_tiles = ints[at + layout.BLOCK_TILES], ints[at + layout.SINGLE_TILES]
+    if block_tiles == 1:
         block_tile(0, t, y, values, floats, ints)
     else:
-        over_threads(ints[at + 12], ints[at + 13], ints[at + 14], ints[at + 3], t, y, values, floats, ints)
-    if ints[at + 9] == 1:
+        over_threads(entry, threads, ints[at + layout.BLOCK_TILE_AT], block_tiles, t, y, values, floats, ints)
+    if single_tiles == 1:
         single_tile(0, t, y, values, floats, ints)
     else:
-        over_threads(ints[at + 12], ints[at + 13], ints[at + 15], ints[at + 9], t, y, values, floats, ints)
+        over_threads(entry, threads, ints[at + layout.SINGLE_TILE_AT], single_tiles, t, y, values, floats, ints)

@@ -11,6 +11,7 @@ from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
 from sceneql.island.rising import rising
+from sceneql.linear import multifrontal_layout as layout
 from sceneql.linear.dissection import dissected
 from sceneql.linear.ordering import Groups, elimination_order, grouped
 
@@ -139,7 +140,6 @@ def _laid_out(pattern: Any, order: Rows, fronts: list[_Front], first: Rows, unit
     import numpy as np
 
     from sceneql.compiled.threads_kernels import threads
-    from sceneql.linear.multifrontal_plan_kernels import FIELDS, HEAD, PAD
 
     n, count, groups = unit * len(order), len(fronts), len(first) - 1
     scalars = (unit * order[:, None] + np.arange(unit)).ravel()
@@ -199,20 +199,20 @@ def _laid_out(pattern: Any, order: Rows, fronts: list[_Front], first: Rows, unit
         if front.parent >= 0:
             earlier[k], last_child[front.parent] = last_child[front.parent], k
             map_at += int(map_sizes[k])
-        factors += width * height + width * rest + PAD
+        factors += width * height + width * rest + layout.PAD
     table += [n, 0, 0, int(row_starts[-1]), map_at, factors, bounds[-1], -1, -1, 0, 0]
     for k in range(count):
-        table[FIELDS * k + 7 : FIELDS * k + 9] = last_child[k], earlier[k]
+        table[layout.FIELDS * k + 7 : layout.FIELDS * k + 9] = last_child[k], earlier[k]
     largest = int(heights.max(initial=0))
     halves = [number for first_front, root in pieces for number in (first_front, root + 1, 0)]
     parts: list[Any] = [table, scalars, expanded, maps, entries, np.zeros(n, dtype=np.int64), halves]
     parts += [pattern.indptr, pattern.indices]
-    starts = list(accumulate((len(part) for part in parts), initial=HEAD))
+    starts = list(accumulate((len(part) for part in parts), initial=layout.HEAD))
     piece, *passes = _of_pieces() if pieces else [0] * 3
     head = [n, count, *starts[1:6], room, starts[6], len(pieces), *threads(), piece, unit, *passes]
     head += [*_single(float(operations.sum())), 0, 0, int(exact), 0, *starts[7:9]]
     numbers = np.concatenate([np.array(part, dtype=np.int64) for part in (head, *parts)])
-    work = max(room + largest * largest, int(row_starts[-1]) + PAD * count) + 2 * n
+    work = max(room + largest * largest, int(row_starts[-1]) + layout.PAD * count) + 2 * n
     return Plan(numbers, factors, work, float(operations.sum()))
 
 

@@ -7,7 +7,8 @@ See multifrontal_solve_kernels; of a module of its own, so that two processes co
 from sceneql.compiled.arithmetic_kernels import widest
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.lanes_kernels import BYTES, fma, folded, load, spread
-from sceneql.linear.multifrontal_plan_kernels import FIELDS, HEAD, PAD, PASS, ROWS, at_front
+from sceneql.linear import multifrontal_layout as layout
+from sceneql.linear.multifrontal_plan_kernels import PASS, at_front
 
 
 @lean_inlined
@@ -15,7 +16,7 @@ def substitute(panel, height, k, rows, own):
     """Solve rows k.. of U, all that comes after them in ``own`` being known."""
     lanes = BYTES // own.itemsize
     p = q = r = s = spread(own.dtype.type(0.0))
-    if rows == ROWS:
+    if rows == layout.ROWS:
         a = k * height
         b, c, d = a + height, a + 2 * height, a + 3 * height
         for j in range(k + rows, height, lanes):
@@ -46,16 +47,16 @@ def backward_of(plan, factors, x, carried, begin, end):
     widest()
     rows = plan[3]
     for s in range(end - 1, begin - 1, -1):
-        t = HEAD + FIELDS * s
+        t = layout.HEAD + layout.FIELDS * s
         first, width, height, at = plan[t], plan[t + 1], plan[t + 2], at_front(plan, s)
-        panel, own, row = factors[plan[t + 5] :], carried[at : at + height + PAD], rows + plan[t + 3]
+        panel, own, row = factors[plan[t + 5] :], carried[at : at + height + layout.PAD], rows + plan[t + 3]
         for j in range(height):
             own[j] = x[plan[row + j]]
-        for j in range(height, height + PAD):
+        for j in range(height, height + layout.PAD):
             own[j] = 0.0
-        last = (width - 1) // ROWS * ROWS
-        for k in range(last, -1, -ROWS):
-            substitute(panel, height, k, min(ROWS, width - k), own)
+        last = (width - 1) // layout.ROWS * layout.ROWS
+        for k in range(last, -1, -layout.ROWS):
+            substitute(panel, height, k, min(layout.ROWS, width - k), own)
         for k in range(width):
             x[first + k] = own[k]
 

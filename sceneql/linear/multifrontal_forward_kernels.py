@@ -7,7 +7,8 @@ See multifrontal_solve_kernels; of a module of its own, so that two processes co
 from sceneql.compiled.arithmetic_kernels import widest
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.lanes_kernels import BYTES, fma, load, store
-from sceneql.linear.multifrontal_plan_kernels import FIELDS, HEAD, PAD, PASS, ROWS, at_front
+from sceneql.linear import multifrontal_layout as layout
+from sceneql.linear.multifrontal_plan_kernels import PASS, at_front
 
 
 @lean_inlined
@@ -30,7 +31,7 @@ def subtract(panel, height, k, rows, own):
         for j in range(i + 1, k + rows):
             own[j] -= panel[i * height + j] * value
     lanes = BYTES // own.itemsize
-    if rows == ROWS:
+    if rows == layout.ROWS:
         a = k * height
         b, c, d = a + height, a + 2 * height, a + 3 * height
         p, q = -own[k] * panel[a + k], -own[k + 1] * panel[b + k + 1]
@@ -53,21 +54,21 @@ def forward_of(plan, factors, x, carried, begin, end):
     widest()
     maps = plan[4]
     for s in range(begin, end):
-        t = HEAD + FIELDS * s
+        t = layout.HEAD + layout.FIELDS * s
         first, width, height, at = plan[t], plan[t + 1], plan[t + 2], at_front(plan, s)
-        panel, own = factors[plan[t + 5] :], carried[at : at + height + PAD]
+        panel, own = factors[plan[t + 5] :], carried[at : at + height + layout.PAD]
         for k in range(width):
             own[k] = x[first + k]
-        for k in range(width, height + PAD):
+        for k in range(width, height + layout.PAD):
             own[k] = 0.0
         child = plan[t + 7]
         while child >= 0:
-            c = HEAD + FIELDS * child
+            c = layout.HEAD + layout.FIELDS * child
             low = at_front(plan, child)
             take_in(own, carried[low + plan[c + 1] : low + plan[c + 2]], plan[maps + plan[c + 4] :])
             child = plan[c + 8]
-        for k in range(0, width, ROWS):
-            subtract(panel, height, k, min(ROWS, width - k), own)
+        for k in range(0, width, layout.ROWS):
+            subtract(panel, height, k, min(layout.ROWS, width - k), own)
         for k in range(width):
             x[first + k] = own[k]
 

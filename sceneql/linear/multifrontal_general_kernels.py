@@ -7,8 +7,8 @@ from numba import types
 
 from sceneql.compiled.arithmetic_kernels import fma, widest
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.linear import multifrontal_layout as layout
 from sceneql.linear.multifrontal_kernels import FACTOR_GENERAL, SOLVE_GENERAL
-from sceneql.linear.multifrontal_plan_kernels import FIELDS, HEAD
 from sceneql.linear.multifrontal_symmetric_kernels import put
 from sceneql.system.signatures_kernels import A, N
 
@@ -126,15 +126,15 @@ def factor_general(plan, values, factors, work):
     maps, entries, pivots = plan[4], plan[5], plan[6]
     front = work[plan[7] :]
     for s in range(plan[1]):
-        t = HEAD + FIELDS * s
+        t = layout.HEAD + layout.FIELDS * s
         width, height, panel = plan[t + 1], plan[t + 2], plan[t + 5]
         rest = height - width
         for k in range(height * height):
             front[k] = 0.0
-        put(plan, values, 1.0, front, height, entries + 2 * plan[t + 6], entries + 2 * plan[t + FIELDS + 6])
+        put(plan, values, 1.0, front, height, entries + 2 * plan[t + 6], entries + 2 * plan[t + layout.FIELDS + 6])
         child = plan[t + 7]
         while child >= 0:
-            c = HEAD + FIELDS * child
+            c = layout.HEAD + layout.FIELDS * child
             below = plan[c + 2] - plan[c + 1]
             take_in(front, height, work[plan[c + 9] :], below, plan[maps + plan[c + 4] :])
             child = plan[c + 8]
@@ -183,7 +183,7 @@ def solve_general(plan, factors, b, work):
     for k in range(n):
         x[k] = b[plan[order + k]]
     for s in range(fronts):
-        t = HEAD + FIELDS * s
+        t = layout.HEAD + layout.FIELDS * s
         first, width, height, panel = plan[t], plan[t + 1], plan[t + 2], plan[t + 5]
         row = rows + plan[t + 3]
         own = x[first:]
@@ -196,7 +196,7 @@ def solve_general(plan, factors, b, work):
         for i in range(width, height):
             x[plan[row + i]] -= product(factors[below + (i - width) * width :], own, width)
     for s in range(fronts - 1, -1, -1):
-        t = HEAD + FIELDS * s
+        t = layout.HEAD + layout.FIELDS * s
         first, width, height, panel = plan[t], plan[t + 1], plan[t + 2], plan[t + 5]
         row = rows + plan[t + 3]
         for j in range(height):

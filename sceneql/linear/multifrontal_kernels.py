@@ -20,15 +20,8 @@ from numba import types
 
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.numba.lazy_kernels import lazy
-from sceneql.linear.multifrontal_plan_kernels import (
-    IN_SINGLE,
-    NEW,
-    RESTING,
-    SINGLE_FACTOR,
-    SINGLE_SOLVE,
-    factor_single_at,
-    solve_single_at,
-)
+from sceneql.linear import multifrontal_layout as layout
+from sceneql.linear.multifrontal_plan_kernels import factor_single_at, solve_single_at
 from sceneql.linear.multifrontal_solve_kernels import solve_symmetric
 from sceneql.linear.multifrontal_symmetric_kernels import factor_symmetric
 from sceneql.linear.solver_kernels import FACTOR_SYSTEM, SOLVE_SYSTEM
@@ -51,13 +44,13 @@ def factor_system(plan, values, factors, work, symmetric):
     ``factors`` and ``work`` of the plan's sizes; ``symmetric`` says that the values are, so that half is computed.
     """
     if symmetric:
-        plan[IN_SINGLE] = 0
-        if plan[SINGLE_FACTOR] >= 0 and plan[RESTING] == 0:
-            if factor_single_at(plan[SINGLE_FACTOR])(plan, values, factors, work):
-                plan[IN_SINGLE] = NEW
+        plan[layout.IN_SINGLE] = 0
+        if plan[layout.SINGLE_FACTOR] >= 0 and plan[layout.RESTING] == 0:
+            if factor_single_at(plan[layout.SINGLE_FACTOR])(plan, values, factors, work):
+                plan[layout.IN_SINGLE] = layout.NEW
                 return True
-            plan[RESTING] = RESTS + 1
-        plan[RESTING] = max(0, plan[RESTING] - 1)
+            plan[layout.RESTING] = RESTS + 1
+        plan[layout.RESTING] = max(0, plan[layout.RESTING] - 1)
         return factor_symmetric(plan, values, factors, work)
     return factor_general(plan, values, factors, work)
 
@@ -66,10 +59,10 @@ def factor_system(plan, values, factors, work, symmetric):
 def solve_system(plan, values, factors, b, work, symmetric):
     """Solve by the factors of ``factor_system``; the solution takes the place of b."""
     if symmetric:
-        if plan[IN_SINGLE] > 0:
-            if solve_single_at(plan[SINGLE_SOLVE])(plan, values, factors, b, work):
+        if plan[layout.IN_SINGLE] > 0:
+            if solve_single_at(plan[layout.SINGLE_SOLVE])(plan, values, factors, b, work):
                 return True
-            plan[IN_SINGLE], plan[RESTING] = 0, RESTS
+            plan[layout.IN_SINGLE], plan[layout.RESTING] = 0, RESTS
             if not factor_symmetric(plan, values, factors, work):
                 return False
         solve_symmetric(plan, factors, b, work)

@@ -3,28 +3,28 @@
 
 from sceneql.compiled.kernels import kernel
 from sceneql.compiled.threads_kernels import TILE
+from sceneql.linear import multifrontal_layout as layout
 from sceneql.linear.multifrontal_backward_kernels import backward
 from sceneql.linear.multifrontal_forward_kernels import forward
-from sceneql.linear.multifrontal_plan_kernels import PIECES_AT
 from sceneql.linear.multifrontal_symmetric_kernels import factor_fronts
 
 
 @kernel(TILE)
 def piece(number, t, values, factors, work, plan):
     """The fronts of a piece; its third integer says that all pivots were regular."""
-    at = plan[PIECES_AT] + 3 * number
+    at = plan[layout.PIECES_AT] + 3 * number
     plan[at + 2] = 1 if factor_fronts(plan, values, factors, work, plan[at], plan[at + 1]) else 0
 
 
 @kernel(TILE)
 def forward_piece(number, t, factors, x, carried, plan):
     """The first pass over a piece."""
-    at = plan[PIECES_AT] + 3 * number
+    at = plan[layout.PIECES_AT] + 3 * number
     forward(plan, factors, x, carried, plan[at], plan[at + 1])
 
 
 @kernel(TILE)
 def backward_piece(number, t, factors, x, carried, plan):
     """The second."""
-    at = plan[PIECES_AT] + 3 * number
+    at = plan[layout.PIECES_AT] + 3 * number
     backward(plan, factors, x, carried, plan[at], plan[at + 1])

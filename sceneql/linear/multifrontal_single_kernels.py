@@ -16,29 +16,10 @@ from numba import types
 from sceneql.compiled.arithmetic_kernels import bits, from_bits
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.compiled.threads_kernels import TILE, over_threads
+from sceneql.linear import multifrontal_layout as layout
 from sceneql.linear.multifrontal_backward_kernels import backward_of
 from sceneql.linear.multifrontal_forward_kernels import forward_of
-from sceneql.linear.multifrontal_plan_kernels import (
-    COLUMNS_AT,
-    ENTRY,
-    EXACT,
-    FACTOR_SINGLE,
-    IN_SINGLE,
-    NEW,
-    PASS,
-    PIECES,
-    PIECES_AT,
-    SCALE,
-    SINGLE_BACKWARD,
-    SINGLE_FORWARD,
-    SINGLE_PIECE,
-    SOLVE_SINGLE,
-    STARTS_AT,
-    THREADS,
-    TRIED,
-    UNIT,
-    WEAK,
-)
+from sceneql.linear.multifrontal_plan_kernels import FACTOR_SINGLE, PASS, SOLVE_SINGLE
 from sceneql.linear.multifrontal_symmetric_kernels import FACTOR_FRONTS, fronts_of
 from sceneql.system.signatures_kernels import A, I
 
@@ -56,7 +37,8 @@ SUBTRACT = types.void(I, A, A, A)
 @lean(FACTOR_FRONTS, inner=True)
 def factor_fronts(plan, values, factors, work, begin, end):
     """`fronts_of` in single precision."""
-    return fronts_of(plan, values, from_bits(plan[SCALE]), factors.view(np.float32), work.view(np.float32), begin, end)
+    scale = from_bits(plan[layout.SCALE])
+    return fronts_of(plan, values, scale, factors.view(np.float32), work.view(np.float32), begin, end)
 
 
 @lean(PASS, inner=True)
@@ -74,49 +56,50 @@ def backward(plan, factors, x, carried, begin, end):
 @kernel(TILE)
 def single_piece(number, t, values, factors, work, plan):
     """The fronts of a piece; its third integer says that all pivots were regular."""
-    at = plan[PIECES_AT] + 3 * number
+    at = plan[layout.PIECES_AT] + 3 * number
     plan[at + 2] = 1 if factor_fronts(plan, values, factors, work, plan[at], plan[at + 1]) else 0
 
 
 @kernel(TILE)
 def single_forward_piece(number, t, factors, x, carried, plan):
     """The first pass over a piece."""
-    at = plan[PIECES_AT] + 3 * number
+    at = plan[layout.PIECES_AT] + 3 * number
     forward(plan, factors, x, carried, plan[at], plan[at + 1])
 
 
 @kernel(TILE)
 def single_backward_piece(number, t, factors, x, carried, plan):
     """The second."""
-    at = plan[PIECES_AT] + 3 * number
+    at = plan[layout.PIECES_AT] + 3 * number
     backward(plan, factors, x, carried, plan[at], plan[at + 1])
 
 
 @lean_inlined
 def solve_roughly(plan, factors, r, room):
     """Put the solution for a right side in its place; its size, which may be beyond single precision, is kept apart."""
-    n, order, fronts, pieces = plan[0], plan[2], plan[1], plan[PIECES]
+    n, order, fronts, pieces = plan[0], plan[2], plan[1], plan[layout.PIECES]
     half = (n + 1) // 2
     x, carried = room[:half], room[half:]
     size = largest(r, n)
     if size == 0.0:
         return
     own = x.view(np.float32)
-    back = size * from_bits(plan[SCALE])
+    back = size * from_bits(plan[layout.SCALE])
     for k in range(n):
         own[k] = r[plan[order + k]] / size
-    over_threads(plan[ENTRY], plan[THREADS], plan[SINGLE_FORWARD], pieces, 0.0, factors, x, carried, plan)
+    entry, threads = plan[layout.ENTRY], plan[layout.THREADS]
+    over_threads(entry, threads, plan[layout.SINGLE_FORWARD], pieces, 0.0, factors, x, carried, plan)
     done = 0
-    for at in range(plan[PIECES_AT], plan[PIECES_AT] + 3 * pieces, 3):
+    for at in range(plan[layout.PIECES_AT], plan[layout.PIECES_AT] + 3 * pieces, 3):
         forward(plan, factors, x, carried, done, plan[at])
         done = plan[at + 1]
     forward(plan, factors, x, carried, done, fronts)
     last = fronts
-    for at in range(plan[PIECES_AT] + 3 * (pieces - 1), plan[PIECES_AT] - 3, -3):
+    for at in range(plan[layout.PIECES_AT] + 3 * (pieces - 1), plan[layout.PIECES_AT] - 3, -3):
         backward(plan, factors, x, carried, plan[at + 1], last)
         last = plan[at]
     backward(plan, factors, x, carried, 0, last)
-    over_threads(plan[ENTRY], plan[THREADS], plan[SINGLE_BACKWARD], pieces, 0.0, factors, x, carried, plan)
+    over_threads(entry, threads, plan[layout.SINGLE_BACKWARD], pieces, 0.0, factors, x, carried, plan)
     for k in range(n):
         r[plan[order + k]] = back * own[k]
 
@@ -124,7 +107,7 @@ def solve_roughly(plan, factors, r, room):
 @lean(SUBTRACT, inner=True)
 def subtract_product(plan, values, x, r):
     """r - A x in the place of r."""
-    unit, starts, columns = plan[UNIT], plan[STARTS_AT], plan[COLUMNS_AT]
+    unit, starts, columns = plan[layout.UNIT], plan[layout.STARTS_AT], plan[layout.COLUMNS_AT]
     square = unit * unit
     for row in range(plan[0] // unit):
         for place in range(plan[starts + row], plan[starts + row + 1]):
@@ -149,13 +132,14 @@ def largest(x, count):
 @lean(FACTOR_SINGLE, inner=True)
 def factor_single(plan, values, factors, work):
     """Factor as multifrontal_kernels.factor_system does."""
-    most = largest(values, plan[UNIT] ** 2 * plan[plan[STARTS_AT] + plan[0] // plan[UNIT]])
+    most = largest(values, plan[layout.UNIT] ** 2 * plan[plan[layout.STARTS_AT] + plan[0] // plan[layout.UNIT]])
     if not 0.0 < most < math.inf:
         return False
-    plan[SCALE] = bits(1.0 / most)
-    over_threads(plan[ENTRY], plan[THREADS], plan[SINGLE_PIECE], plan[PIECES], 0.0, values, factors, work, plan)
+    plan[layout.SCALE] = bits(1.0 / most)
+    entry, threads, pieces = plan[layout.ENTRY], plan[layout.THREADS], plan[layout.PIECES]
+    over_threads(entry, threads, plan[layout.SINGLE_PIECE], pieces, 0.0, values, factors, work, plan)
     done = 0
-    for at in range(plan[PIECES_AT], plan[PIECES_AT] + 3 * plan[PIECES], 3):
+    for at in range(plan[layout.PIECES_AT], plan[layout.PIECES_AT] + 3 * plan[layout.PIECES], 3):
         if plan[at + 2] == 0 or not factor_fronts(plan, values, factors, work, done, plan[at]):
             return False
         done = plan[at + 1]
@@ -177,11 +161,11 @@ def solve_single(plan, values, factors, b, work):
         change, whole = largest(r, n), largest(x, n)
         if refined == 1 and not change <= USABLE * whole:
             return False
-        if refined > 0 and plan[IN_SINGLE] == NEW:
-            plan[IN_SINGLE] = TRIED if change <= GOOD * whole else WEAK
+        if refined > 0 and plan[layout.IN_SINGLE] == layout.NEW:
+            plan[layout.IN_SINGLE] = layout.TRIED if change <= GOOD * whole else layout.WEAK
         if whole == 0.0 or change <= REFINED * whole or not change < STALLED * before:
             break
-        if plan[EXACT] == 0 and (plan[IN_SINGLE] == TRIED or refined > 0):
+        if plan[layout.EXACT] == 0 and (plan[layout.IN_SINGLE] == layout.TRIED or refined > 0):
             break
         before = change
         for k in range(n):

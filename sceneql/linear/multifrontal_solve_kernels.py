@@ -11,18 +11,9 @@ from numba import types
 
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.threads_kernels import over_threads
+from sceneql.linear import multifrontal_layout as layout
 from sceneql.linear.multifrontal_backward_kernels import backward
 from sceneql.linear.multifrontal_forward_kernels import forward
-from sceneql.linear.multifrontal_plan_kernels import (
-    BACKWARD,
-    ENTRY,
-    FIELDS,
-    FORWARD,
-    HEAD,
-    PIECES,
-    PIECES_AT,
-    THREADS,
-)
 from sceneql.system.signatures_kernels import A, I
 
 WORTH_THREADS = 500_000
@@ -34,24 +25,24 @@ SOLVE = types.void(I, A, A, A)
 @lean(SOLVE, inner=True)
 def solve_symmetric(plan, factors, b, work):
     """Solve as multifrontal_kernels.solve_system does."""
-    n, fronts, order, pieces = plan[0], plan[1], plan[2], plan[PIECES]
+    n, fronts, order, pieces = plan[0], plan[1], plan[2], plan[layout.PIECES]
     x, carried = work[:n], work[n:]
-    entry = plan[ENTRY] if plan[HEAD + FIELDS * fronts + 5] >= WORTH_THREADS else 0
+    entry = plan[layout.ENTRY] if plan[layout.HEAD + layout.FIELDS * fronts + 5] >= WORTH_THREADS else 0
     for k in range(n):
         x[k] = b[plan[order + k]]
     if pieces > 0:
-        over_threads(entry, plan[THREADS], plan[FORWARD], pieces, 0.0, factors, x, carried, plan)
+        over_threads(entry, plan[layout.THREADS], plan[layout.FORWARD], pieces, 0.0, factors, x, carried, plan)
     done = 0
-    for at in range(plan[PIECES_AT], plan[PIECES_AT] + 3 * pieces, 3):
+    for at in range(plan[layout.PIECES_AT], plan[layout.PIECES_AT] + 3 * pieces, 3):
         forward(plan, factors, x, carried, done, plan[at])
         done = plan[at + 1]
     forward(plan, factors, x, carried, done, fronts)
     last = fronts
-    for at in range(plan[PIECES_AT] + 3 * (pieces - 1), plan[PIECES_AT] - 3, -3):
+    for at in range(plan[layout.PIECES_AT] + 3 * (pieces - 1), plan[layout.PIECES_AT] - 3, -3):
         backward(plan, factors, x, carried, plan[at + 1], last)
         last = plan[at]
     backward(plan, factors, x, carried, 0, last)
     if pieces > 0:
-        over_threads(entry, plan[THREADS], plan[BACKWARD], pieces, 0.0, factors, x, carried, plan)
+        over_threads(entry, plan[layout.THREADS], plan[layout.BACKWARD], pieces, 0.0, factors, x, carried, plan)
     for k in range(n):
         b[plan[order + k]] = x[k]

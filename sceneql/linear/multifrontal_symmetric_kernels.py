@@ -15,17 +15,7 @@ from numba import types
 from sceneql.compiled.arithmetic_kernels import fma, widest
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.threads_kernels import over_threads
-from sceneql.linear.multifrontal_plan_kernels import (
-    ENTRY,
-    FIELDS,
-    HEAD,
-    PAD,
-    PIECE_AT,
-    PIECES,
-    PIECES_AT,
-    THREADS,
-    UNIT,
-)
+from sceneql.linear import multifrontal_layout as layout
 from sceneql.linear.panel_update_kernels import MOST, ROWS, add_rows, coefficients
 from sceneql.system.signatures_kernels import A, I, N
 
@@ -148,7 +138,7 @@ def flush(panel, begin, end):
 @lean_inlined
 def put(plan, values, scale, front, height, begin, end):
     """Add blocks of the matrix, times ``scale``, at their places in a front."""
-    unit = plan[UNIT]
+    unit = plan[layout.UNIT]
     for e in range(begin, end, 2):
         k, place = plan[e], plan[e + 1]
         for _ in range(unit):
@@ -191,10 +181,10 @@ def fronts_of(plan, values, scale, factors, work, begin, end):
     widest()
     maps, entries = plan[4], plan[5]
     for s in range(begin, end):
-        t = HEAD + FIELDS * s
+        t = layout.HEAD + layout.FIELDS * s
         width, height = plan[t + 1], plan[t + 2]
         rest = height - width
-        panel = factors[plan[t + 5] : plan[t + 5] + width * height + PAD]
+        panel = factors[plan[t + 5] : plan[t + 5] + width * height + layout.PAD]
         square = work[plan[t + 9] : plan[t + 9] + rest * rest]
         for k in range(panel.size):
             panel[k] = 0.0
@@ -204,7 +194,7 @@ def fronts_of(plan, values, scale, factors, work, begin, end):
         put(plan, values, scale, panel, height, entries + 2 * plan[t + 6], entries + 2 * plan[t + 10])
         child = plan[t + 7]
         while child >= 0:
-            c = HEAD + FIELDS * child
+            c = layout.HEAD + layout.FIELDS * child
             below = plan[c + 2] - plan[c + 1]
             take_in(panel, width, height, square, work[plan[c + 9] :], below, plan[maps + plan[c + 4] :])
             child = plan[c + 8]
@@ -226,10 +216,11 @@ def factor_fronts(plan, values, factors, work, begin, end):
 @lean(FACTOR_SYMMETRIC, inner=True)
 def factor_symmetric(plan, values, factors, work):
     """Factor as multifrontal_kernels.factor_system does; half of the values is read."""
-    if plan[PIECES] > 0:
-        over_threads(plan[ENTRY], plan[THREADS], plan[PIECE_AT], plan[PIECES], 0.0, values, factors, work, plan)
+    if plan[layout.PIECES] > 0:
+        entry, threads, pieces = plan[layout.ENTRY], plan[layout.THREADS], plan[layout.PIECES]
+        over_threads(entry, threads, plan[layout.PIECE_AT], pieces, 0.0, values, factors, work, plan)
     done = 0
-    for at in range(plan[PIECES_AT], plan[PIECES_AT] + 3 * plan[PIECES], 3):
+    for at in range(plan[layout.PIECES_AT], plan[layout.PIECES_AT] + 3 * plan[layout.PIECES], 3):
         if plan[at + 2] == 0 or not factor_fronts(plan, values, factors, work, done, plan[at]):
             return False
         done = plan[at + 1]

@@ -18,16 +18,13 @@ import math
 
 from numba import types
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_JACOBIAN, AT_RATE, jacobian_at, rate_at
 from sceneql.linear.stage_kernels import POSITIONS, POSITIONS_AT, factor_stage, solve_stage
 from sceneql.system.signatures_kernels import A, F, I
 
 FACTORED, CONTRACTION, RELATIVE, ABSOLUTE, SHARE, CAREFUL, DEFINITE, MEMORY = range(8)
-DEFINITE_AT = 2
-"""floats[2]: whether slopes are to be definite, and how far (system.Slopes)."""
-STAGE_AT = 3
-"""floats[3]: a while a stage is solved, -1 outside (0: nobody wants to know it), whose base is told (system.Slopes)."""
 
 MOST = 25
 """Iterations of a plain stage."""
@@ -95,19 +92,19 @@ def follow(plan, a, base, y):
 @lean_inlined
 def foresee(old, new, floats):
     """Tell definite slopes which change the next one follows on (system.Slopes)."""
-    at = floats.size - 2 * old.size
+    before, after = floats.size - channels.BEFORE * old.size, floats.size - channels.AFTER * old.size
     for k in range(old.size):
-        floats[at + k] = old[k]
-        floats[at + old.size + k] = new[k]
+        floats[before + k] = old[k]
+        floats[after + k] = new[k]
 
 
 @lean_inlined
 def tell_stage(a, base, floats):
     """Tell the terms what a stage is about."""
-    if floats[STAGE_AT] != 0.0:
-        floats[STAGE_AT] = a
-        floats[STAGE_AT + 1] += 1.0
-        at = floats.size - 3 * base.size
+    if floats[channels.STAGE] != channels.NO_SLOPES:
+        floats[channels.STAGE] = a
+        floats[channels.STAGES] += 1.0
+        at = floats.size - channels.BASE * base.size
         for k in range(base.size):
             floats[at + k] = base[k]
 
@@ -115,8 +112,8 @@ def tell_stage(a, base, floats):
 @lean_inlined
 def end_stage(floats):
     """Tell the terms that the stage is over."""
-    if floats[STAGE_AT] != 0.0:
-        floats[STAGE_AT] = -1.0
+    if floats[channels.STAGE] != channels.NO_SLOPES:
+        floats[channels.STAGE] = channels.OUTSIDE
 
 
 @lean_inlined
@@ -152,9 +149,9 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
     leave(rate, t, a, base, y, residual, plan, floats, ints)
     while iteration < MOST or (careful and iteration < MOST_CAREFUL):
         if stale:
-            floats[DEFINITE_AT] = HOLDS / (a * a) if definite else math.inf
+            floats[channels.DEFINITE] = HOLDS / (a * a) if definite else math.inf
             slopes(functions, t, y, jacobian, floats, ints)
-            floats[DEFINITE_AT] = 0.0
+            floats[channels.DEFINITE] = 0.0
             memory[DEFINITE] = 1.0 if definite else 0.0
         size = math.inf
         regular = True

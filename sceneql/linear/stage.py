@@ -12,6 +12,7 @@ from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
 from sceneql.failure import LimitRefused
+from sceneql.island import layout
 from sceneql.linear.species import one_grid
 
 if TYPE_CHECKING:
@@ -147,8 +148,8 @@ def _masses(system: System) -> list[list[int]]:
     assert system.pattern is not None
     if not system.pattern.exact:
         return []
-    section = system.ints[4]
-    at, count = system.ints[section + 4], system.ints[section + 5]
+    section = system.ints[layout.SLOPES_AT]
+    at, count = system.ints[section + layout.MASSES_AT], system.ints[section + layout.MASSES]
     masses: list[list[int]] = system.ints[at : at + 3 * count].reshape(-1, 3).tolist()
     return masses
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sceneql.island.blocks_laid import GROUPS_AT
+from sceneql.island import layout
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -20,11 +20,11 @@ def culprit(system: System, driver: Driver, floats: Floats, t: float, y: Floats)
     The terms are called one more at a time, in their order: the driver is shown shorter and shorter groups of them.
     """
     ints, floats, rate = system.ints.copy(), floats.copy(), np.empty_like(y)
-    firsts = ints[GROUPS_AT : GROUPS_AT + len(system.structure.terms) + 1].copy()
+    firsts = ints[layout.GROUPS_AT : layout.GROUPS_AT + len(system.structure.terms) + 1].copy()
     if not np.isfinite(y).all():
         return None
     for count, term in enumerate(system.terms, 1):
-        ints[GROUPS_AT : GROUPS_AT + len(firsts)] = np.minimum(firsts, firsts[0] + count)
+        ints[layout.GROUPS_AT : layout.GROUPS_AT + len(firsts)] = np.minimum(firsts, firsts[0] + count)
         driver.rate(t, y, rate, floats, ints)
         if not np.isfinite(rate).all():
             return term

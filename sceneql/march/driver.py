@@ -1,12 +1,7 @@
 """The generated driver of an island: kernels that call the island's own kernels on their integers.
 
 Its text depends on the `Structure` alone, so that it is written and compiled once for all scenes of that structure.
-
-Layout of ``ints``: [triples_at, triple_count, table_at, ranges_at, slopes_at, first of each group (absolute indices
-into the table), ...]; at triples_at (position, velocity, count) of the pairs; at table_at the start of every block and
-the end of the last; at ranges_at the first pair of every exact contact and the end. Block 0 is the program of the
-values that vary in time; a group is a run of blocks with the same kernel. At slopes_at the section of the Jacobian,
-which has a module of its own (jacobian.py), so that explicit solvers compile nothing of it.
+island.layout says how ``ints`` lie.
 """
 
 from __future__ import annotations
@@ -18,12 +13,13 @@ from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import sceneql.system.channels as channels
 from sceneql.compiled.generated import load, write
-from sceneql.island.blocks_laid import GROUPS_AT
+from sceneql.island import layout
 from sceneql.island.island import Structure, System
-from sceneql.island.jacobian import HEAD
 
-REFRESH = "    refresh(t, y, floats, ints[ints[ints[2]] : ints[ints[2] + 1]])"
+TABLE = f"ints[{layout.TABLE_AT}]"
+REFRESH = f"    refresh(t, y, floats, ints[ints[{TABLE}] : ints[{TABLE} + 1]])"
 
 
 class Driver(NamedTuple):
@@ -74,11 +70,11 @@ def jacobian_text(structure: Structure) -> str:
         "from sceneql.system.signatures_kernels import JACOBIAN",
         *("", "", "@lean(JACOBIAN)", "def jacobian(functions, t, y, values, floats, ints):"),
         *([REFRESH] if structure.varying else []),
-        "    s = ints[4]",
+        f"    s = ints[{layout.SLOPES_AT}]",
         "    for k in range(ints[s], ints[s] + ints[s + 1]):",
         "        values[k] = 0.0",
     ]
-    for group, short in enumerate(names.values(), HEAD):
+    for group, short in enumerate(names.values(), layout.HEAD):
         lines += [
             f"    for b in range(ints[s + {group}], ints[s + {group + 1}], 4):",
             f"        {short}(t, y, values[ints[b + 2] : ints[b + 3]], floats, ints[ints[b] : ints[b + 1]])",
@@ -111,8 +107,9 @@ def text(structure: Structure) -> str:
         "from sceneql.system.signatures_kernels import AFTER_STEP, BACK_OFF, GAP, IMPACT, TERM",
     ]
     refresh = [REFRESH] if structure.varying else []
-    group = GROUPS_AT
-    lines += ["", "", "@lean(TERM)", "def rate(t, y, rate, floats, ints):", "    floats[0] += 1.0", *refresh]
+    group = layout.GROUPS_AT
+    lines += ["", "", "@lean(TERM)", "def rate(t, y, rate, floats, ints):"]
+    lines += [f"    floats[{channels.RATES}] += 1.0", *refresh]
     lines += ["    for k in range(rate.size):", "        rate[k] = 0.0"]
     for name in structure.terms:
         lines += _blocks(group, f"{names[name]}(t, y, rate, floats, ints[ints[b] : ints[b + 1]])")
@@ -151,7 +148,8 @@ def _blocks(group: int, *calls: str) -> list[str]:
 
 
 def _contacts(structure: Structure, names: dict[str, str], first: int, refresh: list[str]) -> list[str]:
-    pair_range = (f"p = ints[ints[3] + b - ints[{first}]]", f"q = ints[ints[3] + b - ints[{first}] + 1]")
+    at = f"ints[{layout.RANGES_AT}] + b - ints[{first}]"
+    pair_range = (f"p = ints[{at}]", f"q = ints[{at} + 1]")
     lines = ["", "", "@lean(GAP)", "def gap(t, y, gaps, floats, ints):", *refresh]
     for group, (gap, _) in enumerate(structure.exact, first):
         call = f"{names[gap]}(t, y, gaps[p:q], floats, ints[ints[b] : ints[b + 1]])"

@@ -12,7 +12,7 @@ What contact kernels may count on, and owe:
 - impact(t, y, pair): called for the pair of an event after a rate evaluation at that very (t, y). It leaves the pair
   separating or resting, and changes nothing where the pair is separating already.
 - impact(t, y, -1): called for each contact before the first step and after every accepted one, to put resting pairs in
-  order; it sets floats[1] to 1 when it changed y or a flag, and the rate is evaluated afresh.
+  order; it sets channels.CHANGED when it changed y or a flag, and the rate is evaluated afresh.
 - memory (flags, tallies, times) is kept in floats and changed by impact and settle alone; what terms write there may
   be of any trial stage.
 - an impact is applied when the step after it begins, so frames up to it read the flight before it.

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+import sceneql.system.channels as channels
 from sceneql.compiled.generated import function
 from sceneql.compiled.kernels import compiled
 from sceneql.compiled.pointers_kernels import addresses
 from sceneql.failure import LimitRefused, RunFailure
 from sceneql.island.breakpoint_table import before, next_breakpoint
-from sceneql.island.island import STAGE, IslandAssembly, System
+from sceneql.island.island import IslandAssembly, System
 from sceneql.island.jacobian import BY_DIFFERENCES
 from sceneql.march import march_kernels as kernels
 from sceneql.march.driver import driver, jacobian
@@ -107,7 +108,7 @@ class March:
         local = bool(system.structure.local)
         between = stepper.jacobian and not stepper.newton
         if local:
-            self.floats[STAGE] = system.floats[STAGE] if stepper.jacobian else 0.0
+            self.floats[channels.STAGE] = system.floats[channels.STAGE] if stepper.jacobian else channels.NO_SLOPES
         # What is changed after a step, its own dense output does not know: contacts may change it in every one.
         self._mixed = between and (local or bool(system.structure.after))
         dense = None if local and not between else stepper.dense
@@ -167,9 +168,9 @@ class March:
     def rate(self, t: float, y: Floats) -> Floats:
         """dy/dt (n,) at a time [s] and state, not counted as cost; the floats then hold the values at that time."""
         rate = np.empty_like(y)
-        counted = self.floats[0]
+        counted = self.floats[channels.RATES]
         self.driver.rate(t, y, rate, self.floats, self.system.ints)
-        self.floats[0] = counted
+        self.floats[channels.RATES] = counted
         self._floats_time = t
         return rate
 
@@ -228,10 +229,10 @@ class March:
     def _extend_step(self, t0: float, h: float) -> None:
         """Let the last step get what its dense output needs; not counted as cost, as frames must not change it."""
         assert self._extend is not None
-        counted = self.floats[0]
+        counted = self.floats[channels.RATES]
         step = (self._y0, self._rate0, self._y1, self._work, self._settings, self._numbers)
         self._extend(self._functions, t0, h, *step, self.floats, self.system.ints)
-        self.floats[0] = counted
+        self.floats[channels.RATES] = counted
         self._floats_time = math.nan
 
     def _start(self) -> None:
@@ -318,7 +319,7 @@ class March:
         done.steps, done.rejected, done.events = (
             int(counts[k]) for k in (kernels.STEPS, kernels.REJECTED, kernels.EVENTS)
         )
-        done.evaluations = int(self.floats[0])
+        done.evaluations = int(self.floats[channels.RATES])
         done.seconds += time.perf_counter() - compiled.seconds - started
         if status != kernels.REACHED:
             self.fail(status)

@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import compiled, over_tiles, thread_count
+from sceneql.island import layout
 from sceneql.march import march_blocks_kernels as kernels
 from sceneql.march.march import ENTRIES_A_CALL, March
 from sceneql.march.march_kernels import PAUSED, REACHED, REJECTED, STEPS
@@ -102,7 +104,7 @@ class BlockMarch(March):
     def _add_up(self, seconds: float) -> None:
         """The cost so far: all blocks take the same steps."""
         done, first = self.statistics, self._blocks[0]
-        done.steps, done.evaluations = int(first._counts[STEPS]), int(first.floats[0])
+        done.steps, done.evaluations = int(first._counts[STEPS]), int(first.floats[channels.RATES])
         done.rejected = sum(int(block._counts[REJECTED]) for block in self._blocks)
         done.seconds += seconds
 
@@ -112,7 +114,8 @@ class BlockMarch(March):
             from sceneql.island.inputs_kernels import refresh
 
             ints = self.system.ints
-            refresh(t, y, self.floats, ints[ints[ints[2]] : ints[ints[2] + 1]])
+            table = ints[layout.TABLE_AT]
+            refresh(t, y, self.floats, ints[ints[table] : ints[table + 1]])
         if self._floats_time != t:
             for part, at in zip(self._parts, self._table[:, kernels.FLOATS], strict=True):
                 for there, here, count in part.changes:

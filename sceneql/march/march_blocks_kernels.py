@@ -8,6 +8,7 @@ a block begin.
 import numpy as np
 from numba import types
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import kernel, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_DENSE, AT_RATE, dense_at, rate_at
 from sceneql.march.march_kernels import (
@@ -64,9 +65,9 @@ def advance(functions, first, last, target, end, most, arena, words, table, y, r
         if clock[T1] < target:
             if counts[HELD] != 0 and row[LOOKED] != 0:
                 # What terms leave for contacts to read is that of the step's end again.
-                counted = floats[0]
+                counted = floats[channels.RATES]
                 rate_of(clock[T1], y1, sample, floats, ints)
-                floats[0] = counted
+                floats[channels.RATES] = counted
             row[LOOKED] = 0
             counts[LEFT] = 1 + most // n
             status = march(
@@ -91,9 +92,9 @@ def advance(functions, first, last, target, end, most, arena, words, table, y, r
             else:
                 dense(theta, h, y0, rate0, y1, rate1, work, settings, numbers, sample)
             now, slope = sample, np.empty(n)
-            counted = floats[0]
+            counted = floats[channels.RATES]
             rate_of(target, now, slope, floats, ints)
-            floats[0] = counted
+            floats[channels.RATES] = counted
             row[LOOKED] = 1
         places, of_sums = words[row[PLACES] : row[SUMS]], words[row[SUMS] : row[INTS_END]]
         add_to(y, now, places)

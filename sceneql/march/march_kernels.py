@@ -11,6 +11,7 @@ import math
 
 from numba import types
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import (
     AT_AFTER_STEP,
@@ -37,9 +38,9 @@ STEPS, REJECTED, EVENTS, REPEATS, LEFT, INDEX, GRID, PENDING = range(8)
 pair whose impact is due (-1: none)."""
 
 ADAPTIVE, ORDER, LOCAL, LAST_STAGE, CONTROLS, HALVES, HELD, SWAPPED, ACTS, ALTERED, COUNTS = range(8, 19)
-"""What solver and island are (system.Stepper); whether a local contact holds something (CHANGED_AT); whether the arrays
-of a step's start and end have changed places, for the end of a step is the next one's start; whether something acts at
-the end of steps (Assembly.after_step), and whether it has changed anything at the end of the last one."""
+"""What solver and island are (system.Stepper); whether a local contact holds something (channels.HOLDS); whether the
+arrays of a step's start and end have changed places, for the end of a step is the next one's start; whether something
+acts at the end of steps (Assembly.after_step), and whether it has changed anything at the end of the last one."""
 
 SHORTEST = 1e-3
 """Part of a step of given length below which it is not halved any more."""
@@ -48,13 +49,6 @@ REACHED, PAUSED, NOT_FINITE, GROWTH, STEP_TOO_SMALL, STUCK = range(6)
 
 MOST_REPEATS = 100
 """Impacts for each pair at one instant before the contacts count as contradictory."""
-
-CHANGED_AT = 1
-"""floats[1]: a contact sets it to 1 when its hold changed the state. Before a settle that is to change nothing it is
-the end of the step, which contacts lower to where it should end instead; 0 before the one that counts, in which one
-that holds something sets it to HOLDS: its next settle reads what the terms leave in floats at the step's end."""
-
-HOLDS = -1.0
 
 MARCH = types.int64(I, F, F, A, A, A, A, A, A, A, I, A, I, A, I, A, I)
 
@@ -279,10 +273,10 @@ def march(
             if reached < t1 - t0:
                 t1 = t0 + reached
         if counts[LOCAL] > 0:
-            floats[CHANGED_AT] = t1
+            floats[channels.STEP_END] = t1
             back_off(t0, t1, y0, rate0, y1, floats, ints)
-            if floats[CHANGED_AT] < t1:
-                t1 = floats[CHANGED_AT]
+            if floats[channels.STEP_END] < t1:
+                t1 = floats[channels.STEP_END]
                 counts[PENDING] = -1
                 step(functions, t0, t1 - t0, y0, rate0, y1, work, settings, numbers, floats, ints)
                 if first_bad(y1) >= 0:
@@ -291,7 +285,7 @@ def march(
                     return STEP_TOO_SMALL if counts[ADAPTIVE] > 0 else NOT_FINITE
                 if counts[LAST_STAGE] < 0 and counts[HELD] > 0 and counts[ORDER] > 1:
                     rate(t1, y1, rate1, floats, ints)
-            floats[CHANGED_AT] = 0.0
+            floats[channels.STEP_END] = floats[channels.HOLDS] = 0.0
             copy(y1, sample)
         if counts[ACTS] > 0:
             copy(y1, sample)
@@ -301,12 +295,12 @@ def march(
                 rate(t1, y1, rate1, floats, ints)
         if counts[LOCAL] > 0:
             back_off(t0, t1, y0, rate0, y1, floats, ints)
-            counts[HELD] = floats[CHANGED_AT] == HOLDS
+            counts[HELD] = floats[channels.HOLDS] != 0.0
             rate(t1, y1, rate1, floats, ints)
         if leaving.size > 0:
-            floats[CHANGED_AT] = 0.0
+            floats[channels.CHANGED] = 0.0
             impact(t1, y1, -1, floats, ints)
-            if floats[CHANGED_AT] != 0.0:
+            if floats[channels.CHANGED] != 0.0:
                 rate(t1, y1, rate1, floats, ints)
         clock[T0] = t0
         clock[T1] = t1

@@ -15,22 +15,13 @@ from sceneql.compiled.arithmetic_kernels import widest
 from sceneql.compiled.kernels import inlined, kernel, lean, lean_inlined
 from sceneql.compiled.lanes_kernels import aligned, fma, folded, guess, load, spread, store
 from sceneql.compiled.threads_kernels import TILE, over_threads
+from sceneql.nbody import layout
 from sceneql.nbody.shared_masses_kernels import gather, velocity_of
-from sceneql.nbody.weights_kernels import (
-    CONSTANT,
-    FLOOR,
-    POINTS,
-    ROOM,
-    SIGN,
-    SOFTENING,
-    WEIGHTS,
-    weights,
-)
+from sceneql.nbody.weights_kernels import FLOOR, weights
 from sceneql.system.signatures_kernels import TERM, A, F, I, N
 
-FORCES, PARTS, ENTRY, THREADS, TILE_AT, BODIES = range(6, 12)
-"""Places in ints after those of weights_kernels: room for 3 ROOM sums of each part, and the number of parts; threads;
-the bodies."""
+FORCES, PARTS, ENTRY, THREADS, TILE_AT, BODIES = range(layout.OWN, layout.OWN + 6)
+"""Places in ints: room for 3 ROOM sums of each part, and the number of parts; threads; the bodies."""
 FEW = 32
 LANES = 128
 """Bodies of a tile; ROOM is a multiple of it."""
@@ -46,21 +37,21 @@ X, Y, Z, W, FX, FY, FZ, ROWS = range(8)
 @inlined
 def spread_out(floats, ints):
     """Move y and z of the gathered places to where the padded lanes have them; the padding weighs nothing."""
-    n, room, at = ints[BODIES], ints[ROOM], ints[POINTS]
+    n, room, at = ints[BODIES], ints[layout.ROOM], ints[layout.POINTS]
     for c in range(2, -1, -1):
         for k in range(n - 1, -1, -1):
             floats[at + c * room + k] = floats[at + c * n + k]
     for k in range(n, room):
         for c in range(3):
             floats[at + c * room + k] = floats[at + c * room]
-        floats[ints[WEIGHTS] + k] = 0.0
+        floats[ints[layout.WEIGHTS] + k] = 0.0
 
 
 @inlined
 def few(y, rate, floats, ints, c):
     """Pair by pair."""
-    n, at, weight = ints[BODIES], ints[POINTS], ints[WEIGHTS]
-    soft = floats[ints[SOFTENING]] * floats[ints[SOFTENING]]
+    n, at, weight = ints[BODIES], ints[layout.POINTS], ints[layout.WEIGHTS]
+    soft = floats[ints[layout.SOFTENING]] * floats[ints[layout.SOFTENING]]
     for i in range(n):
         vi = velocity_of(i, ints, BODIES)
         for j in range(i + 1, n):
@@ -131,11 +122,12 @@ def attract(one, other, soft, sums):
 def take(floats, ints, tile, first):
     """Places and weights of the LANES bodies from ``first`` on, and no forces."""
     for c in range(3):
-        places = floats[ints[POINTS] + c * ints[ROOM] + first : ints[POINTS] + c * ints[ROOM] + first + LANES]
+        at = ints[layout.POINTS] + c * ints[layout.ROOM] + first
+        places = floats[at : at + LANES]
         for k in range(LANES):
             tile[c * LANES + k] = places[k]
             tile[(FX + c) * LANES + k] = 0.0
-    own = floats[ints[WEIGHTS] + first : ints[WEIGHTS] + first + LANES]
+    own = floats[ints[layout.WEIGHTS] + first : ints[layout.WEIGHTS] + first + LANES]
     for k in range(LANES):
         tile[W * LANES + k] = own[k]
 
@@ -151,11 +143,11 @@ def leave(tile, floats, at, room):
 @kernel(TILE, inner=True)
 def direct_tile(part, t, y, rate, floats, ints):
     """The sums of one part: of its rows of tiles, dealt to and fro so that all have as much to do."""
-    room, parts = ints[ROOM], ints[PARTS]
+    room, parts = ints[layout.ROOM], ints[PARTS]
     sums = ints[FORCES] + 3 * room * part
     for k in range(3 * room):
         floats[sums + k] = 0.0
-    soft = floats[ints[SOFTENING]] * floats[ints[SOFTENING]] + FLOOR
+    soft = floats[ints[layout.SOFTENING]] * floats[ints[layout.SOFTENING]] + FLOOR
     one, other = aligned(np.empty((ROWS + 1) * LANES)), aligned(np.empty((ROWS + 1) * LANES))
     scratch = aligned(np.empty((3 * LANES + 1) * WIDTH))
     tiles = room // LANES
@@ -178,15 +170,15 @@ def direct_tile(part, t, y, rate, floats, ints):
 def direct(t, y, rate, floats, ints):
     """Adds the forces between all pairs. ints: see above."""
     n = ints[BODIES]
-    gather(y, floats, ints, BODIES, ints[POINTS])
-    weights(floats, ints, BODIES, ints[WEIGHTS])
+    gather(y, floats, ints, BODIES, ints[layout.POINTS])
+    weights(floats, ints, BODIES, ints[layout.WEIGHTS])
     if n <= FEW:
-        few(y, rate, floats, ints, ints[SIGN] * floats[ints[CONSTANT]])
+        few(y, rate, floats, ints, ints[layout.SIGN] * floats[ints[layout.CONSTANT]])
         return
     spread_out(floats, ints)
     count = 1 if n <= ALONE else ints[THREADS]
     over_threads(ints[ENTRY], count, ints[TILE_AT], ints[PARTS], t, y, rate, floats, ints)
-    room, constant = ints[ROOM], ints[SIGN] * floats[ints[CONSTANT]]
+    room, constant = ints[layout.ROOM], ints[layout.SIGN] * floats[ints[layout.CONSTANT]]
     for k in range(n):
         at = velocity_of(k, ints, BODIES)
         for c in range(3):
@@ -204,11 +196,11 @@ def parts_of(room: int) -> int:
 @kernel((A, A, I, A))
 def potentials(y, floats, ints, out):
     """Write sum_j w_j / sqrt(r^2 + softening^2) of every body, itself left out, to out (n,); ints as for the term."""
-    n, at = ints[BODIES], ints[POINTS]
+    n, at = ints[BODIES], ints[layout.POINTS]
     gather(y, floats, ints, BODIES, at)
-    weights(floats, ints, BODIES, ints[WEIGHTS])
-    w = floats[ints[WEIGHTS] : ints[WEIGHTS] + n]
-    soft = floats[ints[SOFTENING]] * floats[ints[SOFTENING]]
+    weights(floats, ints, BODIES, ints[layout.WEIGHTS])
+    w = floats[ints[layout.WEIGHTS] : ints[layout.WEIGHTS] + n]
+    soft = floats[ints[layout.SOFTENING]] * floats[ints[layout.SOFTENING]]
     for i in range(n):
         total = 0.0
         for j in range(n):

@@ -13,8 +13,8 @@ from sceneql.compiled.arithmetic_kernels import widest
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.compiled.lanes_kernels import aligned, fma, folded, guess, load, spread, store
 from sceneql.compiled.threads_kernels import TILE
+from sceneql.nbody import layout
 from sceneql.nbody.direct_kernels import FORCES, FX, FY, FZ, LANES, PARTS, W, X, Y, Z
-from sceneql.nbody.weights_kernels import POINTS, ROOM, SOFTENING, WEIGHTS
 from sceneql.system.signatures_kernels import A, I, N
 
 S = types.float32[::1]
@@ -75,7 +75,8 @@ def attract(one, other, soft, sums):
 def take(floats, ints, unit, tile, first):
     """The LANES bodies from ``first`` on, without forces; ``unit``: middle (3), 1 / extent, 1 / largest weight."""
     for c in range(3):
-        places = floats[ints[POINTS] + c * ints[ROOM] + first : ints[POINTS] + c * ints[ROOM] + first + LANES]
+        at = ints[layout.POINTS] + c * ints[layout.ROOM] + first
+        places = floats[at : at + LANES]
         middle, scale = unit[c], unit[3]
         for k in range(LANES):
             place = (places[k] - middle) * scale
@@ -83,7 +84,7 @@ def take(floats, ints, unit, tile, first):
             tile[c * LANES + k] = rounded
             tile[(XL + c) * LANES + k] = np.float32(place - np.float64(rounded))
             tile[(FX + c) * LANES + k] = np.float32(0.0)
-    weights, scale = floats[ints[WEIGHTS] + first : ints[WEIGHTS] + first + LANES], unit[4]
+    weights, scale = floats[ints[layout.WEIGHTS] + first : ints[layout.WEIGHTS] + first + LANES], unit[4]
     for k in range(LANES):
         tile[W * LANES + k] = np.float32(weights[k] * scale)
 
@@ -100,7 +101,7 @@ def leave(tile, floats, at, room):
 @lean(types.void(A, I, A), inner=True)
 def units(floats, ints, unit):
     """Middle (3) of all bodies, 1 / their extent, 1 / the largest weight."""
-    room, at = ints[ROOM], ints[POINTS]
+    room, at = ints[layout.ROOM], ints[layout.POINTS]
     side = 0.0
     for c in range(3):
         low, high = floats[at + c * room], floats[at + c * room]
@@ -110,7 +111,7 @@ def units(floats, ints, unit):
         side = max(side, high - low)
     most = 0.0
     for k in range(room):
-        most = max(most, abs(floats[ints[WEIGHTS] + k]))
+        most = max(most, abs(floats[ints[layout.WEIGHTS] + k]))
     unit[3] = 1.0 / side if side > 0.0 else 1.0
     unit[4] = 1.0 / most if most > 0.0 else 1.0
 
@@ -118,13 +119,13 @@ def units(floats, ints, unit):
 @kernel(TILE, inner=True)
 def fast_tile(part, t, y, rate, floats, ints):
     """As direct_tile: the sums of one part, of its rows of tiles."""
-    room, parts = ints[ROOM], ints[PARTS]
+    room, parts = ints[layout.ROOM], ints[PARTS]
     sums = ints[FORCES] + 3 * room * part
     for k in range(3 * room):
         floats[sums + k] = 0.0
     unit = np.empty(5)
     units(floats, ints, unit)
-    soft = np.float32((floats[ints[SOFTENING]] * unit[3]) ** 2 + FLOOR)
+    soft = np.float32((floats[ints[layout.SOFTENING]] * unit[3]) ** 2 + FLOOR)
     one = aligned(np.empty((ROWS + 1) * LANES, dtype=np.float32))
     other = aligned(np.empty((ROWS + 1) * LANES, dtype=np.float32))
     scratch = aligned(np.empty((3 * LANES + 1) * WIDTH, dtype=np.float32))

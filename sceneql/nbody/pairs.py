@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from sceneql.nbody.shared_masses import MODEL, first_of, layout
+from sceneql.nbody import layout
+from sceneql.nbody.shared_masses import first_of, integers_of
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
 if TYPE_CHECKING:
@@ -44,7 +45,7 @@ class Pairs:
         """
         if self.softening == 0:
             apart(assembly, everyone, span)
-        bodies = layout(everyone)
+        bodies = integers_of(everyone)
         weights = tuple(number for weight in self.weights for number in weight)
         kernel, numbers = self._tree(assembly, bodies[0]) if self.opening > 0 else self._direct(assembly, bodies[0])
         ints = (*numbers, *bodies, *weights)
@@ -136,8 +137,6 @@ def sampled_error(state: ModelState) -> tuple[float, float]:
     """Relative errors of the forces at a state: root mean square and largest of SAMPLES bodies, evenly chosen."""
     import numpy as np
 
-    from sceneql.nbody import weights_kernels as kernels
-
     ints = np.array(state.ints[1:], dtype=np.int64)
     rate = np.zeros_like(state.y)
     if state.ints[0]:
@@ -147,19 +146,19 @@ def sampled_error(state: ModelState) -> tuple[float, float]:
         from sceneql.nbody.direct_kernels import BODIES as BODIES_AT
         from sceneql.nbody.direct_kernels import direct as term
     term(state.t, state.y, rate, state.floats, ints)
-    n, models = int(ints[BODIES_AT]), ints[BODIES_AT + 1]
-    rows = ints[BODIES_AT + 2 :][: MODEL * models].reshape(-1, MODEL)
+    n, models = int(ints[BODIES_AT + layout.MASSES]), ints[BODIES_AT + layout.MODELS]
+    rows = ints[BODIES_AT + layout.ROWS :][: layout.MODEL * models].reshape(-1, layout.MODEL)
     found = np.concatenate([rate[at : at + 3 * count].reshape(-1, 3) for at, count in rows[:, 1:3]])
-    weights = int(ints[kernels.WEIGHTS])
+    weights = int(ints[layout.WEIGHTS])
     places = np.concatenate([state.y[at : at + 3 * count].reshape(-1, 3) for at, count in rows[:, ::2][:, :2]]).T
     weight = state.floats[weights : weights + n]
-    softening = float(state.floats[ints[kernels.SOFTENING]])
+    softening = float(state.floats[ints[layout.SOFTENING]])
     wrong = []
     for k in np.linspace(0, n - 1, SAMPLES).astype(int):
         apart = places - places[:, k : k + 1]
         square = np.sum(apart**2, axis=0)
         pull = np.where(square > 0, weight / np.maximum(square + softening**2, 1e-300) ** 1.5, 0.0)
-        exact = float(ints[kernels.SIGN] * state.floats[ints[kernels.CONSTANT]]) * weight[k] * (apart @ pull)
+        exact = float(ints[layout.SIGN] * state.floats[ints[layout.CONSTANT]]) * weight[k] * (apart @ pull)
         size = float(np.linalg.norm(exact))
         wrong.append(float(np.linalg.norm(found[k] - exact)) / size if size > 0 else 0.0)
     return float(np.sqrt(np.mean(np.square(wrong)))), max(wrong)
@@ -168,8 +167,6 @@ def sampled_error(state: ModelState) -> tuple[float, float]:
 def energy(bodies: Bodies, state: ModelState) -> float:
     """The model's share of the potential energy [J]: half of each pair's for each of its bodies."""
     import numpy as np
-
-    from sceneql.nbody import weights_kernels as kernels
 
     tree, *rest = state.ints
     ints = np.array(rest, dtype=np.int64)
@@ -186,6 +183,6 @@ def energy(bodies: Bodies, state: ModelState) -> float:
         potentials(state.y, state.floats, ints, found)
     first = first_of(bodies, rest[bodies_at:])
     own = slice(first, first + bodies.count)
-    weights = state.floats[rest[kernels.WEIGHTS] : rest[kernels.WEIGHTS] + n]
-    constant = float(rest[kernels.SIGN] * state.floats[rest[kernels.CONSTANT]])
+    weights = state.floats[rest[layout.WEIGHTS] : rest[layout.WEIGHTS] + n]
+    constant = float(rest[layout.SIGN] * state.floats[rest[layout.CONSTANT]])
     return -0.5 * constant * float(weights[own] @ found[own])

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from sceneql.nbody import layout
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from sceneql.system import Bodies
 
-MODEL = 5
-"""Integers of one model: position_at, velocity_at, count, the number of its first mass among all, mass_at."""
 
-
-def layout(everyone: Sequence[Bodies]) -> tuple[int, ...]:
-    """Integers that `gather` reads: number of masses, number of models, then MODEL for each."""
+def integers_of(everyone: Sequence[Bodies]) -> tuple[int, ...]:
+    """Integers of all masses, that `gather` reads (layout.MASSES)."""
     numbers: list[int] = []
     total = 0
     for bodies in everyone:
@@ -24,6 +23,6 @@ def layout(everyone: Sequence[Bodies]) -> tuple[int, ...]:
 
 
 def first_of(bodies: Bodies, ints: Sequence[int]) -> int:
-    """Number of a model's first mass among all, from what `layout` gave."""
-    rows = (ints[2 + MODEL * k : 2 + MODEL * (k + 1)] for k in range(ints[1]))
-    return next(first for position_at, _, _, first, _ in rows if position_at == bodies.position_at)
+    """Number of a model's first mass among all, from what `integers_of` gave."""
+    rows = (ints[layout.ROWS + layout.MODEL * k :] for k in range(ints[layout.MODELS]))
+    return next(row[layout.FIRST] for row in rows if row[layout.POSITION_AT] == bodies.position_at)

@@ -4,9 +4,10 @@
 import math
 
 from sceneql.compiled.kernels import kernel
+from sceneql.nbody import layout
 from sceneql.nbody.direct_kernels import BODIES
 from sceneql.nbody.shared_masses_kernels import gather
-from sceneql.nbody.weights_kernels import CONSTANT, POINTS, SIGN, SOFTENING, WEIGHTS, weights
+from sceneql.nbody.weights_kernels import weights
 from sceneql.system.signatures_kernels import TERM
 
 
@@ -14,13 +15,13 @@ from sceneql.system.signatures_kernels import TERM
 def direct(t, y, entries, floats, ints):
     """A block of 3x3 for every two bodies (i, j), row by row: c w_i w_j (1/q^3 - 3 d d/q^5), and less of it at (i, i).
 
-    q^2 = d^2 + softening^2. ints: those of direct_kernels.direct.
+    q^2 = d^2 + softening^2.
     """
-    n, at = ints[BODIES], ints[POINTS]
+    n, at, weight = ints[BODIES], ints[layout.POINTS], ints[layout.WEIGHTS]
     gather(y, floats, ints, BODIES, at)
-    weights(floats, ints, BODIES, ints[WEIGHTS])
-    constant = ints[SIGN] * floats[ints[CONSTANT]]
-    soft = floats[ints[SOFTENING]] * floats[ints[SOFTENING]]
+    weights(floats, ints, BODIES, weight)
+    constant = ints[layout.SIGN] * floats[ints[layout.CONSTANT]]
+    soft = floats[ints[layout.SOFTENING]] * floats[ints[layout.SOFTENING]]
     for i in range(n):
         own = 9 * (n * i + i)
         for j in range(n):
@@ -31,7 +32,7 @@ def direct(t, y, entries, floats, ints):
             if square == 0.0:
                 continue
             square += soft
-            c = constant * floats[ints[WEIGHTS] + i] * floats[ints[WEIGHTS] + j] / (square * math.sqrt(square))
+            c = constant * floats[weight + i] * floats[weight + j] / (square * math.sqrt(square))
             for a in range(3):
                 da = dx if a == 0 else (dy if a == 1 else dz)
                 for b in range(3):

@@ -13,6 +13,7 @@ import numpy as np
 from sceneql.compiled.arithmetic_kernels import fma, inverse_root, widest
 from sceneql.compiled.kernels import inlined, kernel
 from sceneql.compiled.threads_kernels import TILE, over_threads
+from sceneql.nbody import layout
 from sceneql.nbody.octree_kernels import (
     BEGIN,
     CHILD,
@@ -27,21 +28,13 @@ from sceneql.nbody.octree_kernels import (
     sort_by_key,
 )
 from sceneql.nbody.shared_masses_kernels import gather, velocity_of
-from sceneql.nbody.weights_kernels import (
-    CONSTANT,
-    FLOOR,
-    POINTS,
-    ROOM,
-    SIGN,
-    SOFTENING,
-    WEIGHTS,
-    weights,
-)
+from sceneql.nbody.weights_kernels import FLOOR, weights
 from sceneql.system.signatures_kernels import TERM
 
-OPENING, NODES, MOST, SORTED, MASSES, ORDER, STARTS, POTENTIALS, ENTRY, THREADS, TILE_AT, BODIES = range(6, 18)
-"""Places in ints after those of weights_kernels: offsets of the opening angle and the nodes; room for nodes;
-offsets of the sorted places, masses and numbers, of the groups' first bodies and of sum m/r; threads; the bodies."""
+OPENING, NODES, MOST, SORTED, MASSES, ORDER, STARTS, POTENTIALS = range(layout.OWN, layout.OWN + 8)
+ENTRY, THREADS, TILE_AT, BODIES = range(POTENTIALS + 1, POTENTIALS + 5)
+"""Places in ints: offsets of the opening angle and the nodes; room for nodes; offsets of the sorted places,
+masses and numbers, of the groups' first bodies and of sum m/r; threads; the bodies."""
 PX, PY, PZ, FX, FY, FZ, U, ROWS = range(8)
 """Rows of GROUP lanes."""
 
@@ -81,7 +74,7 @@ def far(floats, node, lanes, count):
 def near(floats, ints, first, last, lanes, count):
     """Add the pull of the bodies first..last - 1 to all lanes."""
     widest()
-    room = ints[ROOM]
+    room = ints[layout.ROOM]
     places, masses = ints[SORTED], ints[MASSES]
     soft = lanes[ROWS * GROUP]
     for j in range(first, last):
@@ -130,12 +123,12 @@ def walk(floats, ints, lanes, count, box):
 @kernel(TILE, inner=True)
 def tree_tile(tile, t, y, rate, floats, ints):
     """The forces of all bodies on one group."""
-    room = ints[ROOM]
+    room = ints[layout.ROOM]
     first = int(floats[ints[STARTS] + tile])
     count = int(floats[ints[STARTS] + tile + 1]) - first
     padded = min(GROUP, (count + 7) & ~7)
     lanes = np.zeros(ROWS * GROUP + 1)
-    lanes[ROWS * GROUP] = floats[ints[SOFTENING]] * floats[ints[SOFTENING]] + FLOOR
+    lanes[ROWS * GROUP] = floats[ints[layout.SOFTENING]] * floats[ints[layout.SOFTENING]] + FLOOR
     box = np.empty(6)
     for c in range(3):
         box[c], box[3 + c] = np.inf, -np.inf
@@ -144,7 +137,7 @@ def tree_tile(tile, t, y, rate, floats, ints):
             lanes[(PX + c) * GROUP + k] = x
             box[c], box[3 + c] = min(box[c], x), max(box[3 + c], x)
     walk(floats, ints, lanes, padded, box)
-    constant = ints[SIGN] * floats[ints[CONSTANT]]
+    constant = ints[layout.SIGN] * floats[ints[layout.CONSTANT]]
     for k in range(count):
         number = int(floats[ints[ORDER] + first + k])
         floats[ints[POTENTIALS] + number] = lanes[U * GROUP + k]
@@ -157,20 +150,20 @@ def tree_tile(tile, t, y, rate, floats, ints):
 @kernel(TERM)
 def tree(t, y, rate, floats, ints):
     """Adds the forces between all bodies. ints: see above."""
-    n, room = ints[BODIES], ints[ROOM]
-    gather(y, floats, ints, BODIES, ints[POINTS])
-    weights(floats, ints, BODIES, ints[WEIGHTS])
+    n, room = ints[BODIES], ints[layout.ROOM]
+    gather(y, floats, ints, BODIES, ints[layout.POINTS])
+    weights(floats, ints, BODIES, ints[layout.WEIGHTS])
     for k in range(3 * n):
-        if not math.isfinite(floats[ints[POINTS] + k]):
+        if not math.isfinite(floats[ints[layout.POINTS] + k]):
             return
     keys = np.empty(n, dtype=np.int64)
     order = np.empty(n, dtype=np.int64)
-    sort_by_key(floats, n, n, ints[POINTS], keys, order)
+    sort_by_key(floats, n, n, ints[layout.POINTS], keys, order)
     for k in range(n):
         floats[ints[ORDER] + k] = order[k]
-        floats[ints[MASSES] + k] = floats[ints[WEIGHTS] + order[k]]
+        floats[ints[MASSES] + k] = floats[ints[layout.WEIGHTS] + order[k]]
         for c in range(3):
-            floats[ints[SORTED] + c * room + k] = floats[ints[POINTS] + c * n + order[k]]
+            floats[ints[SORTED] + c * room + k] = floats[ints[layout.POINTS] + c * n + order[k]]
     count = build(floats, n, keys, ints[NODES], ints[MOST])
     moments(floats, count, ints[NODES], ints[SORTED], room, ints[MASSES])
     tiles = groups(floats, count, ints[NODES], ints[STARTS])

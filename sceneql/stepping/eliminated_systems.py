@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sceneql.island import layout
+
 if TYPE_CHECKING:
     from numpy import int64
     from numpy.typing import NDArray
@@ -47,9 +49,10 @@ def _held(system: System) -> set[int]:
     found: set[int] = set()
     if system.pattern is None or not system.pattern.exact:
         return found
-    at = ints[4]
+    at = ints[layout.SLOPES_AT]
+    masses_at, masses = ints[at + layout.MASSES_AT], ints[at + layout.MASSES]
     velocities = {int(v): x for x, v in enumerate(system.partner) if v >= 0}
-    for velocity_at, inverse_at, count in ints[ints[at + 4] :][: 3 * ints[at + 5]].reshape(-1, 3).tolist():
+    for velocity_at, inverse_at, count in ints[masses_at : masses_at + 3 * masses].reshape(-1, 3).tolist():
         for k in np.flatnonzero(system.floats[inverse_at : inverse_at + count] == 0.0).tolist():
             for v in range(velocity_at + 3 * k, velocity_at + 3 * k + 3):
                 found |= {v, velocities[v]} if v in velocities else {v}

@@ -15,25 +15,11 @@ from numba import types
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.compiled.pointers_kernels import AT_JACOBIAN, jacobian_at
+from sceneql.stepping import radau_layout as layout
 from sceneql.stepping.error_scales_kernels import foresee, weigh
 from sceneql.stepping.radau_stages_kernels import (
-    BEFORE,
-    BEGUN,
     C1,
     C2,
-    CEILING,
-    CONTRACTION,
-    CONTRACTS,
-    CONVERGENCE,
-    ERROR,
-    FACTOR,
-    FACTORED,
-    FILTER,
-    FIXED,
-    FRESH,
-    GOOD_ERROR,
-    GOOD_LENGTH,
-    HEAD,
     I11,
     I12,
     I13,
@@ -44,19 +30,7 @@ from sceneql.stepping.radau_stages_kernels import (
     I32,
     I33,
     ITERATIONS,
-    LENGTH,
-    MEASURES,
-    MEMORY,
-    NEXT,
-    REJECTED,
-    RELATIVE,
-    ROOM,
     ROOT6,
-    ROWS_AT,
-    SCALED,
-    START,
-    TALLIES,
-    VECTORS,
     iterate,
 )
 from sceneql.stepping.radau_systems_kernels import factor_at, filter_at
@@ -76,30 +50,30 @@ INSIDE = 0.01826
 def begin(t, y0, work, start, z, before):
     """Take note of what became of the try before: whether its stages can be extrapolated. True: y0 is a new start."""
     n = y0.size
-    same = work[BEGUN] > 0.0 and t == work[START]
-    follows = work[BEGUN] > 0.0 and not same
+    same = work[layout.BEGUN] > 0.0 and t == work[layout.START]
+    follows = work[layout.BEGUN] > 0.0 and not same
     for k in range(n):
         same = same and y0[k] == start[k]
         follows = follows and y0[k] == start[k] + z[2 * n + k]
     if same:
         return False
-    work[REJECTED] = 0.0
-    work[FRESH] = 0.0
+    work[layout.REJECTED] = 0.0
+    work[layout.FRESH] = 0.0
     if follows:
         for k in range(3 * n):
             before[k] = z[k]
-        work[BEFORE] = work[LENGTH]
-        work[GOOD_LENGTH] = work[LENGTH]
-        work[GOOD_ERROR] = max(0.01, work[ERROR])
+        work[layout.BEFORE] = work[layout.LENGTH]
+        work[layout.GOOD_LENGTH] = work[layout.LENGTH]
+        work[layout.GOOD_ERROR] = max(0.01, work[layout.ERROR])
     else:
-        work[BEFORE] = 0.0
-        work[GOOD_LENGTH] = 0.0
-        work[CONTRACTION] = 1.0
-        work[CONVERGENCE] = 1.0
+        work[layout.BEFORE] = 0.0
+        work[layout.GOOD_LENGTH] = 0.0
+        work[layout.CONTRACTION] = 1.0
+        work[layout.CONVERGENCE] = 1.0
     for k in range(n):
         start[k] = y0[k]
-    work[BEGUN] = 1.0
-    work[START] = t
+    work[layout.BEGUN] = 1.0
+    work[layout.START] = t
     return True
 
 
@@ -133,7 +107,7 @@ def guess_stages(n, ratio, known, z, before, w, ahead):
 @lean_inlined
 def tallies_move(numbers, n, z):
     """Whether any sum that nothing depends on changes in the step."""
-    for k in range(HEAD, HEAD + numbers[TALLIES]):
+    for k in range(layout.HEAD, layout.HEAD + numbers[layout.TALLIES]):
         i = numbers[k]
         if z[i] != 0.0 or z[n + i] != 0.0 or z[2 * n + i] != 0.0:
             return True
@@ -157,7 +131,7 @@ def estimate(h, rate0, work, numbers, plan, rows, z, f, weights, values, store):
     error = f[:n]
     for k in range(n):
         error[k] = rate0[k] + (E1 * z[k] + E2 * z[n + k] + E3 * z[2 * n + k]) / h
-    if not filter_at(numbers[FILTER])(plan, work[FACTORED], values, rows, store, error):
+    if not filter_at(numbers[layout.FILTER])(plan, work[layout.FACTORED], values, rows, store, error):
         return math.inf
     return norm(error, weights)
 
@@ -184,19 +158,19 @@ def control(h, error, iterations, work, contracts):
     safety = min(SAFETY, SAFETY * (1.0 + 2.0 * ITERATIONS) / (iterations + 2.0 * ITERATIONS))
     divisor = min(5.0, max(0.125, error**0.25 / safety))
     if error >= 1.0:
-        work[REJECTED] = 1.0
-        work[NEXT] = h / divisor
+        work[layout.REJECTED] = 1.0
+        work[layout.NEXT] = h / divisor
         return
-    if work[GOOD_LENGTH] > 0.0:
-        trend = work[GOOD_LENGTH] / h * (error * error / work[GOOD_ERROR]) ** 0.25 / SAFETY
+    if work[layout.GOOD_LENGTH] > 0.0:
+        trend = work[layout.GOOD_LENGTH] / h * (error * error / work[layout.GOOD_ERROR]) ** 0.25 / SAFETY
         divisor = max(divisor, min(5.0, max(0.125, trend)))
     wanted = h / divisor
-    if work[REJECTED] > 0.0:
+    if work[layout.REJECTED] > 0.0:
         wanted = min(wanted, h)
-    if work[CEILING] > 0.0:
-        wanted = min(wanted, max(h, work[CEILING]))
-        work[CEILING] *= 1.2
-    work[NEXT] = h if work[CONTRACTION] <= contracts and h <= wanted <= 1.2 * h else wanted
+    if work[layout.CEILING] > 0.0:
+        wanted = min(wanted, max(h, work[layout.CEILING]))
+        work[layout.CEILING] *= 1.2
+    work[layout.NEXT] = h if work[layout.CONTRACTION] <= contracts and h <= wanted <= 1.2 * h else wanted
 
 
 @lean(STEP, inner=True)
@@ -204,64 +178,64 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after a step of length h and its error; NaN and a shorter length where Newton's iteration fails."""
     jacobian = jacobian_at(functions[AT_JACOBIAN])
     n = y0.size
-    at = MEMORY
+    at = layout.MEMORY
     z, before, w = work[at : at + 3 * n], work[at + 3 * n : at + 6 * n], work[at + 6 * n : at + 9 * n]
     f, start, weights = work[at + 9 * n : at + 12 * n], work[at + 12 * n : at + 13 * n], work[at + 13 * n : at + 14 * n]
     newton, ahead = work[at + 14 * n : at + 15 * n], work[at + 15 * n : at + 16 * n]
-    at += VECTORS * n
-    values, store = work[at : at + numbers[ROOM]], work[at + numbers[ROOM] :]
+    at += layout.VECTORS * n
+    values, store = work[at : at + numbers[layout.ROOM]], work[at + numbers[layout.ROOM] :]
     new = begin(t, y0, work, start, z, before)
-    last = HEAD + numbers[TALLIES]
-    plan, rows = numbers[last + numbers[SCALED] :], settings[numbers[ROWS_AT] :]
-    if numbers[SCALED] > 0:
-        later, moved, scales = f[:n], f[n : 2 * n], settings[MEASURES:]
+    last = layout.HEAD + numbers[layout.TALLIES]
+    plan, rows = numbers[last + numbers[layout.SCALED] :], settings[numbers[layout.ROWS_AT] :]
+    if numbers[layout.SCALED] > 0:
+        later, moved, scales = f[:n], f[n : 2 * n], settings[layout.MEASURES :]
         foresee(functions, t, h, y0, rate0, scales, numbers[last:], later, moved, floats, ints)
-        weigh(new, settings[RELATIVE], h, y0, rate0, later, scales, numbers[last:], weights)
+        weigh(new, settings[layout.RELATIVE], h, y0, rate0, later, scales, numbers[last:], weights)
     else:
         for k in range(n):
-            weights[k] = 1.0 / (settings[MEASURES + k] + settings[RELATIVE] * abs(y0[k]))
+            weights[k] = 1.0 / (settings[layout.MEASURES + k] + settings[layout.RELATIVE] * abs(y0[k]))
     for k in range(n):
         newton[k] = weights[k]
-    for k in range(HEAD, last):
+    for k in range(layout.HEAD, last):
         newton[numbers[k]] = 0.0
-    work[LENGTH] = h
-    known = work[BEFORE] > 0.0
+    work[layout.LENGTH] = h
+    known = work[layout.BEFORE] > 0.0
     iterations, shorter = 0, 1.0
     while True:
-        renewed = work[FRESH] == 0.0 and (work[CONTRACTION] > settings[CONTRACTS] or shorter < 1.0)
+        renewed = work[layout.FRESH] == 0.0 and (work[layout.CONTRACTION] > settings[layout.CONTRACTS] or shorter < 1.0)
         if renewed:
             jacobian(functions, t, y0, values, floats, ints)
-            work[FRESH] = 1.0
-        if renewed or abs(h - work[FACTORED]) > 1e-9 * h:
-            regular = factor_at(numbers[FACTOR])(plan, h, values, rows, store)
-            work[FACTORED] = h if regular else 0.0
+            work[layout.FRESH] = 1.0
+        if renewed or abs(h - work[layout.FACTORED]) > 1e-9 * h:
+            regular = factor_at(numbers[layout.FACTOR])(plan, h, values, rows, store)
+            work[layout.FACTORED] = h if regular else 0.0
         shorter = 0.5
-        if work[FACTORED] > 0.0:
-            guess_stages(n, h / work[BEFORE] if known else 0.0, known, z, before, w, ahead)
+        if work[layout.FACTORED] > 0.0:
+            guess_stages(n, h / work[layout.BEFORE] if known else 0.0, known, z, before, w, ahead)
             iterations, shorter = iterate(
                 functions, t, h, y0, y1, work, settings, numbers, floats, ints, values, plan, rows, store
             )
         if shorter == 0.0:
             break
-        if work[FRESH] > 0.0:
-            work[CONTRACTION] = 1.0
-            work[CONVERGENCE] = 1.0
-            work[REJECTED] = 1.0
-            work[CEILING] = 0.95 * h
-            work[NEXT] = shorter * h
+        if work[layout.FRESH] > 0.0:
+            work[layout.CONTRACTION] = 1.0
+            work[layout.CONVERGENCE] = 1.0
+            work[layout.REJECTED] = 1.0
+            work[layout.CEILING] = 0.95 * h
+            work[layout.NEXT] = shorter * h
             for k in range(n):
                 y1[k] = math.nan
             return math.inf
     if tallies_move(numbers, n, z):
         finish_tallies(functions, t, h, y0, y1, numbers, floats, ints, z, f)
     error = 0.0
-    if numbers[FIXED] == 0:
+    if numbers[layout.FIXED] == 0:
         error = estimate(h, rate0, work, numbers, plan, rows, z, f, weights, values, store)
         if known:
-            error = max(error, unevenness(h / work[BEFORE], z, ahead, weights))
+            error = max(error, unevenness(h / work[layout.BEFORE], z, ahead, weights))
         error = max(1e-10, error)
-        work[ERROR] = error
-        control(h, error, iterations, work, settings[CONTRACTS])
+        work[layout.ERROR] = error
+        control(h, error, iterations, work, settings[layout.CONTRACTS])
     for k in range(n):
         y1[k] = y0[k] + z[2 * n + k]
     return error
@@ -273,7 +247,7 @@ def dense(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
     n = y0.size
     s = theta - 1.0
     for k in range(n):
-        z1, z2, z3 = work[MEMORY + k], work[MEMORY + n + k], work[MEMORY + 2 * n + k]
+        z1, z2, z3 = work[layout.MEMORY + k], work[layout.MEMORY + n + k], work[layout.MEMORY + 2 * n + k]
         first = (z2 - z3) / (C2 - 1.0)
         inner = (z1 - z2) / (C1 - C2)
         second = (inner - first) / (C1 - 1.0)

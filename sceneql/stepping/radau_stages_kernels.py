@@ -17,20 +17,9 @@ from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
+from sceneql.stepping import radau_layout as layout
 from sceneql.stepping.radau_systems_kernels import ALPHA, BETA, REAL, solve_at
 from sceneql.system.signatures_kernels import A, F, I, N
-
-MEMORY = 16
-NEXT, START, LENGTH, BEFORE, GOOD_LENGTH, GOOD_ERROR, ERROR, CONVERGENCE, CONTRACTION, FACTORED = range(10)
-"""Length to try next; start and length of the latest try; length of the step before it (0: unknown); length and error
-of that step for the control; error of the try; Newton's convergence factor and rate; length that is factored."""
-BEGUN, FRESH, REJECTED, CEILING = range(10, 14)
-"""Whether there was a try; whether the Jacobian is that of the start; whether a try from here was rejected; length
-beyond which Newton's iteration failed not long ago (0: none)."""
-
-VECTORS = 16
-FIXED, ROOM, TALLIES, SCALED, ROWS_AT, FACTOR, SOLVE, FILTER, HEAD = range(9)
-RELATIVE, NEWTON, CONTRACTS, MEASURES = range(4)
 
 ITERATE = types.Tuple((N, F))(I, F, F, A, A, A, A, I, A, I, A, I, A, A)
 ITERATIONS = 7
@@ -68,17 +57,17 @@ def evaluate_stages(rate, t, h, y0, y1, z, f, floats, ints):
 @lean(ITERATE, inner=True)
 def iterate(functions, t, h, y0, y1, work, settings, numbers, floats, ints, values, plan, rows, store):
     """Newton's iteration on the stages: (iterations, factor for h to try after a failure; 0: it has converged)."""
-    rate, solve = rate_at(functions[AT_RATE]), solve_at(numbers[SOLVE])
+    rate, solve = rate_at(functions[AT_RATE]), solve_at(numbers[layout.SOLVE])
     n = y0.size
-    z, w = work[MEMORY : MEMORY + 3 * n], work[MEMORY + 6 * n : MEMORY + 9 * n]
-    f = work[MEMORY + 9 * n : MEMORY + 12 * n]
-    weights = work[MEMORY + 14 * n : MEMORY + 15 * n]
+    z, w = work[layout.MEMORY : layout.MEMORY + 3 * n], work[layout.MEMORY + 6 * n : layout.MEMORY + 9 * n]
+    f = work[layout.MEMORY + 9 * n : layout.MEMORY + 12 * n]
+    weights = work[layout.MEMORY + 14 * n : layout.MEMORY + 15 * n]
     g, a, b = REAL / h, ALPHA / h, BETA / h
-    tolerance = settings[NEWTON]
+    tolerance = settings[layout.NEWTON]
     enough = max(tolerance, ENOUGH)
-    convergence = max(work[CONVERGENCE], 2.2e-16) ** 0.8
+    convergence = max(work[layout.CONVERGENCE], 2.2e-16) ** 0.8
     size = before = rate_before = 0.0
-    work[CONTRACTION] = settings[CONTRACTS]
+    work[layout.CONTRACTION] = settings[layout.CONTRACTS]
     for count in range(1, ITERATIONS + 1):
         evaluate_stages(rate, t, h, y0, y1, z, f, floats, ints)
         for k in range(n):
@@ -87,7 +76,7 @@ def iterate(functions, t, h, y0, y1, work, settings, numbers, floats, ints, valu
             f[k] = I11 * f1 + I12 * f2 + I13 * f3 - g * w[k]
             f[n + k] = I21 * f1 + I22 * f2 + I23 * f3 - a * w2 + b * w3
             f[2 * n + k] = I31 * f1 + I32 * f2 + I33 * f3 - a * w3 - b * w2
-        if not solve(plan, work[FACTORED], values, rows, store, weights, f):
+        if not solve(plan, work[layout.FACTORED], values, rows, store, weights, f):
             return count, 0.5
         total = 0.0
         for k in range(n):
@@ -112,14 +101,14 @@ def iterate(functions, t, h, y0, y1, work, settings, numbers, floats, ints, valu
             if contraction >= 0.99:
                 # Rounding keeps very stiff systems from getting closer.
                 return (count, 0.0) if size <= enough else (count, 0.5)
-            work[CONTRACTION] = contraction
+            work[layout.CONTRACTION] = contraction
             convergence = contraction / (1.0 - contraction)
             left = ITERATIONS - count
             ahead = convergence * size * contraction**left / enough
             if ahead >= 1.0:
                 return count, 0.8 * min(20.0, max(1e-4, ahead)) ** (-1.0 / (4.0 + left))
         if convergence * size <= tolerance:
-            work[CONVERGENCE] = convergence
+            work[layout.CONVERGENCE] = convergence
             return count, 0.0
         before = max(size, 2.2e-16)
     return ITERATIONS, 0.0 if convergence * size <= enough else 0.5

@@ -3,8 +3,9 @@
 
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
+from sceneql.stepping import radau_layout as layout
 from sceneql.stepping.radau_kernels import FINISH
-from sceneql.stepping.radau_stages_kernels import HEAD, ROOT6, TALLIES, evaluate_stages
+from sceneql.stepping.radau_stages_kernels import ROOT6, evaluate_stages
 
 
 @lean(FINISH, inner=True)
@@ -13,7 +14,7 @@ def finish_tallies(functions, t, h, y0, y1, numbers, floats, ints, z, f):
     rate = rate_at(functions[AT_RATE])
     n = y0.size
     evaluate_stages(rate, t, h, y0, y1, z, f, floats, ints)
-    for k in range(HEAD, HEAD + numbers[TALLIES]):
+    for k in range(layout.HEAD, layout.HEAD + numbers[layout.TALLIES]):
         i = numbers[k]
         f1, f2, f3 = h * f[i], h * f[n + i], h * f[2 * n + i]
         z[i] = ((88.0 - 7.0 * ROOT6) * f1 + (59.2 - 33.8 * ROOT6) * f2) / 360.0 + (3.0 * ROOT6 - 2.0) / 225.0 * f3

@@ -7,21 +7,23 @@ to the next step; the state that the forces see.
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
+from sceneql.island import layout
 from sceneql.system.signatures_kernels import STEP
 
 
 @lean_inlined
 def keep_positions(slope, ints):
     """Take out what a rate says about the positions of the island's pairs: they drift."""
-    for pair in range(ints[1]):
-        position, count = ints[ints[0] + 3 * pair], ints[ints[0] + 3 * pair + 2]
+    for pair in range(ints[layout.TRIPLES]):
+        at = ints[layout.TRIPLES_AT] + layout.TRIPLE * pair
+        position, count = ints[at + layout.POSITION], ints[at + layout.COUNT]
         for k in range(position, position + count):
             slope[k] = 0.0
 
 
 @lean(STEP, inner=True)
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
-    """y1 after kicks and drifts (splitting.py); ints[1] triples (position, velocity, count) from ints[0] on."""
+    """y1 after kicks and drifts (splitting.py)."""
     rate = rate_at(functions[AT_RATE])
     n = y0.size
     drifts = numbers[0]
@@ -36,10 +38,10 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     for i in range(drifts):
         share = settings[drifts + 1 + i]
         passed += share
-        for pair in range(ints[1]):
-            at = ints[0] + 3 * pair
-            position, velocity = ints[at], ints[at + 1]
-            for k in range(ints[at + 2]):
+        for pair in range(ints[layout.TRIPLES]):
+            at = ints[layout.TRIPLES_AT] + layout.TRIPLE * pair
+            position, velocity = ints[at + layout.POSITION], ints[at + layout.VELOCITY]
+            for k in range(ints[at + layout.COUNT]):
                 y1[position + k] += h * share * y1[velocity + k]
         kick = h * settings[i + 1]
         lead = kick if i == drifts - 1 else 0.5 * kick
@@ -49,9 +51,9 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         keep_positions(slope, ints)
         for k in range(n):
             y1[k] += kick * slope[k]
-    for pair in range(ints[1]):
-        at = ints[0] + 3 * pair
-        position, velocity = ints[at], ints[at + 1]
-        for k in range(ints[at + 2]):
+    for pair in range(ints[layout.TRIPLES]):
+        at = ints[layout.TRIPLES_AT] + layout.TRIPLE * pair
+        position, velocity = ints[at + layout.POSITION], ints[at + layout.VELOCITY]
+        for k in range(ints[at + layout.COUNT]):
             slope[position + k] = y1[velocity + k]
     return 0.0

@@ -11,7 +11,7 @@ Kernel signatures (numba; the types are in signatures_kernels.py), all ``-> None
     gap(t, y, gaps, floats, ints)           writes signed distances [m] of its contact pairs, > 0 apart (exact mode)
     impact(t, y, pair, floats, ints)        changes y by the impulse of that pair (exact mode)
     settle(t0, t1, y0, rate0, y1, floats, ints)   backs each mass off to its own impact within the step (local mode);
-                                            where floats[1] > 0 it only lowers that to when the step should end
+                                            where channels.STEP_END is above 0 it only lowers that
     after_step(t0, t1, y0, rate0, y1, floats, ints) -> bool   acts at the end of an accepted step, before contacts do;
                                             whether it changed the state or numbers: then frames inside the step are
                                             read off the cubic through its ends, and the rate is computed anew

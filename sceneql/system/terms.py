@@ -25,11 +25,9 @@ class Slopes:
     What it adds by values that read the state is not asked for: the island has it from differences of the term itself
     by the floats of these values (island/value_slopes.py).
 
-    While floats[2] is above 0, Newton's method asks for what serves it best. The force itself, where slopes contain it,
-    is then to be that which the latest change foresaw: floats[-2n : -n] is the state whose slopes that came from,
-    floats[-n:] the state after it. Far from a solution floats[2] is finite, and systems are to be positive definite: a
-    kernel that can leaves out what pushes masses away, such as the part of a spring's compression across it, as far as
-    it exceeds floats[2] [1/s^2] times the mass.
+    While channels.DEFINITE is above 0, Newton's method asks for what serves it best: the force itself, where slopes
+    contain it, is that which the latest change foresaw, and where DEFINITE is finite, a kernel that can leaves out what
+    pushes masses away, such as the part of a spring's compression across it.
     """
 
     kernel: str
@@ -48,10 +46,9 @@ class Slopes:
     numbers of an entry follow one another, row by row. Thrice as quick, where masses act on masses."""
 
     in_stages: bool = False
-    """They are known where the term acts in another way than it does for explicit methods. Within stages of Newton's
-    method (Stepper.newton) floats[3] is the coefficient a [s] of y = base + a f(t, y), whose base is floats[-3n : -2n];
-    floats[4] counts the stages. It is -1 between those, -2 throughout for other methods that ask for slopes (of small
-    islands they are found by differences), and 0 for those that ask for none."""
+    """They are known where the term acts in another way than it does for explicit methods: within stages of Newton's
+    method (Stepper.newton), or between steps for others that ask for slopes (channels.STAGE); for these, slopes of
+    small islands are found by differences."""
 
     @property
     def entries(self) -> int:

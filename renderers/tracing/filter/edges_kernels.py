@@ -3,6 +3,7 @@
 
 from numba import types
 
+from renderers.tracing import layout
 from renderers.tracing.camera_kernels import place_of
 from renderers.tracing.filter.planes_kernels import HALO, LANES, LINE, ONE, OWN, SLACK, ZERO, alike_lanes
 from renderers.tracing.gather_kernels import DOUBTED, GATHERED, begin
@@ -10,7 +11,7 @@ from renderers.tracing.light.sampling_kernels import sample_of
 from renderers.tracing.light.shade_kernels import shade
 from renderers.tracing.light.visibility_kernels import look_around
 from renderers.tracing.record_kernels import OWNER, TRACED, UNSURE, alike
-from renderers.tracing.scene_kernels import ASKED, ASKING, HEIGHT, LIGHT_COUNT, MODE, NEXT, SCENE, SCRATCH, WIDTH, part
+from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part
 from sceneql.compiled.kernels import kernel
 
 _i = types.int64
@@ -142,7 +143,7 @@ def list_edges(start, stop, width, size, undecided, planes, records, radiance, p
 @kernel(types.void(SCENE, _reals, _many, _reals, _stack), _nrt=False)
 def begin_samples(scene, points, edges, paths, own):
     """Begin paths through ``points`` (s, 2) of each of the pixels ``edges``, which have the records ``own``."""
-    width = int(scene.reals[WIDTH])
+    width = int(scene.reals[layout.WIDTH])
     each = len(points)
     for i in range(each * len(edges)):
         k, s = edges[i // each], i % each
@@ -156,10 +157,10 @@ def look_from_samples(scene, scratch, asked, first, last, each, edges, records, 
 
     Of as many as ``asked`` has room for the rays of; returns where it ends.
     """
-    width, height = int(scene.reals[WIDTH]), int(scene.reals[HEIGHT])
-    room = asked.shape[0] - 2 * ANEW * (1 + scene.ints[LIGHT_COUNT])
+    width, height = int(scene.reals[layout.WIDTH]), int(scene.reals[layout.HEIGHT])
+    room = asked.shape[0] - 2 * ANEW * (1 + scene.ints[layout.LIGHT_COUNT])
     for i in range(first, last):
-        if asked[0, MODE] == ASKING and asked[0, NEXT] > room:
+        if asked[0, layout.MODE] == layout.ASKING and asked[0, layout.NEXT] > room:
             return i
         x, y = edges[i // each] % width, edges[i // each] // width
         for layer in range(2):

@@ -3,13 +3,14 @@
 
 from numba import types
 
+from renderers.tracing import layout
 from renderers.tracing.filter.filter_kernels import REACH
 from renderers.tracing.filter.planes_kernels import HALO, LANES, SLACK, WIDE
 from renderers.tracing.light.sampling_kernels import COUNT, SIDE, sample_of
 from renderers.tracing.light.shade_kernels import shade
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, look_around, shadow_sample
 from renderers.tracing.record_kernels import OWNER, RADIUS, alike
-from renderers.tracing.scene_kernels import ASKED, ASKING, HEIGHT, LIGHT_COUNT, MODE, NEXT, SCENE, SCRATCH, WIDTH, part
+from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part
 from sceneql.compiled.kernels import kernel
 
 _i = types.int64
@@ -48,15 +49,15 @@ def refine(scene, scratch, asked, start, stop, records, visibility, means, fine)
     The sky's loss, which is there, is better told where few pixels join. Of pixels start..stop, or as many as ``asked``
     has room for the rays of; returns where it ends.
     """
-    width, height = int(scene.reals[WIDTH]), int(scene.reals[HEIGHT])
+    width, height = int(scene.reals[layout.WIDTH]), int(scene.reals[layout.HEIGHT])
     columns = visibility.shape[1]
-    room = asked.shape[0] - OWN * (1 + scene.ints[LIGHT_COUNT])
+    room = asked.shape[0] - OWN * (1 + scene.ints[layout.LIGHT_COUNT])
     for k in range(start, stop):
         x, y = k % width, k // width
         pixels = mean_of(means, columns, x, y, 0)
         if pixels == 0.0:
             continue
-        if asked[0, MODE] == ASKING and asked[0, NEXT] > room:
+        if asked[0, layout.MODE] == layout.ASKING and asked[0, layout.NEXT] > room:
             return k
         if pixels < FEW:
             samples = OWN if pixels < 0.5 * FEW else OWN // 2
@@ -64,7 +65,7 @@ def refine(scene, scratch, asked, start, stop, records, visibility, means, fine)
             for c in range(FIRST_LIGHT if told else 0):
                 joined = samples * fine[k, c] + pixels * mean_of(means, columns, x, y, 1 + c)
                 fine[k, c] = joined / (samples + pixels)
-        for l in range(int(scene.ints[LIGHT_COUNT])):
+        for l in range(int(scene.ints[layout.LIGHT_COUNT])):
             column = FIRST_LIGHT + 2 * l
             share = mean_of(means, columns, x, y, 1 + column)
             fine[k, column + 1] = 0.0
@@ -112,7 +113,7 @@ def settle(records, fine, lights, k, x, y, width, height, visibility):
 @kernel(types.void(SCENE, _i, _i, _stack, _stack, _stack, _rows), _nrt=False)
 def shade_rows(scene, start, stop, records, fine, visibility, radiance):
     """Write the final visibility (2, n, V) and add both records' light to the radiance (n, 3)."""
-    width, height = int(scene.reals[WIDTH]), int(scene.reals[HEIGHT])
+    width, height = int(scene.reals[layout.WIDTH]), int(scene.reals[layout.HEIGHT])
     for y in range(start, stop):
         for x in range(width):
             k = y * width + x
@@ -122,7 +123,7 @@ def shade_rows(scene, start, stop, records, fine, visibility, radiance):
                 settle(
                     records[layer],
                     fine[layer],
-                    int(scene.ints[LIGHT_COUNT]),
+                    int(scene.ints[layout.LIGHT_COUNT]),
                     k,
                     x,
                     y,

@@ -3,7 +3,8 @@
 
 import numpy as np
 
-from renderers.tracing.scene_kernels import HAS_VISIBLE, part
+from renderers.tracing import layout
+from renderers.tracing.scene_kernels import part
 
 
 @part
@@ -21,7 +22,7 @@ def sky_radiance(sky, y):
 @part
 def backdrop(sky, y):
     """Radiance (3) that a camera sees in a direction of height y."""
-    if sky[HAS_VISIBLE] != 0.0:
+    if sky[layout.HAS_VISIBLE] != 0.0:
         return sky[9], sky[10], sky[11]
     return sky_radiance(sky, y)
 

@@ -4,23 +4,11 @@
 import numpy as np
 from numba import types
 
+from renderers.tracing import layout
 from renderers.tracing.light.light_kernels import highlight, mean_reflectance, schlick, sky_ambient, sky_radiance
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, SKY, light_at
 from renderers.tracing.record_kernels import NORMAL, PLACE, SURFACE, TINT, TRACED, VIEW, WEIGHT
-from renderers.tracing.scene_kernels import (
-    EMISSION,
-    LIGHT,
-    LIGHT_COUNT,
-    LIGHTS,
-    METALLIC,
-    POINT,
-    ROUGHNESS,
-    ROW,
-    SCENE,
-    SPECULAR,
-    TRANSMISSION,
-    part,
-)
+from renderers.tracing.scene_kernels import ROW, SCENE, part
 from sceneql.compiled.kernels import kernel
 
 SHARPEST = 0.02
@@ -37,8 +25,8 @@ def edge_reflectance(f0):
 def reflectance_at_normal(reals, record):
     """F0 (3) of a record."""
     s = int(record[SURFACE])
-    metallic = reals[s + METALLIC]
-    plain = reals[s + SPECULAR] * (1.0 - metallic)
+    metallic = reals[s + layout.METALLIC]
+    plain = reals[s + layout.SPECULAR] * (1.0 - metallic)
     return (
         plain + metallic * record[TINT],
         plain + metallic * record[TINT + 1],
@@ -56,7 +44,7 @@ def facing_ratio(record):
 @part
 def mean_specular(reals, record, nv):
     """Share (3) of uniform light that a record's surface reflects by its gloss."""
-    scale, bias = mean_reflectance(reals[int(record[SURFACE]) + ROUGHNESS], nv)
+    scale, bias = mean_reflectance(reals[int(record[SURFACE]) + layout.ROUGHNESS], nv)
     r, g, b = reflectance_at_normal(reals, record)
     return (
         min(r * scale + edge_reflectance(r) * bias, 1.0),
@@ -69,7 +57,7 @@ def mean_specular(reals, record, nv):
 def light_width(reals, k, distance, roughness):
     """GGX width of the highlight of the light whose reals begin at k: the surface's, widened by the light's size."""
     size = 0.25 * reals[k + 7]
-    if reals[k] == POINT:
+    if reals[k] == layout.POINT:
         size = 0.5 * reals[k + 7] / distance
     alpha = roughness * roughness
     return min(np.sqrt(alpha * alpha + size * size + SHARPEST * SHARPEST), 1.0)
@@ -83,16 +71,16 @@ def shade(scene, record, visibility):
     nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
     vx, vy, vz = float(record[VIEW]), float(record[VIEW + 1]), float(record[VIEW + 2])
     x, y, z = float(record[PLACE]), float(record[PLACE + 1]), float(record[PLACE + 2])
-    roughness = u[s + ROUGHNESS]
+    roughness = u[s + layout.ROUGHNESS]
     nv = facing_ratio(record)
     f0 = reflectance_at_normal(u, record)
     specular = mean_specular(u, record, nv)
-    body = (1.0 - u[s + METALLIC]) * (1.0 - u[s + TRANSMISSION])
+    body = (1.0 - u[s + layout.METALLIC]) * (1.0 - u[s + layout.TRANSMISSION])
     open_sky = sky_ambient(u, ny)
     mirrored_sky = sky_radiance(u, 2.0 * (nx * vx + ny * vy + nz * vz) * ny - vy)
     sums = (0.0, 0.0, 0.0)  # of matte light, for all channels
     lobes = (0.0, 0.0, 0.0)
-    for l in range(int(scene.ints[LIGHT_COUNT])):
+    for l in range(int(scene.ints[layout.LIGHT_COUNT])):
         lx, ly, lz, distance, ir, ig, ib = light_at(u, l, x, y, z)
         nl = nx * lx + ny * ly + nz * lz
         if nl <= 0.0:
@@ -105,7 +93,7 @@ def shade(scene, record, visibility):
             continue
         nh = min(max((nx * hx + ny * hy + nz * hz) / length, 0.0), 1.0)
         vh = min(max((vx * hx + vy * hy + vz * hz) / length, 0.0), 1.0)
-        lobe = nl_seen * highlight(nl, nv, nh, light_width(u, LIGHTS + LIGHT * l, distance, roughness))
+        lobe = nl_seen * highlight(nl, nv, nh, light_width(u, layout.LIGHTS + layout.LIGHT * l, distance, roughness))
         lobes = (
             lobes[0] + lobe * ir * schlick(f0[0], edge_reflectance(f0[0]), vh),
             lobes[1] + lobe * ig * schlick(f0[1], edge_reflectance(f0[1]), vh),
@@ -116,7 +104,7 @@ def shade(scene, record, visibility):
         blurred = mirrored_sky[c] + roughness * (open_sky[c] - mirrored_sky[c])
         share = arriving / open_sky[c] if open_sky[c] > 0.0 else 0.0
         diffuse = body * record[TINT + c] * (1.0 - specular[c])
-        total = diffuse * (arriving + sums[c] / np.pi) + lobes[c] + u[s + EMISSION + c]
+        total = diffuse * (arriving + sums[c] / np.pi) + lobes[c] + u[s + layout.EMISSION + c]
         total += specular[c] * (1.0 - record[TRACED]) * blurred * share
         total *= record[WEIGHT + c]
         if c == 0:

@@ -4,29 +4,11 @@
 import numpy as np
 from numba import types
 
+from renderers.tracing import layout
 from renderers.tracing.light.light_kernels import sky_ambient, sky_radiance
 from renderers.tracing.light.sampling_kernels import COUNT, DISK, JITTER, SKY_COUNT, SKY_DISK, across
 from renderers.tracing.record_kernels import NORMAL, PLACE, RADIUS, start_of
-from renderers.tracing.scene_kernels import (
-    ASKED,
-    ASKING,
-    EMISSION,
-    HAS_SKY,
-    ITEMS,
-    LIGHT,
-    LIGHT_COUNT,
-    LIGHTS,
-    MODE,
-    NEXT,
-    OPEN,
-    ROW,
-    SCENE,
-    SCRATCH,
-    SUN,
-    SURFACE_AT,
-    TELLING,
-    part,
-)
+from renderers.tracing.scene_kernels import ASKED, ROW, SCENE, SCRATCH, part
 from renderers.tracing.solids.intersect_kernels import ask, walk
 from renderers.tracing.solids.surface_kernels import color_at, normal_at
 from sceneql.compiled.kernels import kernel
@@ -47,9 +29,9 @@ AGAIN = 0.5
 @part
 def light_at(reals, l, x, y, z):
     """(direction, distance, irradiance per channel facing it) of light l from a point."""
-    k = LIGHTS + LIGHT * l
+    k = layout.LIGHTS + layout.LIGHT * l
     ir, ig, ib = reals[k + 4], reals[k + 5], reals[k + 6]
-    if reals[k] == SUN:
+    if reals[k] == layout.SUN:
         return reals[k + 1], reals[k + 2], reals[k + 3], np.inf, ir, ig, ib
     dx, dy, dz = reals[k + 1] - x, reals[k + 2] - y, reals[k + 3] - z
     d2 = max(dx * dx + dy * dy + dz * dz, 1e-12)
@@ -73,7 +55,7 @@ def seen(scene, scratch, asked, l, x, y, z, disk_x, disk_y):
     """(share, distance of what hides it) of the point (disk_x, disk_y) of light l's disk from a place."""
     dx, dy, dz, far, _, _, _ = light_at(scene.reals, l, x, y, z)
     ax, ay, az, bx, by, bz = across(dx, dy, dz)
-    size = scene.reals[LIGHTS + LIGHT * l + 8]
+    size = scene.reals[layout.LIGHTS + layout.LIGHT * l + 8]
     if far < np.inf:
         size = min(size / far, 1.0)
     u, v = size * disk_x, size * disk_y
@@ -82,7 +64,7 @@ def seen(scene, scratch, asked, l, x, y, z, disk_x, disk_y):
         length = np.sqrt(dx * dx + dy * dy + dz * dz)
         dx, dy, dz = dx / length, dy / length, dz / length
     else:
-        far = reach(far, scene.reals[LIGHTS + LIGHT * l + 7], 1.0 + u * u + v * v)
+        far = reach(far, scene.reals[layout.LIGHTS + layout.LIGHT * l + 7], 1.0 + u * u + v * v)
     blocker, _, share = ask(scene, scratch, asked, x, y, z, dx, dy, dz, far, True)
     return share, blocker
 
@@ -92,8 +74,8 @@ def shadow_width(scene, l, x, y, z, blocker):
     """Width [m] of the half-shadow that an edge at distance ``blocker`` throws on a surface facing light l."""
     _, _, _, far, _, _, _ = light_at(scene.reals, l, x, y, z)
     if far == np.inf:
-        return scene.reals[LIGHTS + LIGHT * l + 7] * blocker
-    return 2.0 * scene.reals[LIGHTS + LIGHT * l + 7] * blocker / max(far - blocker, 1e-3 * far)
+        return scene.reals[layout.LIGHTS + layout.LIGHT * l + 7] * blocker
+    return 2.0 * scene.reals[layout.LIGHTS + layout.LIGHT * l + 7] * blocker / max(far - blocker, 1e-3 * far)
 
 
 @part
@@ -107,20 +89,20 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius):
     er, eg, eb = AGAIN * er, AGAIN * eg, AGAIN * eb
     off = 0.05 * radius + 1e-6 * (abs(x) + abs(y) + abs(z)) + lift
     sx, sy, sz = x + off * fx, y + off * fy, z + off * fz
-    for l in range(int(scene.ints[LIGHT_COUNT])):
+    for l in range(int(scene.ints[layout.LIGHT_COUNT])):
         lx, ly, lz, far, ir, ig, ib = light_at(scene.reals, l, sx, sy, sz)
         cosine = nx * lx + ny * ly + nz * lz
         if cosine > 0.0 and fx * lx + fy * ly + fz * lz > 0.0:
             if far < np.inf:
-                far = reach(far, scene.reals[LIGHTS + LIGHT * l + 7], 1.0)
+                far = reach(far, scene.reals[layout.LIGHTS + layout.LIGHT * l + 7], 1.0)
             _, _, share = walk(scene, scratch, sx, sy, sz, lx, ly, lz, 0.0, far, True)
             cosine *= share / np.pi
             er += cosine * ir
             eg += cosine * ig
             eb += cosine * ib
-    s = scene.ints[ITEMS + 4 * item + SURFACE_AT]
+    s = scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT]
     u = scene.reals
-    r, g, b = r * er + u[s + EMISSION], g * eg + u[s + EMISSION + 1], b * eb + u[s + EMISSION + 2]
+    r, g, b = r * er + u[s + layout.EMISSION], g * eg + u[s + layout.EMISSION + 1], b * eb + u[s + layout.EMISSION + 2]
     share = min(1.0, BRIGHTEST / max(max(r, g), max(b, BRIGHTEST)))
     return share * r, share * g, share * b
 
@@ -137,8 +119,8 @@ def sky_loss(scene, scratch, asked, record, sample):
     t, item, _ = ask(scene, scratch, asked, x, y, z, dx, dy, dz, np.inf, False)
     if item < 0:
         return 0.0, 0.0, 0.0
-    if asked[0, MODE] == ASKING:  # what lights it is found when all is told
-        asked[0, OPEN] = 1.0
+    if asked[0, layout.MODE] == layout.ASKING:  # what lights it is found when all is told
+        asked[0, layout.OPEN] = 1.0
         return 0.0, 0.0, 0.0
     radius = record[RADIUS] + 0.05 * t
     r, g, b = bounced(scene, scratch, item, x + t * dx, y + t * dy, z + t * dz, dx, dy, dz, radius)
@@ -178,29 +160,29 @@ def look_around(scene, scratch, asked, record, number, of_sky, of_lights, visibi
     Several samples cover the pixel's area, one stands for its center. Returns whether the row has just become what it
     shall be: where rays are asked it may be at once, and then it stays when they are told; else it is NaN until then.
     """
-    mode, begin = asked[0, MODE], asked[0, NEXT]
-    if mode == TELLING and visibility[0] == visibility[0]:
+    mode, begin = asked[0, layout.MODE], asked[0, layout.NEXT]
+    if mode == layout.TELLING and visibility[0] == visibility[0]:
         return False
-    asked[0, OPEN] = 0.0
-    for column in range(FIRST_LIGHT + 2 * scene.ints[LIGHT_COUNT]):
+    asked[0, layout.OPEN] = 0.0
+    for column in range(FIRST_LIGHT + 2 * scene.ints[layout.LIGHT_COUNT]):
         visibility[column] = 0.0
-    if scene.reals[HAS_SKY] != 0.0:
+    if scene.reals[layout.HAS_SKY] != 0.0:
         for k in range(of_sky):
             r, g, b = sky_loss(scene, scratch, asked, record, (number * of_sky + k) % SKY_COUNT)
             visibility[SKY] += r / of_sky
             visibility[SKY + 1] += g / of_sky
             visibility[SKY + 2] += b / of_sky
     jitter = 0.0 if of_lights == 1 else 1.0
-    for l in range(int(scene.ints[LIGHT_COUNT])):
+    for l in range(int(scene.ints[layout.LIGHT_COUNT])):
         column = FIRST_LIGHT + 2 * l
         for k in range(of_lights):
             share, width = shadow_sample(scene, scratch, asked, record, l, (number * of_lights + k) % COUNT, jitter)
             visibility[column] += share / of_lights
             visibility[column + 1] = max(visibility[column + 1], width)
-    if mode != ASKING:
+    if mode != layout.ASKING:
         return True
-    if asked[0, OPEN] == 0.0 and visibility[0] == visibility[0]:
-        asked[0, NEXT] = begin
+    if asked[0, layout.OPEN] == 0.0 and visibility[0] == visibility[0]:
+        asked[0, layout.NEXT] = begin
         return True
     visibility[0] = np.nan
     return False

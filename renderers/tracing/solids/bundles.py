@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from renderers.tracing.scene_kernels import ANSWERS
+from renderers.tracing import layout
 from renderers.tracing.solids.bundles_kernels import RAYS, meet_asked
 from sceneql.field.packets.packets import Memory
 from sceneql.field.roots.clips import clip_rows, clips_of
@@ -36,14 +36,14 @@ class Packets:
 
     def asked(self, rays: int) -> Floats:
         """An empty list for so many rays, see scene_kernels.ASKED."""
-        asked = np.zeros((1 + rays, ANSWERS + len(self.solids)))
-        asked[0, ANSWERS:] = self.solids
+        asked = np.zeros((1 + rays, layout.ANSWERS + len(self.solids)))
+        asked[0, layout.ANSWERS :] = self.solids
         return asked
 
     def meet(self, asked: Floats) -> None:
         """Tell of all asked rays where they meet the solids."""
         for k, (memory, bounds) in enumerate(zip(self.memories, self.bounds, strict=True)):
-            more = *bounds, asked, ANSWERS + k, self.chosen, self.spans
+            more = *bounds, asked, layout.ANSWERS + k, self.chosen, self.spans
             meet_asked(*memory.bundle, memory.found, *memory.rest, *more)
 
 

@@ -4,7 +4,8 @@
 import numpy as np
 from numba import types
 
-from renderers.tracing.scene_kernels import ANYWHERE, ASKED, FAR, FIRST, NEXT, NOTHING, WANT, part
+from renderers.tracing import layout
+from renderers.tracing.scene_kernels import ASKED, part
 from renderers.tracing.solids.solids_kernels import box_span, inverse
 from sceneql.compiled.kernels import lean
 from sceneql.field.packets.packet_roots_kernels import ARGUMENTS, GROUP, first_roots
@@ -24,7 +25,7 @@ FINE = 1.0e-9
 @part
 def in_box(asked, row, box):
     """(from, to) of an asked ray inside a box (2, 3)."""
-    enter, leave = 0.0, asked[row, FAR]
+    enter, leave = 0.0, asked[row, layout.FAR]
     for axis in range(3):
         first, last = box_span(box[0, axis], box[1, axis], asked[row, axis], inverse(asked[row, 3 + axis]))
         enter, leave = max(enter, first), min(leave, last)
@@ -121,14 +122,14 @@ def meet_asked(
     ``chosen`` (2, 1 + RAYS) and ``spans`` (2, 2, RAYS) are working memory: rows and spans of rays that wait, by what is
     wanted of them, and behind the rows their number.
     """
-    rows = int(asked[0, NEXT])
-    chosen[FIRST, RAYS] = chosen[ANYWHERE, RAYS] = 0
+    rows = int(asked[0, layout.NEXT])
+    chosen[layout.FIRST, RAYS] = chosen[layout.ANYWHERE, RAYS] = 0
     for row in range(1, rows + 2):
         # Behind the last ray what waits is met, be it a whole bundle or not.
-        want = int(asked[row, WANT]) if row < rows else (FIRST if row == rows else ANYWHERE)
+        want = int(asked[row, layout.WANT]) if row < rows else (layout.FIRST if row == rows else layout.ANYWHERE)
         if row < rows:
             asked[row, column] = np.inf
-            if want == NOTHING:
+            if want == layout.NOTHING:
                 continue
             enter, leave = in_solid(asked, row, box, clips, sizes)
             if not enter < leave:
@@ -143,10 +144,11 @@ def meet_asked(
             count = place(rays, asked, waiting, own, matrix, n)
             first_roots(
                 code, constants, singles, registers, point, status, lanes, ids, rays, asked_from, queue, count,
-                want == ANYWHERE, found, parts, scratch, beams, doubles, points, short, near_singles, near_parts,
+                want == layout.ANYWHERE, found, parts, scratch, beams, doubles, points, short, near_singles, near_parts,
                 plan, order, room, table, flat, other,
             )  # fmt: skip
             groups = count // GROUP
             for i in range(n):
-                asked[waiting[i], column] = answer(rays, found, i % GROUP * groups + i // GROUP, want == ANYWHERE)
+                lane = i % GROUP * groups + i // GROUP
+                asked[waiting[i], column] = answer(rays, found, lane, want == layout.ANYWHERE)
             waiting[RAYS] = 0

@@ -1,7 +1,8 @@
 # mypy: ignore-errors
 """Implicit objects met by certified intervals alone, without occupancy cells or enclosures: a reference, slow."""
 
-from renderers.tracing.scene_kernels import CROSSING, TOLERANCE, WITHIN
+from renderers.tracing import layout
+from renderers.tracing.scene_kernels import CROSSING
 from renderers.tracing.solids.ranges_kernels import box_part, is_sheet, tape_of
 from renderers.tracing.solids.solids_kernels import NONE
 from sceneql.compiled.kernels import kernel
@@ -17,10 +18,10 @@ ROOTS = 1000
 def certain(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """First place where a ray from outside enters implicit object k or meets it, a sheet; none where undecided."""
     code, constants, parts = tape_of(scene, k)
-    code_within, constants_within, parts_within = tape_of(scene, k, WITHIN)
+    code_within, constants_within, parts_within = tape_of(scene, k, layout.WITHIN)
     thin = is_sheet(scene, k)
     start, stop = box_part(scene, k, ox, oy, oz, dx, dy, dz, near, far)
-    finest = scene.reals[TOLERANCE] * (stop - start)
+    finest = scene.reals[layout.TOLERANCE] * (stop - start)
     for _ in range(ROOTS):
         if not start < stop:
             return NONE

@@ -1,7 +1,8 @@
 # mypy: ignore-errors
 """Implicit objects met by fixed samples along the ray and bisection: what the certified search is compared with."""
 
-from renderers.tracing.scene_kernels import CROSSING, SAMPLES, WITHIN
+from renderers.tracing import layout
+from renderers.tracing.scene_kernels import CROSSING
 from renderers.tracing.solids.ranges_kernels import box_part, is_sheet, tape_of
 from renderers.tracing.solids.solids_kernels import NONE
 from sceneql.compiled.kernels import kernel
@@ -18,12 +19,12 @@ def sampled(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     What comes and goes between two of them is not seen, and nothing is undecided.
     """
     code, constants, parts = tape_of(scene, k)
-    code_within, constants_within, parts_within = tape_of(scene, k, WITHIN)
+    code_within, constants_within, parts_within = tape_of(scene, k, layout.WITHIN)
     thin = is_sheet(scene, k)
     enter, stop = box_part(scene, k, ox, oy, oz, dx, dy, dz, near, far)
     if not enter < stop:
         return NONE
-    count = int(scene.reals[SAMPLES])
+    count = int(scene.reals[layout.SAMPLES])
     inside = along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, enter) < 0.0
     if inside and not thin and (anywhere or enter > near):
         return enter

@@ -5,7 +5,8 @@ from __future__ import annotations
 from itertools import product
 from typing import TYPE_CHECKING
 
-from renderers.tracing.scene_kernels import CELLS, CROSSING, SKIN
+from renderers.tracing import layout
+from renderers.tracing.scene_kernels import CROSSING, SKIN
 from renderers.tracing.scratch import scratch
 from renderers.tracing.solids.skin_kernels import skin
 from sceneql.compiled.kernels import address, over_tiles
@@ -35,6 +36,6 @@ def prepared(scene: Scene, rows: int, places: list[int], *, sheets: bool, march:
         from renderers.tracing.solids import sheet_kernels
 
         scene = scene._replace(sheet=address(sheet_kernels.crossing, CROSSING))
-    slabs = list(product(places, range(CELLS // BLOCK)))
+    slabs = list(product(places, range(layout.CELLS // BLOCK)))
     over_tiles(len(slabs), lambda tile: occupy(scene, scratch(rows), *slabs[tile]))
     return scene

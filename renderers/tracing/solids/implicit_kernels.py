@@ -4,15 +4,8 @@
 import numpy as np
 from numba import types
 
-from renderers.tracing.scene_kernels import (
-    CELLS,
-    CROSSING,
-    EMPTY,
-    FULL,
-    SCRATCH,
-    TOLERANCE,
-    part,
-)
+from renderers.tracing import layout
+from renderers.tracing.scene_kernels import CROSSING, SCRATCH, part
 from renderers.tracing.solids.ranges_kernels import box_part, cells_at, plan_at, tape_of
 from renderers.tracing.solids.solids_kernels import NONE, inverse
 from sceneql.compiled.kernels import kernel
@@ -49,12 +42,12 @@ def occupied(scene, k, ox, oy, oz, dx, dy, dz, start, stop):
     """
     b = scene.reals
     base = cells_at(scene, k)
-    hx = (b[k + 3] - b[k]) / CELLS
-    hy = (b[k + 4] - b[k + 1]) / CELLS
-    hz = (b[k + 5] - b[k + 2]) / CELLS
-    i = int(min(max((ox + start * dx - b[k]) / hx, 0.0), CELLS - 1.0))
-    j = int(min(max((oy + start * dy - b[k + 1]) / hy, 0.0), CELLS - 1.0))
-    l = int(min(max((oz + start * dz - b[k + 2]) / hz, 0.0), CELLS - 1.0))
+    hx = (b[k + 3] - b[k]) / layout.CELLS
+    hy = (b[k + 4] - b[k + 1]) / layout.CELLS
+    hz = (b[k + 5] - b[k + 2]) / layout.CELLS
+    i = int(min(max((ox + start * dx - b[k]) / hx, 0.0), layout.CELLS - 1.0))
+    j = int(min(max((oy + start * dy - b[k + 1]) / hy, 0.0), layout.CELLS - 1.0))
+    l = int(min(max((oz + start * dz - b[k + 2]) / hz, 0.0), layout.CELLS - 1.0))
     ix = inverse(dx)
     iy = inverse(dy)
     iz = inverse(dz)
@@ -67,29 +60,29 @@ def occupied(scene, k, ox, oy, oz, dx, dy, dz, start, stop):
     begin = NONE
     t = start
     while t < stop:
-        state = scene.ints[base + (i * CELLS + j) * CELLS + l]
-        if state == EMPTY:
+        state = scene.ints[base + (i * layout.CELLS + j) * layout.CELLS + l]
+        if state == layout.EMPTY:
             if begin < NONE:
                 return begin, t, False
         elif begin == NONE:
             begin = t
         leave = max(t, min(tx, min(ty, tz)))
-        if state == FULL:
+        if state == layout.FULL:
             return begin, min(leave, stop), True
         if tx <= ty and tx <= tz:
             i += 1 if dx >= 0.0 else -1
             tx += wx
-            if i < 0 or i >= CELLS:
+            if i < 0 or i >= layout.CELLS:
                 break
         elif ty <= tz:
             j += 1 if dy >= 0.0 else -1
             ty += wy
-            if j < 0 or j >= CELLS:
+            if j < 0 or j >= layout.CELLS:
                 break
         else:
             l += 1 if dz >= 0.0 else -1
             tz += wz
-            if l < 0 or l >= CELLS:
+            if l < 0 or l >= layout.CELLS:
                 break
         t = leave
     return begin, stop, False
@@ -99,11 +92,11 @@ def occupied(scene, k, ox, oy, oz, dx, dy, dz, start, stop):
 def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """Crossing of implicit object k behind ``near``; with ``anywhere`` of any place inside, not the first."""
     b = scene.reals
-    side = min(b[k + 3] - b[k], b[k + 4] - b[k + 1], b[k + 5] - b[k + 2]) / CELLS
+    side = min(b[k + 3] - b[k], b[k + 4] - b[k + 1], b[k + 5] - b[k + 2]) / layout.CELLS
     enter, stop = box_part(scene, k, ox, oy, oz, dx, dy, dz, near, far)
     if not enter < stop:
         return NONE
-    tolerance = b[TOLERANCE]
+    tolerance = b[layout.TOLERANCE]
     t = enter
     tries = 0
     past = 0.1 * PAD * side / np.sqrt(dx * dx + dy * dy + dz * dz)  # into the next cell, within what its pad covers

@@ -3,45 +3,8 @@
 
 from numba import types
 
-from renderers.tracing.scene_kernels import (
-    ANSWERS,
-    ANYWHERE,
-    ASKED,
-    ASKING,
-    FAR,
-    FIRST,
-    GRID,
-    HALF_SPACE,
-    ITEMS,
-    KIND,
-    KNOWN,
-    LINK,
-    LINKS_AT,
-    MODE,
-    NEXT,
-    NODE_COUNT,
-    NODES_AT,
-    NOTHING,
-    OPEN,
-    PLAIN,
-    PROBING,
-    QUADRIC,
-    RAY,
-    REACHED,
-    REALS_AT,
-    ROUND,
-    SCENE,
-    SCRATCH,
-    SHAPE,
-    SHEET,
-    SURFACE_AT,
-    TOLD,
-    TRANSMISSION,
-    TRIANGLE,
-    WANT,
-    crossing_at,
-    part,
-)
+from renderers.tracing import layout
+from renderers.tracing.scene_kernels import ASKED, RAY, SCENE, SCRATCH, crossing_at, part
 from renderers.tracing.solids.solids_kernels import NONE, half_space, inverse, quadric, round_solid, triangle
 from sceneql.compiled.kernels import kernel
 
@@ -49,27 +12,27 @@ from sceneql.compiled.kernels import kernel
 @part
 def meet(scene, scratch, item, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """First crossing of an item inside (near, far), or inf; ``anywhere``: of an implicit object any inner place."""
-    kind = scene.ints[ITEMS + 4 * item + KIND]
-    k = scene.ints[ITEMS + 4 * item + REALS_AT]
-    if kind == HALF_SPACE:
+    kind = scene.ints[layout.ITEMS + 4 * item + layout.KIND]
+    k = scene.ints[layout.ITEMS + 4 * item + layout.REALS_AT]
+    if kind == layout.HALF_SPACE:
         return half_space(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
-    if kind == TRIANGLE:
+    if kind == layout.TRIANGLE:
         return triangle(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
-    if kind == ROUND:
+    if kind == layout.ROUND:
         return round_solid(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
-    if kind == QUADRIC:
+    if kind == layout.QUADRIC:
         return quadric(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
     last = scratch.shape[0] - 1
-    if scratch[last, TOLD] >= PROBING:
-        scratch[last, TOLD] = REACHED
+    if scratch[last, layout.TOLD] >= layout.PROBING:
+        scratch[last, layout.TOLD] = layout.REACHED
         return near
-    if kind == GRID:
+    if kind == layout.GRID:
         return crossing_at(scene.grid)(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere)
-    if scratch[last, TOLD] != 0.0:
-        t = scratch[last - 1 - scene.ints[ITEMS + 4 * item + SHAPE], 0]
+    if scratch[last, layout.TOLD] != 0.0:
+        t = scratch[last - 1 - scene.ints[layout.ITEMS + 4 * item + layout.SHAPE], 0]
         if t == t:
             return t if near <= t < far else NONE
-    crossing = scene.sheet if kind == SHEET else scene.solid
+    crossing = scene.sheet if kind == layout.SHEET else scene.solid
     return crossing_at(crossing)(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere)
 
 
@@ -102,15 +65,15 @@ def walk(scene, scratch, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     ix = inverse(dx)
     iy = inverse(dy)
     iz = inverse(dz)
-    nodes = scene.ints[NODES_AT]
-    links = scene.ints[LINKS_AT]
+    nodes = scene.ints[layout.NODES_AT]
+    links = scene.ints[layout.LINKS_AT]
     best = far
     where = NONE
     found = -1
     light = 1.0
     n = 0
-    while n < scene.ints[NODE_COUNT]:
-        link = links + LINK * n
+    while n < scene.ints[layout.NODE_COUNT]:
+        link = links + layout.LINK * n
         if misses(scene.reals, nodes + 6 * n, ox, oy, oz, ix, iy, iz, near, best):
             n = scene.ints[link]
             continue
@@ -124,7 +87,7 @@ def walk(scene, scratch, ox, oy, oz, dx, dy, dz, near, far, anywhere):
             if not anywhere:
                 best = t
                 continue
-            light *= 0.95 * scene.reals[scene.ints[ITEMS + 4 * item + SURFACE_AT] + TRANSMISSION]
+            light *= 0.95 * scene.reals[scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT] + layout.TRANSMISSION]
             if light == 0.0:
                 return where, found, light
         n += 1
@@ -136,40 +99,40 @@ def put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, want):
     """Write a ray down, to be met in packets."""
     asked[row, 0], asked[row, 1], asked[row, 2] = ox, oy, oz
     asked[row, 3], asked[row, 4], asked[row, 5] = dx, dy, dz
-    asked[row, FAR] = far
-    asked[row, WANT] = want
+    asked[row, layout.FAR] = far
+    asked[row, layout.WANT] = want
 
 
 @part
 def tell(scratch, asked, row):
     """Let the next walk know what is told of a ray."""
     last = scratch.shape[0] - 1
-    scratch[last, TOLD] = KNOWN
-    for column in range(ANSWERS, asked.shape[1]):
+    scratch[last, layout.TOLD] = layout.KNOWN
+    for column in range(layout.ANSWERS, asked.shape[1]):
         scratch[last - 1 - int(asked[0, column]), 0] = asked[row, column]
 
 
 @kernel(MET(SCENE, SCRATCH, ASKED, *RAY[1:], types.boolean), _nrt=False, inner=True)
 def ask(scene, scratch, asked, ox, oy, oz, dx, dy, dz, far, anywhere):
     """As ``walk`` from the ray's origin on, in the mode of ``asked``: one that is asked and open meets nothing."""
-    mode = asked[0, MODE]
-    if mode == PLAIN:
+    mode = asked[0, layout.MODE]
+    if mode == layout.PLAIN:
         return walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, far, anywhere)
-    row = int(asked[0, NEXT])
-    asked[0, NEXT] = row + 1
+    row = int(asked[0, layout.NEXT])
+    asked[0, layout.NEXT] = row + 1
     last = scratch.shape[0] - 1
-    if mode == ASKING:
-        scratch[last, TOLD] = PROBING
+    if mode == layout.ASKING:
+        scratch[last, layout.TOLD] = layout.PROBING
         t, item, light = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, far, anywhere)
-        reached = scratch[last, TOLD] == REACHED
-        scratch[last, TOLD] = 0.0
+        reached = scratch[last, layout.TOLD] == layout.REACHED
+        scratch[last, layout.TOLD] = 0.0
         if not reached:
-            asked[row, WANT] = NOTHING
+            asked[row, layout.WANT] = layout.NOTHING
             return t, item, light
-        asked[0, OPEN] = 1.0
-        put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, ANYWHERE if anywhere else FIRST)
+        asked[0, layout.OPEN] = 1.0
+        put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, layout.ANYWHERE if anywhere else layout.FIRST)
         return NONE, -1, 1.0
     tell(scratch, asked, row)
     t, item, light = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, far, anywhere)
-    scratch[last, TOLD] = 0.0
+    scratch[last, layout.TOLD] = 0.0
     return t, item, light

@@ -3,7 +3,8 @@
 
 from numba import types
 
-from renderers.tracing.scene_kernels import CELLS, EMPTY, FULL, MIXED, SCENE, SCRATCH, WITHIN, part
+from renderers.tracing import layout
+from renderers.tracing.scene_kernels import SCENE, SCRATCH, part
 from renderers.tracing.solids.implicit_kernels import PAD
 from renderers.tracing.solids.ranges_kernels import cells_at, is_sheet, tape_of
 from sceneql.compiled.kernels import kernel
@@ -19,7 +20,7 @@ def bounds(scene, scratch, k, first, i, j, l, side):
     """(low, high, status) of a tape of implicit object k in the cells (i..i+side, ...)."""
     b = scene.reals
     code, constants, parts = tape_of(scene, k, first)
-    h = ((b[k + 3] - b[k]) / CELLS, (b[k + 4] - b[k + 1]) / CELLS, (b[k + 5] - b[k + 2]) / CELLS)
+    h = ((b[k + 3] - b[k]) / layout.CELLS, (b[k + 4] - b[k + 1]) / layout.CELLS, (b[k + 5] - b[k + 2]) / layout.CELLS)
     return box(
         code,
         constants,
@@ -39,23 +40,24 @@ def region(scene, scratch, k, i, j, l, side):
     """What the cells (i..i+side, ...) of implicit object k are proved to be."""
     low, high, status = bounds(scene, scratch, k, 0, i, j, l, side)
     if status == NOWHERE or low > 0.0:
-        return EMPTY
+        return layout.EMPTY
     if is_sheet(scene, k):
-        return EMPTY if high < 0.0 or bounds(scene, scratch, k, WITHIN, i, j, l, side)[0] > 0.0 else MIXED
-    return FULL if status == WHOLE and high < 0.0 else MIXED
+        apart = high < 0.0 or bounds(scene, scratch, k, layout.WITHIN, i, j, l, side)[0] > 0.0
+        return layout.EMPTY if apart else layout.MIXED
+    return layout.FULL if status == WHOLE and high < 0.0 else layout.MIXED
 
 
 @kernel(types.void(SCENE, SCRATCH, types.int64, types.int64), _nrt=False)
 def occupy(scene, scratch, k, slab):
     """Fill a slab (BLOCK layers of cells along x) of implicit object k: coarse blocks first, then their cells."""
     base = cells_at(scene, k)
-    for bj in range(0, CELLS, BLOCK):
-        for bl in range(0, CELLS, BLOCK):
+    for bj in range(0, layout.CELLS, BLOCK):
+        for bl in range(0, layout.CELLS, BLOCK):
             coarse = region(scene, scratch, k, slab * BLOCK, bj, bl, BLOCK)
             for i in range(slab * BLOCK, slab * BLOCK + BLOCK):
                 for j in range(bj, bj + BLOCK):
                     for l in range(bl, bl + BLOCK):
                         found = coarse
-                        if coarse == MIXED:
+                        if coarse == layout.MIXED:
                             found = region(scene, scratch, k, i, j, l, 1)
-                        scene.ints[base + (i * CELLS + j) * CELLS + l] = found
+                        scene.ints[base + (i * layout.CELLS + j) * layout.CELLS + l] = found

@@ -1,7 +1,8 @@
 # mypy: ignore-errors
 """Where what is known of an implicit object lies in the scene's arrays."""
 
-from renderers.tracing.scene_kernels import CELLS_AT, PLAN, WITHIN, part
+from renderers.tracing import layout
+from renderers.tracing.scene_kernels import part
 from renderers.tracing.solids.solids_kernels import box_span, inverse
 
 
@@ -24,20 +25,20 @@ def tape_of(scene, k, first=0):
 @part
 def cells_at(scene, k):
     """Place of the occupancy cells of the implicit object whose reals begin at k."""
-    return scene.ints[int(scene.reals[k + 6]) + CELLS_AT]
+    return scene.ints[int(scene.reals[k + 6]) + layout.CELLS_AT]
 
 
 @part
 def plan_at(scene, k):
     """(begin, end) of how a single ray looks for roots of implicit object k (sceneql.field.tape.plans)."""
-    r = int(scene.reals[k + 6]) + PLAN
+    r = int(scene.reals[k + 6]) + layout.PLAN
     return scene.ints[r], scene.ints[r] + scene.ints[r + 1]
 
 
 @part
 def is_sheet(scene, k):
     """Whether implicit object k is a sheet, not a solid."""
-    return scene.ints[int(scene.reals[k + 6]) + WITHIN + 1] > 0
+    return scene.ints[int(scene.reals[k + 6]) + layout.WITHIN + 1] > 0
 
 
 @part

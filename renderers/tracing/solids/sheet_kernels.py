@@ -3,7 +3,8 @@
 
 import numpy as np
 
-from renderers.tracing.scene_kernels import CELLS, CROSSING, TOLERANCE, WITHIN
+from renderers.tracing import layout
+from renderers.tracing.scene_kernels import CROSSING
 from renderers.tracing.solids.implicit_kernels import FARTHER, PAD, RETRIES, occupied
 from renderers.tracing.solids.ranges_kernels import box_part, tape_of
 from renderers.tracing.solids.solids_kernels import NONE
@@ -17,12 +18,12 @@ from sceneql.field.tape.tape_ops import HIT, MISS, UNDECIDED
 def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """Crossing of the sheet of implicit object k behind ``near``: its first root inside what it lies within."""
     code, constants, parts = tape_of(scene, k)
-    code_within, constants_within, parts_within = tape_of(scene, k, WITHIN)
+    code_within, constants_within, parts_within = tape_of(scene, k, layout.WITHIN)
     b = scene.reals
-    side = min(b[k + 3] - b[k], b[k + 4] - b[k + 1], b[k + 5] - b[k + 2]) / CELLS
+    side = min(b[k + 3] - b[k], b[k + 4] - b[k + 1], b[k + 5] - b[k + 2]) / layout.CELLS
     t, stop = box_part(scene, k, ox, oy, oz, dx, dy, dz, near, far)
     past = 0.1 * PAD * side / np.sqrt(dx * dx + dy * dy + dz * dz)
-    tolerance = b[TOLERANCE]
+    tolerance = b[layout.TOLERANCE]
     tries = 0
     while t < stop and tries < RETRIES:
         begin, end, _ = occupied(scene, k, ox, oy, oz, dx, dy, dz, t, stop)

@@ -3,7 +3,8 @@
 
 import numpy as np
 
-from renderers.tracing.scene_kernels import PAINT, SKIN, part
+from renderers.tracing import layout
+from renderers.tracing.scene_kernels import SKIN, part
 from renderers.tracing.solids.ranges_kernels import is_sheet, tape_of
 from renderers.tracing.solids.surface_kernels import unit
 from sceneql.compiled.kernels import kernel
@@ -49,7 +50,7 @@ def normal(scene, scratch, k, x, y, z):
 @part
 def painted(scene, scratch, k, x, y, z):
     """Color (3) of implicit object k at a point by its paint; NaN where it has none, or that says nothing."""
-    code, constants, parts = tape_of(scene, k, PAINT)
+    code, constants, parts = tape_of(scene, k, layout.PAINT)
     last = code.shape[0] - 1
     if last < 0:
         return np.nan, np.nan, np.nan

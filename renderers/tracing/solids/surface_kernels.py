@@ -4,24 +4,8 @@
 import numpy as np
 from numba import types
 
-from renderers.tracing.scene_kernels import (
-    CHECKER,
-    CHECKER_COLOR,
-    COLOR,
-    GRID,
-    HALF_SPACE,
-    ITEMS,
-    KIND,
-    QUADRIC,
-    REALS_AT,
-    ROUND,
-    SCENE,
-    SCRATCH,
-    SURFACE_AT,
-    TRIANGLE,
-    part,
-    skin_at,
-)
+from renderers.tracing import layout
+from renderers.tracing.scene_kernels import SCENE, SCRATCH, part, skin_at
 from renderers.tracing.solids.solids_kernels import local_point
 from sceneql.compiled.kernels import kernel
 
@@ -132,19 +116,19 @@ def normal_at(scene, scratch, item, x, y, z):
 
     Only meshes tell the first two apart; the paint (3) is NaN where a place has no color of its own.
     """
-    kind = scene.ints[ITEMS + 4 * item + KIND]
-    k = scene.ints[ITEMS + 4 * item + REALS_AT]
-    if kind == TRIANGLE:
+    kind = scene.ints[layout.ITEMS + 4 * item + layout.KIND]
+    k = scene.ints[layout.ITEMS + 4 * item + layout.REALS_AT]
+    if kind == layout.TRIANGLE:
         nx, ny, nz, fx, fy, fz, lift = triangle_normal(scene, k, x, y, z)
         return nx, ny, nz, fx, fy, fz, lift, np.nan, np.nan, np.nan
     r, g, b = np.nan, np.nan, np.nan
-    if kind == ROUND:
+    if kind == layout.ROUND:
         nx, ny, nz = round_normal(scene.reals, k, x, y, z)
-    elif kind == QUADRIC:
+    elif kind == layout.QUADRIC:
         nx, ny, nz = quadric_normal(scene.reals, k, x, y, z)
-    elif kind == HALF_SPACE:
+    elif kind == layout.HALF_SPACE:
         nx, ny, nz = scene.reals[k], scene.reals[k + 1], scene.reals[k + 2]
-    elif kind == GRID:
+    elif kind == layout.GRID:
         nx, ny, nz, r, g, b = skin_at(scene.grid_skin)(scene, scratch, k, x, y, z)
     else:
         nx, ny, nz, r, g, b = skin_at(scene.skin)(scene, scratch, k, x, y, z)
@@ -175,22 +159,22 @@ def checkered(x, y, z, wx, wy, wz, flat, size):
 @part
 def color_at(scene, item, paint, x, y, z, nx, ny, nz, dx, dy, dz, radius):
     """Color of an item at a point: its paint, its own or its surface's, or the checker's mean over the ray's cone."""
-    kind = scene.ints[ITEMS + 4 * item + KIND]
-    k = scene.ints[ITEMS + 4 * item + REALS_AT]
-    s = scene.ints[ITEMS + 4 * item + SURFACE_AT]
+    kind = scene.ints[layout.ITEMS + 4 * item + layout.KIND]
+    k = scene.ints[layout.ITEMS + 4 * item + layout.REALS_AT]
+    s = scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT]
     u = scene.reals
-    r, g, b = u[s + COLOR], u[s + COLOR + 1], u[s + COLOR + 2]
-    c = k + (TRIANGLE_COLORS if kind == TRIANGLE else ROUND_COLOR)
+    r, g, b = u[s + layout.COLOR], u[s + layout.COLOR + 1], u[s + layout.COLOR + 2]
+    c = k + (TRIANGLE_COLORS if kind == layout.TRIANGLE else ROUND_COLOR)
     if paint[0] == paint[0] and paint[1] == paint[1] and paint[2] == paint[2]:
         r, g, b = paint
-    elif kind == TRIANGLE and u[c] == u[c]:
+    elif kind == layout.TRIANGLE and u[c] == u[c]:
         v, w = barycentric(u, k, x, y, z)
         r = (1.0 - v - w) * u[c] + v * u[c + 3] + w * u[c + 6]
         g = (1.0 - v - w) * u[c + 1] + v * u[c + 4] + w * u[c + 7]
         b = (1.0 - v - w) * u[c + 2] + v * u[c + 5] + w * u[c + 8]
-    elif kind == ROUND and u[c] == u[c]:
+    elif kind == layout.ROUND and u[c] == u[c]:
         r, g, b = u[c], u[c + 1], u[c + 2]
-    size = u[s + CHECKER]
+    size = u[s + layout.CHECKER]
     if size > 0.0:
         # The cone cuts the surface in an ellipse: 2 radius across, longer along the ray's direction in the surface.
         slant = max(abs(dx * nx + dy * ny + dz * nz), 1e-4)
@@ -203,7 +187,7 @@ def color_at(scene, item, paint, x, y, z, nx, ny, nz, dx, dy, dz, radius):
         wy = 2.0 * radius * np.sqrt(ey * ey + (hy / slant) ** 2)
         wz = 2.0 * radius * np.sqrt(ez * ez + (hz / slant) ** 2)
         m = checkered(x, y, z, wx, wy, wz, abs(ny) > 0.9, size)
-        r += m * (u[s + CHECKER_COLOR] - r)
-        g += m * (u[s + CHECKER_COLOR + 1] - g)
-        b += m * (u[s + CHECKER_COLOR + 2] - b)
+        r += m * (u[s + layout.CHECKER_COLOR] - r)
+        g += m * (u[s + layout.CHECKER_COLOR + 1] - g)
+        b += m * (u[s + layout.CHECKER_COLOR + 2] - b)
     return r, g, b

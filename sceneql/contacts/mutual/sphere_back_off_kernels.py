@@ -9,6 +9,7 @@ import math
 import numpy as np
 from numba import types
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import inlined, kernel
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.mutual.sphere_pair_kernels import (
@@ -26,9 +27,6 @@ from sceneql.contacts.mutual.sphere_pair_kernels import (
     tied,
 )
 from sceneql.system.signatures_kernels import BACK_OFF, A, F, I
-
-ASKED = 1
-"""floats[1]: above 0 the march only asks when the step should end."""
 
 meet_all = lazy("sceneql.contacts.mutual.sphere_meet_kernels:meet_all", MEET)
 
@@ -91,7 +89,7 @@ def candidates(h, y0, y1, floats, ints):
 @kernel(BACK_OFF, inner=True)
 def back_off(t0, t1, y0, rate0, y1, floats, ints):
     """Change y1 so that no mass went through another in the step from t0 to t1."""
-    if floats[ASKED] > 0.0:
+    if floats[channels.STEP_END] > 0.0:
         return
     first, others = candidates(t1 - t0, y0, y1, floats, ints)
     if first[ints[COUNT]] > 0:

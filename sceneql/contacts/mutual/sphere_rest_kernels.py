@@ -12,6 +12,7 @@ import numpy as np
 from numba import types
 
 from sceneql.compiled.kernels import inlined, kernel
+from sceneql.contacts import layout
 from sceneql.contacts.mutual.sphere_pair_kernels import (
     BODY,
     COUNT,
@@ -32,7 +33,7 @@ from sceneql.contacts.mutual.sphere_pair_kernels import (
     radii,
     rests_below,
 )
-from sceneql.contacts.shape_kernels import OBJECT, clear, surface, velocity
+from sceneql.contacts.shape_kernels import clear, surface, velocity
 from sceneql.system.signatures_kernels import A, F, I
 
 SWEEPS = 200
@@ -47,7 +48,7 @@ def in_touch(k, y1, floats, ints, near, u):
     slack = TOUCHING * max(reach, 1e-3)
     x = of(ints, k, X)
     for one in range(ints[OBJECTS]):
-        at = HEAD + BODY * ints[COUNT] + OBJECT * one
+        at = HEAD + BODY * ints[COUNT] + layout.OBJECT * one
         if count == near.shape[0] or clear(floats, ints, at, y1[x], y1[x + 1], y1[x + 2], reach + slack):
             continue
         d, a, b, c = surface(floats, ints, at, y1[x], y1[x + 1], y1[x + 2])

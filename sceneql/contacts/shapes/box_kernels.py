@@ -4,16 +4,8 @@
 import math
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.contacts.shape_kernels import (
-    BEND_TYPE,
-    CLEAR_TYPE,
-    ROTATION,
-    SIZE,
-    SURFACE_TYPE,
-    inward,
-    turn,
-    unturn,
-)
+from sceneql.contacts import layout
+from sceneql.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, SURFACE_TYPE, inward, turn, unturn
 
 
 @lean_inlined
@@ -25,7 +17,7 @@ def beyond(x, half):
 @lean(SURFACE_TYPE, inner=True)
 def surface(floats, ints, at, x, y, z):
     """Signed distance and normal; inside, those of the nearest side."""
-    size = ints[at + SIZE]
+    size = ints[at + layout.SIZE]
     x, y, z = inward(floats, ints, at, x, y, z)
     ox, oy, oz = abs(x) - floats[size], abs(y) - floats[size + 1], abs(z) - floats[size + 2]
     d = max(ox, max(oy, oz))
@@ -37,16 +29,16 @@ def surface(floats, ints, at, x, y, z):
         a, b, c = beyond(x, floats[size]), beyond(y, floats[size + 1]), beyond(z, floats[size + 2])
         d = math.sqrt(a * a + b * b + c * c)
         a, b, c = a / d, b / d, c / d
-    a, b, c = turn(floats, ints[at + ROTATION], a, b, c)
+    a, b, c = turn(floats, ints[at + layout.ROTATION], a, b, c)
     return d, a, b, c
 
 
 @lean(BEND_TYPE, inner=True)
 def bend(floats, ints, at, x, y, z, vx, vy, vz):
     """(v^2 - (v.n)^2) / rho over the axes past the sides, rho the distance: around edges and corners alone."""
-    size = ints[at + SIZE]
+    size = ints[at + layout.SIZE]
     x, y, z = inward(floats, ints, at, x, y, z)
-    vx, vy, vz = unturn(floats, ints[at + ROTATION], vx, vy, vz)
+    vx, vy, vz = unturn(floats, ints[at + layout.ROTATION], vx, vy, vz)
     x, y, z = beyond(x, floats[size]), beyond(y, floats[size + 1]), beyond(z, floats[size + 2])
     vx, vy, vz = vx * (x != 0.0), vy * (y != 0.0), vz * (z != 0.0)
     rho = math.sqrt(x * x + y * y + z * z)
@@ -59,7 +51,7 @@ def bend(floats, ints, at, x, y, z, vx, vy, vz):
 @lean(CLEAR_TYPE, inner=True)
 def clear(floats, ints, at, x, y, z, radius):
     """By the distance."""
-    size = ints[at + SIZE]
+    size = ints[at + layout.SIZE]
     x, y, z = inward(floats, ints, at, x, y, z)
     x, y, z = beyond(x, floats[size]), beyond(y, floats[size + 1]), beyond(z, floats[size + 2])
     return x * x + y * y + z * z > radius * radius

@@ -16,17 +16,8 @@ from numba import types
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.compiled.rows_kernels import rows_of
-from sceneql.contacts.shape_kernels import (
-    BEND_TYPE,
-    CLEAR_TYPE,
-    DATA,
-    FOUR,
-    ROTATION,
-    SIZE,
-    SURFACE_TYPE,
-    inward,
-    turn,
-)
+from sceneql.contacts import layout
+from sceneql.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, FOUR, SURFACE_TYPE, inward, turn
 from sceneql.field.enclose.interval_kernels import box
 from sceneql.field.tape.tape_ops import NOWHERE
 from sceneql.system.signatures_kernels import A, F, I, N
@@ -42,7 +33,7 @@ as_code, as_rows = rows_of(types.int32, 4), rows_of(types.float64, 8)
 @lean_inlined
 def tape_of(floats, ints, at):
     """The four arrays of the tape."""
-    d = ints[at + DATA]
+    d = ints[at + layout.DATA]
     rows, parts, scratch = ints[d + CODE], ints[d + PARTS + 1], ints[d + SCRATCH + 1]
     code = as_code(ints[d + HEAD : d + HEAD + 2 * rows])
     constants = floats[ints[d + CONSTANTS] : ints[d + CONSTANTS] + ints[d + CONSTANTS + 1]]
@@ -58,7 +49,7 @@ def surface(floats, ints, at, x, y, z):
     """Signed distance and normal; where the field is not defined it is far away."""
     x, y, z = inward(floats, ints, at, x, y, z)
     d, x, y, z = nearest(floats, ints, at, x, y, z)
-    x, y, z = turn(floats, ints[at + ROTATION], x, y, z)
+    x, y, z = turn(floats, ints[at + layout.ROTATION], x, y, z)
     return d, x, y, z
 
 
@@ -68,7 +59,7 @@ def bend(floats, ints, at, x, y, z, vx, vy, vz):
     speed = math.sqrt(vx * vx + vy * vy + vz * vz)
     if speed == 0.0:
         return 0.0
-    apart = 1e-5 * floats[ints[at + SIZE]] / speed
+    apart = 1e-5 * floats[ints[at + layout.SIZE]] / speed
     ex, ey, ez = apart * vx, apart * vy, apart * vz
     _, a, b, c = surface(floats, ints, at, x - ex, y - ey, z - ez)
     _, p, q, r = surface(floats, ints, at, x + ex, y + ey, z + ez)

@@ -14,16 +14,8 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.contacts.shape_kernels import (
-    BEND_TYPE,
-    CLEAR_TYPE,
-    DATA,
-    ROTATION,
-    SURFACE_TYPE,
-    inward,
-    turn,
-    unturn,
-)
+from sceneql.contacts import layout
+from sceneql.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, SURFACE_TYPE, inward, turn, unturn
 from sceneql.system.signatures_kernels import A, F, I, N
 
 BOXES, TRIANGLES, COUNT, TREE = range(4)
@@ -91,7 +83,7 @@ def nearest(floats, ints, at, x, y, z, within):
 
     Nothing farther than ``within`` is looked at; offset -1 where there is nothing.
     """
-    d = ints[at + DATA]
+    d = ints[at + layout.DATA]
     best, found, feature = within * within, -1, 0
     bx, by, bz = 0.0, 0.0, 0.0
     node = 0
@@ -127,7 +119,7 @@ def surface(floats, ints, at, x, y, z):
         a, b, c = floats[k], floats[k + 1], floats[k + 2]
     else:
         a, b, c = side * a / d, side * b / d, side * c / d
-    a, b, c = turn(floats, ints[at + ROTATION], a, b, c)
+    a, b, c = turn(floats, ints[at + layout.ROTATION], a, b, c)
     return side * d, a, b, c
 
 
@@ -135,7 +127,7 @@ def surface(floats, ints, at, x, y, z):
 def bend(floats, ints, at, x, y, z, vx, vy, vz):
     """(v^2 - (v.n)^2 - (v.e)^2) / d around an edge of direction e, without e around a vertex; 0 over a face."""
     x, y, z = inward(floats, ints, at, x, y, z)
-    vx, vy, vz = unturn(floats, ints[at + ROTATION], vx, vy, vz)
+    vx, vy, vz = unturn(floats, ints[at + layout.ROTATION], vx, vy, vz)
     square, a, b, c, t, feature = nearest(floats, ints, at, x, y, z, math.inf)
     if feature == FACE or square < 1e-24:
         return 0.0

@@ -6,7 +6,8 @@ import math
 import numpy as np
 
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
-from sceneql.contacts.shape_kernels import FOUR, SIZE
+from sceneql.contacts import layout
+from sceneql.contacts.shape_kernels import FOUR
 from sceneql.contacts.shapes.implicit_kernels import tape_of
 from sceneql.field.tape.gradient_kernels import gradient
 from sceneql.system.signatures_kernels import A, F, I, N
@@ -43,7 +44,7 @@ def nearest(floats, ints, at, x, y, z):
     Down the gradient onto the surface, then Newton's method for the nearest point p: x - p = m grad f(p), f(p) = 0,
     with second derivatives from differences of gradients.
     """
-    size = floats[ints[at + SIZE]]
+    size = floats[ints[at + layout.SIZE]]
     f, a, b, c = slope(floats, ints, at, x, y, z)
     g2 = a * a + b * b + c * c
     if not (g2 > 0.0 and abs(f) < FAR and g2 < FAR):

@@ -4,13 +4,14 @@
 import math
 
 from sceneql.compiled.kernels import lean
-from sceneql.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, PLACE, SIZE, SURFACE_TYPE
+from sceneql.contacts import layout
+from sceneql.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, SURFACE_TYPE
 
 
 @lean(SURFACE_TYPE, inner=True)
 def surface(floats, ints, at, x, y, z):
     """Signed distance and normal; upwards at the center."""
-    place, radius = ints[at + PLACE], floats[ints[at + SIZE]]
+    place, radius = ints[at + layout.PLACE], floats[ints[at + layout.SIZE]]
     x, y, z = x - floats[place], y - floats[place + 1], z - floats[place + 2]
     d = math.sqrt(x * x + y * y + z * z)
     if d == 0.0:
@@ -21,7 +22,7 @@ def surface(floats, ints, at, x, y, z):
 @lean(BEND_TYPE, inner=True)
 def bend(floats, ints, at, x, y, z, vx, vy, vz):
     """(v^2 - (v.n)^2) / rho, rho the distance from the center."""
-    place = ints[at + PLACE]
+    place = ints[at + layout.PLACE]
     x, y, z = x - floats[place], y - floats[place + 1], z - floats[place + 2]
     rho = math.sqrt(x * x + y * y + z * z)
     if rho < 1e-12:
@@ -33,6 +34,6 @@ def bend(floats, ints, at, x, y, z, vx, vy, vz):
 @lean(CLEAR_TYPE, inner=True)
 def clear(floats, ints, at, x, y, z, radius):
     """By the distance."""
-    place = ints[at + PLACE]
+    place = ints[at + layout.PLACE]
     x, y, z = x - floats[place], y - floats[place + 1], z - floats[place + 2]
-    return math.sqrt(x * x + y * y + z * z) - floats[ints[at + SIZE]] > radius
+    return math.sqrt(x * x + y * y + z * z) - floats[ints[at + layout.SIZE]] > radius

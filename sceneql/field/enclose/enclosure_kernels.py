@@ -24,36 +24,7 @@ from sceneql.field.enclose.forms_kernels import (
 from sceneql.field.enclose.sine_kernels import sine_cosine
 from sceneql.field.skeleton.density_enclosure_kernels import density_segment
 from sceneql.field.skeleton.skeleton_enclosure_kernels import skeleton_segment
-from sceneql.field.tape.tape_ops import (
-    ABS,
-    ADD,
-    ATAN2,
-    CONSTANT,
-    COPY,
-    COS,
-    DENSITY,
-    DIV,
-    EXP,
-    FLOOR,
-    LOG,
-    MAX,
-    MIN,
-    MUL,
-    NEG,
-    NOWHERE,
-    PARTIAL,
-    POW,
-    SIN,
-    SKELETON,
-    SQRT,
-    SQUARE,
-    SUB,
-    TAPE,
-    WHOLE,
-    X,
-    Y,
-    Z,
-)
+from sceneql.field.tape import tape_ops as ops
 
 FAR = 1.0e150
 NEAR = 1.0e-300
@@ -184,15 +155,15 @@ def angle(y0, y1, ey, x0, x1, ex):
 @inlined
 def binary(op, a0, a1, ea, b0, b1, eb):
     """Enclosure of the operations of two arguments that are seldom or long."""
-    if op == DIV:
+    if op == ops.DIV:
         r0, r1, er = reciprocal(b0, b1, eb)
         return product(a0, a1, ea, r0, r1, er)
-    if op == MAX:
+    if op == ops.MAX:
         return larger_of(a0, a1, ea, b0, b1, eb)
-    if op == MIN:
+    if op == ops.MIN:
         m0, m1, em = larger_of(-a0, -a1, ea, -b0, -b1, eb)
         return -m0, -m1, em
-    if op == POW:
+    if op == ops.POW:
         return power(a0, a1, ea, b0, b1, eb)
     return angle(a0, a1, ea, b0, b1, eb)
 
@@ -200,16 +171,16 @@ def binary(op, a0, a1, ea, b0, b1, eb):
 @inlined
 def unary(op, a0, a1, ea):
     """Enclosure of the operations of one argument that are seldom or long."""
-    if op == SQRT:
+    if op == ops.SQRT:
         return square_root(a0, a1, ea)
-    if op == EXP:
+    if op == ops.EXP:
         return exponential(a0, a1, ea)
-    if op == LOG:
+    if op == ops.LOG:
         return logarithm(a0, a1, ea)
     reach = spread(a0, a1, ea)
     low = a0 - reach
     high = a0 + reach
-    if op == ABS:
+    if op == ops.ABS:
         if low >= 0.0:
             return a0, a1, ea
         if high <= 0.0:
@@ -217,7 +188,7 @@ def unary(op, a0, a1, ea):
         slope = a0 / reach
         half_gap = -0.5 * low * (high / reach)
         return slope * a0 + half_gap, slope * a1, abs(slope) * ea + half_gap + PAD * reach
-    if op == FLOOR:
+    if op == ops.FLOOR:
         return hull(np.floor(low), np.floor(high))
     return hull(
         -1.0 if low < 0.0 else (1.0 if low > 0.0 else 0.0), 1.0 if high > 0.0 else (-1.0 if high < 0.0 else 0.0)
@@ -230,21 +201,21 @@ def domain(op, positive, a0, reach_a, b0, reach_b, b_constant):
 
     ``positive``: the first of them is never below 0.
     """
-    if op == SQRT:
-        return WHOLE if positive or a0 >= reach_a else (NOWHERE if a0 + reach_a < 0.0 else PARTIAL)
-    if op == LOG:
-        return WHOLE if a0 > reach_a else (NOWHERE if a0 + reach_a < 0.0 else PARTIAL)
-    if op == DIV:
-        return WHOLE if abs(b0) > reach_b else PARTIAL
-    if op == POW:
+    if op == ops.SQRT:
+        return ops.WHOLE if positive or a0 >= reach_a else (ops.NOWHERE if a0 + reach_a < 0.0 else ops.PARTIAL)
+    if op == ops.LOG:
+        return ops.WHOLE if a0 > reach_a else (ops.NOWHERE if a0 + reach_a < 0.0 else ops.PARTIAL)
+    if op == ops.DIV:
+        return ops.WHOLE if abs(b0) > reach_b else ops.PARTIAL
+    if op == ops.POW:
         if a0 > reach_a or (positive and b_constant and b0 > 0.0):
-            return WHOLE
-        return NOWHERE if a0 + reach_a < 0.0 and b_constant and b0 != np.floor(b0) else PARTIAL
-    return WHOLE
+            return ops.WHOLE
+        return ops.NOWHERE if a0 + reach_a < 0.0 and b_constant and b0 != np.floor(b0) else ops.PARTIAL
+    return ops.WHOLE
 
 
 @kernel(
-    f"Tuple((float64, float64, float64, int64))({TAPE}, float64, float64, float64, float64, float64, float64,"
+    f"Tuple((float64, float64, float64, int64))({ops.TAPE}, float64, float64, float64, float64, float64, float64,"
     " float64, float64, boolean)",
     _nrt=False,
 )
@@ -259,7 +230,7 @@ def segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, sur
     middle = 0.5 * (t0 + t1)
     half = 0.5 * (t1 - t0) + 2.0e-16 * (abs(t0) + abs(t1))
     last = code.shape[0] - 1
-    status = WHOLE
+    status = ops.WHOLE
     for k in range(last + 1):
         op = code[k, 0]
         left = code[k, 1]
@@ -270,44 +241,44 @@ def segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, sur
         b0 = scratch[right, 0]
         b1 = scratch[right, 1]
         eb = scratch[right, 2]
-        if op == MUL:
+        if op == ops.MUL:
             c0, c1, e = product(a0, a1, ea, b0, b1, eb)
-        elif op == ADD:
+        elif op == ops.ADD:
             c0 = a0 + b0
             c1 = a1 + b1
             e = ea + eb + PAD * (abs(c0) + abs(c1))
-        elif op == SUB:
+        elif op == ops.SUB:
             c0 = a0 - b0
             c1 = a1 - b1
             e = ea + eb + PAD * (abs(c0) + abs(c1))
-        elif op == SQUARE:
+        elif op == ops.SQUARE:
             second = 0.5 * a1 * a1
             size = abs(a0) + abs(a1)
             c0 = a0 * a0 + second
             c1 = 2.0 * a0 * a1
             e = second + ea * (2.0 * size + ea) + (PAD * size * size + TINY)
-        elif op == CONSTANT:
+        elif op == ops.CONSTANT:
             c0 = constants[left]
             c1 = e = 0.0
-        elif op == X or op == Y or op == Z:
-            o = ox if op == X else (oy if op == Y else oz)
-            d = dx if op == X else (dy if op == Y else dz)
+        elif op == ops.X or op == ops.Y or op == ops.Z:
+            o = ox if op == ops.X else (oy if op == ops.Y else oz)
+            d = dx if op == ops.X else (dy if op == ops.Y else dz)
             c0 = o + middle * d
             c1 = half * d
             e = PAD * (abs(o) + abs(middle * d) + abs(c1))
-        elif op == COPY:
+        elif op == ops.COPY:
             c0 = a0
             c1 = a1
             e = ea
-        elif op == NEG:
+        elif op == ops.NEG:
             c0 = -a0
             c1 = -a1
             e = ea
-        elif op == DENSITY:
+        elif op == ops.DENSITY:
             c0, c1, e = density_segment(parts, left, right, scratch, k, last + 1 + left, code[k, 3], survey)
-        elif op == SKELETON:
+        elif op == ops.SKELETON:
             c0, c1, e = skeleton_segment(parts, left, right, scratch, k, last + 1 + left, code[k, 3], survey)
-        elif op == SIN or op == COS:
+        elif op == ops.SIN or op == ops.COS:
             twin = code[k, 3]
             if twin:
                 s = scratch[twin, 3]
@@ -316,27 +287,27 @@ def segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, sur
                 s, c = sine_cosine(a0)
                 scratch[k, 3] = s
                 scratch[k, 4] = c
-            if op == COS:
+            if op == ops.COS:
                 s, c = c, -s
             c0, c1, e = sine(s, c, a1, ea)
-        elif op <= ATAN2:
+        elif op <= ops.ATAN2:
             positive = never_negative(code[left, 0])
             found = domain(op, positive, a0, abs(a1) + ea, b0, abs(b1) + eb, b1 == 0.0 and eb == 0.0)
-            if found == NOWHERE:
-                return 0.0, 0.0, np.inf, NOWHERE
+            if found == ops.NOWHERE:
+                return 0.0, 0.0, np.inf, ops.NOWHERE
             status = max(status, found)
             c0, c1, e = binary(op, a0, a1, ea, b0, b1, eb)
             e += TINY
         else:
             found = domain(op, never_negative(code[left, 0]), a0, abs(a1) + ea, 0.0, 0.0, False)
-            if found == NOWHERE:
-                return 0.0, 0.0, np.inf, NOWHERE
+            if found == ops.NOWHERE:
+                return 0.0, 0.0, np.inf, ops.NOWHERE
             status = max(status, found)
             c0, c1, e = unary(op, a0, a1, ea)
             e += TINY
         e *= WIDER
         if not e + abs(c0) + abs(c1) < LARGE:
-            return 0.0, 0.0, np.inf, PARTIAL
+            return 0.0, 0.0, np.inf, ops.PARTIAL
         scratch[k, 0] = c0
         scratch[k, 1] = c1
         scratch[k, 2] = e

@@ -2,7 +2,7 @@
 """Affine forms c0 + c1 tau +- e, tau in [-1, 1]: what every kernel of enclosures along a ray is made of."""
 
 from sceneql.compiled.kernels import inlined
-from sceneql.field.tape.tape_ops import ABS, ADD, EXP, SQRT, SQUARE
+from sceneql.field.tape import tape_ops as ops
 
 PAD = 1.0e-15
 LARGE = 1.0e300
@@ -15,13 +15,13 @@ WIDER = 1.0 + 4.0e-15
 @inlined
 def never_negative(op):
     """Whether values of an operation are at least 0, whatever their enclosure says."""
-    return op == ABS or op == SQUARE or op == SQRT or op == EXP
+    return op == ops.ABS or op == ops.SQUARE or op == ops.SQRT or op == ops.EXP
 
 
 @inlined
 def row_never_negative(code, k):
     """The same of a row, also where it is a sum of such."""
-    while code[k, 0] == ADD:
+    while code[k, 0] == ops.ADD:
         left, right = code[k, 1], code[k, 2]
         if never_negative(code[left, 0]):
             k = right

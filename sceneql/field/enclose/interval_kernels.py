@@ -11,37 +11,8 @@ from sceneql.compiled.kernels import inlined, kernel
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.field.enclose.forms_kernels import never_negative
 from sceneql.field.enclose.sine_kernels import sine_cosine
+from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.order_kernels import sign_of
-from sceneql.field.tape.tape_ops import (
-    ABS,
-    ADD,
-    ATAN2,
-    CONSTANT,
-    COPY,
-    COS,
-    DENSITY,
-    DIV,
-    EXP,
-    FLOOR,
-    LOG,
-    MAX,
-    MIN,
-    MUL,
-    NEG,
-    NOWHERE,
-    PARTIAL,
-    POW,
-    SIN,
-    SKELETON,
-    SQRT,
-    SQUARE,
-    SUB,
-    TAPE,
-    WHOLE,
-    X,
-    Y,
-    Z,
-)
 
 LARGE = 1.0e300
 ULPS = 1.2e-15
@@ -136,82 +107,82 @@ def wave(low, high, peak):
 @inlined
 def binary_box(op, a, b, c, d):
     """(low, high, status) of an operation on [a, b] and [c, d]."""
-    if op == ADD:
+    if op == ops.ADD:
         low, high = outward(a + c, b + d)
         if a >= 0.0 and c >= 0.0:
             low = max(low, 0.0)  # so that a sum of squares has a square root
-    elif op == SUB:
+    elif op == ops.SUB:
         low, high = outward(a - d, b - c)
-    elif op == MUL:
+    elif op == ops.MUL:
         low, high = products(a, b, c, d)
-    elif op == MIN:
-        return min(a, c), min(b, d), WHOLE
-    elif op == MAX:
-        return max(a, c), max(b, d), WHOLE
-    elif op == DIV:
+    elif op == ops.MIN:
+        return min(a, c), min(b, d), ops.WHOLE
+    elif op == ops.MAX:
+        return max(a, c), max(b, d), ops.WHOLE
+    elif op == ops.DIV:
         if c <= 0.0 <= d:
-            return -np.inf, np.inf, PARTIAL
+            return -np.inf, np.inf, ops.PARTIAL
         low, high = quotients(a, b, c, d)
-    elif op == POW:
+    elif op == ops.POW:
         if c < d:  # the builder has other ways for exponents that vary but not by whole numbers
             c, d = np.ceil(c), np.floor(d)
         if a > 0.0:
             low, high = hull4(a**c, a**d, b**c, b**d)
         elif c == d and c > 0.0 and c != np.floor(c):
             if b < 0.0:
-                return 0.0, 0.0, NOWHERE
+                return 0.0, 0.0, ops.NOWHERE
             low, high = outward(0.0, b**c)
-            return max(low, 0.0), high, PARTIAL if a < 0.0 else WHOLE
+            return max(low, 0.0), high, ops.PARTIAL if a < 0.0 else ops.WHOLE
         elif c == d == np.floor(c) and (c >= 0.0 or b < 0.0):
             low, high = hull4(a**c, a**c, b**c, b**c)
             if c > 0.0 and 0.5 * c == np.floor(0.5 * c):
                 low = 0.0 if b >= 0.0 else max(low, 0.0)
         elif a == 0.0 and c >= 0.0:
             low, high = outward(0.0, max(1.0, max(b**c, b**d)))
-            return 0.0, high, WHOLE
+            return 0.0, high, ops.WHOLE
         else:
-            return -np.inf, np.inf, PARTIAL
+            return -np.inf, np.inf, ops.PARTIAL
     elif c <= 0.0 and a <= 0.0 <= b:
         low, high = outward(-np.pi, np.pi)
     else:
         low, high = hull4(np.arctan2(a, c), np.arctan2(a, d), np.arctan2(b, c), np.arctan2(b, d))
-    return low, high, WHOLE
+    return low, high, ops.WHOLE
 
 
 @inlined
 def unary_box(op, a, b):
     """(low, high, status) of an operation on [a, b]."""
-    status = WHOLE
-    if op == NEG:
+    status = ops.WHOLE
+    if op == ops.NEG:
         low, high = -b, -a
-    elif op == ABS:
+    elif op == ops.ABS:
         low = 0.0 if a <= 0.0 <= b else min(abs(a), abs(b))
         high = max(abs(a), abs(b))
-    elif op == SQUARE:
+    elif op == ops.SQUARE:
         low, high = squared(a, b)
         low, high = outward(low, high)
         low = max(low, 0.0)
-    elif op == SQRT:
+    elif op == ops.SQRT:
         if b < 0.0:
-            return 0.0, 0.0, NOWHERE
-        status = WHOLE if a >= 0.0 else PARTIAL
+            return 0.0, 0.0, ops.NOWHERE
+        status = ops.WHOLE if a >= 0.0 else ops.PARTIAL
         low, high = outward(np.sqrt(max(a, 0.0)), np.sqrt(b))
         low = max(low, 0.0)
-    elif op == SIN:
+    elif op == ops.SIN:
         low, high = wave(a, b, 0.25 * TURN)
-    elif op == COS:
+    elif op == ops.COS:
         low, high = wave(a, b, 0.0)
-    elif op == EXP:
+    elif op == ops.EXP:
         low, high = outward(np.exp(a), np.exp(b))
         low = max(low, 0.0)
-    elif op == LOG:
+    elif op == ops.LOG:
         if b < 0.0:
-            return 0.0, 0.0, NOWHERE
-        status = WHOLE if a > 0.0 else PARTIAL
+            return 0.0, 0.0, ops.NOWHERE
+        status = ops.WHOLE if a > 0.0 else ops.PARTIAL
         low, high = outward(np.log(a) if a > 0.0 else -np.inf, np.log(b))
-    elif op == FLOOR:
+    elif op == ops.FLOOR:
         low, high = np.floor(a), np.floor(b)
-    elif op == COPY:
+    elif op == ops.COPY:
         low, high = a, b
     else:
         low, high = sign_of(a), sign_of(b)
@@ -234,10 +205,12 @@ def finite(scratch, k):
 @inlined
 def positive_or_zero(op):
     """Whether a zero that bounds values of an operation from below is +0, so that one over it is +infinity."""
-    return never_negative(op) or op == ADD
+    return never_negative(op) or op == ops.ADD
 
 
-@kernel(f"Tuple((float64, float64, int64))({TAPE}, float64, float64, float64, float64, float64, float64)", _nrt=False)
+@kernel(
+    f"Tuple((float64, float64, int64))({ops.TAPE}, float64, float64, float64, float64, float64, float64)", _nrt=False
+)
 def box(code, constants, parts, scratch, x0, x1, y0, y1, z0, z1):
     """(low, high, status): f lies in low..high wherever it is defined in the box; ``scratch`` (rows, 8) is overwritten.
 
@@ -247,51 +220,51 @@ def box(code, constants, parts, scratch, x0, x1, y0, y1, z0, z1):
     can be claimed, as for a box that is no numbers or upside down, the answer is (-inf, inf, PARTIAL).
     """
     last = code.shape[0] - 1
-    status = WHOLE
+    status = ops.WHOLE
     for k in range(last + 1):
         op = code[k, 0]
         left = code[k, 1]
         right = code[k, 2]
-        found = WHOLE
-        if op == CONSTANT:
+        found = ops.WHOLE
+        if op == ops.CONSTANT:
             low = high = constants[left]
-        elif op == X:
+        elif op == ops.X:
             low = x0
             high = x1
-        elif op == Y:
+        elif op == ops.Y:
             low = y0
             high = y1
-        elif op == Z:
+        elif op == ops.Z:
             low = z0
             high = z1
-        elif op == DENSITY or op == SKELETON:
+        elif op == ops.DENSITY or op == ops.SKELETON:
             p = code[k, 3]
             if finite(scratch, p) and finite(scratch, p + 1) and finite(scratch, p + 2):
-                if op == DENSITY:
+                if op == ops.DENSITY:
                     low, high = density_box(parts, left, right, scratch, p)
                 else:
                     low, high = skeleton_box(parts, left, right, scratch, p)
             else:
                 low = -np.inf
                 high = np.inf
-        elif op == DIV and scratch[right, 0] == 0.0 < scratch[right, 1] and positive_or_zero(code[right, 0]):
+        elif op == ops.DIV and scratch[right, 0] == 0.0 < scratch[right, 1] and positive_or_zero(code[right, 0]):
             low, high = over_zero(scratch[left, 0], scratch[left, 1], scratch[right, 1])
-            found = PARTIAL
-        elif op == ATAN2 and over_cut(code, scratch, k):
+            found = ops.PARTIAL
+        elif op == ops.ATAN2 and over_cut(code, scratch, k):
             # pi - atan2(y, -x), or a whole turn less
             low, high, _ = binary_box(op, scratch[left, 0], scratch[left, 1], -scratch[right, 1], -scratch[right, 0])
             low, high = outward(np.pi - high, np.pi - low)
-        elif op <= ATAN2 and op != COPY:
+        elif op <= ops.ATAN2 and op != ops.COPY:
             low, high, found = binary_box(op, scratch[left, 0], scratch[left, 1], scratch[right, 0], scratch[right, 1])
         else:
             low, high, found = unary_box(op, scratch[left, 0], scratch[left, 1])
-        if found == NOWHERE:
-            return np.inf, -np.inf, NOWHERE
+        if found == ops.NOWHERE:
+            return np.inf, -np.inf, ops.NOWHERE
         status = max(status, found)
         if not low <= high:
-            return -np.inf, np.inf, PARTIAL
+            return -np.inf, np.inf, ops.PARTIAL
         if low <= -LARGE or high >= LARGE:
-            status = max(status, PARTIAL)
+            status = max(status, ops.PARTIAL)
             low = min(low, LARGE)
             high = max(high, -LARGE)
         scratch[k, 0] = low

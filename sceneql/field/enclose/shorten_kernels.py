@@ -9,8 +9,8 @@ from sceneql.field.enclose.affine_kernels import GROW, PAD
 from sceneql.field.packets.packet_density_kernels import keep_near
 from sceneql.field.packets.packet_kernels import C1, LANES, SINE, E, keep_skeleton
 from sceneql.field.skeleton.skeleton_parts_kernels import STRIDE
+from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.short_rows_kernels import ALIAS, LIVE, write_row
-from sceneql.field.tape.tape_ops import CONSTANT, COPY, DENSITY, MAX, MIN, MUL, NEG, SKELETON, WHOLE, X, Y, Z
 
 BY_SIGN, BY_VALUE = 1.0, 2.0
 """What matters of a row: its sign alone, as of f, or its value."""
@@ -48,7 +48,7 @@ def counts_alone(op, a, b, by_sign, first, stop):
 
     A max has the sign of a where b is below zero, a min where b is above.
     """
-    if op == MAX:
+    if op == ops.MAX:
         return exceeds(a, b, first, stop) or (by_sign and one_sided(b, np.float32(-1.0), first, stop))
     return exceeds(b, a, first, stop) or (by_sign and one_sided(b, np.float32(1.0), first, stop))
 
@@ -69,15 +69,15 @@ def mark_needed(code, registers, scratch, clips, whole, first, stop):
         scratch[k, ALIAS] = k
         use = scratch[k, LIVE]
         op = code[k, 0]
-        if use == 0.0 or op == CONSTANT or op == X or op == Y or op == Z:
+        if use == 0.0 or op == ops.CONSTANT or op == ops.X or op == ops.Y or op == ops.Z:
             continue
-        if op == DENSITY or op == SKELETON:
+        if op == ops.DENSITY or op == ops.SKELETON:
             for j in range(3):
                 scratch[code[k, 3] + j, LIVE] = BY_VALUE
             continue
         left, right = code[k, 1], code[k, 2]
-        if op == MIN or op == MAX:
-            clipped = op == MAX and use == BY_SIGN
+        if op == ops.MIN or op == ops.MAX:
+            clipped = op == ops.MAX and use == BY_SIGN
             alone = k
             if clipped and scratch[right, CLIPS] > 0.0:
                 alone = left
@@ -92,7 +92,7 @@ def mark_needed(code, registers, scratch, clips, whole, first, stop):
                 scratch[alone, LIVE] = max(scratch[alone, LIVE], use)
                 continue
         # The sign of these is known by those of what they are made of.
-        signs = op == MIN or op == MAX or op == NEG or op == COPY or op == MUL
+        signs = op == ops.MIN or op == ops.MAX or op == ops.NEG or op == ops.COPY or op == ops.MUL
         use = use if signs else BY_VALUE
         scratch[left, LIVE] = max(scratch[left, LIVE], use)
         scratch[right, LIVE] = max(scratch[right, LIVE], use)
@@ -105,7 +105,7 @@ def whole_in(status, first, stop):
     """Whether a tape is defined all over lanes first..stop-1."""
     torn = np.int32(0)
     for i in range(first, stop):
-        torn += np.int32(0) if status[i] == np.float32(WHOLE) else np.int32(1)
+        torn += np.int32(0) if status[i] == np.float32(ops.WHOLE) else np.int32(1)
     return torn == 0
 
 
@@ -129,10 +129,10 @@ def shorten(code, registers, status, first, final, clips, singles, parts, scratc
         for j in range(4):
             short[k, j] = code[k, j]
         begin = kept
-        if code[k, 0] == DENSITY:
+        if code[k, 0] == ops.DENSITY:
             kept = keep_near(code, k, registers, first, final + 1, singles, parts, kept, near_singles, near_parts)
             short[k, 1], short[k, 2] = begin, kept
-        elif code[k, 0] == SKELETON:
+        elif code[k, 0] == ops.SKELETON:
             p = code[k, 3]
             kept, own = keep_skeleton(
                 code[k, 1], code[k, 2], registers[p], registers[p + 1], registers[p + 2], registers[k, SINE:], first,
@@ -142,7 +142,7 @@ def shorten(code, registers, status, first, final, clips, singles, parts, scratc
             parted = parted or kept - begin > STRIDE * (MANY * own + FEW)
         if scratch[k, LIVE] != 0.0:
             write_row(code, k, scratch, short[length:], rows - length)
-            if code[k, 0] == DENSITY or code[k, 0] == SKELETON:
+            if code[k, 0] == ops.DENSITY or code[k, 0] == ops.SKELETON:
                 short[rows, 1], short[rows, 2] = begin, kept
             rows += 1
     return rows - length, parted

@@ -11,34 +11,7 @@ from sceneql.compiled.kernels import inlined, lean
 from sceneql.field.enclose.interval_kernels import TINY, TURN, box, hull4, outward, over_cut, unary_box, wave
 from sceneql.field.skeleton.density_kernels import offset
 from sceneql.field.skeleton.skeleton_bounds_kernels import skeleton_steepness
-from sceneql.field.tape.tape_ops import (
-    ABS,
-    ADD,
-    ATAN2,
-    CONSTANT,
-    COPY,
-    COS,
-    DENSITY,
-    DIV,
-    EXP,
-    FLOOR,
-    LOG,
-    MAX,
-    MIN,
-    MUL,
-    NEG,
-    SIGN,
-    SIN,
-    SKELETON,
-    SQRT,
-    SQUARE,
-    SUB,
-    TAPE,
-    WHOLE,
-    X,
-    Y,
-    Z,
-)
+from sceneql.field.tape import tape_ops as ops
 
 BLUR = 5.0e-16
 """Rounding of a point of a ray, relative to the sizes of what is added."""
@@ -63,8 +36,8 @@ def divided(a, b, c, d):
 @inlined
 def branches(op, a, b, c, d):
     """(slopes to the first, slopes to the second) of min or max, as bounds; both 0..1 where neither wins."""
-    first = (b < c) if op == MIN else (a > d)
-    second = (d < a) if op == MIN else (c > b)
+    first = (b < c) if op == ops.MIN else (a > d)
+    second = (d < a) if op == ops.MIN else (c > b)
     if first:
         return 1.0, 1.0, 0.0, 0.0
     if second:
@@ -75,21 +48,21 @@ def branches(op, a, b, c, d):
 @inlined
 def pair_slopes(op, low, high, a, b, c, d):
     """Bounds of the derivatives of an operation on [a, b] and [c, d] with value in [low, high]."""
-    if op == ADD:
+    if op == ops.ADD:
         return 1.0, 1.0, 1.0, 1.0
-    if op == SUB:
+    if op == ops.SUB:
         return 1.0, 1.0, -1.0, -1.0
-    if op == MUL:
+    if op == ops.MUL:
         return c, d, a, b
-    if op == DIV:
+    if op == ops.DIV:
         p, q = divided(1.0, 1.0, c, d)
         r, s = divided(-high, -low, c, d)
         return p, q, r, s
-    if op == MIN or op == MAX:
+    if op == ops.MIN or op == ops.MAX:
         return branches(op, a, b, c, d)
-    if op == ATAN2:
-        p, q, _ = unary_box(SQUARE, a, b)
-        r, s, _ = unary_box(SQUARE, c, d)
+    if op == ops.ATAN2:
+        p, q, _ = unary_box(ops.SQUARE, a, b)
+        r, s, _ = unary_box(ops.SQUARE, c, d)
         p, q = outward(p + r, q + s)
         r, s = divided(c, d, p, q)
         p, q = divided(-b, -a, p, q)
@@ -98,7 +71,7 @@ def pair_slopes(op, low, high, a, b, c, d):
         return -np.inf, np.inf, -np.inf, np.inf
     p, q = divided(low, high, a, b)
     p, q = times(c, d, p, q)
-    r, s, _ = unary_box(LOG, a, b)
+    r, s, _ = unary_box(ops.LOG, a, b)
     r, s = times(low, high, r, s)
     return p, q, r, s
 
@@ -106,26 +79,26 @@ def pair_slopes(op, low, high, a, b, c, d):
 @inlined
 def single_slopes(op, low, high, a, b):
     """Bounds of the derivative of an operation on [a, b] with value in [low, high]; infinite where there is none."""
-    if op == COPY:
+    if op == ops.COPY:
         return 1.0, 1.0
-    if op == NEG:
+    if op == ops.NEG:
         return -1.0, -1.0
-    if op == ABS:
+    if op == ops.ABS:
         return -1.0 if a <= 0.0 else 1.0, 1.0 if b >= 0.0 else -1.0
-    if op == SQUARE:
+    if op == ops.SQUARE:
         return 2.0 * a, 2.0 * b
-    if op == SQRT:
+    if op == ops.SQRT:
         return divided(0.5, 0.5, low, high)
-    if op == SIN:
+    if op == ops.SIN:
         return wave(a, b, 0.0)
-    if op == COS:
+    if op == ops.COS:
         p, q = wave(a, b, 0.25 * TURN)
         return -q, -p
-    if op == EXP:
+    if op == ops.EXP:
         return low, high
-    if op == LOG:
+    if op == ops.LOG:
         return divided(1.0, 1.0, a, b)
-    if (op == FLOOR or op == SIGN) and low == high:
+    if (op == ops.FLOOR or op == ops.SIGN) and low == high:
         return 0.0, 0.0
     return -np.inf, np.inf
 
@@ -191,27 +164,27 @@ def differentiate(code, parts, scratch, columns, dx, dy, dz):
         op = code[k, 0]
         left = code[k, 1]
         right = code[k, 2]
-        if op == DENSITY:
+        if op == ops.DENSITY:
             density_slopes(parts, left, right, scratch, k, code[k, 3], columns)
             continue
-        if op == SKELETON:
+        if op == ops.SKELETON:
             gx, ex, gy, ey, gz, ez = skeleton_steepness(parts, left, right, scratch, code[k, 3])
             chained(gx, ex, gy, ey, gz, ez, scratch, k, code[k, 3], columns)
             continue
-        if op == CONSTANT or (op >= X and op <= Z):
-            along = 0.0 if op == CONSTANT else (dx if op == X else (dy if op == Y else dz))
+        if op == ops.CONSTANT or (op >= ops.X and op <= ops.Z):
+            along = 0.0 if op == ops.CONSTANT else (dx if op == ops.X else (dy if op == ops.Y else dz))
             for column in range(2, columns, 2):
-                own = (1.0 if 2 * (op - X) + 2 == column else 0.0) if columns > 4 else along
+                own = (1.0 if 2 * (op - ops.X) + 2 == column else 0.0) if columns > 4 else along
                 scratch[k, column] = own
                 scratch[k, column + 1] = own
             continue
         low = scratch[k, 0]
         high = scratch[k, 1]
-        if op == ATAN2 and scratch[right, 0] <= 0.0 and scratch[left, 0] <= 0.0 <= scratch[left, 1]:
+        if op == ops.ATAN2 and scratch[right, 0] <= 0.0 and scratch[left, 0] <= 0.0 <= scratch[left, 1]:
             if not over_cut(code, scratch, k):
                 return False  # it jumps there
         r = s = 0.0
-        if op <= ATAN2 and op != COPY:
+        if op <= ops.ATAN2 and op != ops.COPY:
             p, q, r, s = pair_slopes(
                 op, low, high, scratch[left, 0], scratch[left, 1], scratch[right, 0], scratch[right, 1]
             )
@@ -219,9 +192,9 @@ def differentiate(code, parts, scratch, columns, dx, dy, dz):
             p, q = single_slopes(op, low, high, scratch[left, 0], scratch[left, 1])
         for column in range(2, columns, 2):
             a, b = times(p, q, scratch[left, column], scratch[left, column + 1])
-            if op <= ATAN2 and op != COPY:
+            if op <= ops.ATAN2 and op != ops.COPY:
                 c, d = times(r, s, scratch[right, column], scratch[right, column + 1])
-                if op == MIN or op == MAX:
+                if op == ops.MIN or op == ops.MAX:
                     if p != q:  # a mean of both
                         a = min(scratch[left, column], scratch[right, column])
                         b = max(scratch[left, column + 1], scratch[right, column + 1])
@@ -235,8 +208,8 @@ def differentiate(code, parts, scratch, columns, dx, dy, dz):
 
 
 @lean(
-    f"Tuple((float64, float64, float64, float64, int64))({TAPE}, float64, float64, float64, float64, float64, float64,"
-    " float64, float64, float64)"
+    f"Tuple((float64, float64, float64, float64, int64))({ops.TAPE}, float64, float64, float64, float64, float64,"
+    " float64, float64, float64, float64)"
 )
 def on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, sign):
     """(low, high, least, most, status) on the piece o + t d, t in [t0, t1], of a ray: g = sign f lies in low..high
@@ -260,7 +233,7 @@ def on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, sign
     )
     least = -np.inf
     most = np.inf
-    if status == WHOLE and differentiate(code, parts, scratch, 4, dx, dy, dz):
+    if status == ops.WHOLE and differentiate(code, parts, scratch, 4, dx, dy, dz):
         least = scratch[code.shape[0] - 1, 2]
         most = scratch[code.shape[0] - 1, 3]
     if sign < 0.0:

@@ -20,23 +20,7 @@ from sceneql.field.packets.packet_kernels import (
     unary_lanes,
     wave_lanes,
 )
-from sceneql.field.tape.tape_ops import (
-    ADD,
-    ATAN2,
-    CONSTANT,
-    COPY,
-    COS,
-    DENSITY,
-    MUL,
-    NEG,
-    SIGN,
-    SIN,
-    SKELETON,
-    SQUARE,
-    SUB,
-    X,
-    Z,
-)
+from sceneql.field.tape import tape_ops as ops
 
 
 @lean(ENCLOSE, inner=True)
@@ -52,48 +36,48 @@ def enclose(code, constants, parts, registers, point, status, n):
         left = code[k, 1]
         right = code[k, 2]
         out = registers[k]
-        if op == CONSTANT:
+        if op == ops.CONSTANT:
             continue
-        if op >= X and op <= Z:
-            p = point[op - X]
+        if op >= ops.X and op <= ops.Z:
+            p = point[op - ops.X]
             for i in range(3 * LANES):
                 out[i] = p[i]
             continue
-        if op == DENSITY:
+        if op == ops.DENSITY:
             p = code[k, 3]
             density_lanes(parts, left, right, registers[p], registers[p + 1], registers[p + 2], out, n)
             continue
-        if op == SKELETON:
+        if op == ops.SKELETON:
             p = code[k, 3]
             skeleton_lanes(parts, left, right, registers[p], registers[p + 1], registers[p + 2], out, n)
             continue
         a = registers[left]
         b = registers[right]
-        if op == MUL:
-            if code[left, 0] == CONSTANT:
+        if op == ops.MUL:
+            if code[left, 0] == ops.CONSTANT:
                 scale_lanes(b, a, out, n)
-            elif code[right, 0] == CONSTANT:
+            elif code[right, 0] == ops.CONSTANT:
                 scale_lanes(a, b, out, n)
             else:
                 common_lanes(op, a, b, out, n)
-        elif op == ADD or op == SUB or op == SQUARE:
+        elif op == ops.ADD or op == ops.SUB or op == ops.SQUARE:
             common_lanes(op, a, b, out, n)
-        elif op == NEG:
+        elif op == ops.NEG:
             for i in range(n):
                 out[i] = -a[i]
                 out[C1 + i] = -a[C1 + i]
                 out[E + i] = a[E + i]
-        elif op == COPY:
+        elif op == ops.COPY:
             for i in range(3 * LANES):
                 out[i] = a[i]
-        elif op == SIN or op == COS:
+        elif op == ops.SIN or op == ops.COS:
             twin = registers[code[k, 3] if code[k, 3] else k]
             if code[k, 3] == 0:
                 turn_lanes(a, out, n)
             wave_lanes(op, a, out, twin, n)
-        elif op <= ATAN2:
+        elif op <= ops.ATAN2:
             binary_lanes(op, a, b, out, n, status, row_never_negative(code, left))
-        elif op <= SIGN:
+        elif op <= ops.SIGN:
             unary_lanes(op, a, out, n, status, row_never_negative(code, left))
         else:  # nothing is claimed of an operation that has no lanes
             for i in range(n):

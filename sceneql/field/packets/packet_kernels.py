@@ -37,26 +37,8 @@ from sceneql.field.enclose.affine_kernels import (
     turned,
     wave,
 )
+from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.single_kernels import lane, sine_cosine
-from sceneql.field.tape.tape_ops import (
-    ABS,
-    ADD,
-    CONSTANT,
-    DIV,
-    EXP,
-    FLOOR,
-    LOG,
-    MAX,
-    MIN,
-    MUL,
-    NOWHERE,
-    PARTIAL,
-    POW,
-    SIN,
-    SQRT,
-    SUB,
-    WHOLE,
-)
 
 LANES, VECTOR = 64, 16
 C1, E, SINE, COSINE, WIDTH = LANES, 2 * LANES, 3 * LANES, 4 * LANES, 5 * LANES
@@ -102,7 +84,7 @@ check_inside = lazy("sceneql.field.packets.inside_kernels:check_inside", CHECK_I
 @lane
 def worse(status, i, safe, never):
     """Note in a lane where an operation is defined."""
-    found = F(WHOLE) if safe else (F(NOWHERE) if never else F(PARTIAL))
+    found = F(ops.WHOLE) if safe else (F(ops.NOWHERE) if never else F(ops.PARTIAL))
     status[i] = found if found > status[i] else status[i]
 
 
@@ -110,7 +92,7 @@ def worse(status, i, safe, never):
 def load_constants(code, constants, registers):
     """Fill the registers of constants, once for all evaluations of a tape."""
     for k in range(code.shape[0]):
-        if code[k, 0] == CONSTANT:
+        if code[k, 0] == ops.CONSTANT:
             number = constants[code[k, 1]]
             c0 = F(number)
             e = ZERO if float(c0) == number else abs(c0) * TWICE + TINY
@@ -140,11 +122,11 @@ def common_lanes(op, a, b, out, n):
     for i in range(0, n, VECTOR):
         a0, a1, ea = taken(a, i)
         b0, b1, eb = taken(b, i)
-        if op == MUL:
+        if op == ops.MUL:
             c0, c1, e = product(a0, a1, ea, b0, b1, eb)
-        elif op == ADD:
+        elif op == ops.ADD:
             c0, c1, e = total(a0, a1, ea, b0, b1, eb)
-        elif op == SUB:
+        elif op == ops.SUB:
             c0, c1, e = difference(a0, a1, ea, b0, b1, eb)
         else:
             c0, c1, e = squared(a0, a1, ea)
@@ -165,25 +147,25 @@ def scale_lanes(a, b, out, n):
 @inlined
 def unary_lanes(op, a, out, n, status, positive):
     """The operations of one argument that are seldom; ``positive``: that is never below 0."""
-    if op == ABS:
+    if op == ops.ABS:
         for i in range(n):
             out[i], out[C1 + i], out[E + i] = absolute(a[i], a[C1 + i], a[E + i])
-    elif op == SQRT:
+    elif op == ops.SQRT:
         for i in range(n):
             c0, c1, e = a[i], a[C1 + i], a[E + i]
             out[i], out[C1 + i], out[E + i] = square_root(c0, c1, e)
             reach = (abs(c1) + e) * GROW + PAD * abs(c0)
             worse(status, i, positive or c0 >= reach, c0 + reach < ZERO and not positive)
-    elif op == EXP:
+    elif op == ops.EXP:
         for i in range(n):
             out[i], out[C1 + i], out[E + i] = grown(a[i], a[C1 + i], a[E + i])
-    elif op == LOG:
+    elif op == ops.LOG:
         for i in range(n):
             c0, c1, e = a[i], a[C1 + i], a[E + i]
             out[i], out[C1 + i], out[E + i] = logged(c0, c1, e)
             reach = (abs(c1) + e) * GROW + PAD * abs(c0)
             worse(status, i, c0 > reach, c0 + reach < ZERO)
-    elif op == FLOOR:
+    elif op == ops.FLOOR:
         for i in range(n):
             out[i], out[C1 + i], out[E + i] = floored(a[i], a[C1 + i], a[E + i])
     else:
@@ -194,22 +176,22 @@ def unary_lanes(op, a, out, n, status, positive):
 @inlined
 def binary_lanes(op, a, b, out, n, status, positive):
     """The operations of two arguments that are seldom; ``positive``: the first is never below 0."""
-    if op == DIV:
+    if op == ops.DIV:
         for i in range(n):
             b0, b1, eb = b[i], b[C1 + i], b[E + i]
             r0, r1, er = reciprocal(b0, b1, eb)
             out[i], out[C1 + i], out[E + i] = product(a[i], a[C1 + i], a[E + i], r0, r1, er)
             worse(status, i, er < F(np.inf), False)
-    elif op == MAX:
+    elif op == ops.MAX:
         for i in range(n):
             out[i], out[C1 + i], out[E + i] = larger_of(a[i], a[C1 + i], a[E + i], b[i], b[C1 + i], b[E + i])
-    elif op == MIN:
+    elif op == ops.MIN:
         for i in range(n):
             c0, c1, e = larger_of(-a[i], -a[C1 + i], a[E + i], -b[i], -b[C1 + i], b[E + i])
             out[i] = -c0
             out[C1 + i] = -c1
             out[E + i] = e
-    elif op == POW:
+    elif op == ops.POW:
         for i in range(n):
             a0, a1, ea = a[i], a[C1 + i], a[E + i]
             b0, b1, eb = b[i], b[C1 + i], b[E + i]
@@ -235,7 +217,7 @@ def turn_lanes(a, out, n):
 @inlined
 def wave_lanes(op, a, out, twin, n):
     """Sine or cosine; ``twin`` is the register that keeps both."""
-    if op == SIN:
+    if op == ops.SIN:
         for i in range(n):
             out[i], out[C1 + i], out[E + i] = wave(twin[SINE + i], twin[COSINE + i], a[i], a[C1 + i], a[E + i])
     else:

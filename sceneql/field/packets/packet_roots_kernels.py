@@ -19,7 +19,7 @@ from sceneql.field.roots.density_roots_kernels import ROW_OF, density_roots
 from sceneql.field.roots.isolation_kernels import isolate
 from sceneql.field.roots.polynomial_kernels import POLYNOMIAL
 from sceneql.field.skeleton.density_polish_kernels import BOX, X, extent
-from sceneql.field.tape.tape_ops import HIT, MISS, UNDECIDED, WHOLE
+from sceneql.field.tape import tape_ops as ops
 
 _rows, _side = types.float64[:, ::1], types.float64
 BOX_OF = types.Tuple((_side, _side, types.int64))(
@@ -53,7 +53,7 @@ def certify_queued(code, constants, parts, scratch, rays, queue, count, end, any
     certified = 0
     for k in range(count):
         j = np.uint64(queue[k])
-        if found[FOUND_STATUS, j] == UNDECIDED:
+        if found[FOUND_STATUS, j] == ops.UNDECIDED:
             certified += 1
             certify_ray(code, constants, parts, scratch, rays, j, end, anywhere, found)
     return certified
@@ -68,7 +68,7 @@ def leave_safe(rays, queue, count, row, late, safe, unsafe, found, doubtful):
         j = np.uint64(queue[k])
         t = begins[j] + places[j] + late * (ends[j] - begins[j])
         doubtful[np.uint64(n)] = queue[k]
-        n += 0 if (t > safe) & (t < unsafe) | (outcomes[j] != HIT) else 1
+        n += 0 if (t > safe) & (t < unsafe) | (outcomes[j] != ops.HIT) else 1
     return n
 
 
@@ -78,7 +78,7 @@ def box_inside(code, constants, parts, scratch, sides):
     _, high, status = box(
         code, constants, parts, scratch, sides[0], sides[1], sides[2], sides[3], sides[4], sides[5]
     )  # fmt: skip
-    return status == WHOLE and high < 0.0
+    return status == ops.WHOLE and high < 0.0
 
 
 @inlined
@@ -90,12 +90,12 @@ def enclose_hits(rays, count, found, row, late, room):
         o, d, x = rays[axis], rays[3 + axis], room[X + axis]
         some = 0.0
         for j in range(count):
-            if outcomes[j] == HIT:
+            if outcomes[j] == ops.HIT:
                 some = o[j] + (begins[j] + places[j]) * d[j]
                 break
         for j in range(count):
             place = o[j] + (begins[j] + places[j] + late * (ends[j] - begins[j])) * d[j]
-            x[j] = place if outcomes[j] == HIT else some
+            x[j] = place if outcomes[j] == ops.HIT else some
         sides[2 * axis], sides[2 * axis + 1] = extent(x, count)
 
 
@@ -142,7 +142,7 @@ def first_roots(
     columns. Outcomes are those of ``isolation_kernels.isolate``.
     """
     for j in range(count):
-        found[FOUND_STATUS, j] = MISS
+        found[FOUND_STATUS, j] = ops.MISS
     groups = (count + GROUP - 1) // GROUP
     safe = unsafe = np.inf
     certified = left = 0

@@ -26,7 +26,7 @@ from sceneql.field.packets.ray_rows import (
     SURE,
     WAY_OF,
 )
-from sceneql.field.tape.tape_ops import HIT, MISS, NOWHERE, UNDECIDED, WHOLE
+from sceneql.field.tape import tape_ops as ops
 
 OX, OY, OZ, DX, DY, DZ, A, B, END, CUT_FROM, CUT_TO, HELD, TRIES, LENGTH, STATE, ROOT, CHANGE, HALF_WAY = range(18)
 """Rows of ``lanes``, each of LANES, one behind the other: ray, segment, where the search ends, a piece cut out, whether
@@ -100,9 +100,9 @@ def advance(lanes, last, status, n, anywhere):
         m = abs(c1)
         e = last[E + i] * GROW + PAD * (abs(c0) + m)
         width = b - a
-        outside = (where == F(NOWHERE)) | (c0 - m > e)
+        outside = (where == F(ops.NOWHERE)) | (c0 - m > e)
         good = e + abs(c0) + m < LARGE
-        whole = good & (where == F(WHOLE))
+        whole = good & (where == F(ops.WHOLE))
         inside = whole & (((m if anywhere else c1) - c0) > e)
         half = HALF * width
         r = half / (c1 if m > TINY else ONE)
@@ -153,8 +153,8 @@ def advance(lanes, last, status, n, anywhere):
         then = then if then < end else end
         then = cut_from if (cut_from > after) & (cut_from < then) else then
         done = after >= end
-        state = F(HIT) if hit | inside else (F(UNDECIDED) if stuck else LIVE)
-        rejected = (F(HIT) if lanes[HELD * LANES + i] > ZERO else F(MISS)) if done else LIVE
+        state = F(ops.HIT) if hit | inside else (F(ops.UNDECIDED) if stuck else LIVE)
+        rejected = (F(ops.HIT) if lanes[HELD * LANES + i] > ZERO else F(ops.MISS)) if done else LIVE
         lanes[STATE * LANES + i] = rejected if outside else state
         lanes[A * LANES + i] = after if outside else (a if inside else start)
         met = b if anywhere & (c1 < ZERO) else a

@@ -37,8 +37,8 @@ from sceneql.field.packets.slab_kernels import (
     place_slabs,
     single_beams,
 )
+from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.batch_kernels import evaluate
-from sceneql.field.tape.tape_ops import DENSITY, HIT, MAX, MIN, SKELETON, UNDECIDED
 
 SLABS = 8
 """Of a beam."""
@@ -57,7 +57,7 @@ def enqueue(rays, count, groups, asked, found, queue):
             queue[np.uint64(queued)] = ray
             if states[j] == SETTLED_INSIDE:
                 far = asked[FAR, j]
-                found[FOUND_STATUS, j] = HIT
+                found[FOUND_STATUS, j] = ops.HIT
                 found[FOUND_LOW, j] = found[FOUND_HIGH, j] = far
                 found[FOUND_ROOT, j] = rays[6, j] + far
             else:
@@ -98,7 +98,7 @@ def polish(code, constants, parts, registers, points, rays, queue, count, found,
                 values[j], ways[j] = last[i], root - found[FOUND_ROOT, j]
                 left = min(abs(step), found[FOUND_HIGH, j] - found[FOUND_LOW, j])
                 if turn == 1 and not (left <= SETTLED * (rays[7, j] - rays[6, j]) and rays[6, j] + root < rays[7, j]):
-                    found[FOUND_STATUS, j] = UNDECIDED
+                    found[FOUND_STATUS, j] = ops.UNDECIDED
                 found[FOUND_ROOT, j] = root
 
 
@@ -134,7 +134,7 @@ def leave_all(rays, count, found, queue):
     for j in range(count):
         if rays[6, j] < rays[7, j]:
             queue[np.uint64(queued)] = j
-            found[FOUND_STATUS, j], found[FOUND_LOW, j] = UNDECIDED, 0.0
+            found[FOUND_STATUS, j], found[FOUND_LOW, j] = ops.UNDECIDED, 0.0
             queued += 1
     return queued
 
@@ -172,8 +172,8 @@ def tape_roots(
         if deep >= 0 and all_through(rays, count, base + deep * depth, base + (deep + 1) * depth):
             final = deep
         begin, end = base + (first - 1e-6) * depth, base + (final + 1 + 1e-6) * depth
-        of_parts = has(code, DENSITY) or has(code, SKELETON)
-        if of_parts or has(code, MAX) or has(code, MIN):
+        of_parts = has(code, ops.DENSITY) or has(code, ops.SKELETON)
+        if of_parts or has(code, ops.MAX) or has(code, ops.MIN):
             rows, parted = shorten(
                 code, registers, status, first, final, clips, singles, parts, scratch, short, near_singles, near_parts
             )
@@ -207,7 +207,7 @@ def tape_roots(
     if not anywhere:
         hits = 0
         for k in range(queued):  # hits to the front of the queue
-            if found[FOUND_STATUS, queue[k]] == HIT:
+            if found[FOUND_STATUS, queue[k]] == ops.HIT:
                 queue[hits], queue[k] = queue[k], queue[hits]
                 hits += 1
         polish(

@@ -11,7 +11,7 @@ import numpy as np
 from sceneql.compiled.kernels import lean, woven
 from sceneql.field.enclose.slope_kernels import on_ray
 from sceneql.field.roots.bracket_kernels import FINE, lowest, polished
-from sceneql.field.tape.tape_ops import HIT, MISS, NOWHERE, TAPE, UNDECIDED, WHOLE
+from sceneql.field.tape import tape_ops as ops
 
 EVALUATIONS = 1000
 """Pieces looked at on one ray before it is left undecided."""
@@ -34,11 +34,11 @@ SURE = 1.0 - 1.0e-14
 def surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, sign):
     """(side, bounds of sign df/dt (2)): 1 where sign f(t) is proved > 0, -1 where < 0, or UNDEFINED; else 0."""
     low, high, least, most, status = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t, sign)
-    if status == NOWHERE:
+    if status == ops.NOWHERE:
         return UNDEFINED, least, most
     if low > 0.0:
         return 1, least, most
-    return (-1 if status == WHOLE and high < 0.0 else 0), least, most
+    return (-1 if status == ops.WHOLE and high < 0.0 else 0), least, most
 
 
 @woven
@@ -55,8 +55,8 @@ def told(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, least,
 
 
 @lean(
-    f"Tuple((int64, int64, float64, float64, float64))({TAPE}, float64, float64, float64, float64, float64, float64,"
-    " float64, float64, float64, float64, float64, float64)",
+    f"Tuple((int64, int64, float64, float64, float64))({ops.TAPE}, float64, float64, float64, float64, float64,"
+    " float64, float64, float64, float64, float64, float64, float64)",
     inner=True,
 )
 def hidden(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, t0, t1, least, sign):
@@ -104,8 +104,8 @@ def hidden(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, t0, t1
 
 
 @lean(
-    f"Tuple((int64, float64))({TAPE}, float64, float64, float64, float64, float64, float64,"
-    " float64, float64, float64, float64, boolean, boolean)"
+    f"Tuple((int64, float64))({ops.TAPE}, float64, float64, float64, float64, float64,"
+    " float64, float64, float64, float64, float64, boolean, boolean)"
 )
 def certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, finest, sign, anywhere, touching):
     """(status, t) of the first place in [t0, t1] where sign f < 0 begins, or with ``anywhere`` of any place of it.
@@ -117,13 +117,13 @@ def certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, fin
     """
     a = t0
     end = t1
-    found = MISS  # at `end`
+    found = ops.MISS  # at `end`
     where = t1
     least = max(finest, 4.0e-15 * (abs(t0) + abs(t1)))
     if touching:
         side, a = told(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, least, sign)
         if side == 0:
-            return UNDECIDED, a
+            return ops.UNDECIDED, a
         if side < 0:
             sign = -sign
     b = end
@@ -134,24 +134,24 @@ def certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, fin
         width = b - a
         middle = a + SPLIT * width
         low, high, slope0, slope1, status = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign)
-        if status == WHOLE and high < 0.0:
-            return HIT, a
-        clear = status == NOWHERE or low > 0.0 or (low == 0.0 and not touching)
+        if status == ops.WHOLE and high < 0.0:
+            return ops.HIT, a
+        clear = status == ops.NOWHERE or low > 0.0 or (low == 0.0 and not touching)
         below = above = 0.0
         if not clear:
             below, above, _, _, known = on_ray(
                 code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, middle, middle, sign
             )
-            if known == WHOLE and above < 0.0:
+            if known == ops.WHOLE and above < 0.0:
                 if anywhere:
-                    return HIT, middle
-                if width <= least and (status == WHOLE or not touching):
-                    return HIT, polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, middle, sign)
+                    return ops.HIT, middle
+                if width <= least and (status == ops.WHOLE or not touching):
+                    return ops.HIT, polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, middle, sign)
                 if width > least:
                     b = end = where = middle
-                    found = HIT
+                    found = ops.HIT
                     continue
-        if status == WHOLE and not clear:
+        if status == ops.WHOLE and not clear:
             reach = WIDEST * (t1 - t0) + least  # from where f cannot be told from zero to where it is
             if slope0 > 0.0:
                 low, high, _, _, _ = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, a, sign)
@@ -159,12 +159,12 @@ def certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, fin
             elif slope1 < 0.0:
                 low, high, _, _, _ = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, b, b, sign)
                 if high < 0.0:
-                    return HIT, polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign)
+                    return ops.HIT, polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign)
                 clear = low > 0.0 or (b == end and low >= slope1 * reach)
                 if not clear and b < end:
                     b = min(b + width, end)
                     continue
-        if not clear and (width <= least or (eager and status == WHOLE and below <= 0.0 <= above)):
+        if not clear and (width <= least or (eager and status == ops.WHOLE and below <= 0.0 <= above)):
             first = a if width <= least else middle
             last = b if width <= least else middle
             kind, behind, place, before, after = hidden(
@@ -178,16 +178,16 @@ def certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, fin
                     if behind < 0:
                         sign = -sign
                         end = t1
-                        found = MISS
+                        found = ops.MISS
                     a = after
                     b = min(a + 2.0 * width, end)
                     continue
-                found = HIT if kind == CROSSES or kind == (TOUCHES if touching else JUMPS) else UNDECIDED
+                found = ops.HIT if kind == CROSSES or kind == (TOUCHES if touching else JUMPS) else ops.UNDECIDED
                 b = end = max(before, a)
-                where = place if found == HIT else b
+                where = place if found == ops.HIT else b
                 continue
             eager = False
-        if not clear and status == WHOLE and below > 0.0:
+        if not clear and status == ops.WHOLE and below > 0.0:
             # f >= below - slope1 (middle - t) before the middle, and >= below + slope0 (t - middle) behind it.
             blur = 1.0e-15 * (abs(a) + abs(b))
             free = middle - below / slope1 * SURE + blur if slope1 > 0.0 else -np.inf
@@ -204,4 +204,4 @@ def certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, fin
             b = min(a + 2.0 * width, end)
         else:
             b = middle
-    return UNDECIDED, a
+    return ops.UNDECIDED, a

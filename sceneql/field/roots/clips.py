@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.plans import root_of, without_factor
-from sceneql.field.tape.tape_ops import ADD, CONSTANT, COPY, MAX, MUL, NEG, SQUARE, SUB, X, Y, Z
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Tape
@@ -48,7 +48,7 @@ def _branches(tape: Tape) -> list[int]:
     while rows:
         row = rows.pop()
         inner = without_factor(tape, row)
-        if tape.code[inner, 0] == MAX:
+        if tape.code[inner, 0] == ops.MAX:
             rows += map(int, tape.code[inner, 1:3])
         else:
             found.append(row)
@@ -80,23 +80,23 @@ def _convex(quadric: Floats) -> bool:
 def _expanded(tape: Tape, row: int) -> Floats | None:
     """Coefficients (10,) of a row, None where it is no polynomial of degree 2 at the most."""
     op, left, right, _ = map(int, tape.code[row])
-    if op == CONSTANT or op in (X, Y, Z):
+    if op == ops.CONSTANT or op in (ops.X, ops.Y, ops.Z):
         plain: Floats = np.zeros(LAST + 1)
-        plain[LAST if op == CONSTANT else LINEAR + op - X] = tape.constants[left] if op == CONSTANT else 1.0
+        plain[LAST if op == ops.CONSTANT else LINEAR + op - ops.X] = tape.constants[left] if op == ops.CONSTANT else 1.0
         return plain
-    if op not in (COPY, NEG, SQUARE, ADD, SUB, MUL):
+    if op not in (ops.COPY, ops.NEG, ops.SQUARE, ops.ADD, ops.SUB, ops.MUL):
         return None
     a = _expanded(tape, left)
-    b = _expanded(tape, right) if op in (ADD, SUB, MUL) else a
+    b = _expanded(tape, right) if op in (ops.ADD, ops.SUB, ops.MUL) else a
     if a is None or b is None:
         return None
-    if op == COPY:
+    if op == ops.COPY:
         return a
-    if op == NEG:
+    if op == ops.NEG:
         return -a
-    if op in (SQUARE, MUL):
+    if op in (ops.SQUARE, ops.MUL):
         return _product(a, b)
-    total: Floats = a + b if op == ADD else a - b
+    total: Floats = a + b if op == ops.ADD else a - b
     return total
 
 

@@ -15,10 +15,10 @@ from sceneql.field.enclose.enclosure_kernels import segment
 from sceneql.field.enclose.slope_kernels import on_ray
 from sceneql.field.roots.bracket_kernels import FINE, along
 from sceneql.field.roots.certified_kernels import certify
-from sceneql.field.tape.tape_ops import HIT, INSIDE, MISS, NOWHERE, TAPE, UNDECIDED, WHOLE
+from sceneql.field.tape import tape_ops as ops
 
 ARGUMENTS, OUTCOME = normalize_signature(
-    f"Tuple((int64, float64))({TAPE}, float64, float64, float64, float64, float64, float64,"
+    f"Tuple((int64, float64))({ops.TAPE}, float64, float64, float64, float64, float64, float64,"
     " float64, float64, float64, float64, boolean, boolean)"
 )
 BEYOND = OUTCOME(*ARGUMENTS)
@@ -32,7 +32,7 @@ BACK = 2.0e-3
 
 
 @kernel(
-    f"Tuple((int64, float64))({TAPE}, float64, float64, float64, float64, float64, float64,"
+    f"Tuple((int64, float64))({ops.TAPE}, float64, float64, float64, float64, float64, float64,"
     " float64, float64, float64, float64, boolean)",
     _nrt=False,
     inner=True,
@@ -49,7 +49,7 @@ def search(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tole
     cut_from = t1  # from here to cut_to nothing is left to find
     cut_to = t1
     least = max(tolerance * (t1 - t0), 1.0e-15 * (abs(t0) + abs(t1)))
-    outcome = UNDECIDED
+    outcome = ops.UNDECIDED
     survey = True
     for _ in range(EVALUATIONS):
         c0, c1, e, status = segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, survey)
@@ -57,18 +57,18 @@ def search(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tole
         c0 *= sign
         c1 *= sign
         width = b - a
-        if status == NOWHERE or c0 - abs(c1) > e:
+        if status == ops.NOWHERE or c0 - abs(c1) > e:
             a = cut_to if b == cut_from else b
             if a >= end:
-                outcome = HIT if held else MISS
+                outcome = ops.HIT if held else ops.MISS
                 a = end
                 break
             b = min(a + 2.0 * width, end)
             if cut_from > a:
                 b = min(b, cut_from)
             continue
-        if status == WHOLE and (c0 - c1 < -e or (anywhere and c0 - abs(c1) < -e)):
-            outcome = HIT
+        if status == ops.WHOLE and (c0 - c1 < -e or (anywhere and c0 - abs(c1) < -e)):
+            outcome = ops.HIT
             break
         middle = 0.5 * (a + b)
         half = 0.5 * width
@@ -80,7 +80,7 @@ def search(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tole
                 root = min(max(middle - half * (c0 / c1), a), b)
                 start = max(a, middle + half * ((e - c0) / c1) - blur)
                 stop = middle - half * ((c0 + e) / c1) + blur
-                if status == WHOLE and stop < b:
+                if status == ops.WHOLE and stop < b:
                     held = True
                     b = stop
                     end = stop
@@ -92,13 +92,13 @@ def search(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tole
                     b = stop
             a = min(start, b)
         if held and b == end and b - a <= FINE * (abs(a) + abs(b)):
-            outcome = HIT
+            outcome = ops.HIT
             a = min(max(root, a), b)
             break
         if b - a >= 0.5 * width or b - a <= 1.0e-4 * least:
             if b - a <= least:
                 if held and b == end:  # rounding leaves no narrower bracket, but one it is
-                    outcome = HIT
+                    outcome = ops.HIT
                     a = min(max(root, a), b)
                 break
             b = a + 0.5 * (b - a)
@@ -110,20 +110,20 @@ def begin_of_proof(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t
     """Where the certified intervals begin on [t0, t1], of which enclosures told the piece up to t: there, at an edge of
     where f is defined, from the undefined side; else BACK, so that f can be told from zero."""
     _, _, _, _, status = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t, 1.0)
-    return t if status == NOWHERE else max(t - BACK * (t1 - t0), t0)
+    return t if status == ops.NOWHERE else max(t - BACK * (t1 - t0), t0)
 
 
 @woven
 def isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, sign, anywhere):
     """As ``search``, by the certified intervals from where that could not go on, and past jumps where these cannot."""
     status, t = search(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, sign, anywhere)
-    if status == UNDECIDED:
+    if status == ops.UNDECIDED:
         t = begin_of_proof(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t0, t1)
         finest = tolerance * (t1 - t0)
         status, t = certify(
             code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, finest, sign, anywhere, False
         )
-        if status == UNDECIDED:
+        if status == ops.UNDECIDED:
             status, t = beyond(
                 code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, finest, sign, anywhere, False
             )
@@ -139,9 +139,9 @@ def first_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, 
     could not be told from nothing. d need not be a unit vector; undefined places are outside.
     """
     status, t = isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, 1.0, False)
-    if status == HIT and t - t0 <= tolerance * (t1 - t0):
+    if status == ops.HIT and t - t0 <= tolerance * (t1 - t0):
         if along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0) < 0.0:
-            return INSIDE, t0
+            return ops.INSIDE, t0
     return status, t
 
 
@@ -149,9 +149,9 @@ def first_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, 
 def exit_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance):
     """As ``first_root``, for the way out: the first entry into {f > 0}."""
     status, t = isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, -1.0, False)
-    if status == HIT and t - t0 <= tolerance * (t1 - t0):
+    if status == ops.HIT and t - t0 <= tolerance * (t1 - t0):
         if along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0) > 0.0:
-            return INSIDE, t0
+            return ops.INSIDE, t0
     return status, t
 
 

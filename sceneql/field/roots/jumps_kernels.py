@@ -14,25 +14,7 @@ from sceneql.field.enclose.interval_kernels import TURN
 from sceneql.field.enclose.slope_kernels import on_ray
 from sceneql.field.roots.certified_kernels import certify
 from sceneql.field.roots.isolation_kernels import BEYOND, LEAPS
-from sceneql.field.tape.tape_ops import (
-    ABS,
-    ADD,
-    ATAN2,
-    CONSTANT,
-    COPY,
-    DENSITY,
-    DIV,
-    FLOOR,
-    NEG,
-    NOWHERE,
-    SIGN,
-    SKELETON,
-    TAPE,
-    UNDECIDED,
-    WHOLE,
-    X,
-    Z,
-)
+from sceneql.field.tape import tape_ops as ops
 
 MOST_STEPS = 4
 """Operations that may jump at one place."""
@@ -48,12 +30,12 @@ PIECES = 200
 def sides_of(code, scratch, k):
     """How many sides row k has where it jumps within the piece that ``scratch`` holds bounds of; else 0."""
     op, left, right = code[k, 0], code[k, 1], code[k, 2]
-    if op == FLOOR or op == SIGN:
+    if op == ops.FLOOR or op == ops.SIGN:
         apart = scratch[k, 1] - scratch[k, 0]
         return int(apart) + 1 if 1.0 <= apart <= SIDES - 1 else 0
-    if op == ATAN2 and code[k, 3] == 0:
+    if op == ops.ATAN2 and code[k, 3] == 0:
         return 2 if scratch[right, 1] < 0.0 and scratch[left, 0] <= 0.0 <= scratch[left, 1] else 0
-    if op == DIV and scratch[right, 0] <= 0.0 <= scratch[right, 1]:
+    if op == ops.DIV and scratch[right, 0] <= 0.0 <= scratch[right, 1]:
         return 2 if scratch[right, 0] < 0.0 else 1
     return 0
 
@@ -78,9 +60,9 @@ def on_sides(code, constants, scratch, sides, steps, count, choice, places, chos
     numbers[constants.shape[0]] = -TURN
     for k in range(code.shape[0]):
         op, left, right, third = code[k, 0], code[k, 1], code[k, 2], code[k, 3]
-        if op != CONSTANT and op != DENSITY and op != SKELETON and not (op >= X and op <= Z):
+        if op != ops.CONSTANT and op != ops.DENSITY and op != ops.SKELETON and not (op >= ops.X and op <= ops.Z):
             left, right = places[left], places[right]
-        elif op == DENSITY or op == SKELETON:
+        elif op == ops.DENSITY or op == ops.SKELETON:
             if places[third + 2] != places[third] + 2:
                 return -1
             third = places[third]
@@ -89,33 +71,33 @@ def on_sides(code, constants, scratch, sides, steps, count, choice, places, chos
             choice //= SIDES
             if side >= sides[step]:
                 return 0
-            if op == FLOOR or op == SIGN:
+            if op == ops.FLOOR or op == ops.SIGN:
                 number = constants.shape[0] + 1 + step
                 numbers[number] = scratch[k, 0] + side
-                n = put(chosen, n, CONSTANT, number, 0, 0)
-            elif op == ATAN2:  # the flag lets it go on beyond pi
+                n = put(chosen, n, ops.CONSTANT, number, 0, 0)
+            elif op == ops.ATAN2:  # the flag lets it go on beyond pi
                 n = put(chosen, n, op, left, right, 1)
                 if side == 1:
-                    n = put(chosen, n, CONSTANT, constants.shape[0], 0, 0)
-                    n = put(chosen, n, ADD, n - 2, n - 1, 0)
+                    n = put(chosen, n, ops.CONSTANT, constants.shape[0], 0, 0)
+                    n = put(chosen, n, ops.ADD, n - 2, n - 1, 0)
             else:
-                n = put(chosen, n, ABS, right, right, 0)
+                n = put(chosen, n, ops.ABS, right, right, 0)
                 n = put(chosen, n, op, left, n - 1, 0)
                 if side == 1:
-                    n = put(chosen, n, NEG, n - 1, n - 1, 0)
+                    n = put(chosen, n, ops.NEG, n - 1, n - 1, 0)
             step += 1
         else:
             n = put(chosen, n, op, left, right, third)
         places[k] = n - 1
     for row in range(n, chosen.shape[0]):
-        put(chosen, row, COPY, row - 1, row - 1, 0)
+        put(chosen, row, ops.COPY, row - 1, row - 1, 0)
     return n
 
 
 @inlined
 def clear(low, high, status, sign, touching):
     """Whether nothing is met on a piece with these bounds of sign f."""
-    return low > 0.0 or (touching and status == WHOLE and high < 0.0) or (status == NOWHERE and sign > 0.0)
+    return low > 0.0 or (touching and status == ops.WHOLE and high < 0.0) or (status == ops.NOWHERE and sign > 0.0)
 
 
 @inlined
@@ -150,7 +132,7 @@ def clear_on_all_sides(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, 
     return True
 
 
-@kernel(f"float64({TAPE}{', float64' * 10}, boolean)", inner=True)
+@kernel(f"float64({ops.TAPE}{', float64' * 10}, boolean)", inner=True)
 def passed(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, least, sign, touching):
     """How far from t on nothing is met, at the most to behind the first jump; t where none is proved."""
     a = t
@@ -178,7 +160,7 @@ def passed(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, least
 def beyond(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, finest, sign, anywhere, touching):
     """(status, t) as ``certify``, which could not tell at t0, and is asked again behind each jump where nothing is."""
     least = max(finest, 4.0e-15 * (abs(t0) + abs(t1)))
-    status = UNDECIDED
+    status = ops.UNDECIDED
     t = t0
     for _ in range(PASSED):
         side = sign
@@ -191,7 +173,7 @@ def beyond(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, fine
         status, t = certify(
             code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, behind, t1, finest, sign, anywhere, touching
         )
-        if status != UNDECIDED:
+        if status != ops.UNDECIDED:
             break
     return status, t
 

@@ -8,7 +8,7 @@ all signs positive.
 """
 
 from sceneql.compiled.kernels import inlined
-from sceneql.field.tape.tape_ops import ADD, CONSTANT, MUL, NEG, SQUARE, SUB, X, Z
+from sceneql.field.tape import tape_ops as ops
 
 POLYNOMIAL, DEGREES = 3, 4
 """Of a plan: the row of the polynomial p of a field p or max(p, g), -1 where there is none; then, for each row up to
@@ -101,24 +101,24 @@ def coefficients(code, constants, plan, rays, first, middle, half, n, lanes):
             continue
         op, left, right = code[k, 0], code[k, 1], code[k, 2]
         out = lanes[plan[DEGREES + rows + k] * ABREAST :]
-        if op == CONSTANT:
+        if op == ops.CONSTANT:
             number = constants[left]
             for i in range(ABREAST):
                 out[i] = number
-        elif op >= X and op <= Z:
-            place, way = rays[op - X, first:], rays[op - X + 3, first:]
+        elif op >= ops.X and op <= ops.Z:
+            place, way = rays[op - ops.X, first:], rays[op - ops.X + 3, first:]
             for i in range(n):
                 out[i] = place[i] + middle[i] * way[i]
                 out[ONE + i] = half[i] * way[i]
         else:
             a, b = lanes[plan[DEGREES + rows + left] * ABREAST :], lanes[plan[DEGREES + rows + right] * ABREAST :]
             da, db = plan[DEGREES + left], plan[DEGREES + right]
-            if op == MUL or op == SQUARE:
+            if op == ops.MUL or op == ops.SQUARE:
                 multiply(a, da, b, db, out, n)
-            elif op == ADD or op == SUB:
-                add(a, da, b, db, 1.0 if op == ADD else -1.0, out)
+            elif op == ops.ADD or op == ops.SUB:
+                add(a, da, b, db, 1.0 if op == ops.ADD else -1.0, out)
             else:
-                scale(a, -1.0 if op == NEG else 1.0, da, out)
+                scale(a, -1.0 if op == ops.NEG else 1.0, da, out)
 
 
 @inlined
@@ -135,13 +135,13 @@ def rounding(code, constants, plan, sizes, work):
             continue
         op, left, right = code[k, 0], code[k, 1], code[k, 2]
         a, b, e, f = work[2 * left], work[2 * right], work[2 * left + 1], work[2 * right + 1]
-        if op == CONSTANT:
+        if op == ops.CONSTANT:
             a, e = abs(constants[left]), 0.0
-        elif op >= X and op <= Z:
-            a, e = sizes[op - X], sizes[op - X + 3]
-        elif op == MUL or op == SQUARE:
+        elif op >= ops.X and op <= ops.Z:
+            a, e = sizes[op - ops.X], sizes[op - ops.X + 3]
+        elif op == ops.MUL or op == ops.SQUARE:
             a, e = a * b, e + f + degree + 2.0
-        elif op == ADD or op == SUB:
+        elif op == ops.ADD or op == ops.SUB:
             a, e = a + b, max(e, f) + 1.0
         work[2 * k], work[2 * k + 1] = a, e
     degree = plan[DEGREES + rows - 1]

@@ -10,9 +10,9 @@ import numpy as np
 
 from sceneql.compiled.kernels import kernel, lean_inlined
 from sceneql.field.enclose.moved_kernels import moved_4, moved_6, moved_8
+from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.plans import CLIP, DEGREES, MOST_DEGREE, OWN, RADIUS
 from sceneql.field.tape.powers_kernels import enclosed_4, enclosed_6, enclosed_8
-from sceneql.field.tape.tape_ops import ADD, CONSTANT, HIT, INSIDE, MISS, MUL, NEG, SQUARE, SUB, TAPE, UNDECIDED, X, Z
 
 UNIT = 1.2e-16
 MOST = 64
@@ -77,22 +77,22 @@ def expand(code, constants, plan, work, origin, way, middle, half, far):
             continue
         out = plan[DEGREES + count + k]
         op, left, right = code[k, 0], code[k, 1], code[k, 2]
-        if op == CONSTANT:
+        if op == ops.CONSTANT:
             work[out] = constants[left]
             off = 0.0
-        elif op >= X and op <= Z:
-            o, d = origin[op - X], way[op - X]
+        elif op >= ops.X and op <= ops.Z:
+            o, d = origin[op - ops.X], way[op - ops.X]
             work[out] = o + middle * d
             work[out + 1] = half * d
             off = 4.0 * (abs(o) + 2.0 * far * abs(d))
         else:
             a, da = plan[DEGREES + count + left], plan[DEGREES + left]
             off = work[a + da + 2]
-            if op == MUL or op == SQUARE or op == ADD or op == SUB:
-                right = left if op == SQUARE else right
+            if op == ops.MUL or op == ops.SQUARE or op == ops.ADD or op == ops.SUB:
+                right = left if op == ops.SQUARE else right
                 b, db = plan[DEGREES + count + right], plan[DEGREES + right]
-                if op == ADD or op == SUB:
-                    add(work, a, da, b, db, 1.0 if op == ADD else -1.0, out)
+                if op == ops.ADD or op == ops.SUB:
+                    add(work, a, da, b, db, 1.0 if op == ops.ADD else -1.0, out)
                     off += work[b + db + 2] + work[a + da + 1] + work[b + db + 1]
                 else:
                     multiply(work, a, da, b, db, out)
@@ -100,7 +100,7 @@ def expand(code, constants, plan, work, origin, way, middle, half, far):
                     off = off * size + work[a + da + 1] * (work[b + db + 2] + (degree + 2.0) * size)
             else:
                 for m in range(degree + 1):
-                    work[out + m] = -work[a + m] if op == NEG else work[a + m]
+                    work[out + m] = -work[a + m] if op == ops.NEG else work[a + m]
         norm = UNIT * off
         for m in range(degree + 1):
             norm += abs(work[out + m])
@@ -153,12 +153,12 @@ def march(c, degree, off, a, end, anywhere):
         dips = q2 + q2 > flat and 4.0 * q2 * low * LESS <= q1 * q1
         if low + q2 - flat > 0.0 and not dips:
             if b >= end:
-                return MISS, end, end
+                return ops.MISS, end, end
             a = b
             b = min(b + 2.0 * width, end)
             continue
         if q0 + e - q1 + q2 < 0.0:
-            return INSIDE, a, a
+            return ops.INSIDE, a, a
         inside = q0 + e + sigma * (q1 + sigma * q2) < 0.0
         left = low - q1 + q2
         start = a
@@ -173,13 +173,13 @@ def march(c, degree, off, a, end, anywhere):
         if inside:
             end = b
             if anywhere or steep + off < 0.0:
-                return HIT, start, b - 0.5 * late * width
+                return ops.HIT, start, b - 0.5 * late * width
         a = start
         if b - a <= LEAST:
             break
         if inside or b - a > 0.5 * width:
             b = a + SHORTER * (b - a)
-    return UNDECIDED, a, b
+    return ops.UNDECIDED, a, b
 
 
 @lean_inlined
@@ -219,7 +219,7 @@ def between(c0, c1, c2, slack):
 
 
 @kernel(
-    f"Tuple((int64, float64))({TAPE}, int32[::1], float64, float64, float64, float64, float64, float64, float64,"
+    f"Tuple((int64, float64))({ops.TAPE}, int32[::1], float64, float64, float64, float64, float64, float64, float64,"
     " float64, float64, boolean)",
     _nrt=False,
 )
@@ -248,36 +248,36 @@ def polynomial_root(code, constants, parts, scratch, plan, ox, oy, oz, dx, dy, d
             work[g + 3] += square
         g0, g1, g2, slack = work[g], work[g + 1], work[g + 2], rounding(work, g, 2)
         if not g2 > slack:
-            return UNDECIDED, t0
+            return ops.UNDECIDED, t0
         low, high = between(g0, g1, g2, slack)
         if low > high or low >= 1.0 or high <= -1.0:
-            return (MISS if sign > 0.0 else UNDECIDED), t0
+            return (ops.MISS if sign > 0.0 else ops.UNDECIDED), t0
         first, last = between(g0, g1, g2, -slack)
         # What is outside of low..high is proved to be outside, first..last to be inside.
         if first > last or first - low > TOLD or high - last > TOLD:
-            return UNDECIDED, t0
+            return ops.UNDECIDED, t0
         low, high = max(low, -1.0), min(high, 1.0)
     if sign < 0.0 and first > -1.0:
-        return UNDECIDED, t0
+        return ops.UNDECIDED, t0
     status, a, b = march(work, degree, off, low, high, anywhere)
     if sign < 0.0:
-        if (status == MISS and high == 1.0) or status == INSIDE:
+        if (status == ops.MISS and high == 1.0) or status == ops.INSIDE:
             return status, t0
-        if status == HIT:
+        if status == ops.HIT:
             b, change = polished(work, degree, a, b)
-            status = HIT if change <= TOLD else UNDECIDED
-        elif status == MISS:
-            status, b = HIT, last
+            status = ops.HIT if change <= TOLD else ops.UNDECIDED
+        elif status == ops.MISS:
+            status, b = ops.HIT, last
         return status, middle + half * min(b, last)
-    if status == MISS or status == UNDECIDED:
+    if status == ops.MISS or status == ops.UNDECIDED:
         return status, t0
-    if status == INSIDE:
+    if status == ops.INSIDE:
         b = max(first, -1.0)
         told = value(work, degree, b)[0] + off < 0.0 and b <= min(last, 1.0)
-        return (HIT if told else UNDECIDED), (t0 if low == -1.0 else middle + half * b)
+        return (ops.HIT if told else ops.UNDECIDED), (t0 if low == -1.0 else middle + half * b)
     if not anywhere:
         b, change = polished(work, degree, a, b)
         if not change <= TOLD:
-            return UNDECIDED, t0
+            return ops.UNDECIDED, t0
     told = g0 + b * (g1 + b * g2) + slack < 0.0
-    return (HIT if told else UNDECIDED), middle + half * (a if anywhere else b)
+    return (ops.HIT if told else ops.UNDECIDED), middle + half * (a if anywhere else b)

@@ -9,7 +9,7 @@ from sceneql.field.enclose.slope_kernels import on_ray
 from sceneql.field.roots.bracket_kernels import FINE
 from sceneql.field.roots.certified_kernels import CROSSES, TOUCHES, certify, hidden, told
 from sceneql.field.roots.isolation_kernels import begin_of_proof, beyond, leaps, search
-from sceneql.field.tape.tape_ops import ATAN2, FLOOR, HIT, MISS, NOWHERE, SIGN, TAPE, UNDECIDED, WHOLE
+from sceneql.field.tape import tape_ops as ops
 
 POLES = 16
 """Changes of sign without a root that are passed on one ray."""
@@ -26,15 +26,15 @@ def side_of(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, 
     An enclosure of all of it mostly tells, else one at the start, which is sooner than intervals.
     """
     c0, c1, e, status = segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, True)
-    whole = status == WHOLE
+    whole = status == ops.WHOLE
     side, t = 0, start
-    if status == NOWHERE or abs(c0) - abs(c1) > e:
+    if status == ops.NOWHERE or abs(c0) - abs(c1) > e:
         side = NO_ROOT
     elif whole and abs(c0 - c1) > e:
         side = 1 if c0 > c1 else -1
     else:
         c0, c1, e, status = segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, start, True)
-        if status == WHOLE and abs(c0) - abs(c1) > e:
+        if status == ops.WHOLE and abs(c0) - abs(c1) > e:
             side = 1 if c0 > 0.0 else -1
         else:
             side, t = told(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, near, 1.0)
@@ -47,11 +47,11 @@ def is_defined(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near)
     _, _, _, status = segment(
         code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t - 0.01 * near, t + 0.01 * near, True
     )
-    if status != WHOLE:
+    if status != ops.WHOLE:
         _, _, _, _, status = on_ray(
             code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t - 0.01 * near, t + 0.01 * near, 1.0
         )
-    return status == WHOLE
+    return status == ops.WHOLE
 
 
 @woven
@@ -66,9 +66,9 @@ def nears_zero(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near)
         a, b = t + side * reach, t + 2.0 * side * reach
         low, high, _, _, first = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, a, 1.0)
         least, most, _, _, last = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, b, b, 1.0)
-        if first == NOWHERE or last == NOWHERE or not abs(low + high) < np.inf:
+        if first == ops.NOWHERE or last == ops.NOWHERE or not abs(low + high) < np.inf:
             return False
-        if first == WHOLE and last == WHOLE and not abs(low + high) < NEARER * abs(least + most):
+        if first == ops.WHOLE and last == ops.WHOLE and not abs(low + high) < NEARER * abs(least + most):
             return False
     return True
 
@@ -81,14 +81,15 @@ def is_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
     """
     for k in range(code.shape[0]):
         op = code[k, 0]
-        if op == FLOOR or op == SIGN or op == ATAN2:
+        if op == ops.FLOOR or op == ops.SIGN or op == ops.ATAN2:
             reach = max(near, 4.0 * FINE * abs(t))
             return not leaps(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, reach)
     return True
 
 
 @lean(
-    f"Tuple((int64, float64))({TAPE}, float64, float64, float64, float64, float64, float64, float64, float64, float64)"
+    f"Tuple((int64, float64))({ops.TAPE}, float64, float64, float64, float64, float64, float64, float64, float64,"
+    " float64)"
 )
 def surface_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance):
     """(status, t) of the first root of f on the ray o + t d, t in [t0, t1], with or without a change of sign.
@@ -101,37 +102,37 @@ def surface_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1
     for _ in range(POLES):
         side, start, whole = side_of(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, near)
         if side == 0:
-            return UNDECIDED, start
+            return ops.UNDECIDED, start
         if side == NO_ROOT:
-            return MISS, t1
+            return ops.MISS, t1
         side = min(side, 1)
         status, t = search(
             code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, tolerance, float(side), False
         )
-        if status == MISS:
-            return MISS, t1
-        if status == UNDECIDED:
+        if status == ops.MISS:
+            return ops.MISS, t1
+        if status == ops.UNDECIDED:
             kind, _, place, _, _ = hidden(
                 code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t, start, t1, 0.1 * near, float(side)
             )
             if kind == CROSSES or kind == TOUCHES:
-                status = HIT
+                status = ops.HIT
                 t = place
-        if status == UNDECIDED:
+        if status == ops.UNDECIDED:
             t = begin_of_proof(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, start, t1)
             status, t = certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, near, 1.0, False, True)
-            if status == UNDECIDED:
+            if status == ops.UNDECIDED:
                 status, t = beyond(
                     code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, near, 1.0, False, True
                 )
-            if status != HIT:
+            if status != ops.HIT:
                 return status, t
         if whole or is_defined(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
             if is_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
-                return HIT, t
+                return ops.HIT, t
         elif nears_zero(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
-            return UNDECIDED, t
+            return ops.UNDECIDED, t
         start = t + near
         if not start < t1:
-            return MISS, t1
-    return UNDECIDED, start
+            return ops.MISS, t1
+    return ops.UNDECIDED, start

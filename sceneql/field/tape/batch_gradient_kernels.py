@@ -5,27 +5,9 @@ from sceneql.compiled.kernels import inlined, lean
 from sceneql.field.enclose.sine_kernels import wave_lanes
 from sceneql.field.skeleton.density_kernels import offset
 from sceneql.field.skeleton.skeleton_kernels import skeleton_gradient
+from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.batch_kernels import BATCH
 from sceneql.field.tape.gradient_kernels import slopes
-from sceneql.field.tape.tape_ops import (
-    ADD,
-    CONSTANT,
-    COPY,
-    COS,
-    DENSITY,
-    MAX,
-    MIN,
-    MUL,
-    NEG,
-    SIN,
-    SKELETON,
-    SQRT,
-    SQUARE,
-    SUB,
-    X,
-    Y,
-    Z,
-)
 
 
 @inlined
@@ -81,7 +63,7 @@ def density_lanes(parts, start, stop, x, y, z, out, n):
 def of_parts(code, k, parts, registers, slope, n):
     """Gradient of the density of row k through that of its point."""
     p = code[k, 3]
-    if code[k, 0] == DENSITY:
+    if code[k, 0] == ops.DENSITY:
         density_lanes(
             parts, code[k, 1], code[k, 2], registers[p], registers[p + 1], registers[p + 2], slope[k], n
         )  # fmt: skip
@@ -100,14 +82,14 @@ def of_parts(code, k, parts, registers, slope, n):
 @inlined
 def any_slopes(op, value, a, b, slope_a, slope_b, slope, n):
     """Gradient of an operation of one or two arguments by its two derivatives."""
-    if op == MAX or op == MIN:
+    if op == ops.MAX or op == ops.MIN:
         for axis in range(3):
             ga, gb, g = slope_a[axis], slope_b[axis], slope[axis]
             for i in range(n):
-                first = a[i] > b[i] if op == MAX else a[i] < b[i]
+                first = a[i] > b[i] if op == ops.MAX else a[i] < b[i]
                 g[i] = ga[i] if first else gb[i]
         return
-    if op == SQRT:
+    if op == ops.SQRT:
         for axis in range(3):
             ga, g = slope_a[axis], slope[axis]
             for i in range(n):
@@ -130,8 +112,8 @@ def any_slopes(op, value, a, b, slope_a, slope_b, slope, n):
 def wave_slopes(op, a, slope_a, slope, n):
     """Gradient of a sine or cosine."""
     factor = slope[2]  # overwritten last
-    wave_lanes(a, factor, n, op == SIN)
-    sign = 1.0 if op == SIN else -1.0
+    wave_lanes(a, factor, n, op == ops.SIN)
+    sign = 1.0 if op == ops.SIN else -1.0
     for axis in range(3):
         for i in range(n):
             u = sign * factor[i]
@@ -146,47 +128,47 @@ def differentiate(code, constants, parts, registers, slope, n):
         left = code[k, 1]
         right = code[k, 2]
         out = slope[k]
-        if op == CONSTANT or op == X or op == Y or op == Z:
+        if op == ops.CONSTANT or op == ops.X or op == ops.Y or op == ops.Z:
             for axis in range(3):
-                number = 1.0 if op - X == axis else 0.0
+                number = 1.0 if op - ops.X == axis else 0.0
                 for i in range(n):
                     out[axis, i] = number
             continue
-        if op == DENSITY and code[code[k, 3], 0] == X and code[code[k, 3] + 2, 0] == Z:
+        if op == ops.DENSITY and code[code[k, 3], 0] == ops.X and code[code[k, 3] + 2, 0] == ops.Z:
             p = code[k, 3]
             if point_slopes(
                 parts, left, right, registers[p], registers[p + 1], registers[p + 2], out[0], out[1], out[2], n
             ):  # fmt: skip
                 continue
-        if op == DENSITY or op == SKELETON:
+        if op == ops.DENSITY or op == ops.SKELETON:
             of_parts(code, k, parts, registers, slope, n)
             continue
         a = registers[left]
         b = registers[right]
-        if op == SIN or op == COS:
+        if op == ops.SIN or op == ops.COS:
             wave_slopes(op, a, slope[left], out, n)
             continue
         for axis in range(3):
             da = slope[left, axis]
             db = slope[right, axis]
             g = out[axis]
-            if op == ADD:
+            if op == ops.ADD:
                 for i in range(n):
                     g[i] = da[i] + db[i]
-            elif op == SUB:
+            elif op == ops.SUB:
                 for i in range(n):
                     g[i] = da[i] - db[i]
-            elif op == MUL:
+            elif op == ops.MUL:
                 for i in range(n):
                     g[i] = b[i] * da[i] + a[i] * db[i]
-            elif op == SQUARE:
+            elif op == ops.SQUARE:
                 for i in range(n):
                     g[i] = 2.0 * a[i] * da[i]
-            elif op == NEG:
+            elif op == ops.NEG:
                 for i in range(n):
                     g[i] = -da[i]
-            elif op == COPY:
+            elif op == ops.COPY:
                 for i in range(n):
                     g[i] = da[i]
-        if not (op == ADD or op == SUB or op == MUL or op == SQUARE or op == NEG or op == COPY):
+        if not (op == ops.ADD or op == ops.SUB or op == ops.MUL or op == ops.SQUARE or op == ops.NEG or op == ops.COPY):
             any_slopes(op, registers[k], a, b, slope[left], slope[right], out, n)

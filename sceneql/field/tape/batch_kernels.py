@@ -10,34 +10,8 @@ from sceneql.compiled.kernels import inlined, lean
 from sceneql.field.enclose.sine_kernels import wave_lanes
 from sceneql.field.skeleton.density_kernels import offset
 from sceneql.field.skeleton.skeleton_kernels import skeleton_value
+from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.order_kernels import larger, sign_of, smaller
-from sceneql.field.tape.tape_ops import (
-    ABS,
-    ADD,
-    ATAN2,
-    CONSTANT,
-    COPY,
-    COS,
-    DENSITY,
-    DIV,
-    EXP,
-    FLOOR,
-    KEEP,
-    LOG,
-    MAX,
-    MIN,
-    MUL,
-    NEG,
-    POW,
-    SIN,
-    SKELETON,
-    SQRT,
-    SQUARE,
-    SUB,
-    X,
-    Y,
-    Z,
-)
 
 LANES = 256
 BATCH = "int32[:, ::1], float64[::1], float64[:, ::1], float64[:, ::1]"
@@ -77,19 +51,19 @@ def density_lanes(parts, start, stop, x, y, z, out, n):
 @inlined
 def unary_lanes(op, a, out, n):
     """The operations of one argument that are seldom."""
-    if op == ABS:
+    if op == ops.ABS:
         for i in range(n):
             out[i] = abs(a[i])
-    elif op == SQRT:
+    elif op == ops.SQRT:
         for i in range(n):
             out[i] = np.sqrt(a[i])
-    elif op == EXP:
+    elif op == ops.EXP:
         for i in range(n):
             out[i] = np.exp(a[i])
-    elif op == LOG:
+    elif op == ops.LOG:
         for i in range(n):
             out[i] = np.log(a[i])
-    elif op == FLOOR:
+    elif op == ops.FLOOR:
         for i in range(n):
             out[i] = np.floor(a[i])
     else:
@@ -100,16 +74,16 @@ def unary_lanes(op, a, out, n):
 @inlined
 def binary_lanes(op, a, b, out, n):
     """The operations of two arguments that are seldom."""
-    if op == DIV:
+    if op == ops.DIV:
         for i in range(n):
             out[i] = a[i] / b[i]
-    elif op == MIN:
+    elif op == ops.MIN:
         for i in range(n):
             out[i] = smaller(a[i], b[i])
-    elif op == MAX:
+    elif op == ops.MAX:
         for i in range(n):
             out[i] = larger(a[i], b[i])
-    elif op == POW:
+    elif op == ops.POW:
         for i in range(n):
             out[i] = a[i] ** b[i] if a[i] == a[i] and b[i] == b[i] else np.nan
     else:
@@ -124,16 +98,16 @@ def along_z(code, rest):
         op = code[k, 0]
         for j in range(1, 4):
             rest[k, j] = code[k, j]
-        if op == CONSTANT or op == X or op == Y:
+        if op == ops.CONSTANT or op == ops.X or op == ops.Y:
             kept = True
-        elif op == Z:
+        elif op == ops.Z:
             kept = False
-        elif op == DENSITY or op == SKELETON:
+        elif op == ops.DENSITY or op == ops.SKELETON:
             p = code[k, 3]
-            kept = rest[p, 0] == KEEP and rest[p + 1, 0] == KEEP and rest[p + 2, 0] == KEEP
+            kept = rest[p, 0] == ops.KEEP and rest[p + 1, 0] == ops.KEEP and rest[p + 2, 0] == ops.KEEP
         else:
-            kept = rest[code[k, 1], 0] == KEEP and rest[code[k, 2], 0] == KEEP
-        rest[k, 0] = KEEP if kept else op
+            kept = rest[code[k, 1], 0] == ops.KEEP and rest[code[k, 2], 0] == ops.KEEP
+        rest[k, 0] = ops.KEEP if kept else op
 
 
 @lean(f"void({BATCH}, float64[:, ::1], int64)")
@@ -141,53 +115,53 @@ def evaluate(code, constants, parts, registers, points, n):
     """f at n points, into the first n columns of the last operation's register."""
     for k in range(code.shape[0]):
         op = code[k, 0]
-        if op == KEEP:
+        if op == ops.KEEP:
             continue
         left = code[k, 1]
         right = code[k, 2]
         out = registers[k]
-        if op == CONSTANT:
+        if op == ops.CONSTANT:
             number = constants[left]
             for i in range(n):
                 out[i] = number
             continue
-        if op == X or op == Y or op == Z:
-            p = points[op - X]
+        if op == ops.X or op == ops.Y or op == ops.Z:
+            p = points[op - ops.X]
             for i in range(n):
                 out[i] = p[i]
             continue
-        if op == DENSITY:
+        if op == ops.DENSITY:
             p = code[k, 3]
             density_lanes(parts, left, right, registers[p], registers[p + 1], registers[p + 2], out, n)
             continue
-        if op == SKELETON:
+        if op == ops.SKELETON:
             p = code[k, 3]
             for i in range(n):
                 out[i] = skeleton_value(parts, left, right, registers[p, i], registers[p + 1, i], registers[p + 2, i])
             continue
         a = registers[left]
         b = registers[right]
-        if op == ADD:
+        if op == ops.ADD:
             for i in range(n):
                 out[i] = a[i] + b[i]
-        elif op == SUB:
+        elif op == ops.SUB:
             for i in range(n):
                 out[i] = a[i] - b[i]
-        elif op == MUL:
+        elif op == ops.MUL:
             for i in range(n):
                 out[i] = a[i] * b[i]
-        elif op == SQUARE:
+        elif op == ops.SQUARE:
             for i in range(n):
                 out[i] = a[i] * a[i]
-        elif op == NEG:
+        elif op == ops.NEG:
             for i in range(n):
                 out[i] = -a[i]
-        elif op == COPY:
+        elif op == ops.COPY:
             for i in range(n):
                 out[i] = a[i]
-        elif op == SIN or op == COS:
-            wave_lanes(a, out, n, op == COS)
-        elif op <= ATAN2:
+        elif op == ops.SIN or op == ops.COS:
+            wave_lanes(a, out, n, op == ops.COS)
+        elif op <= ops.ATAN2:
             binary_lanes(op, a, b, out, n)
         else:
             unary_lanes(op, a, out, n)

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.plans import tape_of_rows
-from sceneql.field.tape.tape_ops import ADD, CONSTANT, COPY, MUL, NEG, OF_PARTS, SUB, X, Y, Z
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Tape
@@ -40,7 +40,7 @@ def in_own_coordinates(tape: Tape) -> tuple[Tape, Floats]:
         return same
     code = tape.code.copy()
     for row in seen:
-        code[row] = X + axes[(forms[row] + 0.0).tobytes()], 0, 0, 0
+        code[row] = ops.X + axes[(forms[row] + 0.0).tobytes()], 0, 0, 0
     own = replace(tape, code=code)
     return replace(own, code=tape_of_rows(own, [len(code) - 1])), matrix
 
@@ -49,15 +49,15 @@ def _affine_rows(tape: Tape) -> dict[int, Floats]:
     """Rows that are a x + b y + c z + d: (a, b, c, d) of each."""
     forms: dict[int, Floats] = {}
     for k, (op, left, right, _) in enumerate(tape.code.tolist()):
-        if op == CONSTANT:
+        if op == ops.CONSTANT:
             forms[k] = np.array([0.0, 0.0, 0.0, tape.constants[left]])
-        elif op in (X, Y, Z):
-            forms[k] = np.eye(3, 4)[op - X]
-        elif op in (COPY, NEG) and left in forms:
-            forms[k] = forms[left] if op == COPY else -forms[left]
-        elif op in (ADD, SUB) and left in forms and right in forms:
-            forms[k] = forms[left] + forms[right] if op == ADD else forms[left] - forms[right]
-        elif op == MUL and left in forms and right in forms:
+        elif op in (ops.X, ops.Y, ops.Z):
+            forms[k] = np.eye(3, 4)[op - ops.X]
+        elif op in (ops.COPY, ops.NEG) and left in forms:
+            forms[k] = forms[left] if op == ops.COPY else -forms[left]
+        elif op in (ops.ADD, ops.SUB) and left in forms and right in forms:
+            forms[k] = forms[left] + forms[right] if op == ops.ADD else forms[left] - forms[right]
+        elif op == ops.MUL and left in forms and right in forms:
             a, b = (forms[left], forms[right]) if forms[right][:3].any() else (forms[right], forms[left])
             if not a[:3].any():
                 forms[k] = a[3] * b
@@ -67,6 +67,6 @@ def _affine_rows(tape: Tape) -> dict[int, Floats]:
 def _operands(tape: Tape, row: int) -> tuple[int, ...]:
     """Rows that a row reads."""
     op, left, right, third = map(int, tape.code[row])
-    if op in OF_PARTS:
+    if op in ops.OF_PARTS:
         return third, third + 1, third + 2
     return (left, right)

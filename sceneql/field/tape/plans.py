@@ -10,25 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sceneql.field.skeleton.skeleton import plain_points
-from sceneql.field.tape.tape_ops import (
-    ADD,
-    ATAN2,
-    CONSTANT,
-    COPY,
-    DENSITY,
-    DIV,
-    MAX,
-    MUL,
-    NEG,
-    OF_PARTS,
-    SCRATCH_COLUMNS,
-    SQRT,
-    SQUARE,
-    SUB,
-    X,
-    Y,
-    Z,
-)
+from sceneql.field.tape import tape_ops as ops
 
 if TYPE_CHECKING:
     from numpy import int32
@@ -43,9 +25,9 @@ MOST_DEGREE = 8
 def without_factor(tape: Tape, row: int) -> int:
     """The row of which a row is a positive multiple: their roots are the same."""
     op, left, right, _ = map(int, tape.code[row])
-    factors = {MUL: ((left, right), (right, left)), DIV: ((right, left),)}.get(op, ())
+    factors = {ops.MUL: ((left, right), (right, left)), ops.DIV: ((right, left),)}.get(op, ())
     for factor, rest in factors:
-        if tape.code[factor, 0] == CONSTANT and tape.constants[tape.code[factor, 1]] > 0.0:
+        if tape.code[factor, 0] == ops.CONSTANT and tape.constants[tape.code[factor, 1]] > 0.0:
             return without_factor(tape, rest)
     return row
 
@@ -56,14 +38,14 @@ def density_of(tape: Tape, row: int) -> tuple[int, int] | None:
     What no part reaches is outside: c is more than 0.
     """
     op, left, right, _ = tape.code[row]
-    if op != SUB or tape.code[left, 0] != CONSTANT or tape.code[right, 0] not in OF_PARTS:
+    if op != ops.SUB or tape.code[left, 0] != ops.CONSTANT or tape.code[right, 0] not in ops.OF_PARTS:
         return None
     if not tape.constants[tape.code[left, 1]] > 0.0:
         return None
     kind, start, stop, at = tape.code[right]
-    place = [tape.code[row[1], 0] if row[0] == COPY else row[0] for row in tape.code[at : at + 3]]
-    parts = tape.parts[start:stop] if kind == DENSITY else plain_points(tape.parts[start:stop])
-    if place != [X, Y, Z] or parts is None or not (parts[:, :3] == parts[:, 3:6]).all():
+    place = [tape.code[row[1], 0] if row[0] == ops.COPY else row[0] for row in tape.code[at : at + 3]]
+    parts = tape.parts[start:stop] if kind == ops.DENSITY else plain_points(tape.parts[start:stop])
+    if place != [ops.X, ops.Y, ops.Z] or parts is None or not (parts[:, :3] == parts[:, 3:6]).all():
         return None
     return int(right), int(tape.code[left, 1])
 
@@ -74,15 +56,15 @@ def degrees_of(tape: Tape, row: int) -> list[int] | None:
     needed = {row}
     for k in range(row, -1, -1):
         op, left, right, _ = map(int, tape.code[k])
-        if k in needed and op not in (CONSTANT, X, Y, Z):
-            if op not in (COPY, ADD, SUB, MUL, NEG, SQUARE):
+        if k in needed and op not in (ops.CONSTANT, ops.X, ops.Y, ops.Z):
+            if op not in (ops.COPY, ops.ADD, ops.SUB, ops.MUL, ops.NEG, ops.SQUARE):
                 return None
             needed |= {left, right}
     for k in sorted(needed):
         op, left, right, _ = map(int, tape.code[k])
-        if op in (CONSTANT, X, Y, Z):
-            degrees[k] = 0 if op == CONSTANT else 1
-        elif op in (MUL, SQUARE):
+        if op in (ops.CONSTANT, ops.X, ops.Y, ops.Z):
+            degrees[k] = 0 if op == ops.CONSTANT else 1
+        elif op in (ops.MUL, ops.SQUARE):
             degrees[k] = degrees[left] + degrees[right]
         else:
             degrees[k] = max(degrees[left], degrees[right])
@@ -94,7 +76,7 @@ def places_of(tape: Tape, degrees: list[int]) -> tuple[list[int], int]:
     makes room."""
     last_use = dict.fromkeys(range(len(degrees)), -1)
     for k, degree in enumerate(degrees):
-        if degree >= 0 and tape.code[k, 0] not in (CONSTANT, X, Y, Z):
+        if degree >= 0 and tape.code[k, 0] not in (ops.CONSTANT, ops.X, ops.Y, ops.Z):
             last_use |= dict.fromkeys(map(int, tape.code[k, 1:3]), k)
     places, most = [0] * (len(degrees) - 1), 0
     held: list[tuple[int, int, int]] = []  # (begin, end, last use)
@@ -125,7 +107,7 @@ BESIDE = 2
 def root_of(tape: Tape, row: int) -> tuple[int, int]:
     """(row of q, index of r) where a row is sqrt(q) - r, r > 0: it has the sign of q - r^2; else (row, -1)."""
     op, left, right, _ = map(int, tape.code[row])
-    if op == SUB and tape.code[left, 0] == SQRT and tape.code[right, 0] == CONSTANT:
+    if op == ops.SUB and tape.code[left, 0] == ops.SQRT and tape.code[right, 0] == ops.CONSTANT:
         index = int(tape.code[right, 1])
         if tape.constants[index] > 0.0:
             return int(tape.code[left, 1]), index
@@ -137,7 +119,7 @@ def ray_plan(tape: Tape) -> Ints:
     none = np.array([NO_FORM], dtype=np.int32)
     last = without_factor(tape, len(tape.code) - 1)
     rows = [(last, -1)]
-    if tape.code[last, 0] == MAX:
+    if tape.code[last, 0] == ops.MAX:
         rows = [root_of(tape, without_factor(tape, int(row))) for row in tape.code[last, 1:3]]
     degrees = np.full((len(rows), max(rows)[0] + 1), -1)
     for known, (row, _) in zip(degrees, rows, strict=True):
@@ -150,7 +132,7 @@ def ray_plan(tape: Tape) -> Ints:
     if rooted >= 0 or any(needed[row] != 2 for row, _ in clips):
         return none
     ends = MOST_DEGREE + 1 + np.cumsum(np.where(needed < 0, 0, needed + 1 + BESIDE))
-    if ends[-1] > len(tape.code) * SCRATCH_COLUMNS:
+    if ends[-1] > len(tape.code) * ops.SCRATCH_COLUMNS:
         return none
     starts = ends - needed - 1 - BESIDE
     return np.array([POLYNOMIAL, own, *(clips or [(-1, -1)])[0], *needed, *starts], dtype=np.int32)
@@ -161,21 +143,21 @@ def tape_of_rows(tape: Tape, rows: list[int]) -> NDArray[int32]:
     needed = set(rows)
     for k in range(max(rows, default=-1), -1, -1):
         op, left, right, point = map(int, tape.code[k])
-        if k in needed and op in OF_PARTS:
+        if k in needed and op in ops.OF_PARTS:
             needed |= {point, point + 1, point + 2}
-        elif k in needed and op not in (CONSTANT, X, Y, Z):
+        elif k in needed and op not in (ops.CONSTANT, ops.X, ops.Y, ops.Z):
             needed |= {left, right}
     place = {k: i for i, k in enumerate(sorted(needed))}
     code = [[int(n) for n in tape.code[k]] for k in place]
     for line in code:
-        if line[0] in OF_PARTS:
+        if line[0] in ops.OF_PARTS:
             line[3] = place[line[3]]
-        elif line[0] not in (CONSTANT, X, Y, Z):
+        elif line[0] not in (ops.CONSTANT, ops.X, ops.Y, ops.Z):
             # The third operand of an angle is no row: see turns.
-            third = line[3] if line[0] == ATAN2 else place.get(line[3], 0)
+            third = line[3] if line[0] == ops.ATAN2 else place.get(line[3], 0)
             line[1:] = place[line[1]], place[line[2]], third
     last = [place[row] for row in rows]
     for row in last[1:]:
-        code.append([MAX, last[0], row, 0])
+        code.append([ops.MAX, last[0], row, 0])
         last[0] = len(code) - 1
     return np.array(code, dtype=np.int32).reshape(-1, 4)

@@ -2,7 +2,7 @@
 """A shorter tape of the rows that are needed, where the values of some are known to be those of others."""
 
 from sceneql.compiled.kernels import inlined
-from sceneql.field.tape.tape_ops import ATAN2, CONSTANT, COS, DENSITY, SIN, SKELETON, X, Y, Z
+from sceneql.field.tape import tape_ops as ops
 
 ALIAS, LIVE, PLACE = 4, 5, 6
 """Columns of scratch: the row that a row's value is that of, whether it is needed, where it goes."""
@@ -18,10 +18,10 @@ def mark(code, last, scratch):
         if scratch[k, LIVE] == 0.0:
             continue
         op = code[k, 0]
-        if op == DENSITY or op == SKELETON:
+        if op == ops.DENSITY or op == ops.SKELETON:
             for j in range(3):
                 scratch[code[k, 3] + j, LIVE] = 1.0
-        elif not (op == CONSTANT or op == X or op == Y or op == Z):
+        elif not (op == ops.CONSTANT or op == ops.X or op == ops.Y or op == ops.Z):
             scratch[int(scratch[code[k, 1], ALIAS]), LIVE] = 1.0
             scratch[int(scratch[code[k, 2], ALIAS]), LIVE] = 1.0
 
@@ -34,11 +34,11 @@ def write_row(code, k, scratch, short, row):
     short[row, 0] = op
     short[row, 1] = code[k, 1]
     short[row, 2] = code[k, 2]
-    short[row, 3] = code[k, 3] if op == ATAN2 else 0
-    if op == DENSITY or op == SKELETON:
+    short[row, 3] = code[k, 3] if op == ops.ATAN2 else 0
+    if op == ops.DENSITY or op == ops.SKELETON:
         short[row, 3] = int(scratch[code[k, 3], PLACE])
-    elif not (op == CONSTANT or op == X or op == Y or op == Z):
+    elif not (op == ops.CONSTANT or op == ops.X or op == ops.Y or op == ops.Z):
         short[row, 1] = int(scratch[int(scratch[code[k, 1], ALIAS]), PLACE])
         short[row, 2] = int(scratch[int(scratch[code[k, 2], ALIAS]), PLACE])
-        if (op == SIN or op == COS) and code[k, 3] and scratch[code[k, 3], LIVE] != 0.0:
+        if (op == ops.SIN or op == ops.COS) and code[k, 3] and scratch[code[k, 3], LIVE] != 0.0:
             short[row, 3] = int(scratch[code[k, 3], PLACE])

@@ -11,8 +11,8 @@ from sceneql.field.skeleton.density_kernels import offset
 from sceneql.field.skeleton.falloff_kernels import WYVILL
 from sceneql.field.skeleton.skeleton_bounds_kernels import skeleton_near
 from sceneql.field.skeleton.skeleton_parts_kernels import GROUP, KERNEL, RADIUS, RADIUS_B, SEGMENT, SHAPE, STRIDE
+from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.short_rows_kernels import ALIAS, LIVE, mark, write_row
-from sceneql.field.tape.tape_ops import DENSITY, MAX, MIN, SKELETON
 
 
 @inlined
@@ -36,13 +36,13 @@ def within_reach(parts, i, scratch, p):
 def winner(code, k, scratch):
     """The row whose value row k has all over the box: that of a branch which must win, else k itself."""
     op = code[k, 0]
-    if op == MIN or op == MAX:
+    if op == ops.MIN or op == ops.MAX:
         left = code[k, 1]
         right = code[k, 2]
         if scratch[left, 1] < scratch[right, 0]:
-            return int(scratch[left if op == MIN else right, ALIAS])
+            return int(scratch[left if op == ops.MIN else right, ALIAS])
         if scratch[right, 1] < scratch[left, 0]:
-            return int(scratch[right if op == MIN else left, ALIAS])
+            return int(scratch[right if op == ops.MIN else left, ALIAS])
     return k
 
 
@@ -87,15 +87,15 @@ def simplify(code, parts, scratch, whole, short, near):
             continue
         op = code[k, 0]
         write_row(code, k, scratch, short, rows)
-        if op == SKELETON and whole:
+        if op == ops.SKELETON and whole:
             short[rows, 1] = found
             found = skeleton_near(parts, code[k, 1], code[k, 2], scratch, code[k, 3], near, found)
             behind = plain_parts(near, short[rows, 1], found)
             if behind > 0:
-                short[rows, 0] = DENSITY
+                short[rows, 0] = ops.DENSITY
                 found = behind
             short[rows, 2] = found
-        elif op == DENSITY or op == SKELETON:
+        elif op == ops.DENSITY or op == ops.SKELETON:
             short[rows, 1] = found
             for i in range(code[k, 1], code[k, 2]):
                 if not whole or within_reach(parts, i, scratch, code[k, 3]):

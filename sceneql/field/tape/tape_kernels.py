@@ -8,41 +8,14 @@ from sceneql.compiled.kernels import kernel
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.field.enclose.sine_kernels import sine_cosine
 from sceneql.field.skeleton.density_kernels import density_value
+from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.order_kernels import larger, sign_of, smaller
-from sceneql.field.tape.tape_ops import (
-    ABS,
-    ADD,
-    ATAN2,
-    CONSTANT,
-    COPY,
-    COS,
-    DENSITY,
-    DIV,
-    EXP,
-    FLOOR,
-    LOG,
-    MAX,
-    MIN,
-    MUL,
-    NEG,
-    POW,
-    SIGN,
-    SIN,
-    SKELETON,
-    SQRT,
-    SQUARE,
-    SUB,
-    TAPE,
-    X,
-    Y,
-    Z,
-)
 
 OF_PARTS = types.float64(types.float64[:, ::1], types.int64, types.int64, types.float64, types.float64, types.float64)
 skeleton_value = lazy("sceneql.field.skeleton.skeleton_point_kernels:value", OF_PARTS)
 
 
-@kernel(f"float64({TAPE}, float64, float64, float64)", _nrt=False)
+@kernel(f"float64({ops.TAPE}, float64, float64, float64)", _nrt=False)
 def value(code, constants, parts, scratch, x, y, z):
     """f at a point [m]; ``scratch`` (rows, 8) is overwritten."""
     last = code.shape[0] - 1
@@ -52,59 +25,59 @@ def value(code, constants, parts, scratch, x, y, z):
         right = code[k, 2]
         a = scratch[left, 0]
         b = scratch[right, 0]
-        if op == CONSTANT:
+        if op == ops.CONSTANT:
             v = constants[left]
-        elif op == X:
+        elif op == ops.X:
             v = x
-        elif op == Y:
+        elif op == ops.Y:
             v = y
-        elif op == Z:
+        elif op == ops.Z:
             v = z
-        elif op == COPY:
+        elif op == ops.COPY:
             v = a
-        elif op == ADD:
+        elif op == ops.ADD:
             v = a + b
-        elif op == SUB:
+        elif op == ops.SUB:
             v = a - b
-        elif op == MUL:
+        elif op == ops.MUL:
             v = a * b
-        elif op == DIV:
+        elif op == ops.DIV:
             v = a / b
-        elif op == MIN:
+        elif op == ops.MIN:
             v = smaller(a, b)
-        elif op == MAX:
+        elif op == ops.MAX:
             v = larger(a, b)
-        elif op == NEG:
+        elif op == ops.NEG:
             v = -a
-        elif op == ABS:
+        elif op == ops.ABS:
             v = abs(a)
-        elif op == SQUARE:
+        elif op == ops.SQUARE:
             v = a * a
-        elif op == SQRT:
+        elif op == ops.SQRT:
             v = np.sqrt(a)
-        elif op == SIN or op == COS:
+        elif op == ops.SIN or op == ops.COS:
             twin = code[k, 3]
             if twin == 0:
                 twin = k
                 scratch[k, 4], scratch[k, 5] = sine_cosine(a)
-            v = scratch[twin, 4] if op == SIN else scratch[twin, 5]
-        elif op == DENSITY:
+            v = scratch[twin, 4] if op == ops.SIN else scratch[twin, 5]
+        elif op == ops.DENSITY:
             p = code[k, 3]
             v = density_value(parts, left, right, scratch[p, 0], scratch[p + 1, 0], scratch[p + 2, 0])
-        elif op == SKELETON:
+        elif op == ops.SKELETON:
             p = code[k, 3]
             v = skeleton_value(parts, left, right, scratch[p, 0], scratch[p + 1, 0], scratch[p + 2, 0])
-        elif op == EXP:
+        elif op == ops.EXP:
             v = np.exp(a)
-        elif op == LOG:
+        elif op == ops.LOG:
             v = np.log(a)
-        elif op == POW:
+        elif op == ops.POW:
             v = a**b if a == a and b == b else np.nan  # IEEE has NaN^0 = 1 = 1^NaN
-        elif op == ATAN2:
+        elif op == ops.ATAN2:
             v = np.arctan2(a, b)
-        elif op == FLOOR:
+        elif op == ops.FLOOR:
             v = np.floor(a)
-        elif op == SIGN:
+        elif op == ops.SIGN:
             v = sign_of(a)
         else:
             v = np.nan
@@ -112,7 +85,7 @@ def value(code, constants, parts, scratch, x, y, z):
     return scratch[last, 0]
 
 
-@kernel(f"void({TAPE}, float64[:, ::1], float64[::1])", _nrt=False)
+@kernel(f"void({ops.TAPE}, float64[:, ::1], float64[::1])", _nrt=False)
 def values(code, constants, parts, scratch, points, out):
     """f at ``points`` (n, 3) [m] into ``out`` (n,)."""
     for i in range(points.shape[0]):

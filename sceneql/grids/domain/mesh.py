@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sceneql.contacts import layout
 from sceneql.contacts.shapes.closed_mesh import closed
 
 if TYPE_CHECKING:
@@ -25,14 +26,12 @@ class MeshLevel:
 
     def __init__(self, corners: Floats, name: str) -> None:
         """``corners`` (m, 3, 3) [m]. Raises ValueError for a mesh that is open."""
-        from sceneql.contacts.shape_kernels import DATA
-
         mesh = closed(corners.reshape(-1, 3), np.arange(3 * len(corners), dtype=np.int32).reshape(-1, 3))
         self.names = (name,)
         self.bounds = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
         self._floats = np.concatenate([mesh.boxes.ravel(), mesh.rows.ravel()])
         data = [0, mesh.boxes.size, len(mesh.boxes), *mesh.tree.ravel().tolist()]
-        self._ints = np.array([*[0] * DATA, DATA + 1, *data], dtype=np.int64)
+        self._ints = np.array([*[0] * layout.DATA, layout.DATA + 1, *data], dtype=np.int64)
 
     def values(self, points: Floats) -> Floats:
         """Signed distance at points (k, 3), negative inside: (k,)."""

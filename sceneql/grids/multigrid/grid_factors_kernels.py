@@ -7,16 +7,8 @@ values, factors, scratch.
 """
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.grids.multigrid.linear_kernels import (
-    FACTORED,
-    PLAN,
-    SOLVE,
-    divided,
-    forget,
-    matrix,
-    noted,
-    to_prepare,
-)
+from sceneql.grids.multigrid import layout
+from sceneql.grids.multigrid.linear_kernels import SOLVE, divided, forget, matrix, noted, to_prepare
 from sceneql.linear.multifrontal_solve_kernels import solve_symmetric
 from sceneql.linear.multifrontal_symmetric_kernels import factor_symmetric
 
@@ -72,10 +64,10 @@ def solve(plan, a, target, floats, r, d, store):
     nx, ny, nz, volume, sink, gx, gy, gz = matrix(plan, floats)
     _, _, own, record = divided(plan, store)
     forget(record)
-    entries = plan[PLAN:]
+    entries = plan[layout.PLAN :]
     if to_prepare(plan, a, record):
         if not factor_direct(entries, nx, ny, nz, 1.0 / a, volume, sink, gx, gy, gz, own):
             return False
-        record[FACTORED] = a
+        record[layout.FACTORED] = a
     solve_direct(entries, r, d, own)
     return noted(record, 1)

@@ -17,20 +17,8 @@ import math
 import numpy as np
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.grids.multigrid.linear_kernels import (
-    FACTORED,
-    HISTORY,
-    MOST,
-    PLAN,
-    SOLVE,
-    TAKEN_IN,
-    VARYING,
-    divided,
-    forget,
-    matrix,
-    noted,
-    to_prepare,
-)
+from sceneql.grids.multigrid import layout
+from sceneql.grids.multigrid.linear_kernels import SOLVE, divided, forget, matrix, noted, to_prepare
 from sceneql.grids.multigrid.smoothing_kernels import add_coarse, first_sweep, restrict_residual, sweep
 from sceneql.grids.multigrid.stencil_kernels import dot, multiply
 
@@ -181,22 +169,22 @@ def solve(plan, a, target, floats, r, d, store):
     """The linear solver (linear_kernels)."""
     nx, ny, nz, volume, sink, gx, gy, gz = matrix(plan, floats)
     p, q, own, record = divided(plan, store)
-    levels, table, arrays = plan[PLAN], plan[PLAN + 1 :], own.view(np.float32)
+    levels, table, arrays = plan[layout.PLAN], plan[layout.PLAN + 1 :], own.view(np.float32)
     if to_prepare(plan, a, record):
-        if record[TAKEN_IN] == 0.0 or plan[VARYING] == 1:
+        if record[layout.TAKEN_IN] == 0.0 or plan[layout.VARYING] == 1:
             unit = 0.0
             for c in range(nx * ny * nz):
                 unit = max(unit, gx[c], gy[c])
             # The float32 arrays are in units of the largest conductance.
             take_in(table, levels, arrays, unit if unit > 0.0 else 1.0, volume, sink, gx, gy, gz)
-            record[TAKEN_IN] = 1.0
+            record[layout.TAKEN_IN] = 1.0
         shift(table, levels, arrays, 1.0 / a)
-        record[FACTORED] = a
+        record[layout.FACTORED] = a
     forget(record)
     return noted(
         record,
         iterate(
-            nx, ny, nz, 1.0 / a, volume, sink, gx, gy, gz, table, levels, arrays, r, d, p, q, target, plan[MOST],
-            record[HISTORY:],
+            nx, ny, nz, 1.0 / a, volume, sink, gx, gy, gz, table, levels, arrays, r, d, p, q, target, plan[layout.MOST],
+            record[layout.HISTORY:],
         ),
     )  # fmt: skip

@@ -9,7 +9,8 @@ conjugate gradients), as many as there is room.
 import math
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.grids.multigrid.linear_kernels import HISTORY, MOST, SOLVE, divided, forget, matrix, noted
+from sceneql.grids.multigrid import layout
+from sceneql.grids.multigrid.linear_kernels import SOLVE, divided, forget, matrix, noted
 from sceneql.grids.multigrid.stencil_kernels import multiply
 
 CHECKED = 4
@@ -125,12 +126,11 @@ def solve_gauss_seidel(plan, a, target, floats, r, d, store):
     nx, ny, nz, volume, sink, gx, gy, gz = matrix(plan, floats)
     p, q, _, record = divided(plan, store)
     forget(record)
-    return noted(
-        record,
-        relaxation(
-            nx, ny, nz, 1.0 / a, volume, sink, gx, gy, gz, r, d, p, q, False, target, plan[MOST], record[HISTORY:]
-        ),
+    history = record[layout.HISTORY :]
+    found = relaxation(
+        nx, ny, nz, 1.0 / a, volume, sink, gx, gy, gz, r, d, p, q, False, target, plan[layout.MOST], history
     )
+    return noted(record, found)
 
 
 @lean(SOLVE, inner=True)
@@ -139,12 +139,11 @@ def solve_sor(plan, a, target, floats, r, d, store):
     nx, ny, nz, volume, sink, gx, gy, gz = matrix(plan, floats)
     p, q, _, record = divided(plan, store)
     forget(record)
-    return noted(
-        record,
-        relaxation(
-            nx, ny, nz, 1.0 / a, volume, sink, gx, gy, gz, r, d, p, q, True, target, plan[MOST], record[HISTORY:]
-        ),
+    history = record[layout.HISTORY :]
+    found = relaxation(
+        nx, ny, nz, 1.0 / a, volume, sink, gx, gy, gz, r, d, p, q, True, target, plan[layout.MOST], history
     )
+    return noted(record, found)
 
 
 @lean(SOLVE, inner=True)
@@ -153,9 +152,8 @@ def solve_conjugate_gradient(plan, a, target, floats, r, d, store):
     nx, ny, nz, volume, sink, gx, gy, gz = matrix(plan, floats)
     p, q, own, record = divided(plan, store)
     forget(record)
-    return noted(
-        record,
-        conjugate_gradient(
-            nx, ny, nz, 1.0 / a, volume, sink, gx, gy, gz, r, d, own, p, q, target, plan[MOST], record[HISTORY:]
-        ),
+    history = record[layout.HISTORY :]
+    found = conjugate_gradient(
+        nx, ny, nz, 1.0 / a, volume, sink, gx, gy, gz, r, d, own, p, q, target, plan[layout.MOST], history
     )
+    return noted(record, found)

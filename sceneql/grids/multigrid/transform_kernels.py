@@ -9,17 +9,8 @@
 import numpy as np
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.grids.multigrid.linear_kernels import (
-    FACTORED,
-    NX,
-    NY,
-    PLAN,
-    SOLVE,
-    divided,
-    forget,
-    noted,
-    to_prepare,
-)
+from sceneql.grids.multigrid import layout
+from sceneql.grids.multigrid.linear_kernels import SOLVE, divided, forget, noted, to_prepare
 
 
 @lean_inlined
@@ -88,11 +79,11 @@ def solve_transform(table, nx, ny, r, d, own):
 @lean(SOLVE, inner=True)
 def solve(plan, a, target, floats, r, d, store):
     """The linear solver (linear_kernels)."""
-    nx, ny, table = plan[NX], plan[NY], plan[PLAN:]
+    nx, ny, table = plan[layout.NX], plan[layout.NY], plan[layout.PLAN :]
     _, _, own, record = divided(plan, store)
     forget(record)
     if to_prepare(plan, a, record):
         factor_transform(table, nx, ny, 1.0 / a, own)
-        record[FACTORED] = a
+        record[layout.FACTORED] = a
     solve_transform(table, nx, ny, r, d, own)
     return noted(record, 1)

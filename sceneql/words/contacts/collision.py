@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
+from sceneql.contacts import layout
 from sceneql.kinds import (
     Contact,
     DrawnRef,
@@ -80,7 +81,7 @@ class Collision(Contact):
         from sceneql.compiled.compile_beside import compile_beside
         from sceneql.compiled.numba import lazy_kernels
         from sceneql.contacts.colliders import OFTEN, must_be_outside, surfaces
-        from sceneql.contacts.impulse_kernels import HEAD, INSTANT, MOST_CUTS
+        from sceneql.contacts.impulse_kernels import MOST_CUTS
 
         if not others:
             return
@@ -88,11 +89,10 @@ class Collision(Contact):
         compile_beside(
             (EXACT if exact else LOCAL,)
         )  # the largest of the island, while what the objects are looked at with compiles here
-        from sceneql.contacts.memory_kernels import PAIR
 
         written = {ref.name: ref for ref in self.between or ()}
         touched = [written.get(ref.name, ref) for ref in others]
-        objects = surfaces(touched, assembly, HEAD)
+        objects = surfaces(touched, assembly, layout.HEAD)
         if exact:
             compile_beside(
                 one for one in lazy_kernels.modules() if one.startswith(f"{SHAPES}.")
@@ -106,9 +106,9 @@ class Collision(Contact):
             assembly.value(self.friction),
             assembly.floats([self.thickness]),
             tally_at,
-            assembly.floats(np.zeros(pairs * PAIR)),
+            assembly.floats(np.zeros(pairs * layout.PAIR)),
             assembly.floats(
-                np.full(bodies.count * INSTANT, nan)
+                np.full(bodies.count * layout.INSTANT, nan)
                 if exact
                 else np.concatenate([cuts, np.zeros(1 + bodies.count), [(2.0 * math.pi / bodies.period) ** 2, 0.0]])
             ),

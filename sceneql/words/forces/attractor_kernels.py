@@ -6,17 +6,17 @@ import math
 from sceneql.compiled.kernels import kernel
 from sceneql.system.signatures_kernels import TERM
 
+POSITION_AT, VELOCITY_AT, COUNT, MASS_AT, POINT_AT, STRENGTH_AT, SHAPE_AT = range(7)
+"""At SHAPE_AT: exponent p, softening [m]."""
+
 
 @kernel(TERM, inner=True)
 def attractor(t, y, rate, floats, ints):
-    """Adds m strength d / rho^(p+1), d towards the point, rho^2 = |d|^2 + softening^2.
-
-    ints: position_at, velocity_at, count, mass_at, point_at, strength_at, shape_at (exponent p, softening).
-    """
-    position_at, velocity_at, count, mass_at = ints[0], ints[1], ints[2], ints[3]
-    px, py, pz = floats[ints[4]], floats[ints[4] + 1], floats[ints[4] + 2]
-    strength = floats[ints[5]]
-    p, softening = floats[ints[6]], floats[ints[6] + 1]
+    """Adds m strength d / rho^(p+1), d towards the point, rho^2 = |d|^2 + softening^2."""
+    position_at, velocity_at, count, mass_at = ints[POSITION_AT], ints[VELOCITY_AT], ints[COUNT], ints[MASS_AT]
+    px, py, pz = floats[ints[POINT_AT]], floats[ints[POINT_AT] + 1], floats[ints[POINT_AT] + 2]
+    strength = floats[ints[STRENGTH_AT]]
+    p, softening = floats[ints[SHAPE_AT]], floats[ints[SHAPE_AT] + 1]
     for k in range(count):
         at = position_at + 3 * k
         dx, dy, dz = px - y[at], py - y[at + 1], pz - y[at + 2]

@@ -6,15 +6,14 @@ import math
 from sceneql.compiled.kernels import kernel
 from sceneql.system.signatures_kernels import TERM
 
+VELOCITY_AT, COUNT, WORK_AT, INVERSE_AT, LINEAR_AT, QUADRATIC_AT = range(6)
+
 
 @kernel(TERM, inner=True)
 def drag(t, y, rate, floats, ints):
-    """Adds -(a + b |v|) v, and its power to the work.
-
-    ints: velocity_at, count, work_at, inverse_at, linear_at, quadratic_at.
-    """
-    velocity_at, count, work_at, inverse_at = ints[0], ints[1], ints[2], ints[3]
-    linear, quadratic = floats[ints[4]], floats[ints[5]]
+    """Adds -(a + b |v|) v, and its power to the work."""
+    velocity_at, count, work_at, inverse_at = ints[VELOCITY_AT], ints[COUNT], ints[WORK_AT], ints[INVERSE_AT]
+    linear, quadratic = floats[ints[LINEAR_AT]], floats[ints[QUADRATIC_AT]]
     power = 0.0
     for k in range(count):
         if floats[inverse_at + k] == 0.0:

@@ -4,12 +4,14 @@
 from sceneql.compiled.kernels import kernel
 from sceneql.system.signatures_kernels import TERM
 
+VELOCITY_AT, COUNT, CHARGE_AT, CHARGE_STEP, FIELD_AT = range(5)
+
 
 @kernel(TERM, inner=True)
 def electric(t, y, rate, floats, ints):
-    """Adds q E. ints: velocity_at, count, charge_at, charge_step, field_at."""
-    velocity_at, count, charge_at, step = ints[0], ints[1], ints[2], ints[3]
-    ex, ey, ez = floats[ints[4]], floats[ints[4] + 1], floats[ints[4] + 2]
+    """Adds q E."""
+    velocity_at, count, charge_at, step = ints[VELOCITY_AT], ints[COUNT], ints[CHARGE_AT], ints[CHARGE_STEP]
+    ex, ey, ez = floats[ints[FIELD_AT]], floats[ints[FIELD_AT] + 1], floats[ints[FIELD_AT] + 2]
     for k in range(count):
         q = floats[charge_at + k * step]
         at = velocity_at + 3 * k

@@ -4,30 +4,29 @@
 import numpy as np
 
 from sceneql.compiled.kernels import kernel
+from sceneql.grids import cell_weights_kernels as cells_of
 from sceneql.grids.cell_weights_kernels import CORNERS, around, moved
 from sceneql.system.signatures_kernels import TERM
 
-FIELD = 6
+POSITION_AT, VELOCITY_AT, COUNT, WORK_AT, INVERSE_AT, FACTOR_AT, FIELD = range(7)
+"""From FIELD on: the field (cell_weights_kernels)."""
 
 
 @kernel(TERM, inner=True)
 def field_gradient(t, y, rate, floats, ints):
-    """Adds factor grad c of the place of every mass, and takes its power from the work.
-
-    ints: position_at, velocity_at, count, work_at, inverse_at, factor, then the field (cell_weights_kernels).
-    """
+    """Adds factor grad c of the place of every mass, and takes its power from the work."""
     cells, weights, slope = np.empty(CORNERS, dtype=np.int64), np.empty(CORNERS), np.empty(3)
-    field, box = ints[FIELD], ints[FIELD + 5]
-    factor = floats[ints[5]]
-    for k in range(ints[2]):
-        if floats[ints[4] + k] == 0.0:
+    field, box = ints[FIELD], ints[FIELD + cells_of.BOX_AT]
+    factor = floats[ints[FACTOR_AT]]
+    for k in range(ints[COUNT]):
+        if floats[ints[INVERSE_AT] + k] == 0.0:
             continue
-        place, motion = ints[0] + 3 * k, ints[1] + 3 * k
+        place, motion = ints[POSITION_AT] + 3 * k, ints[VELOCITY_AT] + 3 * k
         if not around(y[place], y[place + 1], y[place + 2], floats, ints, FIELD, cells, weights):
             continue
         for axis in range(3):
             slope[axis] = 0.0
-            if ints[FIELD + 1 + axis] == 1:
+            if ints[FIELD + cells_of.NX + axis] == 1:
                 continue
             for corner in range(CORNERS):
                 if weights[corner] > 0.0:
@@ -42,4 +41,4 @@ def field_gradient(t, y, rate, floats, ints):
                         slope[axis] += weights[corner] * (y[field + after] - y[field + before]) / reach
             slope[axis] *= factor / floats[box + 3 + axis]
             rate[motion + axis] += slope[axis]
-            rate[ints[3]] -= slope[axis] * y[motion + axis]
+            rate[ints[WORK_AT]] -= slope[axis] * y[motion + axis]

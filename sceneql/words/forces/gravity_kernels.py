@@ -8,6 +8,8 @@ from numba import types
 from sceneql.compiled.kernels import lean
 from sceneql.system.signatures_kernels import TERM, A, N
 
+VELOCITY_AT, COUNT, MASS_AT, GIVEN, VECTOR_AT, STRENGTH_AT = range(6)
+
 
 @lean(types.UniTuple(types.float64, 3)(A, N, N, N))
 def acceleration(floats, given, vector_at, strength_at):
@@ -22,9 +24,9 @@ def acceleration(floats, given, vector_at, strength_at):
 
 @lean(TERM, inner=True)
 def gravity(t, y, rate, floats, ints):
-    """Adds m g. ints: velocity_at, count, mass_at, given, vector_at, strength_at."""
-    velocity_at, count, mass_at = ints[0], ints[1], ints[2]
-    gx, gy, gz = acceleration(floats, ints[3], ints[4], ints[5])
+    """Adds m g."""
+    velocity_at, count, mass_at = ints[VELOCITY_AT], ints[COUNT], ints[MASS_AT]
+    gx, gy, gz = acceleration(floats, ints[GIVEN], ints[VECTOR_AT], ints[STRENGTH_AT])
     force, mass = rate[velocity_at : velocity_at + 3 * count], floats[mass_at : mass_at + count]
     for k in range(count):
         m = mass[k]

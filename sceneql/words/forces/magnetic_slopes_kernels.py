@@ -3,14 +3,16 @@
 
 from sceneql.compiled.kernels import lean
 from sceneql.system.signatures_kernels import TERM
+from sceneql.words.forces import magnetic_kernels as force
 
 
 @lean(TERM, inner=True)
 def magnetic(t, y, entries, floats, ints):
-    """The matrix of q v x B of each mass, a block of 3x3 by its velocity. ints: those of magnetic_kernels.magnetic."""
-    bx, by, bz = floats[ints[4]], floats[ints[4] + 1], floats[ints[4] + 2]
-    for k in range(ints[1]):
-        q = floats[ints[2] + k * ints[3]]
+    """The matrix of q v x B of each mass, a block of 3x3 by its velocity."""
+    at = ints[force.FIELD_AT]
+    bx, by, bz = floats[at], floats[at + 1], floats[at + 2]
+    for k in range(ints[force.COUNT]):
+        q = floats[ints[force.CHARGE_AT] + k * ints[force.CHARGE_STEP]]
         entries[9 * k + 1] += q * bz
         entries[9 * k + 2] -= q * by
         entries[9 * k + 3] -= q * bz

@@ -54,10 +54,10 @@ class Repulsion(Force):
 
         from sceneql.bodies.neighbors import table
         from sceneql.compiled.threads_kernels import threads, tile_address
-        from sceneql.nbody.shared_masses import layout
+        from sceneql.nbody.shared_masses import integers_of
         from sceneql.words.forces.repulsion_kernels import repulsion_tile
 
-        bodies = layout(everyone)
+        bodies = integers_of(everyone)
         n = bodies[0]
         size, first, second = table(n)
         energies = assembly.floats(np.zeros(n))

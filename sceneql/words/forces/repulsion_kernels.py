@@ -10,7 +10,7 @@ from sceneql.nbody.shared_masses_kernels import gather, leave_out_massless, velo
 from sceneql.system.signatures_kernels import TERM
 
 STRENGTH, NUMBERS, ENERGIES, POINTS, SORTED, ORDER, START, SIZE, P, Q, ENTRY, THREADS, TILE_AT, BODIES = range(14)
-"""Places in ints; from BODIES on as together.layout."""
+"""Places in ints; from BODIES on the masses (nbody/layout.py)."""
 PART = 1024
 
 

@@ -6,16 +6,17 @@ import math
 from sceneql.compiled.kernels import kernel
 from sceneql.system.signatures_kernels import TERM
 
+POSITION_AT, VELOCITY_AT, WORK_AT, END = range(4)
+"""Of an end, those of the second from END on; of a place that is no mass -1, where it is in the floats, -1."""
+STIFFNESS_AT, DAMPING_AT, REST_AT, SPEEDS_AT = range(2 * END, 2 * END + 4)
+"""From SPEEDS_AT on of each end where the velocity of a place is in the floats, or -1."""
+
 
 @kernel(TERM, inner=True)
 def spring(t, y, rate, floats, ints):
-    """Adds the pull to both ends, and to the work what the damping takes (half to each) and what holds a place.
-
-    ints: for each end position_at, velocity_at, work_at (or -1, the place in the floats, -1); stiffness_at,
-    damping_at, rest_at; for each end -1 (or its velocity in the floats).
-    """
-    a, b = ints[0], ints[3]
-    va, vb = ints[1], ints[4]
+    """Adds the pull to both ends, and to the work what the damping takes (half to each) and what holds a place."""
+    a, b = ints[POSITION_AT], ints[END + POSITION_AT]
+    va, vb = ints[VELOCITY_AT], ints[END + VELOCITY_AT]
     dx = (y[b] if b >= 0 else floats[vb]) - (y[a] if a >= 0 else floats[va])
     dy = (y[b + 1] if b >= 0 else floats[vb + 1]) - (y[a + 1] if a >= 0 else floats[va + 1])
     dz = (y[b + 2] if b >= 0 else floats[vb + 2]) - (y[a + 2] if a >= 0 else floats[va + 2])
@@ -23,7 +24,7 @@ def spring(t, y, rate, floats, ints):
     if length == 0.0:
         return
     dx, dy, dz = dx / length, dy / length, dz / length
-    ua, ub = ints[9], ints[10]
+    ua, ub = ints[SPEEDS_AT], ints[SPEEDS_AT + 1]
     if a >= 0:
         leading = dx * y[va] + dy * y[va + 1] + dz * y[va + 2]
     else:
@@ -33,16 +34,16 @@ def spring(t, y, rate, floats, ints):
     else:
         following = dx * floats[ub] + dy * floats[ub + 1] + dz * floats[ub + 2]
     opening = following - leading
-    damping = floats[ints[7]]
-    pull = floats[ints[6]] * (length - floats[ints[8]]) + damping * opening
+    damping = floats[ints[DAMPING_AT]]
+    pull = floats[ints[STIFFNESS_AT]] * (length - floats[ints[REST_AT]]) + damping * opening
     lost = damping * opening * opening
     if a >= 0:
         rate[va] += pull * dx
         rate[va + 1] += pull * dy
         rate[va + 2] += pull * dz
-        rate[ints[2]] += 0.5 * lost if b >= 0 else lost - pull * following
+        rate[ints[WORK_AT]] += 0.5 * lost if b >= 0 else lost - pull * following
     if b >= 0:
         rate[vb] -= pull * dx
         rate[vb + 1] -= pull * dy
         rate[vb + 2] -= pull * dz
-        rate[ints[5]] += 0.5 * lost if a >= 0 else lost + pull * leading
+        rate[ints[END + WORK_AT]] += 0.5 * lost if a >= 0 else lost + pull * leading

@@ -5,12 +5,13 @@ import math
 
 import numpy as np
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import kernel, lean_inlined
 from sceneql.system.signatures_kernels import TERM
+from sceneql.words.forces import spring_kernels as force
 
-FORESEEN_AT = 2
-"""floats[2]: whether the force is that foreseen, and how far slopes are to be definite (system.Slopes)."""
-SPEEDS_AT, INVERSES_AT = 9, 11
+INVERSES_AT = force.SPEEDS_AT + 2
+"""Behind the integers of the force, where each end has its inverse mass (-1: none)."""
 
 
 @lean_inlined
@@ -19,17 +20,17 @@ def between(y, floats, ints, d, v):
     for c in range(3):
         d[c] = v[c] = 0.0
         for end in range(2):
-            sign, at, velocity = 2.0 * end - 1.0, ints[3 * end], ints[3 * end + 1]
+            sign, own = 2.0 * end - 1.0, force.END * end
+            at, velocity = ints[own + force.POSITION_AT], ints[own + force.VELOCITY_AT]
             d[c] += sign * (y[at + c] if at >= 0 else floats[velocity + c])
-            v[c] += sign * (y[velocity + c] if at >= 0 else floats[ints[SPEEDS_AT + end] + c])
+            v[c] += sign * (y[velocity + c] if at >= 0 else floats[ints[force.SPEEDS_AT + end] + c])
 
 
 @kernel(TERM, inner=True)
 def spring(t, y, entries, floats, ints):
     """Blocks of 3x3: for each end that is a mass, its force by the places of both masses, then by their velocities.
 
-    ints: those of spring_kernels.spring, then the places of the inverse masses (-1: none). For Newton's method as
-    mass_spring_slopes_kernels: without what turns the damping, and with the force foreseen.
+    For Newton's method as mass_spring_slopes_kernels: without what turns the damping, and with the force foreseen.
     """
     n, v = np.zeros(3), np.zeros(3)
     between(y, floats, ints, n, v)
@@ -39,12 +40,13 @@ def spring(t, y, entries, floats, ints):
     for c in range(3):
         n[c] /= length
     opening = n[0] * v[0] + n[1] * v[1] + n[2] * v[2]
-    stiffness, damping, rest = floats[ints[6]], floats[ints[7]], floats[ints[8]]
+    stiffness, damping = floats[ints[force.STIFFNESS_AT]], floats[ints[force.DAMPING_AT]]
+    rest = floats[ints[force.REST_AT]]
     across, turning = (stiffness * (length - rest) + damping * opening) / length, damping / length
-    if floats[FORESEEN_AT] > 0.0:
+    if floats[channels.DEFINITE] > 0.0:
         old, d, w = np.zeros(3), np.zeros(3), np.zeros(3)
-        between(floats[floats.size - 2 * y.size :], floats, ints, old, w)
-        between(floats[floats.size - y.size :], floats, ints, d, w)
+        between(floats[floats.size - channels.BEFORE * y.size :], floats, ints, old, w)
+        between(floats[floats.size - channels.AFTER * y.size :], floats, ints, d, w)
         before = math.sqrt(old[0] * old[0] + old[1] * old[1] + old[2] * old[2])
         seen = old[0] * d[0] + old[1] * d[1] + old[2] * d[2]
         seen_opening = old[0] * w[0] + old[1] * w[1] + old[2] * w[2]
@@ -55,12 +57,12 @@ def spring(t, y, entries, floats, ints):
         for end in range(2):
             if ints[INVERSES_AT + end] >= 0:
                 inverse = max(inverse, floats[ints[INVERSES_AT + end]])
-        across = max(-floats[FORESEEN_AT] / inverse if inverse > 0.0 else 0.0, across)
+        across = max(-floats[channels.DEFINITE] / inverse if inverse > 0.0 else 0.0, across)
     block = 0
     for one in range(2):
         for by_velocity in range(2):
             for other in range(2):
-                if ints[3 * one] < 0 or ints[3 * other] < 0:
+                if ints[force.END * one] < 0 or ints[force.END * other] < 0:
                     continue
                 sign = 1.0 if one != other else -1.0
                 for i in range(3):

@@ -19,6 +19,10 @@ from sceneql.compiled.kernels import inlined, kernel
 from sceneql.compiled.threads_kernels import TILE, over_threads
 from sceneql.system.signatures_kernels import TERM
 
+POSITION_AT, VELOCITY_AT, COUNT, WORK_AT, INVERSE_AT, SPEED_AT, LINEAR_AT, AIR_AT, NUMBERS_AT = range(9)
+POWER_AT, OCTAVES, SEED, ENTRY, THREADS, TILE_AT = range(9, 15)
+"""At NUMBERS_AT: size [m], angular frequency [1/s]."""
+
 LANES = 256
 """Particles that are worked on together, in single precision; the cell and the place in it are found in double."""
 PART = 8 * LANES
@@ -207,9 +211,9 @@ def summed(powers):
 @kernel(TILE, inner=True)
 def turbulence_tile(tile, t, y, rate, floats, ints):
     """The masses from PART tile on; their power goes to floats[power_at + tile]."""
-    position_at, velocity_at, inverse_at = ints[0], ints[1], ints[4]
-    speed, linear = floats[ints[5]], floats[ints[6]]
-    air_at, numbers_at = ints[7], ints[8]
+    position_at, velocity_at, inverse_at = ints[POSITION_AT], ints[VELOCITY_AT], ints[INVERSE_AT]
+    speed, linear = floats[ints[SPEED_AT]], floats[ints[LINEAR_AT]]
+    air_at, numbers_at = ints[AIR_AT], ints[NUMBERS_AT]
     scale, omega = 1.0 / floats[numbers_at], floats[numbers_at + 1]
     ax, ay, az = floats[air_at], floats[air_at + 1], floats[air_at + 2]
     drift = scale * t
@@ -219,11 +223,11 @@ def turbulence_tile(tile, t, y, rate, floats, ints):
     work = np.empty(ROWS * LANES, dtype=np.float32)
     cells = np.empty(3 * LANES, dtype=np.uint32)
     power = 0.0
-    last = min(ints[2], PART * (tile + 1))
+    last = min(ints[COUNT], PART * (tile + 1))
     for first in range(PART * tile, last, LANES):
         end = min(last, first + LANES)
         split(y[position_at + 3 * first : position_at + 3 * end], scale, drift * ax, drift * ay, drift * az, places)
-        factor = speed * curl(places, ints[11], omega * t, ints[10], work, cells, total)
+        factor = speed * curl(places, ints[SEED], omega * t, ints[OCTAVES], work, cells, total)
         for k in range(end - first, LANES):
             powers[k] = 0.0
         push(
@@ -231,21 +235,17 @@ def turbulence_tile(tile, t, y, rate, floats, ints):
             linear, factor, ax, ay, az, total, rate[velocity_at + 3 * first : velocity_at + 3 * end], powers,
         )  # fmt: skip
         power += summed(powers)
-    floats[ints[9] + tile] = power
+    floats[ints[POWER_AT] + tile] = power
 
 
 @kernel(TERM)
 def turbulence(t, y, rate, floats, ints):
-    """Adds -c (v - u), and takes its power from the work.
-
-    ints: position_at, velocity_at, count, work_at, inverse_at, speed_at, linear_at, air_at, numbers_at (size,
-    angular frequency), power_at, octaves, seed, threads' entry and number, address of the tile function.
-    """
-    tiles = (ints[2] + PART - 1) // PART
+    """Adds -c (v - u), and takes its power from the work."""
+    tiles = (ints[COUNT] + PART - 1) // PART
     if tiles >= MANY:
-        over_threads(ints[12], ints[13], ints[14], tiles, t, y, rate, floats, ints)
+        over_threads(ints[ENTRY], ints[THREADS], ints[TILE_AT], tiles, t, y, rate, floats, ints)
     else:
         for tile in range(tiles):
             turbulence_tile(tile, t, y, rate, floats, ints)
     for tile in range(tiles):
-        rate[ints[3]] += floats[ints[9] + tile]
+        rate[ints[WORK_AT]] += floats[ints[POWER_AT] + tile]

@@ -6,23 +6,23 @@ import math
 from sceneql.compiled.kernels import kernel
 from sceneql.system.signatures_kernels import TERM
 
+POSITION_AT, VELOCITY_AT, COUNT, WORK_AT, INVERSE_AT = range(5)
+POINT_AT, AXIS_AT, CIRCULATION_AT, UPDRAFT_AT, LINEAR_AT, CORE_AT = range(5, 11)
+
 TAU = 2.0 * math.pi
 
 
 @kernel(TERM, inner=True)
 def vortex(t, y, rate, floats, ints):
-    """Adds -c (v - u), and takes its power from the work.
-
-    ints: position_at, velocity_at, count, work_at, inverse_at, point_at, axis_at, circulation_at, updraft_at,
-    linear_at, core_at.
-    """
-    position_at, velocity_at, count, work_at, inverse_at = ints[0], ints[1], ints[2], ints[3], ints[4]
-    px, py, pz = floats[ints[5]], floats[ints[5] + 1], floats[ints[5] + 2]
-    ax, ay, az = floats[ints[6]], floats[ints[6] + 1], floats[ints[6] + 2]
+    """Adds -c (v - u), and takes its power from the work."""
+    position_at, velocity_at, count = ints[POSITION_AT], ints[VELOCITY_AT], ints[COUNT]
+    work_at, inverse_at = ints[WORK_AT], ints[INVERSE_AT]
+    px, py, pz = floats[ints[POINT_AT]], floats[ints[POINT_AT] + 1], floats[ints[POINT_AT] + 2]
+    ax, ay, az = floats[ints[AXIS_AT]], floats[ints[AXIS_AT] + 1], floats[ints[AXIS_AT] + 2]
     length = math.sqrt(ax * ax + ay * ay + az * az)
     ax, ay, az = ax / length, ay / length, az / length
-    turning, updraft, c = floats[ints[7]] / TAU, floats[ints[8]], floats[ints[9]]
-    core = floats[ints[10]] * floats[ints[10]]
+    turning, updraft, c = floats[ints[CIRCULATION_AT]] / TAU, floats[ints[UPDRAFT_AT]], floats[ints[LINEAR_AT]]
+    core = floats[ints[CORE_AT]] * floats[ints[CORE_AT]]
     power = 0.0
     for k in range(count):
         if floats[inverse_at + k] == 0.0:

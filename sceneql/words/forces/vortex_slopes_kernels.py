@@ -7,29 +7,30 @@ import numpy as np
 
 from sceneql.compiled.kernels import kernel
 from sceneql.system.signatures_kernels import TERM
-from sceneql.words.forces.vortex_kernels import TAU
+from sceneql.words.forces import vortex_kernels as force
 
 
 @kernel(TERM, inner=True)
 def vortex(t, y, entries, floats, ints):
     """Blocks of 3x3 of each mass, first all by the position, then all by the velocity.
 
-    With d the place across the axis a and q = d^2: u = s(q) a x d + up(q) a. ints: those of vortex_kernels.vortex.
+    With d the place across the axis a and q = d^2: u = s(q) a x d + up(q) a.
     """
-    position_at, count = ints[0], ints[2]
+    position_at, count = ints[force.POSITION_AT], ints[force.COUNT]
     axis = np.empty(3)
     length = 0.0
     for i in range(3):
-        length += floats[ints[6] + i] * floats[ints[6] + i]
+        length += floats[ints[force.AXIS_AT] + i] * floats[ints[force.AXIS_AT] + i]
     for i in range(3):
-        axis[i] = floats[ints[6] + i] / math.sqrt(length)
-    turning, updraft, c = floats[ints[7]] / TAU, floats[ints[8]], floats[ints[9]]
-    core = floats[ints[10]] * floats[ints[10]]
+        axis[i] = floats[ints[force.AXIS_AT] + i] / math.sqrt(length)
+    turning, updraft = floats[ints[force.CIRCULATION_AT]] / force.TAU, floats[ints[force.UPDRAFT_AT]]
+    c = floats[ints[force.LINEAR_AT]]
+    core = floats[ints[force.CORE_AT]] * floats[ints[force.CORE_AT]]
     d, round_ = np.empty(3), np.empty(3)
     for k in range(count):
         along = 0.0
         for i in range(3):
-            d[i] = y[position_at + 3 * k + i] - floats[ints[5] + i]
+            d[i] = y[position_at + 3 * k + i] - floats[ints[force.POINT_AT] + i]
             along += d[i] * axis[i]
         q = 0.0
         for i in range(3):

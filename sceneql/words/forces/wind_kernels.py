@@ -7,28 +7,27 @@ from sceneql.compiled.chance_kernels import noise_in_time
 from sceneql.compiled.kernels import inlined, kernel
 from sceneql.system.signatures_kernels import TERM
 
+VELOCITY_AT, COUNT, WORK_AT, INVERSE_AT, LINEAR_AT, QUADRATIC_AT, AIR_AT, GUSTS_AT, PERIOD_AT, SEED = range(10)
+
 
 @inlined
 def air(t, floats, ints):
-    """The velocity of the air at a time, gusts and all; ints as for `wind`."""
-    ux, uy, uz = floats[ints[6]], floats[ints[6] + 1], floats[ints[6] + 2]
-    strength = floats[ints[7]] * math.sqrt(ux * ux + uy * uy + uz * uz)
+    """The velocity of the air at a time, gusts and all."""
+    ux, uy, uz = floats[ints[AIR_AT]], floats[ints[AIR_AT] + 1], floats[ints[AIR_AT] + 2]
+    strength = floats[ints[GUSTS_AT]] * math.sqrt(ux * ux + uy * uy + uz * uz)
     if strength > 0.0:
-        s = t / floats[ints[8]]
-        ux += strength * noise_in_time(s, 0, ints[9])
-        uy += strength * noise_in_time(s, 1, ints[9])
-        uz += strength * noise_in_time(s, 2, ints[9])
+        s = t / floats[ints[PERIOD_AT]]
+        ux += strength * noise_in_time(s, 0, ints[SEED])
+        uy += strength * noise_in_time(s, 1, ints[SEED])
+        uz += strength * noise_in_time(s, 2, ints[SEED])
     return ux, uy, uz
 
 
 @kernel(TERM, inner=True)
 def wind(t, y, rate, floats, ints):
-    """Adds -(a + b |w|) w, w = v - u, and takes its power from the work.
-
-    ints: velocity_at, count, work_at, inverse_at, linear_at, quadratic_at, air_at, gusts_at, period_at, seed.
-    """
-    velocity_at, count, work_at, inverse_at = ints[0], ints[1], ints[2], ints[3]
-    linear, quadratic = floats[ints[4]], floats[ints[5]]
+    """Adds -(a + b |w|) w, w = v - u, and takes its power from the work."""
+    velocity_at, count, work_at, inverse_at = ints[VELOCITY_AT], ints[COUNT], ints[WORK_AT], ints[INVERSE_AT]
+    linear, quadratic = floats[ints[LINEAR_AT]], floats[ints[QUADRATIC_AT]]
     ux, uy, uz = air(t, floats, ints)
     power = 0.0
     for k in range(count):

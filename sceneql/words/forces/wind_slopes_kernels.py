@@ -5,16 +5,16 @@ import math
 
 from sceneql.compiled.kernels import lean
 from sceneql.system.signatures_kernels import TERM
-from sceneql.words.forces.wind_kernels import air
+from sceneql.words.forces import wind_kernels as force
 
 
 @lean(TERM, inner=True)
 def wind(t, y, entries, floats, ints):
-    """-(a + b |w|) - b w w/|w| of each mass, a block of 3x3 by its velocity. ints: those of wind_kernels.wind."""
-    linear, quadratic = floats[ints[4]], floats[ints[5]]
-    ux, uy, uz = air(t, floats, ints)
-    for k in range(ints[1]):
-        at = ints[0] + 3 * k
+    """-(a + b |w|) - b w w/|w| of each mass, a block of 3x3 by its velocity."""
+    linear, quadratic = floats[ints[force.LINEAR_AT]], floats[ints[force.QUADRATIC_AT]]
+    ux, uy, uz = force.air(t, floats, ints)
+    for k in range(ints[force.COUNT]):
+        at = ints[force.VELOCITY_AT] + 3 * k
         w = (y[at] - ux, y[at + 1] - uy, y[at + 2] - uz)
         size = math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
         bend = quadratic / size if size > 0.0 else 0.0

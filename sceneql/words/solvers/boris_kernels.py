@@ -9,6 +9,7 @@ import math
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
+from sceneql.island import layout
 from sceneql.system.signatures_kernels import STEP
 
 
@@ -35,7 +36,7 @@ def turned(time, wx, wy, wz, x, y, z):
 
 @lean(STEP, inner=True)
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
-    """y1 after the step; ints[1] triples (position, velocity, count) from ints[0] on, three entries a body."""
+    """y1 after the step; a body has three entries."""
     rate = rate_at(functions[AT_RATE])
     n = y0.size
     half = 0.5 * h
@@ -43,25 +44,25 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     seen, kick, turn, other = work[:n], work[n : 2 * n], work[2 * n : 3 * n], work[3 * n : 4 * n]
     for k in range(n):
         seen[k] = y0[k] + half * rate0[k]
-    for pair in range(ints[1]):
-        at = ints[0] + 3 * pair
-        x, v = ints[at], ints[at + 1]
-        for k in range(ints[at + 2]):
+    for pair in range(ints[layout.TRIPLES]):
+        at = ints[layout.TRIPLES_AT] + layout.TRIPLE * pair
+        x, v = ints[at + layout.POSITION], ints[at + layout.VELOCITY]
+        for k in range(ints[at + layout.COUNT]):
             seen[x + k] = y0[x + k] + half * y0[v + k]
             seen[v + k] = 0.0
     rate(middle, seen, kick, floats, ints)
     for axis in range(2):
-        for pair in range(ints[1]):
-            at = ints[0] + 3 * pair
-            v = ints[at + 1]
-            if ints[at + 2] % 3 == 0:
-                for k in range(v, v + ints[at + 2], 3):
+        for pair in range(ints[layout.TRIPLES]):
+            at = ints[layout.TRIPLES_AT] + layout.TRIPLE * pair
+            v = ints[at + layout.VELOCITY]
+            if ints[at + layout.COUNT] % 3 == 0:
+                for k in range(v, v + ints[at + layout.COUNT], 3):
                     seen[k] = 1.0 - axis
                     seen[k + 1] = 1.0 * axis
         rate(middle, seen, other if axis else turn, floats, ints)
-    for pair in range(ints[1]):
-        at = ints[0] + 3 * pair
-        v, count = ints[at + 1], ints[at + 2]
+    for pair in range(ints[layout.TRIPLES]):
+        at = ints[layout.TRIPLES_AT] + layout.TRIPLE * pair
+        v, count = ints[at + layout.VELOCITY], ints[at + layout.COUNT]
         if count % 3 == 0:
             for k in range(v, v + count, 3):
                 wx, wy = other[k + 2] - kick[k + 2], kick[k + 2] - turn[k + 2]
@@ -78,9 +79,9 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     rate(middle, seen, kick, floats, ints)
     for k in range(n):
         y1[k] = y0[k] + h * kick[k]
-    for pair in range(ints[1]):
-        at = ints[0] + 3 * pair
-        x, v, count = ints[at], ints[at + 1], ints[at + 2]
+    for pair in range(ints[layout.TRIPLES]):
+        at = ints[layout.TRIPLES_AT] + layout.TRIPLE * pair
+        x, v, count = ints[at + layout.POSITION], ints[at + layout.VELOCITY], ints[at + layout.COUNT]
         if count % 3 == 0:
             for k in range(v, v + count, 3):
                 wx, wy, wz = turn[k], turn[k + 1], turn[k + 2]

@@ -85,7 +85,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     import numpy as np
 
     from sceneql.stepping.error_scales import error_scales
-    from sceneql.stepping.radau_stages_kernels import MEMORY, VECTORS
+    from sceneql.stepping.radau_layout import MEMORY, VECTORS
     from sceneql.stepping.radau_systems import radau_systems
     from sceneql.system import Prepared
 

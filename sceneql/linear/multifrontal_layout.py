@@ -1,0 +1,12 @@
+"""How the integers of a plan lie (multifrontal_kernels says what they are): indices by name."""
+
+PIECES_AT, PIECES, ENTRY, THREADS, PIECE_AT, UNIT, FORWARD, BACKWARD = range(8, 16)
+SINGLE_FACTOR, SINGLE_SOLVE, SINGLE_PIECE, SINGLE_FORWARD, SINGLE_BACKWARD = range(16, 21)
+IN_SINGLE, RESTING, EXACT, SCALE, STARTS_AT, COLUMNS_AT, HEAD = range(21, 28)
+NEW, TRIED, WEAK = 1, 2, 3
+"""IN_SINGLE of factors in single precision: new, found good, or to be refined; 0: they are in double precision."""
+FIELDS = 11
+PAD = 16
+"""Zeros behind the factors of each front: lanes reach that far beyond a row."""
+ROWS = 4
+"""Of the factors, that a pass of a solution reads at a time."""
