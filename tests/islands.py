@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sceneql.island.island import IslandAssembly, System
-from sceneql.kinds import Object, Ref
+from sceneql.kinds import Object, Ref, Solver
 from sceneql.march.march import March
 from sceneql.quantities.expression import Expr, Link
 from sceneql.quantities.span import Source, Span
-from sceneql.system import Stepper
+from sceneql.system import IslandFacts, Stepper
 
 SOURCE = Source("scene.yaml", "springs:\n  weak: 1\n  tether: 2\n")
 TETHER = Span(SOURCE, 20, 26)
@@ -92,7 +92,13 @@ def balls(heights: Sequence[float], restitution: float, g: float = 9.81, mode: s
 
 def fixed(stepper: Stepper, step: float) -> Stepper:
     """The same method with steps of one length."""
-    return replace(stepper, adaptive=False, first_step=step)
+    return replace(stepper, control=replace(stepper.control, adaptive=False, first_step=step))
+
+
+def march_by(kind: Solver, system: System, end: float) -> March:
+    """The march of a system by what a solver word chooses for it."""
+    methods = kind.choose(IslandFacts(len(system.y), local_contacts=bool(system.structure.local)))
+    return March(system, methods.first, end, stiff=methods.stiff, otherwise=methods.otherwise)
 
 
 def final(system: System, stepper: Stepper, end: float) -> np.ndarray:

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import importlib
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from islands import TETHER, balls, final, fixed, simple, springs
+from islands import TETHER, balls, final, fixed, march_by, simple, springs
 from sceneql.compiled import kernels
 from sceneql.failure import RunFailure
-from sceneql.kinds import Solver
 from sceneql.march.march import March
 from sceneql.march.stability import stability
 from sceneql.stepping import dormand_prince_8, tableau
-from sceneql.words import solvers
 from sceneql.words.solvers.blanes_moan import BlanesMoan
 from sceneql.words.solvers.boris import Boris
 from sceneql.words.solvers.dop853 import Dop853
@@ -29,10 +25,7 @@ from sceneql.words.solvers.rk4 import Rk4
 from sceneql.words.solvers.runge_kutta import RungeKutta
 from sceneql.words.solvers.semi_implicit_euler import SemiImplicitEuler
 from sceneql.words.solvers.verlet import Verlet
-
-HEUN_3 = {"a": ((), (1 / 3,), (0.0, 2 / 3)), "b": (1 / 4, 0.0, 3 / 4)}
-NEEDED = {"runge_kutta": HEUN_3}
-"""Fields of the words that cannot do without."""
+from solver_words import EVERY, HEUN_3, solver
 
 DENSE = {
     "radau": 3,
@@ -43,7 +36,6 @@ DENSE = {
 }
 """Order of dense output where it is neither the cubic Hermite interpolant's nor 4."""
 
-EVERY = sorted(p.stem for p in Path(solvers.__path__[0]).glob("*.py") if not p.stem.endswith(("_kernels", "__init__")))
 MULTISTEP = {"bdf2"}
 ELSEWHERE = {"blanes_moan": 2}
 """Order where accelerations depend on velocities, or states have none."""
@@ -62,11 +54,6 @@ CLAIMED = {
     "dopri5": 5,
     "runge_kutta": 3,
 }
-
-
-def solver(word: str) -> Solver:
-    module = importlib.import_module(f"sceneql.words.solvers.{word}")
-    return getattr(module, "".join(part.capitalize() for part in word.split("_")))(**NEEDED.get(word, {}))
 
 
 WORDS = [word for word in EVERY if not solver(word).fields_only]
@@ -90,12 +77,13 @@ PROBLEMS = {
 @pytest.mark.parametrize("problem", PROBLEMS)
 def test_its_order_is_the_one_it_claims(word, problem):
     stepper = solver(word).stepper()
-    assert stepper.order == CLAIMED.get(word, stepper.order)
+    claimed = stepper.method.order
+    assert claimed == CLAIMED.get(word, claimed)
     system, end, exact = PROBLEMS[problem]
-    if stepper.order > 5:
+    if claimed > 5:
         pytest.skip("too accurate for halved steps: see the next test")
-    order = stepper.order if problem == "pendulum" else ELSEWHERE.get(word, stepper.order)
-    finest = 120 if stepper.order > 2 else 960
+    order = claimed if problem == "pendulum" else ELSEWHERE.get(word, claimed)
+    finest = 120 if claimed > 2 else 960
     error = math.inf
     orders = []
     while finest <= 120_000 and error > 3e-11:  # as fine as the reference lets one see
@@ -109,10 +97,11 @@ def test_its_order_is_the_one_it_claims(word, problem):
 @pytest.mark.parametrize("word", WORDS)
 def test_impacts_are_found_where_its_own_flight_has_them(word):
     """Free fall is a parabola, which all but the methods of order 1 (and the first step of bdf2) follow exactly."""
-    ball, stepper = balls([1.0], 0.8), solver(word).stepper()
-    march = March(ball.system, stepper, 1.0)
+    ball, kind = balls([1.0], 0.8), solver(word)
+    march = march_by(kind, ball.system, 1.0)
     heights = [march.advance(k / 60)[0][0] for k in range(61)]
-    off = 0.55 * stepper.first_step if stepper.order == 1 else stepper.tolerance if word in MULTISTEP else 1e-12
+    order, control = kind.stepper().method.order, kind.stepper().control
+    off = 0.55 * control.first_step if order == 1 else control.tolerance if word in MULTISTEP else 1e-12
     assert march.floats[ball.hit_at] == pytest.approx(math.sqrt(2 / 9.81), abs=off)
     assert march.statistics.events == 1
     assert min(heights) > -1e-12
@@ -128,7 +117,7 @@ def test_a_high_order_is_seen_in_one_long_step(word, shortest, longest):
         return np.abs(final(springs([1.0], [0.0]), fixed(stepper, h), h) - exact).max()
 
     order = math.log(error(longest) / error(shortest)) / math.log(longest / shortest) - 1
-    assert order == pytest.approx(stepper.order, abs=0.4)
+    assert order == pytest.approx(stepper.method.order, abs=0.4)
 
 
 @pytest.mark.parametrize("word", WORDS)
@@ -137,7 +126,7 @@ def test_growth_is_what_a_step_does_to_the_linear_equation(word, re, im):
     if word in MULTISTEP:
         pytest.skip("its growth is that of many steps")
     kind = solver(word)
-    if kind.stepper().last_stage == 0:
+    if kind.stepper().method.last_stage == 0:
         pytest.skip("hands its rate on from step to step: see the next test")
     jacobian = np.array([[re, -im], [im, re]])
     for step in (0.1, 0.9, 2.3):
@@ -145,7 +134,7 @@ def test_growth_is_what_a_step_does_to_the_linear_equation(word, re, im):
             continue  # its sweeps do not converge to all digits
         end = np.abs(final(simple("linear", [1.0, 0.0], [re, im]), fixed(kind.stepper(), step), 4 * step) @ (1, 1j))
         # A method that trusts the Jacobian shows what differences leave of it.
-        accuracy = 1e-7 if kind.stepper().jacobian else 0.0
+        accuracy = 1e-7 if kind.stepper().needs.jacobian else 0.0
         expected = kind.growth(jacobian, np.array([-1, -1]), step) ** 4
         assert end == pytest.approx(expected, rel=1e-9, abs=accuracy)
 
@@ -236,8 +225,9 @@ def test_rk4_runs_below_its_bound_and_is_stopped_above(factor):
 @pytest.mark.parametrize("word", WORDS)
 def test_dense_output_has_the_order_that_its_ends_or_its_own_formula_allow(word):
     stepper = solver(word).stepper()
-    inside = min(DENSE.get(word, 4 if stepper.dense else 3), ELSEWHERE.get(word, stepper.order))
-    high = stepper.order > 5
+    method = stepper.method
+    inside = min(DENSE.get(word, 4 if method.dense else 3), ELSEWHERE.get(word, method.order))
+    high = method.order > 5
     errors = []
     for h in (1.2, 0.6) if high else (0.1, 0.05):
         march = March(springs([1.0], [0.0]) if high else simple("forced", [1.0]), fixed(stepper, h), 2.0)
@@ -253,7 +243,7 @@ def test_dense_output_has_the_order_that_its_ends_or_its_own_formula_allow(word)
 def test_frames_change_nothing(word):
     ends = []
     for fps in (0.5, 24, 30, 60):
-        march = March(simple("pendulum", [1.5, 0.2], paired=True), solver(word).stepper(), 2.0)
+        march = march_by(solver(word), simple("pendulum", [1.5, 0.2], paired=True), 2.0)
         for k in range(int(2 * fps)):
             march.advance(k / fps)
         y, rate = march.advance(2.0)
@@ -373,8 +363,8 @@ def test_an_embedded_tableau_steps_by_its_error():
         b_hat=(7 / 24, 1 / 4, 1 / 3, 1 / 8),
         tolerance=1e-7,
     )
-    assert kind.stepper().order == 3
-    assert kind.stepper().last_stage == 3
+    assert kind.stepper().method.order == 3
+    assert kind.stepper().method.last_stage == 3
     y = final(simple("pendulum", [1.5, 0.2]), kind.stepper(), 2.0)
     np.testing.assert_allclose(y, PENDULUM_AT_2, atol=2e-6)
 

@@ -6,44 +6,47 @@ from dataclasses import replace
 from math import prod
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from sceneql.system import Grid, Stepper
+from sceneql.kinds import Methods, Solver
+from sceneql.system import Needs, Stepper
 
-MOST_CARRIED = {2: 300_000, 3: 30_000}
-"""Cells of a flat or deep grid up to which systems with all that a drift ties are made."""
+if TYPE_CHECKING:
+    from sceneql.system import Grid, IslandFacts
 
 KERNELS = "sceneql.grids.grid_stage_kernels"
+MOST_CARRIED = {2: 300_000, 3: 30_000}
+"""Cells of a flat or deep grid up to which systems with all that a drift ties are made."""
 UNSOLVED = "Newton's method finds no solution of this step: take a shorter one"
 UNSOLVED_AS_NAMED = f"{UNSOLVED}, or with a drift `linear: auto`"
+BEYOND = "by Newton's method on all that its drift ties, from the first step on that this does not solve"
 
 
-def either_way(stepper: Stepper) -> Stepper:
-    """An implicit Runge-Kutta method with what takes its place on an island that is one field on a grid."""
-    on_grid = replace(
-        stepper,
-        step=f"{KERNELS}:step",
-        dense=None if stepper.adaptive else f"{KERNELS}:linear",
-        jacobian=False,
-        newton=False,
-        prepare="sceneql.grids.prepare_stages:prepare",
-        unsolved=UNSOLVED if stepper.linear == "auto" else UNSOLVED_AS_NAMED,
-        halves=False,
-    )
-    return replace(stepper, on_grid=on_grid)
-
-
-def grid_or_general(stepper: Stepper, grid: Grid) -> Stepper:
-    """What a stepper hands over for grids; where a drift acts, itself if need be.
+def grid_or_general(solver: Solver, linear: str, island: IslandFacts) -> Methods:
+    """What marches an island by an implicit Runge-Kutta method; ``linear``: how it solves the systems of a grid.
 
     The systems of grids know the spread and go over what drifts again and again, which is quick but converges up to
     about a cell a step. Newton's method on all slopes, the limiter's among them, has no such bound: it takes over where
     a step of a given length is not solved, and makes those that a tolerance chooses.
     """
-    if stepper.on_grid is None:
-        return stepper
+    general, grid = solver.stepper(), island.grid
+    if grid is None:
+        return Methods(solver, general)
     many = prod(grid.cells.shape) > MOST_CARRIED[3 if grid.cells.shape[2] > 1 else 2]
-    if not grid.carried or many or stepper.linear != "auto":
-        return stepper.on_grid
-    if stepper.adaptive:
-        return stepper
-    return replace(stepper.on_grid, otherwise=replace(stepper, dense=stepper.on_grid.dense))
+    if not grid.carried or many or linear != "auto":
+        return Methods(solver, _on_grid(general, linear, grid))
+    if general.control.adaptive:
+        return Methods(solver, general)
+    on_grid = _on_grid(general, linear, grid)
+    otherwise = replace(general, method=replace(general.method, dense=on_grid.method.dense))
+    return Methods(solver, on_grid, otherwise=otherwise, remark=BEYOND)
+
+
+def _on_grid(general: Stepper, linear: str, grid: Grid) -> Stepper:
+    """The same method, its stages solved by the systems of the grid."""
+    from sceneql.grids.prepare_stages import likely_kernels
+
+    dense = None if general.control.adaptive else f"{KERNELS}:linear"
+    return Stepper(
+        replace(general.method, step=f"{KERNELS}:step", dense=dense),
+        replace(general.control, unsolved=UNSOLVED if linear == "auto" else UNSOLVED_AS_NAMED, halves=False),
+        Needs(prepare="sceneql.grids.prepare_stages:prepare", linear=linear, beside=likely_kernels(grid, linear)),
+    )

@@ -39,7 +39,6 @@ KERNELS = {
 }
 FIRST = {"direct": ("sceneql.linear.multifrontal_symmetric_kernels",)}
 """What of a solver's own the second process begins with, while this one begins with another part."""
-BEYOND = "; by Newton's method on all that its drift ties, from the first step on that this does not solve"
 COARSEST = 2
 LONGEST_ROW = 512
 """Cells of a row up to which `auto` transforms: a cell costs twice as many multiplications."""
@@ -75,13 +74,13 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
 
     grid = system.grid
     assert grid is not None
-    stages, explicit_first, _, embedded, error_order = stepper.numbers
-    _, _, relative, absolute, _, _, _, *tableau = stepper.settings
-    share = SHARE if stepper.adaptive else 1.0
+    stages, explicit_first, _, embedded, error_order = stepper.method.numbers
+    _, _, relative, absolute, _, _, _, *tableau = stepper.method.settings
+    share = SHARE if stepper.control.adaptive else 1.0
     largest = float(np.abs(system.y).max(initial=0.0)) or 1.0
-    absolute *= largest if stepper.by_scale else 1.0
-    separated = separate(grid, system.floats) if _may_separate(grid, stepper.linear) else None
-    name, why = _choice(grid, stepper.linear, separated is not None)
+    absolute *= largest if stepper.control.by_scale else 1.0
+    separated = separate(grid, system.floats) if _may_separate(grid, stepper.needs.linear) else None
+    name, why = _choice(grid, stepper.needs.linear, separated is not None)
     cells = grid.cells.shape[0] * grid.cells.shape[1] * grid.cells.shape[2]
     plan = _PLANS[name](grid) if separated is None or name != "fast_transform" else _transform(grid, separated)
     solver = number_of(function(KERNELS[name]), linear.SOLVE)
@@ -91,19 +90,17 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     assert len(head) == layout.PLAN
     store = 2 * cells + plan.room + layout.RECORD
     return Prepared(
-        settings=np.array([share * relative, share * absolute if stepper.adaptive else 0.0, *tableau]),
+        settings=np.array([share * relative, share * absolute if stepper.control.adaptive else 0.0, *tableau]),
         numbers=np.concatenate([[stages, explicit_first, embedded, error_order], head, plan.numbers]).astype(np.int64),
         work=(3 + stages) * len(system.y) + store,
-        text=f"linear systems by {name}, {plan.text}, {why}{'' if stepper.otherwise is None else BEYOND}",
+        text=f"linear systems by {name}, {plan.text}, {why}",
     )
 
 
-def likely_kernels(stepper: Stepper, grid: Grid) -> tuple[str, ...]:
+def likely_kernels(grid: Grid, linear: str) -> tuple[str, ...]:
     """Modules of the linear solver that `prepare` will most likely ask for, to be compiled meanwhile."""
-    if stepper.prepare != f"{__name__}:{prepare.__name__}":
-        return ()
     try:
-        name = _choice(grid, stepper.linear, _may_separate(grid, stepper.linear))[0]
+        name = _choice(grid, linear, _may_separate(grid, linear))[0]
     except LimitRefused:
         return ()
     return (*FIRST.get(name, ()), KERNELS[name].partition(":")[0])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.frame import Shape as Drawn
     from sceneql.kinds.moment import Moment
-    from sceneql.system import Assembly, Bodies, Grid, ModelState, Stepper
+    from sceneql.system import Assembly, Bodies, IslandFacts, ModelState, Stepper
 
 
 class Model(Kind):
@@ -176,6 +177,21 @@ class Contact(Kind):
         raise TypeError(f"{type(self).__name__} gives no {output}")
 
 
+@dataclasses.dataclass(frozen=True, slots=True)
+class Methods:
+    """What marches an island: a method to begin with, and those that may take its place during the run."""
+
+    solver: Solver = dataclasses.field(compare=False)
+    """The word whose methods these are, and whose `growth` tells their stability."""
+    first: Stepper
+    stiff: Stepper | None = None
+    """What the march goes to, and back from, where stability holds the steps of ``first`` (Method.stability)."""
+    otherwise: Stepper | None = None
+    """What takes over for good from the first step of a given length on that ``first`` finds no solution of."""
+    remark: str = ""
+    """When it takes over, for `explain`."""
+
+
 class Solver(Kind):
     """Marches a system in time. Sees only its rate, its Jacobian, its invariants and its events."""
 
@@ -200,12 +216,9 @@ class Solver(Kind):
         """Its compiled step and control."""
         raise NotImplementedError
 
-    def on_grid(self, grid: Grid, floats: Callable[[], Floats]) -> Solver:
-        """What marches in its place where an island is one field on a grid: itself, unless it chooses by itself.
-
-        ``floats`` gives those of the island, which the grid's offsets are into.
-        """
-        return self
+    def choose(self, island: IslandFacts) -> Methods:
+        """What marches an island: its own step, unless that depends on the island."""
+        return Methods(self, self.stepper())
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """Largest growth factor of a step of the linear system y' = jacobian y (its spectral radius).

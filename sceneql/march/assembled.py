@@ -12,7 +12,7 @@ from sceneql.island.island import IslandAssembly, System
 from sceneql.kinds import Contact, Force, Model, Object, Ref, Value
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.expression import Expr, Link
-from sceneql.system import Bodies, ModelState, Stepper
+from sceneql.system import Bodies, IslandFacts, ModelState, Stepper
 
 BLOCK = 4608
 """Bodies of a block, or a few more: some 300 bytes each, they stay in a core's own cache from step to step."""
@@ -59,6 +59,11 @@ class Assembled:
                 yield
             except ScriptError as error:
                 self.found.extend(error.diagnostics)
+
+    def facts(self) -> IslandFacts:
+        """What a solver may ask when it chooses its methods, once forces and contacts are added."""
+        made = self.assembly
+        return IslandFacts(len(made.start()), "local" in made.contact_mode, made.only_field, made.numbers)
 
     def act(self) -> None:
         """Add the forces and contacts."""
@@ -122,7 +127,8 @@ class Block:
 def blocks_of(whole: Assembled, system: System, stepper: Stepper) -> list[Block]:
     """The island in blocks that fit into a cache; none where bodies feel one another, or steps are chosen for all."""
     count = sum(0 if bodies is None else bodies.count for bodies in whole.bodies.values()) // BLOCK
-    fixed = not stepper.adaptive and not stepper.jacobian and stepper.prepare is None
+    needs = stepper.needs
+    fixed = not stepper.control.adaptive and not needs.jacobian and needs.prepare is None
     if count < 2 or not fixed or not whole.assembly.apart:
         return []
     made = [_block(whole, system, k, count) for k in range(count)]

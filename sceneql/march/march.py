@@ -16,7 +16,6 @@ from sceneql.compiled.pointers_kernels import addresses
 from sceneql.failure import LimitRefused, RunFailure
 from sceneql.island.breakpoint_table import before, next_breakpoint
 from sceneql.island.island import IslandAssembly, System
-from sceneql.island.jacobian import BY_DIFFERENCES
 from sceneql.march import march_kernels as kernels
 from sceneql.march.driver import driver, jacobian
 from sceneql.march.switching import Switch
@@ -66,11 +65,21 @@ class March:
     """An island on its way from 0 to ``end`` [s] by one solver."""
 
     def __init__(
-        self, system: System, stepper: Stepper, end: float, with_jacobian: Callable[[], System] | None = None
+        self,
+        system: System,
+        stepper: Stepper,
+        end: float,
+        *,
+        stiff: Stepper | None = None,
+        otherwise: Stepper | None = None,
+        with_jacobian: Callable[[], System] | None = None,
     ) -> None:
-        """``with_jacobian``: what lays the island out again for a stiff method that may take over."""
+        """``stiff``, ``otherwise``: what may take the stepper's place (kinds.Methods).
+
+        ``with_jacobian``: what lays the island out again for one of them that needs it.
+        """
         self.system, self.stepper, self.end = system, stepper, end
-        self._with_jacobian = with_jacobian
+        self._otherwise, self._with_jacobian = otherwise, with_jacobian
         self.statistics = Statistics()
         self.floats = system.floats.copy()
         self.driver = driver(system.structure)
@@ -85,56 +94,56 @@ class March:
         self._counts[kernels.ACTS] = bool(system.structure.after)
         self._counts[kernels.PENDING] = -1
         self._clock[kernels.ERROR] = 1e-4
-        self._clock[kernels.LARGEST] = min(stepper.largest_step, system.largest_step)
+        self._clock[kernels.LARGEST] = min(stepper.control.largest_step, system.largest_step)
         self._started = False
         self._floats_time = math.nan
         self._switch = None
-        takes_turns = not system.structure.local or len(system.y) > BY_DIFFERENCES
-        if stepper.stiff is not None and stepper.adaptive and takes_turns:
-            self._switch = Switch(stepper, stepper.stiff, self.rate, system.partner)
+        if stiff is not None:
+            self._switch = Switch(stepper, stiff, self.rate, system.partner)
         self._last_look = 0
         self._look_for_breakpoint(0.0)
         self._engage(stepper)
 
     def _engage(self, stepper: Stepper) -> None:
         """Go on with a method."""
-        if stepper.jacobian and self._with_jacobian is not None:
+        method, control, needs = stepper.method, stepper.control, stepper.needs
+        if needs.jacobian and self._with_jacobian is not None:
             self.system = self._with_jacobian()
             self.floats = np.concatenate([self.floats, self.system.floats[len(self.floats) :]])
             self._with_jacobian = None
         system = self.system
-        self._step = function(stepper.step)
-        self._jacobian = jacobian(system) if stepper.jacobian else None
+        self._step = function(method.step)
+        self._jacobian = jacobian(system) if needs.jacobian else None
         local = bool(system.structure.local)
-        between = stepper.jacobian and not stepper.newton
+        between = needs.jacobian and not needs.newton
         if local:
-            self.floats[channels.STAGE] = system.floats[channels.STAGE] if stepper.jacobian else channels.NO_SLOPES
+            self.floats[channels.STAGE] = system.floats[channels.STAGE] if needs.jacobian else channels.NO_SLOPES
         # What is changed after a step, its own dense output does not know: contacts may change it in every one.
         self._mixed = between and (local or bool(system.structure.after))
-        dense = None if local and not between else stepper.dense
+        dense = None if local and not between else method.dense
         self._dense = kernels.hermite if dense is None else function(dense)
-        self._extend = None if stepper.extend is None or local else function(stepper.extend)
+        self._extend = None if method.extend is None or local else function(method.extend)
         self._extended = math.nan
         # Islands without exact contacts have no events: the kernels that find them are not even loaded.
         event = function("sceneql.march.events_kernels:find_event") if system.pairs else None
         self._functions = addresses(self._step, self._dense, *self.driver, self._jacobian, event)
-        if stepper.prepare is None:
-            prepared = Prepared(stepper.settings, stepper.numbers, max(1, stepper.work) * len(system.y))
+        if needs.prepare is None:
+            prepared = Prepared(method.settings, method.numbers, max(1, method.work) * len(system.y))
         else:
-            prepared = function(stepper.prepare)(system, stepper)
+            prepared = function(needs.prepare)(system, stepper)
         self._settings = np.array(prepared.settings, dtype=np.float64)
         self._numbers = np.array(prepared.numbers, dtype=np.int64)
         self._work = np.zeros(prepared.work)
         self.prepared_text = prepared.text
-        self._counts[kernels.ADAPTIVE] = stepper.adaptive
-        self._counts[kernels.ORDER] = stepper.order
-        self._counts[kernels.LAST_STAGE] = -1 if local and between else stepper.last_stage
-        self._counts[kernels.CONTROLS] = stepper.controls
-        self._counts[kernels.HALVES] = stepper.halves
+        self._counts[kernels.ADAPTIVE] = control.adaptive
+        self._counts[kernels.ORDER] = method.order
+        self._counts[kernels.LAST_STAGE] = -1 if local and between else method.last_stage
+        self._counts[kernels.CONTROLS] = control.self_controlled
+        self._counts[kernels.HALVES] = control.halves
 
     def _look_for_breakpoint(self, time: float) -> None:
         """Find what turns next after an instant: a step of chosen length ends before it, by as little as can be."""
-        self._stop = next_breakpoint(self.system.stops, time, self.end) if self.stepper.adaptive else self.end
+        self._stop = next_breakpoint(self.system.stops, time, self.end) if self.stepper.control.adaptive else self.end
         self._step_end = before(self._stop) if self._stop < self.end else self.end
 
     def _pass_breakpoint(self) -> None:
@@ -253,7 +262,7 @@ class March:
         self._clock[kernels.LIMIT] = GROWTH_LIMIT * max(1.0, np.abs(y).max(initial=0.0), moved)
         positions = np.abs(y[self.system.partner >= 0]).max(initial=1.0)
         self._clock[kernels.SLOP] = TOUCHING * positions
-        step = self.stepper.first_step or self._first_step()
+        step = self.stepper.control.first_step or self._first_step()
         if self._switch is not None:
             self._switch.start(y, step)
             self._change(self._switch, 0.0)
@@ -261,19 +270,19 @@ class March:
 
     def _first_step(self) -> float:
         """The first step of an adaptive method (Hairer, Norsett & Wanner 1993, II.4, "starting step size")."""
-        y, rate, stepper = self._y1, self._rate1, self.stepper
-        scale = np.asarray(stepper.absolute) + stepper.tolerance * np.abs(y)
+        y, rate, control = self._y1, self._rate1, self.stepper.control
+        scale = np.asarray(control.absolute) + control.tolerance * np.abs(y)
 
         def norm(x: Floats) -> float:
             return math.sqrt(float(np.mean((x / scale) ** 2))) if len(x) else 0.0
 
         size, speed = norm(y), norm(rate)
         h = 1e-6 if size < 1e-5 or speed < 1e-5 else 0.01 * size / speed
-        h = min(h, stepper.largest_step, self.end)
+        h = min(h, control.largest_step, self.end)
         bend = norm(self.rate(h, y + h * rate) - rate) / h
         most = max(speed, bend)
-        guess = max(1e-6, 1e-3 * h) if not most > 1e-15 else (0.01 / most) ** (1.0 / stepper.order)
-        return min(100.0 * h, guess, stepper.largest_step)
+        guess = max(1e-6, 1e-3 * h) if not most > 1e-15 else (0.01 / most) ** (1.0 / self.stepper.method.order)
+        return min(100.0 * h, guess, control.largest_step)
 
     def _march(self, target: float) -> None:
         started = time.perf_counter() - compiled.seconds
@@ -332,8 +341,8 @@ class March:
     def fail(self, status: int) -> None:
         """Raise the RunFailure of the compiled march's status."""
         at = int(self._counts[kernels.INDEX])
-        why = "the equations run away" if self.stepper.adaptive else "the step is unstable"
-        unsolved = self.stepper.unsolved if status == kernels.NOT_FINITE else ""
+        why = "the equations run away" if self.stepper.control.adaptive else "the step is unstable"
+        unsolved = self.stepper.control.unsolved if status == kernels.NOT_FINITE else ""
         ahead = float(self._clock[kernels.STEP]) if status == kernels.NOT_FINITE and not unsolved else None
         self._fail(-1 if status == kernels.STUCK else at, unsolved or MESSAGES[status].format(why), ahead)
 
@@ -354,8 +363,8 @@ class March:
 
     def _goes_on(self, status: int) -> bool:
         """Whether another method goes on where one finds no step."""
-        if status == kernels.NOT_FINITE and self.stepper.otherwise is not None:
-            self.stepper = self.stepper.otherwise
+        if status == kernels.NOT_FINITE and self._otherwise is not None:
+            self.stepper, self._otherwise = self._otherwise, None
             self._engage(self.stepper)
             return True
         return status == kernels.STEP_TOO_SMALL and self._give_up()

@@ -46,7 +46,7 @@ class Stability:
 
 def stability(march: March, solver: Solver) -> Stability:
     """The stable step of ``solver`` on the island of ``march`` at its start."""
-    system, stepper = march.system, march.stepper
+    system, control = march.system, march.stepper.control
     modes = modes_of(march)
     if modes is None:
         return Stability(math.inf, 1.0, 0.0, "", None, "any step is stable: at the start no rate depends on the state")
@@ -58,7 +58,7 @@ def stability(march: March, solver: Solver) -> Stability:
     bound = reduced.bound()
     if 0 < bound < math.inf and by_pairs and len(system.y) <= WHOLE and _mixed(modes):
         bound = _whole(march, solver, bound / fastest, max(0.0, float(modes.values.real.max()))) * fastest
-    script = 0.0 if stepper.adaptive else stepper.first_step
+    script = 0.0 if control.adaptive else control.first_step
     tried = script * fastest if script else 1e-2
     if 0 < bound < math.inf and tried <= bound:
         tried = 1.02 * bound
@@ -69,8 +69,8 @@ def stability(march: March, solver: Solver) -> Stability:
     growth = max(reduced.growth_of(block, script * fastest) for block in blocks) if script else 1.0
     mode = f"a mode of '{origin.part}' at {frequency:.4g} Hz" + (f" ({origin.span})" if origin.span else "")
     step = bound / fastest
-    text = _text(step, script, growth, mode, stepper.adaptive)
-    if stepper.adaptive or math.isinf(bound):
+    text = _text(step, script, growth, mode, control.adaptive)
+    if control.adaptive or math.isinf(bound):
         text += _yardstick(simple, fastest)
     return Stability(step, growth, frequency, origin.part, origin.span, text)
 

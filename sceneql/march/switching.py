@@ -96,7 +96,7 @@ class Switch:
         if self.active is self.explicit:
             return False
         self._since = t
-        self._take(self.explicit, t, f"{self.stiff.name} finds no step short enough where the rate jumps")
+        self._take(self.explicit, t, f"{self.stiff.method.name} finds no step short enough where the rate jumps")
         return True
 
     def refuse(self, t: float, why: str) -> None:
@@ -114,11 +114,11 @@ class Switch:
 
     def _steps(self, length: float, speed: complex) -> float:
         """Stable explicit steps in a length [s]."""
-        return length * abs(speed) / boundary(self.explicit.stability, speed) if speed else 0.0
+        return length * abs(speed) / boundary(self.explicit.method.stability, speed) if speed else 0.0
 
     def _take(self, stepper: Stepper, t: float, why: str) -> None:
         self.active = stepper
         self._warming = stepper is self.stiff
         if self._warming:
             self.until_look = TRIAL
-        self.history.append((t, f"{stepper.name}: {why}"))
+        self.history.append((t, f"{stepper.method.name}: {why}"))

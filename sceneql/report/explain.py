@@ -75,7 +75,7 @@ def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
     from sceneql.march.stability import stability
 
     island = run.island
-    stepper = run.march.stepper
+    order, control = run.march.stepper.method.order, run.march.stepper.control
     bound = stability(run.march, run.solver)
     return {
         "models": list(island.models),
@@ -87,12 +87,12 @@ def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
         "states": len(run.march.system.y),
         "solver": graph.tasks[island.solver].word,
         "solver_name": island.solver,
-        "why": "; ".join(filter(None, (island.reason, run.solver.choice(), *_chosen(run), run.march.prepared_text))),
-        "order": stepper.order,
-        "adaptive": stepper.adaptive,
-        "step": None if stepper.adaptive else stepper.first_step,
-        "tolerance": stepper.tolerance if stepper.adaptive else None,
-        "measure": run.solver.measure() if stepper.adaptive and run.march.system.grid is None else "",
+        "why": "; ".join(filter(None, _why(run))),
+        "order": order,
+        "adaptive": control.adaptive,
+        "step": None if control.adaptive else control.first_step,
+        "tolerance": control.tolerance if control.adaptive else None,
+        "measure": run.solver.measure() if control.adaptive and run.march.system.grid is None else "",
         "step_bound": bound.step if math.isfinite(bound.step) else None,
         "bound_text": bound.text,
     }
@@ -106,6 +106,12 @@ def _chosen(run: IslandRun) -> list[str]:
     with suppress(RunFailure):
         return [f"begins with {why}" for _, why in run.march.choices()[:1]]
     return []
+
+
+def _why(run: IslandRun) -> tuple[str, ...]:
+    """Why it is solved by itself, what its solver chose, how that works here, and what takes over when."""
+    march, methods = run.march, run.methods
+    return run.island.reason, run.solver.choice(), *_chosen(run), march.prepared_text, methods.remark
 
 
 def _remarks(graph: SimulationGraph, run: IslandRun) -> dict[str, str]:

@@ -13,6 +13,7 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.failure import RunFailure
 from sceneql.graph import Island, SimulationGraph
 from sceneql.kinds import Model, Solver
+from sceneql.system import IslandFacts
 
 if TYPE_CHECKING:
     from sceneql.run.instant import Instant
@@ -93,17 +94,18 @@ def solvers(graph: SimulationGraph, island: Island, catalogue: Catalogue) -> dic
             found[word] = at(solver, given["tolerance" if adaptive(solver) else "step"])
     kept: dict[str, Solver] = {}
     for word in sorted(found, key=lambda word: (word == "auto", word)):
-        if all(at(found[word], 1e-3).stepper() != at(other, 1e-3).stepper() for other in kept.values()):
+        methods = at(found[word], 1e-3).choose(IslandFacts())
+        if all(methods != at(other, 1e-3).choose(IslandFacts()) for other in kept.values()):
             kept[word] = found[word]
     return kept
 
 
 def settings(graph: SimulationGraph, island: Island) -> tuple[float, float]:
     """Step [s] and tolerance of the script's own solver; where it has none, a frame and TOLERANCE."""
-    stepper = cast(Solver, graph.tasks[island.solver].kind).stepper()
-    if stepper.adaptive:
-        return graph.settings.clock.speed / graph.settings.clock.fps, stepper.tolerance
-    return stepper.first_step, TOLERANCE
+    control = cast(Solver, graph.tasks[island.solver].kind).stepper().control
+    if control.adaptive:
+        return graph.settings.clock.speed / graph.settings.clock.fps, control.tolerance
+    return control.first_step, TOLERANCE
 
 
 def at(solver: Solver, setting: float) -> Solver:
@@ -113,13 +115,13 @@ def at(solver: Solver, setting: float) -> Solver:
 
 def setting_of(solver: Solver) -> float:
     """Its step [s] or tolerance."""
-    stepper = solver.stepper()
-    return stepper.tolerance if stepper.adaptive else stepper.first_step
+    control = solver.stepper().control
+    return control.tolerance if control.adaptive else control.first_step
 
 
 def adaptive(solver: Solver) -> bool:
     """Whether its steps follow a tolerance."""
-    return solver.stepper().adaptive
+    return solver.stepper().control.adaptive
 
 
 def prepared(graph: SimulationGraph, island: Island, solver: Solver) -> SimulationGraph:

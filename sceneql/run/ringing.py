@@ -24,8 +24,9 @@ def ringing(island: IslandRun) -> Diagnostic | None:
     what the cells allow (Gershgorin). Source: Rannacher (1984), Numer. Math. 43, 309-327.
     """
     march, grid = island.march, island.march.system.grid
-    step = march.stepper.first_step
-    if grid is None or march.stepper.adaptive or step <= 0.0:
+    control = march.stepper.control
+    step = control.first_step
+    if grid is None or control.adaptive or step <= 0.0:
         return None
     n = grid.cells.shape[0] * grid.cells.shape[1] * grid.cells.shape[2]
     field = march.system.y[grid.at : grid.at + n]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator
+from collections.abc import Hashable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -19,8 +19,10 @@ from sceneql.run.ranges import ranged
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
+    from sceneql.island.island import System
+    from sceneql.march.assembled import Block
     from sceneql.march.march import March
-    from sceneql.system import ModelState
+    from sceneql.system import ModelState, Stepper
 
 
 class Run:
@@ -99,68 +101,81 @@ class IslandRun:
 
     def __init__(self, graph: SimulationGraph, island: Island) -> None:
         from sceneql.compiled.compile_beside import compile_beside
-        from sceneql.compiled.generated import function
         from sceneql.compiled.numba import lazy_kernels
-        from sceneql.island.jacobian import BY_DIFFERENCES
-        from sceneql.linear.stage import likely_kernels
         from sceneql.march.assembled import blocks_of, models_of
-        from sceneql.march.driver import driver, jacobian, lazy_first, modules
 
         compile_beside(("sceneql.march.march_kernels",))  # while the models are made here
         self.graph, self.island = graph, island
-        self.solver = cast(Solver, graph.tasks[island.solver].kind)
+        solver = cast(Solver, graph.tasks[island.solver].kind)
         made = models_of(graph, island)
         self.bodies = made.bodies
-        self.assembly = assembly = made.assembly
-        assembly.places = self._places
-        if not assembly.fields:  # then the solver's step is known before what acts is made
-            compile_beside((self.solver.stepper().step.partition(":")[0],))
+        self.assembly = made.assembly
+        self.assembly.places = self._places
+        if not self.assembly.fields:  # then the solver's step is known before what acts is made
+            compile_beside((solver.stepper().method.step.partition(":")[0],))
         made.act()
         made.found.raise_errors()
-        if assembly.only_field is not None:
-            self.solver = self.solver.on_grid(assembly.only_field, assembly.numbers)
-        stepper, end = self.solver.stepper(), graph.settings.clock.end
-        if assembly.only_field is not None and stepper.on_grid is not None:
-            from sceneql.grids import prepare_stages as on_grid
-            from sceneql.grids.grid_or_general import grid_or_general
-
-            stepper = grid_or_general(stepper, assembly.only_field)
-            compile_beside(on_grid.likely_kernels(stepper, assembly.only_field))
-        # Few masses under error control are followed from impact to impact.
-        within = stepper.newton and (not stepper.adaptive or len(assembly.start()) > BY_DIFFERENCES)
-        system = assembly.finish(stepper.jacobian, within)
-        events = ("sceneql.march.events_kernels",) if system.pairs else ()
-        likely = likely_kernels if stepper.likely is None else function(stepper.likely)
-        solving = (stepper.step.partition(":")[0], *likely(system))
-        read = stepper.jacobian or not system.structure.local
-        dense = (stepper.dense.partition(":")[0],) if stepper.dense is not None and read else ()
-        acting = compile_beside((*solving, *modules(system.structure), *events, *dense))
-        acting(*solving)
-        compile_beside(lazy_first(system.structure))
-        if stepper.march is None:  # while the process beside compiles what solves
-            driver(system.structure)
-            if stepper.jacobian:
-                jacobian(system)
-        acting()
-        from sceneql.march.march import March
-
+        self.methods = solver.choose(made.facts())
+        self.solver = self.methods.solver
+        system = self._compiled(self.methods.first)
         compile_beside(lazy_kernels.modules())  # nobody waits for what may never be called
-        blocks = blocks_of(made, system, stepper)
-        self.march: March
+        blocks = blocks_of(made, system, self.methods.first)
         try:
-            if stepper.march is not None:
-                self.march = function(stepper.march)(system, stepper, end)
-            elif blocks:
-                from sceneql.march.march_blocks import BlockMarch
-
-                self.march = BlockMarch(system, stepper, end, blocks)
-            else:
-                later = None if stepper.jacobian else lambda: assembly.finish(jacobian=True)
-                self.march = March(system, stepper, end, later)
+            self.march = self._marched(system, blocks)
         except LimitRefused as refused:
             raise refused.at(graph.tasks[island.solver].span) from None
         self.members = {*island.models, *(contact for contact, _, _ in island.contacts)}
         self._now: tuple[float, Floats, Floats] | None = None
+
+    def _compiled(self, stepper: Stepper) -> System:
+        """The island laid out for a method, when the kernels of both are compiled."""
+        from sceneql.compiled.compile_beside import compile_beside
+        from sceneql.compiled.generated import function
+        from sceneql.island.jacobian import BY_DIFFERENCES
+        from sceneql.linear.stage import likely_kernels
+        from sceneql.march.driver import driver, jacobian, lazy_first, modules
+
+        method, needs = stepper.method, stepper.needs
+        compile_beside(needs.beside)
+        # Few masses under error control are followed from impact to impact.
+        within = needs.newton and (not stepper.control.adaptive or len(self.assembly.start()) > BY_DIFFERENCES)
+        system = self.assembly.finish(needs.jacobian, within)
+        events = ("sceneql.march.events_kernels",) if system.pairs else ()
+        likely = likely_kernels if needs.likely is None else function(needs.likely)
+        solving = (method.step.partition(":")[0], *likely(system))
+        read = needs.jacobian or not system.structure.local
+        dense = (method.dense.partition(":")[0],) if method.dense is not None and read else ()
+        acting = compile_beside((*solving, *modules(system.structure), *events, *dense))
+        acting(*solving)
+        compile_beside(lazy_first(system.structure))
+        if needs.march is None:  # while the process beside compiles what solves
+            driver(system.structure)
+            if needs.jacobian:
+                jacobian(system)
+        acting()
+        return system
+
+    def _marched(self, system: System, blocks: Sequence[Block]) -> March:
+        """Its march: the method's own, that of blocks of bodies, or the one of all others."""
+        from sceneql.compiled.generated import function
+        from sceneql.march.march import March
+
+        stepper, end = self.methods.first, self.graph.settings.clock.end
+        if stepper.needs.march is not None:
+            own: March = function(stepper.needs.march)(system, stepper, end)
+            return own
+        if blocks:
+            from sceneql.march.march_blocks import BlockMarch
+
+            return BlockMarch(system, stepper, end, blocks)
+        return March(
+            system,
+            stepper,
+            end,
+            stiff=self.methods.stiff,
+            otherwise=self.methods.otherwise,
+            with_jacobian=None if stepper.needs.jacobian else lambda: self.assembly.finish(jacobian=True),
+        )
 
     def _places(self, link: Link) -> Any:
         """Where in the state an output of one of the models stands, for values that read it at stage times."""

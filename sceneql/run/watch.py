@@ -200,16 +200,16 @@ def _foretold(island: IslandRun) -> float:
 
 def _adaptive(island: IslandRun) -> bool:
     """Whether a tolerance chooses its steps."""
-    return island.solver.stepper().adaptive
+    return island.solver.stepper().control.adaptive
 
 
 def _halved(island: IslandRun) -> Diagnostic | None:
     """What is told of a solver that was given one length of step and took shorter ones where it found no solution."""
-    stepper, tries = island.solver.stepper(), island.march.statistics.rejected
-    if not stepper.halves or tries == 0:
+    control, tries = island.solver.stepper().control, island.march.statistics.rejected
+    if not control.halves or tries == 0:
         return None
     times = "once" if tries == 1 else f"{tries:,} times"
-    message = f"Newton's method found no solution {times}: steps of {stepper.first_step:.4g} s were halved there"
+    message = f"Newton's method found no solution {times}: steps of {control.first_step:.4g} s were halved there"
     span = island.graph.tasks[island.island.solver].span
     return Diagnostic("steps-halved", message, span, "shorter steps are more exact there", severity="warning")
 

@@ -7,7 +7,7 @@ from functools import cached_property
 from math import inf
 from typing import TYPE_CHECKING
 
-from sceneql.system import Prepared, Stepper
+from sceneql.system import Control, Method, Needs, Prepared, Stepper
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -58,12 +58,9 @@ class ImplicitTableau:
         """Places of the stages inside the step: the row sums."""
         return tuple(sum(row) for row in self.a)
 
-    def fixed(self, step: float, linear: str = "auto", newton: float = NEWTON) -> Stepper:
-        """Steps of one length [s]; ``linear``: how the systems are solved on a grid.
-
-        ``newton``: relative and absolute error that may be left in a stage.
-        """
-        return self._stepper(first_step=step, linear=linear, newton=newton)
+    def fixed(self, step: float, newton: float = NEWTON) -> Stepper:
+        """Steps of one length [s]; ``newton``: relative and absolute error that may be left in a stage."""
+        return self._stepper(first_step=step, newton=newton)
 
     def adaptive(
         self,
@@ -72,15 +69,12 @@ class ImplicitTableau:
         *,
         first_step: float = 0.0,
         largest_step: float = inf,
-        linear: str = "auto",
         by_scale: bool = False,
     ) -> Stepper:
         """Steps by the error of the embedded method. Raises ValueError where there is none."""
         if self.b_hat is None:
             raise ValueError("a method without an embedded one has no error estimate")
-        return self._stepper(
-            tolerance, absolute, first_step=first_step, largest_step=largest_step, linear=linear, by_scale=by_scale
-        )
+        return self._stepper(tolerance, absolute, first_step=first_step, largest_step=largest_step, by_scale=by_scale)
 
     def growth(self, jacobian: Floats, step: float) -> float:
         """max |R(step * lambda)| over the eigenvalues of a (n, n) Jacobian, R(z) = 1 + z b (1 - z A)^-1 1."""
@@ -102,7 +96,6 @@ class ImplicitTableau:
         *,
         first_step: float,
         largest_step: float = inf,
-        linear: str,
         by_scale: bool = False,
         newton: float = NEWTON,
     ) -> Stepper:
@@ -111,25 +104,26 @@ class ImplicitTableau:
         left = (tolerance, absolute, SHARE) if adaptive else (newton, newton, 1.0)
         lower = [entry for i, row in enumerate(self.a) for entry in row[:i]]
         return Stepper(
-            step=f"{KERNELS}:step",
-            dense=self.dense,
-            order=self.order,
-            settings=(0.0, 1.0, *left, 0.0, 0.0, self.diagonal, *self.c, *self.b, *differences, *lower),
-            numbers=(self.stages, int(not self.a[0]), int(self.stiffly_accurate), int(adaptive), self.error_order),
-            first_step=first_step,
-            adaptive=adaptive,
-            tolerance=tolerance,
-            absolute=absolute,
-            largest_step=largest_step,
-            jacobian=True,
-            newton=True,
-            prepare="sceneql.stepping.implicit_tableau:prepare",
-            controls=adaptive,
-            last_stage=self.stages if self.stiffly_accurate else -1,
-            linear=linear,
-            by_scale=by_scale,
-            unsolved=UNSOLVED,
-            halves=not adaptive,
+            Method(
+                step=f"{KERNELS}:step",
+                order=self.order,
+                dense=self.dense,
+                settings=(0.0, 1.0, *left, 0.0, 0.0, self.diagonal, *self.c, *self.b, *differences, *lower),
+                numbers=(self.stages, int(not self.a[0]), int(self.stiffly_accurate), int(adaptive), self.error_order),
+                last_stage=self.stages if self.stiffly_accurate else -1,
+            ),
+            Control(
+                first_step=first_step,
+                adaptive=adaptive,
+                tolerance=tolerance,
+                absolute=absolute,
+                by_scale=by_scale,
+                largest_step=largest_step,
+                self_controlled=adaptive,
+                unsolved=UNSOLVED,
+                halves=not adaptive,
+            ),
+            Needs(jacobian=True, newton=True, prepare="sceneql.stepping.implicit_tableau:prepare"),
         )
 
 
@@ -142,16 +136,16 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
 
     plan = stage_plan(system)
     assert system.pattern is not None
-    stages = stepper.numbers[0]
+    method, stages = stepper.method, stepper.method.numbers[0]
     room = system.pattern.room
-    settings, text = np.array(stepper.settings), plan.text
-    if system.grid is not None:  # a field that drifts: grids.grid_or_general
+    settings, text = np.array(method.settings), plan.text
+    if system.grid is not None:  # a field that drifts: grids/grid_or_general.py
         text += ", chosen since a drift may pass many cells in a step"
-        if stepper.by_scale:
+        if stepper.control.by_scale:
             settings[ABSOLUTE] *= float(np.abs(system.y).max(initial=0.0)) or 1.0
     return Prepared(
         settings=np.concatenate([settings, plan.scales]),
-        numbers=np.concatenate([stepper.numbers, [len(stepper.settings), room], plan.numbers]),
+        numbers=np.concatenate([method.numbers, [len(method.settings), room], plan.numbers]),
         work=(4 + stages) * len(system.y) + room + plan.store,
         text=text,
     )

@@ -7,7 +7,7 @@ from math import sqrt
 from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds.eigenvalues import eigenvalues
-from sceneql.system import Stepper
+from sceneql.system import Control, Method, Stepper
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -31,14 +31,15 @@ class Splitting:
     def fixed(self, step: float) -> Stepper:
         """Steps of one length [s]; the rate at a step's end serves the next, so it costs one evaluation a drift."""
         return Stepper(
-            step="sceneql.stepping.splitting_kernels:step",
-            dense=None,
-            order=self.order,
-            settings=(*self.kicks, *self.drifts),
-            numbers=(len(self.drifts),),
-            work=2,
-            first_step=step,
-            last_stage=0,
+            Method(
+                step="sceneql.stepping.splitting_kernels:step",
+                order=self.order,
+                settings=(*self.kicks, *self.drifts),
+                numbers=(len(self.drifts),),
+                work=2,
+                last_stage=0,
+            ),
+            Control(first_step=step),
         )
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:

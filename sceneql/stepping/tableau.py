@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from cmath import sqrt
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import combinations_with_replacement
 from math import inf, prod
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.system import Stepper
+    from sceneql.system import Method, Stepper
 
 KERNELS = "sceneql.stepping.runge_kutta_kernels"
 HIGHEST_ORDER = 8
@@ -61,7 +61,9 @@ class Tableau:
 
     def fixed(self, step: float) -> Stepper:
         """Steps of one length [s]."""
-        return replace(self._stepper(None, 0.0, 0.0), first_step=step)
+        from sceneql.system import Control, Stepper
+
+        return Stepper(self._method(None, 0.0, 0.0), Control(first_step=step))
 
     def adaptive(
         self, tolerance: float, absolute: float, *, first_step: float = 0.0, largest_step: float = inf
@@ -69,11 +71,12 @@ class Tableau:
         """Steps by the error of the embedded method. Raises ValueError where there is none."""
         if self.b_hat is None:
             raise ValueError("a method without an embedded one has no error estimate")
-        return replace(
-            self._stepper(self.b_hat, tolerance, absolute),
-            first_step=first_step,
-            largest_step=largest_step,
+        from sceneql.system import Control, Stepper
+
+        control = Control(
+            first_step=first_step, adaptive=True, tolerance=tolerance, absolute=absolute, largest_step=largest_step
         )
+        return Stepper(self._method(self.b_hat, tolerance, absolute), control)
 
     def growth(self, jacobian: Floats, step: float) -> float:
         """max |R(step * lambda)| over the eigenvalues of a (n, n) Jacobian, R(z) = 1 + sum of z^k b A^(k-1) 1."""
@@ -104,21 +107,18 @@ class Tableau:
             total = total * z + power
         return total
 
-    def _stepper(self, embedded: tuple[float, ...] | None, relative: float, absolute: float) -> Stepper:
-        from sceneql.system import Stepper
+    def _method(self, embedded: tuple[float, ...] | None, relative: float, absolute: float) -> Method:
+        from sceneql.system import Method
 
         differences = [b - other for b, other in zip(self.b, embedded or self.b, strict=True)]
         lower = [entry for row in self.a for entry in row]
-        return Stepper(
+        return Method(
             step=f"{KERNELS}:step",
-            dense=self.dense,
             order=self.order,
+            dense=self.dense,
             settings=(relative, absolute, *self.c, *self.b, *differences, *lower),
             numbers=(self.stages, int(embedded is not None)),
             work=self.stages,
-            adaptive=embedded is not None,
-            tolerance=relative,
-            absolute=absolute,
             last_stage=self.stages - 1 if self.first_same_as_last else -1,
         )
 

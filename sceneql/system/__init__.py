@@ -23,7 +23,7 @@ Kernel signatures (numba; the types are in signatures_kernels.py), all ``-> None
     slopes(t, y, entries, floats, ints)     adds the derivatives of one term (see Slopes)
     jacobian(functions, t, y, values, floats, ints)   the derivative of the island's rate (see Pattern)
 
-A step gets what it may call as addresses: ``rate = rate_at(functions[AT_RATE])`` and, of a Stepper with ``jacobian``,
+A step gets what it may call as addresses: ``rate = rate_at(functions[AT_RATE])`` and, where it needs the Jacobian,
 ``jacobian = jacobian_at(functions[AT_JACOBIAN])`` (compiled/pointers_kernels.py); pass `functions` on to jacobian.
 It may be called again from the same start with another h (a rejected step; the search for an event), and `dense`
 belongs to the latest call. After an event y0 is not the y1 of the step before.
@@ -35,16 +35,20 @@ accelerations by its inverse masses and writes dx/dt = v), `constrain` (a restin
 from sceneql.system.assembly import Assembly, Mode
 from sceneql.system.fields import Cells, Grid
 from sceneql.system.state import Bodies, ModelState
-from sceneql.system.stepping import Prepared, Stepper
+from sceneql.system.stepping import Control, IslandFacts, Method, Needs, Prepared, Stepper
 from sceneql.system.terms import Pattern, Slopes, Stage
 
 __all__ = [
     "Assembly",
     "Bodies",
     "Cells",
+    "Control",
     "Grid",
+    "IslandFacts",
+    "Method",
     "Mode",
     "ModelState",
+    "Needs",
     "Pattern",
     "Prepared",
     "Slopes",

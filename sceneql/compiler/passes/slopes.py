@@ -21,7 +21,7 @@ def warn_of_values(tasks: Mapping[str, Task], groups: Iterable[Island], found: D
         solver = tasks[island.solver]
         for value in (value for part in parts for value in values_of(tasks[part].kind)):
             lists = [link for link in value.links if link.task in island.models and None in link.type.shape]
-            if not lists or not cast(Solver, solver.kind).stepper().jacobian:
+            if not lists or not cast(Solver, solver.kind).stepper().needs.jacobian:
                 continue
             read = _read(value, tasks, island.models)
             if read is None or read > MOST_READ:

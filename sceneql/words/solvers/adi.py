@@ -26,14 +26,16 @@ class Adi(Solver):
 
     def stepper(self) -> Stepper:
         """Fixed steps."""
-        from sceneql.system import Stepper
+        from sceneql.system import Control, Method, Needs, Stepper
 
         return Stepper(
-            step="sceneql.grids.multigrid.adi_kernels:step",
-            dense="sceneql.grids.grid_stage_kernels:linear",
-            order=2,
-            first_step=self.step,
-            prepare="sceneql.grids.adi:prepare",
+            Method(
+                step="sceneql.grids.multigrid.adi_kernels:step",
+                order=2,
+                dense="sceneql.grids.grid_stage_kernels:linear",
+            ),
+            Control(first_step=self.step),
+            Needs(prepare="sceneql.grids.adi:prepare"),
         )
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:

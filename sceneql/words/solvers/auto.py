@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from sceneql.kinds import FixedScalar, Solver, field
+from sceneql.kinds import FixedScalar, Methods, Solver, field
 from sceneql.stepping.tableau import DORMAND_PRINCE
 from sceneql.words.solvers.exact import Exact
 from sceneql.words.solvers.radau import Radau
 from sceneql.words.solvers.tr_bdf2 import TrBdf2
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from sceneql.frame import Floats
-    from sceneql.system import Grid, Stepper
+    from sceneql.system import IslandFacts, Stepper
 
 
 class Auto(Solver):
@@ -40,23 +38,29 @@ class Auto(Solver):
         return "dopri5, and radau where the scene is stiff"
 
     def stepper(self) -> Stepper:
-        """That of dopri5, with radau's to take its place."""
+        """That of dopri5."""
         from dataclasses import replace
 
-        return replace(
-            DORMAND_PRINCE.adaptive(self.tolerance, self.tolerance),
-            name="dopri5",
-            stability=DORMAND_PRINCE.stability_function,
-            stiff=replace(Radau(tolerance=self.tolerance).stepper(), name="radau"),
-        )
+        explicit = DORMAND_PRINCE.adaptive(self.tolerance, self.tolerance)
+        named = replace(explicit.method, name="dopri5", stability=DORMAND_PRINCE.stability_function)
+        return replace(explicit, method=named)
 
-    def on_grid(self, grid: Grid, floats: Callable[[], Floats]) -> Solver:
-        """exact where it applies, else tr_bdf2."""
-        from sceneql.grids.multigrid.separable import axes_of
+    def choose(self, island: IslandFacts) -> Methods:
+        """dopri5 with radau, but for few masses with local contacts; on a grid exact where it applies, else tr_bdf2."""
+        from dataclasses import replace
 
-        if axes_of(grid, floats()) is not None:
-            return Exact()
-        return TrBdf2(tolerance=min(100.0 * self.tolerance, 0.1))
+        from sceneql.island.jacobian import BY_DIFFERENCES
+
+        if island.grid is not None and island.floats is not None:
+            from sceneql.grids.multigrid.separable import axes_of
+
+            if axes_of(island.grid, island.floats()) is not None:
+                return Exact().choose(island)
+            return TrBdf2(tolerance=min(100.0 * self.tolerance, 0.1)).choose(island)
+        if island.local_contacts and island.entries <= BY_DIFFERENCES:
+            return Methods(self, self.stepper())
+        stiff = Radau(tolerance=self.tolerance).stepper()
+        return Methods(self, self.stepper(), stiff=replace(stiff, method=replace(stiff.method, name="radau")))
 
     def measure(self) -> str:
         """Those of its two methods."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import FixedScalar, FixedTime, Solver, field
-from sceneql.system import Prepared, Stepper
+from sceneql.system import Control, Method, Needs, Prepared, Stepper
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -43,23 +43,24 @@ class Bdf2(Solver):
         absolute = self.tolerance if self.absolute is None else self.absolute
         newton = (self.tolerance, absolute, SHARE) if adaptive else (self.newton, self.newton, 1.0)
         return Stepper(
-            step="sceneql.words.solvers.bdf2_kernels:step",
-            dense=None,
-            order=2,
-            settings=(0.0, 1.0, *newton, 0.0, 0.0, float("-inf"), float("-inf"), 1.0),
-            numbers=(int(adaptive), 0),
-            first_step=self.step or self.first_step or 0.0,
-            adaptive=adaptive,
-            tolerance=self.tolerance if adaptive else 0.0,
-            absolute=absolute if adaptive else 0.0,
-            largest_step=self.largest_step or float("inf"),
-            jacobian=True,
-            newton=True,
-            prepare="sceneql.words.solvers.bdf2:prepare",
-            controls=adaptive,
-            last_stage=1,
-            unsolved=UNSOLVED,
-            halves=not adaptive,
+            Method(
+                step="sceneql.words.solvers.bdf2_kernels:step",
+                order=2,
+                settings=(0.0, 1.0, *newton, 0.0, 0.0, float("-inf"), float("-inf"), 1.0),
+                numbers=(int(adaptive), 0),
+                last_stage=1,
+            ),
+            Control(
+                first_step=self.step or self.first_step or 0.0,
+                adaptive=adaptive,
+                tolerance=self.tolerance if adaptive else 0.0,
+                absolute=absolute if adaptive else 0.0,
+                largest_step=self.largest_step or float("inf"),
+                self_controlled=adaptive,
+                unsolved=UNSOLVED,
+                halves=not adaptive,
+            ),
+            Needs(jacobian=True, newton=True, prepare="sceneql.words.solvers.bdf2:prepare"),
         )
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
@@ -82,8 +83,8 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     assert system.pattern is not None
     room = system.pattern.room
     return Prepared(
-        settings=np.concatenate([stepper.settings, plan.scales]),
-        numbers=np.concatenate([stepper.numbers, [room], plan.numbers]),
+        settings=np.concatenate([stepper.method.settings, plan.scales]),
+        numbers=np.concatenate([stepper.method.numbers, [room], plan.numbers]),
         work=ARRAYS * len(system.y) + room + plan.store,
         text=plan.text,
     )

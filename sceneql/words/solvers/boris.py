@@ -32,10 +32,10 @@ class Boris(Solver):
 
     def stepper(self) -> Stepper:
         """Fixed steps."""
-        from sceneql.system import Stepper
+        from sceneql.system import Control, Method, Stepper
 
         return Stepper(
-            step="sceneql.words.solvers.boris_kernels:step", dense=None, order=2, work=4, first_step=self.step
+            Method(step="sceneql.words.solvers.boris_kernels:step", order=2, work=4), Control(first_step=self.step)
         )
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:

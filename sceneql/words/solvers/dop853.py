@@ -6,7 +6,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import FixedScalar, FixedTime, Solver, field
-from sceneql.system import Prepared, Stepper
+from sceneql.system import Control, Method, Needs, Prepared, Stepper
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -34,17 +34,17 @@ class Dop853(Solver):
     def stepper(self) -> Stepper:
         """Steps by the error, with the method's own dense output."""
         return Stepper(
-            step=f"{KERNELS}:step",
-            dense=f"{KERNELS}:dense",
-            order=8,
-            prepare=f"{__name__}:prepare",
-            extend=f"{KERNELS}:extend",
-            first_step=self.first_step or 0.0,
-            adaptive=True,
-            tolerance=self.tolerance,
-            absolute=self.tolerance if self.absolute is None else self.absolute,
-            largest_step=self.largest_step or inf,
-            last_stage=12,
+            Method(
+                step=f"{KERNELS}:step", order=8, dense=f"{KERNELS}:dense", last_stage=12, extend=f"{KERNELS}:extend"
+            ),
+            Control(
+                first_step=self.first_step or 0.0,
+                adaptive=True,
+                tolerance=self.tolerance,
+                absolute=self.tolerance if self.absolute is None else self.absolute,
+                largest_step=self.largest_step or inf,
+            ),
+            Needs(prepare=f"{__name__}:prepare"),
         )
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
@@ -62,12 +62,12 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     places = (*DORMAND_PRINCE_8.c, 1.0, *(sum(row) for row in EXTRA))
     bends = (weight for row in BEND for weight in row)
     settings = (
-        stepper.tolerance,
-        stepper.absolute,
+        stepper.control.tolerance,
+        stepper.control.absolute,
         *(weight for row in rows for weight in row),
         *places,
         *FIFTH,
         *THIRD,
         *bends,
     )
-    return Prepared(settings, (int(stepper.adaptive), int(system.pairs > 0)), 21 * len(system.y))
+    return Prepared(settings, (int(stepper.control.adaptive), int(system.pairs > 0)), 21 * len(system.y))

@@ -23,9 +23,11 @@ class Exact(Solver):
 
     def stepper(self) -> Stepper:
         """None: a march of its own."""
-        from sceneql.system import Stepper
+        from sceneql.system import Control, Method, Needs, Stepper
 
-        return Stepper(step="", dense=None, order=0, adaptive=True, march="sceneql.march.exact_march:ExactMarch")
+        return Stepper(
+            Method(step="", order=0), Control(adaptive=True), Needs(march="sceneql.march.exact_march:ExactMarch")
+        )
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """max |exp(h lambda)|."""

@@ -6,7 +6,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import FixedScalar, FixedTime, Solver, field
-from sceneql.system import Prepared, Stepper
+from sceneql.system import Control, Method, Needs, Prepared, Stepper
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -39,16 +39,16 @@ class GaussRadau15(Solver):
     def stepper(self) -> Stepper:
         """Steps by the method's own control, with its polynomial as dense output."""
         return Stepper(
-            step=f"{KERNELS}:step",
-            dense=f"{KERNELS}:dense",
-            order=15,
-            prepare=f"{__name__}:prepare",
-            first_step=self.first_step or 0.0,
-            adaptive=True,
-            tolerance=self.tolerance,
-            absolute=self.tolerance,
-            largest_step=self.largest_step or inf,
-            controls=True,
+            Method(step=f"{KERNELS}:step", order=15, dense=f"{KERNELS}:dense"),
+            Control(
+                first_step=self.first_step or 0.0,
+                adaptive=True,
+                tolerance=self.tolerance,
+                absolute=self.tolerance,
+                largest_step=self.largest_step or inf,
+                self_controlled=True,
+            ),
+            Needs(prepare=f"{__name__}:prepare"),
         )
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
@@ -74,6 +74,6 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     # A body's three components share one time scale; states of equations share that of all of their copy.
     sizes = [size for _, _, n in pairs for size in ([3] * (n // 3) if n % 3 == 0 else [n])] or [len(pushed)]
     numbers = np.concatenate(
-        [(int(stepper.adaptive), len(pushed), len(positions), len(sizes)), pushed, positions, np.cumsum(sizes)]
+        [(int(stepper.control.adaptive), len(pushed), len(positions), len(sizes)), pushed, positions, np.cumsum(sizes)]
     )
-    return Prepared((stepper.tolerance, *settings()), numbers.astype(np.int64), HEAD + VECTORS * len(system.y))
+    return Prepared((stepper.control.tolerance, *settings()), numbers.astype(np.int64), HEAD + VECTORS * len(system.y))

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from sceneql.grids.multigrid.linear_solvers import Linear
-from sceneql.kinds import FixedScalar, FixedTime, Solver, field
+from sceneql.kinds import FixedScalar, FixedTime, Methods, Solver, field
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.system import Stepper
+    from sceneql.system import IslandFacts, Stepper
 
 
 class ImplicitMidpoint(Solver):
@@ -33,10 +33,15 @@ class ImplicitMidpoint(Solver):
 
     def stepper(self) -> Stepper:
         """Fixed steps of the tableau."""
-        from sceneql.grids.grid_or_general import either_way
         from sceneql.stepping.implicit_tableau import IMPLICIT_MIDPOINT
 
-        return either_way(IMPLICIT_MIDPOINT.fixed(self.step, self.linear, self.newton))
+        return IMPLICIT_MIDPOINT.fixed(self.step, self.newton)
+
+    def choose(self, island: IslandFacts) -> Methods:
+        """By the systems of the grid where the island is a field on one."""
+        from sceneql.grids.grid_or_general import grid_or_general
+
+        return grid_or_general(self, self.linear, island)
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """max |(1 + h lambda / 2) / (1 - h lambda / 2)|."""

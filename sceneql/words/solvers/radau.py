@@ -50,22 +50,24 @@ class Radau(Solver):
 
     def stepper(self) -> Stepper:
         """Steps by the error of the embedded method."""
-        from sceneql.system import Stepper
+        from sceneql.system import Control, Method, Needs, Stepper
 
         return Stepper(
-            step=f"{KERNELS}:step",
-            dense=f"{KERNELS}:dense",
-            order=5,
-            first_step=self.first_step or 0.0,
-            adaptive=True,
-            tolerance=self.tolerance,
-            absolute=self.tolerance if self.absolute is None else self.absolute,
-            by_scale=self.absolute is None,
-            largest_step=self.largest_step or float("inf"),
-            jacobian=True,
-            prepare=f"{__name__}:prepare",
-            likely="sceneql.stepping.radau_systems:likely_kernels",
-            controls=True,
+            Method(step=f"{KERNELS}:step", order=5, dense=f"{KERNELS}:dense"),
+            Control(
+                first_step=self.first_step or 0.0,
+                adaptive=True,
+                tolerance=self.tolerance,
+                absolute=self.tolerance if self.absolute is None else self.absolute,
+                by_scale=self.absolute is None,
+                largest_step=self.largest_step or float("inf"),
+                self_controlled=True,
+            ),
+            Needs(
+                jacobian=True,
+                prepare=f"{__name__}:prepare",
+                likely="sceneql.stepping.radau_systems:likely_kernels",
+            ),
         )
 
     def measure(self) -> str:
@@ -89,22 +91,22 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     from sceneql.stepping.radau_systems import radau_systems
     from sceneql.system import Prepared
 
-    n, pattern = len(system.y), system.pattern
+    n, pattern, control = len(system.y), system.pattern, stepper.control
     if pattern is None:
         message = f"radau needs the Jacobian of {n} entries: {system.unsloped} gives no slopes"
         raise LimitRefused(message, None, "take `auto`, `verlet` or `dop853`, which need none, or fewer masses")
-    if isinstance(stepper.absolute, tuple) and len(stepper.absolute) != n:
-        message = f"`absolute` has {len(stepper.absolute)} numbers, one for each of the state's {n} is needed"
+    if isinstance(control.absolute, tuple) and len(control.absolute) != n:
+        message = f"`absolute` has {len(control.absolute)} numbers, one for each of the state's {n} is needed"
         raise RunFailure(message, part="radau", time=0.0, span=None)
-    rtol = stepper.tolerance if stepper.adaptive else 1e-12
+    rtol = control.tolerance if control.adaptive else 1e-12
     rounding = float(np.finfo(float).eps)
     newton = max(10 * rounding / rtol, min(3e-3, 0.1 * rtol**0.5))
-    scaled, scales = np.zeros(0, np.int64), np.broadcast_to(stepper.absolute if stepper.adaptive else rtol, n)
-    if stepper.adaptive and stepper.by_scale:
+    scaled, scales = np.zeros(0, np.int64), np.broadcast_to(control.absolute if control.adaptive else rtol, n)
+    if control.adaptive and control.by_scale:
         scaled, scales = error_scales(system)
     systems = radau_systems(system)
     settings = np.concatenate([[rtol, newton, systems.contraction], scales, systems.rows])
-    head = [not stepper.adaptive, pattern.room, len(pattern.tallies), len(scaled), len(settings) - len(systems.rows)]
+    head = [not control.adaptive, pattern.room, len(pattern.tallies), len(scaled), len(settings) - len(systems.rows)]
     return Prepared(
         settings=settings,
         numbers=np.concatenate([head, systems.kernels, pattern.tallies, scaled, systems.plan]).astype(np.int64),

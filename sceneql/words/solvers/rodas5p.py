@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import FixedScalar, FixedTime, Solver, field
-from sceneql.system import Prepared, Stepper
+from sceneql.system import Control, Method, Needs, Prepared, Stepper
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -106,19 +106,22 @@ class Rodas5p(Solver):
         absolute = self.tolerance if self.absolute is None else self.absolute
         rows = [entry for row in (*STATES, *COUPLINGS, *DENSE) for entry in row]
         return Stepper(
-            step="sceneql.words.solvers.rodas5p_kernels:step",
-            dense="sceneql.words.solvers.rodas5p_kernels:dense",
-            order=5,
-            settings=(self.tolerance, absolute, GAMMA, *C, *D, *rows),
-            first_step=self.first_step or 0.0,
-            adaptive=True,
-            tolerance=self.tolerance,
-            absolute=absolute,
-            by_scale=self.absolute is None,
-            largest_step=self.largest_step or float("inf"),
-            jacobian=True,
-            prepare="sceneql.words.solvers.rodas5p:prepare",
-            last_stage=0,
+            Method(
+                step="sceneql.words.solvers.rodas5p_kernels:step",
+                order=5,
+                dense="sceneql.words.solvers.rodas5p_kernels:dense",
+                settings=(self.tolerance, absolute, GAMMA, *C, *D, *rows),
+                last_stage=0,
+            ),
+            Control(
+                first_step=self.first_step or 0.0,
+                adaptive=True,
+                tolerance=self.tolerance,
+                absolute=absolute,
+                by_scale=self.absolute is None,
+                largest_step=self.largest_step or float("inf"),
+            ),
+            Needs(jacobian=True, prepare="sceneql.words.solvers.rodas5p:prepare"),
         )
 
     def measure(self) -> str:
@@ -152,10 +155,10 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     plan = stage_plan(system, exact=True)
     assert system.pattern is not None
     room, stages = system.pattern.room, len(COUPLINGS)
-    scaled, sizes = error_scales(system) if stepper.by_scale else (np.zeros(0, np.int64), np.zeros(0))
-    at = len(stepper.settings)
+    scaled, sizes = error_scales(system) if stepper.control.by_scale else (np.zeros(0, np.int64), np.zeros(0))
+    at = len(stepper.method.settings)
     return Prepared(
-        settings=np.concatenate([stepper.settings, plan.scales, sizes, [np.nan]]),
+        settings=np.concatenate([stepper.method.settings, plan.scales, sizes, [np.nan]]),
         numbers=np.concatenate([[stages, at, room, at + len(plan.scales), len(scaled)], scaled, plan.numbers]),
         work=(4 + stages) * len(system.y) + room + plan.store,
         text=plan.text,

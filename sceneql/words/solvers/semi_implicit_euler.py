@@ -24,13 +24,11 @@ class SemiImplicitEuler(Solver):
 
     def stepper(self) -> Stepper:
         """Fixed steps; the rate at the step's start is all that it needs."""
-        from sceneql.system import Stepper
+        from sceneql.system import Control, Method, Stepper
 
         return Stepper(
-            step="sceneql.words.solvers.semi_implicit_euler_kernels:step",
-            dense=None,
-            order=1,
-            first_step=self.step,
+            Method(step="sceneql.words.solvers.semi_implicit_euler_kernels:step", order=1),
+            Control(first_step=self.step),
         )
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from sceneql.grids.multigrid.linear_solvers import Linear
-from sceneql.kinds import FixedScalar, FixedTime, Solver, field
+from sceneql.kinds import FixedScalar, FixedTime, Methods, Solver, field
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.system import Stepper
+    from sceneql.system import IslandFacts, Stepper
 
 
 class TrBdf2(Solver):
@@ -42,20 +42,23 @@ class TrBdf2(Solver):
 
     def stepper(self) -> Stepper:
         """Fixed steps, or by the error of the embedded method."""
-        from sceneql.grids.grid_or_general import either_way
         from sceneql.stepping.implicit_tableau import TR_BDF2
 
         if self.step is not None:
-            return either_way(TR_BDF2.fixed(self.step, self.linear, self.newton))
-        adaptive = TR_BDF2.adaptive(
+            return TR_BDF2.fixed(self.step, self.newton)
+        return TR_BDF2.adaptive(
             self.tolerance,
             self.tolerance if self.absolute is None else self.absolute,
             first_step=self.first_step or 0.0,
             largest_step=self.largest_step or float("inf"),
-            linear=self.linear,
             by_scale=self.absolute is None,
         )
-        return either_way(adaptive)
+
+    def choose(self, island: IslandFacts) -> Methods:
+        """By the systems of the grid where the island is a field on one."""
+        from sceneql.grids.grid_or_general import grid_or_general
+
+        return grid_or_general(self, self.linear, island)
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """max |R(h lambda)| with the stability function of the tableau."""

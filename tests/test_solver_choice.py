@@ -1,0 +1,138 @@
+"""What every solver word chooses: methods whose compiled functions are there, for masses and for fields on grids."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from importlib.util import find_spec
+
+import numpy as np
+import pytest
+
+from sceneql.compiled.generated import load
+from sceneql.grids.grid_or_general import MOST_CARRIED
+from sceneql.grids.prepare_stages import KERNELS
+from sceneql.island.jacobian import BY_DIFFERENCES
+from sceneql.kinds import Methods, Solver
+from sceneql.march.march import March
+from sceneql.stepping.tableau import Tableau
+from sceneql.system import Cells, Control, Grid, IslandFacts, Stepper
+from sceneql.words.solvers.auto import Auto
+from sceneql.words.solvers.implicit_euler import ImplicitEuler
+from sceneql.words.solvers.tr_bdf2 import TrBdf2
+from solver_words import EVERY, solver
+
+
+def plate(cells: int = 32, *, carried: bool = False) -> IslandFacts:
+    """An island that is one field on a square whose coefficients vary."""
+    n = cells * cells
+    square = Cells((cells, cells, 1), (False,) * 3, np.zeros(n, dtype=bool), 0, 0)
+    grid = Grid(square, 0, 0, n, (2 * n, 3 * n, 3 * n), varying=True, fed_at=-1, carried=carried)
+    return IslandFacts(n + 1, grid=grid, floats=lambda: np.ones(4 * n))
+
+
+FACTS = {
+    "few masses": IslandFacts(12),
+    "few masses that touch": IslandFacts(12, local_contacts=True),
+    "many masses": IslandFacts(60_000),
+    "many masses that touch": IslandFacts(60_000, local_contacts=True),
+    "a field": plate(),
+    "a field that drifts": plate(carried=True),
+}
+
+
+def steppers(methods: Methods) -> list[Stepper]:
+    return [one for one in (methods.first, methods.stiff, methods.otherwise) if one is not None]
+
+
+def named(stepper: Stepper) -> Iterator[str]:
+    """All functions and classes that it names."""
+    method, needs = stepper.method, stepper.needs
+    yield from filter(None, (method.step, method.dense, method.extend, needs.prepare, needs.likely, needs.march))
+
+
+@pytest.mark.parametrize("word", EVERY)
+@pytest.mark.parametrize("island", FACTS)
+def test_what_a_word_chooses_is_there(word, island):
+    methods = solver(word).choose(FACTS[island])
+    for stepper in steppers(methods):
+        assert stepper.method.step or stepper.needs.march
+        for name in named(stepper):
+            module, _, attribute = name.partition(":")
+            assert callable(getattr(load(module), attribute))
+        assert all(find_spec(module) is not None for module in stepper.needs.beside)
+        if stepper.needs.march is not None:
+            module, _, attribute = stepper.needs.march.partition(":")
+            assert issubclass(getattr(load(module), attribute), March)
+    assert methods.solver.growth(np.array([[-1.0]]), np.array([-1]), 1e-3) <= 1.0 + 1e-12
+
+
+@pytest.mark.parametrize("word", EVERY)
+def test_what_may_take_over_has_what_it_takes(word):
+    for island in FACTS.values():
+        methods = solver(word).choose(island)
+        if methods.stiff is not None:  # the march compares their steps by the stability function of the first
+            assert methods.first.method.stability
+            for stepper in (methods.first, methods.stiff):
+                assert stepper.control.adaptive
+                assert stepper.method.name
+        if methods.otherwise is not None:
+            assert not methods.first.control.adaptive
+            assert methods.remark
+
+
+@pytest.mark.parametrize("word", EVERY)
+def test_methods_are_told_apart_by_what_they_do(word):
+    once, again = (solver(word).choose(IslandFacts()) for _ in range(2))
+    assert once == again
+    other = dataclasses.replace(once, first=dataclasses.replace(once.first, control=Control(first_step=0.125)))
+    assert once != other
+
+
+def test_a_word_that_says_no_more_chooses_its_own_step():
+    class Ralston(Solver):
+        def stepper(self):
+            return Tableau(a=((), (2 / 3,)), b=(1 / 4, 3 / 4)).fixed(1e-3)
+
+    own = Ralston()
+    for island in FACTS.values():
+        methods = own.choose(island)
+        assert methods.solver is own
+        assert methods == Methods(own, own.stepper())
+
+
+def test_auto_takes_radau_along_but_for_few_masses_that_touch():
+    bound = BY_DIFFERENCES
+    for entries, touching, both in ((bound, False, True), (bound, True, False), (bound + 1, True, True)):
+        methods = Auto().choose(IslandFacts(entries, local_contacts=touching))
+        assert (methods.stiff is not None) == both
+        assert methods.first == Auto().stepper()
+
+
+def test_auto_marches_a_field_by_another_word():
+    assert type(Auto().choose(plate()).solver) is TrBdf2
+
+
+def test_a_drift_has_the_general_way_at_hand():
+    """Fixed steps begin by the grid, those of a tolerance do without; a named solver and large grids have no other."""
+    fixed, by_error = ImplicitEuler(), TrBdf2()
+    still, drifting = plate(), plate(carried=True)
+    assert fixed.choose(still).otherwise is None
+    ways = fixed.choose(drifting)
+    assert ways.otherwise is not None
+    assert ways.otherwise.needs == fixed.stepper().needs
+    assert ways.first == fixed.choose(still).first
+    assert by_error.choose(drifting).first == by_error.stepper()
+    assert by_error.choose(still).first != by_error.stepper()
+    assert ImplicitEuler(linear="multigrid").choose(drifting).otherwise is None
+    large = plate(1 + int(MOST_CARRIED[2] ** 0.5), carried=True)
+    assert fixed.choose(large).otherwise is None
+
+
+@pytest.mark.parametrize("linear", KERNELS)
+def test_the_linear_solver_that_is_named_is_compiled_beside(linear):
+    facts = plate()
+    still = IslandFacts(facts.entries, grid=dataclasses.replace(facts.grid, varying=False))
+    beside = ImplicitEuler(linear=linear).choose(still).first.needs.beside
+    assert beside[-1] == KERNELS[linear].partition(":")[0]
+    assert all(find_spec(module) is not None for module in beside)
