@@ -60,7 +60,8 @@ def _looks_ahead(graph: SimulationGraph, camera: str) -> bool:
 def _kernels(words: set[tuple[str, str]]) -> set[str]:
     """Words whose compiled code, in a file of their name, is not loaded; what renderers compile stands elsewhere."""
     files = (*ROOT.glob("words/*/*_kernels.py"), *ROOT.glob("*/*_kernels.py"))
-    return {word for family, word in words if family != "renderers"} & {path.stem.removesuffix("_kernels") for path in files}
+    own = {word for family, word in words if family != "renderers"}
+    return own & {path.stem.removesuffix("_kernels") for path in files}
 
 
 def _islands(graph: SimulationGraph) -> list[dict[str, Any]]:
