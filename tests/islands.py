@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sceneql.island.island import IslandAssembly, System
+from sceneql.island.island import IslandAssembly
+from sceneql.island.system import System
 from sceneql.kinds import Object, Ref, Solver
 from sceneql.march.march import March
 from sceneql.quantities.expression import Expr, Link

@@ -10,7 +10,7 @@ from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.system import Prepared, Stepper
 
 if TYPE_CHECKING:
-    from sceneql.island.island import System
+    from sceneql.island.system import System
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:

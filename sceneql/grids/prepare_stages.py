@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats
-    from sceneql.island.island import System
+    from sceneql.island.system import System
 
 DIRECT_CELLS = {2: 40_000, 3: 4_000}
 """Up to so many cells of a flat or deep grid factors are small: `auto` takes them."""

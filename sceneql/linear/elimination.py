@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats
-    from sceneql.island.island import System
+    from sceneql.island.system import System
 
     Numbers = NDArray[int64]
     Mask = NDArray[bool_]

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from numpy import int64
     from numpy.typing import NDArray
 
-    from sceneql.island.island import System
+    from sceneql.island.system import System
     from sceneql.system import Grid
 
 FEWEST = {2: 30_000, 3: 2_000}

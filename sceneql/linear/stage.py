@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats
-    from sceneql.island.island import System
+    from sceneql.island.system import System
     from sceneql.linear.elimination import Kinds, Left
 
 SMALL = 96

@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 from typing import cast
 
 from sceneql.graph import Island, SimulationGraph, Task
-from sceneql.island.island import IslandAssembly, System
+from sceneql.island.island import IslandAssembly
+from sceneql.island.system import System
 from sceneql.kinds import Contact, Force, Model, Object, Ref, Value
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.expression import Expr, Link

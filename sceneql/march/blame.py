@@ -10,7 +10,7 @@ from sceneql.island import layout
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.island.island import Origin, System
+    from sceneql.island.system import Origin, System
     from sceneql.march.driver import Driver
 
 

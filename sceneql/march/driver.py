@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import sceneql.system.channels as channels
 from sceneql.compiled.generated import load, write
 from sceneql.island import layout
-from sceneql.island.island import Structure, System
+from sceneql.island.system import Structure, System
 
 TABLE = f"ints[{layout.TABLE_AT}]"
 REFRESH = f"    refresh(t, y, floats, ints[ints[{TABLE}] : ints[{TABLE} + 1]])"

@@ -15,7 +15,8 @@ from sceneql.compiled.kernels import compiled
 from sceneql.compiled.pointers_kernels import addresses
 from sceneql.failure import LimitRefused, RunFailure
 from sceneql.island.breakpoint_table import before, next_breakpoint
-from sceneql.island.island import IslandAssembly, System
+from sceneql.island.island import IslandAssembly
+from sceneql.island.system import System
 from sceneql.march import march_kernels as kernels
 from sceneql.march.driver import driver, jacobian
 from sceneql.march.switching import Switch

@@ -22,7 +22,8 @@ from sceneql.march.march_kernels import PAUSED, REACHED, REJECTED, STEPS
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.island.island import IslandAssembly, System
+    from sceneql.island.island import IslandAssembly
+    from sceneql.island.system import System
     from sceneql.march.assembled import Block
     from sceneql.system import Stepper
 

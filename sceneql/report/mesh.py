@@ -92,7 +92,7 @@ def mesh(
     Unsuitable for what is no object or file, and RunFailure for what has no inside, is empty or unbounded, or needs too
     many cells.
     """
-    from sceneql.mesh.mesh_formats import format_of, write
+    from sceneql.mesh.write_mesh import format_of, write
 
     format_of(output)
     if not 0.0 <= time <= graph.settings.clock.end:

@@ -19,7 +19,7 @@ from sceneql.run.ranges import ranged
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.island.island import System
+    from sceneql.island.system import System
     from sceneql.march.assembled import Block
     from sceneql.march.march import March
     from sceneql.system import ModelState, Stepper

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from numpy import int64
     from numpy.typing import NDArray
 
-    from sceneql.island.island import System
+    from sceneql.island.system import System
 
 
 def elimination(system: System) -> NDArray[int64]:

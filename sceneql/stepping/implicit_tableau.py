@@ -11,7 +11,7 @@ from sceneql.system import Control, Method, Needs, Prepared, Stepper
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.island.island import System
+    from sceneql.island.system import System
 
 KERNELS = "sceneql.stepping.implicit_runge_kutta_kernels"
 NEWTON = 1e-10

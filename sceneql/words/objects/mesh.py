@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, ClassVar
 from pydantic import field_validator
 
 from sceneql.kinds import Collider, Exceeds, File, FixedAngle, Moment, field
-from sceneql.shapes.mesh_file import LARGEST_FILE, Loaded, load
 from sceneql.shapes.placement import Placed, Scale, affine, apply, compose
+from sceneql.shapes.read_mesh import LARGEST_FILE, Loaded, load
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Shape

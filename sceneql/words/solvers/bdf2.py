@@ -9,7 +9,7 @@ from sceneql.system import Control, Method, Needs, Prepared, Stepper
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.island.island import System
+    from sceneql.island.system import System
 
 
 class Bdf2(Solver):

@@ -10,7 +10,7 @@ from sceneql.system import Control, Method, Needs, Prepared, Stepper
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.island.island import System
+    from sceneql.island.system import System
 
 KERNELS = "sceneql.words.solvers.gauss_radau15_kernels"
 

@@ -11,7 +11,7 @@ from sceneql.kinds import FixedScalar, FixedTime, Solver, field
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.island.island import System
+    from sceneql.island.system import System
     from sceneql.system import Prepared, Stepper
 
 KERNELS = "sceneql.stepping.radau_kernels"

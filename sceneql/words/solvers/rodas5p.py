@@ -9,7 +9,7 @@ from sceneql.system import Control, Method, Needs, Prepared, Stepper
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.island.island import System
+    from sceneql.island.system import System
 
 GAMMA = 0.21193756319429014
 C = (0.0, 0.6358126895828704, 0.4095798393397535, 0.9769306725060716, 0.4288403609558664, 1.0, 1.0, 1.0)
