@@ -1,4 +1,4 @@
-"""Bound trees on numpy arrays: a node of shape S has an array of any leading axes and then S."""
+"""Evaluation of bound trees by numpy: a node of shape S gives an array (..., *S) with any leading axes (samples)."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def _apply(call: Call, args: list[Any]) -> Any:
 
 
 def _aligned(value: Any, rank: int, missing: int, core: int) -> Any:
-    """Axes of length 1 put before the outer axes of the value's shape, so that these align at the last."""
+    """Insert ``missing`` axes of length 1 behind the leading axes, so that arguments of unlike rank broadcast."""
     import numpy as np
 
     value = np.asarray(value)
@@ -124,7 +124,7 @@ def _aligned(value: Any, rank: int, missing: int, core: int) -> Any:
 
 
 def _side_by_side(items: list[Any], rank: int) -> Any:
-    """Items of shape S to one array (n, *S) behind the leading axes; ``rank`` counts n and S."""
+    """Stack items of shape S to an array (..., n, *S); ``rank`` is that of (n, *S)."""
     import numpy as np
 
     if not items:
@@ -151,7 +151,7 @@ def _reduce(name: str, value: Any, shape: Shape) -> Any:
 
 
 def _below(expr: Expr) -> tuple[Expr, ...]:
-    """The children that are evaluated: keys that never change are a table."""
+    """The children to evaluate: of keyframes with constant times and values, which are a table, the argument alone."""
     return (expr.argument,) if isinstance(expr, Keys) and known_table(expr) is not None else children(expr)
 
 

@@ -15,10 +15,10 @@ from sceneql.quantities.rules import MismatchError, listed, shape_text
 from sceneql.quantities.span import Span
 
 Lookup = Callable[[tuple[str, ...], Span], Expr | Diagnostic | None]
-"""What a dotted name means: its typed tree, or else the Diagnostic that says why it means nothing.
+"""What a dotted name means: its typed tree, or the Diagnostic that says why it means nothing.
 
-The Diagnostic is reported only if bind finds no meaning either: `pi`, `tau`, `e` are constants where nothing else is
-called so. None: no more is to be said of the name, unless it is one of these constants.
+The Diagnostic is reported only where the name is none of the constants `pi`, `tau`, `e` either. None: the name is one
+of these constants, or its error has been reported already.
 """
 
 COMPONENTS = {3: "xyz", 2: "xy", 4: "wxyz"}
@@ -28,7 +28,7 @@ COMPONENTS = {3: "xyz", 2: "xy", 4: "wxyz"}
 def bind(expr: Expr, lookup: Lookup, found: Diagnostics) -> Expr | None:
     """The typed tree of a parsed one, or None after reporting all that is wrong (`dimension-mismatch`, ...).
 
-    Trees that ``lookup`` gives are kept as they are, so that what is shared stays shared.
+    Trees that ``lookup`` gives are kept as they are, so that shared subtrees stay shared.
     """
     bound: dict[int, Expr | None] = {}
     for node in each_once(expr):
@@ -106,7 +106,7 @@ def _literal(value: Any, expr: Expr, bare: bool) -> Expr:
 
 
 def _report(node: Expr, parts: tuple[Expr, ...], error: MismatchError, found: Diagnostics) -> None:
-    """Both places are where the arguments stand in this expression; a define's own place is its own affair."""
+    """Point at the arguments as they stand in this expression, not at a define that they name."""
     second = None if error.second is None else parts[error.second].span
     notes = [] if second is None else [Note("the other is here", second)]
     found.error(error.code, error.message, parts[error.first].span or node.span, help=error.help, notes=notes)

@@ -91,7 +91,7 @@ def turn(o: Any, p: Components, q: Components) -> Components:
 
 
 def euler(order: str) -> Callable[..., Components]:
-    """The quaternion of three angles (3,): turns about the first axis, the new second and the newest third."""
+    """The function that gives the quaternion of three intrinsic Euler angles (3,) about the axes of ``order``."""
 
     def quaternion(o: Any, angles: Components) -> Components:
         turns = [about_axis(o, axis, angle) for axis, angle in zip(order, angles, strict=True)]

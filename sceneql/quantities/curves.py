@@ -16,7 +16,7 @@ Components = tuple[Any, ...]
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Keys as numbers: what a compiled evaluator needs too."""
+    """Keyframes as numbers, which compiled evaluators take too."""
 
     times: tuple[float, ...]
     """(k,) [s], increasing."""
@@ -57,7 +57,7 @@ def table_of(o: Any, keys: Keys, number: Callable[[Expr], float], components: Ca
 
 
 def _shortest(o: Any, values: tuple[Components, ...]) -> tuple[Components, ...]:
-    """Unit quaternions, each on the side of the sphere nearest to the one before: q and -q turn alike."""
+    """Unit quaternions, each with the sign nearest to the one before: q and -q are the same rotation."""
     result = [normalize(o, values[0])]
     for value in values[1:]:
         unit = normalize(o, value)
@@ -87,7 +87,7 @@ def _chords(o: Any, times: tuple[float, ...], values: tuple[Components, ...], cl
 def interpolate(
     o: Any, table: Table, t: Any, find: Callable[[Any, tuple[float, ...]], int] | None = None
 ) -> Components:
-    """The components at ``t`` over an arithmetic ``o``; ``find``: the last key not after t, where that is known."""
+    """Components at ``t`` over an arithmetic ``o``; ``find``: gives the last key not after t, where that is known."""
     times, last = table.times, len(table.times) - 1
     if table.cycle > 0.0:
         t = o.add(times[0], o.mod(o.sub(t, times[0]), table.cycle))
@@ -102,7 +102,7 @@ def interpolate(
 
 
 def _piece(o: Any, table: Table, k: int, t: Any) -> Components:
-    """From key k on, up to the next."""
+    """The components between key k and the next one."""
     curve, a = CURVES[table.curve], table.values[k]
     if curve == "step" or k == len(table.times) - 1:
         return a
@@ -118,7 +118,7 @@ def _piece(o: Any, table: Table, k: int, t: Any) -> Components:
 
 
 def hermite(o: Any, s: Any, span: float, a: Any, b: Any, slope_a: Any, slope_b: Any) -> Any:
-    """The cubic over a span with these values and slopes at its ends, at s from 0 to 1."""
+    """Cubic Hermite interpolation: values and slopes at both ends of a span, at s from 0 to 1."""
     r = o.sub(1.0, s)
     from_a = o.mul(o.mul(o.mul(a, r), r), o.add(1.0, o.mul(2.0, s)))
     from_b = o.mul(o.mul(o.mul(b, s), s), o.sub(3.0, o.mul(2.0, s)))
@@ -127,7 +127,7 @@ def hermite(o: Any, s: Any, span: float, a: Any, b: Any, slope_a: Any, slope_b: 
 
 
 def slerp(o: Any, a: Components, b: Components, s: Any) -> Components:
-    """Constant angular speed between unit quaternions at most a quarter of a circle apart (Shoemake 1985)."""
+    """Interpolate unit quaternions at most pi/2 apart with constant angular speed, s from 0 to 1 (Shoemake 1985)."""
     angle = o.acos(o.min(1.0, dot(o, a, b)))
     still = o.lt(angle, 1e-8)
     u = o.div(o.sin(o.mul(o.sub(1.0, s), angle)), o.sin(angle))

@@ -1,7 +1,7 @@
-"""Symbolic derivatives of bound trees, and vectors taken apart into scalars.
+"""Symbolic derivatives of bound trees, and the split of vectors into scalar trees.
 
-What comes out is made of scalar primitives of the table with plain types. Links and symbols of vector type stand in
-it as `component` calls; so do parts that have no scalar form (reductions of lists of unknown length, series).
+Results consist of scalar primitives of the table with plain types. Links and symbols of vector type appear in them as
+`component` calls; so do parts without a scalar form (reductions of lists of unknown length, series).
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ Meaning = Callable[[Link], Any]
 
 
 def components(expr: Expr, meaning: Meaning | None = None) -> tuple[Expr, ...]:
-    """The scalar trees of a vector (n,), or (of a scalar) its one tree. Keyframes become `where` of their pieces.
+    """The scalar trees of a vector (n,), or the one tree of a scalar. Keyframes become nested `where` calls.
 
     Raises TypeError for a list of unknown length.
     """
@@ -108,7 +108,7 @@ def differentiate(expr: Expr, by: Expr) -> Expr:
     """d expr / d by, simplified, with plain types; of a vector (n,) the Vector of its components' derivatives.
 
     ``by`` is a scalar Symbol or Link, or a `component` call on one. At a kink the derivative is that of one side, at
-    a jump 0. Raises TypeError for what has no derivative.
+    a jump 0. Raises TypeError for an operation without a derivative.
     """
     parts = components(expr)
     known: dict[int, Expr] = {}

@@ -19,7 +19,7 @@ LIMITS = frozenset(
         "too-many-parts",
     }
 )
-"""Codes of errors that refuse what is too large, whether or not it would make sense."""
+"""Codes of errors that refuse a script for its size, whether or not it is right otherwise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +100,7 @@ class Diagnostics:
             self.found.append(diagnostic)
 
     def extend(self, diagnostics: Iterable[Diagnostic]) -> None:
-        """Keep those of an error that was caught, so that what follows is told too."""
+        """Keep the diagnostics of a caught error, so that later ones are reported with them."""
         for diagnostic in diagnostics:
             self.add(diagnostic)
 

@@ -14,11 +14,11 @@ Environment = Mapping[Any, Any] | Callable[[Any], Any]
 def evaluate(expr: Expr, env: Environment, arrays: bool = False) -> Any:
     """The value of a bound tree in SI: a float or nested tuple of floats, or with ``arrays`` a float or float64 array.
 
-    ``env`` gives the value of each Symbol and Link, by node (spans do not matter): a number, nested tuples or an
-    array of the node's shape. With ``arrays`` these may have axes before those of the shape (samples, instants): all
-    operations go along them, but a reduction of a single value or of a list of unknown length takes them too. Poles
-    and bad arguments give inf and NaN as in IEEE 754. Raises KeyError for what ``env`` does not have, TypeError for an
-    unbound name and for an operation that needs a series, ValueError for lists of different lengths.
+    ``env`` gives the value of each Symbol and Link, by node (spans do not matter): a number, nested tuples or an array
+    of the node's shape. With ``arrays`` the values may have leading axes (samples, instants), over which all operations
+    broadcast; a reduction of a scalar or of a list of unknown length reduces the leading axes too. Poles and bad
+    arguments give inf and NaN as in IEEE 754. Raises KeyError for what ``env`` does not have, TypeError for an unbound
+    name and for an operation that needs a series, ValueError for lists of different lengths.
     """
     look_up = env if callable(env) else env.__getitem__
     if arrays:

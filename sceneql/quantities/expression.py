@@ -131,7 +131,7 @@ def children(expr: Expr) -> tuple[Expr, ...]:
 
 
 def walk(expr: Expr) -> Iterator[Expr]:
-    """The expression and all below it, each shared node once for every place it stands in."""
+    """The expression and all nodes below it, a shared node once for every place where it occurs."""
     stack = [expr]
     while stack:
         node = stack.pop()
@@ -140,9 +140,9 @@ def walk(expr: Expr) -> Iterator[Expr]:
 
 
 def each_once(*roots: Expr, below: Callable[[Expr], tuple[Expr, ...]] = children) -> list[Expr]:
-    """All distinct nodes (by identity), every node after its children: a shared part is listed once.
+    """All distinct nodes (by identity) in topological order, children first: a shared subtree is listed once.
 
-    ``below`` gives the children to go down to.
+    ``below`` gives the children to descend to.
     """
     order: list[Expr] = []
     known: set[int] = set()

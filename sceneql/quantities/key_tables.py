@@ -24,12 +24,12 @@ def keys_table(keys: Keys) -> Table:
 
 
 _TABLES: dict[tuple[int, int, str, int], tuple[Keys, Table | None]] = {}
-"""By the identity of the keys, with what keeps it theirs."""
+"""By the id of the keys, which are kept with the table so that no other object gets their id."""
 _MOST_TABLES = 10_000
 
 
 def known_table(keys: Keys) -> Table | None:
-    """The table of keyframes whose times and values are constant vectors or numbers, made once; None of others."""
+    """The table of keyframes whose times and values are constant, made once; None for other keyframes."""
     if len(keys.type.shape) > 1:
         return None
     place = id(keys.keys), id(keys.cycle), keys.curve, len(keys.type.shape)

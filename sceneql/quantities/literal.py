@@ -20,11 +20,11 @@ _PIECE = re.compile(rf"([+-]?{NUMBER})(?:/({NUMBER}))?")
 _WORD = re.compile(WORD)
 _GAP = re.compile(r"\s*")
 EXACT = 40
-"""Digits up to which a literal is converted without an error of its own: 1.7 mm is the double nearest to 0.0017."""
+"""Digits up to which a literal is converted exactly and rounded once: 1.7 mm is the double nearest to 0.0017."""
 
 
 def read_unit(text: str, at: int, span: Span) -> tuple[Unit | None, int]:
-    """The unit that stands after a number which ends at ``at`` (or None), and where it ends.
+    """The unit behind a number that ends at ``at`` (None: there is no unit), and where the unit ends.
 
     A name, ``%`` or ``1/name`` there must be a unit. Raises ScriptError.
     """

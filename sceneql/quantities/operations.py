@@ -19,7 +19,7 @@ from sceneql.quantities import chance, composites, partials, real, rules
 from sceneql.quantities.expression import Expr, Type
 
 MANY = 10_000
-"""Arguments of an operation that takes as many as an expression has room for."""
+"""Most arguments of an operation that takes any number of them: an expression has no room for more."""
 
 CONSTANTS = {"pi": math.pi, "tau": math.tau, "e": math.e}
 """Names with a value in every expression; a define of the same name goes before them."""

@@ -16,7 +16,7 @@ from sceneql.quantities.span import Span
 from sceneql.quantities.unit_table import UNITS
 
 LONGEST, DEEPEST = 10_000, 100
-"""Characters of one expression (each node takes one at least), and how deep its tree may be."""
+"""Most characters of one expression (each node takes at least one), and the deepest tree."""
 
 BINARY = {
     "<": (10, "lt"), "<=": (10, "le"), ">": (10, "gt"), ">=": (10, "ge"), "==": (10, "eq"),
@@ -72,7 +72,7 @@ class _Parser:
         return expr
 
     def _expression(self, power: int) -> Expr:
-        """Operators that bind tighter than ``power``."""
+        """Parse operators that bind tighter than ``power``."""
         self.depth += 1
         if self.depth > DEEPEST:
             raise self._too_deep(self.start, self.end)
@@ -200,7 +200,7 @@ class _Parser:
             raise self._leftover(last)
 
     def _no_unit(self, opening: int, items: tuple[Expr, ...] | None) -> None:
-        """A unit behind a bracket is refused with the text that was meant."""
+        """Refuse a unit behind a bracket, with the corrected text as help."""
         if self.kind != "name" or self.token not in UNITS:
             return
         _, end = read_unit(self.text, self.start, self.span)

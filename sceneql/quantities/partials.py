@@ -62,7 +62,7 @@ def max(o: Any, a: Any, b: Any) -> Partials:
 
 
 def where(o: Any, condition: Any, a: Any, b: Any) -> Partials:
-    """0 for the condition, 1 for what it takes."""
+    """0 for the condition, 1 for the chosen branch."""
     return 0.0, o.where(condition, 1.0, 0.0), o.where(condition, 0.0, 1.0)
 
 

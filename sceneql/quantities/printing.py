@@ -22,7 +22,7 @@ def show(expr: Expr) -> str:
 
 
 def _text(node: Expr, texts: dict[int, tuple[str, int]]) -> tuple[str, int]:
-    """Text, and how tight its outermost operator binds."""
+    """The text of a node, and the precedence of its outermost operator."""
 
     def at_least(arg: Expr, binding: int) -> str:
         text, own = texts[id(arg)]
@@ -58,7 +58,7 @@ def _number(number: Number) -> tuple[str, int]:
     text = format_quantity(number.value, dimension)
     if dimension is not None and dimension.plain and not number.bare:
         text += " rad"
-    # A unit would go on over the next sign of a product: `(1 m)/s` divides by the name s.
+    # Unbracketed, a unit reads on over the sign behind it: `1 m/s` is a speed, `(1 m)/s` a length over the name s.
     if " " in text:
         return text, LITERAL
     return text, SIGN if number.value < 0 else ATOM

@@ -16,7 +16,7 @@ def div(a: float, b: float) -> float:
 
 
 def power(a: float, b: float) -> float:
-    """a to the b: NaN for a negative a and a broken b, infinity for a pole or what is too large."""
+    """a to the b: NaN for a negative a and a fractional b, infinity at a pole or on overflow."""
     try:
         return math.pow(a, b)
     except OverflowError:
@@ -54,7 +54,7 @@ log, log10 = _logarithm(math.log), _logarithm(math.log10)
 
 
 def exp(x: float) -> float:
-    """e to the x, infinity where that is too large."""
+    """e to the x, infinity on overflow."""
     try:
         return math.exp(x)
     except OverflowError:
@@ -62,7 +62,7 @@ def exp(x: float) -> float:
 
 
 def sinh(x: float) -> float:
-    """Hyperbolic sine, infinity where that is too large."""
+    """Hyperbolic sine, infinity on overflow."""
     try:
         return math.sinh(x)
     except OverflowError:
@@ -70,7 +70,7 @@ def sinh(x: float) -> float:
 
 
 def cosh(x: float) -> float:
-    """Hyperbolic cosine, infinity where that is too large."""
+    """Hyperbolic cosine, infinity on overflow."""
     try:
         return math.cosh(x)
     except OverflowError:

@@ -19,7 +19,7 @@ LARGEST_POWER = 100
 
 
 class MismatchError(Exception):
-    """Arguments that do not go together; ``first`` and ``second`` are their indices."""
+    """Arguments whose types do not match; ``first`` and ``second`` are their indices."""
 
     def __init__(self, code: str, message: str, first: int, second: int | None = None, help: str | None = None) -> None:
         super().__init__(message)
@@ -50,7 +50,7 @@ def shape_text(shape: Shape) -> str:
 
 
 def common_dimension(args: Args, indices: tuple[int, ...], sentence: str) -> Dimension | None:
-    """The one dimension of some arguments. ``sentence`` has places {a} and {b} for what differs."""
+    """The common dimension of the arguments ``indices``; ``sentence``: the error's text, with {a} and {b}."""
     first: int | None = None
     for index in indices:
         dimension = args[index].type.dimension
@@ -131,7 +131,7 @@ def divided(args: Args) -> Type:
 
 
 def kept(args: Args) -> Type:
-    """The type of the first argument."""
+    """The result has the type of the first argument."""
     return args[0].type
 
 
@@ -197,7 +197,7 @@ def picked(args: Args) -> Type:
 
 
 def vectors(name: str, sizes: tuple[int | None, ...], result: tuple[int, ...], dimension: Rule) -> Rule:
-    """Arguments whose last axes have these sizes (0: any, the same for all; None: a single value), lists broadcast."""
+    """Arguments with last axes of these sizes (0: any, alike for all; None: scalars), whose outer axes broadcast."""
 
     def rule(args: Args) -> Type:
         outer: list[Shape] = []
@@ -228,17 +228,17 @@ def normalized(args: Args) -> Type:
 
 
 def reduced(args: Args) -> Type:
-    """One argument: its first axis goes."""
+    """Reduction of one argument over its first axis."""
     return Type(args[0].type.shape[1:], args[0].type.dimension)
 
 
 def counted(args: Args) -> Type:
-    """How many."""
+    """The number of items, plain."""
     return Type((), PLAIN)
 
 
 def normed(args: Args) -> Type:
-    """All axes go."""
+    """Reduction over all axes, to a scalar of the argument's dimension."""
     return Type((), args[0].type.dimension)
 
 
@@ -257,7 +257,7 @@ def sampled(args: Args) -> Type:
 
 
 def listed(args: Args) -> Type:
-    """Values side by side."""
+    """Values of one shape, stacked along a new first axis."""
     shape = args[0].type.shape
     for index, arg in enumerate(args):
         if arg.type.shape != shape:

@@ -1,4 +1,4 @@
-"""Bound trees on floats: a node of a shape has nested tuples of them."""
+"""Evaluation of bound trees in floats: a node of shape S gives nested tuples of floats."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def _last_key(t: float, times: tuple[float, ...]) -> int:
 
 
 def item_of(call: Call, count: int) -> int:
-    """Which item of a list of ``count`` an ``item`` call picks. Raises ValueError where there is none."""
+    """The index that an ``item`` call picks in a list of ``count``. Raises ValueError where it is out of range."""
     number = call.args[1]
     assert isinstance(number, Number)
     if number.value >= count:
@@ -63,7 +63,7 @@ def item_of(call: Call, count: int) -> int:
 
 
 def apply(o: Any, call: Call, args: list[Any]) -> Any:
-    """An operation over an arithmetic ``o``, on values that are its numbers or nested tuples of them."""
+    """An operation over an arithmetic ``o``, on scalars of ``o`` or nested tuples of them."""
     operation = OPERATIONS[call.op]
     if operation.series:
         raise TypeError(f"'{call.op}' needs a quantity over time")
@@ -82,14 +82,14 @@ def apply(o: Any, call: Call, args: list[Any]) -> Any:
 
 
 def formula_of(operation: Operation) -> Callable[..., Any]:
-    """What a composite or reduction means. Raises TypeError for an operation without a formula."""
+    """The formula of a composite or reduction. Raises TypeError for an operation without a formula."""
     if operation.formula is None:
         raise TypeError(f"'{operation.name}' has no formula")
     return operation.formula
 
 
 def _each(function: Callable[..., Any], args: list[Any], ranks: list[int]) -> Any:
-    """The function on every item of the arguments' outer axes, aligned at the last."""
+    """The function mapped over the outer axes of the arguments, which broadcast from the last axis."""
     top = max(ranks)
     if top <= 0:
         return function(*args)

@@ -1,6 +1,6 @@
 """The arithmetic of scalar expressions: operations make trees, with constants folded and 0 and 1 dropped.
 
-What is made has plain types: it is for numbers in SI, after dimensions have been checked.
+Results have plain types: trees are simplified as numbers in SI, after dimensions have been checked.
 """
 
 from __future__ import annotations
@@ -61,9 +61,9 @@ def made(op: str, *operands: Expr | float) -> Expr:
 
 
 def formed(op: str, *operands: Expr | float) -> Expr | float:
-    """A scalar primitive, made simple by the floats of a formula alone, never by the value of a Number.
+    """A scalar primitive, simplified by the constants of a formula alone, never by the value of a Number.
 
-    So the form of what is made depends on the form of the script alone: a changed number finds its compiled code.
+    So the form of the result depends on the form of the script alone, and a changed number finds its compiled code.
     """
     if op in ("min", "max") and len(operands) != 2:
         half = len(operands) // 2
@@ -101,7 +101,7 @@ def _add(a: Expr, b: Expr) -> Expr | None:
 
 
 def _halves(expr: Expr) -> tuple[Expr, Expr, Expr] | None:
-    """A `where` with a zero branch, as derivatives of `min` make them."""
+    """Condition and branches of a `where` with a branch 0, as in derivatives of `min`."""
     if isinstance(expr, Call) and expr.op == "where" and (_is(expr.args[1], 0.0) or _is(expr.args[2], 0.0)):
         condition, a, b = expr.args
         return condition, a, b
@@ -125,7 +125,7 @@ def _mul(a: Expr, b: Expr) -> Expr | None:
             return q
         if _is(p, -1.0):
             return made("neg", q)
-    # A branch not taken may hold an infinity: it must not meet a factor 0.
+    # The branch not taken may be infinite, and 0 times infinity is NaN: multiply inside the branches.
     for p, q in ((a, b), (b, a)):
         halves = _halves(p)
         if halves is not None:
@@ -161,7 +161,7 @@ _RULES: dict[str, Callable[..., Any]] = {
 }  # fmt: skip
 
 TREES = Trees(made)
-"""Simplifies all it can: for derivatives."""
+"""Simplifies all that it can: for derivatives."""
 
 FORMS = Trees(formed)
-"""Keeps the form of what is written: for taking vectors apart."""
+"""Keeps the form of the script: for splitting vectors."""

@@ -1,4 +1,4 @@
-"""What people write out in words where a unit is meant: for suggestions only, a script writes the sign."""
+"""Units written out in words (`meters`), for suggestions alone: scripts write the unit's sign."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PREFIXES = {
 
 
 def sign_of(name: str) -> str | None:
-    """The sign of a unit that is written out, in either number and with any prefix: ``cm`` for ``centimeters``."""
+    """The sign of a unit written out, singular or plural and with any prefix: ``cm`` for ``centimeters``."""
     plain = name.lower()
     singular = plain if plain in SIGNS else plain.removesuffix("s")
     if singular in SIGNS:

@@ -20,7 +20,7 @@ from sceneql.quantities.unit_table import KNOWN_UNITS, OFFSET_UNITS, QUANTITIES,
 __all__ = ["KNOWN_UNITS", "Unit", "describe", "format_quantity", "parse_unit", "scan_unit", "unit_of"]
 
 LARGEST_EXPONENT = LARGEST_UNIT = 20
-"""Of one factor, and the most factors: what is beyond is a mistake, and could be slow to work out."""
+"""Largest exponent of a factor, and most factors: beyond is a mistake, and could be slow to work out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +127,7 @@ def continues_unit(text: str, at: int) -> bool:
 
 
 def unit_hint(name: str) -> str | None:
-    """What unit was meant by a name that is none."""
+    """The help line of the error for a name that is no unit."""
     (found,) = _unknown(name, None, 0).diagnostics
     return found.help
 
