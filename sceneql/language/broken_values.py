@@ -1,4 +1,4 @@
-"""Values that YAML tears: it knows no parentheses, takes ``#`` for a comment, and ends a value at ``]``."""
+"""Values that YAML breaks apart: it knows no parentheses, reads ``#`` as a comment, and ends a value at ``]``."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ _BLOCK_VALUE = re.compile(r"\s*(?:- +)*(?:[^\s\[{\"'#][^\[{\"'#]*?:\s+)?(?=[\[{]
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """Characters ``start`` to ``end`` should read ``fixed``; the caret stands from ``caret`` on.
+    """Characters ``start`` to ``end`` should read ``fixed``; the error's caret begins at ``caret``.
 
-    Where nothing can be told in its place there is a ``diagnostic`` instead, and ``blank`` is what is read: a word, or
-    nothing at all.
+    A fault that has no known repair carries a ``diagnostic`` instead. YAML reads ``blank`` in place of each character:
+    part of a plain word, or a space.
     """
 
     code: str
@@ -48,7 +48,7 @@ class Fault:
 
 
 def swallowed(value: Scalar, text: str) -> Fault | None:
-    """The color behind an empty value, where it was taken for a comment. ``text`` as in `broken_near`."""
+    """The color behind an empty value, which YAML took for a comment. ``text`` as in `broken_near`."""
     if (color := _SWALLOWED.match(text, value.end)) is None:
         return None
     start, end = color.span(1)
@@ -56,7 +56,7 @@ def swallowed(value: Scalar, text: str) -> Fault | None:
 
 
 def broken_halves(halves: Iterable[Scalar], text: str) -> list[Fault]:
-    """The expressions that a flow collection's commas cut, from their first halves. ``text`` as in `broken_near`."""
+    """Faults of expressions that a flow collection's commas cut, by their halves. ``text`` as in `broken_near`."""
     faults: list[Fault] = []
     for half in halves:
         if faults and half.start < faults[-1].end:
@@ -70,9 +70,9 @@ def broken_halves(halves: Iterable[Scalar], text: str) -> list[Fault]:
 
 
 def broken_near(source: Source, text: str, at: int, opening: int | None) -> list[Fault]:
-    """What tore the text where YAML fails at ``at``, within the flow collection that opens at ``opening`` if any.
+    """Faults near ``at``, where YAML fails, inside the flow collection that opens at ``opening`` if any.
 
-    ``text`` is the source's with what is mended already blanked out.
+    ``text`` is the source's text with known faults blanked out.
     """
     if opening is None:
         start = max(text.rfind("\n", 0, at), text.rfind("\r", 0, at)) + 1
@@ -87,7 +87,7 @@ def broken_near(source: Source, text: str, at: int, opening: int | None) -> list
 
 
 def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
-    """Report what is torn, ``faults`` in the order of the text, each with its line as it should be."""
+    """Report all faults, given in the order of the text, each with its line as it should be."""
     lines: dict[int, list[Fault]] = {}
     for fault in faults:
         lines.setdefault(source.position(fault.start)[0], []).append(fault)
@@ -111,7 +111,7 @@ def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
 
 
 def _corrected(source: Source, fault: Fault, together: list[Fault]) -> str:
-    """The line of a fault with all that is torn in it mended; of a very long line only the mended value."""
+    """The line of a fault with all its faults repaired; of a very long line the repaired value alone."""
     text = source.text
     first = source.line_starts[source.position(fault.start)[0] - 1]
     if fault.end - first > _MOST_SHOWN:
@@ -127,13 +127,13 @@ def _corrected(source: Source, fault: Fault, together: list[Fault]) -> str:
 
 
 class _LostError(Exception):
-    """The text is not what the scan takes it for; what was found before still holds."""
+    """The text is not the flow syntax that the scan expects; faults found before stay valid."""
 
 
 class _Scan:
-    """Reads flow syntax as it was meant: with parentheses, and with brackets inside expressions.
+    """Reads flow syntax as the author meant it: with parentheses, and with brackets inside expressions.
 
-    ``text`` has blanks where the source, ``written``, has what is mended already.
+    ``text`` has blanks where the source's text, ``written``, has known faults.
     """
 
     def __init__(self, text: str, source: Source, end: int) -> None:
@@ -146,7 +146,7 @@ class _Scan:
         return self.text[at] if at < self.end else ""
 
     def value(self, at: int, depth: int, *, key: bool = False) -> int:
-        """Read a value, or a ``key``; returns where it ends."""
+        """Read a value, or a ``key``; returns the offset of its end."""
         while (named := _PROPERTY.match(self.text, at, self.end)) is not None:
             at = named.end()
         character = self.peek(at)
@@ -167,7 +167,7 @@ class _Scan:
         return end
 
     def torn(self, start: int, end: int, *, key: bool = False) -> Fault:
-        """An expression that YAML cuts, or a list whose ``key`` lacks its colon, or the space behind that."""
+        """The fault of an expression that YAML cuts, of a ``key`` without its colon, or of a colon without a space."""
         written = self.written[start:end]
         if key and (unparted := _UNPARTED.match(written)) is not None:
             name, glued = unparted[1], unparted[2] is not None
@@ -212,7 +212,7 @@ class _Scan:
             at = self.end if end < 0 else end
 
     def behind(self, start: int, close: int, depth: int) -> int:
-        """Read on behind a closing bracket, where nothing more should stand on the line."""
+        """Read on behind a closing bracket, where nothing else should stand on the line; returns the end."""
         at = close
         while self.peek(at) in (" ", "\t"):
             at += 1
@@ -220,7 +220,7 @@ class _Scan:
             return close
         end, _ = self.plain(at, nested=depth > 0)
         rest = self.text[at:end]
-        # What is wrong inside is wrong with the whole, which is quoted as one or written anew.
+        # Faults inside are part of this one, which quotes the whole value or writes it anew.
         self.faults = [fault for fault in self.faults if fault.start < start]
         if self.text[start] == "[" and _UNIT.match(rest) is not None:
             fixed = _with_unit(self.written[start + 1 : close - 1], rest)
@@ -230,7 +230,7 @@ class _Scan:
         return end
 
     def plain(self, at: int, *, nested: bool) -> tuple[int, bool]:
-        """Read a plain text; returns where it ends, and whether YAML would end it sooner."""
+        """Read a plain scalar; returns its end, and whether YAML would end it sooner."""
         open_brackets: list[str] = []
         torn = False
         start = at
@@ -266,7 +266,7 @@ def _quote(text: str) -> str:
 
 
 def _with_unit(inside: str, unit: str) -> str:
-    """A list with its unit, if any, where one may stand: ``0, 1, 0`` in m becomes ``0 1 0 m``."""
+    """A list with its unit, if any, where YAML allows one: ``0, 1, 0`` in m becomes ``0 1 0 m``."""
     items = _split(inside)
     if all(NUMBER.fullmatch(item) for item in items):
         return " ".join([*items, unit]).rstrip()
@@ -281,7 +281,7 @@ def _with_unit(inside: str, unit: str) -> str:
 
 
 def _split(text: str) -> list[str]:
-    """The items between the commas that no bracket encloses."""
+    """The items between the commas outside of brackets."""
     items, depth, start = [], 0, 0
     for at, character in enumerate(text):
         depth += (character in "([{") - (character in ")]}")

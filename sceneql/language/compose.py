@@ -25,7 +25,7 @@ MOST_NODES: Final = 3_000_000
 MOST_EXPANDED: Final = 1_000_000
 MOST_ERRORS: Final = 100
 MOST_REREAD: Final = 2_000_000
-"""Characters that are read again, beyond once, to go on behind what is torn."""
+"""Most characters that are read again, beyond the first reading, to go on behind faults."""
 
 _PROPERTIES = re.compile(r"(?:[&!][^\s,\[\]{}]*(?:\s+#[^\n]*|\s)*)*")
 _TAG = re.compile(r"!\S*")
@@ -35,10 +35,10 @@ _DEEP: Final = "give the inner parts names of their own, and refer to them by na
 
 
 def compose(source: Source, found: Diagnostics | None = None) -> Mapping:
-    """The tree of a script. Raises ScriptError with all that is wrong, up to where reading has to stop.
+    """The tree of a script. Raises ScriptError with all errors, up to where reading has to stop.
 
-    With ``found``, what is wrong is recorded there, and the tree is of what can be read (see `compose_node`); only
-    where that is nothing, or too much, ScriptError is raised.
+    With ``found``, errors are recorded there, and the tree is that of the readable text (see `compose_node`);
+    ScriptError is raised only where nothing can be read, or a limit is exceeded.
     """
     root = compose_node(source, found=found)
     if isinstance(root, Mapping):
@@ -51,8 +51,8 @@ def compose(source: Source, found: Diagnostics | None = None) -> Mapping:
 def compose_node(source: Source, start: int = 0, found: Diagnostics | None = None) -> Node:
     """The tree of the text from character ``start`` on, of whatever kind. Raises ScriptError like `compose`.
 
-    With ``found``, torn values are read as they were meant, holes stand for what cannot be read, mappings that lack
-    an entry are partial, and of a text that stops being YAML what was whole before is kept.
+    With ``found``, broken values are read as they were meant, holes stand for unreadable values, mappings that lack an
+    entry are partial, and of a text that stops being YAML the complete entries before that are kept.
     """
     if source.text.startswith("\ufeff"):
         source = Source(source.name, source.text[1:])
@@ -63,7 +63,7 @@ def compose_node(source: Source, start: int = 0, found: Diagnostics | None = Non
         span = Span(source, at, at + 1)
         raise ScriptError([Diagnostic("control-character", message, span, "delete it")])
     faults: list[Fault] = []
-    # The tree has no cycles, and the collector would walk all of it again and again while it grows.
+    # The tree has no cycles, and the garbage collector would walk all of it again and again while it grows.
     with _collector_off():
         for attempt in range(MOST_ERRORS):
             composer = _Composer(source, faults)
@@ -72,7 +72,7 @@ def compose_node(source: Source, start: int = 0, found: Diagnostics | None = Non
             if not again or len(faults) == MOST_ERRORS or attempt * len(source.text) > MOST_REREAD:
                 break
     wrong = composer.found
-    if again:  # two halves that look the same are no duplicate keys
+    if again:  # halves of cut expressions may look like duplicate keys
         wrong.found.clear()
     report(source, faults, wrong)
     if wrong.found and (found is None or root is None or again or any(d.code in LIMITS for d in wrong.found)):
@@ -98,7 +98,7 @@ class _StopError(Exception):
 
 
 class _Composer:
-    """Reads the source once, with what ``faults`` says in place of what is torn."""
+    """Reads the source once, with repairs in place of the known ``faults``."""
 
     def __init__(self, source: Source, faults: list[Fault]) -> None:
         self.source = source
@@ -118,7 +118,7 @@ class _Composer:
         self.stack: list[Mapping | Sequence] = []
 
     def attempt(self, start: int) -> tuple[list[Fault], Node | None]:
-        """What is torn beyond what is known, and the tree of what can be read, if any."""
+        """The faults beyond the known ones, and the tree of the readable text, if any."""
         near: list[Fault] = []
         try:
             self.document(start)
@@ -141,7 +141,7 @@ class _Composer:
         return torn, self.root
 
     def cut_short(self, at: int) -> None:
-        """Keep what was whole where reading stopped."""
+        """Keep the complete entries where reading stopped."""
         if self.stack:
             self.root = self.stack[0]
             cut_short(self.stack, self.keyed, at)
@@ -270,13 +270,13 @@ class _Composer:
         return next((one.start for one in self.stack if one.flow), None)
 
     def empty(self, node: Scalar) -> None:
-        """Take note of a value that is missing because a color was taken for a comment."""
+        """Record a color behind an empty value, which YAML took for a comment."""
         fault = swallowed(node, self.text)
         if fault is not None and len(self.colors) < MOST_ERRORS:
             self.colors.append(fault)
 
     def cut(self, key: Scalar, mapping: Mapping) -> bool:
-        """Report what a comma cut off the value before a key, which becomes a hole; False if there is none."""
+        """Report a key that a comma cut off the value before, which becomes a hole; False if there is no such value."""
         if key.quoted or not mapping.flow or not mapping.entries:
             return False
         before = next(reversed(mapping.entries))
@@ -287,18 +287,18 @@ class _Composer:
         return True
 
     def meant(self, event: Any, node: Scalar) -> Node:
-        """What is meant by a scalar that stands in place of something torn; any other one itself."""
+        """The repaired value where a scalar stands in place of a fault; any other scalar itself."""
         fault = self.faults.get(self.behind_properties(event))
         return node if fault is None else repaired(fault, self.source)
 
     def behind_properties(self, event: Any) -> int:
-        """Where a node starts behind its anchor and tag."""
+        """Offset of a node's own text, behind its anchor and tag."""
         at: int = event.start_mark.index
         properties = _PROPERTIES.match(self.text, at, event.end_mark.index)
         return at if properties is None else properties.end()
 
     def properties(self, event: Any, node: Node) -> None:
-        """Take note of an anchor, refuse a tag, and let the node start behind both."""
+        """Record an anchor, refuse a tag, and let the node start behind both."""
         text, at = self.text, event.start_mark.index
         node.start = self.behind_properties(event)
         if event.tag is not None and (tag := _TAG.search(text, at)) is not None:
@@ -308,7 +308,7 @@ class _Composer:
             self.anchors[event.anchor] = node
 
     def alias(self, name: str, span: Span) -> Node:
-        """The node of an anchor, shared; counted as if it stood there in full."""
+        """The node of an anchor, shared; limits count it as if it stood there in full."""
         node = self.anchors.get(name)
         if node is None and marked(name, self.source, self.faults.values()):
             return hole(span)
@@ -334,7 +334,7 @@ class _Composer:
         return node
 
     def nameless_key(self, node: Node, mapping: Mapping) -> None:
-        """Report a key that is no text, unless it stands in one; what it names is left out."""
+        """Report a key that is no text, once where such keys are nested; its value is left out."""
         self.odd.append(mapping)
         if not self.nameless:
             span = Span(self.source, node.start, node.end)
@@ -343,9 +343,9 @@ class _Composer:
             self.nameless[id(node)] = node
 
     def odd_key(self, key: Scalar, mapping: Mapping) -> Scalar:
-        """Report a missing key or a merge key, what it names is left out, or a colon that a key has too many or lacks.
+        """Report a missing key or a merge key, whose values are left out, or a colon that a key has too many or lacks.
 
-        Returns the key that is meant.
+        Returns the key as it was meant.
         """
         if key.text.rstrip(":") and key.text[-1] == ":":
             key, diagnostic = doubled(key)
@@ -374,16 +374,16 @@ class _Composer:
         self.error("duplicate-key", f"the key '{key.text}' is given twice", key.span, help=help, notes=[note])
 
     def error(self, code: str, message: str, span: Span, *, help: str, notes: list[Note] | None = None) -> None:
-        """Record an error and go on, unless there are too many already."""
+        """Record an error; raises _StopError where there are too many."""
         self.add(Diagnostic(code, message, span, help, tuple(notes or ())))
 
     def add(self, diagnostic: Diagnostic) -> None:
-        """Record an error as `error` does."""
+        """Record a diagnostic; raises _StopError where there are too many."""
         self.found.add(diagnostic)
         if len(self.found.found) >= MOST_ERRORS:
             raise _StopError
 
     def stop(self, code: str, message: str, start: int, end: int, help: str) -> NoReturn:
-        """Record an error behind which nothing can be read."""
+        """Record an error that ends the reading; raises _StopError."""
         self.found.error(code, message, Span(self.source, start, end), help=help)
         raise _StopError

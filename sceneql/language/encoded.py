@@ -27,6 +27,6 @@ def source_of(name: str, data: bytes) -> Source:
 
 
 def too_large(source: Source) -> ScriptError:
-    """What is raised of a text that no script needs."""
+    """The error for a text longer than any script needs."""
     message = f"the script is larger than {MOST_BYTES // 1_000_000} MB"
     return ScriptError([Diagnostic("too-large", message, Span(source, 0, 1), _LARGE)])

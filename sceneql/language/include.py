@@ -50,9 +50,9 @@ def _read(path: Path, name: str) -> Source:
 
 
 def read_included(root: Mapping, name: str, read: Read, found: Diagnostics) -> list[Mapping]:
-    """The script itself and behind it all that it includes, in the order met. ``name`` is its own file's.
+    """The script itself, then all scripts that it includes, in the order met. ``name`` is the script's own path.
 
-    Where one of these cannot be read, the script itself becomes partial.
+    Where an included script cannot be read, the tree of the script itself is marked partial.
     """
     reading = _Reading(root, read, found)
     reading.follow(root, [(name, root.span)])
@@ -69,7 +69,7 @@ class _Reading:
         self.size = 0
 
     def follow(self, root: Mapping, chain: list[tuple[str, Span]]) -> None:
-        """Read what a script includes, and what that includes."""
+        """Read the scripts that a script includes, and those that they include."""
         node = root.entries.get("include")
         if node is None:
             return

@@ -1,6 +1,6 @@
-"""Lines in which a colon is missing or one too many: they are left out, and all around them is read.
+"""Lines that lack a colon or have one too many: they are left out, and everything around them is read.
 
-A second colon directly behind a key (``name::``) is no matter of lines: `doubled` reads the key without it.
+A second colon directly behind a key (``name::``) leaves no line out: `doubled` reads the key without it.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ _COLON = re.compile(r":(?=\s|\Z)")
 
 
 def left_out(source: Source, text: str, error: yaml.YAMLError) -> Fault | None:
-    """What is to be left out where YAML fails outside brackets; None where it is not a matter of one line's colon.
+    """The text to leave out where YAML fails outside brackets; None where no single line's colon is the cause.
 
-    ``text`` is the source's with what is mended already blanked out.
+    ``text`` is the source's text with known faults blanked out.
     """
     problem = str(getattr(error, "problem", None) or "").replace("'", "")
     mark = getattr(error, "context_mark" if "could not find expected :" in problem else "problem_mark", None)
@@ -51,14 +51,14 @@ def left_out(source: Source, text: str, error: yaml.YAMLError) -> Fault | None:
 
 
 def unparted(key: Scalar) -> Fault | None:
-    """What is to be left out where YAML takes all up to the colon inside the brackets for a key: ``name {a: 1}``."""
+    """The text to leave out where YAML takes ``name {a: 1}`` up to the colon inside the brackets for a key."""
     number, column = key.source.position(key.start)
     line = key.source.line(number)
     return _bracketed(key.source, number, line) if column == _head(line) + 1 else None
 
 
 def doubled(key: Scalar) -> tuple[Scalar, Diagnostic]:
-    """A key that ends with a colon of its own (``name::``) without it, and what is told of it."""
+    """A key that ends with a second colon (``name::``) without it, and the diagnostic for it."""
     text = key.text.rstrip(":")
     end = key.start + len(text)
     help = f"write `{text}:`; a name that holds a colon goes in quotes"
@@ -67,13 +67,13 @@ def doubled(key: Scalar) -> tuple[Scalar, Diagnostic]:
 
 
 def marked(anchor: str, source: Source, faults: Iterable[Fault]) -> bool:
-    """Whether an anchor stands in what is left out, so that its alias means nothing that is known."""
+    """Whether an anchor is defined in text that is left out, so that its alias is no error of its own."""
     mark = re.compile(rf"&{re.escape(anchor)}(?![^\s,\[\]{{}}])")
     return any(mark.search(source.text, fault.start, fault.end) is not None for fault in faults)
 
 
 def _ended(source: Source, number: int) -> Fault | None:
-    """The line above, where it is a name or more without a colon, and a comment ends it."""
+    """The fault of the line above, where that is text without a colon which a comment ends."""
     above = number - 1
     while above > 0 and _bare(source.line(above)):
         above -= 1
@@ -84,17 +84,17 @@ def _ended(source: Source, number: int) -> Fault | None:
     while top > 0 and _bare(source.line(top)):
         top -= 1
     opening = source.line(top).split(" #")[0].rstrip() if top > 0 else ":"
-    # Else it may go on with the text of the key above.
+    # Otherwise the line may continue the value of the key above it.
     return _without(source, above) if opening.endswith(":") or _head(opening) >= _head(line) else None
 
 
 def _bare(line: str) -> bool:
-    """Whether it is blank, or holds a comment alone."""
+    """Whether a line is blank or a comment alone."""
     return not line.strip() or line.lstrip().startswith("#")
 
 
 def _bracketed(source: Source, number: int, line: str) -> Fault | None:
-    """``name:{`` or ``name {``."""
+    """The fault of a line such as ``name:{`` or ``name {``."""
     head = _head(line)
     if (glued := _NO_SPACE.match(line, head)) is not None:
         message, help = "a space is missing behind this colon", f"write `{glued[1]}: {line[glued.end() :].rstrip()}`"
@@ -106,7 +106,7 @@ def _bracketed(source: Source, number: int, line: str) -> Fault | None:
 
 
 def _without(source: Source, number: int) -> Fault:
-    """A line that is a name or more without a colon."""
+    """The fault of a line of text without a colon: a key that lacks it."""
     line = source.line(number)
     head = _head(line)
     if (glued := _GLUED.match(line, head)) is not None:
@@ -119,7 +119,7 @@ def _without(source: Source, number: int) -> Fault:
 
 
 def _second(source: Source, number: int, after: int, colon: int) -> Fault:
-    """A value that holds a colon, from behind the first one on."""
+    """The fault of a value that holds a second colon."""
     line = source.line(number)
     start = after + len(line[after:]) - len(line[after:].lstrip())
     message = "a second colon on this line, where no key can stand"
@@ -129,9 +129,9 @@ def _second(source: Source, number: int, after: int, colon: int) -> Fault:
 
 
 def _line(source: Source, number: int, start: int, caret: int, end: int, message: str, help: str) -> Fault:
-    """The fault from column ``start`` on to the end of all that is indented below, its caret from ``caret`` to ``end``.
+    """The fault from column ``start`` to the end of the lines indented below; its caret covers ``caret`` to ``end``.
 
-    What begins the line is no value: it is blank, and its mapping partial.
+    A fault that begins its line is read as spaces, not as a word, and its mapping becomes partial (`lacking`).
     """
     base = source.line_starts[number - 1]
     line = source.line(number)
@@ -150,7 +150,7 @@ def _line(source: Source, number: int, start: int, caret: int, end: int, message
 
 
 def _top(source: Source, number: int) -> int:
-    """The first of the lines that YAML takes for one text with the key of a line: those before it without a colon."""
+    """The first line of the plain scalar that YAML reads up to the key of line ``number``: lines without a colon."""
     line = source.line(number - 1) if number > 1 else ""
     while number > 1 and line.strip() and not line.lstrip().startswith("#") and _COLON.search(line) is None:
         number -= 1
@@ -164,9 +164,9 @@ def _head(line: str) -> int:
 
 
 def lacking(root: Node | None, faults: list[Fault]) -> None:
-    """Mark what lacks the entry of a line that is left out: nothing is said of what seems to be missing there.
+    """Mark as partial the mappings that lack the entry of a left-out line, so that no missing field is reported there.
 
-    Where it was all that a key or an item had, a hole takes its place.
+    A key or list item whose whole content was that line gets a hole.
     """
     for fault in faults:
         if fault.blank != " " or root is None or fault.diagnostic is None:
@@ -191,12 +191,12 @@ def lacking(root: Node | None, faults: list[Fault]) -> None:
 
 
 def _item(list_: Sequence, fault: Fault) -> int:
-    """The number of the item that a line is left out of: the one around it, or whose first line it was."""
+    """Index of the list item that a left-out line belongs to: the item around it, or the one that it began."""
     source = list_.source
     line, _ = source.position(fault.start)
     behind = next((number for number, item in enumerate(list_.items) if item.start > fault.start), len(list_.items))
     begins = source.line(line).lstrip().startswith("- ")
-    if begins and behind > 0 and source.position(list_.items[behind - 1].start)[0] == line:  # nothing more was in it
+    if begins and behind > 0 and source.position(list_.items[behind - 1].start)[0] == line:  # the item is there, empty
         begins = False
     return min(max(behind if begins else behind - 1, 0), len(list_.items) - 1)
 

@@ -17,7 +17,7 @@ CHILDREN: Final = "children"
 
 
 def unnested(root: Mapping, families: Collection[str], found: Diagnostics) -> Mapping:
-    """The same script, with children as entries of the sections, its own and its templates', behind their holders."""
+    """The same script with nested children moved behind their parents, as entries of its or its templates' sections."""
     result = _unnested(root, families, found)
     templates = root.entries.get("templates")
     if isinstance(templates, Mapping):
@@ -54,7 +54,7 @@ def _flat(section: Mapping, found: Diagnostics) -> Mapping:
 
 
 def _parted(node: Node) -> tuple[Node, list[tuple[str, Scalar, Node]]]:
-    """An entry that names its children, and these."""
+    """An entry with the names of its children in their place, and the children."""
     if not isinstance(node, Mapping) or len(node.entries) != 1:
         return node, []
     ((word, fields),) = node.entries.items()
@@ -74,5 +74,5 @@ def _parted(node: Node) -> tuple[Node, list[tuple[str, Scalar, Node]]]:
 
 
 def _like(mapping: Mapping, entries: dict[str, Node]) -> Mapping:
-    """A mapping with other values under the same keys."""
+    """A copy of a mapping with other values under the same keys."""
     return mapping.holding(entries)

@@ -15,7 +15,7 @@ from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError, 
 from sceneql.quantities.span import Source, Span
 
 Patch = tuple[str, Node, Span]
-"""A dotted path, what is to stand there, and where the path is written."""
+"""A dotted path, the node to put there, and where the path is written."""
 
 VARIANT_OPTIONS: Final = ("may_fail",)
 """Keys of a variant that are no paths."""
@@ -28,12 +28,12 @@ def apply_patch(
     settings: Collection[str] = (),
     found: Diagnostics | None = None,
 ) -> Mapping:
-    """The tree with its values replaced; what is not on a path is shared with the old tree, which stays as it was.
+    """A tree with the values replaced; subtrees off the paths are shared with the old tree, which is not changed.
 
     A path names a section, a part and a field: ``models.cage.stiffness``. The part's word may stand between
     (``models.cage.mass_spring.stiffness``), the section may be left out where one part or define alone has the name,
     and a number selects an item of a list. A path may end in a new field or part, not go through one. Raises
-    ScriptError (`unknown-path`), or records it in ``found``. A path through what cannot be read changes nothing.
+    ScriptError (`unknown-path`), or records it in ``found``. A path through an unreadable value changes nothing.
     """
     wrong = Diagnostics() if found is None else found
     for patch in patches:
@@ -49,7 +49,7 @@ def apply_patch(
 
 
 class _LostError(Exception):
-    """A path leads through what cannot be read."""
+    """A path leads through an unreadable value."""
 
 
 def variant_names(root: Mapping) -> tuple[str, ...]:
@@ -102,12 +102,12 @@ class _Path:
         self.families, self.settings = families, settings
         self.steps = self.path.split(".")
         self.unsure = False
-        """Whether some of what the script defines is not known."""
+        """Whether some definitions of the script are not known."""
         self.shift = 0
         """1 where the section is left out of the path."""
 
     def fail(self, at: int, message: str, help: str | None) -> ScriptError:
-        """What is wrong with a step."""
+        """The error of the path's step ``at``."""
         before = "".join(f"{step}." for step in self.steps[self.shift : at])
         start = max(self.span.text.find(self.path), 0) + len(before)
         place = self.span.part(start, start + len(self.steps[at]))
@@ -133,7 +133,7 @@ class _Path:
         return cast(Mapping, self.put(root, 0))
 
     def put(self, node: Node, at: int) -> Node:
-        """``node`` with the value below it, by the steps from ``at`` on."""
+        """``node`` with the value set below it, by the steps from ``at`` on."""
         if at == len(self.steps):
             return self.value
         if empty(node):
@@ -143,14 +143,14 @@ class _Path:
         return self.put_below(node, at)
 
     def entry_level(self) -> int:
-        """How many steps lead to a part; -1 where none do."""
+        """Number of steps that lead to a part; -1 where the path leads to none."""
         part = (*self.families, "parts")
         if self.steps[0] == "templates":
             return 4 if len(self.steps) > 2 and self.steps[2] in part else -1
         return 2 if self.steps[0] in part else -1
 
     def put_into_entry(self, node: Node, at: int) -> Node:
-        """A part with the value in its fields; its word may stand in the path."""
+        """A part with the value set in its fields; the part's word may be a step of the path."""
         if isinstance(node, Scalar) and node.kind == "text":
             fields = _nothing(node.span)
             node = Mapping({node.text: fields}, {node.text: node}, True, node.source, node.start, node.end)
@@ -177,7 +177,7 @@ class _Path:
             items = list(node.items)
             items[int(step)] = self.put(items[int(step)], at + 1)
             return Sequence(items, node.flow, node.source, node.start, node.end)
-        # The second of two parts without names is called such as `gravity.2`.
+        # Parts without names are numbered: `gravity.2`, the second of them, is two steps of a path.
         numbered = ".".join(self.steps[at : at + 2])
         if numbered != step and numbered in node.entries:
             self.steps[at : at + 2] = [step := numbered]
@@ -197,7 +197,7 @@ class _Path:
     def with_item(self, node: Mapping, key: str, value: Node, replaced: bool = False) -> Mapping:
         """A copy of a mapping with one value replaced or added.
 
-        What is replaced as a whole stands where the patch does, no longer at the old key.
+        A value replaced as a whole gets the place of the patch, not that of the old key.
         """
         entries, keys = dict(node.entries), dict(node.keys)
         entries[key] = value

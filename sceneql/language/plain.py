@@ -1,4 +1,4 @@
-"""Plain scalars: their YAML 1.2 core types, and those that a comma cut off the value before."""
+"""Plain scalars: their YAML 1.2 core types, and keys that are the rest of a value which a comma cut."""
 
 from __future__ import annotations
 
@@ -28,5 +28,5 @@ def kind_of(text: str) -> Kind:
 
 
 def cut_off(key: str) -> bool:
-    """Whether a key without a value is what a comma cut off: ``{radius: 1,5 m}`` has a key ``5 m``."""
+    """Whether a key without a value is the rest of a cut value: ``{radius: 1,5 m}`` has a key ``5 m``."""
     return _CUT_OFF.match(key) is not None

@@ -1,4 +1,4 @@
-"""What is read in place of what is wrong: torn values as they were meant, and of a script cut short what was whole."""
+"""Repairs: broken values read as they were meant, and the complete entries of a text that stops being YAML."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ _LAID_FLAT: Final = str.maketrans("[],\r\n\t", "      ")
 
 
 def joined(faults: Iterable[Fault], more: Iterable[Fault]) -> list[Fault]:
-    """All faults in the order of the text; those inside a new one are wrong with it as a whole."""
+    """Old and new faults in the order of the text; an old fault inside a new one is part of it, and dropped."""
     more = list(more)
     kept = [old for old in faults if not any(new.start <= old.start and old.end <= new.end for new in more)]
     return sorted([*kept, *more], key=lambda fault: fault.start)
 
 
 def blanked(text: str, faults: Iterable[Fault]) -> str:
-    """The text with a plain word or blanks of the same length in place of each fault: YAML reads all around it."""
+    """The text with a plain word or spaces of the same length in place of each fault, so that YAML reads the rest."""
     parts, at = [], 0
     for fault in faults:
         if fault.start >= at:
@@ -32,7 +32,7 @@ def blanked(text: str, faults: Iterable[Fault]) -> str:
 
 
 def repaired(fault: Fault, source: Source) -> Node:
-    """The value that a fault was meant to be; a hole where that cannot be told."""
+    """The value that a fault was meant to be; a hole where that is not known."""
     span = Span(source, fault.start, fault.end)
     if fault.code == "unit-after-bracket":
         inside = Span(source, fault.start, source.text.rindex("]", fault.start, fault.caret) + 1)
@@ -43,7 +43,7 @@ def repaired(fault: Fault, source: Source) -> Node:
 
 
 def _sound(text: str, span: Span) -> bool:
-    """Whether it is an expression. What stands in it may still mean nothing, which is a mistake of its own."""
+    """Whether the text parses as an expression; names in it may be unknown, which is an error of its own."""
     try:
         parse_value(text, span)
     except ScriptError as error:
@@ -52,14 +52,14 @@ def _sound(text: str, span: Span) -> bool:
 
 
 def _with_unit(list_: Span, unit: str) -> Node | None:
-    """A list of numbers, or of such lists, with its unit; None where other things stand in it."""
+    """A list of numbers, or of such lists, with the unit on each row; None where other items stand in it."""
     text = list_.text
     try:
         parse_value(f"1 {unit}", list_)
     except ScriptError:
         return None
     if all(NUMBER.fullmatch(item.strip()) for item in text[1:-1].split(",")):
-        # Of the same length as what is written, so that carets point into it.
+        # Of the same length as the written text, so that carets point into it.
         flat = f"{text.translate(_LAID_FLAT)} {unit}"
         return Scalar(flat, "text", False, list_.source, list_.start, list_.end)
     rows: list[Node] = []
@@ -77,10 +77,10 @@ def _with_unit(list_: Span, unit: str) -> Node | None:
 
 
 def cut_short(stack: list[Mapping | Sequence], keyed: bool, at: int) -> None:
-    """Leave out what was not whole where reading stopped: ``stack`` is what was open there, outermost first.
+    """Drop incomplete entries where reading stopped: ``stack`` holds the collections open there, outermost first.
 
-    Of the script's sections the open one keeps the entries before. ``keyed``: the next key was read already, so that
-    the value before it is whole. ``at`` is the character where reading stopped: a value on that line is not trusted.
+    The open section keeps its complete entries. ``keyed``: the next key was already read, so the value before it is
+    complete. ``at`` is the offset where reading stopped: a value on that line may be cut.
     """
     if not isinstance(root := stack[0], Mapping):
         return
@@ -93,7 +93,7 @@ def cut_short(stack: list[Mapping | Sequence], keyed: bool, at: int) -> None:
 
 
 def _doubtful(collection: Mapping | Sequence, at: int) -> bool:
-    """Whether its last value is a plain text, of which YAML may have taken too much, or ends where reading stops."""
+    """Whether the last value may be wrong: a plain scalar may hold too much text, and any value may end at ``at``."""
     values = collection.items if isinstance(collection, Sequence) else [*collection.entries.values()]
     if not values:
         return False

@@ -1,4 +1,4 @@
-"""`repeat`: how many copies of an entry there are, and what their number is called."""
+"""`repeat`: the number of copies of an entry, and the name of a copy's index."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ _MOST_HOPS: Final = 64
 
 @dataclass(frozen=True, slots=True)
 class Repeat:
-    """``count`` copies, numbered from 0 by ``symbol``; ``node`` is where the number's name is written."""
+    """``count`` copies; ``symbol`` is the name of a copy's index, from 0, and ``node`` is where that is written."""
 
     count: int
     symbol: str
     node: Node
 
     def number(self, copy: int) -> Scalar:
-        """The number of a copy as a node."""
+        """The index of a copy as a node."""
         return Scalar(str(copy), "integer", False, self.node.source, self.node.start, self.node.end)
 
 
 def read_repeat(
     node: Node, scope: Scope | None, define: Table[str, Node], lost: Broken, found: Diagnostics
 ) -> Repeat | None:
-    """What stands under `repeat`, or None after reporting what is wrong with it."""
+    """The value of `repeat`, or None after reporting what is wrong with it."""
     if unsure(node):
         return None
     if not isinstance(node, Mapping) or "count" not in node.entries or node.entries.keys() - {"count", "as"}:
@@ -49,7 +49,7 @@ def read_repeat(
 
 
 def _whole(node: Node, scope: Scope | None, define: Table[str, Node], lost: Broken, found: Diagnostics) -> int | None:
-    """A count: a whole number, or the name of a field or define that is one."""
+    """A count: a whole number, or the name of a field or define that holds one."""
     value: Node | None = node
     for _ in range(_MOST_HOPS):
         if not isinstance(value, Scalar) or value.kind != "text":

@@ -18,7 +18,7 @@ _OWN: Final = (USE, "repeat")
 
 
 def reused(root: Mapping, sections: Collection[str], found: Diagnostics) -> Mapping:
-    """The same script, with all that is used written out, in its sections and in those of its templates."""
+    """The same script with every `use` written out, in its sections and in those of its templates."""
     outside = dict(_sections(root, sections))
     result = _body(root, sections, {}, found)
     templates = root.entries.get("templates")
@@ -63,12 +63,12 @@ class _Section:
         return self.section.holding({name: self.entry(name) for name in self.section.entries})
 
     def known(self) -> dict[str, Node]:
-        """What may be used here, that of the script behind that of the template."""
+        """The entries that `use` may name here: those of the template, then those of the script."""
         outer = self.outside.get(self.name)
         return (outer.entries if outer is not None else {}) | self.section.entries
 
     def entry(self, name: str) -> Node:
-        """An entry without `use`; where it cannot be had, a hole, after a report."""
+        """An entry with its `use` written out; a hole, after a report, where that is impossible."""
         chain: list[Mapping] = []
         known = self.known()
         at, seen = name, [name]
@@ -90,7 +90,7 @@ class _Section:
         return self.done[name]
 
     def following(self, node: Mapping, known: dict[str, Node], seen: list[str]) -> str | None:
-        """The name of what an entry uses; None after reporting that there is no such part, or that it is itself."""
+        """The name of the entry that this one uses; None after reporting an unknown name or a cycle."""
         used = node.entries[USE]
         if broken(used):
             return None
@@ -113,13 +113,13 @@ class _Section:
         return used.text
 
     def changed(self, node: Mapping, below: Node) -> Node:
-        """An entry as it would be written without `use`, given what it uses."""
+        """An entry as it would be written without `use`; ``below`` is the entry that it uses."""
         if isinstance(below, Scalar) and below.kind == "text":
             nothing = Mapping({}, {}, True, below.source, below.end, below.end)
             below = Mapping({below.text: nothing}, {below.text: below}, True, below.source, below.start, below.end)
         words = [key for key in below.entries if key != "repeat"] if isinstance(below, Mapping) else []
         if not isinstance(below, Mapping) or len(words) != 1:
-            return below if unsure(below) else hole(node.span)  # which is reported where it stands
+            return below if unsure(below) else hole(node.span)  # reported where it is written
         (word,) = words
         fields = below.entries[word]
         own = {key: value for key, value in node.entries.items() if key not in _OWN}

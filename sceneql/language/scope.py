@@ -46,18 +46,18 @@ class Entry:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Given:
-    """What a template gives under a name: a node, and the scope of the instance."""
+    """The node of a template's output, and the scope of the instance."""
 
     node: Node
     scope: Scope
 
 
 class Broken:
-    """Names that were to be defined by what is reported where it stands: no more is said about them."""
+    """Names whose definitions were reported as unreadable: errors about these names are not reported."""
 
     def __init__(self) -> None:
         self.any = False
-        """Whether any name may have been defined so."""
+        """Whether any name may be among them."""
         self._names: set[str] = set()
 
     def add(self, name: str) -> None:
@@ -65,7 +65,7 @@ class Broken:
         self._names.add(name)
 
     def __contains__(self, name: str) -> bool:
-        """Whether the name, or that of what would hold it, is one of them: ``leg.knee`` where ``leg`` is."""
+        """Whether the name, or the part that would hold it, is among them: ``leg.knee`` where ``leg`` is."""
         if self.any or name in self._names:
             return True
         return any(name[:at] in self._names for at, character in enumerate(name) if character == ".")
@@ -76,9 +76,9 @@ class Expanded:
     """Sections without templates or copies.
 
     ``gives`` holds the outputs of instances (``lantern.0.lit``); ``groups`` the names of all parts that stand for one
-    written name (``dust``: ``dust.0``, ``dust.1``, ...; ``front_left``: ``front_left.hip``, ...); ``broken`` those of
-    entries that were reported and left out. ``unmade`` is what templates hold that no instance is made of, with names
-    that no script can write: it is checked, and nothing is made of it.
+    written name (``dust``: ``dust.0``, ``dust.1``, ...; ``front_left``: ``front_left.hip``, ...); ``broken`` the names
+    of entries that were reported and left out. ``unmade`` holds the entries of templates without an instance, under
+    names that no script can write: they are checked, not built.
     """
 
     sections: dict[str, dict[str, Entry]] = field(default_factory=dict)

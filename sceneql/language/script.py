@@ -76,8 +76,8 @@ def read_script(
 ) -> Script:
     """Read a script from a file, or from a source whose includes ``read`` finds. Raises ScriptError with all errors.
 
-    ``sets`` are patches, as such or as ``path=value``; they are laid over the variant's. With ``found``, errors that
-    leave the rest of the script readable are recorded there instead of raised, and what is wrong is left out.
+    ``sets`` are patches, as such or as ``path=value``, applied after the variant's. With ``found``, errors that leave
+    the rest of the script readable are recorded there instead of raised, and the wrong entries are left out.
     """
     raising = found is None
     found = Diagnostics() if found is None else found
@@ -167,7 +167,7 @@ def _may_fail(root: Mapping, name: str | None) -> bool:
 
 
 def _in_order(expanded: Expanded, root: Mapping) -> dict[str, dict[str, Entry]]:
-    """The sections as the script orders them, those that only templates fill behind."""
+    """The sections in the script's order, then those that only templates fill."""
     order = [key for key in root.entries if key in expanded.sections]
     return {key: expanded.sections[key] for key in dict.fromkeys([*order, *expanded.sections])}
 

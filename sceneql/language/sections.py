@@ -64,8 +64,8 @@ def read_entry(what: str, node: Node, found: Diagnostics) -> Written | None:
 def with_known_keys(node: Mapping, known: Collection[str], holder: str, lost: Broken, found: Diagnostics) -> Mapping:
     """The sections of a script or template (``holder``), unknown ones reported.
 
-    What holds parts is read as the section that its key is most like, unless that stands there too; what others name
-    is lost.
+    An unknown section of parts is read as the known one with the nearest name, unless that is present too; otherwise
+    the names in it are added to ``lost``.
     """
     result = node.holding({}, {})
     for key, value in node.entries.items():
@@ -85,7 +85,7 @@ def with_known_keys(node: Mapping, known: Collection[str], holder: str, lost: Br
 
 
 def _names_in(node: Node) -> list[str]:
-    """The names that something which may be a section gives."""
+    """The names of the parts in a value that may be a section."""
     if isinstance(node, Mapping):
         return list(node.entries)
     words = node.items if isinstance(node, Sequence) else []

@@ -1,4 +1,4 @@
-"""What YAML's parser complains of, in our words and with our caret."""
+"""Errors of the YAML parser as diagnostics in our words, with our caret."""
 
 from __future__ import annotations
 

@@ -26,8 +26,8 @@ MOST_PARTS: Final = 100_000
 def expand(root: Mapping, families: List[str], lost: Broken, found: Diagnostics) -> Expanded:
     """The entries of a script, templates and copies written out and defaults filled in.
 
-    ``lost`` are names of what cannot be read already; those of entries found to be wrong here are added to them. Raises
-    ScriptError where there are too many parts to be looked at.
+    ``lost`` holds the names of unreadable entries; those of entries found to be wrong here are added. Raises
+    ScriptError where there are more parts than are checked.
     """
     expander = _Expander(root, families, lost, found)
     expander.unique(root)
@@ -40,14 +40,14 @@ def expand(root: Mapping, families: List[str], lost: Broken, found: Diagnostics)
         key = root.keys.get("parts") or next(iter(root.keys.values()))
         help = "a model such as `particles` holds many bodies in one part"
         found.error("too-many-parts", message, key.span, help=help)
-        found.raise_errors()  # to check them all would take as long as a limit shall save
+        found.raise_errors()  # checking them all would take the time that the limit saves
     for name in expander.templates:
         expander.unmade(name)
     return expander.done
 
 
 def filled(word: str, fields: Node | None, defaults: Table[str, Node], span: Span) -> Node | None:
-    """The fields of a word together with those of its defaults that are not given."""
+    """The fields of a word, completed by its defaults."""
     more = defaults.get(word)
     if not isinstance(more, Mapping) or not (fields is None or isinstance(fields, Mapping)):
         return fields
@@ -64,7 +64,7 @@ class _FullError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """Where entries are added: the front of their names, the scope, and the names of the instances around them."""
+    """Where entries are added: prefix of names, scope, and the prefix and table of names of each enclosing instance."""
 
     front: str
     scope: Scope | None
@@ -98,7 +98,7 @@ class _Expander:
         self.count = 0
 
     def named(self, mapping: Mapping, key: str) -> dict[str, Node]:
-        """The entries of a section of names; none after reporting that it is something else."""
+        """The entries of a section that maps names; none after reporting any other value."""
         node = mapping.entries.get(key)
         if node is None or empty(node):
             return {}
@@ -148,7 +148,7 @@ class _Expander:
         return self.read[name]
 
     def local(self, template: str, node: Mapping) -> Mapping:
-        """The sections of a template as mappings, its names checked."""
+        """The sections of a template as mappings; names used twice are reported."""
         body = Mapping({}, {}, node.flow, node.source, node.start, node.end)
         fields = node.entries.get("fields")
         seen: dict[str, Scalar] = dict(fields.keys) if isinstance(fields, Mapping) else {}
@@ -176,7 +176,7 @@ class _Expander:
                 self.instances(name, written, place)
 
     def entry(self, name: str, node: Node, section: Node, place: _Place) -> Written | None:
-        """An entry whose name and shape are right."""
+        """An entry whose name and shape are right; None after a report."""
         assert isinstance(section, Mapping)
         key = section.keys[name]
         if not name.split(".")[0].isidentifier() or (key.text == name and "." in name):
@@ -192,7 +192,7 @@ class _Expander:
         return written
 
     def copies(self, name: str, repeat: Node | None, place: _Place) -> Iterator[tuple[str, Scope | None]]:
-        """The names in the whole script, and the scopes, of an entry's copies; without `repeat` it is just one."""
+        """Name in the whole script and scope of each copy of an entry; a single pair without `repeat`."""
         full = place.front + name
         if repeat is None:
             self.one_more()
@@ -212,7 +212,7 @@ class _Expander:
             raise _FullError
 
     def group(self, name: str, place: _Place) -> None:
-        """Make a name stand for several parts, and known to the instances around it."""
+        """Register a name as a group of parts, also with the enclosing instances."""
         self.done.groups.setdefault(name, [])
         for front, names in place.around:
             names[name.removeprefix(front)] = name
@@ -220,7 +220,7 @@ class _Expander:
     def add(
         self, family: str, name: str, written: Written, section: Node, key: str, scope: Scope | None, place: _Place
     ) -> None:
-        """Add one entry, its name known to the instances around it."""
+        """Add one entry, and register its name with the enclosing instances."""
         assert isinstance(section, Mapping)
         span, word = section.keys[key].span, written.word.text
         fields = filled(word, written.fields, self.defaults, written.word.span)
@@ -235,7 +235,7 @@ class _Expander:
                 self.done.groups[whole].append(name)
 
     def instances(self, name: str, written: Written, place: _Place) -> None:
-        """Add what a template holds, once for each copy."""
+        """Add an instance of a template for each copy."""
         word = written.word
         if word.text not in self.templates:
             self.done.broken.add(place.front + name)
@@ -267,7 +267,7 @@ class _Expander:
     def instance(
         self, name: str, template: _Template, given: dict[str, Node], full: str, outer: Scope | None, place: _Place
     ) -> None:
-        """Add what one instance of a template holds; its own name in the whole script is ``full``."""
+        """Add the entries of one instance of a template; ``full`` is the instance's name in the whole script."""
         self.made.add(name)
         scope = Scope({}, given, outer)
         for key, node in template.fields.items():
@@ -284,7 +284,7 @@ class _Expander:
                 known[(front + key).removeprefix(before)] = front + key
 
     def unmade(self, name: str) -> None:
-        """Add what a template holds that no instance is made of, apart from the rest; nothing is said of its fields."""
+        """Add the entries of a template without an instance to `unmade`; its fields are not missed."""
         template = self.template(name)
         if template is None or name in self.made:
             return
@@ -314,7 +314,7 @@ class _Expander:
                 fields.keys[key].span,
                 help=near or f"it has {', '.join(template.fields) or 'none'}",
             )
-            if near is not None:  # then it is not missing as well
+            if near is not None:  # a misspelled field is not missing as well
                 given.setdefault(nearest(key, template.fields) or "", hole(fields.keys[key].span))
         for key, node in template.fields.items():
             if empty(node) and key not in given:

@@ -12,7 +12,7 @@ from sceneql.quantities.span import Source, Span
 class Scalar:
     """A scalar as written. ``kind`` is the YAML 1.2 core type of a plain one; a quoted one is always `text`.
 
-    A `broken` one stands for what was reported and cannot be read: nothing more is said of it.
+    A `broken` one stands for a value reported as unreadable, about which no further error is reported.
     """
 
     text: str
@@ -54,7 +54,7 @@ class Sequence:
 class Mapping:
     """Key-value pairs in the order written; ``keys`` holds each key's own node for its span.
 
-    ``partial``: some of its entries were reported and left out, so that nothing is said of what seems to be missing.
+    ``partial``: some entries were reported and left out, so that missing ones are no errors.
     """
 
     entries: dict[str, Node]
@@ -85,12 +85,12 @@ def broken(node: Node) -> bool:
 
 
 def unsure(node: Node) -> bool:
-    """Whether it is not known all that should stand here."""
+    """Whether the node is broken or partial, so that its content is not fully known."""
     return node.partial if isinstance(node, Mapping) else broken(node)
 
 
 def whole(node: Node) -> bool:
-    """Whether nothing at or below the node was left out. A node that aliases share is looked at once."""
+    """Whether no node at or below this one is broken or partial. A node that aliases share is visited once."""
     seen: set[int] = set()
     stack = [node]
     while stack:
@@ -104,9 +104,9 @@ def whole(node: Node) -> bool:
 
 
 def extent(node: Node, known: dict[int, tuple[int, int]]) -> tuple[int, int]:
-    """Levels and number of nodes of a finished tree, a shared node counted wherever it stands.
+    """Depth and number of nodes of a finished tree, a shared node counted at each place.
 
-    ``known`` keeps those of collections, by id.
+    ``known`` caches these of collections, by id.
     """
     if isinstance(node, Scalar):
         return 0, 1
@@ -118,7 +118,7 @@ def extent(node: Node, known: dict[int, tuple[int, int]]) -> tuple[int, int]:
 
 
 def hole(span: Span) -> Scalar:
-    """What stands where something cannot be read."""
+    """The scalar that stands for an unreadable value."""
     return Scalar("", "broken", False, span.source, span.start, span.end)
 
 
