@@ -1,4 +1,4 @@
-"""Eigenvalues of small matrices in plain Python, for what `check` knows before the run."""
+"""Eigenvalues of small matrices in plain Python, for bounds that `check` gives before the run."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from collections.abc import Sequence
 Rows = Sequence[Sequence[complex]]
 
 TURNS = 60
-"""Of the iteration, for each eigenvalue: three do as a rule."""
+"""Most iterations for each eigenvalue; three do as a rule."""
 ROUNDING = 2.3e-16
 
 
 def eigenvalues(matrix: Rows) -> list[complex]:
-    """Those of an (n, n) matrix by shifted QR steps on its Hessenberg form (Francis 1961; Golub & Van Loan, 7.4).
+    """Eigenvalues of an (n, n) matrix by shifted QR steps on its Hessenberg form (Francis 1961; Golub & Van Loan, 7.4).
 
-    NaN where an entry is not finite or the iteration does not end.
+    NaN where an entry is not finite or the iteration does not converge.
     """
     rows = [[complex(entry) for entry in row] for row in matrix]
     if not all(math.isfinite(entry.real) and math.isfinite(entry.imag) for row in rows for entry in row):
@@ -39,7 +39,7 @@ def eigenvalues(matrix: Rows) -> list[complex]:
 
 
 def _reduce(rows: list[list[complex]]) -> None:
-    """To zeros below the diagonal under the main one, by elimination with pivots."""
+    """Reduce to Hessenberg form in place, by elimination with pivots."""
     n = len(rows)
     for k in range(1, n - 1):
         pivot = max(range(k, n), key=lambda i: abs(rows[i][k - 1]))
@@ -58,7 +58,7 @@ def _reduce(rows: list[list[complex]]) -> None:
 
 
 def _step(rows: list[list[complex]], low: int, size: int, stuck: bool) -> None:
-    """One step on rows low..size-1, shifted by the eigenvalue of the last 2x2 block that is nearer to its corner."""
+    """One QR step on rows low..size-1, shifted by the eigenvalue of the last 2x2 block nearer to its last entry."""
     a, b = rows[size - 2][size - 2 : size]
     c, d = rows[size - 1][size - 2 : size]
     half = 0.5 * (a - d)

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class FieldBuilder(Protocol):
-    """What an object needs to write its implicit field (sceneql.field.tape.builder.TapeBuilder)."""
+    """What an object writes its implicit field with (sceneql.field.tape.builder.TapeBuilder)."""
 
     def constant(self, value: float) -> int:
         """Register of a number."""

@@ -23,15 +23,15 @@ class Seen(Protocol):
 
 
 class Shaped(Protocol):
-    """An object of the script as those see it that are made of it (Object has the contract of each method)."""
+    """An object of the script as other objects see it that are made of it; Object has the contract of each method."""
 
     @property
     def material(self) -> Ref | None:
-        """How it looks; None: the script does not say."""
+        """Its material; None where the script names none."""
 
     @property
     def color(self) -> Value | None:
-        """In place of the material's."""
+        """The color in place of the material's, if any."""
 
     @property
     def hidden(self) -> bool:
@@ -39,24 +39,24 @@ class Shaped(Protocol):
 
     @property
     def traced(self) -> str:
-        """What field it may be drawn by."""
+        """The kind of field that rays intersect it by."""
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None) -> Self:
-        """It with other fields."""
+        """A copy with other fields."""
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Drawn]:
         """Its shapes."""
 
     def implicit(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
-        """Register of its field."""
+        """Register of its implicit field."""
 
     def hues(
         self, build: FieldBuilder, x: int, y: int, z: int, surface: Surface, moment: Moment
     ) -> tuple[int, int, int] | None:
-        """Registers of its color; None: its surface has one."""
+        """Registers of its color; None where its surface has a single one."""
 
     def domain(self) -> Any:
-        """Its inside as a flat domain of fields."""
+        """Its inside as a two-dimensional domain of fields."""
 
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
         """Low and high corner (3,) of a world box around it."""
@@ -84,15 +84,15 @@ class Moment(Protocol):
         """The value now: float, or float64 array of the field's shape, SI. Raises RunFailure if it is not finite."""
 
     def measure(self, value: Value) -> Any:
-        """The value now, finite or not."""
+        """The value now, even where it is not finite."""
 
     def past(self, value: Remembered) -> list[tuple[float, Any]]:
-        """(time [s], value) at the instants before that a part asked for (its `remembers`), oldest first."""
+        """(time [s], value) at the instants before now that a part asked for (its `remembers`), oldest first."""
 
     def course(self, value: Value, variant: str | None = None, until: float = ...) -> tuple[Floats, Floats]:
-        """Times (n,) [s] of the run, whole or up to an instant, and at each a value (n, ...) of `Overlay.courses`.
+        """Times (n,) [s] of the run, whole or up to ``until``, and values (n, ...) of a value in `Overlay.courses`.
 
-        With ``variant`` in that variant of the script. A run that fails has the course up to there.
+        With ``variant``, in that variant of the script. The course of a run that fails ends at the failure.
         """
 
     def read(self, task: str, output: str) -> Any:
@@ -105,16 +105,16 @@ class Moment(Protocol):
         """An object of the script."""
 
     def place(self, name: str) -> Floats:
-        """(3, 4) map to the world from the coordinates that an object's position is told in: its group's, or these."""
+        """(3, 4) map to the world from the coordinates that an object's position is in: its group's or the world's."""
 
     def surface(self, name: str, material: Ref | None, color: Value | None) -> Surface:
         """The surface of object ``name``: its material's, with the color replaced where given; a default by order."""
 
     def kept(self, name: str, key: Hashable, make: Callable[[], T]) -> T:
-        """What ``make`` made for a part when it was last asked for, if the key was equal, else what it makes now.
+        """The result of ``make`` for a part: the last one where its key equals this one, else a new one.
 
-        So arrays of shapes are the same from frame to frame (frame.is_held): the key says all that they are made of.
-        One result a part is kept, and no longer than the run.
+        So arrays of shapes are the same objects from frame to frame (frame.is_held): the key holds all that they depend
+        on. One result a part is kept, and no longer than the run.
         """
 
     def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:

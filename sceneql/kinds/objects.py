@@ -23,13 +23,13 @@ class Object(Kind):
 
     family: ClassVar[str] = "objects"
     collides: ClassVar[bool] = False
-    """Whether contacts that name no surface take it as one even where more of it varies in time than its place."""
+    """Whether contacts that name no surface include it even where more than its placement varies in time."""
 
     unseen: ClassVar[str] = ""
-    """Of one that draws its members as something else: why nothing of it is there where it draws nothing."""
+    """For words that draw their members in another form: why nothing of it was seen where it drew nothing."""
 
     decorates: ClassVar[bool] = False
-    """Whether a model that it reads draws itself all the same."""
+    """Whether a model that it reads still draws itself."""
 
     material: MaterialRef | None = field("How it looks; by default glossy, in a color by order.", None)
     color: Color | None = field("Color in place of the material's.", None)
@@ -37,7 +37,7 @@ class Object(Kind):
 
     @property
     def traced(self) -> str:
-        """What field it may be drawn by, whose roots rays have to find (frame.Implicit).
+        """The kind of field that rays intersect it by (frame.Implicit).
 
         "formula"; "density" of points; "skeleton", of other parts; or "" for none.
         """
@@ -73,11 +73,11 @@ class Object(Kind):
         raise KeyError(output)
 
     def excess(self, count: Callable[[Value], int | None]) -> Iterable[tuple[Value, str]]:
-        """Lists that are too long for it, and why; ``count`` tells how many items one has where that is known."""
+        """Lists that are too long for it, and why; ``count`` gives the length of a list where that is known."""
         return ()
 
     def cut_by_default(self) -> str:
-        """By what it is cut where it goes on and the script does not say so; nothing where it does, or is whole."""
+        """What cuts an unbounded object whose bounds the script does not give; empty where nothing is cut."""
         return ""
 
     def members(self) -> tuple[Ref, ...]:
@@ -85,19 +85,19 @@ class Object(Kind):
         return ()
 
     def joins(self) -> tuple[Ref, ...]:
-        """Those of its members whose insides it is made of."""
+        """The members whose insides make up its own."""
         return ()
 
     def labels(self, name: str, moment: Moment) -> Iterable[tuple[Any, str]]:
-        """Points (3,) in the world [m] with words that stand over them in the picture."""
+        """Points (3,) in the world [m] and the labels that stand over them in the picture."""
         return ()
 
     def remembers(self) -> Iterable[tuple[Value, float, float]]:
-        """Values that it needs of the past (`Moment.past`): how far back [s], and how often [s]."""
+        """Past values that it needs (`Moment.past`): how far back [s], and at which interval [s]."""
         return ()
 
     def _word(self) -> str:
-        """What scripts call it: a word is a file."""
+        """Its name in scripts, which is its file's."""
         return type(self).__module__.rpartition(".")[2]
 
     def collider(self, assembly: Assembly) -> Collider:
@@ -110,7 +110,7 @@ class Collider:
     """A surface for contacts: the module of its kernels (contacts/shape_kernels.py), and offsets into the floats.
 
     ``position_at``: 3 floats, center; ``rotation_at``: 4 floats, quaternion; ``size_at``: as the shape's file says;
-    ``depth_at``: how deep [m] a point can be inside, or less; ``data``: further integers for the shape.
+    ``depth_at``: a lower bound of the greatest depth [m] inside; ``data``: further integers for the shape.
     """
 
     kernels: str

@@ -23,11 +23,11 @@ class Camera(Kind):
     family: ClassVar[str] = "cameras"
 
     def looks_ahead(self) -> bool:
-        """Whether it frames what is drawn over the whole film, so that the physics runs once ahead of it."""
+        """Whether it frames all that the whole film draws, so that the physics runs once before the pictures."""
         return True
 
     def remembers(self) -> Iterable[tuple[Remembered, float, float]]:
-        """What it needs of the past (`Moment.past`): how far back [s], and how often [s]."""
+        """Past values that it needs (`Moment.past`): how far back [s], and at which interval [s]."""
         return ()
 
     def view(self, size: tuple[int, int], moment: Moment) -> View:
@@ -36,7 +36,7 @@ class Camera(Kind):
 
 
 class Light(Kind):
-    """A light (named so because frame.Light is what it lowers to)."""
+    """A light; it lowers to frame.LightSource."""
 
     family: ClassVar[str] = "lights"
 
@@ -63,7 +63,7 @@ class Renderer(Kind):
     """Whether its pictures are data (depth, normals), which are not developed."""
 
     def kernels(self, traced: Collection[str]) -> tuple[str, ...]:
-        """Modules whose import compiles what it draws with; ``traced``: by which fields objects are (Object.traced)."""
+        """Modules whose import compiles its kernels; ``traced``: the kinds of fields of the objects (Object.traced)."""
         return ()
 
     def draw(self, frame: Any) -> Any:
@@ -83,15 +83,15 @@ class Overlay(Kind):
     dark: bool = field("Light letters on a dark panel.", False)
 
     def courses(self) -> Iterable[Value]:
-        """Values that it needs over the whole run (`Moment.course`), for which the physics runs once ahead."""
+        """Values that it needs over the whole run (`Moment.course`), so that the physics runs once before it."""
         return ()
 
     def variants(self) -> bool:
-        """Whether it asks for the script's variants."""
+        """Whether it shows the script's variants."""
         return False
 
     def fill(self, pixels: NDArray[uint8], moment: Moment, scale: float) -> None:
-        """Draw over all of a panel's pixels (h, w, 3); the picture around it is ``scale`` times as high."""
+        """Draw over all pixels (h, w, 3) of a panel; the whole picture is ``scale`` times as high."""
         raise NotImplementedError
 
     def draw(

@@ -12,7 +12,7 @@ from sceneql.kinds.eigenvalues import Rows, eigenvalues
 LEAST, MOST = 1e-8, 1e3
 """Range of (step times frequency) that is searched."""
 RATIO = 1.3
-"""Of the steps tried one after the other: a gap of stable steps narrower than that is not seen."""
+"""Ratio of successive steps that are tried: a gap of stable steps narrower than that is missed."""
 NEUTRAL = 1e-8
 """Growth per unit of (step times frequency) that counts as none: rounding."""
 
@@ -21,7 +21,7 @@ NEUTRAL = 1e-8
 class Oscillation:
     """A bound on the fastest x'' = -frequency^2 x - (decay - i turn) x' of a model or a force.
 
-    One without a frequency is that of a velocity, or of a state without one: v' = -(decay - i turn) v.
+    With frequency 0 it is of first order, in a velocity or another state: v' = -(decay - i turn) v.
     """
 
     frequency: float
@@ -31,9 +31,9 @@ class Oscillation:
     what: str
     """What sets it: ``spring 'tether'``."""
     at: tuple[str | int, ...] = ()
-    """Where in the part's fields that stands: ``("springs", 2)``."""
+    """Steps to the field that sets it: ``("springs", 2)``."""
     turn: float = 0.0
-    """Angular velocity [1/s] with which velocities turn in a magnetic field, or states among each other."""
+    """Angular velocity [1/s] at which velocities rotate in a magnetic field, or coupled states among each other."""
 
     @property
     def size(self) -> float:
@@ -42,27 +42,27 @@ class Oscillation:
 
 
 class StaticMass(NamedTuple):
-    """A mass, as its model's fields alone tell it at the start."""
+    """A mass at the start, as far as its model's fields alone determine it."""
 
     mass: float
     """[kg]"""
     position: tuple[float, ...] | None = None
-    """[m]; None: not told."""
+    """[m]; None: not known."""
     velocity: tuple[float, ...] | None = None
     """[m/s]"""
     fixed: bool = False
-    """It never moves."""
+    """Whether it never moves."""
 
     @property
     def inverse(self) -> float:
-        """1/mass [1/kg], 0 of what never moves."""
+        """1/mass [1/kg]; 0 for a mass that never moves."""
         return 0.0 if self.fixed else 1.0 / self.mass
 
 
 def oscillations(
     matrix: Rows, what: str, at: tuple[str | int, ...] = (), *, paired: bool = False
 ) -> Iterator[Oscillation]:
-    """The modes of y' = matrix y, or of x'' = matrix x if ``paired``, the fastest first, without what grows."""
+    """The modes of y' = matrix y, or of x'' = matrix x if ``paired``, the fastest first, without their growth."""
     for value in sorted(eigenvalues(matrix), key=abs, reverse=True):
         if paired:
             mode = (-value) ** 0.5
@@ -87,7 +87,7 @@ def first_unstable(stable: Callable[[float], bool]) -> float:
 
 
 def stable_step(growth: Callable[[float], float]) -> float:
-    """Largest stable step by the growth factor of a step; 0 where it is rounding alone that would allow one."""
+    """Largest stable step by ``growth(step)``, the growth factor; 0 where only rounding makes a step look stable."""
 
     def bound(neutral: float) -> float:
         return first_unstable(lambda step: growth(step) <= 1.0 + 1e-14 + neutral * step)

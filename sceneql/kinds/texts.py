@@ -45,7 +45,7 @@ class TextValue(Checked):
 
 
 def written(number: float, form: str, unit: Unit | None) -> str:
-    """A number as it stands in a picture; a dash where there is none."""
+    """A number as pictures show it, with its unit; a dash for NaN."""
     if not math.isfinite(number):
         return "–" if math.isnan(number) else "∞" if number > 0 else "\u2212∞"
     text = format(number, form or ".4g")
@@ -80,7 +80,7 @@ class Text(Checked):
 
     @property
     def courses(self) -> list[Value]:
-        """Those that ask for the run so far."""
+        """The values inside that ask for the run so far."""
         return [piece.value for piece in self.pieces if isinstance(piece, TextValue) and piece.over_time]
 
     def at(self, moment: Moment) -> str:

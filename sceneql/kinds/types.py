@@ -54,7 +54,7 @@ CameraRef = Annotated[Ref, Refers("cameras")]
 MaterialRef = Annotated[Ref, Refers("materials")]
 RendererRef = Annotated[Ref, Refers("renderers")]
 DrawnRef = Annotated[Ref, Refers("objects", also="models")]
-"""Something that can be seen."""
+"""An object, or a model that draws itself."""
 
 PanelRef = Annotated[Ref, Refers("overlays", also="cameras")]
 """What may stand in a panel of a layout."""

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pydantic_core import CoreSchema
 
 TIME = ("t", "time")
-"""What formulas call the time."""
+"""Names of the time in formulas."""
 
 
 MOST_READ = 600
@@ -22,7 +22,7 @@ MOST_READ = 600
 
 
 class Checked:
-    """What the compiler has made and checked: pydantic asks only whether it is one, since looking inside takes time."""
+    """A value that the compiler has built and checked: pydantic tests its class alone, which saves time."""
 
     __slots__ = ()
 
@@ -122,7 +122,7 @@ class Formula(Checked):
 
     @property
     def constant(self) -> bool:
-        """Whether it depends neither on time nor on another part; places may stand in it."""
+        """Whether it depends neither on time nor on another part; it may depend on the place."""
         return not any(
             isinstance(node, Link) or (isinstance(node, Symbol) and node.name in TIME) for node in walk(self.expr)
         )

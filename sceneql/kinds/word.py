@@ -25,7 +25,7 @@ LIMITS: Mapping[str, tuple[Callable[[float, float], bool], str]] = {
     "below": (lambda x, limit: x < limit, "below"),
     "at_most": (lambda x, limit: x <= limit, "at most"),
 }
-"""Of the ends of a field's range: whether a number keeps to it, and how that is said."""
+"""For each end of a field's range: the test of a number, and its words in messages."""
 
 
 def field(
@@ -50,7 +50,7 @@ def field(
 
 
 def literal(text: str, place: Span | None = None) -> Value:
-    """The Value of a text without names, as in a default, of any type. Raises ScriptError, told at ``place``."""
+    """The Value of a text without names, as in a default, of any type. Raises ScriptError at ``place``."""
 
     def unknown(parts: tuple[str, ...], span: Span) -> Diagnostic:
         return Diagnostic("unknown-name", f"nothing is called '{'.'.join(parts)}'", span)
@@ -77,11 +77,11 @@ Step = str | int
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """What is wrong with fields that are right by themselves: a text, and where it is told."""
+    """An error in fields that are valid one by one: its text, and where it is reported."""
 
     text: str
     path: tuple[Step, ...] = ()
-    """Steps from the record to the value that is wrong; none: the record as a whole."""
+    """Steps from the record to the wrong value; none: the record as a whole."""
     at_key: bool = False
     """The caret stands under the last step's name, not under its value."""
     code: str = "invalid"
@@ -109,12 +109,12 @@ class Record(BaseModel):
         return filled
 
     def problems(self) -> Iterable[Problem]:
-        """All that is wrong with its fields taken together; each becomes an error of the script."""
+        """Errors of its fields in combination; each becomes an error of the script."""
         return ()
 
     @model_validator(mode="after")
     def _is_sound(self, info: ValidationInfo) -> Self:
-        if isinstance(info.context, list):  # the reader tells them, and goes on with the parts around
+        if isinstance(info.context, list):  # the reader reports them, and goes on with the parts around
             info.context.extend((self, problem) for problem in self.problems())
             return self
         wrong = [
@@ -151,7 +151,7 @@ class Kind(Record):
     """Another section whose entries may be of this family too (a collision is a force to most)."""
     gives: ClassVar[Mapping[str, Gives]] = {}
     imports: ClassVar[tuple[str, ...]] = ()
-    """Libraries that its running methods import and that scenes without it do without (told by `explain`)."""
+    """Libraries that its methods import during a run, and other scenes do without (`explain` names them)."""
 
     @classmethod
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
