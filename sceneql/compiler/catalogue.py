@@ -20,12 +20,12 @@ from sceneql.kinds import FAMILIES, Kind
 
 ROOT = Path(__file__).parent.parent
 LONGEST = 60
-"""Characters of a word: files have no names of any length."""
+"""Most characters of a word: names of files are limited."""
 USER_PACKAGE = "sceneql_words"
 
 
 def class_name(word: str) -> str:
-    """``mass_spring`` to ``MassSpring``."""
+    """The name of a word's class: ``MassSpring`` for ``mass_spring``."""
     return "".join(part.capitalize() for part in word.split("_"))
 
 

@@ -32,7 +32,7 @@ SETTINGS = tuple(Settings.model_fields)
 
 @dataclass(frozen=True, slots=True)
 class Checked:
-    """What is right of a script: all of it where no error is recorded."""
+    """The valid parts of a script: all of them where no error is recorded."""
 
     script: Script
     settings: Settings
@@ -43,7 +43,7 @@ class Checked:
 
 
 def check(script: Script, catalogue: Catalogue, found: Diagnostics) -> Checked:
-    """Read every entry of a script; what is wrong is recorded and left out."""
+    """Read every entry of a script; wrong ones are recorded and left out."""
     checker = _Checker(script, catalogue, found)
     for family, entries in script.sections.items():
         for name in entries:
@@ -87,7 +87,7 @@ class _Checker:
         )
 
     def unsure(self, name: str) -> bool:
-        """Whether something is wrong with the fields of a part, so that it may give more than is known."""
+        """Whether the fields of a part are wrong or incomplete, so that it may have more outputs than are known."""
         entry = self.entries[name]
         cls, fields = self.catalogue.load(self.family_of[name], entry.word), entry.fields
         if cls is None or fields is None:
@@ -96,7 +96,7 @@ class _Checker:
         return not (isinstance(fields, MappingNode) and whole(fields) and known >= fields.entries.keys())
 
     def whole_tasks(self) -> dict[str, Task]:
-        """The parts that are right, with all that they need."""
+        """The valid parts whose needs are all valid."""
         kept = dict(self.tasks)
         while lacking := [name for name, task in kept.items() if not all(need in kept for need in task.needs)]:
             for name in lacking:
@@ -104,12 +104,12 @@ class _Checker:
         return kept
 
     def gives(self) -> None:
-        """Every value that an instance gives, whether or not something reads it."""
+        """Read every value that an instance gives, whether or not another part reads it."""
         for given in self.script.gives.values():
             self.names.read(given.node, replace(self.names, scope=given.scope))
 
     def defaults(self) -> None:
-        """The words under ``defaults`` and their fields' names, whether or not a part uses them."""
+        """Check the words under ``defaults`` and the names of their fields, whether or not a part uses them."""
         section = self.script.root.entries.get("defaults")
         if not isinstance(section, MappingNode):
             return
@@ -129,7 +129,7 @@ class _Checker:
                 self.found.error("unknown-word", f"'{word}' is no word", section.keys[word].span, help=help)
 
     def unused_defaults(self, word: str, fields: MappingNode, kinds: list[type[Kind]]) -> None:
-        """Read the defaults of a word that no part has; what is written in place there makes no parts."""
+        """Read the defaults of a word that no part has; entries written in place there make no parts."""
         before = dict(self.tasks), dict(self.family_of), dict(self.entries)
         part = Entry(f"defaults.{word}", word, None, fields.span, fields.span, None)
         for cls in kinds:
@@ -147,11 +147,11 @@ class _Checker:
                     with suppress(Unreadable):
                         replace(reader, owner=f"{part.name}.{name}").field(node, info, written_name(name))
         self.tasks, self.family_of, kept = before
-        self.entries.clear()  # the names hold this very table
+        self.entries.clear()  # cleared, not replaced: the names hold this dict
         self.entries.update(kept)
 
     def settings(self) -> Settings:
-        """The top-level keys; every define is read, used or not."""
+        """Read the top-level keys; every define is read, used or not."""
         for name, node in self.names.defines.items():
             self.names.define(name, node.span)
         given = {key: self.script.settings[key] for key in SETTINGS if key in self.script.settings}
@@ -163,7 +163,7 @@ class _Checker:
                 result[key] = reader.field(node, info, key)
             except Unreadable:
                 continue
-        settings = Settings.model_validate(result, context=[])  # what is wrong inside is told already
+        settings = Settings.model_validate(result, context=[])  # errors inside have been reported already
         self.timed = "clock" in result or "clock" not in given
         for expect in settings.expect.values() if self.timed else ():
             check_instants(expect, settings.clock.end, self.found)
@@ -235,13 +235,13 @@ class _Checker:
             kind = reader.record(entry.fields, cls, entry.word_span, entry.word)
         except Unreadable:
             return
-        if known is None:  # read for what is wrong in its fields alone
+        if known is None:  # read only to report what is wrong in its fields
             return
         needs += [link.task for value in values_of(kind) for link in value.links]
         self.tasks[name] = Task(name, entry.word, kind, entry.span, tuple(dict.fromkeys(needs)))
 
     def meant(self, family: str, entry: Entry) -> type[Kind] | None:
-        """The class of the word that one which is none is most like, where its fields are such as that word takes."""
+        """The class of the word nearest to an unknown one, where the entry's fields are such as that word takes."""
         near, fields = nearest(entry.word, self.catalogue.choices(family)), entry.fields
         cls = None if near is None else self.catalogue.load(family, near)
         if cls is None or not isinstance(fields, MappingNode):
@@ -252,7 +252,7 @@ class _Checker:
         return cls if fits else None
 
     def refer(self, node: Node, mark: Refers, anonymous: str, entry: Entry) -> Ref | None:
-        """The part that a field names; one that is written in place becomes a part of its own first."""
+        """The part that a field names; an entry written in place becomes a part of its own first."""
         if isinstance(node, Scalar):
             name = entry.scope.resolve(node.text) if entry.scope is not None else node.text
             if name in self.entries and self.catalogue.load(self.family_of[name], self.entries[name].word) is None:
@@ -284,7 +284,7 @@ class _Checker:
             self.found.error("wrong-family", f"'{node.text}' is one of {self.family(name)}, not of {mark}", node.span)
             return
         if name in self.script.broken:
-            return  # it is reported where it stands
+            return  # reported where it stands
         choices = [n for n in self.entries if self.family(n) in (mark.family, mark.also)]
         hint = suggestion(name, [*choices, *self.catalogue.words(mark.family)])
         self.found.error("unknown-name", f"no part of {mark} is called '{node.text}'", node.span, help=hint)

@@ -30,7 +30,7 @@ from sceneql.quantities.span import Span
 def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, pruned: bool = True) -> SimulationGraph:
     """The graph of a script. ``pruned=False`` keeps every part (its pictures must be the same).
 
-    Raises ScriptError with all that is wrong, what is in ``found`` already included.
+    Raises ScriptError with all errors, those that are in ``found`` already included.
     """
     checked = check(script, catalogue, found)
     check_studies(checked.settings.studies, script.root, catalogue, found)
@@ -75,9 +75,9 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
 
 
 def _drawn(tasks: Mapping[str, Task]) -> dict[str, tuple[str, ...]]:
-    """What each output draws: objects that are not hidden and no child of another, and models that nothing draws.
+    """What each output draws: objects that are not hidden and no child of another, and models that no object shows.
 
-    What decorates (a trail, an arrow) does not draw the model that it belongs to.
+    An object that decorates (a trail, an arrow) does not show the model that it reads.
     """
     inner = {ref.name for t in tasks.values() if isinstance(t.kind, Object) for ref in t.kind.members()}
     objects = [
@@ -123,7 +123,7 @@ def _check_outputs(
 
 
 def _palette(tasks: Mapping[str, Task]) -> tuple[str, ...]:
-    """Solid objects and models by the script's order, so that colors do not change with what is pruned."""
+    """Parts without a material in the script's order: colors by order do not change with what is pruned."""
     kinds = (Object, Model)
     return tuple(t.name for t in tasks.values() if isinstance(t.kind, kinds) and getattr(t.kind, "material", 0) is None)
 

@@ -1,6 +1,6 @@
-"""Defaults of a word's fields, checked when the word is loaded: what a script could not write there is an error.
+"""Defaults of a word's fields, checked when the word is loaded: a default that no script could write is an error.
 
-It is told in the word's own file, as errors of scripts are in the script.
+The error points into the word's own file, as errors of scripts point into the script.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def check_defaults(cls: type[BaseModel]) -> None:
 
 
 def _mistakes(name: str, info: Any, place: Span | None) -> tuple[Any, ...]:
-    """What is wrong with a field's default, told at a place of a file, or of the default's text alone."""
+    """The errors of a field's default, at a place of a file, or in the default's text alone where ``place`` is None."""
     default, what, found = info.default, written_name(name), Diagnostics()
     mark = next((mark for mark in info.metadata if isinstance(mark, Quantity | Paint | Turn)), None)
     span = place or Span(Source("default", str(default)), 0, len(str(default)))
@@ -55,7 +55,7 @@ def _mistakes(name: str, info: Any, place: Span | None) -> tuple[Any, ...]:
 
 
 def _place(record: type[BaseModel], name: str) -> Span:
-    """The default of a field in its class's file, quotes left out; the whole class where it is not a text there."""
+    """The default of a field in its class's file, quotes left out; the whole class where the file has no text there."""
     owner = next(one for one in record.__mro__ if name in vars(one).get("__annotations__", {}))
     path = Path(sys.modules[owner.__module__].__file__ or "")
     text = path.read_text(encoding="utf-8")
@@ -82,7 +82,7 @@ def _default_of(node: ast.AnnAssign, source: Source) -> Span:
 
 
 def _span(node: ast.stmt | ast.expr, source: Source) -> Span:
-    """The characters of a node; Python counts a line's bytes."""
+    """The characters of a node; Python's columns count the bytes of a line."""
 
     def offset(line: int, column: int) -> int:
         return source.line_starts[line - 1] + len(source.line(line).encode()[:column].decode())

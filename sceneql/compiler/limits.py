@@ -50,7 +50,7 @@ def numbers(value: Any) -> list[float]:
 
 
 def _told(number: float, annotation: Any) -> str:
-    """A number in SI with the unit in which a field's range is told."""
+    """A number in SI with the coherent unit of the field, as messages show it."""
     quantity = _quantity(annotation)
     if quantity is None or quantity.dimension is None:
         return f"{number:g}"

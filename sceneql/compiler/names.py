@@ -20,7 +20,7 @@ from sceneql.quantities.units import continues_unit, unit_hint
 
 @dataclass
 class Names:
-    """One script's names. ``outputs_of`` is asked for a part's outputs; ``read`` turns a define's node into a tree."""
+    """The names of a script. ``outputs_of`` gives a part's outputs; ``read`` turns a define's node into a tree."""
 
     defines: Mapping[str, Node]
     parts: Iterable[str]
@@ -28,11 +28,11 @@ class Names:
     read: Callable[[Node, Names], Expr | None]
     found: Diagnostics
     given: Mapping[str, Given]
-    """What instances of templates give."""
+    """Outputs of template instances, by dotted name."""
     broken: Broken = field(default_factory=Broken)
-    """What is reported where it stands, and about which no more is said."""
+    """Names whose definitions were reported as unreadable, about which no further error is reported."""
     unsure: Callable[[str], bool] = lambda name: False
-    """Whether a part may give more than is known, since something is wrong with its fields."""
+    """Whether a part may have more outputs than are known, since its fields have errors."""
     scope: Scope | None = None
     _bound: dict[str, Expr | None] = field(default_factory=dict)
     _open: list[str] = field(default_factory=list)
@@ -50,7 +50,7 @@ class Names:
         return self._bound[name]
 
     def field(self, name: str) -> tuple[Node, Names] | None:
-        """What a template's instance was given for a field of this name, and the names that hold where it stands."""
+        """The node that a template's instance was given for a field, and the names that hold at that node."""
         scope = self.scope
         while scope is not None:
             if name in scope.fields:
@@ -90,7 +90,7 @@ class Names:
         return None
 
     def _is_reported(self, parts: tuple[str, ...]) -> bool:
-        """Whether a name, or what would have it, was to be defined by what is reported where it stands."""
+        """Whether the definition of the name, or of the part that would have it, was reported as unreadable."""
         wanted = ".".join(parts)
         inside = wanted if self.scope is None else self.scope.resolve(wanted)
         return wanted in self.broken or inside in self.broken
@@ -98,7 +98,7 @@ class Names:
     def _output(
         self, task: str, outputs: Mapping[str, Gives], parts: tuple[str, ...], first: int, span: Span
     ) -> Expr | None:
-        """The output of a part that the names from number ``first`` on say, or a component of it."""
+        """The output, or a component of it, that the name's pieces from number ``first`` on say."""
         for size in range(len(parts), first, -1):
             name = ".".join(parts[first:size])
             if name in outputs:
@@ -116,7 +116,7 @@ class Names:
         return None
 
     def _component(self, whole: Expr, parts: tuple[str, ...], size: int, span: Span) -> Expr | None:
-        """The component that the names after the first ``size`` say, if any."""
+        """The component that the name's pieces behind the first ``size`` say, if any."""
         for at in range(size, len(parts)):
             part = component(whole, ".".join(parts[:at]), parts[at], span)
             if isinstance(part, Diagnostic):

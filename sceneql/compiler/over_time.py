@@ -11,7 +11,7 @@ from sceneql.quantities.span import Span
 
 
 def momentary(expr: Expr, span: Span, found: Diagnostics) -> bool:
-    """Whether an expression has a value at an instant; what asks for the whole run is reported."""
+    """Whether an expression has a value at an instant; operations over the whole run are reported."""
     calls = [node for node in each_once(expr) if isinstance(node, Call) and OPERATIONS[node.op].series]
     for call in calls:
         message = f"'{call.op}' looks over the whole run, which `expect` alone can"

@@ -1,4 +1,4 @@
-"""Paths of files that a script names: below the scene's folder, and there."""
+"""Paths of files that a script names: below the scene's folder, and existing."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Nodes to field values, by the field's own type: what a kind's annotation says is what the script may write.
+"""Nodes to field values, by the field's own type: a word's annotation defines what a script may write.
 
-One reader for every word: quantities, colors, rotations, keyframes, formulas, references, choices, records and
-lists of these. What is wrong is reported where it stands, and reading goes on, so that all errors come in one run.
+One reader for every word: quantities, colors, rotations, keyframes, formulas, references, choices, records and lists of
+these. An error is reported where it stands, and reading goes on, so that all errors come in one run.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ TRUE, FALSE = ("true", "yes", "on"), ("false", "no", "off")
 
 
 class Unreadable(Exception):
-    """The value was reported as wrong; whoever reads the whole goes on with the next."""
+    """The value was reported as wrong; the reader of the value around it goes on with the next."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,13 +55,13 @@ class Reader:
     names: Names
     found: Diagnostics
     refer: Callable[[Node, Refers, str], Ref | None]
-    """(node, what it may name, the name that an entry in place would get)."""
+    """(node, families that it may name, name for an entry written in place)."""
     owner: str
     """Name of the part whose fields these are."""
     folder: Path
-    """The scene's."""
+    """The scene's folder."""
     symbols: tuple[str, ...] = ()
-    """What the formulas of this kind may use besides defines."""
+    """Symbols that the formulas of this word may use besides defines."""
 
     def record(self, node: Node | None, cls: type[BaseModel], span: Span, title: str) -> Any:
         """An instance of a record or kind from a mapping (None: no fields are written). Raises Unreadable."""
@@ -109,12 +109,12 @@ class Reader:
                 code = "limit-refused" if exceeds else "invalid"
                 self.found.error(code, _text(problem), _place(problem["loc"], node, span))
             raise Unreadable from None
-        problems = [problem for one, problem in context if one is result]  # of those inside it is told already
+        problems = [problem for one, problem in context if one is result]  # those inside were reported
         for told in problems:
             self.found.error(told.code, told.text, _place(told.path, node, span, at_key=told.at_key))
         if problems and issubclass(cls, Kind):
             raise Unreadable
-        return result  # what holds it may have problems of its own
+        return result  # the record or word around it may have problems of its own
 
     def field(self, node: Node, info: Any, name: str) -> Any:
         """The value of a field, within its range. Raises Unreadable after reporting."""
@@ -136,7 +136,7 @@ class Reader:
             if field is not None:
                 node, outer = field
                 if isinstance(node, Scalar) and node.kind == "null":
-                    raise Unreadable  # a template's field that was not given, which is reported there
+                    raise Unreadable  # a template's field that was not given: reported at the instance
                 return replace(self, names=outer).read(node, annotation, what)
         base, marks = _unwrap(annotation)
         for mark in marks:
@@ -204,7 +204,7 @@ class Reader:
         fitting = [arm for arm in arms if arm is not type(None) and _could_be(arm, node)]
         fitting = fitting or [arm for arm in arms if arm is not type(None)]
         if len(fitting) > 1 and not whole(node):
-            raise Unreadable  # which of them it was meant to be cannot be told
+            raise Unreadable  # which arm was meant is not known
         for arm in fitting[:-1]:
             attempt = replace(self, found=Diagnostics())
             attempt = replace(attempt, names=replace(self.names, found=attempt.found))
@@ -253,7 +253,7 @@ class Reader:
         return tuple(result) if origin is tuple else result
 
     def _spread(self, node: Scalar, arms: tuple[Any, ...], what: str) -> list[Any]:
-        """``960 540`` for a pair of whole numbers."""
+        """Values of a tuple that are written in one text: ``960 540`` for a pair of whole numbers."""
         words = node.text.replace(",", " ").split()
         if len(words) != len(arms):
             raise self._fail("wrong-count", f"{what} takes {len(arms)} values, not {len(words)}", node.span)
@@ -318,7 +318,7 @@ def report_unknown(node: MappingNode, known: Collection[str], title: str, found:
 
 
 def _meant(name: str, known: Collection[str]) -> str | None:
-    """The field that is meant by what is none: the first word where a colon is missing behind that, or the nearest."""
+    """The field meant by an unknown name: its first word, if a colon is missing behind that, or the nearest field."""
     first = name.partition(" ")[0]
     return first if first in known else nearest(name, known)
 
@@ -357,7 +357,7 @@ def _text(problem: Any) -> str:
 
 
 def _place(path: tuple[int | str, ...], node: Node | None, span: Span, *, at_key: bool = False) -> Span:
-    """The deepest node that a validation error's path leads to, or the key of the last step."""
+    """The span of the deepest node on a validation error's path, or of the last step's key."""
     for number, step in enumerate(path, 1):
         if isinstance(node, MappingNode) and isinstance(step, str) and written_name(step) in node.entries:
             if at_key and number == len(path):

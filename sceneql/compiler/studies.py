@@ -1,4 +1,4 @@
-"""Studies: the values that their sweeps and references put in place of the script's."""
+"""Studies: the values by which their sweeps and references replace the script's."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ HELP = "write `1e0 .. 1e12 N/m, 13 points`, or a list of values"
 
 @dataclass(frozen=True, slots=True)
 class Tried:
-    """One value of a path: how it is told, its number [``unit``] where it is one of a range, and the patch."""
+    """One value of a path: its label, its number in ``unit`` if it is one of a range, and the patch."""
 
     label: str
     number: float
@@ -37,7 +37,7 @@ def tried(path: str, node: Node) -> list[Tried]:
     if isinstance(node, Sequence) and node.items:
         labels = [_label(item) for item in node.items]
         several = len(set(labels)) < len(labels)
-        if several:  # the words alone would not tell them apart
+        if several:  # labels alone would be ambiguous
             labels = [" ".join(item.span.text.split()) for item in node.items]
         pairs = zip(labels, node.items, strict=True)
         return [Tried(label, math.nan, "", (path, item, item.span)) for label, item in pairs]
@@ -59,18 +59,18 @@ def tried(path: str, node: Node) -> list[Tried]:
 
 
 def _label(node: Node) -> str:
-    """A word where there is one, else the text."""
+    """The word of an entry, else the node's text."""
     if isinstance(node, Mapping) and len(node.entries) == 1:
         return next(iter(node.entries))
     return " ".join(node.span.text.split())
 
 
 def spaced(low: float, high: float, points: int, *, log: bool = True) -> tuple[float, ...]:
-    """Values from one to another, the ends exactly: with ``log`` evenly in the logarithm where both have one sign."""
+    """Values from ``low`` to ``high``, both exact, evenly spaced: with ``log`` and one sign, in the logarithm."""
     parts = [k / (points - 1) for k in range(points)]
     if log and low * high > 0:
         middle = [math.copysign(abs(low) ** (1 - part) * abs(high) ** part, low) for part in parts[1:-1]]
-        if high / low == 10.0 ** round(math.log10(high / low)):  # whole decades: no digits but those that are meant
+        if high / low == 10.0 ** round(math.log10(high / low)):  # whole decades: round to the digits that are meant
             middle = [float(f"{value:.6g}") for value in middle]
     else:
         middle = [low + (high - low) * part for part in parts[1:-1]]
@@ -83,7 +83,7 @@ def instead(study: Study) -> list[Patch]:
 
 
 def check_studies(studies: Naming[str, Study], root: Mapping, catalogue: Catalogue, found: Diagnostics) -> None:
-    """Report ranges that are none, and paths that lead nowhere."""
+    """Report sweeps that are neither ranges nor lists, and paths that lead nowhere."""
     settings = (*Settings.model_fields, "sceneql", "define", "variants")
     for name, study in studies.items():
         patches = instead(study)
@@ -108,6 +108,6 @@ def _paths(root: Mapping, name: str) -> dict[str, Span]:
 
 
 def alone(study: Study) -> list[list[Patch]]:
-    """Patches that the whole of a study is right with: each value alone, and its reference."""
+    """Patches that are checked for the whole study: each value alone, and the reference."""
     values = [[value.patch] for path, node in study.sweep.items() for value in tried(path, node)]
     return [*values, *([instead(study)] if study.reference else [])]

@@ -47,7 +47,7 @@ def read_text(node: Node, mark: Interpolated, what: str, names: Names, found: Di
 def _told(
     node: Scalar, inside: str, start: int | None, mark: Interpolated, names: Names, found: Diagnostics
 ) -> TextValue | None:
-    """What stands between two braces; ``start`` is its place in the source, None where that cannot be told."""
+    """The value between two braces; ``start`` is its offset in the source, None where that is not known."""
     expression, _, rest = inside.partition(":")
     begin, end = node.start, node.end
     if start is not None:
@@ -79,7 +79,7 @@ def _told(
 
 
 def _unit(text: str, dimension: object, place: Span) -> Unit | None:
-    """The unit that is written, else that of SI; None for plain numbers."""
+    """The unit written behind the value, else the coherent SI unit; None for plain numbers."""
     if text:
         return parse_unit(text, place)
     own = "1" if dimension is None else unit_of(dimension)  # type: ignore[arg-type]

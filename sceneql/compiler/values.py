@@ -44,7 +44,7 @@ def read_value(node: Node, quantity: Quantity, what: str, names: Names, found: D
 def read_expr(
     node: Node, shape: Shape | None, dimension: Dimension | None, what: str, names: Names, found: Diagnostics
 ) -> Expr | None:
-    """The bound tree of a scalar, list or keyframe node; the type is not yet compared with what is wanted."""
+    """The bound tree of a scalar, list or keyframe node; its type is not checked yet."""
     if unsure(node):
         return None
     match node:
@@ -83,7 +83,7 @@ def scalar_expr(node: Scalar, names: Names, found: Diagnostics) -> Expr | None:
 
 
 def parsed_text(node: Scalar) -> str:
-    """The text to parse: the source's own characters where they say the same, so that carets point into them."""
+    """The text to parse: the source's own characters where both say the same, so that carets point into them."""
     raw = node.content.text
     return raw if " ".join(raw.split()) == " ".join(node.text.split()) else node.text
 
@@ -150,7 +150,7 @@ def _keys(
 
 
 def time_reader(names: Names, found: Diagnostics) -> ReadTime:
-    """What reads the times of keyframes."""
+    """A reader of the times of keyframes."""
     return lambda node, what: read_value(node, Quantity(TIME), what, names, found)
 
 
@@ -184,7 +184,7 @@ def fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnosti
 
 
 def _origin(expr: Expr, span: Span) -> list[Note]:
-    """Where a value is defined, if that is elsewhere than where it is used; of a vector, its first item that counts."""
+    """A note where a value is defined, if elsewhere than it is used; of a vector, by its first nonzero item."""
     one = expr
     if isinstance(expr, Vector):
         one = next((item for item in expr.items if not _zero(item)), expr)

@@ -1,4 +1,4 @@
-"""A warning of objects that go on where nothing says that they are cut."""
+"""A warning about unbounded objects whose bounds the script does not give."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Models that fill objects with more than memory is allowed for, by the objects' boxes at the start."""
+"""Models that fill an object with more than memory allows, found by the object's box at the start."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from sceneql.quantities.expression import Link, Symbol
 
 
 class Beginning:
-    """What an object's extent may ask of a moment (part of kinds.Moment), where the script alone tells it."""
+    """The part of kinds.Moment that an object's extent needs, at the start and from the script alone."""
 
     time = 0.0
 
@@ -23,7 +23,7 @@ class Beginning:
         self._tasks = tasks
 
     def at(self, value: Value) -> Any:
-        """A value at the start. Raises TypeError where it reads what only a run knows."""
+        """A value at the start. Raises TypeError where it depends on the state of a run."""
         return evaluate(value.expr, self._look_up, arrays=True)
 
     def object(self, ref: Ref) -> Object:
@@ -42,7 +42,7 @@ class Beginning:
 
 
 def check_fillings(tasks: Mapping[str, Task], found: Diagnostics) -> None:
-    """Report what fills more than can be held; where a box is known to the run alone, the run refuses."""
+    """Report models that fill more than memory allows; boxes that only a run knows are refused by the run."""
     start: Any = Beginning(tasks)
     for task in tasks.values():
         for ref, bounds in task.kind.fillings() if isinstance(task.kind, Model) else ():
@@ -53,7 +53,7 @@ def check_fillings(tasks: Mapping[str, Task], found: Diagnostics) -> None:
             except Exceeds as error:
                 found.error("limit-refused", f"{task.name}: at least {error}", ref.span, help="use a larger spacing")
             except (TypeError, ValueError, RunFailure, ScriptError):
-                continue  # the run says why
+                continue  # the run reports it
 
 
 def _place() -> Any:

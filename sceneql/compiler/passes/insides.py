@@ -1,4 +1,4 @@
-"""What is made of the insides of others asks for objects that have one: refused before anything runs."""
+"""Objects made of the insides of others need objects that have one: refused before anything runs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ HELP = "primitives, formulas and skeletons have one, and what is joined or warpe
 
 
 def report_hollow(tasks: Mapping[str, Task], found: Diagnostics) -> None:
-    """Report objects that have no inside where others are made of it."""
+    """Report objects without an inside that others are made of."""
     for task in tasks.values():
         for ref in task.kind.joins() if isinstance(task.kind, Object) else ():
             hollow = without_inside(tasks[ref.name], tasks)

@@ -1,4 +1,4 @@
-"""Layouts and graphs ask for variants that the script has, and for what can fill a panel."""
+"""Checks of layouts and graphs: the variants that they show exist, and their panels can be filled."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from sceneql.quantities.diagnostic import Diagnostics
 
 
 def check_layouts(tasks: Mapping[str, Task], variants: Sequence[str] | None, found: Diagnostics) -> None:
-    """Report what asks for variants of a script that has none, and what cannot fill a panel.
+    """Report layouts and graphs that show variants of a script without any, and panels that cannot be filled.
 
-    ``variants`` is None where it is not known which there are.
+    ``variants`` is None where the script's variants are not known.
     """
     for task in tasks.values():
         kind = task.kind

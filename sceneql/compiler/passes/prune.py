@@ -14,7 +14,7 @@ def prune(
     drawn: Mapping[str, tuple[str, ...]],
     cameras: Mapping[str, str],
 ) -> tuple[dict[str, Task], dict[str, tuple[str, ...]], tuple[LeftOut, ...]]:
-    """The needed tasks, each behind those it needs; for each the outputs that need it; and the rest with reasons."""
+    """The needed tasks, each after its needs; for each the outputs that need it; and the other tasks with reasons."""
     seen_by_all = [t.name for t in tasks.values() if isinstance(t.kind, Light | Overlay)]
     island_of = {name: island for island in islands for name in island.models}
     order: dict[str, Task] = {}

@@ -12,7 +12,7 @@ from sceneql.kinds import Force, Model, Object
 def reads(name: str, tasks: Mapping[str, Task]) -> tuple[str, ...]:
     """The dynamic models that a part's values depend on, through objects and kinematic models.
 
-    What a force acts on it does not read for that.
+    The models that a force acts on are not among them for that reason alone.
     """
     found: dict[str, None] = {}
     stack, seen = _needs(tasks[name]), {name}

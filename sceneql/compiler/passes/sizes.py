@@ -1,4 +1,4 @@
-"""Counts that are known before the run, and are more than an object can take."""
+"""Lists whose length is known before the run, and too great for their object."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def check_sizes(tasks: Mapping[str, Task], found: Diagnostics) -> None:
     """Report lists that are longer than their object can take."""
 
     def count(value: Value) -> int | None:
-        """How many items a value has; None where only the run can tell."""
+        """Number of items of a value; None where only the run knows it."""
         shape = value.expr.type.shape
         if shape and shape[0] is not None:
             return shape[0]

@@ -15,7 +15,7 @@ from sceneql.quantities.expression import Link, Symbol, each_once
 
 
 def warn_of_values(tasks: Mapping[str, Task], groups: Iterable[Island], found: Diagnostics) -> None:
-    """Warn of values that read whole lists of what is solved: they have derivatives by MOST_READ numbers at most."""
+    """Warn of values that read more than MOST_READ numbers of the state, for which they have no derivatives."""
     for island in groups:
         parts = dict.fromkeys((*island.models, *(force for force, _ in island.forces)))
         solver = tasks[island.solver]
@@ -32,7 +32,7 @@ def warn_of_values(tasks: Mapping[str, Task], groups: Iterable[Island], found: D
 
 
 def _read(value: Value, tasks: Mapping[str, Task], solved: Iterable[str]) -> int | None:
-    """How many numbers of the state a value reads; None where the fields of a model do not tell."""
+    """Count of the state's numbers that a value reads; None where a model's fields do not determine it."""
 
     def symbols(name: str, shape: tuple[int, ...]) -> Any:
         return [symbols(f"{name}.{k}", shape[1:]) for k in range(shape[0])] if shape else Symbol(name)

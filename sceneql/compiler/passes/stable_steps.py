@@ -21,9 +21,9 @@ Growth = Callable[[float, float, float, float], float | None]
 """`Solver.oscillation`."""
 SLACK = 1.0 + 1e-6
 MOST_STEPS = 1e11
-"""Of a run: those of a single mass would take half an hour."""
+"""Most steps of a run: those of a single mass would take half an hour."""
 NOTABLE = 10.0
-"""Growth over the whole run from which on a method that is stable at no step is warned of."""
+"""Growth over the whole run from which a method that is stable at no step gives a warning."""
 
 
 def warn_of_steps(
@@ -33,8 +33,7 @@ def warn_of_steps(
     end: float,
     found: Diagnostics,
 ) -> None:
-    """Warn where an island's step exceeds the bound that its models tell by their own fields, and refuse one with
-    which there were more than MOST_STEPS.
+    """Warn of an island's step beyond the bound that its parts' fields give; refuse more than MOST_STEPS steps.
 
     ``end`` [s] of the run.
     """
@@ -67,7 +66,7 @@ def warn_of_steps(
 
 
 def _modes(island: Island, tasks: Mapping[str, Task]) -> Iterator[tuple[str, Iterable[Oscillation]]]:
-    """Parts by name, with the fastest that each of them does."""
+    """Each model and force by name, with bounds on its fastest oscillations."""
     models = {name: cast(Model, tasks[name].kind) for name in island.models}
     for name, model in models.items():
         yield name, model.fastest(name)
@@ -78,7 +77,7 @@ def _modes(island: Island, tasks: Mapping[str, Task]) -> Iterator[tuple[str, Ite
 
 
 def _known(modes: Iterable[Oscillation]) -> tuple[Oscillation, ...]:
-    """What can be told: where numbers are too large or too small for it, the run says more."""
+    """The bounds that can be computed; where numbers over- or underflow, the run reports more."""
     try:
         return tuple(modes)
     except ArithmeticError:
@@ -86,7 +85,7 @@ def _known(modes: Iterable[Oscillation]) -> tuple[Oscillation, ...]:
 
 
 def _stable_steps(growth: Growth) -> Callable[[float, float, float], float]:
-    """The stable step of a method by frequency, decay and turn [1/s], looked for once of any."""
+    """The stable step [s] of a method by frequency, decay and turn [1/s], computed once for equal arguments."""
 
     @cache
     def stable(frequency: float, decay: float, turn: float) -> float:
@@ -104,9 +103,9 @@ def _wrong(
     end: float,
     damped: bool,
 ) -> tuple[str, bool] | None:
-    """What is wrong with the step, if anything, and whether a smaller one is right.
+    """The error of a step, None where it is stable, and whether a smaller step would be stable.
 
-    ``damped``: something else may damp the oscillation.
+    ``damped``: other terms may damp the oscillation.
     """
     scale = fastest.size
     if scale == 0.0 or not math.isfinite(scale):
@@ -114,7 +113,7 @@ def _wrong(
     grown = growth(fastest.frequency, fastest.decay, step, fastest.turn)
     if grown is None:
         return None
-    # Per unit of the largest rate: many masses that differ in how fast they are, not in how, are one mode.
+    # Scaled by the largest rate, oscillations of many masses become one mode, searched once.
     bound = stable(fastest.frequency / scale, fastest.decay / scale, fastest.turn / scale) / scale
     if bound > 0.0:
         if step <= bound * SLACK:

@@ -1,4 +1,4 @@
-"""Which objects a contact touches that names none."""
+"""The objects that a contact touches when it names none."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from sceneql.kinds import Formula, Model, Object, Value
 from sceneql.quantities.diagnostic import Diagnostics
 
 PLACE = ("position", "rotation")
-"""What may vary in time of an object that moves and keeps its shape."""
+"""Fields that may vary in time while the shape stays the same."""
 
 
 def touchable(tasks: Mapping[str, Task], found: Diagnostics | None = None) -> tuple[str, ...]:
-    """The objects with an inside that no model drives, by name; of the others ``found`` is told which and why.
+    """Names of the objects with an inside that no model drives; ``found`` gets a warning for each that is left out.
 
-    Left out without a word: members of others, hidden objects that models or objects are made of, and what has no
-    inside or is drawn where a model is (a trail, the surface of a liquid).
+    Left out without a warning: members of others, hidden objects that models or objects are made of, and objects that
+    have no inside or are drawn where a model is (a trail, the surface of a liquid).
     """
     objects = [t for t in tasks.values() if isinstance(t.kind, Object)]
     models = [t for t in tasks.values() if isinstance(t.kind, Model)]
@@ -62,7 +62,7 @@ def _members(task: Task, tasks: Mapping[str, Task]) -> list[Task]:
 
 
 def _has_inside(task: Task, tasks: Mapping[str, Task]) -> bool:
-    """Whether it has a collider of its own, or it and all of its members a field."""
+    """Whether it has a collider of its own, or it and all of its members have a field."""
 
     kind = task.kind
     assert isinstance(kind, Object)
@@ -70,7 +70,7 @@ def _has_inside(task: Task, tasks: Mapping[str, Task]) -> bool:
 
 
 def _changes_shape(task: Task, tasks: Mapping[str, Task]) -> bool:
-    """Whether values vary by which contacts cannot follow it: those of its place alone may, and all of some objects."""
+    """Whether values vary that a contact cannot follow: all but those of its placement, unless the word `collides`."""
 
     def varying(one: Task) -> set[str]:
         return {name for name, value in one.kind if isinstance(value, Value | Formula) and not value.constant}
