@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Single instructions that numba has no word for. All give the same bits on every machine."""
+"""Single machine instructions that numba has no function for. All give the same bits on every machine."""
 
 import numba
 import numpy as np
@@ -31,7 +31,7 @@ def _from_bits(typing, x):
 @intrinsic
 def _widest(typing):
     def code(context, builder, signature, arguments):
-        # llvmlite knows no attribute with a value, but writes out what is in the set.
+        # llvmlite has no function attributes with values, but prints every member of the set as it is.
         set.add(builder.function.attributes, WIDEST)
         return context.get_dummy_value()
 
@@ -58,9 +58,9 @@ bits = (lambda x: int(np.float64(x).view(np.int64))) if UNCOMPILED else _bits
 from_bits = (lambda n: float(np.int64(n).view(np.float64))) if UNCOMPILED else _from_bits
 """The float64 of 64 bits."""
 widest = (lambda: None) if UNCOMPILED else _widest
-"""Ask for the widest vectors in the calling kernel, where the compiler would be shy of them. The bits do not change."""
+"""Ask LLVM for its widest vectors in the calling kernel, where it would take narrower ones. The bits do not change."""
 always_inlined = (lambda: None) if UNCOMPILED else _always_inlined
-"""Put the calling helper into its callers, however large it is: loops with calls in them make no vectors."""
+"""Inline the calling helper into its callers whatever its size: loops with calls in them are not vectorized."""
 
 
 @inlined

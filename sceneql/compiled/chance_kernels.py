@@ -26,7 +26,7 @@ def signed(i, j, key):
 
 @inlined
 def noise_in_time(s, channel, key):
-    """Smooth noise: the uniform cubic spline (twice differentiable) of numbers in [-1, 1) at whole s."""
+    """Smooth noise: the uniform cubic B-spline (twice differentiable) of control values in [-1, 1) at whole s."""
     below = math.floor(s)
     f = s - below
     i = int(below)

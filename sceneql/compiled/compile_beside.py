@@ -1,4 +1,4 @@
-"""Compiling on a second core: a process beside this one imports modules of kernels, and this one loads what it made.
+"""Compiling on a second core: a second process compiles modules of kernels, and this one loads them from the cache.
 
 Compiling holds the interpreter's lock, so a second core can only help from a second process.
 """
@@ -24,10 +24,10 @@ from sceneql.compiled.kernels import OURS, cache_folder, compiled, compiles, thr
 
 
 def compile_beside(modules: Iterable[str]) -> Callable[..., None]:
-    """Have modules' kernels compiled beside, in this order, unless they were before; call the result to have them all.
+    """Start compiling modules not compiled yet in a second process, in this order; call the result to load them.
 
-    The call imports them from the last one on, less those that it names, and counts as compilation. Generated modules
-    are left out.
+    The call imports these modules, last one first and without those that it names, and counts as
+    compilation time. Generated modules are left out.
     """
     ours = [module for module in modules if module.partition(".")[0] in OURS[:2]]
     marks = {module: cache_folder(module) / "all.compiled" for module in ours}
@@ -37,7 +37,7 @@ def compile_beside(modules: Iterable[str]) -> Callable[..., None]:
     for module in due:
         marks[module].parent.mkdir(parents=True, exist_ok=True)
     if thread_count() > 1:
-        with suppress(BrokenPipeError):  # what ended it will be said where the module is imported here
+        with suppress(BrokenPipeError):  # the import here will report why it ended
             names = _beside()
             names.write("".join(f"{module} {marks[module]}\n" for module in due))
             names.flush()
@@ -54,9 +54,9 @@ def compile_beside(modules: Iterable[str]) -> Callable[..., None]:
 
 
 def compile_named(names: Iterable[str]) -> None:
-    """What the process beside does: import the module that each line names, and touch the file named behind it.
+    """The second process's work: import the module that each line names, and touch the file named behind it.
 
-    Ctrl-C is for the process that says what was kept; it takes this one with it.
+    Ctrl-C is for the first process, which reports what it has kept and then ends this one.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     for line in names:
@@ -67,9 +67,9 @@ def compile_named(names: Iterable[str]) -> None:
 
 @cache
 def _beside() -> IO[str]:
-    """Where to write names for the process, which ends with this one.
+    """A pipe to the second process, which ends with this one.
 
-    A copy of this process need not import numba once more, but it has one thread: others would hold locks for ever.
+    A fork need not import numba once more, but is only safe with one thread: locks of others would never be released.
     """
     if sys.platform == "linux" and threading.active_count() == 1:
         return _copied()
@@ -83,7 +83,7 @@ def _copied() -> IO[str]:
     reading, writing = os.pipe()
     blocked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)  # of threads that are not Python's: BLAS ends its own
+        warnings.simplefilter("ignore", DeprecationWarning)  # about threads that are not Python's: BLAS ends its own
         process = os.fork()
     if process == 0:
         _work_and_end(reading)
@@ -100,7 +100,7 @@ def _copied() -> IO[str]:
 
 
 def _work_and_end(reading: int) -> NoReturn:
-    """Nothing that the first process does when it ends is done twice, and no file that it closes stays open."""
+    """End by os._exit without the first process's exit handlers; its open files are closed at once."""
     try:
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
         os.closerange(3, reading)

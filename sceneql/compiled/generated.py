@@ -19,7 +19,7 @@ PACKAGE = "sceneql_generated"
 
 
 def write(prefix: str, source: str) -> str:
-    """Keep a module's text; its full name, ``sceneql_generated.<prefix>_<hash of the text>``.
+    """Keep a module's text; returns its full name, ``sceneql_generated.<prefix>_<hash of the text>``.
 
     The same text is written once, so its compiled code stays cached; the file appears whole or not at all.
     """

@@ -61,9 +61,9 @@ numba_event: Any = import_module("numba.core.event")
 
 OURS = ("sceneql", "renderers", "sceneql_generated")
 _IMPORTS = re.compile(r"^[ \t]*((?:from|import)\b[^\n(]*(?:\([^)]*\))?)", re.MULTILINE)
-"""Statements that import, and lines of text that look like them."""
+"""Import statements, and lines of text that look like them."""
 _HIDDEN_IMPORTS = re.compile(r"[;:][ \t]*(?:from|import)\b|\\\n")
-"""Where a file may import in the middle of a line, or over lines without brackets."""
+"""Imports that the pattern above would miss: in the middle of a line, or over lines without brackets."""
 
 
 def _cache_home() -> Path:
@@ -78,7 +78,7 @@ CACHE = _cache_home()
 
 
 def _spec(module: str) -> Any:
-    """Where a module lies; None where there is none of this name, or a package that only Python made."""
+    """The import spec of a module; None where there is none of this name, or a package that was made at run time."""
     try:
         return find_spec(module)
     except (ImportError, ValueError):
@@ -86,7 +86,7 @@ def _spec(module: str) -> Any:
 
 
 def _has_modules(name: str) -> bool:
-    """Whether a name is that of a package."""
+    """Whether the name is a package's."""
     if name in sys.modules:
         return hasattr(sys.modules[name], "__path__")
     spec = _spec(name)
@@ -97,7 +97,7 @@ def _has_modules(name: str) -> bool:
 def _imported(path: Path, package: str, changed: int) -> frozenset[str]:
     """Names of the modules that a file may import: of ``from a import b`` both ``a`` and ``a.b``.
 
-    ``changed``: when it was last written to; other contents are read anew.
+    ``changed``: the file's modification time, a key of the cache of results.
     """
     text = path.read_text(encoding="utf-8")
     parts = [text] if _HIDDEN_IMPORTS.search(text) else _IMPORTS.findall(text)
@@ -105,7 +105,7 @@ def _imported(path: Path, package: str, changed: int) -> frozenset[str]:
     for part in parts:
         try:
             tree = ast.parse(part)
-        except SyntaxError:  # a line of text
+        except SyntaxError:  # prose that looks like an import
             continue
         for node in ast.walk(tree):
             if isinstance(node, ast.Import):
@@ -119,7 +119,7 @@ def _imported(path: Path, package: str, changed: int) -> frozenset[str]:
 
 
 def _sources(module: str) -> frozenset[Path]:
-    """The files that compiled code of a module is made of: its own, and those of ours that they import."""
+    """The files that a module's compiled code depends on: its own, and those of ours that it imports, transitively."""
     found: dict[str, Path | None] = {}
     tops = {*OURS, module.partition(".")[0]}
     todo = [module]
@@ -130,7 +130,7 @@ def _sources(module: str) -> frozenset[Path]:
         found[name] = None
         package = name.rpartition(".")[0]
         if package and not _has_modules(package):
-            continue  # what a module defines, not a module
+            continue  # a name that a module defines, not a module
         spec = _spec(name)
         if spec is not None and spec.has_location:
             path = found[name] = Path(spec.origin)
@@ -139,10 +139,10 @@ def _sources(module: str) -> frozenset[Path]:
 
 
 def cache_folder(module: str) -> Path:
-    """Folder of a module's compiled code, named by a hash of all that it is made of.
+    """Folder of a module's compiled code, named by a hash of all the source that the code depends on.
 
-    numba's own cache does not notice a change in a function imported from another file; the hash does. Files of ours
-    do not change while a process runs; those of a ``--words`` folder may.
+    numba's own cache does not notice a change in a function imported from another file; the hash does. Files of ours do
+    not change while a process runs; those of a ``--words`` folder may.
     """
     return _folder_of_ours(module) if module.partition(".")[0] in OURS else _folder(module)
 
@@ -160,7 +160,7 @@ def _folder(module: str) -> Path:
 
 
 class CompileAccount(Listener):
-    """Counts numba compilations (not loads from the cache) and the seconds they took, nested ones once."""
+    """Counts numba's compilations (not loads from the cache) and their seconds, nested ones once."""
 
     def __init__(self) -> None:
         self.count = 0
@@ -188,7 +188,7 @@ class CompileAccount(Listener):
 
     @contextmanager
     def whole_block(self) -> Iterator[None]:
-        """Count all the seconds spent in a block."""
+        """Count all the seconds of a block as compilation."""
         self.on_start(None)
         self._block += 1
         try:
@@ -205,7 +205,7 @@ numba_event.register("numba:compile", compiled)
 
 @contextmanager
 def alone(path: Path) -> Iterator[None]:
-    """Let one process at a time through, where the system has such locks: what it compiles the next one loads."""
+    """Let one process at a time compile, where the system has file locks: the next one loads the result."""
     if fcntl is None or config.DISABLE_JIT:
         yield
         return
@@ -218,8 +218,8 @@ def alone(path: Path) -> Iterator[None]:
 def kernel(signature: Any, *, inner: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     """Compile a function for one explicit signature, cached on disk, without the GIL, NaN and inf as in numpy.
 
-    Fastmath stays off, so that the bits do not depend on the machine. Only kernels call an ``inner`` one, by its name
-    or its address. The code for calls from Python is made when the first one comes.
+    Fastmath stays off, so that the bits do not depend on the machine. An ``inner`` kernel is called by kernels alone,
+    by its name or address. The entry for calls from Python is compiled at the first such call.
     """
     options |= COMMON | UNWRAPPED
 
@@ -241,18 +241,18 @@ def kernel(signature: Any, *, inner: bool = False, **options: Any) -> Callable[[
 
 COMMON = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 UNWRAPPED = {"no_cpython_wrapper": MODE == "shortcuts"}
-"""numba as it is makes code for calls from Python with every function, and would crash without it."""
+"""numba as it is makes a Python entry for every function, and would crash without it."""
 HELPER = {**COMMON, **UNWRAPPED, **HELPER_PIPELINE}
 
 inlined = njit(**HELPER)
 """A helper of kernels: compiled with its caller, for the types it is called with; not callable from Python."""
 
 woven = njit(inline="always", **COMMON)
-"""Put into its caller before compilation: for small functions around a large one, whose code they would repeat."""
+"""Inlined in its caller before compilation: for small functions around a large one, whose code they would repeat."""
 
 
 def lean(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """A kernel that makes no arrays (slices may be taken): without counting references, some 100 ns a call."""
+    """A kernel that makes no arrays (slices may be taken): it counts no references, which saves some 100 ns a call."""
     return kernel(signature, _nrt=False, **options)
 
 
@@ -269,10 +269,10 @@ def address(function: Any, kind: Any) -> Any:
 
 
 def function_at(kind: Any) -> Any:
-    """What makes of an ``address`` a function that kernels can call.
+    """An intrinsic that gives kernels a callable function for an ``address``.
 
     numba can take functions as arguments, but asks Python for their addresses at every call (50 us each). Kernels call
-    by name what is always the same one.
+    a function that is always the same by its name instead.
     """
     if config.DISABLE_JIT:
         return lambda function: function
@@ -282,7 +282,7 @@ def function_at(kind: Any) -> Any:
         def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
             value = cgutils.create_struct_proxy(kind)(context, builder)
             pointer = builder.inttoptr(arguments[0], context.get_value_type(types.voidptr))
-            # The address is known to be one, so the code for Python functions is dropped.
+            # The address is never null, so LLVM drops the code for Python functions.
             builder.assume(cgutils.is_not_null(builder, pointer))
             value.jit_addr = pointer
             value.c_addr = value.py_addr = context.get_constant_null(types.voidptr)
@@ -331,7 +331,7 @@ def over_tiles(count: int, work: Callable[[int], object]) -> None:
                 deque(upcoming, maxlen=0)
             raise
 
-    # This thread works, too: one that sleeps would leave its core to be found again by those that it has woken.
+    # This thread takes tiles, too: if it slept, the threads that it wakes would have to find its core idle first.
     others = min(thread_count(), count) - 1
     futures = [_pool(others).submit(drain) for _ in range(others)]
     try:

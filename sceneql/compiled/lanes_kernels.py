@@ -1,8 +1,8 @@
 # mypy: ignore-errors
-"""Lanes: as many numbers as go into 64 bytes, 8 float64 or 16 float32, as one value of a kernel, worked on at once.
+"""Lanes: 64 bytes of numbers, 8 float64 or 16 float32, as one value of a kernel that is computed on at once (SIMD).
 
-Written where the compiler, left to itself, makes poor vectors of a loop. What an operation does to a lane is fixed, so
-the bits are the same on every machine, whatever the size of its vectors; a number beside lanes stands for all of them.
+Used where LLVM's own vectorization of a loop is poor. What an operation does to a lane is fixed, so the bits are the
+same on every machine, whatever the size of its vectors; a number beside lanes stands for all of them.
 """
 
 import operator
@@ -33,7 +33,7 @@ class Lanes(types.Type):
 
 @register_model(Lanes)
 class LanesModel(models.PrimitiveModel):
-    """One vector of LLVM."""
+    """One vector of LLVM's."""
 
     def __init__(self, manager, kind):
         number = ir.DoubleType() if kind.dtype == types.float64 else ir.FloatType()
@@ -46,14 +46,14 @@ def _splat(builder, vector, number):
 
 
 def _as_lanes(context, builder, kind, given, value):
-    """A value as lanes of a kind; a number in all of them."""
+    """A value as lanes of a type; a number is broadcast to all of them."""
     if isinstance(given, Lanes):
         return value
     return _splat(builder, context.get_value_type(kind), context.cast(builder, value, given, kind.dtype))
 
 
 def _kind(args):
-    """The lanes among arguments, where all others are numbers."""
+    """The type of the lanes among the arguments, where all others are numbers; else None."""
     found = [arg for arg in args if isinstance(arg, Lanes)]
     fits = all(isinstance(arg, types.Number) or arg == found[0] for arg in args) if found else False
     return found[0] if fits else None
@@ -269,9 +269,9 @@ fma = _fma_in_python if UNCOMPILED else _fma
 below = _below_in_python if UNCOMPILED else _below
 """below(a, b, x, y): x where a < b, else y."""
 bits_below = _bits_below_in_python if UNCOMPILED else _bits_below
-"""bits_below(a, b): the bits of an integer, the first for the first lane, that are set where a < b."""
+"""bits_below(a, b): an integer whose bit k is set where a < b in lane k."""
 first_bit = _first_bit_in_python if UNCOMPILED else _first_bit
-"""The place of the first bit that is set, of an integer that is not 0."""
+"""Index of the lowest set bit of an integer that is not 0."""
 least = np.min if UNCOMPILED else _least
 """The least of all lanes, none of which is NaN."""
 most = np.max if UNCOMPILED else _most
@@ -281,7 +281,7 @@ root = np.sqrt if UNCOMPILED else _root
 guess = _guess_in_python if UNCOMPILED else _guess
 """s^(-1/2) for s > 0, within some 4 %, by halving the exponent (Lomont 2003)."""
 folded = _folded_in_python if UNCOMPILED else _folded
-"""The sum of all lanes, half by half."""
+"""The sum of all lanes, by adding halves."""
 
 
 @inlined

@@ -1,7 +1,7 @@
 # mypy: ignore-errors
-"""Kernels that others find by an integer, which may stand among the integers that they are given.
+"""Kernels found by an integer, their address, which may stand among the integers of another kernel.
 
-By its number a kernel calls what only the run knows.
+So a kernel calls functions that only the run knows.
 """
 
 from typing import Any
@@ -12,7 +12,7 @@ from numba import types
 from sceneql.compiled.kernels import address, function_at
 
 _uncompiled: list[Any] = []
-"""Functions that stand for their addresses where numba is switched off."""
+"""Functions by their number, in place of addresses where numba is switched off."""
 
 
 def number_of(function: Any, signature: Any) -> int:
@@ -24,5 +24,5 @@ def number_of(function: Any, signature: Any) -> int:
 
 
 def kernel_at(signature: Any) -> Any:
-    """What makes of a ``number_of`` the kernel."""
+    """A function that gives kernels the kernel of a ``number_of``."""
     return _uncompiled.__getitem__ if numba.config.DISABLE_JIT else function_at(types.FunctionType(signature))

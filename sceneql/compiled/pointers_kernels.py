@@ -1,8 +1,8 @@
 # mypy: ignore-errors
-"""Compiled functions handed over as addresses.
+"""Compiled functions passed as addresses.
 
 numba can take functions as arguments, but asks Python for the addresses of each at every call: 0.3 ms for the six of a
-march. Here the addresses are looked up once and cross as integers.
+march. Here the addresses are looked up once and passed as integers.
 """
 
 from typing import Any
@@ -35,7 +35,7 @@ KINDS = (
     EVENT_FUNCTION,
 )
 AT_STEP, AT_DENSE, AT_RATE, AT_GAP, AT_IMPACT, AT_BACK_OFF, AT_AFTER_STEP, AT_JACOBIAN, AT_EVENT = range(len(KINDS))
-"""Places in the array of addresses: ``rate = rate_at(functions[AT_RATE])``."""
+"""Indices into the array of addresses: ``rate = rate_at(functions[AT_RATE])``."""
 
 
 def addresses(*functions: Any) -> Any:

@@ -60,14 +60,14 @@ TEXTS: Mapping[str, str] = {
 
 @dataclass
 class Constants:
-    """What formulas take from outside, as symbols in its place: ``#0``, ``#1``, ... numbers, ``@0``, ... inputs."""
+    """Inputs of formulas as symbols: ``#0``, ``#1``, ... numbers, ``@0``, ... outputs of other parts."""
 
     values: list[float] = field(default_factory=list)
     inputs: list[Expr] = field(default_factory=list)
-    """Parts that read outputs of other parts of the script."""
+    """Subexpressions that read outputs of other parts of the script."""
 
     def lift(self, expr: Expr) -> Expr:
-        """The scalar formula with each largest part that has no symbol of its own replaced.
+        """The scalar formula with each largest subexpression without a free symbol replaced by a new symbol.
 
         Two constants never share a symbol, even where their values are equal: then a new value would change the form.
         """
@@ -93,7 +93,7 @@ class Constants:
 
 @dataclass
 class Printer:
-    """Prints lifted expressions as assignments to ``v0``, ``v1``, ...; equal parts are assigned once.
+    """Prints lifted expressions as assignments to ``v0``, ``v1``, ...; equal subexpressions are assigned once.
 
     ``names``: the kernel's text for a symbol; ``meanings``: expressions that symbols stand for, printed where first
     used.
@@ -115,7 +115,7 @@ class Printer:
     def _print(self, expr: Expr) -> str:
         match expr:
             case Number(value=value):
-                # A number that is still here was made by differentiation: form, but a float like the others.
+                # Numbers that are left come from differentiation: part of the form, but floats like the others.
                 return self.name(self.constants.number(value))
             case Symbol(name=name) if name in self.meanings:
                 return self.name(self.meanings[name])
@@ -135,7 +135,7 @@ class Printer:
 
 
 def free(expr: Expr) -> bool:
-    """Whether an expression has a symbol."""
+    """Whether an expression has a free symbol."""
     return any(isinstance(node, Symbol) for node in walk(expr))
 
 

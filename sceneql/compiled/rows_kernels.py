@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""An array of numbers in a row read as a table, which numba's own views and reshapes do only by Python."""
+"""A one-dimensional array viewed as a table (n, columns), which numba's own views and reshapes do only in Python."""
 
 from llvmlite import ir
 from numba import config, types
@@ -10,13 +10,13 @@ from numba.np.numpy_support import as_dtype
 
 
 def field(context, builder, kind, array, name, *more):
-    """A field of an array's value."""
+    """A field of numba's structure of an array."""
     position = context.data_model_manager[kind].get_field_position(name)
     return builder.extract_value(array, (position, *more))
 
 
 def rows_of(kind, columns):
-    """A function of an array of numbers in a row: the same memory as an array (n, columns) of numbers of ``kind``."""
+    """A function that views a one-dimensional array as an array (n, columns) of numbers of ``kind``, without a copy."""
     if config.DISABLE_JIT:
         return lambda numbers: numbers.view(as_dtype(kind)).reshape(-1, columns)
     table = types.Array(kind, 2, "C")

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""How tiles get their threads: compiled where the first term is large enough for several (threads_kernels)."""
+"""Threads of the system for the tiles of a term, compiled only for terms large enough for several (threads_kernels)."""
 
 import numba
 import numpy as np
@@ -15,7 +15,7 @@ from sceneql.system.signatures_kernels import N
 
 WORD = ir.IntType(64)
 FUNCTION, FIRST, STRIDE, TILES, TIME, ARRAYS, WORDS = 0, 1, 2, 3, 4, 5, 13
-"""What a thread is told: 64-bit words; from ARRAYS on address and length of y, rate, floats, ints."""
+"""Layout of a thread's 64-bit words; from ARRAYS on address and length of y, rate, floats, ints."""
 
 tile_at = uncompiled.__getitem__ if numba.config.DISABLE_JIT else function_at(TILE_FUNCTION)
 
@@ -45,7 +45,7 @@ pthread_join = types.ExternalFunction("pthread_join", types.int32(N, N))
 
 
 def _entry(told):
-    """What a thread runs: its tiles."""
+    """The function of a thread: compute its tiles."""
     words = carray(told, WORDS)
     y = carray(pointer(words[ARRAYS]), words[ARRAYS + 1])
     rate = carray(pointer(words[ARRAYS + 2]), words[ARRAYS + 3])

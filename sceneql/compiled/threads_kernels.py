@@ -1,8 +1,8 @@
 # mypy: ignore-errors
 """Tiles of a large term on several threads, from inside compiled code.
 
-A march is one compiled loop that has let go of the interpreter's lock; what it calls cannot hand tiles to a pool of
-Python's. So a term that is worth it starts threads of the system itself, some 20 us each, and waits for them. Tile k
+A march is one compiled loop without the interpreter's lock, so its kernels cannot hand tiles to a pool of Python
+threads. A term that is large enough starts threads of the system itself, some 20 us each, and waits for them. Tile k
 goes to thread k modulo their number and writes to places of its own: the bytes do not depend on how many there are.
 """
 
@@ -16,7 +16,7 @@ from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.system.signatures_kernels import A, F, I, N
 
 TILE = types.void(N, F, A, A, A, I)
-"""tile(number, t, y, rate, floats, ints): its part of a term."""
+"""tile(number, t, y, rate, floats, ints): computes one tile of a term."""
 TILE_FUNCTION = types.FunctionType(TILE)
 OVER_THREADS = types.void(N, N, N, N, F, A, A, A, I)
 
@@ -28,7 +28,7 @@ over_threads = lazy("sceneql.compiled.start_threads_kernels:over_threads", OVER_
 
 
 def tile_address(function: Any) -> int:
-    """What `over_threads` calls the kernel by; keep the kernel alive."""
+    """The address by which `over_threads` calls the kernel; keep the kernel alive."""
     if numba.config.DISABLE_JIT:
         uncompiled[id(function)] = function
         return id(function)
@@ -36,6 +36,6 @@ def tile_address(function: Any) -> int:
 
 
 def threads() -> tuple[int, int]:
-    """Integers for `over_threads`: whether there are several threads, and how many."""
+    """Two integers for `over_threads`: whether there are several threads, and how many."""
     count = 1 if numba.config.DISABLE_JIT else thread_count()
     return int(count > 1), count

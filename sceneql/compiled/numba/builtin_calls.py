@@ -1,8 +1,8 @@
 # mypy: ignore-errors
-"""What kernels call most of numba's own: min, max, np.empty and np.zeros, written down where they are called.
+"""The builtins that kernels call most, min, max, np.empty and np.zeros, compiled inline where they are called.
 
-numba compiles a function in Python for each of them, for each type of arguments and in each process, by all of its
-steps. The machine code is the same without.
+numba compiles an implementation in Python for each of them, for each type of arguments and in each process, by all of
+its passes. The machine code is the same without.
 """
 
 import operator
@@ -50,11 +50,11 @@ def _of_shape(typing_context, args, keywords):
 
 BY_NAME = utils.pysignature(lambda shape, dtype: None)
 RESOLVED = {}
-"""By the function called: what lowers a call, and the rule of its signature."""
+"""By the builtin: the key of its lowering, and the rule for the signature of a call."""
 
 
 def resolve(function, typing_context, args, keywords):
-    """The signature of a call of one of them, by types of arguments; None where it is none of ours."""
+    """The signature of a call of one of these builtins, by types of arguments; None: numba resolves it."""
     key, rule = RESOLVED[function.typing_key]
     found = rule(typing_context, args, keywords)
     if found is not None:
@@ -75,7 +75,7 @@ def most(context, builder, signature, arguments):
 
 
 def new_array(context, builder, kind, shapes):
-    """A new array in rows, its numbers as memory had them (arrayobj._empty_nd_impl): ValueError for a size too big."""
+    """An uninitialized array in C order (arrayobj._empty_nd_impl); ValueError for a size that overflows."""
     if kind.layout != "C" or kind.ndim == 0:
         return WHOLE(context, builder, kind, shapes)
     data_kind = context.get_data_type(kind.dtype)
@@ -107,7 +107,7 @@ def new_array(context, builder, kind, shapes):
 
 
 WHOLE = arrayobj._empty_nd_impl
-"""numba's own way."""
+"""numba's own implementation."""
 
 
 @lower_builtin(EMPTY, types.Any)
@@ -130,7 +130,7 @@ def zeros(context, builder, signature, arguments):
 
 
 def take_builtin_calls():
-    """Let calls of these functions be resolved here, and numba's other makers of arrays use the same."""
+    """Resolve calls of these builtins here, and let numba's other functions that make arrays use `new_array`."""
     RESOLVED[min] = LEAST, _of_numbers
     RESOLVED[max] = MOST, _of_numbers
     RESOLVED[np.empty] = EMPTY, _of_shape

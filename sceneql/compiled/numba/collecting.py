@@ -1,20 +1,20 @@
 # mypy: ignore-errors
-"""Python's garbage collector stands still while numba compiles. This leaves numba itself as it is."""
+"""Python's garbage collector is off while numba compiles. This replaces no part of numba."""
 
 import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 MANY, VERY_MANY = 20_000, 3_000_000
-"""Objects that a compilation makes, a load from the cache does not; and how many of them memory has room for."""
+"""Objects made by a compilation but not by a load from the cache; and frozen objects that memory has room for."""
 out_of_sight: list[int] = []
 
 
 @contextmanager
 def collecting_later() -> Iterator[None]:
-    """Leave the garbage collector off: a compilation makes millions of objects that live on, looked over in vain.
+    """Leave the garbage collector off: a compilation makes millions of objects that live on, traversed in vain.
 
-    Afterwards they are kept out of its sight too, or it would look them over at once, until there are very many.
+    Afterwards these are frozen, or the collector would traverse them at once; when they are too many, it collects all.
     """
     was_on = gc.isenabled()
     gc.disable()

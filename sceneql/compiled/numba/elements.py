@@ -1,8 +1,8 @@
 # mypy: ignore-errors
-"""How elements and parts of arrays are read and written in compiled code: the same as numba does it, in fewer words.
+"""How elements and slices of arrays are read and written in compiled code: as by numba, with less LLVM code.
 
-numba copies the whole array into memory at each use, with all its fields, and looks for what other libraries may have
-said of arrays. Most of what a kernel is compiled from is that; the machine code is the same without.
+numba copies the whole structure of an array to memory at each use, and looks up conversions by other libraries
+(``__array__``). Most of a kernel's LLVM code comes from that; the machine code is the same without.
 """
 
 import operator
@@ -16,11 +16,11 @@ from numba.np import arrayobj
 from sceneql.compiled.rows_kernels import field
 
 WHOLE = arrayobj.getitem_arraynd_intp, arrayobj.getitem_array_tuple, arrayobj.setitem_array, arrayobj.make_array
-"""numba's own ways."""
+"""numba's own implementations."""
 
 
 def wrapped(context, builder, kind, index, size):
-    """An index as a word, those below 0 counted from the end."""
+    """An index as a machine word, negative ones counted from the end."""
     if not kind.signed:
         return context.cast(builder, index, kind, types.uintp)
     index = context.cast(builder, index, kind, types.intp)
@@ -31,7 +31,7 @@ def wrapped(context, builder, kind, index, size):
 
 
 def pointer(context, builder, kind, array, kinds, indices):
-    """Where an element stands; None where that is not told by one integer for each dimension of an array in rows."""
+    """Address of an element; None unless there is one integer index for each dimension of an array in C order."""
     plain = isinstance(kind, types.Array) and kind.layout == "C" and len(kinds) == kind.ndim > 0
     if not plain or context.enable_boundscheck or not all(isinstance(one, types.Integer) for one in kinds):
         return None
@@ -44,7 +44,7 @@ def pointer(context, builder, kind, array, kinds, indices):
 
 
 def parts(builder, kind, index):
-    """Types and values of the integers of an index."""
+    """Types and values of the integers in an index."""
     if isinstance(kind, types.BaseTuple):
         return tuple(kind), cgutils.unpack_tuple(builder, index, count=len(kind))
     return (kind,), (index,)
@@ -118,7 +118,7 @@ def length(context, builder, signature, arguments):
 
 @cache
 def make_array(kind):
-    """numba's structure of an array, without asking what other libraries may have said of it."""
+    """numba's structure of an array, without a lookup of conversions by other libraries (``__array__``)."""
     made = WHOLE[3](kind)
     if type(kind) is types.Array:
         made._make_refs = cgutils._StructProxy._make_refs
@@ -126,7 +126,7 @@ def make_array(kind):
 
 
 def take_elements():
-    """Let numba lower what is done with arrays by the functions of this file."""
+    """Let numba lower operations on arrays by the functions of this file."""
     for index in (types.Integer, types.BaseTuple):
         lower_builtin(operator.getitem, types.Array, index)(element)
         lower_builtin(operator.setitem, types.Array, index, types.Any)(set_element)

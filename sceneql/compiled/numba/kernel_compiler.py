@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""How numba compiles our kernels: its own steps, less those that our code has no use for.
+"""How numba compiles our kernels: by its own passes, without those that our code has no use for.
 
 Most of the time that numba takes is spent in Python. What is left out here is half of it all, and changes neither what
 kernels compute nor what they may contain, but for closures, comprehensions, ``with`` and raises of computed errors.
@@ -49,10 +49,10 @@ FRONT = (
 
 
 class KernelLibrary(JITCodeLibrary):
-    """Code of a kernel: nothing of it is looked over for LLVM's own mistakes, or made good where there is nothing."""
+    """Code of a kernel: without LLVM's verification, and without its function passes over declarations."""
 
     def add_ir_module(self, ir_module):
-        """Take LLVM's words in."""
+        """Add a module of LLVM code."""
         module = binding.parse_assembly(cgutils.normalize_ir_text(str(ir_module)))
         module.name = ir_module.name
         module.data_layout = self._codegen._data_layout
@@ -63,7 +63,7 @@ class KernelLibrary(JITCodeLibrary):
         self._final_module.link_in(module)
 
     def serialize_using_object_code(self):
-        """What is cached: machine code, and the names in it. No other code will be linked with LLVM's words for it."""
+        """What is cached: machine code, and the names in it. No other code is linked with its LLVM code."""
         self._ensure_finalized()
         names = (one.name for one in self.get_defined_functions())
         words = "".join(f'define void @"{name}"() {{\nret void\n}}\n' for name in names)
@@ -71,7 +71,7 @@ class KernelLibrary(JITCodeLibrary):
 
 
 class HelperLibrary(KernelLibrary):
-    """Code of a helper: it goes into its callers, is made good there, and never becomes machine code of its own."""
+    """Code of a helper: it is inlined in its callers, optimized there, and never becomes machine code of its own."""
 
     def _optimize_final_module(self):
         passes, builder = self._codegen._module_pass_manager(
@@ -104,7 +104,7 @@ class HelperLowering(NativeLowering):
     lowering_class = KernelLower
 
     def run_pass(self, state):
-        """Leave the code in state.library, and in state.cr what callers know it by."""
+        """Leave the code in state.library, and in state.cr the description that callers use."""
         state.flags = state.flags.copy()
         state.flags.no_compile = True
         state.library = HelperLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
@@ -116,18 +116,18 @@ class HelperLowering(NativeLowering):
 
 
 def _kept_out(name):
-    """What stands for a function in Python that only kernels may call: it raises KeyError.
+    """Stands for the Python function of a helper that only kernels may call: it raises KeyError.
 
-    numba asks for a builtin function, one of its own for each.
+    numba requires a builtin function, a different one for each helper.
     """
     return f"{{{name} is for kernels only}}".format
 
 
 class Passes(PassManager):
-    """A list of passes, with nothing between them: numba would find anew after each where variables live."""
+    """A list of passes, with nothing in between: numba would analyze the lifetimes of variables anew after each."""
 
     def run(self, state):
-        """Run them all on the state."""
+        """Run all passes on the state."""
         for one, _ in self.passes:
             _pass_registry.get(one).pass_inst.run_pass(state)
             if state.func_ir is not None:
@@ -143,24 +143,24 @@ def _pipeline(*passes):
 
 
 class KernelCompiler(CompilerBase):
-    """For ``pipeline_class`` of numba.jit."""
+    """The ``pipeline_class`` of numba.jit for a kernel."""
 
     def define_pipelines(self):
-        """The one list of passes."""
+        """The single list of passes."""
         return _pipeline(*FRONT, KernelLowering, NoPythonBackend)
 
 
 class HelperCompiler(CompilerBase):
-    """The same for functions that only compiled ones call."""
+    """The ``pipeline_class`` for a helper, which only compiled functions call."""
 
     def define_pipelines(self):
-        """The one list of passes."""
+        """The single list of passes."""
         return _pipeline(*FRONT, HelperLowering, NoPythonBackend)
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
 class LowerPythonEntry(PythonEntry):
-    """Lower the way into a kernel to a KernelLibrary."""
+    """Lower a kernel's Python entry to a KernelLibrary."""
 
     _name = "lower_python_entry"
 
@@ -172,10 +172,10 @@ class LowerPythonEntry(PythonEntry):
 
 
 class PythonEntryCompiler(CompilerBase):
-    """For ``pipeline_class`` of what leads from Python into a kernel that is there."""
+    """The ``pipeline_class`` for the Python entry of a kernel that is compiled already."""
 
     def define_pipelines(self):
-        """The one list of passes."""
+        """The single list of passes."""
         return _pipeline(LowerPythonEntry, NoPythonBackend)
 
 
@@ -184,12 +184,12 @@ PIPELINES = tuple({"pipeline_class": compiler} for compiler in (KernelCompiler, 
 
 
 def call_by_name(kernel: Any, python_entry: Callable[[], Any] | None) -> None:
-    """Let other kernels call this one by its name, where numba would put its code into each of them once more.
+    """Let other kernels call this one by its name, where numba would link its code into each of them once more.
 
-    The name is the function's own: what numba makes of it differs from process to process, and callers are cached.
-    ``python_entry()`` gives what Python calls the kernel by, when it does; where there is None, calls raise TypeError.
+    The name is the function's own: numba's mangled names differ from process to process, and callers are cached.
+    ``python_entry()`` gives the dispatcher for calls from Python; where it is None, such calls raise TypeError.
     """
-    (made,) = kernel.overloads.values()  # of one signature: a name stands for one function
+    (made,) = kernel.overloads.values()  # one signature, so that the name stands for one function
     called = copy(made.fndesc)
     called.mangled_name = f"{made.fndesc.modname}.{made.fndesc.qualname}"
     binding.add_symbol(called.mangled_name, made.library.get_pointer_to_function(made.fndesc.mangled_name))
@@ -204,7 +204,7 @@ def call_by_name(kernel: Any, python_entry: Callable[[], Any] | None) -> None:
 
 
 def _refusal(name):
-    """What raises TypeError for a call from Python of a function for kernels."""
+    """A function that raises TypeError for a call from Python of a function for kernels."""
 
     def refuse(*_, **__):
         raise TypeError(f"{name} is for kernels only")
@@ -213,7 +213,7 @@ def _refusal(name):
 
 
 def widen():
-    """Let LLVM use vectors of 512 bits where they do not slow the clock, which is from AVX512-VBMI2 on (Ice Lake)."""
+    """Let LLVM use vectors of 512 bits where they do not slow the clock: from AVX512-VBMI2 on (Ice Lake)."""
     if config.CPU_NAME is None and config.CPU_FEATURES is None and config.ENABLE_AVX:
         features = binding.get_host_cpu_features()
         if features.get("avx512vbmi2"):
@@ -221,12 +221,12 @@ def widen():
 
 
 def forget_lock_times():
-    """LLVM's calls are many, and how long each of them holds its lock asks nobody here."""
+    """Drop numba's record of how long each call of LLVM holds its lock: the calls are many, and nobody reads it."""
     ffi.lib._lock._cblist.clear()
 
 
 REPLACEMENTS = [take_elements, *SHORTCUTS, take_builtin_calls, forget_lock_times, widen]
-"""What replaces parts of numba for all that this process compiles; the passes above are only for our kernels."""
+"""Functions that replace parts of numba for this whole process; the passes above are only for our kernels."""
 
 
 def take_all() -> None:

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Kernels that others call, but that are compiled only when the first call comes: most scenes may do without.
+"""Kernels that are compiled at their first call by another kernel: most scenes may never need them.
 
 The callers are linked to a place in memory that holds the address of the kernel's code. While it is empty, a call
 imports the kernel's module first. This extends numba by its registries of functions and LLVM's table of symbols, and
@@ -20,28 +20,28 @@ from numba.core.imputils import lower_builtin
 from numba.core.typing.templates import ConcreteTemplate, infer_global
 
 places: dict[int, tuple[str, ctypes.c_void_p]] = {}
-"""By its address: the name of a kernel, and the place for the address of its code."""
+"""By the address of a place: the kernel's name, and the place, which holds the address of its code."""
 expected = {}
-"""By the same: the signature that its callers know."""
+"""By the same address: the signature that callers were compiled for."""
 failures: dict[str, BaseException] = {}
-"""By the name of a kernel: why it could not be brought."""
+"""By a kernel's name: the error of its import."""
 _one_by_one = threading.RLock()
 _ASK = f"{__name__}.ask"
 
 
 class NotBrought(Exception):
-    """What compiled code ends with for want of a kernel: making one raises the error that was the reason."""
+    """Raised by compiled code whose kernel could not be loaded: making one raises the import's error instead."""
 
     def __init__(self, name):
         raise failures[name]
 
 
 def lazy(name, signature):
-    """The kernel ``"package.module:function"``, to be called by kernels alone; ``signature`` is what it has."""
+    """The kernel ``"package.module:function"``, to be called by kernels alone with this ``signature``."""
     module, _, function = name.partition(":")
 
     def stub(*arguments):
-        """Its stand-in, which calls it where numba is switched off."""
+        """Stands for the kernel in Python, and calls it where numba is switched off."""
         if not config.DISABLE_JIT:
             raise TypeError(f"{function} is for kernels only")
         return getattr(import_module(module), function)(*arguments)
@@ -80,12 +80,12 @@ def lazy(name, signature):
 
 
 def modules() -> list[str]:
-    """The modules of all lazy kernels that are named so far and have not been called."""
+    """Modules of all lazy kernels that have been declared and not called so far."""
     return [name.partition(":")[0] for name, place in list(places.values()) if place.value is None]
 
 
 def _fill(at):
-    """Bring the kernel of a place."""
+    """Import the kernel of a place, and store its address there. Raises TypeError for another signature."""
     name, place = places[at]
     module, _, function = name.partition(":")
     with _one_by_one:
@@ -98,9 +98,9 @@ def _fill(at):
 
 @ctypes.CFUNCTYPE(None, ctypes.c_size_t)
 def _ask(at):
-    """What compiled code calls: where the place stays empty, it ends. A Ctrl-C is heard when Python goes on.
+    """Called by compiled code for an empty place; if that stays empty, the code raises NotBrought.
 
-    A thread that is not of Python has nobody to tell: there the process ends.
+    Ctrl-C is raised again once Python goes on. Threads that are not Python's cannot raise: there the process ends.
     """
     interrupted = False
     while places[at][1].value is None:

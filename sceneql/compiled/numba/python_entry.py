@@ -14,7 +14,7 @@ from numba.core.compiler_machinery import LoweringPass, register_pass
 from numba.core.lowering import Environment
 
 _called = {}
-"""By the name that others call a kernel by (call_by_name): its description."""
+"""By the name that kernels call a kernel by (call_by_name): its description."""
 _one_by_one = threading.RLock()
 
 
@@ -31,19 +31,19 @@ def add_python_entry(kernel, called, make):
         with _one_by_one:
             if kernel._can_compile:
                 (way,) = make().overloads.values()
-                kernel.python_entry = way  # which keeps it: numba's table does not
+                kernel.python_entry = way  # keeps it alive: numba's table does not
                 kernel._insert([one._code for one in way.signature.args], way.entry_point, False)
                 kernel._can_compile = False
         return kernel
 
     kernel._compile_for_args = take
     kernel._can_compile = True
-    kernel.compile = lambda _: None  # kernels that call it would ask, for types that are nearly its own
+    kernel.compile = lambda _: None  # other kernels would ask for types that are nearly its own
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)
 class PythonEntry(LoweringPass):
-    """Instead of all that makes a kernel of a function: what takes Python's arguments, and calls the kernel by name."""
+    """The single pass of a Python entry: code that unpacks Python's arguments and calls the kernel by name."""
 
     _name = "python_entry"
 

@@ -40,7 +40,7 @@ PLAIN_OR_PACKED = (*PLAIN, types.Array, types.BaseTuple)
 
 
 def remember_signatures():
-    """What an operation on numbers, or the picking of an element, gives.
+    """The signature of an operation on numbers, or of indexing, is looked up once.
 
     At every ``a + b`` numba tries up to twenty rules, those for strings, lists and sets among them, and that twice.
     """
@@ -66,7 +66,7 @@ def remember_signatures():
 
 
 def remember_attributes():
-    """Types of what modules and arrays have, and of functions that are not of Python."""
+    """Types of attributes of modules and arrays, and of builtin functions, are looked up once."""
     find, resolve = BaseContext.find_matching_getattr_template, BaseContext.resolve_value_type
     found = {}
 
@@ -89,7 +89,7 @@ def remember_attributes():
 
 
 def resolve_once():
-    """Types are found in rounds: calls are resolved again only where the types of their arguments have changed."""
+    """In later rounds of type inference a call is resolved again only where the types of its arguments have changed."""
     slowly = typeinfer.CallConstraint.resolve
 
     def resolving(self, typeinfer, typevars, fnty):
@@ -112,7 +112,7 @@ def resolve_once():
 
 
 class Context:
-    """What an error is told to have happened in, put into words only where there is one (errors.new_error_context)."""
+    """The context of an error, formatted only where there is an error (errors.new_error_context)."""
 
     def __init__(self, words, *parts, errcls_=None, **named):
         self.words, self.parts, self.named = words, parts, named
@@ -129,7 +129,7 @@ class Context:
 
 
 def propagate(self, inference):
-    """One round of type inference: the errors, which the next may mend (typeinfer.ConstraintNetwork.propagate)."""
+    """One round of type inference: its errors, which the next may resolve (typeinfer.ConstraintNetwork.propagate)."""
     found = []
     for constraint in self.constraints:
         try:
@@ -144,17 +144,17 @@ def propagate(self, inference):
 
 
 def propagate_quickly():
-    """One round of type inference asks no constraint for what an error of it would say."""
+    """Rounds of type inference format no context for errors that do not occur."""
     typeinfer.ConstraintNetwork.propagate = propagate
 
 
 def describe_rarely():
-    """What an error has happened in is described only where there is one (errors.new_error_context)."""
+    """The context of an error is formatted only where there is an error (errors.new_error_context)."""
     typeinfer.new_error_context = lowering.new_error_context = Context
 
 
 def list_quickly():
-    """A statement's variables by looking at the types of its parts in one step, not in up to six."""
+    """The variables of a statement are found by the exact types of its parts, in one step instead of up to six."""
     slowly = ir.Inst._rec_list_vars
 
     def listed(self, value):
@@ -171,7 +171,7 @@ def list_quickly():
 
 
 def remember_misses():
-    """That there is no implementation for some types, until there is one more."""
+    """A lookup that found no implementation for some types is not repeated until one is added."""
     find, append = base.OverloadSelector._find, base.OverloadSelector.append
 
     def finding(self, signature):
@@ -192,7 +192,7 @@ def remember_misses():
 
 
 def refresh_rarely():
-    """All of numba's registries are imported once; later it is only looked whether there is anything new in them."""
+    """numba's registries are imported once; later they are only checked for new entries."""
     load = cpu.CPUContext.load_additional_registries
     loaded = set()
 
@@ -209,7 +209,7 @@ def refresh_rarely():
 
 
 def _when_grown(install):
-    """What is in a registry, looked through only when there is more: nothing is ever taken out."""
+    """Install a registry's entries only when there are more than before: none is ever removed."""
     installed = {}
 
     def installing(self, registry):
@@ -222,7 +222,7 @@ def _when_grown(install):
 
 
 def look_once():
-    """Where variables live is found for the last of a kernel's passes, not after each of them."""
+    """Lifetimes of variables are analyzed for the last of a kernel's passes, not after each of them."""
     run = postproc.PostProcessor.run
 
     def running(self, emit_dels=False, extend_lifetimes=False):
@@ -235,7 +235,7 @@ def look_once():
 
 
 def name_quickly():
-    """Names in LLVM's words that were not used before."""
+    """Unique names in LLVM code are found in one function, without a call for each name that is tried."""
 
     def register(self, name, deduplicate=False):
         used = self._useset
@@ -253,7 +253,7 @@ def name_quickly():
 
 
 def pass_over():
-    """Kernels have no ``with`` and no dictionaries, whose traces in bytecode numba looks for in every statement."""
+    """Kernels have no ``with`` and no dict displays, whose bytecode patterns numba looks for in every statement."""
     slowly = interpreter.Interpreter.post_process
 
     def processing(self, peepholes, function):
@@ -271,7 +271,7 @@ def pass_over():
 
 
 def look_for_print():
-    """Calls of print are looked for where the word stands: numba writes an error for every call of a method."""
+    """Calls of print are looked for only in functions that name it: numba makes an error for every call of a method."""
     match = RewritePrintCalls.match
 
     def matching(self, function, block, typemap, calltypes):
@@ -281,13 +281,13 @@ def look_for_print():
 
 
 def remember_sizes():
-    """Sizes of types in memory, for each of which numba has LLVM read a module."""
+    """Sizes of types in memory are computed once: numba has LLVM parse a module for each."""
     sizeof = cache(lambda target, kind: kind.get_abi_size(target))
     base.BaseContext.get_abi_sizeof = lambda self, kind: sizeof(self.target_data, kind)
 
 
 def believe_in_scipy():
-    """numba imports a fifth of a second of scipy to see whether it is there."""
+    """scipy is not imported to see whether it is installed, which takes a fifth of a second."""
     look = linalg.ensure_blas
     linalg.ensure_blas = _say_nothing
     import_module("numba.np.arraymath")
@@ -295,7 +295,7 @@ def believe_in_scipy():
 
 
 def look_for_extensions():
-    """Whether any library extends numba: numba reads the entry points of all that are installed to find out."""
+    """numba's extensions are loaded only where an installed package names one: numba itself parses all entry points."""
     initialize = entrypoints.init_all
 
     def look():
@@ -310,12 +310,12 @@ def look_for_extensions():
 
 
 def remember_places():
-    """Which kinds of errors take a place in a file."""
+    """Which kinds of errors have a location is looked up once."""
     base._has_loc = cache(base._has_loc)
 
 
 def silence():
-    """The log of what passes do, which nobody reads."""
+    """The debug log of passes, which nobody reads, is not written."""
     for module in (byteflow, interpreter, ssa, transforms, typeinfer):
         module._logger.debug = _say_nothing
 

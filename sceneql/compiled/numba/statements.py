@@ -1,8 +1,8 @@
 # mypy: ignore-errors
-"""How the statements of a kernel become LLVM's: as numba does it, without what numbers have no need for.
+"""How statements of a kernel are lowered to LLVM code: as by numba, without what numbers have no need for.
 
-numba frees every variable after its last use, fills its place with zeros and reads what was there before each new
-value: all to count references. Here only what holds references is freed. What it writes into a log is not written.
+numba frees every variable after its last use, zeroes its memory, and reads the old value before each assignment: all to
+count references. Here only variables that hold references are freed. Nothing is logged.
 """
 
 import operator
@@ -17,12 +17,12 @@ from numba.core.lowering import BaseLower, Lower
 from numba.core.transforms import canonicalize_cfg
 
 BY_CONSTANT = {operator.pow, operator.ipow}
-"""Operations that have ways of their own for constants."""
+"""Operations that numba lowers differently for constants."""
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
 class Free(FunctionPass):
-    """Free what holds references after its last use."""
+    """Free variables that hold references after their last use."""
 
     _name = "free"
 
@@ -30,7 +30,7 @@ class Free(FunctionPass):
         FunctionPass.__init__(self)
 
     def run_pass(self, state):
-        """Put ir.Del behind last uses."""
+        """Insert ir.Del after last uses."""
         blocks = state.func_ir.blocks
         if not state.flags.nrt:
             state.func_ir.blocks = canonicalize_cfg(blocks)
@@ -48,10 +48,10 @@ class Free(FunctionPass):
 
 
 class KernelLower(Lower):
-    """For ``lowering_class`` of a lowering pass."""
+    """The ``lowering_class`` of our lowering passes."""
 
     def _find_singly_assigned_variable(self):
-        """Names of variables that are set once and read behind that in the same block: they have no place in memory."""
+        """Names of variables that are set once and read later in the same block: they need no place in memory."""
         assigned, blocks_of, early = defaultdict(int), defaultdict(set), set()
         for label, block in self.blocks.items():
             for statement in block.body:
@@ -74,7 +74,7 @@ class KernelLower(Lower):
         self._blk_local_varmap = {}
 
     def pre_block(self, block):
-        """Nothing is looked for: there is no ``try`` in a kernel, and places are made where they are needed."""
+        """No search for ``try`` blocks, which kernels do not have; stack slots are made where they are needed."""
         BaseLower.pre_block(self, block)
         self._cur_ir_block = block
 
@@ -106,7 +106,7 @@ class KernelLower(Lower):
             super().lower_inst(inst)
 
     def storevar(self, value, name, argidx=None):
-        """Give a variable a value."""
+        """Assign to a variable."""
         if name in self._singly_assigned_vars:
             self._blk_local_varmap[name] = value
         elif self.context.enable_nrt and not isinstance(self.typeof(name), types.Number | types.Boolean):
@@ -121,7 +121,7 @@ class KernelLower(Lower):
         return self.builder.load(self.getvar(name))
 
     def lower_binop(self, resty, expr, op):
-        """The value of an operation on two."""
+        """The value of a binary operation."""
         left, right = self.typeof(expr.lhs.name), self.typeof(expr.rhs.name)
         if op in BY_CONSTANT or not (isinstance(left, types.Number) and isinstance(right, types.Number)):
             return super().lower_binop(resty, expr, op)
