@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def bulge(count: int, width: float) -> float:
-    """By how much the blend of so many values lies below their least, where it does so most: where all are equal."""
+    """Greatest depth of the blend of ``count`` values below their minimum: that where all are equal."""
     return 0.5 * width * (1.0 - 1.0 / count)
 
 
@@ -70,7 +70,7 @@ def _of_many(build: FieldBuilder, values: Sequence[int], width: float) -> int:
 
 
 def comparators(count: int) -> Iterator[tuple[int, int]]:
-    """Pairs of places whose values, put in order one pair after the other, are sorted in the end.
+    """Pairs of places to compare and swap, one pair after the other, that sort ``count`` values.
 
     Merge exchange (Batcher 1968; Knuth, The Art of Computer Programming 3, 5.2.2, algorithm M).
     """

@@ -32,11 +32,11 @@ class Combination(Solid):
         return tuple(self.of.values()) if isinstance(self.of, dict) else self.of
 
     def joins(self) -> tuple[Ref, ...]:
-        """All of them."""
+        """All of its members."""
         return self.members()
 
     def width(self, moment: Moment) -> float:
-        """Of the blend now [m]. Raises RunFailure where it is below 0."""
+        """Width of the blend now [m]. Raises RunFailure where it is below 0."""
         return not_negative(moment, self.blend, "blend")
 
     def values(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> list[int]:
@@ -44,7 +44,7 @@ class Combination(Solid):
         return [moment.object(ref).implicit(build, x, y, z, moment) for ref in self.members()]
 
     def gaps(self, build: FieldBuilder, values: list[int]) -> list[int]:
-        """Registers by members' fields, the least of them at the surface where the member's own is what is seen."""
+        """Registers of a number for each member, the least that of the member whose surface is seen."""
         raise NotImplementedError
 
     def hues(

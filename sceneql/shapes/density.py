@@ -1,4 +1,4 @@
-"""How far the surface of a density field can lie from its skeleton parts."""
+"""Bounds on the distance of a density field's surface from the parts of its skeleton."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 PAIRWISE_LIMIT = 2000
-"""Above this number of parts, neighbors are not told apart."""
+"""Above this number of parts, each counts as a neighbor of all."""
 
 
 def reaches(skeleton: Skeleton, threshold: float) -> Floats:
-    """(p,) distance [m] from each part within which, taken together, the solid {density >= threshold} lies; 0 for none.
+    """(p,) distances [m]: {density >= threshold} lies in the union of the parts' neighborhoods of this radius; 0: none.
 
-    At a point of the solid let part i give the most. Of the parts that reach there, N_i at most, each gives no more,
-    so w_i K(d_i/R_i) >= c/N_i, which bounds d_i since the kernel K falls. N_i counts the parts of weight above 0 that
-    come within R_j of where part i can give the most; a second round uses the distances of the first.
+    At a point of the solid let part i contribute most. Of the parts that reach there, N_i at most, none contributes
+    more, so w_i K(d_i/R_i) >= c/N_i, which bounds d_i since the kernel K falls. N_i counts the parts of weight above 0
+    that come within R_j of where part i can contribute most; a second round uses the distances of the first.
     """
     import numpy as np
 
@@ -32,14 +32,14 @@ def reaches(skeleton: Skeleton, threshold: float) -> Floats:
             count = np.full(len(radii), np.count_nonzero(giving))
         else:
             count = np.count_nonzero((gaps < reach[:, None] + radii) & giving, axis=1)
-        with np.errstate(over="ignore"):  # a weight next to nothing reaches nowhere
+        with np.errstate(over="ignore"):  # a weight near 0 gives inf, and reaches nowhere
             share = np.divide(threshold, count * weights, out=np.ones(len(radii)), where=giving & (count > 0))
         reach = radii * farthest(skeleton.kernel, share)
     return reach
 
 
 def _gaps(corners: Floats) -> Floats:
-    """(p, p) distances between the boxes around the parts' corners: no more than those between the parts."""
+    """(p, p) distances between the boxes around the parts: lower bounds of the distances between the parts."""
     import numpy as np
 
     low, high = corners.min(axis=1), corners.max(axis=1)

@@ -30,7 +30,7 @@ def ears(corners: Floats) -> NDArray[int64]:
 
 
 def _is_ear(flat: Floats, left: list[int], k: int) -> bool:
-    """Whether the triangle at corner k of what is left lies inside: it turns left and holds no other corner."""
+    """Whether the triangle at corner k of the remaining polygon is inside: it turns left and holds no other corner."""
     a, b, c = (flat[left[(k + step) % len(left)]] for step in (-1, 0, 1))
     if _turn(a, b, c) <= 0:
         return False

@@ -1,4 +1,4 @@
-"""What is made of arrays that never change (frame.is_held), for as long as these live."""
+"""Results computed from arrays that never change (frame.is_held), kept as long as the arrays live."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ T = TypeVar("T")
 
 
 class OfHeld(Generic[T]):
-    """Results by the arrays that they are made of: of each group of arrays the last one, let go with any of them.
+    """The last result for each group of arrays; it is dropped with any of them.
 
-    An array is known by itself (weakly), not by its numbers or its place in memory, so that no other can be taken for
-    it. What is made must not hold the arrays themselves, or they would never go.
+    Arrays are known by identity (weak references), not by their numbers or address, so that no other array can be
+    mistaken for one. A result must not refer to the arrays, or they would never be freed.
     """
 
     def __init__(self) -> None:
@@ -25,7 +25,7 @@ class OfHeld(Generic[T]):
         return len(self._made)
 
     def get(self, arrays: Sequence[Any], key: Hashable, make: Callable[[], T]) -> T:
-        """What was made of the arrays (None: there is none) with an equal key, or is now; kept where all are held."""
+        """The result for these arrays (None: no array) and an equal key, else a new one; kept where all are held."""
         there = [array for array in arrays if array is not None]
         if not all(map(is_held, there)):
             return make()

@@ -1,4 +1,4 @@
-"""Colors of what is joined of several objects: each member's where its surface is seen, mixed where a blend runs."""
+"""Colors of joined objects: each member's where its surface is seen, mixed along a blend."""
 
 from __future__ import annotations
 
@@ -18,13 +18,12 @@ def joined(
     build: FieldBuilder, members: Sequence[tuple[str, Shaped]], gaps: Sequence[int], at: Registers,
     surface: Surface, bare: Bare, width: float, moment: Moment,
 ) -> Registers | None:  # fmt: skip
-    """Registers of linear RGB at a point of the members' parent's coordinates; None where they have the one color of
-    their parent's ``surface``, or no member is given one.
+    """Registers of linear RGB at a point ``at`` of the parent's coordinates; None where all have its surface's color.
 
-    The ``gaps`` tell how far from the place the members' surfaces are: the least is that of the one that is seen. A
-    member's share is max(width - what its gap has more than the least, 0): so colors run over into each other just
-    where a blend of this width [m] joins the members, whatever their order. Members that are ``bare`` of color and
-    material have each a default of their own (apart), that surface (shared), or what the first member has (first).
+    ``gaps``: a number for each member, the least that of the member whose surface is seen. A member's share is
+    max(width - its gap + the least gap, 0), so colors mix exactly where a blend of this width [m] joins the members,
+    whatever their order. Members that are ``bare`` of color and material have each a default of their own (apart), the
+    parent's ``surface`` (shared), or the color of the first member (first). None also where no member is given a color.
     """
     hues: list[Registers | None] = []
     colors: list[tuple[float, float, float]] = []
@@ -51,7 +50,7 @@ def joined(
 
 
 def _shares(build: FieldBuilder, values: Sequence[int], width: float) -> list[int]:
-    """Of members by their fields' values; without a width those of the least alone are above 0."""
+    """Shares of members by their values; without a width only that of the least value is above 0."""
     least = values[0]
     for value in values[1:]:
         least = build.op("min", least, value)
@@ -62,7 +61,7 @@ def _shares(build: FieldBuilder, values: Sequence[int], width: float) -> list[in
 
 
 def _mean(build: FieldBuilder, shares: list[int], values: list[int]) -> int:
-    """Of values by their shares."""
+    """The mean of values, weighted by their shares."""
     total, parts = shares[0], build.op("mul", shares[0], values[0])
     for share, value in zip(shares[1:], values[1:], strict=True):
         total, parts = build.op("add", total, share), build.op("add", parts, build.op("mul", share, value))

@@ -1,4 +1,4 @@
-"""Triangles in the world: their places, the side that they turn to the front, and their normals."""
+"""Triangles in the world: positions, orientation and normals."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Triangulated(Protocol):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlacedTriangles:
-    """As frame.Mesh has them."""
+    """Triangles as frame.Mesh has them."""
 
     vertices: Floats
     triangles: Ints
@@ -38,7 +38,7 @@ class PlacedTriangles:
 
 
 def placed(of: Triangulated, place: Floats) -> PlacedTriangles:
-    """Triangles mapped by a place (3, 4); where that mirrors, their corners are taken the other way round."""
+    """Triangles mapped by a place (3, 4); where the map mirrors, the order of their corners is reversed."""
     import numpy as np
 
     triangles = of.triangles if np.linalg.det(place[:, :3]) > 0 else of.triangles[:, ::-1].copy()
@@ -50,7 +50,7 @@ def placed(of: Triangulated, place: Floats) -> PlacedTriangles:
 
 
 def still(of: Triangulated, name: str, place: Floats, moment: Moment) -> PlacedTriangles:
-    """As ``placed``, with arrays that are held: the same ones for a part as long as it stays where it is.
+    """As ``placed``, with held arrays: the same objects for a part as long as its place stays the same.
 
     ``of`` is known by its identity, and must not change.
     """

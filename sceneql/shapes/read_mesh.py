@@ -1,4 +1,4 @@
-"""OBJ files to arrays, once for a run; a file is judged by its size and its numbers before it is used."""
+"""OBJ files to arrays, once for a run; size and numbers of a file are checked before it is used."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def load(file: str, crease: float) -> Loaded:
     if size > LARGEST_FILE:
         raise LimitRefused(f"{path.name} has {size} bytes, more than the {LARGEST_FILE} that a mesh may have")
     try:
-        path.read_bytes().decode()  # an OBJ file is text; a guess at another encoding needs a library more
+        path.read_bytes().decode()  # an OBJ file is text; guessing another encoding needs one more library
         # Without a resolver, material and texture files that it names are not opened.
         whole = trimesh.load_mesh(io.BytesIO(path.read_bytes()), file_type="obj", skip_materials=True, process=False)
         if len(whole.faces) > MOST_TRIANGLES:

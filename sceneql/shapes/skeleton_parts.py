@@ -1,4 +1,4 @@
-"""Parts of a skeleton as a script writes them, and what they are at an instant."""
+"""Parts of a skeleton as a script writes them, and their geometry at an instant."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Pairs = Annotated[Value, Quantity(dim.LENGTH, (None, 2, 3))]
 Numbers = Annotated[Value, Quantity(dim.PLAIN, (None, 3))]
 
 MOST = 200_000
-"""Parts of a skeleton: beyond that a frame takes minutes and gigabytes."""
+"""Most parts of a skeleton: beyond that a frame takes minutes and gigabytes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,7 +63,7 @@ class Part(Record):
     color: Color | None = field("Its color, mixed with the others' by their densities; by default the object's.", None)
 
     def problems(self) -> Iterator[Problem]:
-        """Several things or none, faces without points, and what cannot be closed."""
+        """Several kinds of part or none, faces without points, and a part that cannot be closed."""
         given = [name for name in self.KINDS if getattr(self, name) is not None]
         if len(given) != 1:
             said = f", not {' and '.join(given)}" if given else ""
@@ -77,18 +77,18 @@ class Part(Record):
 
     @property
     def lone(self) -> bool:
-        """Whether it is points or segments, each alone."""
+        """Whether it is points or segments, each a part of its own."""
         return not (self.polyline or self.spline or self.polygon or self.triangles)
 
     def place(self) -> Value | None:
-        """Where it is; None where it says so in several ways, or not at all."""
+        """The value that places it; None where several are given, or none."""
         given = [value for name in self.KINDS if (value := getattr(self, name)) is not None]
         return given[0] if len(given) == 1 else None
 
     def now(self, moment: Moment) -> Shape:
-        """Its parts now; none of a line or a polygon that gets its points with time and has too few of them yet.
+        """Its geometry now; empty for a line or polygon whose number of points varies and is too small so far.
 
-        Raises RunFailure for lists of other lengths than the points', and too few points where their number is given.
+        Raises RunFailure for lists of other lengths than the points', and too few points where their number is fixed.
         """
         import numpy as np
 
@@ -181,7 +181,7 @@ class Part(Record):
 
 
 def each(value: Value, n: int, what: str, moment: Moment) -> Floats:
-    """(n,) one number for all or one for each. Raises RunFailure for another number of them."""
+    """(n,) numbers, from one for all or one for each. Raises RunFailure for another count."""
     import numpy as np
 
     given = numbers(value, moment)
@@ -193,7 +193,7 @@ def each(value: Value, n: int, what: str, moment: Moment) -> Floats:
 
 
 def numbers(value: Value, moment: Moment) -> Floats:
-    """What a value is now. Raises RunFailure where products of a few such numbers would overflow."""
+    """The numbers of a value now. Raises RunFailure where products of a few such numbers would overflow."""
     import numpy as np
 
     given = np.asarray(moment.at(value), dtype=float)
@@ -204,5 +204,5 @@ def numbers(value: Value, moment: Moment) -> Floats:
 
 
 def failure(message: str, value: Value, moment: Moment) -> RunFailure:
-    """A failure at a value's line."""
+    """A failure at the value's line of the script."""
     return RunFailure(message, part="blobby", time=moment.time, span=value.span)

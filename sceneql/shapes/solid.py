@@ -1,4 +1,4 @@
-"""Solids: objects that are known by an implicit field, negative inside; how they are drawn and measured."""
+"""Solids: objects with an implicit field, negative inside; how they are drawn and measured."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 INFINITY = float("inf")
 LARGEST, SMALLEST = 1e100, 1e-100
-"""[m] Of solids that can be drawn: the products of a few of their lengths are numbers, and no zeros."""
+"""[m] Sizes of solids that can be drawn: products of a few lengths neither overflow nor vanish."""
 MARGIN = 1e-6
-"""By how much the box around a traced field is larger than the solid, in parts of its size."""
+"""Margin of the box around a traced field, in parts of the solid's size."""
 CELLS = 96
-"""Along the longest side of its box, where a solid is measured."""
+"""Cells along the longest side of the box in which a solid is measured."""
 MEASURES: Mapping[str, Gives] = {
     "pieces": Gives(Type(), f"Of how many closed surfaces it is, by marching cubes with {CELLS} cells along it."),
     "volume": Gives(quantity_type(dim.VOLUME), "What they hold, likewise, but curved between the vertices."),
@@ -66,7 +66,7 @@ class Solid(Placed):
 def traced(solid: Shaped, name: str, place: Floats, moment: Moment) -> Iterable[frame.Implicit]:
     """Any object with a field, as a tape in a box a little larger than itself; nothing where the box is empty.
 
-    Raises TypeError where it is unbounded, ValueError where numbers cannot tell its size.
+    Raises TypeError where it is unbounded, ValueError where it is too large or too small for float64.
     """
     import numpy as np
 
@@ -93,14 +93,14 @@ def traced(solid: Shaped, name: str, place: Floats, moment: Moment) -> Iterable[
 
 
 def by_field(kind: Object, name: str, place: Floats, moment: Moment) -> Iterable[frame.Shape]:
-    """An object that has an inside as ``traced``, whatever it is drawn as; another as it is drawn."""
+    """An object with an inside as its field (`traced`), however it is drawn; any other object as it is drawn."""
     from sceneql.field.tape.builder import TapeBuilder
     from sceneql.kinds import Object
 
     if type(kind).implicit is Object.implicit:
         return kind.lower(name, place, moment)
     build = TapeBuilder()
-    kind.implicit(build, build.x, build.y, build.z, moment)  # refused here where a part of it has no inside
+    kind.implicit(build, build.x, build.y, build.z, moment)  # raises where a part has no inside
     return traced(kind, name, place, moment)
 
 
@@ -116,7 +116,7 @@ def told_by_numbers(low: Floats, high: Floats) -> None:
 
 
 def measure(solid: Object, output: str, moment: Moment) -> Any:
-    """Of any object with a field: the number of its closed surfaces, or its volume [m^3]; 0 where it is nowhere.
+    """Number of closed surfaces or volume [m^3] of any object with a field; 0 where it is empty.
 
     Raises TypeError where it is unbounded.
     """
@@ -146,7 +146,7 @@ def quadric(
 ) -> frame.Quadric:
     """A convex quadric solid within -half..half, both in the coordinates that ``place`` maps to the world.
 
-    Raises ValueError where numbers cannot tell its size.
+    Raises ValueError where it is too large or too small for float64.
     """
     from sceneql import frame
 

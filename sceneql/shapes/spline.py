@@ -8,20 +8,20 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 OFF = 3e-4
-"""How far the curves may lie off the cubic, in parts of the radius there."""
+"""Largest deviation of the curves from the cubic, in parts of the radius there."""
 MOST = 64
-"""Pairs of curves between two points."""
+"""Most pairs of curves between two points."""
 HELD = 0.5
-"""Parts of the least radius that the radius may come down to between points."""
+"""Lower bound of the radius between points, in parts of the least radius at the points."""
 
 
 def smooth(points: Floats, radii: Floats, closed: bool) -> tuple[Floats, Floats]:
     """(corners (m, 3, 3), radii (m, 3)) of Bezier curves along the cubic through points (n, 3).
 
-    Of each curve: first end, last end, control point. The cubic has the slopes of chords (Catmull & Rom 1974); its
-    parameter is the length of the polygon, as along the path of a `motion`. A pair of quadratic curves, halved in the
-    middle, has the places and the slopes of a piece of it at both ends (Powell & Sabin 1977, in one dimension). Of a
-    closed line the last point is the first. The radius goes the same way, but not far below what it is at the points.
+    Corners of a curve: first end, last end, control point. The cubic has the slopes of chords (Catmull & Rom 1974); its
+    parameter is the length of the polygon, as along the path of a `motion`. A pair of quadratic curves that meet in the
+    middle has position and slope of a piece of the cubic at both ends (Powell & Sabin 1977, in one dimension). Of a
+    closed line the last point is the first. The radius is interpolated likewise, with a lower bound (HELD).
     """
     import numpy as np
 

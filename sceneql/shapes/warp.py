@@ -1,4 +1,4 @@
-"""What the words that warp an object share: its box, its field at the place where a point came from."""
+"""Base of the words that warp an object: its box, and its field at the preimage of a point."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ Registers = tuple[int, int, int]
 
 
 class Warp(Solid):
-    """An object whose points are moved by a map of its place (Barr 1984).
+    """An object whose points are moved by a map (Barr 1984).
 
-    Its field at p is the object's at the place that is moved to p, divided by a bound on how much steeper that makes
-    it, so that a field that is a distance is nowhere more than one.
+    Its field at p is the object's at the preimage of p, divided by a Lipschitz bound of the inverse map: where the
+    object's field is a distance, the result never exceeds the distance.
     """
 
     of: ObjectRef = field("The object, which needs an inside; several are one as a union or group.")
@@ -39,24 +39,24 @@ class Warp(Solid):
     def back(
         self, build: FieldBuilder, point: Registers, low: Any, high: Any, moment: Moment
     ) -> tuple[Registers, int | None]:
-        """Registers of the place that is moved to a point, and of a factor on the field there (None: 1).
+        """Registers of the preimage of a point, and of a factor on the field there (None: 1).
 
-        low, high (3,): corners of the object's box, which holds something. Raises ValueError for what cannot be warped.
+        low, high (3,): corners of the object's box, which is not empty. Raises ValueError where it cannot be warped.
         """
         raise NotImplementedError
 
     def around(self, low: Any, high: Any, moment: Moment) -> tuple[Any, Any]:
-        """Low and high corner (3,) of a box around all points that those of a box are moved to."""
+        """Low and high corner (3,) of a box around the image of a box."""
         raise NotImplementedError
 
     def _box(self, moment: Moment) -> tuple[Floats, Floats]:
-        """That of its object, in its own coordinates."""
+        """The object's box in the coordinates before the map."""
         import numpy as np
 
         return moment.object(self.of).extent(np.eye(3, 4), moment)
 
     def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
-        """Its object's field where the point came from."""
+        """The object's field at the preimage of the point."""
         low, high = self._box(moment)
         child = moment.object(self.of)
         if not (high > low).all():
@@ -66,7 +66,7 @@ class Warp(Solid):
         return value if factor is None else build.op("mul", value, factor)
 
     def hues(self, build: FieldBuilder, x: int, y: int, z: int, surface: Surface, moment: Moment) -> Registers | None:
-        """Its object's colors where the point came from, unless it has one of its own."""
+        """The object's colors at the preimage of the point, unless the warp has a color of its own."""
         child = moment.object(self.of)
         low, high = self._box(moment)
         own = self.material, self.color
@@ -77,23 +77,23 @@ class Warp(Solid):
         return joined(build, [(self.of.name, child)], [build.constant(0.0)], place, surface, "shared", 0.0, moment)
 
     def reach(self, moment: Moment) -> tuple[Any, Any]:
-        """The box around its object's, warped."""
+        """A box around the warped box of its object."""
         return self.around(*self._box(moment), moment)
 
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
-        """The box around its object's, warped; inverted where the object's is."""
+        """A world box around the warped box of its object; inverted where the object's is."""
         low, high = self._box(moment)
         return super().extent(place, moment) if (high > low).all() else (low, high)
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[frame.Shape]:
-        """Its field as a tape, of its object's material where it has none."""
+        """Its field as a tape; without a material of its own it has its object's."""
         child, own = moment.object(self.of), self
         if self.material is None and self.color is None:
             own = self.model_copy(update={"material": child.material, "color": child.color})
         return traced(own, name, place, moment)
 
     def bounded(self, what: str, *sides: float) -> None:
-        """Raise ValueError where the object's box has no end."""
+        """Raise ValueError where a side of the object's box is infinite."""
         if not all(abs(side) < float("inf") for side in sides):
             raise ValueError(f"'{self.of.name}' is unbounded {what}; an intersection with a box has ends")
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from sceneql.kinds import FieldBuilder
 
 SIDES = 10
-"""Of the polygon that stands for the wire's round section."""
+"""Sides of the polygon that approximates the wire's round section."""
 
 
 def chain(build: FieldBuilder, path: Floats, radius: float, x: int, y: int, z: int) -> int:
@@ -44,8 +44,8 @@ def _distance(build: FieldBuilder, a: Floats, b: Floats, point: tuple[int, int, 
 def helix(start: Any, end: Any, radius: float, turns: float, lead: float, pieces: int) -> tuple[Floats, Floats]:
     """Middle line (n, 3) of a coil spring from start to end (3,), and vectors (n, 3) across it that turn with it.
 
-    ``lead``: part of the length that is straight at either end; ``pieces``: a turn. The radius opens and closes
-    smoothly within half a turn.
+    ``lead``: share of the length that is straight at either end; ``pieces``: segments of a turn. The radius grows from
+    0 and falls to 0 smoothly within half a turn.
     """
     import numpy as np
 
@@ -73,7 +73,7 @@ def helix(start: Any, end: Any, radius: float, turns: float, lead: float, pieces
 def swept(path: Floats, outward: Floats, radius: float) -> tuple[Floats, Floats, Ints]:
     """Vertices, unit normals and triangles of a round wire along a path (n, 3), closed by flat ends.
 
-    ``outward`` (n, 3): vectors that are nowhere along the path, and turn smoothly.
+    ``outward`` (n, 3): vectors never parallel to the path, which vary smoothly along it.
     """
     import numpy as np
 
