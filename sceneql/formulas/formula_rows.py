@@ -1,4 +1,4 @@
-"""The rows of a system of differential equations as a script writes them: what states they have, what is wrong."""
+"""The rows of a script's system of differential equations: its states, and what is wrong with it."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Rows:
         return states(self.rate)
 
     def row_of(self, state: str) -> str:
-        """The row that says how a state changes: ``a''`` for both a and a'."""
+        """The row that gives a state's rate: ``a''`` for both a and a'."""
         name = state.rstrip("'")
         return name if name in self.rate else f"{name}''"
 

@@ -1,4 +1,4 @@
-"""Formulas of x, y and z at an instant: what does not depend on the point becomes a number."""
+"""Formulas of x, y and z at an instant: subexpressions that do not depend on the point become numbers."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ COORDINATES = ("x", "y", "z")
 
 
 def depends_on_place(expr: Expr) -> bool:
-    """Whether a coordinate stands in it."""
+    """Whether an expression has a coordinate in it."""
     return any(isinstance(node, Symbol) and node.name in COORDINATES for node in walk(expr))
 
 
@@ -36,7 +36,7 @@ def written_out(expr: Expr, moment: Moment) -> Expr:
 
 
 def _scalars(expr: Expr, number: Callable[[Expr], Number]) -> Expr:
-    """The tree with vectors written out in components, and a number for what does not depend on the point."""
+    """The tree with vectors split into components, and numbers in place of subexpressions without coordinates."""
     try:
         whole = components(expr)
     except TypeError as error:

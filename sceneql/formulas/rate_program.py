@@ -41,7 +41,7 @@ class Kernel:
     inputs: tuple[Expr, ...]
     """Values read from other parts; the offset of each follows in ``ints``."""
     places: tuple[int, ...] = ()
-    """Of a Jacobian's m rows: m * row + column of each entry, ascending."""
+    """Of a Jacobian with m rows: m * row + column of each entry, ascending."""
 
 
 def rate_kernel(system: RateSystem) -> Kernel:
