@@ -42,7 +42,7 @@ def axes_towards(back: Any, up: Any = (0.0, 1.0, 0.0)) -> Floats:
 
 
 LONGEST, FINE = 12.0, 16.0
-"""How far back a follower remembers, in its lags, and how many places in one."""
+"""How far back a follower remembers, in lags, and samples in one lag."""
 
 
 def corners(low: Any, high: Any) -> Floats:
@@ -53,7 +53,7 @@ def corners(low: Any, high: Any) -> Floats:
 
 
 def bounds(moment: Moment, refs: Iterable[Ref] | None) -> tuple[Floats, Floats]:
-    """Low and high corner (3,) of what is to be framed over the whole film: the named parts, or all that is drawn."""
+    """Low and high corner (3,) around the named parts, or all that is drawn, over the whole film."""
     return moment.bounds([ref.name for ref in refs or ()])
 
 
@@ -100,20 +100,20 @@ def whereabouts(moment: Moment, ref: Ref) -> Any:
 
 @dataclass(frozen=True, slots=True)
 class Whereabouts:
-    """The place of a part, for what remembers it (kinds.moment.Seen)."""
+    """The place of a part as a value that can be remembered (kinds.moment.Seen)."""
 
     ref: Ref
 
     def at(self, moment: Moment) -> Any:
-        """(3,) now."""
+        """(3,) [m] now."""
         return whereabouts(moment, self.ref)
 
 
 def behind(past: Sequence[tuple[float, Any]], now: float, place: Any, lag: float) -> Any:
-    """Where a follower is (3,) that at each time moves by (place - own)/lag a second, at the first place at the start.
+    """Position (3,) now of a follower with the velocity (place - own)/lag, which starts at the first place.
 
-    The way (time [s], place) between is straight, and of that the solution is exact: the mean of the places so far
-    with the weight exp(-age/lag).
+    Between the samples (time [s], place) of ``past`` the place moves on straight lines, for which the solution is
+    exact: the mean of past places with the weight exp(-age/lag).
     """
     import numpy as np
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from sceneql.run.instant import Instant
 
 GAP = 0.008
-"""Between panels, in parts of the picture's height."""
+"""Gap between panels, in parts of the picture's height."""
 
 NAME, TOLD = 0.032, 0.024
 """Heights of letters, in parts of the picture's height."""
@@ -31,7 +31,7 @@ Box = tuple[int, int, int, int]
 
 
 def boxes(rows: Sequence[Row], variants: Sequence[str], size: tuple[int, int]) -> list[tuple[Any, Box]]:
-    """What stands in each panel (a variant's name, or the reference of a row) with its box."""
+    """The content of each panel (a variant's name, or the reference of a row) with its box."""
     lines: list[tuple[Sequence[Any], float, int]] = []
     for row in rows:
         if isinstance(row, EachVariant):
@@ -59,7 +59,7 @@ def boxes(rows: Sequence[Row], variants: Sequence[str], size: tuple[int, int]) -
 
 
 def _columns(count: int) -> int:
-    """Up to three stand side by side, more in a square."""
+    """Number of columns: up to three, then that of a square."""
     return max(1, count if count <= 3 else math.ceil(math.sqrt(count)))
 
 
@@ -73,7 +73,7 @@ def page(size: tuple[int, int]) -> NDArray[uint8]:
 
 
 def label(pixels: NDArray[uint8], name: str, failure: RunFailure | None, scale: float) -> None:
-    """Write a variant's name on its panel (h, w, 3), and how it failed; ``scale`` times as high is the picture."""
+    """Write a variant's name on its panel (h, w, 3), and how it failed; the picture is ``scale`` times as high."""
     from sceneql.pictures.lettering import Letterer
 
     letters = Letterer(pixels, NAME * scale)
@@ -88,7 +88,7 @@ def label(pixels: NDArray[uint8], name: str, failure: RunFailure | None, scale: 
 
 
 def fitted(letters: Any, text: str, room: float) -> str:
-    """As much of a text as is no wider [pixels]."""
+    """The start of a text that fits into ``room`` [pixels]."""
     short = text
     while len(short) > 1 and letters.extent(short)[0] > room:
         short = short[:-2].rstrip() + "…"
@@ -96,7 +96,7 @@ def fitted(letters: Any, text: str, room: float) -> str:
 
 
 class Panel:
-    """A variant's run, as far as it goes: after a failure that the script allows, its last moment stays."""
+    """A variant's run; after a failure that the script allows, the last moment before it stays."""
 
     def __init__(self, graph: SimulationGraph) -> None:
         from sceneql.run.run import Run
@@ -104,7 +104,7 @@ class Panel:
         self.graph = graph
         self.run = Run(graph)
         self.tools: Any = None
-        """What draws it."""
+        """The tools that draw it."""
         self.picture: Any = None
         """Its latest picture (h, w, 3) uint8."""
         self.failure: RunFailure | None = None
@@ -124,7 +124,7 @@ class Panel:
         return self._last
 
     def _before_failure(self) -> Instant:
-        """The last frame of a film that goes as far. Raises RunFailure where there is none."""
+        """The last frame of the film before the failure, by a new run. Raises RunFailure where there is none."""
         from sceneql.run.run import Run
 
         clock = self.graph.settings.clock

@@ -12,12 +12,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 Ink = tuple[int, int, int] | None
-"""None: the look's own."""
+"""None: the ink of the look."""
 
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """Colors (sRGB, some with opacity) of what is written and what it is written on."""
+    """Colors (sRGB, some with opacity) of letters and lines, and of the panels under them."""
 
     paper: tuple[int, int, int]
     ink: tuple[int, int, int]
@@ -25,7 +25,7 @@ class Look:
     """Ink of numbers."""
     lines: tuple[int, int, int, int]
     fine: tuple[int, int, int, int]
-    """Of the finer lines."""
+    """Color of the finer lines."""
 
 
 LIGHT = Look((250, 250, 250), (28, 28, 32), (96, 96, 104), (0, 0, 0, 38), (0, 0, 0, 16))
@@ -60,12 +60,12 @@ class Letterer:
         self.draw.text(place, text, ink or self.look.ink, font=self.font, anchor=anchor)
 
     def edged(self, seen: tuple[float, float], text: str) -> None:
-        """A text about a point, on no panel: an edge of paper around its letters keeps it legible on any ground."""
+        """A text centered on a point, without a panel: an outline in the paper's color keeps it legible."""
         ink, paper, edge = self.look.ink, self.look.paper, max(1, round(self.em / 10))
         self.draw.text(seen, text, ink, font=self.font, anchor="mm", stroke_width=edge, stroke_fill=paper)
 
     def line(self, corner: tuple[int, int], text: str, opacity: float, ink: Ink = None) -> None:
-        """A text on a panel of its own, whose left and top are the corner [pixels], or as near as it is seen whole."""
+        """A text on a panel of its own, its left and top at the corner [pixels] or as near as the picture holds it."""
         (wide, high), room = self.extent(text), round(0.4 * self.em)
         left = max(min(corner[0], self.width - wide - 2 * room - 1), 0)
         top = max(min(corner[1], self.height - high - 2 * room - 1), 0)
@@ -73,12 +73,12 @@ class Letterer:
         self.text((left + room, top + room + 0.5 * high), text, ink=ink)
 
     def over(self, seen: tuple[float, float], text: str, opacity: float) -> None:
-        """The same over a point [pixels]."""
+        """A text on a panel over a point [pixels]."""
         (wide, high), room = self.extent(text), round(0.4 * self.em)
         self.line((round(seen[0] - 0.5 * wide) - room, round(seen[1] - high) - 2 * room), text, opacity)
 
     def under(self, seen: tuple[float, float], text: str, opacity: float) -> None:
-        """The same under a point."""
+        """A text on a panel under a point [pixels]."""
         wide, _ = self.extent(text)
         self.line((round(seen[0] - 0.5 * wide) - round(0.4 * self.em), round(seen[1])), text, opacity)
 
@@ -114,7 +114,7 @@ def font(size: int) -> Any:
 
 
 def round_numbers(low: float, high: float, count: int) -> list[float]:
-    """About so many numbers from low to high whose steps are 1, 2 or 5 times a power of ten."""
+    """About ``count`` numbers from low to high in steps of 1, 2 or 5 times a power of ten."""
     import math
 
     rough = (high - low) / max(count, 1)

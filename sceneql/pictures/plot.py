@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 Color = tuple[int, int, int]
 
 FEW = 12
-"""Up to so many curves end in dots."""
+"""Most curves that end in dots."""
 SHARE = 0.3
-"""A title below that is longer than this part of the panel has a line of its own."""
+"""A title below that is longer than this share of the panel has a line of its own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,7 @@ class Curve:
     now: float
 
     def drawn(self) -> tuple[Floats, Floats]:
-        """The part up to now, whose last point lies between two that are known."""
+        """The curve up to now, with its last point interpolated."""
         import numpy as np
 
         count = int(np.searchsorted(self.times, self.now, side="right"))
@@ -51,7 +51,7 @@ class Curve:
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """What stands along one side of a plot. ``unit``: empty for plain numbers; ``limits`` in SI."""
+    """One axis of a plot. ``unit``: empty for plain numbers; ``limits`` in SI."""
 
     title: str
     unit: str
@@ -59,7 +59,7 @@ class Axis:
     limits: tuple[float, float] | None = None
 
     def told(self, values: Any) -> Any:
-        """Values in the unit."""
+        """SI values in the axis's unit."""
         unit = parse_unit(self.unit) if self.unit else None
         return values if unit is None else (values - unit.offset) / unit.scale
 
@@ -69,7 +69,7 @@ class Axis:
         return scale_for([self.told(value) for value in values], self.log, limits)
 
     def words(self, power: int) -> str:
-        """Title, unit and power of ten of the numbers."""
+        """Title, unit and power of ten that the numbers leave out."""
         factor = "" if power == 0 else "10" + str(power).translate(SUPERSCRIPTS)
         unit = " ".join(part for part in (factor, shown_unit(self.unit) if self.unit else "") if part)
         return f"{self.title} [{unit}]" if unit and self.title else self.title or unit
@@ -85,9 +85,9 @@ def draw_plot(
     look: Look,
     named: bool,
 ) -> None:
-    """Draw over all of a part of a picture (h, w, 3); ``named``: with the curves' names.
+    """Draw over the whole of a part (h, w, 3) of a picture; ``named``: with the curves' names.
 
-    ``text``: height of letters in parts of that part's. Without room for letters there are curves alone.
+    ``text``: height of letters in parts of the part's height. Without room for letters there are curves alone.
     """
     letters = Letterer(pixels, text, look)
     em, wide, high = letters.em, letters.width, letters.height
@@ -186,7 +186,7 @@ def _scaled(scale: Scale, power: int) -> Scale:
 def _head(
     letters: Letterer, wide: int, title: str, curves: Sequence[Curve]
 ) -> tuple[float, list[tuple[float, float, Curve | None, str]]]:
-    """Height of title and names, and where each stands: column and row of its left end, its curve, its words."""
+    """Height of title and names, and for each the column and row of its left end, its curve, its text."""
     em, at, row = letters.em, 0.0, 0.5 * letters.em
     found: list[tuple[float, float, Curve | None, str]] = []
     if title:

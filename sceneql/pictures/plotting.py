@@ -14,13 +14,13 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 FINE = 4
-"""Strokes are drawn so many times larger, and brought down by means."""
+"""Strokes are drawn this many times larger, and averaged down."""
 SMALLEST = 1e-200
 """The smallest number that a logarithmic axis is stretched for."""
 MORE = 4
-"""So many more ticks than fit well are asked for, to have three."""
+"""Ticks asked for beyond those that fit well, to have three."""
 FEW_DECADES = 3
-"""Up to so many decades have ticks between their powers."""
+"""Most decades that have ticks between their powers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class Scale:
     log: bool = False
 
     def place(self, values: Any) -> Floats:
-        """Places of values, 0 at the low end and 1 at the high one; NaN for what a logarithm does not have."""
+        """Positions of values, 0 at the low end and 1 at the high one; NaN where a logarithm does not exist."""
         import numpy as np
 
         values = np.asarray(values, dtype=float)
@@ -84,7 +84,7 @@ def scale_for(values: Sequence[Any], log: bool, limits: tuple[float, float] | No
 
 
 def thousands(scale: Scale) -> int:
-    """The power of ten that the numbers beside a linear axis are told in: 0 where they are short enough as they are."""
+    """The power of ten that numbers beside a linear axis are divided by: 0 where they are short enough as they are."""
     most = max(abs(scale.low), abs(scale.high))
     if scale.log or 1e-3 <= most < 1e5:
         return 0
@@ -92,9 +92,9 @@ def thousands(scale: Scale) -> int:
 
 
 def stroke(size: tuple[int, int], points: Floats, width: float) -> tuple[Any, tuple[int, int]] | None:
-    """A line through points (n, 2) [pixels] that breaks at NaN, with round ends, in an area of this size.
+    """A line through points (n, 2) [pixels], broken at NaN, with round ends, in an area of this size.
 
-    A mask (Pillow, 8 bits) and its left and top; None where nothing of it is inside.
+    A mask (Pillow, 8 bits) and its left and top; None where no part of the line is inside.
     """
     import numpy as np
     from PIL import Image, ImageDraw
@@ -113,7 +113,7 @@ def stroke(size: tuple[int, int], points: Floats, width: float) -> tuple[Any, tu
     thick = max(1, round(width * FINE))
     ends = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]]).astype(int)))
     for first, last in ends.reshape(-1, 2):
-        # Far outside points are brought near, where Pillow's whole numbers hold them.
+        # Points far outside are clipped: Pillow's integer coordinates would overflow.
         near = (np.clip(points[first:last], -4.0 * max(size), 5.0 * max(size)) - low) * FINE
         places = [(float(x), float(y)) for x, y in near]
         draw.line(places, fill=255, width=thick, joint="curve")
