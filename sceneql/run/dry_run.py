@@ -1,4 +1,4 @@
-"""A run ahead of the film's: how far all that is drawn reaches, and how values go over the whole run."""
+"""The dry run, before the film's own: bounds of all that is drawn, and values over the whole run."""
 
 from __future__ import annotations
 
@@ -24,21 +24,21 @@ if TYPE_CHECKING:
 
 BOUNDS_EVERY = 12
 BOUNDS_STEPS = 48
-"""How often the run is looked at for what is drawn, and for values that often between."""
+"""Instants at which bounds are taken; values are taken BOUNDS_EVERY times as often."""
 
 
 @dataclass(frozen=True, slots=True)
 class DryRun:
-    """What a run ahead has seen, up to its end or to where it fails."""
+    """The results of a dry run, up to its end or its failure."""
 
     bounds: Bounds | None
     """Low and high corner (3,) of each part over the run; None: not asked for."""
     times: list[float]
     rows: Mapping[int, Floats]
-    """(times, ...) of the pieces of what was asked for, by their identity."""
+    """(times, ...) values of the subexpressions that were asked for, by their id."""
 
     def course(self, expr: Expr, until: float) -> tuple[Floats, Floats]:
-        """Times (n,) [s] up to an instant, and an asked-for expression at each (n, ...)."""
+        """Times (n,) [s] up to ``until``, and values (n, ...) of an expression of `asked`."""
         count = max(1, int(np.searchsorted(self.times, until, side="right")))
         series: dict[Symbol | Link, Any] = {}
 
@@ -57,7 +57,7 @@ class DryRun:
 
 
 def pieces(expr: Expr) -> Iterator[Expr]:
-    """The largest parts of an expression that have a value at each instant by themselves, numbers left out."""
+    """The largest subexpressions without operations on time, numbers left out."""
     calls = [OPERATIONS[node.op] for node in each_once(expr) if isinstance(node, Call)]
     if not any(operation.series for operation in calls):
         if any(isinstance(node, Symbol | Link) for node in each_once(expr)):
@@ -68,16 +68,16 @@ def pieces(expr: Expr) -> Iterator[Expr]:
 
 
 def asked(graph: SimulationGraph) -> dict[tuple[str, int], Value]:
-    """The values whose course is asked for: by the part that asks and their number there."""
+    """The values whose course overlays ask for, by the overlay's name and the value's index."""
     overlays = [(name, task.kind) for name, task in graph.tasks.items() if isinstance(task.kind, Overlay)]
     return {(name, k): value for name, kind in overlays for k, value in enumerate(kind.courses())}
 
 
 def dry_run(ahead: Running, *, bounded: bool = True) -> DryRun:
-    """Let a fresh run go on to its end for what its cameras and overlays ask of the whole run.
+    """March a fresh run to its end for what cameras and overlays need of the whole run.
 
-    Bounds are those of the start alone where the run fails, since what explodes fits into no picture. A part that asks
-    at the start for nothing that may change is looked at there alone.
+    Bounds are those of the start alone where the run fails, since a state that explodes fits into no picture. A part
+    that reads nothing at the start that can vary is looked at there alone.
     """
     graph = ahead.graph
     asked_for = {id(piece): Value(piece) for value in asked(graph).values() for piece in pieces(value.expr)}
@@ -114,7 +114,7 @@ def dry_run(ahead: Running, *, bounded: bool = True) -> DryRun:
 
 
 def _widened(bounds: Bounds, moment: Instant, names: Iterable[str]) -> Bounds:
-    """Bounds that hold what some parts draw at a moment too."""
+    """Bounds widened by the shapes of some parts at a moment."""
     result = dict(bounds)
     for name in names:
         for shape in moment.lower([name]):
@@ -127,7 +127,7 @@ def _widened(bounds: Bounds, moment: Instant, names: Iterable[str]) -> Bounds:
 
 
 def _around(name: str, holders: Mapping[str, str]) -> Iterator[str]:
-    """A part, and those that hold it, outwards."""
+    """A part and its holders, from the inside out."""
     while name:
         yield name
         name = holders.get(name, "")

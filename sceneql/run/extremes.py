@@ -1,4 +1,4 @@
-"""The watch over fields that leave the values that nothing but an error of the solver can take them beyond."""
+"""A watch over fields that leave the range which an exact solution keeps, by an error of the solver."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ if TYPE_CHECKING:
     from sceneql.system import Grid
 
 BEYOND = 0.01
-"""How far a field may leave its values, in parts of the way between them, before it is warned of."""
+"""Excess beyond the range, in parts of its width, from which a field gives a warning."""
 
 
 @dataclass
 class Extremes:
-    """How far a field has left the values that it should stay between."""
+    """How far a field has left the range that it should keep."""
 
     model: str
     output: str
     grid: Grid
     beyond: float = 0.0
-    """The most so far, 0 where it is not worth a word."""
+    """Largest excess so far; 0 below the threshold of a warning."""
     value: float = 0.0
     time: float = 0.0
 
     def look(self, time: float, y: Floats) -> None:
-        """Note the field of a state."""
+        """Record the extremes of the field in a state."""
         low, high = self.grid.keeps
         field = y[self.grid.at : self.grid.at + len(self.grid.cells.outside)][~self.grid.cells.outside]
         least, largest = float(field.min(initial=math.inf)), float(field.max(initial=-math.inf))
@@ -41,7 +41,7 @@ class Extremes:
                 self.beyond, self.value, self.time = beyond, value, time
 
     def warnings(self, island: IslandRun) -> Iterator[Diagnostic]:
-        """At most one."""
+        """At most one warning."""
         if self.beyond == 0.0:
             return
         low, high = self.grid.keeps
@@ -58,7 +58,7 @@ class Extremes:
 
 
 def watched(island: IslandRun) -> list[Extremes]:
-    """The fields of an island that nothing else feeds and that have values to stay between."""
+    """The fields that have a range to keep, of an island without forces."""
     if island.island.forces:
         return []
     fields = island.assembly.fields.items()

@@ -1,4 +1,4 @@
-"""What parts of a picture remember of the run: values at even instants of the physics, whatever the frames are."""
+"""History: values that parts of a picture remember, at evenly spaced instants of the physics, not at frames."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class History:
         self._seen = dict.fromkeys(self._kept, -1)
 
     def due(self, time: float) -> Iterator[tuple[float, list[int]]]:
-        """Instants [s] after the last up to ``time`` that must be seen on the way there, and whose they are."""
+        """Instants [s] after the last, up to ``time``, at which values are due, with the keys of these values."""
         wanted: dict[float, list[int]] = {}
         for key, (_, keep, every, _) in self._kept.items():
             first = max(self._seen[key] + 1, math.ceil((time - keep) / every - SLACK))
@@ -40,7 +40,7 @@ class History:
         yield from sorted(wanted.items())
 
     def see(self, moment: Moment, keys: Iterable[int]) -> None:
-        """Remember the values at an instant."""
+        """Record the values of these keys at an instant."""
         for key in keys:
             value, keep, every, kept = self._kept[key]
             kept.append((moment.time, moment.at(value) if isinstance(value, Value) else value.at(moment)))

@@ -1,4 +1,4 @@
-"""What equations of a script say is conserved, looked at between frames."""
+"""Quantities that a script's equations should conserve, observed between frames."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 LOST = 1 / 3
-"""Change, as a part of the largest terms that it is a sum of, that is warned of: one term grown by half."""
+"""Change, in parts of the largest terms of the quantity's sum, that gives a warning: one term grown by half."""
 
 
 @dataclass
@@ -31,16 +31,16 @@ class Invariant:
     kind: Model
     times: list[float] = field(default_factory=list)
     drifts: list[float] = field(default_factory=list)
-    """Change since the start at each time, in parts of what it was (of 1 where that is 0); of copies the largest."""
+    """Relative change since the start at each time (absolute for a start at 0); the largest of several copies."""
     lost: float = 0.0
-    """Largest change, in parts of the largest terms so far: what begins with 0, but for rounding, has no other size."""
+    """Largest change in parts of the largest terms so far: a scale for quantities that start at 0, too."""
     lost_at: float = 0.0
     """When that was [s]."""
     _start: Any = None
     _size: Any = 0.0
 
     def look(self, moment: Instant) -> None:
-        """Note its value now."""
+        """Record its value now."""
         now = np.atleast_1d(moment.read(self.model, self.output))
         if self._start is None:
             self._start = now
@@ -53,7 +53,7 @@ class Invariant:
         self.drifts.append(float(change[np.argmax(np.abs(change))]))
 
     def warnings(self) -> Iterator[Diagnostic]:
-        """At most one."""
+        """At most one warning."""
         if self.lost > LOST:
             most = self.drifts[self.times.index(self.lost_at)]
             message = f"'{self.model}.{self.output}', which is conserved, has changed by {most:.3g} of it"
@@ -62,13 +62,13 @@ class Invariant:
             yield Diagnostic("invariant-lost", message, self.span, help, severity="warning")
 
     def account(self) -> str:
-        """A line for people."""
+        """A line of text."""
         largest = max(self.drifts, key=abs)
         return f"{self.model}: {self.output} drift {self.drifts[-1]:.2e} at the end, {largest:.2e} at most"
 
 
 def invariants_of(island: IslandRun) -> list[Invariant]:
-    """Those of all models of an island."""
+    """The invariants of all models of an island."""
     kinds = {name: cast(Model, island.graph.tasks[name].kind) for name in island.island.models}
     tasks = island.graph.tasks
     return [

@@ -1,4 +1,4 @@
-"""Which solids and surfaces of a film had anything to draw, so that the film says what it never showed."""
+"""Solids and surfaces of a film that never had anything to draw, for a warning."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NO_SHAPE = "it was empty whenever it was drawn"
 
 
 def solids(names: Iterable[str], tasks: Mapping[str, Task]) -> Iterator[str]:
-    """Those of the named parts, and of what these draw, that are drawn by their fields, or by triangles of them."""
+    """Names of the solids among the parts and their members: those drawn by their fields, or by triangles of these."""
     for name in names:
         kind = tasks[name].kind
         if not isinstance(kind, Object):
@@ -32,7 +32,7 @@ def _hidden(task: Task) -> bool:
 
 
 def look(shapes: Sequence[Shape], asked: Iterable[str], tasks: Mapping[str, Task], present: dict[str, str]) -> None:
-    """Note of each solid by name why nothing of it was drawn, or "" where something may have been, now or before.
+    """Record in ``present`` by name why nothing of a solid was drawn, or "" once something may have been.
 
     ``asked`` are the solids (as of ``solids``) that the shapes were made of.
     """

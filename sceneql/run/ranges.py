@@ -1,4 +1,4 @@
-"""Values of what acts that vary in time and must lie in a range: looked at in every frame."""
+"""Values of models, forces, contacts and solvers that vary in time within a range: checked in every frame."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Ranged:
-    """A value that varies, of a field of a part, and its bounds by their names (``at_least``)."""
+    """A varying value in a part's field, and its bounds by their names (``at_least``)."""
 
     part: str
     field: str
@@ -27,7 +27,7 @@ class Ranged:
     limits: dict[str, float]
 
     def check(self, moment: Moment) -> None:
-        """Raise RunFailure at the value's line where it is out of its range now; it may reach the end of that.
+        """Raise RunFailure at the value's line where it is out of its range now; it may be equal to an open bound.
 
         (A spring whose stiffness falls to 0 is switched off.)
         """
@@ -40,7 +40,7 @@ class Ranged:
 
 
 def ranged(graph: SimulationGraph, islands: Iterable[Island]) -> tuple[Ranged, ...]:
-    """Of the models, forces, contacts and solvers of islands."""
+    """The varying values with a range in the models, forces, contacts and solvers of islands."""
     names: dict[str, None] = {}
     for island in islands:
         acting = [name for name, _ in island.forces] + [name for name, *_ in island.contacts]

@@ -1,4 +1,4 @@
-"""Steps that let a rough field ring: what decays faster than a step sees is carried on with its sign turned."""
+"""Fixed steps that let a rough field ring: modes that decay fast keep their size and change sign at every step."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ if TYPE_CHECKING:
     from sceneql.run.run import IslandRun
 
 FAST = 2.0
-"""Step times decay from which on the trapezoidal rule turns signs."""
+"""Step times decay rate above which the trapezoidal rule changes signs."""
 CARRIED = 0.5
-"""Part of it that a step leaves, from which on it is warned of."""
+"""Part of a mode that remains after a step, from which there is a warning."""
 
 
 def ringing(island: IslandRun) -> Diagnostic | None:
-    """A warning where the field at the start has parts that the solver's fixed steps let ring.
+    """A warning where the initial field has modes that the solver's fixed steps let ring.
 
-    How fast the roughest part decays is told by the rate at the start over the spread of the field, and bounded by
-    what the cells allow (Gershgorin). Source: Rannacher (1984), Numer. Math. 43, 309-327.
+    The decay rate of the roughest mode is estimated by the rate at the start over the spread of the field, with the
+    bound of the cells (Gershgorin). Source: Rannacher (1984), Numer. Math. 43, 309-327.
     """
     march, grid = island.march, island.march.system.grid
     control = march.stepper.control

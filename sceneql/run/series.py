@@ -1,4 +1,4 @@
-"""Expressions over a whole run: the values of links at all its times, and what operations on time make of them."""
+"""Expressions over a whole run, evaluated from the values of links at all its times."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from sceneql.quantities.expression import Call, Expr, Link, Symbol, Vector, chil
 from sceneql.quantities.operations import OPERATIONS
 
 Series = Mapping[Symbol | Link, Any]
-"""(times, ...) of `time` and of each link."""
+"""Values (times, ...) of `time` and of each link."""
 
 
 def plain(expr: Expr) -> bool:
-    """Whether nothing in an expression asks for more than one time."""
+    """Whether an expression has no operation on time."""
     calls = (OPERATIONS[node.op] for node in walk(expr) if isinstance(node, Call))
     return not any(operation.series or operation.reduces for operation in calls)
 
 
 def wanted(expr: Expr, when: Sequence[float], times: Sequence[float]) -> Iterator[tuple[Link, Sequence[float]]]:
-    """The links of an expression that counts at some of the times, with those at which each counts."""
+    """The links of an expression, each with the times at which its value counts; ``when``: those of the expression."""
     if isinstance(expr, Link):
         yield expr, when
     if isinstance(expr, Call) and OPERATIONS[expr.op].series:
@@ -35,7 +35,7 @@ def wanted(expr: Expr, when: Sequence[float], times: Sequence[float]) -> Iterato
 def measure(expr: Expr, series: Series, times: list[float]) -> Any:
     """The value of an expression over series (times, ...); one without an operation on time is read at the end.
 
-    What is asked for after the end of the run is NaN.
+    The value at an instant after the end of the run is NaN.
     """
     if plain(expr):
         return evaluate(expr, lambda node: _look_up(node, series)[-1], arrays=True)
@@ -43,9 +43,9 @@ def measure(expr: Expr, series: Series, times: list[float]) -> Any:
 
 
 def course(expr: Expr, series: Series, times: list[float]) -> Any:
-    """The value of an expression at each of the times (times, ...); what is one number for the whole run is just that.
+    """Values (times, ...) of an expression at each of the times; a single one where it has one for the whole run.
 
-    Operations that ask for the whole run are given what there is of it.
+    Operations over the whole run use the times that are given.
     """
     known: dict[Symbol, Any] = {}
 
@@ -81,7 +81,7 @@ def instant_of(node: Call) -> float:
 
 
 def _at(value: Any, times: list[float], node: Call) -> Any:
-    """The value at an instant, or between those that are known; NaN after the last."""
+    """The value at an instant, interpolated between times; NaN after the last."""
     instant = instant_of(node)
     if instant > times[-1]:
         return value[-1] * math.nan
@@ -93,7 +93,7 @@ def _at(value: Any, times: list[float], node: Call) -> Any:
 
 
 def _drift(value: Any, times: list[float], node: Call) -> Any:
-    """Relative to the start, or, for a quantity that starts at 0, to its largest magnitude over the run."""
+    """Change relative to the start, or, for a quantity that starts at 0, to its largest magnitude over the run."""
     import numpy as np
 
     scale = value[0] if np.all(value[0] != 0) else np.max(np.abs(value)) or 1.0
@@ -101,12 +101,12 @@ def _drift(value: Any, times: list[float], node: Call) -> Any:
 
 
 class _Series(NamedTuple):
-    """What an operation on time makes of a series."""
+    """How an operation on time is evaluated."""
 
     of: Callable[[Any, list[float], Call], Any]
     """(series, its times, the call) to its value."""
     instants: Callable[[Sequence[float], Call], Sequence[float]] = lambda times, node: times
-    """The times that count."""
+    """The times at which the series counts."""
 
 
 _SERIES: Mapping[str, _Series] = {

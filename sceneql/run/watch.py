@@ -1,4 +1,4 @@
-"""Energy, momentum and stretch of what runs, looked at between frames: what is conserved, and what runs away."""
+"""A watch over energy, momentum and stretch between frames: what is conserved, and what diverges."""
 
 from __future__ import annotations
 
@@ -21,26 +21,26 @@ if TYPE_CHECKING:
     from sceneql.run.run import IslandRun, Run
 
 COST, AT_LEAST = 0.008, 0.005
-"""Part of the time of the run that looking may take, and seconds that it may take in any case."""
+"""Share of the run's time that the watch may take, and seconds that it may take in any case."""
 MOST_STATES = 20_000
-"""Of an island that is looked at from the start to the end in any case; a larger one when the run can afford it."""
+"""Largest state of an island that is always observed from start to end; a larger one when the run can afford it."""
 FIRST = 4e-7
-"""Seconds that the first look takes for each number of the state, at most; the next are foretold by the last."""
+"""Seconds for each number of the state that the first observation takes at most; the last one predicts the next."""
 MOST_PAIRED = 256
-"""Bodies of one with forces between all of them."""
+"""Most bodies of an observed island with forces between all pairs."""
 GAINED = 0.5
-"""Energy gained, as a part of the largest kinetic energy, that is warned of."""
+"""Energy gained, in parts of the largest kinetic energy, that gives a warning."""
 OVERSTRETCHED = 4.0
-"""(L - L0)/L0 of a spring that is warned of, unless half of it was there at the start."""
+"""(L - L0)/L0 of a spring that gives a warning, unless half of it was there at the start."""
 
 
 @dataclass
 class Balance:
-    """What has been seen of an island's energy and momentum."""
+    """Energy and momentum of an island as observed so far."""
 
     island: IslandRun
     models: tuple[str, ...]
-    """Those that tell an energy."""
+    """The models that have an energy."""
     times: list[float] = field(default_factory=list)
     energies: list[float] = field(default_factory=list)
     """[J]"""
@@ -51,9 +51,9 @@ class Balance:
     impulse: float = 0.0
     """Largest sum of the magnitudes of the masses' momenta [kg m/s]."""
     cost: float = 0.0
-    """Seconds that a look must be afforded; 0 of what is looked at in any case."""
+    """Predicted seconds of an observation; 0 where it is made in any case."""
     stretch: dict[str, tuple[float, float]] = field(default_factory=dict)
-    """Of each model's springs, the largest (L - L0)/L0 at the start and of all times."""
+    """By model, the largest (L - L0)/L0 of its springs at the start and over all times."""
     at_start: Floats | None = None
     """Momentum at the start."""
 
@@ -67,7 +67,7 @@ class Balance:
 
     @property
     def isolated(self) -> bool:
-        """Whether nothing outside acts, so that momentum is conserved."""
+        """Whether no outside force acts, so that momentum is conserved."""
         island = self.island.island
         free = all(
             bodies is None or (self.island.march.floats[bodies.inverse_at : bodies.inverse_at + bodies.count] > 0).all()
@@ -80,14 +80,13 @@ class Balance:
 
     @property
     def closed(self) -> bool:
-        """Whether energy is conserved: forces tell a potential or count their work, so only values in time drive, and
-        births and deaths."""
+        """Whether energy is conserved: no value in time drives, no body is born or dies; forces count their work."""
         lasting = all(cast(Model, self.island.graph.tasks[name].kind).lasts() for name in self.models)
         return lasting and not self.island.march.system.structure.varying
 
 
 class Watch:
-    """Looks at a run's moments, as often as it may; ``always``: at each, of islands of any size."""
+    """Observes a run's moments as often as it can afford; ``always``: all of them, and islands of any size."""
 
     def __init__(self, run: Run, *, always: bool = False) -> None:
         self.always = always
@@ -107,9 +106,9 @@ class Watch:
         self._started, self._spent = time.perf_counter(), 0.0
 
     def look(self, moment: Instant, *, last: bool = False) -> None:
-        """Note energies and momenta at a moment, unless looking has taken its part of the time.
+        """Record energies and momenta at a moment, unless the watch has used up its share of the time.
 
-        The start is noted of all, as what is gained is gained over it; the last moment of all but the largest.
+        The start is always recorded, since gains are measured from it; the last moment of all but the largest islands.
         """
         started = time.perf_counter()
         free = self.always or last or self._spent < AT_LEAST + COST * (started - self._started)
@@ -129,7 +128,7 @@ class Watch:
         self._spent += time.perf_counter() - started
 
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """Energy that came from nowhere, springs beyond what springs can do, fields that ring or run over, switches."""
+        """Warnings: energy gained, springs overstretched, fields ringing or overshooting, breakpoints, halved steps."""
         found = list(self._ringing)
         for span in self._turning:
             message = f"this turns more than {MOST:,} times in the run: steps that a tolerance chooses go over some"
@@ -166,9 +165,7 @@ class Watch:
         return tuple(found)
 
     def account(self) -> list[str]:
-        """A line for each island that tells an energy: its drift, and that of momentum where that is conserved; and for
-        each invariant of equations.
-        """
+        """A line for each invariant, and for each island with an energy: its drift, and a conserved momentum's."""
         lines = [one.account() for one in self.invariants if one.times]
         for balance in self.balances:
             drifts = balance.drifts
@@ -186,25 +183,25 @@ class Watch:
 
 
 def _alone(island: IslandRun) -> bool:
-    """Whether no energies of very many pairs are to be summed, which takes as long as their forces."""
+    """Whether observing needs no sum over very many pairs, which takes as long as their forces."""
     forces = (cast(Force, island.graph.tasks[force].kind) for force, _ in island.island.forces)
     bodies = sum(0 if one is None else one.count for one in island.bodies.values())
     return bodies <= MOST_PAIRED or not any(force.mutual for force in forces)
 
 
 def _foretold(island: IslandRun) -> float:
-    """Seconds that a first look takes; 0 where they do not matter."""
+    """Predicted seconds of a first observation; 0 for a small state, which is observed in any case."""
     states = len(island.march.system.y)
     return FIRST * states if states > MOST_STATES else 0.0
 
 
 def _adaptive(island: IslandRun) -> bool:
-    """Whether a tolerance chooses its steps."""
+    """Whether a tolerance controls its steps."""
     return island.solver.stepper().control.adaptive
 
 
 def _halved(island: IslandRun) -> Diagnostic | None:
-    """What is told of a solver that was given one length of step and took shorter ones where it found no solution."""
+    """A warning for a solver of given steps that were halved where Newton's method found no solution."""
     control, tries = island.solver.stepper().control, island.march.statistics.rejected
     if not control.halves or tries == 0:
         return None
@@ -215,7 +212,7 @@ def _halved(island: IslandRun) -> Diagnostic | None:
 
 
 def _telling(island: IslandRun) -> tuple[str, ...]:
-    """Models of an island that tell their energy."""
+    """Models of an island that have an energy."""
     kinds = {name: cast(Model, island.graph.tasks[name].kind) for name in island.island.models}
     return tuple(name for name, kind in kinds.items() if {"energy", "kinetic"} <= set(type(kind).gives))
 
@@ -239,7 +236,7 @@ def _note(balance: Balance, moment: Instant) -> None:
 
 
 def _impulse(balance: Balance, moment: Instant) -> float:
-    """Sum of mass times speed."""
+    """Sum of the magnitudes of the masses' momenta [kg m/s]."""
     from sceneql.bodies.bodies import masses, velocities
 
     total = 0.0
