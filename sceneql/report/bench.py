@@ -29,9 +29,9 @@ from sceneql.report.surface_measures import pictured
 from sceneql.report.work_precision import Measurement, Reference, measurements, solvers, warm
 
 CLEAR = 10.0
-"""Errors count for the order where they are so many times the reference's own."""
+"""An error counts for the order if it is this many times the reference's own."""
 ASKED = (1e-3, 1e-6, 1e-9)
-"""Errors for which the cheapest solver is named, where none is asked for."""
+"""Relative errors for which the cheapest solver is named by default."""
 
 Orders = dict[tuple[str, str], float | None]
 
@@ -43,15 +43,15 @@ def bench(
     asked: float | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> str:
-    """Run every island by every solver that applies, and look at implicit surfaces by rays and meshes; as text.
+    """Run every island by every solver that applies, and measure implicit surfaces by rays and meshes; returns text.
 
     ``output`` is a folder, or the files' path without extension: CSV and JSON with all runs, SVGs of the error against
     run time and step and of the drift of energy, HTML with all of it. Fields are run on several grids (``grids``), on
-    these by all schemes (``schemes``), their systems solved by every linear solver (``linear``); what is of implicit
-    surfaces, those of the first picture at its start, in some sizes, has files of its own (``rays``, ``meshes``,
-    ``surfaces``).
-    ``words`` is a folder of the user's own words; ``asked`` the relative error for which the cheapest solver is named.
-    Raises Unsuitable for a scene without either, RunFailure where no reference reaches the end.
+    these by all schemes (``schemes``), their systems solved by every linear solver (``linear``). Implicit surfaces,
+    those of the first picture at its start in several sizes, have files of their own (``rays``, ``meshes``,
+    ``surfaces``). ``words`` is a folder of the user's own words; ``asked`` the relative error for which the cheapest
+    solver is named. Raises Unsuitable for a scene without islands and implicit surfaces, RunFailure where no reference
+    reaches the end.
     """
     frames = pictured(graph)
     if not graph.islands and not frames:
@@ -124,7 +124,7 @@ def cheapest(rows: Sequence[Measurement], asked: float) -> tuple[str, float] | N
 
 
 def cheapest_lines(rows: Sequence[Measurement], truth: Reference, asked: float | None) -> list[str]:
-    """The cheapest solver for the error asked for, or for some."""
+    """Lines that name the cheapest solver for the error asked for, or for each of ASKED."""
     lines = []
     for error in ASKED if asked is None else (asked,):
         best = cheapest(rows, error)

@@ -21,7 +21,7 @@ from sceneql.report.plots_grids import error_against_cell, residuals, schemes_ag
 
 @dataclass(frozen=True, slots=True)
 class GridSection:
-    """What `bench` says of fields on grids."""
+    """The results of `bench` for fields on grids."""
 
     lines: Sequence[str]
     plots: Sequence[tuple[str, Path]]
@@ -31,7 +31,7 @@ class GridSection:
 
 
 def is_field(graph: SimulationGraph, island: Island) -> bool:
-    """Whether an island is one model of fields and nothing else."""
+    """Whether an island is a single model made of fields."""
     kinds = [graph.tasks[name].kind for name in island.models]
     return len(kinds) == 1 and cast(Model, kinds[0]).is_field
 

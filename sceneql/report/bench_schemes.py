@@ -15,16 +15,16 @@ from sceneql.report.grid_ends import End, difference, end_on
 from sceneql.report.work_precision import adaptive, at
 
 COARSER = 2
-"""Grids that the finest one is ahead of a measured one: by its cells, a sixteenth of the error at second order."""
+"""Halvings of a measured grid's cell down to the finest grid: a sixteenth of the error at second order."""
 GRIDS = 3
 STEPS = tuple(4**k for k in range(2, 10))
 TOLERANCES = tuple(100.0**-k for k in range(1, 6))
 SETTLED = 1.05
-"""A shorter step is not tried where so many times the error of the grid itself is reached."""
+"""No shorter step is tried once the error is this many times that of the grid itself."""
 ENOUGH_SECONDS = 0.2
-"""No step is shorter than one that takes so long, and no run is repeated that has taken so long in all."""
+"""Seconds of a run after which no shorter step is tried, and of all repeats of a run."""
 LONGEST = 2.0
-"""A run is given up after so many seconds of compiled steps."""
+"""Seconds of compiled steps after which a run is given up."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +38,7 @@ class SchemeRun:
     setting: float
     """Step [s], or relative tolerance."""
     error: float
-    """Root mean square, in parts of the largest value, of space and of time together."""
+    """Root mean square error of space and time together, in parts of the largest value."""
     seconds: float
     steps: int
 
@@ -48,7 +48,7 @@ def scheme_runs(
 ) -> Iterator[SchemeRun]:
     """Runs by all schemes on grids that the finest of ``ends``, from fine to coarse, can judge; failed ones left out.
 
-    On each, steps grow shorter until the error is that of the grid.
+    On each grid, steps grow shorter until the error is that of the grid.
     """
     title = ", ".join(island.models)
     for end in ends[COARSER : COARSER + GRIDS]:
@@ -70,7 +70,7 @@ def scheme_runs(
 
 
 def front(runs: Sequence[SchemeRun]) -> list[SchemeRun]:
-    """The runs that no other beats in both error and time, from quick to exact; without those that tell nothing."""
+    """The Pareto front in error and time, from quick to exact, of runs with errors below the field itself."""
     best: list[SchemeRun] = []
     for run in sorted(runs, key=lambda run: (run.seconds, run.error)):
         if run.error < (best[-1].error if best else 1.0):
@@ -79,7 +79,7 @@ def front(runs: Sequence[SchemeRun]) -> list[SchemeRun]:
 
 
 def told(runs: Sequence[SchemeRun]) -> list[str]:
-    """For each grid's own error the scheme that reaches it first, as lines."""
+    """Lines that name, for each grid, the scheme that reaches the grid's own error first."""
     lines = []
     for better, worse in pairwise([*front(runs)[::-1], None]):
         if better is None or (worse is not None and worse.cell == better.cell):

@@ -32,7 +32,7 @@ class Section:
 
 
 def surface_section(frames: Sequence[SeenFrame], title: str, stem: Path) -> Section:
-    """Measure the implicit objects of a frame in its sizes; write CSVs and a plot beside ``stem``."""
+    """Measure the implicit objects of a picture in several sizes; write CSVs and a plot beside ``stem``."""
     by_size = [list(ray_runs(frame)) for frame in frames]
     rays = [run for runs in by_size for run in runs]
     solids = [shape for shape in frames[0].shapes if isinstance(shape, Implicit) and shape.within is None]

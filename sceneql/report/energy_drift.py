@@ -19,7 +19,7 @@ MOMENTS = 200
 
 @dataclass(frozen=True, slots=True)
 class Drift:
-    """The energy of one run, relative to the largest of its kinetic energy and that of the start; else an invariant."""
+    """Energy of one run, relative to the largest of its kinetic energy and that of the start; else an invariant."""
 
     island: str
     solver: str
@@ -31,7 +31,7 @@ class Drift:
 
 
 def drift(graph: SimulationGraph, island: Island, word: str, solver: Solver) -> Drift | None:
-    """The drift up to the end, or to where the run fails; None where no model tells its energy or an invariant."""
+    """The drift up to the end or to a failure of the run; None where no model has an energy or an invariant."""
     from sceneql.run.run import Run
     from sceneql.run.watch import Watch
 

@@ -1,4 +1,4 @@
-"""Measuring what `expect` says of a scene: numbers of its run, against exact, independent or conserved values."""
+"""Measures the numbers of a scene's `expect`, against exact, independent or conserved values."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from sceneql.run.series import Series, instant_of, measure, plain, wanted
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What an expectation measured."""
+    """The measurement of one expectation."""
 
     name: str
     expect: Expect
     measured: float
     wanted: float
     error: float
-    """|measured - wanted|, or measured for one that must stay below."""
+    """|measured - wanted|, or the measured value where that must stay below a bound."""
     limit: float
-    """What the error may be at most."""
+    """Largest error allowed."""
 
     @property
     def holds(self) -> bool:
@@ -50,7 +50,7 @@ def outcomes(graph: SimulationGraph, variant: str | None = None) -> list[Outcome
 
 
 def moments_of(graph: SimulationGraph, values: Iterable[Value]) -> list[float]:
-    """The instants [s] of a run at which values are looked at: the film's frames, the end, and those they name."""
+    """The instants [s] at which values are sampled: the film's frames, the end, and those that the values name."""
     clock = graph.settings.clock
     instants = {*clock.frames(clock.fps), clock.end}
     nodes = [node for value in values for node in walk(value.expr)]
@@ -59,7 +59,7 @@ def moments_of(graph: SimulationGraph, values: Iterable[Value]) -> list[float]:
 
 
 def sample(moments: Iterable[Moment], times: list[float], values: Iterable[Value]) -> Series:
-    """The links of values at the times of a run, each (times, ...): NaN when it is not wanted, for reading may cost."""
+    """The links of values at the times of a run, each (times, ...): NaN where not needed, since reading may be slow."""
     import numpy as np
 
     wants: dict[Link, set[float]] = {}
@@ -74,7 +74,7 @@ def sample(moments: Iterable[Moment], times: list[float], values: Iterable[Value
 
 
 def _filled(row: list[Any]) -> Any:
-    """(times, ...) of values, NaN where there are none."""
+    """Values stacked to (times, ...), NaN where there is none."""
     import numpy as np
 
     known = [np.asarray(value) for value in row if value is not None]

@@ -52,13 +52,13 @@ def explain(graph: SimulationGraph) -> dict[str, Any]:
 
 
 def _looks_ahead(graph: SimulationGraph, camera: str) -> bool:
-    """Whether a camera makes the physics run once ahead of the film."""
+    """Whether a camera needs a dry run of the physics before the film."""
     task = graph.tasks.get(camera)
     return bool(graph.islands) and task is not None and cast(Camera, task.kind).looks_ahead()
 
 
 def _kernels(words: set[tuple[str, str]]) -> set[str]:
-    """Words whose compiled code, in a file of their name, is not loaded; what renderers compile stands elsewhere."""
+    """Words with compiled code in a file of their name, left out with them; kernels of renderers stand elsewhere."""
     files = (*ROOT.glob("words/*/*_kernels.py"), *ROOT.glob("*/*_kernels.py"))
     own = {word for family, word in words if family != "renderers"}
     return own & {path.stem.removesuffix("_kernels") for path in files}
@@ -100,7 +100,7 @@ def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
 
 
 def _chosen(run: IslandRun) -> list[str]:
-    """The method that a solver begins with where it chooses by itself, and why; nothing where the start fails."""
+    """The method that an automatic solver begins with, and why; nothing where the start fails."""
     if run.solver is not run.graph.tasks[run.island.solver].kind:
         word = type(run.solver).__module__.rpartition(".")[2]
         return [f"{word} takes its place on a field on a grid"]
@@ -116,7 +116,7 @@ def _why(run: IslandRun) -> tuple[str, ...]:
 
 
 def _remarks(graph: SimulationGraph, run: IslandRun) -> dict[str, str]:
-    """What mutual forces say of themselves at the start."""
+    """Remarks of mutual forces at the start."""
     from sceneql.system import ModelState
 
     march = run.march
@@ -131,7 +131,7 @@ def _remarks(graph: SimulationGraph, run: IslandRun) -> dict[str, str]:
 
 
 def _contact_why(graph: SimulationGraph, run: IslandRun) -> str:
-    """Why its contacts work in this mode."""
+    """Why an island's contacts work in their mode."""
     kinds = [graph.tasks[contact].kind for contact, _, _ in run.island.contacts]
     if all(getattr(kind, "mode", "auto") == "auto" for kind in kinds):
         return f"chosen for {run.assembly.body_count()} masses"
@@ -139,7 +139,7 @@ def _contact_why(graph: SimulationGraph, run: IslandRun) -> str:
 
 
 def _control(island: dict[str, Any]) -> str:
-    """Order and steps of its solver; nothing of one that makes no steps."""
+    """Order and steps of an island's solver; nothing for a solver without steps."""
     if island["order"] == 0:
         return ""
     steps = f"steps by the tolerance {island['tolerance']:g}" if island["adaptive"] else f"step {island['step']:g} s"
@@ -148,7 +148,7 @@ def _control(island: dict[str, Any]) -> str:
 
 
 def text(plan: dict[str, Any]) -> str:
-    """The plan for people."""
+    """The plan as text."""
     lines = [f"{plan['scene']}: {plan['about']}".rstrip(": "), "", "will run, in this order:"]
     width = max((len(part["name"]) for part in plan["parts"]), default=0)
     for part in plan["parts"]:

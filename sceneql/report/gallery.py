@@ -79,7 +79,7 @@ def compare(picture: Any, kept: Path) -> tuple[str, bool]:
 
 
 def update(scenes: tuple[Path, ...], folder: Path) -> list[str]:
-    """Keep posters as they are now and their part of the page; what the page says of other scenes stays.
+    """Replace the kept posters and their sections of the page; sections of other scenes stay.
 
     Numbers are never updated: scripts say what they must be.
     """
@@ -108,7 +108,7 @@ HEADING = "\n## "
 
 
 def _sections(page: Path) -> dict[str, str]:
-    """What a page says of each scene."""
+    """The sections of a page, by scene."""
     if not page.is_file():
         return {}
     _, *parts = page.read_text(encoding="utf-8").split(HEADING)

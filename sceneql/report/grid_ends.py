@@ -1,4 +1,4 @@
-"""A field at the end of a run on one grid after another, and how far two of them are apart."""
+"""A field at the end of a run on successive grids, and the difference between two of them."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ if TYPE_CHECKING:
     from sceneql.run.run import IslandRun
 
 MOST_CELLS = 100_000
-"""Of the finest grid, or the script's own where that has more."""
+"""Most cells of the finest grid, unless the script's own has more."""
 GRIDS = 6
 FINER = 2
-"""Halvings of the script's cell at most."""
+"""Most halvings of the script's cell."""
 FEWEST = 200
-"""Cells that a grid has for a coarser one to be tried."""
+"""Fewest cells of a grid for which a coarser one is tried."""
 REPEATS = 3
 TOLERANCE = 1e-6
-"""In time, where no exact solution is known."""
+"""Tolerance in time, where no exact solution is known."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,15 +45,15 @@ class End:
 
     @property
     def cells(self) -> int:
-        """Those of the domain."""
+        """Number of cells inside the domain."""
         return int(self.inside.sum())
 
 
 def ends_on_grids(graph: SimulationGraph, island: Island) -> tuple[list[End], str]:
-    """The field at the end on grids from fine to coarse, solved in time without an error to speak of, and how that is.
+    """The field at the end on grids from fine to coarse, with a negligible error in time, and the method in time.
 
-    Each grid has cells of twice the side of the one before. Raises RunFailure, LimitRefused or ScriptError for the
-    script's own.
+    Each grid has cells of twice the side of the one before. Raises RunFailure, LimitRefused or ScriptError where the
+    script's own grid fails.
     """
     solver, how = _in_time(graph, island)
     kind = cast("Medium", graph.tasks[island.models[0]].kind)
@@ -68,12 +68,12 @@ def ends_on_grids(graph: SimulationGraph, island: Island) -> tuple[list[End], st
         while len(ends) < GRIDS and ends[-1].cells >= FEWEST:
             ends.append(end_on(graph, island, solver, 2.0 * ends[-1].cell))
     except (ScriptError, LimitRefused, RunFailure):
-        pass  # no grid as fine or as coarse as that
+        pass  # that grid is too fine or too coarse
     return ends, how
 
 
 def _in_time(graph: SimulationGraph, island: Island) -> tuple[Solver, str]:
-    """What solves an island in time without an error to speak of."""
+    """A solver of the island with a negligible error in time, and its description."""
     from sceneql.words.solvers.exact import Exact
     from sceneql.words.solvers.tr_bdf2 import TrBdf2
 
@@ -105,7 +105,7 @@ def end_on(
     patched = replace(graph, tasks={**graph.tasks, name: replace(graph.tasks[name], kind=kind)})
     times: list[float] = []
     for _ in range(REPEATS):
-        # The first run looks whether it takes too long; the time of the others is the steps' alone.
+        # The first run checks the limit of its time; later runs are timed by their steps alone.
         _, march = run(patched, island, solver, math.inf if times else longest)
         times.append(march.march.statistics.seconds)
         if sum(times) > enough:
@@ -121,7 +121,7 @@ def end_on(
 
 
 def difference(coarse: End, fine: End) -> float:
-    """Root mean square difference at the coarse cells' centers that the finer grid knows, by the largest value."""
+    """Root mean square difference at the coarse cells' centers inside the finer grid, relative to the largest value."""
     import numpy as np
 
     cubic, known = _interpolated(fine, coarse.layout.centers(), 4)

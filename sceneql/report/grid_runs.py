@@ -24,7 +24,7 @@ class GridRun:
     """Side of a cell [m]."""
     cells: int
     error: float
-    """Root mean square, in parts of the largest value: by how far it is from the next finer grid, and the order."""
+    """Root mean square in parts of the largest value, extrapolated from the next finer grid by the observed order."""
     seconds: float
     """Run time of the compiled steps, or of the exact solution."""
 
@@ -40,11 +40,11 @@ class LinearRun:
     iterations: int
     seconds: float
     residuals: tuple[float, ...]
-    """After each look at it, in parts of the first; empty where it is solved at once."""
+    """Residual at each check, in parts of the first; empty for a direct solver."""
 
 
 def on_grids(title: str, ends: Sequence[End]) -> tuple[list[GridRun], float | None]:
-    """What is wrong on each but the finest of some grids, from coarse to fine, and the observed order in the cell."""
+    """Errors on each but the finest of some grids, from coarse to fine, and the observed order in the cell."""
     pairs = list(pairwise(ends))
     differences = [difference(coarse, fine) for fine, coarse in pairs]
     order = None
@@ -59,7 +59,7 @@ def on_grids(title: str, ends: Sequence[End]) -> tuple[list[GridRun], float | No
 
 
 def linear_runs(graph: SimulationGraph, island: Island) -> Iterator[LinearRun]:
-    """One step of the script's length by every linear solver that applies; what does not converge is left out."""
+    """One step of the script's length by every linear solver that applies; those that do not converge are left out."""
     from sceneql.grids.multigrid.linear_solvers import Linear
     from sceneql.grids.prepare_stages import report
     from sceneql.words.solvers.implicit_euler import ImplicitEuler
@@ -73,7 +73,7 @@ def linear_runs(graph: SimulationGraph, island: Island) -> Iterator[LinearRun]:
             while len(times) < REPEATS:
                 march = island_by(graph, island, ImplicitEuler(step=step, linear=name)).march
                 if march.system.grid is None:
-                    return  # several fields
+                    return  # a system of several fields
                 march.advance(step)
                 times.append(march.statistics.seconds)
         except (LimitRefused, RunFailure):

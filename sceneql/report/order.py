@@ -7,10 +7,10 @@ from itertools import pairwise
 from math import isfinite, log, nan
 
 LARGEST_ERROR = 0.1
-"""Relative errors above this are not small: the leading term of the error does not rule yet."""
+"""Relative errors above this are not small: the leading term of the error does not dominate yet."""
 LEAST_POINTS = 4
 SPREADS = (0.1, 0.2, 0.4)
-"""How far the slopes from point to point may lie from that of the range: the first that some range keeps to."""
+"""Spreads of slopes between neighbors about a range's own slope: the first that some range keeps to."""
 
 
 def observed_order(steps: Sequence[float], errors: Sequence[float], floor: float = 1e-12) -> float | None:

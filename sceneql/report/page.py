@@ -56,7 +56,7 @@ class Table:
 def write_page(
     path: Path, title: str, lines: Sequence[str], plots: Sequence[tuple[str, Path]], tables: Sequence[Table]
 ) -> None:
-    """Write a page with paragraphs, SVGs by caption, and tables. What is written in it is escaped."""
+    """Write a page with paragraphs, SVGs by caption, and tables; texts are escaped."""
     from jinja2 import Environment
 
     from sceneql import __version__

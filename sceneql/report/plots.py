@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 MARKS = "osD^vP*X<>"
 COLORS = {"stable": "#8fd0a8", "inaccurate": "#f3d06b", "failed": "#c8553d", "skipped": "#e4e4e4"}
-"""Of the classes of runs; their lightness tells them apart, too."""
+"""Colors of the classes of runs, which differ in lightness, too."""
 SMALLEST = 1e-17
 """Smallest change that is drawn."""
 
@@ -108,9 +108,9 @@ def surface_errors(path: Path, title: str, rays: Sequence[RayRun], meshes: Seque
 
 
 def study_errors(path: Path, title: str, label: str, rows: Mapping[str, Sequence[tuple[float, float, float]]]) -> None:
-    """Write an SVG of a study: errors over run time [s], and, where a number is tried, over it.
+    """Write an SVG of a study: errors over run time [s], and over the number that is swept, if any.
 
-    ``rows``: by what else is tried, (number, error, seconds) of each run that reached its end; ``label``: the number's.
+    ``rows``: by the other values, (number, error, seconds) of each run that reached its end; ``label``: the number's.
     """
     numbered = any(math.isfinite(number) for runs in rows.values() for number, _, _ in runs)
     with figure_at(path, (9.0, 9.6 if numbered else 4.8)) as figure:
@@ -120,7 +120,7 @@ def study_errors(path: Path, title: str, label: str, rows: Mapping[str, Sequence
             axes.set(xlabel=text, ylabel="relative error", title=title)
             for (name, runs), mark in zip(rows.items(), cycle(MARKS), strict=False):
                 done = [(run[column], max(run[1], SMALLEST)) for run in runs if math.isfinite(run[1])]
-                line = "-" if column == 0 else "none"  # run times of harder problems are no line
+                line = "-" if column == 0 else "none"  # points of harder and harder problems are no line over run time
                 axes.plot(
                     *(zip(*done, strict=True) if done else ([], [])), linestyle=line, marker=mark, ms=4, label=name
                 )
@@ -128,7 +128,7 @@ def study_errors(path: Path, title: str, label: str, rows: Mapping[str, Sequence
 
 
 def panel(figure: Any, count: int, k: int) -> Any:
-    """Axes with as many colors as there are solvers."""
+    """Axes of panel ``k`` of ``count``, with a cycle of colors for as many solvers."""
     from matplotlib import colormaps
 
     axes = figure.add_subplot(count, 1, k + 1)
@@ -137,7 +137,7 @@ def panel(figure: Any, count: int, k: int) -> Any:
 
 
 def logarithmic(axes: Any) -> None:
-    """Both scales; within two decades 1, 2 and 5 are written along the lower one, for which there is room."""
+    """Logarithmic scales on both axes; within two decades the lower one, which has room, is labeled at 1, 2 and 5."""
     from matplotlib.ticker import LogFormatterSciNotation, LogLocator
 
     axes.set(xscale="log", yscale="log")
@@ -147,7 +147,7 @@ def logarithmic(axes: Any) -> None:
 
 
 def explain(axes: Any) -> None:
-    """The legend, beside the panel: there may be many solvers."""
+    """Draw the legend beside the panel: there may be many solvers."""
     axes.legend(fontsize="small", loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False)
 
 
@@ -174,7 +174,7 @@ def drift_against_time(path: Path, title: str, drifts: Sequence[Drift]) -> None:
 
 
 def stability_map(path: Path, title: str, label: str, cells: Sequence[Cell]) -> None:
-    """Write an SVG with a panel an island: a row a solver, a column a value swept over, colored by what came of it.
+    """Write an SVG with a panel an island: a row a solver, a column a value swept over, colored by the outcome.
 
     A cell shows the power of ten of its error; a bar stands where the step passes the bound known before the run.
     """

@@ -30,9 +30,9 @@ def _size(rows: Sequence[Any]) -> tuple[float, float]:
 
 
 def schemes_against_time(path: Path, title: str, runs: Sequence[SchemeRun]) -> None:
-    """Write an SVG: the whole error over run time [s]; a dot a run, and through the best of each scheme a line.
+    """Write an SVG: error of space and time over run time [s]; a dot a run, and a line through the best of each scheme.
 
-    A dot's size is that of the cells; what is wrong by more than the field itself is not drawn.
+    A dot's size is that of the cells; errors larger than the field itself are not drawn.
     """
     with figure_at(path, _size(runs)) as figure:
         for axes, mine in _panels(figure, title, runs):
@@ -52,7 +52,7 @@ def schemes_against_time(path: Path, title: str, runs: Sequence[SchemeRun]) -> N
 
 
 def error_against_cell(path: Path, title: str, runs: Sequence[GridRun], orders: Mapping[str, float | None]) -> None:
-    """Write an SVG: the error of space alone over the side of a cell [m]; the slope is the order, which is told."""
+    """Write an SVG: error of space alone over the side of a cell [m]; the slope is the order, which is written out."""
     with figure_at(path, _size(runs)) as figure:
         for axes, mine in _panels(figure, title, runs):
             axes.set(xscale="log", yscale="log", xlabel="cell [m]", ylabel="error of space, rms")
@@ -63,7 +63,7 @@ def error_against_cell(path: Path, title: str, runs: Sequence[GridRun], orders: 
 
 
 def residuals(path: Path, title: str, runs: Sequence[LinearRun]) -> None:
-    """Write an SVG: what is left of the residual over the iterations of one step, a line a linear solver."""
+    """Write an SVG: the residual over the iterations of one step, a line a linear solver."""
     with figure_at(path, _size(runs)) as figure:
         for axes, mine in _panels(figure, title, runs):
             step = f"one step of {mine[0].step:.3g} s by implicit_euler"

@@ -1,4 +1,4 @@
-"""A progress bar, on a terminal only, and an interrupt that is heard."""
+"""A progress bar, on a terminal only, which also raises interrupts that a library lost."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from typing import Any
 def bar(title: str) -> Iterator[Callable[[int, int], None]]:
     """A function of (done, total) that draws a bar on standard error while the block runs.
 
-    It raises KeyboardInterrupt after a Ctrl-C that was lost: one that falls into a callback of a library in C (of the
-    compiler, say) is forgotten there. What fails for want of that callback's work is the interrupt, too.
+    It raises KeyboardInterrupt for a Ctrl-C that was lost: an exception in a callback of a C library (the compiler,
+    say) is dropped there. An error for want of that callback's result becomes the interrupt, too.
     """
     with _remembered() as lost, _drawn(title) as draw:
 
@@ -33,7 +33,7 @@ def bar(title: str) -> Iterator[Callable[[int, int], None]]:
 
 @contextmanager
 def _remembered() -> Iterator[Callable[[], bool]]:
-    """Whether Ctrl-C was pressed inside the block; that one was lost is not printed."""
+    """A function that says whether Ctrl-C was pressed inside the block; no message of a dropped one is printed."""
     pressed = False
     tell = sys.unraisablehook
 

@@ -1,4 +1,4 @@
-"""What a benchmark's runs are compared with: the script's exact numbers, or a far tighter run by another method."""
+"""References of a benchmark: the script's exact numbers, or a far tighter run by another method."""
 
 from __future__ import annotations
 
@@ -25,17 +25,16 @@ if TYPE_CHECKING:
     from sceneql.run.run import IslandRun
 
 TOLERANCES = ((1e-13, 1e-12), (1e-10, 1e-9), (1e-7, 1e-6))
-"""Of the reference, and of a second run: how far they are apart bounds the error of the first. The next pair is taken
-where the runs of one before fail or take too long."""
+"""Of the reference and of a second run, whose difference bounds its error; where these fail, the next pair is taken."""
 METHODS = ("dop853", "dopri5", "radau")
-"""Our own that a reference may be made by, the first that reaches the end."""
+"""Our own methods for references, the first that reaches the end."""
 MOST_CALLS = 200_000
-"""Evaluations that scipy's method may ask for: each goes through Python."""
+"""Most evaluations of the rate by scipy's method: each goes through Python."""
 ROUNDING = 1e-14
 
 
 class _TooManyCalls(Exception):
-    """scipy's method would take too long."""
+    """scipy's method needs too many evaluations."""
 
 
 def reference(
@@ -47,9 +46,9 @@ def reference(
     most_calls: int = MOST_CALLS,
     methods: Sequence[str] = METHODS,
 ) -> Reference:
-    """The exact numbers that the script expects at the end, where there are enough of them to be the solution.
+    """The exact numbers that the script expects at the end, where these are enough to determine the state.
 
-    That is as many as the island has positions and other states that are not velocities; a single number may hide an
+    Enough are as many as the island has positions and other states that are not velocities; a single number may hide an
     error (a turning point hides one in time). Else a run at a far tighter tolerance by another method, which is
     compared with what exact numbers there are. Raises RunFailure or LimitRefused where none reaches the end.
     """
@@ -86,7 +85,7 @@ def _by_runs(
     tolerances: tuple[float, float],
     most_calls: int,
 ) -> Reference:
-    """A reference by our own runs, or by scipy's DOP853 where that is quick enough and knows all that acts."""
+    """A reference by our own runs, or by scipy's DOP853 where that is quick enough and the rate is all that acts."""
     tight = tolerances[0]
     moment, march = fine
     end, other = _end(march), _end(coarse)
@@ -109,14 +108,14 @@ def _by_runs(
 
 
 def _unknowns(island: IslandRun) -> int:
-    """States without velocities and without the counters of energy taken out."""
+    """Number of states, velocities and counters of energy left out."""
     partner = island.march.system.partner
     bodies = sum(bodies is not None for bodies in island.bodies.values())
     return int(_own(island).sum()) - int((partner >= 0).sum()) - bodies
 
 
 def _tells_the_end(expect: Expect, island: Island) -> bool:
-    """Whether an expectation is an exact value, at the end of the run, of what this island does."""
+    """Whether an expectation is an exact value of this island at the end of the run."""
     if expect.value is None or "exact" not in expect.because or expect.variant is not None:
         return False
     nodes = list(walk(expect.of.expr))

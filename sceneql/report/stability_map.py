@@ -1,4 +1,4 @@
-"""What becomes of an island under each solver while a value of the script, or the step, is swept over decades."""
+"""The outcome of an island under each solver while a value of the script, or the step, is swept over decades."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from sceneql.report.stability_sweep import Sweep, around
 from sceneql.report.work_precision import Reference, TooLong, adaptive, at, prepared, run, setting_of, solvers
 
 TOLERANCES = ((1e-10, 1e-9), (1e-7, 1e-6))
-"""Of the references: what is inaccurate is seen by these."""
+"""Tolerances of the references, tight enough to see inaccurate runs."""
 RAN_AWAY = 10.0
-"""A run with a larger relative error at its end has failed, also where every number of it stays finite."""
+"""A run with a larger relative error at its end has failed, even where all its numbers are finite."""
 METHODS = ("radau", "dopri5")
-"""That make the references: a sweep over stiffness is why one is here."""
+"""Methods of the references: a sweep over stiffness needs one for stiff systems."""
 LONGEST = 5.0
-"""A run is given up after so many seconds of compiled steps."""
+"""Seconds of compiled steps after which a run is given up."""
 MOST_CALLS = 10_000
-"""Of a rate by a reference that is not our own."""
+"""Most evaluations of a rate by a reference that is not our own."""
 SLOWEST = 1e-3
-"""Of the end of the run: the middle of the steps tried where no rate depends on the state."""
+"""Middle of the steps tried where no rate depends on the state, in parts of the run's end."""
 
 Load = Callable[[Sequence[str]], SimulationGraph]
 """The scene with more patches."""
@@ -44,7 +44,7 @@ class Cell:
     """Step [s], or relative tolerance."""
     outcome: Literal["stable", "inaccurate", "failed", "skipped"]
     why: str
-    """Of a failed or skipped run."""
+    """Reason of a failed or skipped run."""
     error: float
     """Relative error at the end; NaN where there is none."""
     bound: float
@@ -77,7 +77,7 @@ def cells(
     largest_error: float,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Iterator[Cell]:
-    """Every solver that applies at every value, on every island. Raises ScriptError where a value is none."""
+    """Every solver that applies at every value, on every island. Raises ScriptError for an invalid value."""
     truths: dict[tuple[str, ...], Reference] = {}
     for done, value in enumerate(sweep.values):
         progress(done, len(sweep.values))

@@ -1,4 +1,4 @@
-"""What `stability` sweeps over: a value of the script by its path, or the solvers' own steps or tolerances."""
+"""The sweep of `stability`: a value of the script by its path, or the solvers' own steps or tolerances."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from sceneql.failure import Unsuitable
 
 SHAPE = re.compile(rf"\s*([^=\s]+)\s*=\s*({NUMBER})\s*\.\.\s*({NUMBER})\s*(.*?)\s*")
 FEWEST = 30
-"""Steps of a run by which an instability may be seen."""
+"""Fewest steps of a run in which an instability may show."""
 OWN = ("step", "tolerance")
 """Names for the solvers' own settings [s], [1]; anything else is a path of the script as for ``--set``."""
 
@@ -39,7 +39,7 @@ class Sweep:
 
 
 def parse_sweep(text: str, points: int = POINTS) -> Sweep:
-    """``define.k=1e0..1e12 N/m`` in so many points, evenly spaced in the logarithm (where 0 lies between: evenly).
+    """``define.k=1e0..1e12 N/m`` in so many points, evenly spaced in the logarithm (linearly where 0 lies between).
 
     Raises Unsuitable.
     """

@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 
 REPEATS = 3
 ENOUGH_SECONDS = 0.5
-"""No run is repeated that has taken so long in all."""
+"""Seconds of all repeats of a run, after which there is no further one."""
 LONGEST = 20.0
-"""A reference is given up after so many seconds of compiled steps."""
+"""Seconds of compiled steps after which a reference is given up."""
 
 Load = Callable[[Sequence[Patch]], SimulationGraph]
 """The scene, nothing left out, with more patches."""
@@ -40,10 +40,10 @@ class Trial:
     """One run of a study."""
 
     values: tuple[Tried, ...]
-    """That of each path, in order."""
+    """One value of each path, in order."""
     outcome: Outcome
     why: str
-    """Of a failed or skipped run."""
+    """Reason of a failed or skipped run."""
     error: float
     """Relative error; NaN where there is none."""
     seconds: float
@@ -51,11 +51,11 @@ class Trial:
     steps: int
     evaluations: int
     measured: dict[str, float]
-    """What else the study measures, SI."""
+    """The other measurements of the study, SI."""
 
 
 def trials(load: Load, name: str, progress: Callable[[int, int], None] = lambda done, total: None) -> Iterator[Trial]:
-    """Run every combination of the values that a study tries. Raises ScriptError where a value is none."""
+    """Run every combination of a study's values. Raises ScriptError for an invalid value."""
     study = load(()).settings.studies[name]
     rows = [tried(path, node) for path, node in study.sweep.items()]
     replaced = {path for path, _, _ in instead(study)}
@@ -70,7 +70,7 @@ def trials(load: Load, name: str, progress: Callable[[int, int], None] = lambda 
 
 
 def _reference(load: Load, name: str, patches: Sequence[Patch]) -> tuple[Any, str]:
-    """What a study compares with (None: nothing), and why there is none."""
+    """The reference value of a study (None: there is none), and why there is none."""
     graph = load(patches)
     study = graph.settings.studies[name]
     try:
@@ -114,7 +114,7 @@ def _trial(graph: SimulationGraph, name: str, values: tuple[Tried, ...], truth: 
 
 
 def _run(graph: SimulationGraph, values: Sequence[Value], longest: float) -> tuple[list[float], Series, Run, float]:
-    """Times, what values read at them, the run, and its run time [s]. Raises TooLong beyond ``longest`` [s]."""
+    """Times, samples of values at them, the run, and its run time [s]. Raises TooLong beyond ``longest`` [s]."""
     from sceneql.run.run import Run
 
     times, run = moments_of(graph, values), Run(graph)
@@ -138,7 +138,7 @@ def _run(graph: SimulationGraph, values: Sequence[Value], longest: float) -> tup
 
 
 def _relative(found: Floats, right: Floats) -> float:
-    """The largest difference, relative to the largest number that is right; inf where a number is not finite."""
+    """Largest difference, relative to the largest true number; inf where a number is not finite."""
     import numpy as np
 
     error = float(np.max(np.abs(np.asarray(found) - right))) / (float(np.max(np.abs(right))) or 1.0)

@@ -1,4 +1,4 @@
-"""What a study found as table, map, charts and page."""
+"""The results of a study as table, map, charts and page."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ LEGEND = (
 
 
 def _rest(trial: Trial, numbered: int | None) -> str:
-    """The values of a run but the numbered one."""
+    """The values of a run without the numbered one."""
     return ", ".join(value.label for k, value in enumerate(trial.values) if k != numbered) or "script"
 
 

@@ -1,4 +1,4 @@
-"""Measuring implicit surfaces: what error rays and meshes leave, and what they cost."""
+"""Measures of implicit surfaces: errors and run times of rays and of meshes."""
 
 from __future__ import annotations
 
@@ -22,30 +22,30 @@ if TYPE_CHECKING:
 TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)
 SAMPLES = tuple(2**k for k in range(4, 13))
 CELLS = (16, 32, 64, 128, 256)
-"""Along the longest side of an object's box."""
+"""Cells along the longest side of an object's box."""
 SIZES = 4_000, 16_000, 64_000
-"""Pixels of the pictures, at the most: a larger one is made smaller."""
+"""Most pixels of the pictures: a larger picture is made smaller."""
 REPEATS = 3
 ENOUGH_SECONDS = 3.0
-"""A run that takes so long is not repeated, and no finer one is made."""
+"""Seconds of a run after which it is not repeated, and no finer one is made."""
 
 
 @dataclass(frozen=True, slots=True)
 class RayRun:
-    """A picture's implicit surfaces, looked at once through each pixel's center."""
+    """A picture's implicit surfaces, by one ray through the center of each pixel."""
 
     renderer: str
     width: int
     height: int
-    """Of the picture [pixels]."""
+    """Height of the picture [pixels]."""
     setting: float
     """Tolerance of `trace`, samples on a ray of `march`."""
     seconds: float
-    """Median, compilation left out; what `trace` prepares for a frame counts."""
+    """Median, without compilation; what `trace` prepares for a frame counts."""
     pixels: int
-    """Where the reference meets a surface."""
+    """Pixels where the reference meets a surface."""
     wrong: int
-    """Pixels that meet a surface where the reference does not, or the other way around, or are undecided."""
+    """Pixels that meet a surface where the reference does not, or vice versa, or are undecided."""
     undecided: int
     depth_error: float
     """[m] Mean over the pixels that meet a surface in both."""
@@ -63,7 +63,7 @@ class MeshRun:
     cell: float
     """[m]"""
     seconds: float
-    """Median, compilation left out."""
+    """Median, without compilation."""
     triangles: int
     volume: float
     """[m^3]"""
@@ -72,16 +72,16 @@ class MeshRun:
     euler: int
     boundary_edges: int
     hausdorff: float
-    """[m] From the finest mesh; NaN for that itself."""
+    """[m] Hausdorff distance from the finest mesh; NaN for that itself."""
     volume_error: float
     """Relative, against the value extrapolated from the two finest."""
     area_error: float
 
 
 def pictured(graph: SimulationGraph) -> list[SeenFrame]:
-    """The first picture of a scene with the implicit objects in it alone, in rising sizes; none where it shows none.
+    """The first picture of a scene with its implicit objects alone, in rising sizes; none where it has none.
 
-    Raises RunFailure where nothing of any of them is there.
+    Raises RunFailure where all of them are empty.
     """
     from sceneql.frame import Implicit
 
@@ -89,7 +89,7 @@ def pictured(graph: SimulationGraph) -> list[SeenFrame]:
         moment = next(pipeline.simulate(graph, [0.0]))
         shapes = [shape for shape in moment.lower(graph.drawn[name]) if isinstance(shape, Implicit)]
         if not shapes:
-            continue  # before a camera is asked, which may run the physics ahead
+            continue  # before a camera is asked, which may need a dry run
         _there(graph, shapes)
         output = cast(Picture, graph.tasks[name].kind)
         width, height = output.pixels
@@ -104,7 +104,7 @@ def pictured(graph: SimulationGraph) -> list[SeenFrame]:
 
 
 def _there(graph: SimulationGraph, shapes: list[Implicit]) -> None:
-    """Raise RunFailure where nothing of any of some implicit objects is there."""
+    """Raise RunFailure where all of the implicit objects are empty."""
     from sceneql.run.never_drawn import look
 
     present: dict[str, str] = {}
@@ -115,7 +115,7 @@ def _there(graph: SimulationGraph, shapes: list[Implicit]) -> None:
 
 
 def timed(work: Callable[[], Any]) -> tuple[Any, float]:
-    """What some work returns, and the median of its seconds; it has been done once before."""
+    """The result of some work, and the median of its seconds; the caller has run it once before."""
     times: list[float] = []
     while len(times) < REPEATS and sum(times) < ENOUGH_SECONDS:
         started = time.perf_counter()
@@ -127,7 +127,7 @@ def timed(work: Callable[[], Any]) -> tuple[Any, float]:
 def ray_runs(frame: SeenFrame) -> Iterator[RayRun]:
     """`trace` over tolerances and `march` over samples, against the certified intervals alone.
 
-    What `trace` meets in packets, at its usual tolerance, is met in packets here.
+    Objects that `trace` intersects in packets at its usual tolerance are intersected in packets here.
     """
     from renderers.tracing.probe import probe
 

@@ -1,4 +1,4 @@
-"""Running one island by one solver setting after another: what error is left at the end, and what it costs."""
+"""Runs of one island by one solver setting after another: the error at the end, and the run time."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ if TYPE_CHECKING:
     from sceneql.run.run import IslandRun
 
 STEPS = tuple(2**k for k in range(4, 19))
-"""Steps of a fixed-step run, until ENOUGH_SECONDS or the reference's own error is reached."""
+"""Numbers of steps of fixed-step runs, until ENOUGH_SECONDS or the reference's own error is reached."""
 TOLERANCES = tuple(10.0**-k for k in range(2, 14))
 TOLERANCE = 1e-6
-"""Where the script's own solver has none."""
+"""Tolerance where the script's own solver has none."""
 REPEATS = 5
 ENOUGH_SECONDS = 0.5
-"""No step smaller than one that takes so long is tried, and no run is repeated that has taken so long in all."""
+"""Seconds of a run after which no smaller step is tried, and of all repeats of a run."""
 LONGEST = 20.0
-"""A run is given up after so many seconds of compiled steps."""
+"""Seconds of compiled steps after which a run is given up."""
 FIRST_LOOK, NEXT_LOOK = 1e-9, 1.25
-"""A run that may be given up is looked at after this part of it, and whenever it has come so much further."""
+"""Part of a run after which its time is first checked, and the factor to each further check."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,7 @@ class Measurement:
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """What the end of a run is compared with."""
+    """The end that runs are compared with."""
 
     error: Callable[[Instant, IslandRun], float]
     """Relative error of a run that has reached the end."""
@@ -70,14 +70,14 @@ class Reference:
 
 
 class TooLong(RunFailure):
-    """A run that was given up."""
+    """A run that was given up for its run time."""
 
 
 def solvers(graph: SimulationGraph, island: Island, catalogue: Catalogue) -> dict[str, Solver]:
     """The solvers that can march an island, at the script's step or tolerance.
 
-    They are those that need nothing else, and the script's own. A word whose steps are those of another is left out,
-    `auto` first.
+    They are the words that require no other field, and the script's own. A word whose steps are those of another is
+    left out, `auto` first.
     """
     step, tolerance = settings(graph, island)
     given = {"step": step, "tolerance": tolerance}
@@ -173,7 +173,7 @@ def measure(
     times: list[float] = []
     try:
         while len(times) < repeats and sum(times) < ENOUGH_SECONDS:
-            # The first run looks whether it takes too long; the time of the others is the steps' alone.
+            # The first run checks the limit of its time; later runs are timed by their steps alone.
             moment, march = run(graph, island, solver, math.inf if times else LONGEST)
             times.append(march.march.statistics.seconds)
     except RunFailure as failure:
@@ -196,11 +196,11 @@ def measure(
 
 
 def warm(graph: SimulationGraph, island: Island, solver: Solver) -> float:
-    """Compile all that a run needs, before it is timed; the seconds that took."""
+    """Compile all that a run needs before it is timed; returns the seconds that this took."""
     from sceneql.compiled.kernels import compiled
 
     before = compiled.seconds
-    with suppress(RunFailure):  # what fails has been compiled too
+    with suppress(RunFailure):  # a failed run has compiled its code, too
         coarse = TOLERANCES[0] if adaptive(solver) else graph.settings.clock.end / STEPS[0]
         run(graph, island, at(solver, coarse), LONGEST)
     return compiled.seconds - before
