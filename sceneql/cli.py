@@ -46,7 +46,7 @@ def main() -> None:
 
 
 def _without_plugins() -> None:
-    """Let pydantic find no plugins: what it imports to look for them takes longer than reading a scene."""
+    """Hide plugins from pydantic: the imports of its search for them take longer than reading a scene."""
     from types import ModuleType
 
     loader = ModuleType("pydantic.plugin._loader")
@@ -55,7 +55,7 @@ def _without_plugins() -> None:
 
 
 def _failure(error: Exception) -> int:
-    """Say what went wrong; the exit code. An exception that is nobody's message is a bug and is raised."""
+    """Print an error; returns the exit code. An exception without a message for users is a bug, and is raised."""
     from sceneql.failure import LimitRefused, RunFailure, Unsuitable
     from sceneql.quantities.diagnostic import LIMITS, ScriptError
 

@@ -1,4 +1,4 @@
-"""How a run ends badly: with the part, the time and the line of the script."""
+"""Errors that end a run, with the part, the time and the line of the script."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from sceneql.quantities.span import Span
 
 
 class RunFailure(Exception):
-    """A run that cannot go on. ``part``: the entry and what of it failed; ``time`` [s] of the simulation."""
+    """A run that cannot go on. ``part``: the part or field that failed; ``time`` [s] of the simulation."""
 
     def __init__(self, message: str, *, part: str, time: float, span: Span | None, help: str | None = None) -> None:
         self.message, self.part, self.time, self.span, self.help = message, part, time, span, help
@@ -20,7 +20,7 @@ class RunFailure(Exception):
 
 @contextmanager
 def failing_as(name: str, time: float, span: Span | None) -> Iterator[None]:
-    """Failures inside are told as those of a part at a time [s]; TypeError and ValueError are how words refuse."""
+    """Report failures inside as those of a part at a time [s]; words refuse values by TypeError and ValueError."""
     try:
         yield
     except RunFailure as error:
@@ -38,10 +38,10 @@ class LimitRefused(Exception):
         super().__init__(str(self.diagnostic))
 
     def at(self, span: Span | None) -> LimitRefused:
-        """The same with its place in the script, unless it has one."""
+        """The same error with its place in the script, unless it has one."""
         told = self.diagnostic
         return self if told.span is not None else LimitRefused(told.message, span, told.help)
 
 
 class Unsuitable(ValueError):
-    """What is asked for does not suit the scene: one file for several outputs, a benchmark without physics."""
+    """A request that does not suit the scene: one file for several outputs, a benchmark without physics."""

@@ -24,7 +24,7 @@ class Task:
     needs: tuple[str, ...] = ()
     """Names of the parts that it links or refers to."""
     original: Kind | None = None
-    """As the script has it, where a model drives it: what the model starts from."""
+    """The kind as the script has it, of a part that a model drives: where the model starts."""
 
     @property
     def family(self) -> str:
@@ -64,7 +64,7 @@ class Variants:
     may_fail: bool = False
     """Whether the script says that the run of this one may fail."""
     load: Callable[[str], SimulationGraph] | None = field(default=None, compare=False)
-    """The graph of one by its name."""
+    """The graph of a variant by its name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +75,7 @@ class SimulationGraph:
     """The script's name without its extension: default name of what is made."""
     settings: Settings
     tasks: Mapping[str, Task]
-    """In an order in which every part stands behind those it needs."""
+    """In topological order: every part stands behind those it needs."""
     needed_by: Mapping[str, tuple[str, ...]]
     """For each task the outputs that need it."""
     islands: tuple[Island, ...]
