@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Gradients of a tape at many points by forward differentiation, after ``batch_kernels.evaluate`` at the same."""
+"""Gradients of a tape at many points by forward differentiation, after ``batch_kernels.evaluate`` at these points."""
 
 from sceneql.compiled.kernels import inlined, lean
 from sceneql.field.enclose.sine_kernels import wave_lanes
@@ -12,7 +12,7 @@ from sceneql.field.tape.gradient_kernels import slopes
 
 @inlined
 def point_slopes(parts, start, stop, x, y, z, gx, gy, gz, n):
-    """``density_gradient`` at n points, of parts that are all points; False, and nothing done, where one is not."""
+    """``density_gradient`` at n points for parts that are points; False, and nothing done, where one is a segment."""
     for part in range(start, stop):
         for axis in range(3):
             if parts[part, axis] != parts[part, 3 + axis]:
@@ -61,7 +61,7 @@ def density_lanes(parts, start, stop, x, y, z, out, n):
 
 @inlined
 def of_parts(code, k, parts, registers, slope, n):
-    """Gradient of the density of row k through that of its point."""
+    """Gradient of the density of row k, by the chain rule through the point at which the row is asked."""
     p = code[k, 3]
     if code[k, 0] == ops.DENSITY:
         density_lanes(
@@ -81,7 +81,7 @@ def of_parts(code, k, parts, registers, slope, n):
 
 @inlined
 def any_slopes(op, value, a, b, slope_a, slope_b, slope, n):
-    """Gradient of an operation of one or two arguments by its two derivatives."""
+    """Gradient of an operation of one or two arguments by its partial derivatives."""
     if op == ops.MAX or op == ops.MIN:
         for axis in range(3):
             ga, gb, g = slope_a[axis], slope_b[axis], slope[axis]
@@ -111,7 +111,7 @@ def any_slopes(op, value, a, b, slope_a, slope_b, slope, n):
 @inlined
 def wave_slopes(op, a, slope_a, slope, n):
     """Gradient of a sine or cosine."""
-    factor = slope[2]  # overwritten last
+    factor = slope[2]  # overwritten last: the factor is stored in the z slope
     wave_lanes(a, factor, n, op == ops.SIN)
     sign = 1.0 if op == ops.SIN else -1.0
     for axis in range(3):

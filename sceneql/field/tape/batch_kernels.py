@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Values of a tape at many points: operations in the outer loop, points in the inner one, the bits of ``value``.
+"""Values of a tape at many points: operations in the outer loop, points in the inner one, bit for bit as ``value``.
 
 ``registers`` (rows, LANES) has a row for each operation; of it and of ``points`` (3, LANES) the first n columns count.
 """
@@ -50,7 +50,7 @@ def density_lanes(parts, start, stop, x, y, z, out, n):
 
 @inlined
 def unary_lanes(op, a, out, n):
-    """The operations of one argument that are seldom."""
+    """The rarer operations of one argument."""
     if op == ops.ABS:
         for i in range(n):
             out[i] = abs(a[i])
@@ -73,7 +73,7 @@ def unary_lanes(op, a, out, n):
 
 @inlined
 def binary_lanes(op, a, b, out, n):
-    """The operations of two arguments that are seldom."""
+    """The rarer operations of two arguments."""
     if op == ops.DIV:
         for i in range(n):
             out[i] = a[i] / b[i]
@@ -93,7 +93,7 @@ def binary_lanes(op, a, b, out, n):
 
 @inlined
 def along_z(code, rest):
-    """Write into ``rest`` (rows, 4) the tape of what changes with z alone: KEEP for the other operations."""
+    """Write into ``rest`` (rows, 4) the tape of the rows that depend on z; all other rows become KEEP."""
     for k in range(code.shape[0]):
         op = code[k, 0]
         for j in range(1, 4):
@@ -112,7 +112,7 @@ def along_z(code, rest):
 
 @lean(f"void({BATCH}, float64[:, ::1], int64)")
 def evaluate(code, constants, parts, registers, points, n):
-    """f at n points, into the first n columns of the last operation's register."""
+    """f at n points, into the first n columns of the last register."""
     for k in range(code.shape[0]):
         op = code[k, 0]
         if op == ops.KEEP:

@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 Row = tuple[int, int, int, int]
 COMMUTATIVE = {ops.ADD, ops.MUL, ops.MIN, ops.MAX}
 WHOLE_OF_WHOLE = {ops.ADD, ops.SUB, ops.MUL, ops.MIN, ops.MAX, ops.NEG, ops.ABS, ops.SQUARE}
-"""Operations that make whole numbers of whole numbers."""
+"""Operations that map whole numbers to whole numbers."""
 LARGEST_POWER = 1024
 """Integer powers up to this one become multiplications."""
 FEW = 128
-"""Plain parts up to this number are looked at one by one; more go into a hierarchy."""
+"""Up to this number plain parts are evaluated one by one; more go into a hierarchy of boxes."""
 
 
 class TapeBuilder:
@@ -117,7 +117,7 @@ class TapeBuilder:
         return self.constant(value) if math.isfinite(value) else None
 
     def _simplified(self, name: str, a: int, b: int) -> int | None:
-        """The register of a simpler equal of a op b, exact also for NaN and infinity."""
+        """The register of a simpler expression equal to a op b, also for NaN and infinity; None without one."""
         left, right = self._known(a), self._known(b)
         if name == "mul" and a == b:
             return self.op("square", a)
@@ -136,7 +136,7 @@ class TapeBuilder:
         return None
 
     def _power(self, a: int, exponent: float | None) -> int | None:
-        """Integer powers as squares and products, half-integer ones with a square root; else None."""
+        """Integer exponents as squares and products, half-integer ones with a square root; None for all others."""
         if exponent is None or self._known(a) is not None or abs(exponent) > LARGEST_POWER:
             return None
         if exponent < 0.0:
@@ -156,9 +156,9 @@ class TapeBuilder:
         return self.constant(1.0) if result is None else result
 
     def expression(self, expr: Expr, symbols: Mapping[str, int]) -> int:
-        """Register of a bound scalar expression whose symbols stand in ``symbols``.
+        """Register of a bound scalar expression whose symbols have registers in ``symbols``.
 
-        ValueError for what is not scalar, KeyError for a symbol without a register.
+        ValueError for an expression that is not scalar, KeyError for a symbol without a register.
         """
         match expr:
             case Number(value=value):
@@ -191,7 +191,7 @@ class TapeBuilder:
         return self._of_parts(ops.DENSITY, parts, x, y, z)
 
     def skeleton(self, skeleton: Skeleton, x: int, y: int, z: int) -> int:
-        """Register of the density of a skeleton at a point; plain parts, where they are few, by the shorter way."""
+        """Register of the density of a skeleton at a point; a few plain parts become the cheaper operation DENSITY."""
         plain = skeleton.plain()
         if plain.sum() > FEW:
             plain[:] = False
@@ -205,7 +205,7 @@ class TapeBuilder:
         return values[0] if len(values) == 1 else self.op("add", *values)
 
     def _of_parts(self, op: int, rows: Floats, x: int, y: int, z: int) -> int:
-        """Register of an operation on rows (r, 8) of parts at a point, whose registers are brought together."""
+        """Register of an operation on rows (r, 8) of parts; the point is copied to three consecutive registers."""
         import numpy as np
 
         start = self._part_rows
@@ -219,7 +219,7 @@ class TapeBuilder:
         return len(self._rows) - 1
 
     def finish(self, *registers: int) -> Tape:
-        """The tape whose value is a register, or whose last values are several; what they do not need is left out."""
+        """The tape whose last rows are the registers given (one for f, several for paint); unneeded operations go."""
         import numpy as np
 
         from sceneql.frame import Tape
@@ -261,7 +261,7 @@ class TapeBuilder:
         )
 
     def _twin(self, register: int, place: Mapping[int, int]) -> int:
-        """Where the finished tape has an earlier cosine of the angle of a sine, or sine of a cosine's; else 0."""
+        """Row in the finished tape of an earlier cosine of a sine's angle, or sine of a cosine's; 0 for none."""
         op, left, right, third = self._rows[register]
         if op not in (ops.SIN, ops.COS):
             return 0
@@ -269,7 +269,7 @@ class TapeBuilder:
         return place.get(twin, 0) if twin < register else 0
 
     def _operands(self, register: int) -> tuple[int, ...]:
-        """Registers that one reads."""
+        """The registers that an operation reads."""
         op, left, right, third = self._rows[register]
         if op in (ops.CONSTANT, ops.X, ops.Y, ops.Z):
             return ()

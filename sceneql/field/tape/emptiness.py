@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from sceneql.frame import Tape
 
 BOXES = 4096
-"""Boxes that a proof may take; without one by then the answer is no."""
+"""Boxes that a proof may look at; after them the property counts as not proved."""
 SHALLOW = 1e-12
-"""A solid nowhere deeper than this, in parts of its box's size and of what |f| typically is there, counts as empty."""
+"""Depth, relative to the lesser of the box's size and the median |f| in it, below which a solid counts as empty."""
 
 Corner = tuple[float, float, float]
 
@@ -31,7 +31,7 @@ Corner = tuple[float, float, float]
 def proved_empty(tape: Tape, low: Corner, high: Corner) -> bool:
     """Whether f is proved to be nowhere negative, where it is defined at all, in the box low..high [m].
 
-    Touching 0 from above is not negative, by how much rounding may make of it: SHALLOW.
+    f may fall below 0 by SHALLOW, for rounding where it touches 0 from above.
     """
     slack = SHALLOW * _depth(tape, low, high)
     return _all_settled(
@@ -66,12 +66,12 @@ def nowhere_defined(tape: Tape, low: Corner, high: Corner) -> bool:
 
 
 def nowhere_finite(tape: Tape, low: Corner, high: Corner) -> bool:
-    """Whether f is infinite or no number at all places of a lattice in the box low..high [m]: a reason, no proof."""
+    """Whether f is infinite or NaN at all points of a lattice in the box low..high [m]: evidence, no proof."""
     return not np.isfinite(field_values(tape, lattice(low, high))).any()
 
 
 def bottomless(tape: Tape, low: tuple[float, ...], high: tuple[float, ...]) -> bool:
-    """Whether f is finite at no place of a lattice in the box low..high [m], and at some is minus infinity."""
+    """Whether f is finite at no point of a lattice in the box low..high [m], and minus infinity at some."""
     values = field_values(tape, lattice(low, high))
     return bool((values == -np.inf).any() and not np.isfinite(values).any())
 
@@ -91,10 +91,10 @@ def _all_settled(
     settled: Callable[[float, float, int], bool],
     refuted: Callable[[float, int], bool],
 ) -> bool:
-    """Branch and bound (Land and Doig 1960): halve boxes until all are settled, the least first; no once refuted.
+    """Branch and bound (Land and Doig 1960): whether all boxes are proved, by halving the one of lowest bound first.
 
-    ``settled`` gets the least and the largest value that f may have in a box and where it is defined, ``refuted`` the
-    value in its middle and where it is defined.
+    ``settled`` (bounds of f in a box, status) says whether a box is proved, ``refuted`` (f in its middle, status)
+    whether it is a counterexample; status is WHOLE, PARTIAL or NOWHERE.
     """
     program = (tape.code, tape.constants, tape.parts, scratch(tape))
     boxes: list[tuple[float, int, Corner, Corner]] = [(0.0, 0, low, high)]

@@ -18,7 +18,7 @@ skeleton_gradient = lazy("sceneql.field.skeleton.skeleton_point_kernels:gradient
 
 @inlined
 def slopes(op, v, a, b):
-    """Derivatives of v = op(a, b) with respect to a and b; at a kink those of one side, or 0."""
+    """Partial derivatives of v = op(a, b) with respect to a and b; at a kink a one-sided derivative, or 0."""
     if op == ops.ADD:
         return 1.0, 1.0
     if op == ops.SUB:

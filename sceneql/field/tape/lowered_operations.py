@@ -1,4 +1,4 @@
-"""Operations that a tape computes by others, and what operations make of constants."""
+"""Operations that a tape expresses by others, and the functions that fold operations on constants."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ FOLD: dict[str, Callable[..., float]] = {
     "floor": math.floor,
     "sign": _sign,
 }
-"""Operations of the tape on numbers; errors of the domain stay errors."""
+"""Tape operations on numbers, to fold constants; domain errors are raised."""
 
 
 def _times(name: str, factor: float) -> Callable[[FieldBuilder, int], int]:

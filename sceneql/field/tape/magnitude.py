@@ -1,4 +1,4 @@
-"""How large a field is where its surface lies, so that one of any magnitude can be made like a distance.
+"""The magnitude of a field's gradient at its surface, to scale the field so that it varies like a distance.
 
 Imports numpy and numba: to be imported by the function that needs it.
 """
@@ -16,15 +16,15 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Tape
 
 SAMPLES = 7
-"""Along each axis of the box."""
+"""Lattice points along each axis of the box."""
 ORDINARY = 20
-"""Powers of two by which a field may differ from a distance and stay as it is."""
+"""Powers of two by which the slope of f may differ from that of a distance without being scaled."""
 MOST = 1000
-"""The largest power of two to multiply with."""
+"""Largest power of two to scale by."""
 PLACES = 64
-"""Places of the surface whose gradients are looked at."""
+"""Points of the surface at which gradients are taken."""
 TURNS = 50
-"""Of bisection to each of them."""
+"""Bisections to each of these points."""
 
 Corner = tuple[float, ...]
 
@@ -38,8 +38,8 @@ def lattice(low: Corner, high: Corner) -> Floats:
 def leveling(tape: Tape, low: Corner, high: Corner) -> float:
     """The power of two that makes |grad f| about 1 on the surface {f = 0} in the box low..high; 1 where f is ordinary.
 
-    The gradient's median is taken at places found by bisection between points of a lattice; where there is none, |f|
-    over the size of the box stands for it.
+    The median gradient is taken at surface points found by bisection between points of a lattice; where there are none,
+    |f| over the size of the box replaces it.
     """
     return _leveling(tape.code.tobytes(), tape.constants.tobytes(), tape.parts.tobytes(), low, high)
 
@@ -67,7 +67,7 @@ def _leveling(code: bytes, constants: bytes, parts: bytes, low: Corner, high: Co
 
 
 def _steepness(tape: Tape, points: Floats, values: Floats) -> float:
-    """The median of |grad f| at places of the surface; 0 where none is found."""
+    """The median of |grad f| at points of the surface; 0 where none is found."""
     places = np.arange(len(points)).reshape(SAMPLES, SAMPLES, SAMPLES)
     pairs = np.concatenate(
         [

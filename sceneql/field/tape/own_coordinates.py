@@ -1,7 +1,7 @@
-"""A tape in coordinates of its own, where all that it looks at is an affine map of the place.
+"""Tapes in coordinates of their own, where a tape reads x, y, z only through three affine forms of the place.
 
-Rays are then brought there once, in float64, instead of each place on them: a moved object costs what one at rest does,
-and float32 numbers finely what is small and far from the origin.
+Rays are then transformed once, in float64, instead of every point on them: a moved object costs as much as one at rest,
+and float32 resolves small objects far from the origin.
 
 Imports numpy: to be imported by the function that needs it.
 """
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Tape
 
 LEAST = 1e-9
-"""Volume of three directions, relative to the product of their lengths, below which they are taken to be flat."""
+"""Volume of three directions, relative to the product of their lengths, below which they count as coplanar."""
 
 
 def in_own_coordinates(tape: Tape) -> tuple[Tape, Floats]:
@@ -31,7 +31,7 @@ def in_own_coordinates(tape: Tape) -> tuple[Tape, Floats]:
     seen = [row for row in seen if forms[row][:3].any()]
     axes: dict[bytes, int] = {}
     for row in seen:
-        axes.setdefault((forms[row] + 0.0).tobytes(), len(axes))  # -0.0 is 0.0
+        axes.setdefault((forms[row] + 0.0).tobytes(), len(axes))  # makes -0.0 and 0.0 the same key
     if len(axes) != 3:
         return same
     matrix = np.array([np.frombuffer(form) for form in axes])
@@ -46,7 +46,7 @@ def in_own_coordinates(tape: Tape) -> tuple[Tape, Floats]:
 
 
 def _affine_rows(tape: Tape) -> dict[int, Floats]:
-    """Rows that are a x + b y + c z + d: (a, b, c, d) of each."""
+    """Rows that are affine in the place, a x + b y + c z + d, as (a, b, c, d)."""
     forms: dict[int, Floats] = {}
     for k, (op, left, right, _) in enumerate(tape.code.tolist()):
         if op == ops.CONSTANT:
@@ -65,7 +65,7 @@ def _affine_rows(tape: Tape) -> dict[int, Floats]:
 
 
 def _operands(tape: Tape, row: int) -> tuple[int, ...]:
-    """Rows that a row reads."""
+    """Rows that an operation reads."""
     op, left, right, third = map(int, tape.code[row])
     if op in ops.OF_PARTS:
         return third, third + 1, third + 2

@@ -1,4 +1,4 @@
-"""Which form a tape has that lets its roots on a ray be told by more than enclosures.
+"""Recognizes tapes whose roots on a ray can be found by an exact form instead of enclosures: densities, polynomials.
 
 Imports numpy: to be imported by the function that needs it.
 """
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from sceneql.frame import Ints, Tape
 
 MOST_DEGREE = 8
-"""Of a polynomial."""
+"""Largest degree of a polynomial."""
 
 
 def without_factor(tape: Tape, row: int) -> int:
-    """The row of which a row is a positive multiple: their roots are the same."""
+    """The row that remains of a row without positive constant factors, which do not change its roots."""
     op, left, right, _ = map(int, tape.code[row])
     factors = {ops.MUL: ((left, right), (right, left)), ops.DIV: ((right, left),)}.get(op, ())
     for factor, rest in factors:
@@ -35,7 +35,7 @@ def without_factor(tape: Tape, row: int) -> int:
 def density_of(tape: Tape, row: int) -> tuple[int, int] | None:
     """(row of the density D, index of the constant c) where a row is c - D, D of lone points with Wyvill's kernel.
 
-    What no part reaches is outside: c is more than 0.
+    Only c > 0 qualifies, so that points out of all parts' reach are outside.
     """
     op, left, right, _ = tape.code[row]
     if op != ops.SUB or tape.code[left, 0] != ops.CONSTANT or tape.code[right, 0] not in ops.OF_PARTS:
@@ -51,7 +51,7 @@ def density_of(tape: Tape, row: int) -> tuple[int, int] | None:
 
 
 def degrees_of(tape: Tape, row: int) -> list[int] | None:
-    """Degrees of the rows up to one that is a polynomial of the place, -1 of those it does not need; else None."""
+    """Degrees of the rows up to a polynomial's (-1: not needed); None where it has no degree of 2 to MOST_DEGREE."""
     degrees = [-1] * (row + 1)
     needed = {row}
     for k in range(row, -1, -1):
@@ -72,8 +72,8 @@ def degrees_of(tape: Tape, row: int) -> list[int] | None:
 
 
 def places_of(tape: Tape, degrees: list[int]) -> tuple[list[int], int]:
-    """(Where the coefficients of each row but the last begin, how many places that takes): what is no longer needed
-    makes room."""
+    """(where the coefficients of each row but the last begin, working memory in all); rows not used again free
+    theirs."""
     last_use = dict.fromkeys(range(len(degrees)), -1)
     for k, degree in enumerate(degrees):
         if degree >= 0 and tape.code[k, 0] not in (ops.CONSTANT, ops.X, ops.Y, ops.Z):
@@ -95,17 +95,17 @@ def places_of(tape: Tape, degrees: list[int]) -> tuple[list[int], int]:
 
 
 NO_FORM, POLYNOMIAL = range(2)
-"""What a plan for single rays begins with."""
+"""First entry of a plan for single rays."""
 OWN, CLIP, RADIUS, DEGREES = range(1, 5)
-"""Then, of a field p, max(p, q) or max(p, sqrt(q) - r): the row of p, that of a quadratic q, -1 where there is none,
-and the index of the constant r, -1 likewise; the degree of each row up to the last of these, -1 where it is not needed;
-where its numbers begin in the working memory."""
+"""The next entries, for a field p, max(p, q) or max(p, sqrt(q) - r): the row of p; the row of the quadratic q, or -1;
+the index of the constant r, or -1; then for each row up to the last of these its degree, or -1 where it is not needed;
+then where its numbers begin in the working memory."""
 BESIDE = 2
-"""Numbers of a row behind its coefficients."""
+"""Numbers that a row keeps behind its coefficients: its norm and its error."""
 
 
 def root_of(tape: Tape, row: int) -> tuple[int, int]:
-    """(row of q, index of r) where a row is sqrt(q) - r, r > 0: it has the sign of q - r^2; else (row, -1)."""
+    """(row of q, index of r) where a row is sqrt(q) - r, r > 0, which has the sign of q - r^2; else (row, -1)."""
     op, left, right, _ = map(int, tape.code[row])
     if op == ops.SUB and tape.code[left, 0] == ops.SQRT and tape.code[right, 0] == ops.CONSTANT:
         index = int(tape.code[right, 1])
@@ -115,7 +115,7 @@ def root_of(tape: Tape, row: int) -> tuple[int, int]:
 
 
 def ray_plan(tape: Tape) -> Ints:
-    """How a single ray looks for roots of a tape, as ray_polynomial_kernels reads it; NO_FORM alone: by enclosures."""
+    """The plan by which ray_polynomial_kernels finds roots of a tape on a single ray; NO_FORM alone: by enclosures."""
     none = np.array([NO_FORM], dtype=np.int32)
     last = without_factor(tape, len(tape.code) - 1)
     rows = [(last, -1)]
@@ -139,7 +139,7 @@ def ray_plan(tape: Tape) -> Ints:
 
 
 def tape_of_rows(tape: Tape, rows: list[int]) -> NDArray[int32]:
-    """Code (k, 4) of the largest of some rows and what it needs of the tape alone; empty for none."""
+    """Code (k, 4) of max of some rows of the tape, with the rows that they need; empty for no rows."""
     needed = set(rows)
     for k in range(max(rows, default=-1), -1, -1):
         op, left, right, point = map(int, tape.code[k])
@@ -153,7 +153,7 @@ def tape_of_rows(tape: Tape, rows: list[int]) -> NDArray[int32]:
         if line[0] in ops.OF_PARTS:
             line[3] = place[line[3]]
         elif line[0] not in (ops.CONSTANT, ops.X, ops.Y, ops.Z):
-            # The third operand of an angle is no row: see turns.
+            # The third operand of an angle is a flag, no row: see whole_turns.
             third = line[3] if line[0] == ops.ATAN2 else place.get(line[3], 0)
             line[1:] = place[line[1]], place[line[2]], third
     last = [place[row] for row in rows]

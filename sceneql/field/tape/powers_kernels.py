@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Polynomials on [-1, 1] enclosed by parabolas +- e, in one lane: the higher powers take their share of the lower."""
+"""Polynomials on [-1, 1] enclosed by parabolas +- e, in one lane: multiples of lower powers replace the higher ones."""
 
 from sceneql.field.tape.single_kernels import lane
 

@@ -1,16 +1,16 @@
 # mypy: ignore-errors
-"""A shorter tape of the rows that are needed, where the values of some are known to be those of others."""
+"""Copies the rows of a tape that are needed, some of them replaced by rows known to have the same value."""
 
 from sceneql.compiled.kernels import inlined
 from sceneql.field.tape import tape_ops as ops
 
 ALIAS, LIVE, PLACE = 4, 5, 6
-"""Columns of scratch: the row that a row's value is that of, whether it is needed, where it goes."""
+"""Columns of scratch: the row that replaces a row, whether a row is needed, its place in the short tape."""
 
 
 @inlined
 def mark(code, last, scratch):
-    """Mark the rows that the value of ``last`` needs."""
+    """Mark the rows that ``last`` depends on."""
     for k in range(last + 1):
         scratch[k, LIVE] = 0.0
     scratch[int(scratch[last, ALIAS]), LIVE] = 1.0
@@ -28,7 +28,7 @@ def mark(code, last, scratch):
 
 @inlined
 def write_row(code, k, scratch, short, row):
-    """Write row k into a row of ``short``; parts keep their numbers, and angles whether whole turns of them matter."""
+    """Write row k to row ``row`` of ``short``, operands renumbered; parts and the flags of angles stay."""
     op = code[k, 0]
     scratch[k, PLACE] = row
     short[row, 0] = op

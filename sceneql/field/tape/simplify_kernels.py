@@ -1,7 +1,7 @@
 # mypy: ignore-errors
-"""What of a tape matters in a box: branches of min and max that cannot win and parts out of reach are left out.
+"""Tapes shortened for a box: without branches of min and max that cannot win, and without parts out of reach.
 
-In the box the shorter tape has the same bits of value as the whole one, so that neighboring boxes agree on their face.
+In the box the short tape gives the same bits as the whole one, so that neighboring boxes agree on their common face.
 """
 
 import numpy as np
@@ -17,7 +17,7 @@ from sceneql.field.tape.short_rows_kernels import ALIAS, LIVE, mark, write_row
 
 @inlined
 def within_reach(parts, i, scratch, p):
-    """Whether part i may have a density in the box whose sides are rows p..p+2 of scratch."""
+    """Whether the box in rows p..p+2 of scratch may be within reach of part i."""
     hx = 0.5 * (scratch[p, 1] - scratch[p, 0])
     hy = 0.5 * (scratch[p + 1, 1] - scratch[p + 1, 0])
     hz = 0.5 * (scratch[p + 2, 1] - scratch[p + 2, 0])
@@ -34,7 +34,7 @@ def within_reach(parts, i, scratch, p):
 
 @inlined
 def winner(code, k, scratch):
-    """The row whose value row k has all over the box: that of a branch which must win, else k itself."""
+    """The row with the value of row k all over the box: a branch of min or max that must win, else k itself."""
     op = code[k, 0]
     if op == ops.MIN or op == ops.MAX:
         left = code[k, 1]
@@ -48,10 +48,9 @@ def winner(code, k, scratch):
 
 @inlined
 def plain_parts(near, first, found):
-    """Bring the parts of a skeleton in rows first..found-1 of near into the form of DENSITY, if all have one; the row
-    behind, or 0.
+    """Rewrite the skeleton parts in rows first..found-1 of near as rows of DENSITY; returns the row after them.
 
-    They have it as points or segments of one radius, alone in their groups, with Wyvill's kernel.
+    0, and nothing done, unless all are points or segments of one radius, alone in their groups, with Wyvill's kernel.
     """
     group = -1.0
     for i in range(first, found, STRIDE):
@@ -71,10 +70,10 @@ def plain_parts(near, first, found):
     "UniTuple(int64, 2)(int32[:, ::1], float64[:, ::1], float64[:, ::1], boolean, int32[:, ::1], float64[:, ::1])",
 )
 def simplify(code, parts, scratch, whole, short, near):
-    """Write the tape that matters into ``short`` and ``near``, as large as code and parts; (rows, parts) used of them.
+    """Write the tape shortened for a box into ``short`` and ``near``, as large as code and parts; (rows, parts) used.
 
-    ``scratch`` is as ``interval_kernels.box`` left it, ``whole`` whether the tape is defined all over that box: where
-    it is not, all matters: a NaN in any branch makes the value NaN, and ``box`` may have stopped before the end.
+    ``scratch`` is as ``interval_kernels.box`` left it; ``whole``: the tape is defined all over that box. Where it is
+    not, all rows stay: a NaN in any branch makes the value NaN, and ``box`` may have stopped before the end.
     """
     last = code.shape[0] - 1
     for k in range(last + 1):

@@ -1,7 +1,7 @@
 # mypy: ignore-errors
-"""Sine, exponential, logarithm and arctangent in float32, of arithmetic alone: the same bits on every machine.
+"""Sine, exponential, logarithm and arctangent in float32 by arithmetic alone: the same bits on every machine.
 
-Reductions and polynomials with the coefficients of Moshier's Cephes (1992).
+Range reductions and polynomials with the coefficients of Moshier's Cephes (1992).
 """
 
 import numba
@@ -10,11 +10,11 @@ import numpy as np
 from sceneql.compiled.kernels import HELPER
 
 lane = numba.njit(forceinline=True, **HELPER)
-"""What is done in one lane: put into its loop whatever its size, since a loop with a call is not vectorized."""
+"""Decorator of functions of one lane: always inlined, since a loop with a call is not vectorized."""
 
 F = np.float32
 WAVE_ERROR = F(4.0e-7)
-"""Absolute error of sine and cosine for arguments up to FARTHEST, of atan2 a little more."""
+"""Absolute error of sine and cosine for arguments up to FARTHEST; that of atan2 is a little larger."""
 FARTHEST = F(4096.0)
 EXP_ERROR = F(8.0e-7)
 """Relative error of the exponential."""
@@ -39,12 +39,12 @@ LEAST_NORMAL = F(1.2e-38)
 
 
 WHOLE_NUMBERS = F(4.0e6)
-"""Up to here half the sum of two integers is exact."""
+"""Up to here half the sum of two integers is exact in float32."""
 
 
 @lane
 def below(x):
-    """floor x, held to +- WHOLE_NUMBERS: the library's is a call, which does not vectorize."""
+    """floor x, clamped to +- WHOLE_NUMBERS: the library's floor is a call, which does not vectorize."""
     x = x if x < WHOLE_NUMBERS else WHOLE_NUMBERS
     x = x if x > -WHOLE_NUMBERS else -WHOLE_NUMBERS
     cut = F(np.int32(x))
@@ -72,7 +72,7 @@ def sine_cosine(x):
 
 @lane
 def exponential(x):
-    """exp x for -87 < x < 88; what is beyond counts as the nearest of these."""
+    """exp x for -87 < x < 88; arguments beyond are clamped to this range."""
     x = x if x < F(88.0) else F(88.0)
     x = x if x > F(-87.0) else F(-87.0)
     turns = below(x * LOG2_E + HALF)

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""How steep a tape can be in a box."""
+"""Bounds of a tape's gradient in a box."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from sceneql.field.tape.tape_ops import TAPE
 
 @lean(f"UniTuple(float64, 3)({TAPE})")
 def steepness(code, constants, parts, scratch):
-    """Bounds of |df/dx|, |df/dy|, |df/dz| in the box for which ``box`` left WHOLE in scratch; infinite without any."""
+    """Bounds of |df/dx|, |df/dy|, |df/dz| in the box for which ``box`` left WHOLE in scratch; infinite if unknown."""
     if not differentiate(code, parts, scratch, 8, 0.0, 0.0, 0.0):
         return np.inf, np.inf, np.inf
     last = code.shape[0] - 1

@@ -8,9 +8,9 @@ ADD, SUB, MUL, DIV, MIN, MAX, POW, ATAN2 = range(5, 13)
 NEG, ABS, SQUARE, SQRT, SIN, COS, EXP, LOG, FLOOR, SIGN = range(13, 23)
 DENSITY, SKELETON = 23, 24
 KEEP = -1
-"""For ``batch_kernels.evaluate`` alone: the register holds its values already."""
+"""In ``batch_kernels.evaluate`` alone: the register already holds its values."""
 OF_PARTS = (DENSITY, SKELETON)
-"""Operations on a range of the tape's parts and on a point, whose three registers follow each other."""
+"""Operations on a range of the tape's parts and on a point in three consecutive registers."""
 
 BINARY = {"add": ADD, "sub": SUB, "mul": MUL, "div": DIV, "min": MIN, "max": MAX, "pow": POW, "atan2": ATAN2}
 UNARY = {
@@ -27,13 +27,13 @@ UNARY = {
 }
 
 MISS, HIT, INSIDE, UNDECIDED = range(4)
-"""What became of a ray: see isolation_kernels."""
+"""Outcome of a root search on a ray: see isolation_kernels."""
 
 WHOLE, PARTIAL, NOWHERE = range(3)
 """Where a tape is defined on a segment or box: everywhere, perhaps not everywhere, nowhere."""
 
 TAPE = "int32[:, ::1], float64[::1], float64[:, ::1], float64[:, ::1]"
-"""Types of (code, constants, parts, scratch), with which every kernel of a tape begins."""
+"""Types of (code, constants, parts, scratch), the first arguments of every kernel on a tape."""
 
 SCRATCH_COLUMNS = 8
 

@@ -43,7 +43,7 @@ def field_gradients(tape: Tape, points: Floats) -> Floats:
 
 
 def many_gradients(tape: Tape, points: Floats) -> Floats:
-    """``field_gradients`` to the bit, by kernels that meshes have compiled already: sooner from a few points on."""
+    """``field_gradients``, bit for bit, by the kernels of meshing, compiled by then: faster from a few points on."""
     from sceneql.field.tape.batch_gradient_kernels import differentiate
     from sceneql.field.tape.batch_kernels import LANES
 
@@ -95,7 +95,7 @@ def paint_values(tape: Tape, points: Floats) -> Floats:
 
 
 def _by_lanes(tape: Tape, points: Floats) -> Iterator[tuple[int, int, Floats]]:
-    """Of points (n, 3) [m], LANES at a time: the first, how many, and their registers (rows, LANES)."""
+    """Registers (rows, LANES) of points (n, 3) [m], LANES at a time: (first point, number of points, registers)."""
     from sceneql.field.tape.batch_kernels import LANES, evaluate
 
     registers, block = np.empty((len(tape.code), LANES)), np.zeros((3, LANES))

@@ -1,4 +1,4 @@
-"""Which angles of a tape matter only up to whole turns: those whose cut, from pi to -pi, is no jump of the field.
+"""Finds angles (ATAN2) whose cut, the jump from pi to -pi, makes no jump of the field.
 
 The third operand of their rows is 1, else 0.
 """
@@ -18,9 +18,9 @@ def up_to_whole_turns(
 ) -> set[int]:
     """The rows of ATAN2 whose cut is no jump of the rows ``values``.
 
-    To some a whole turn may be added without changing these: they go into sines and cosines alone, added to others,
-    negated or multiplied by whole numbers on their way; ``constants`` are the numbers of rows that are some. Others are
-    angles of what is never below zero: they end at the cut.
+    Either the angle may be off by a whole turn, since it reaches ``values`` only through sines and cosines, after sums,
+    negations and products with whole numbers (``constants``: row to number); or its first argument is never negative,
+    so that the angle ends at the cut instead of crossing it.
     """
     free = set(range(len(rows))) - set(values)
     for k in range(len(rows) - 1, -1, -1):
