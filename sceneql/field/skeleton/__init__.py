@@ -1,1 +1,1 @@
-"""Densities of points and curves."""
+"""Density fields of skeletons: points, segments, triangles, curves."""

@@ -1,9 +1,9 @@
 # mypy: ignore-errors
 """The best point of a curve: the p of a quadratic Bezier curve with the least |x - p|/R(p), R quadratic too.
 
-Where d/dq |x - p(q)|^2/R(q)^2 is zero, a polynomial of degree 4 in q is, whose terms of degree 5 cancel. Its signs in
-Bernstein's basis tell the number of its roots in an interval but for pairs (Descartes; Lane & Riesenfeld 1981): the
-curve is cut in halves until each half has one at most.
+The derivative d/dq |x - p(q)|^2/R(q)^2 has the zeros of a polynomial of degree 4 in q, since its terms of degree 5
+cancel. The sign changes of its Bernstein coefficients bound the number of roots in an interval, and differ from it by
+an even number (Descartes; Lane & Riesenfeld 1981): the curve is halved until each piece has at most one root.
 """
 
 import numpy as np
@@ -15,12 +15,12 @@ from sceneql.field.skeleton.skeleton_parts_kernels import MIDDLE, RADIUS, RADIUS
 F = types.float64
 AT = (F[:, ::1], types.int64, F, F, F)
 FINEST = 1.0 / 1024.0
-"""Piece of a curve that is not cut further."""
+"""Shortest piece of a curve, in q, that is still halved."""
 NOTHING = 1.0e-14
-"""Parts of the largest coefficient that count as zero."""
+"""Relative to the largest coefficient: smaller ones count as zero."""
 MOST_TURNS = 60
 CLOSE = 1.0e-13
-"""Step of Newton's method that ends it: the next were its square."""
+"""Step of Newton's method after which it ends: the error left is about the square of it."""
 
 
 @inlined
@@ -69,7 +69,7 @@ def of_bernstein(h0, h1, h2, h3, h4):
 
 @inlined
 def on_piece(h0, h1, h2, h3, h4, low, width):
-    """Coefficients of the polynomial in s, q = low + s width."""
+    """Coefficients of the polynomial in s, where q = low + s width."""
     h3 += low * h4
     h2 += low * h3
     h1 += low * h2
@@ -86,7 +86,7 @@ def on_piece(h0, h1, h2, h3, h4, low, width):
 
 @inlined
 def rising_root(h0, h1, h2, h3, h4, first, last):
-    """Where a polynomial with h(0) = first, h(1) = last > 0 last passes zero in [0, 1]: Newton's method, held there."""
+    """The last upward zero of a polynomial with h(0) = first, h(1) = last > 0 in [0, 1]: Newton's method, clamped."""
     low = 0.0
     high = 1.0
     s = first / (first - last) if first < 0.0 else 0.5
@@ -108,7 +108,7 @@ def rising_root(h0, h1, h2, h3, h4, first, last):
 
 @inlined
 def counted(changes, sign, b, zero):
-    """(changes of sign, last sign) with one coefficient more."""
+    """(sign changes, last sign) after one more coefficient b; |b| <= zero counts as none."""
     if abs(b) <= zero:
         return changes, sign
     return changes + (1 if b * sign < 0.0 else 0), 1.0 if b > 0.0 else -1.0
@@ -132,12 +132,12 @@ def to_curve(parts, i, x, y, z):
         changes, sign = counted(changes, sign, b2, zero)
         changes, sign = counted(changes, sign, b3, zero)
         changes, sign = counted(changes, sign, b4, zero)
-        # A root at an end hides what changes of signs tell of the inside.
+        # A root at an end of the piece hides sign changes inside.
         hidden = changes == 1 and (abs(b0) <= zero or abs(b4) <= zero)
         if (changes > 1 or hidden) and width > FINEST:
             width *= 0.5
             continue
-        # At its minima |x - p|/R stops falling: at an end, or inside.
+        # |x - p|/R has a minimum where h goes from negative to positive: at an end of the piece, or inside.
         begins = b0 >= -zero
         ends = b4 <= zero
         for k in range(3):
@@ -166,10 +166,10 @@ def to_curve(parts, i, x, y, z):
 
 @lean(types.UniTuple(F, 2)(*AT, F), inner=True)
 def curve_way(parts, i, x, y, z, off):
-    """(how far the best point may go, and how much R there may change, while (x, y, z) goes no farther than ``off``).
+    """Bounds of how far the best point moves, and R there changes, while (x, y, z) moves by at most ``off``.
 
-    The polynomial h of the best point changes by no more than ``most`` then; where it rises at least by ``rise`` per
-    step of q, its root goes no farther than their quotient.
+    The polynomial h of the best point changes by at most ``most`` then; where it rises by at least ``rise`` per step of
+    q, its root moves by at most their quotient.
     """
     ux, uy, uz, vx, vy, vz, wx, wy, wz, ra, r1, r2 = control(parts, i, x, y, z)
     h0, h1, h2, h3, h4 = stationary(ux, uy, uz, vx, vy, vz, wx, wy, wz, ra, r1, r2)
@@ -185,5 +185,5 @@ def curve_way(parts, i, x, y, z, off):
     step = 1.0
     if most < rise:
         step = most / rise * (1.0 + 1.0e-12) + 1.0e-12
-    # No chord is longer than the way along the control points.
+    # No chord is longer than the control polygon.
     return min(speed * step, 0.5 * (first + last)), change * step

@@ -87,8 +87,8 @@ def passes_by(parts, i, cx, cy, cz, ux, uy, uz, speed2, blur):
 def density_segment(parts, start, stop, scratch, k, base, p, survey):
     """(c0, c1, e) of the density of parts start..stop-1 at the point whose enclosures are rows p..p+2 of scratch.
 
-    A survey looks at all parts and copies those within reach to rows base.. of scratch (their number to
-    scratch[k, 3]); later calls, on pieces of the surveyed segment, look only at those.
+    With ``survey`` all parts are tested, and those within reach copied to rows base.. of scratch (their number to
+    scratch[k, 3]); later calls, for pieces of that segment, read only these.
     """
     point_blur = scratch[p, 2] + scratch[p + 1, 2] + scratch[p + 2, 2]
     ux = scratch[p, 1]
@@ -118,7 +118,7 @@ def density_segment(parts, start, stop, scratch, k, base, p, survey):
         a2 = -d2 * inverse
         bulk = 1.0 + abs(a0) + abs(a1) - a2
         error += PAD * bulk
-        # u is concave: its largest value is at the vertex or at an end, its least at an end.
+        # u is concave: its maximum is at the vertex or at an end, its minimum at an end.
         top = a0 + a2 + abs(a1)
         if abs(a1) < -2.0 * a2:
             top = a0 - a1 * a1 / (4.0 * a2)

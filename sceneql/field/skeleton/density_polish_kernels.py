@@ -9,14 +9,14 @@ from sceneql.field.packets.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FO
 from sceneql.field.tape.tape_ops import UNDECIDED
 
 X, DX, ROOT, SPEED, DENSITY, SLOPE, BEND, BEGIN, END, SEARCH, BOX = 0, 3, 6, 7, 8, 9, 10, 11, 12, 13, 14
-"""Rows of ``room``: places, directions, places along the rays from their own starts, squares of the directions, D there
-and its first two derivatives, between which places the root is, how far it is searched; see ``polish``."""
+"""Rows of ``room``: points (3), directions (3), roots (t from the rays' own starts), squared directions, D there and
+its first two derivatives along the ray, brackets of the roots (2), lengths of the searches, bounds; see ``polish``."""
 HAIR = 1.0e-12
 
 
 @inlined
 def sum_up(parts, kept, room, n):
-    """D and its first two derivatives at n places."""
+    """D and its first two derivatives along the ray at n points."""
     x, y, z, dx, dy, dz = room[X], room[X + 1], room[X + 2], room[DX], room[DX + 1], room[DX + 2]
     speed, density, slope, bend = room[SPEED], room[DENSITY], room[SLOPE], room[BEND]
     for i in range(n):
@@ -40,9 +40,9 @@ def sum_up(parts, kept, room, n):
 
 @inlined
 def polish(parts, kept, threshold, rays, queue, count, room, found):
-    """A step of Chebyshev's method, whose error falls with the third power, for the first ``count`` rays of the
-    ``queue``, which are hits. A box around where they hit, and SETTLED of their searches behind, into row BOX of
-    ``room``: least and largest x, y and z."""
+    """A step of Chebyshev's method (cubic convergence) for the first ``count`` rays of the ``queue``, which are hits.
+    Into row BOX of ``room``: bounds, least and largest x, y and z, of the hit points and of those SETTLED of their
+    searches behind."""
     roots, lows, highs, searches = room[ROOT], room[BEGIN], room[END], room[SEARCH]
     begins, ends = rays[6], rays[7]
     found_root, found_low, found_high = found[FOUND_ROOT], found[FOUND_LOW], found[FOUND_HIGH]
@@ -63,7 +63,7 @@ def polish(parts, kept, threshold, rays, queue, count, room, found):
         root = roots[i] + step - bent
         root = root if root > lows[i] else lows[i]
         root = root if root < highs[i] else highs[i]
-        # What the second derivative gives is far more than what the third would.
+        # The term of the second derivative is far larger than that of the third, and so bounds the error.
         settled = (abs(bent) <= SETTLED * searches[i]) & (root < searches[i])
         bend[i] = 1.0 if settled else 0.0
         step = root - roots[i]

@@ -1,8 +1,8 @@
 # mypy: ignore-errors
-"""How density falls off: functions K of s = (distance/radius)^2 with K(0) = 1 and K = 0 from s = 1 on.
+"""Kernels of densities: functions K of s = (distance/radius)^2 with K(0) = 1 and K = 0 from s = 1 on.
 
-All are convex, do not increase, and have the slope 0 at s = 1; whatever encloses them needs no more than that. The
-cut ones are less their tangent at s = 1, so that nothing shows where a part's reach ends.
+All are convex, do not increase, and have the slope 0 at s = 1; enclosures rely on nothing else. From the cut ones their
+tangent at s = 1 is subtracted, so that no crease shows where a part's reach ends.
 """
 
 import numpy as np
@@ -44,7 +44,7 @@ def falloff(kind, s):
 
 @inlined
 def falloff_slope(kind, s):
-    """dK/ds, s >= 0: at most 0, and nowhere falling."""
+    """dK/ds, s >= 0: at most 0, and not decreasing."""
     if s >= 1.0:
         return 0.0
     u = 1.0 - s

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Interval bounds of fields of parts over a box: what `interval_kernels.box` asks for where a tape has such."""
+"""Interval bounds of density fields over a box: compiled when `interval_kernels.box` meets a tape with parts."""
 
 import numpy as np
 from numba import types
@@ -28,7 +28,7 @@ def density_box(parts, start, stop, scratch, p):
         wx, wy, wz = offset(parts, i, x, y, z)
         radius = parts[i, 6]
         weight = parts[i, 7]
-        # The distance changes no faster than the point moves.
+        # Distance is 1-Lipschitz in the point.
         distance = np.sqrt(wx * wx + wy * wy + wz * wz)
         blur = ULPS * (distance + diagonal + abs(x) + abs(y) + abs(z) + abs(parts[i, 0] - parts[i, 3]))
         blur += ULPS * (abs(parts[i, 1] - parts[i, 4]) + abs(parts[i, 2] - parts[i, 5]))

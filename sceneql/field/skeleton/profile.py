@@ -1,4 +1,4 @@
-"""How the density of one part falls off, by its kernel: values, where it ends, how steep it is. Imports numpy."""
+"""The density of one part by its distance, for each kernel: values, radius of a given density, slope. Imports numpy."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def profile(kernel: int, r: Floats) -> Floats:
 
 
 def farthest(kernel: int, density: Floats) -> Floats:
-    """(n,) the r = d/R within which a kernel is above a density (n,) > 0; 0 where it never is. By bisection."""
+    """Largest r = d/R (n,) at which a kernel reaches densities (n,) > 0; 0 where it never does. By bisection."""
     densities, where = np.unique(density, return_inverse=True)
     low, high = np.zeros(len(densities)), np.ones(len(densities))
     for _ in range(54):
@@ -42,7 +42,7 @@ def farthest(kernel: int, density: Floats) -> Floats:
 
 
 def steepness(kernel: int, density: float) -> float:
-    """-R dK/dd where a kernel has a density."""
+    """-R dK/dd where a kernel has a given density."""
     r = farthest(kernel, np.array([density]))
     step = 1e-6 * min(r[0], 1.0 - r[0])
     return float((profile(kernel, r - step) - profile(kernel, r + step))[0] / (2.0 * step))

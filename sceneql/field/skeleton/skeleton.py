@@ -20,29 +20,29 @@ if TYPE_CHECKING:
     Order = NDArray[int64]
 
 KERNELS = ("wyvill", "soft_object", "metaball", "gaussian", "inverse_square")
-"""In the order of falloff_kernels."""
+"""In the order of the constants of falloff_kernels."""
 SEGMENT, TRIANGLE, NODE, CURVE = range(4)
 """As in skeleton_parts_kernels."""
 FLAT = 1e-6
-"""Sine of the angle between two sides below which a triangle is taken for its longest side."""
+"""Sine of the angle between two sides below which a triangle is replaced by its longest side."""
 BRANCHES = 8
-"""Parts, and boxes of parts, in a box."""
+"""Children of a box: parts, or boxes of parts."""
 WIDER = 1e-9
-"""By how much boxes are larger than what they hold, in parts of their size and of its distance from the origin."""
+"""Padding of boxes, relative to their size and to their distance from the origin."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Skeleton:
-    """Parts of a density field: see skeleton_kernels for what they mean."""
+    """Parts of a density field: see skeleton_kernels for the formula."""
 
     corners: Floats
     """(p, 3, 3) [m]: ends a and b, and c of a triangle or curve; a segment has c = a, a point a = b = c."""
     radii: Floats
-    """(p, 2) [m] > 0, at a and at b; of a triangle the first counts."""
+    """(p, 2) [m] > 0, at a and at b; a triangle has the first alone."""
     weights: Floats
     """(p,), the same within a group."""
     groups: Floats
-    """(p,) whole numbers >= 0: of the parts of a group the largest density counts."""
+    """(p,) whole numbers >= 0: within a group only the largest density counts."""
     kernel: int = 0
     """Index into KERNELS."""
     middles: Floats | None = None
@@ -55,7 +55,7 @@ class Skeleton:
 
     @property
     def largest(self) -> Floats:
-        """(p,) [m] a radius that a part has nowhere more than."""
+        """(p,) [m] an upper bound of each part's radius."""
         ends: Floats = self.radii.max(axis=1)
         return ends if self.middles is None else np.fmax(ends, self.middles)
 
@@ -73,20 +73,20 @@ class Skeleton:
         return plain
 
     def chosen(self, which: NDBool) -> Skeleton:
-        """Some of the parts."""
+        """The parts chosen by a mask (p,)."""
         middles = None if self.middles is None else self.middles[which]
         return Skeleton(
             self.corners[which], self.radii[which], self.weights[which], self.groups[which], self.kernel, middles
         )
 
     def density_rows(self) -> Floats:
-        """(p, 8) rows of the operation DENSITY, which knows plain parts alone."""
+        """(p, 8) rows of the operation DENSITY, for plain parts only."""
         return np.concatenate(
             [self.corners[:, :2].reshape(-1, 6), self.radii[:, :1], self.weights[:, None]], axis=1
         )  # fmt: skip
 
     def rows(self) -> Floats:
-        """(r, 8) rows of the operation SKELETON: parts by place, groups kept together, boxes before what they hold."""
+        """(r, 8) rows of the operation SKELETON: parts in spatial order, groups together, boxes before their parts."""
         corners, radii, shapes, condition = _settled(self.corners, self.radii)
         curved = self.curved
         corners[curved], radii[curved], shapes[curved] = self.corners[curved], self.radii[curved], CURVE
@@ -120,9 +120,9 @@ class Skeleton:
 
 
 def plain_points(rows: Floats) -> Floats | None:
-    """The parts among ``rows`` (r, 8) of a SKELETON, as rows of a DENSITY; None where one has another kernel or group.
+    """The parts among ``rows`` (r, 8) of a SKELETON, as rows of a DENSITY; None unless all are plain.
 
-    What has a second end as a segment, or a second radius, keeps two ends that differ.
+    Segments are among them: their two ends differ.
     """
     first: Floats
     first, second = rows[::2], rows[1::2]
@@ -135,7 +135,7 @@ def plain_points(rows: Floats) -> Floats | None:
 
 
 def _sizes(n: int) -> list[int]:
-    """Parts in the boxes of each level, the largest first."""
+    """Number of parts in a box on each level of the hierarchy, the largest first."""
     sizes = []
     size = BRANCHES
     while n > size:
@@ -145,7 +145,7 @@ def _sizes(n: int) -> list[int]:
 
 
 def _settled(corners: Floats, radii: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-    """(corners, radii, shapes, condition) of the parts, triangles without an area as their longest sides."""
+    """(corners, radii, shapes, condition) of the parts, with degenerate triangles replaced by their longest sides."""
     a, b, c = corners.transpose(1, 0, 2)
     normal = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     product = np.linalg.norm(b - a, axis=1) * np.linalg.norm(c - a, axis=1)
@@ -164,7 +164,7 @@ def _settled(corners: Floats, radii: Floats) -> tuple[Floats, Floats, Floats, Fl
 
 
 def _order(places: Floats, groups: Floats) -> Order:
-    """Indices along Morton's curve (1966): of the groups by their middle, and in each of its parts."""
+    """Order of the parts: groups by their middles along Morton's curve (1966), and parts likewise within each group."""
     n = len(places)
     if n <= BRANCHES:
         return np.lexsort([np.arange(n), groups])
@@ -174,7 +174,7 @@ def _order(places: Floats, groups: Floats) -> Order:
 
 
 def _morton(places: Floats) -> Order:
-    """Numbers along Morton's curve of points (n, 3)."""
+    """Index along Morton's curve of points (n, 3)."""
     low = places.min(axis=0)
     size = float((places.max(axis=0) - low).max()) or 1.0
     cells = np.minimum((places - low) / size * 1024.0, 1023.0).astype(np.int64)

@@ -1,7 +1,7 @@
 # mypy: ignore-errors
-"""Skeletons' densities over a box: bounds of the value and of the gradient, and which parts reach there.
+"""Skeletons' densities over a box: bounds of the value and of the gradient, and the parts within reach.
 
-The distance to a part changes no faster than the point moves, nor does the vector from a convex part's nearest point.
+The distance to a part is 1-Lipschitz in the point, and so is the vector from the nearest point of a convex part.
 """
 
 import numpy as np
@@ -43,8 +43,8 @@ def box_of(scratch, p):
 
 @inlined
 def range_of(parts, i, x, y, z, diagonal):
-    """(vector w from the part's best point, how far it may be off, least and most s, least and most R there) in a
-    ball of radius ``diagonal`` about a point, for the part at row i."""
+    """Of the part at row i in a ball of radius ``diagonal`` about a point: (vector w from the part's best point, bound
+    of the change of w, least and most s, least and most R at the best point)."""
     wx, wy, wz, q = to_part(parts, i, x, y, z)
     size = abs(x) + abs(y) + abs(z)
     length2 = away2 = 0.0
@@ -66,7 +66,7 @@ def range_of(parts, i, x, y, z, diagonal):
         small = max(small, radius - change * (1.0 + 1.0e-12))
         large = min(large, radius + change * (1.0 + 1.0e-12))
     elif one != two and length2 > 0.0:
-        # How far the best point may go: dq/dx = (s R(a) + r (2 w - q s))/den.
+        # Bound of the motion of the best point: dq/dx = (s R(a) + r (2 w - q s))/den.
         along = 0.0
         change = two - one
         p = (x, y, z)
@@ -87,7 +87,7 @@ def range_of(parts, i, x, y, z, diagonal):
 
 @inlined
 def clear_of(parts, i, scratch, p):
-    """Whether the box in rows p..p+2 of scratch has nothing in common with the node at row i."""
+    """Whether the box in rows p..p+2 of scratch and the node at row i are disjoint."""
     return outside_node(
         parts, i, scratch[p, 0], scratch[p, 1], scratch[p + 1, 0], scratch[p + 1, 1], scratch[p + 2, 0],
         scratch[p + 2, 1],
@@ -96,7 +96,7 @@ def clear_of(parts, i, scratch, p):
 
 @inlined
 def rival(parts, i, stop, scratch, p, x, y, z, diagonal):
-    """The least s that one part of the group at row i has all over the box; those that stay above it never count."""
+    """The least upper bound of s over the box in row i's group; parts whose s stays above it never count."""
     group = parts[i + 1, GROUP]
     least = np.inf
     while i < stop and (parts[i + 1, SHAPE] == NODE or parts[i + 1, GROUP] == group):
@@ -150,7 +150,7 @@ def skeleton_steepness(parts, start, stop, scratch, p):
     x, y, z, hx, hy, hz = box_of(scratch, p)
     diagonal = np.sqrt(hx * hx + hy * hy + hz * hz)
     a0 = a1 = b0 = b1 = c0 = c1 = 0.0
-    # Of the group at hand.
+    # Bounds within the current group.
     x0 = x1 = y0 = y1 = z0 = z1 = 0.0
     group = limited = -1.0
     limit = np.inf
@@ -192,7 +192,7 @@ def skeleton_steepness(parts, start, stop, scratch, p):
 
 @inlined
 def scaled(strong, weak, scale, low, high):
-    """[strong, weak] scale [low, high], strong <= weak <= 0, a little wider."""
+    """The interval [strong, weak] scale [low, high], where strong <= weak <= 0, widened for rounding."""
     p = strong * low
     q = strong * high
     r = weak * low
@@ -208,7 +208,7 @@ def scaled(strong, weak, scale, low, high):
 
 @inlined
 def skeleton_near(parts, start, stop, scratch, p, near, found):
-    """Copy the parts that may count in the box in rows p..p+2 of scratch to rows found.. of near; the row behind."""
+    """Copy the parts that may count in the box in rows p..p+2 of scratch to rows found.. of near; the next free row."""
     x, y, z, hx, hy, hz = box_of(scratch, p)
     diagonal = np.sqrt(hx * hx + hy * hy + hz * hz)
     group = -1.0

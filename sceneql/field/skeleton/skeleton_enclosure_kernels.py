@@ -1,8 +1,8 @@
 # mypy: ignore-errors
 """First-order enclosures of skeletons' densities along a ray segment; see enclosure_kernels for what one claims.
 
-Nothing here knows a kernel or a shape: what is used of s is how its graph along a line may bend, and that every kernel
-is convex in it.
+No kernel or shape has a case of its own: enough are bounds of the curvature of s along a line, and that every kernel is
+convex in s.
 """
 
 import numpy as np
@@ -28,8 +28,8 @@ from sceneql.field.skeleton.skeleton_parts_kernels import (
 )
 
 LISTED, LISTED_FROM, LISTED_TO = 4, 5, 6
-"""Columns of a skeleton's row: how many rows are listed behind those of the surveyed parts, and for which piece of the
-line, from where to where along it."""
+"""Columns of a skeleton's row: how many rows are listed behind those of the surveyed parts, and for which interval
+along the line, from and to."""
 
 
 @inlined
@@ -56,7 +56,7 @@ def segment_outside(parts, i, cx, cy, cz, ux, uy, uz, blur):
 
 @inlined
 def rounding(table, i, cx, cy, cz, ux, uy, uz):
-    """How far the computed vector to the part at row i may be off, for points c + u tau."""
+    """Bound of the error of the computed vector to the part at row i, for points c + u tau."""
     size = abs(cx) + abs(cy) + abs(cz) + abs(ux) + abs(uy) + abs(uz)
     for k in range(3):
         size += abs(table[i, k]) + abs(table[i, k + 3]) + abs(table[i + 1, k])
@@ -65,7 +65,7 @@ def rounding(table, i, cx, cy, cz, ux, uy, uz):
 
 @inlined
 def span_of(table, i, cx, cy, cz, half, blur):
-    """(least, most) r = sqrt(s) of the part at row i within ``half`` of a point: r changes by no more than way/R."""
+    """(least, most) r = sqrt(s) of the part at row i within ``half`` of a point: r has the Lipschitz constant 1/R."""
     wx, wy, wz, q = to_part(table, i, cx, cy, cz)
     r = np.sqrt(wx * wx + wy * wy + wz * wz)
     radius = radius_at(table, i, q)
@@ -78,9 +78,8 @@ def span_of(table, i, cx, cy, cz, half, blur):
 def part_segment(table, i, cx, cy, cz, ux, uy, uz, speed2, point_blur):
     """(least s, s0, s1, e): s of the part at row i lies in s0 + s1 tau +- e at the point c + u tau.
 
-    s is the least of parabolas, each of second derivative 2 |u|^2/R^2 at most: it lies above its chord less that much
-    of 1 - tau^2, and below its tangent in the middle plus that much of tau^2. Where it is convex besides, it lies below
-    its chord.
+    s is the minimum of parabolas, each of second derivative at most k = 2 |u|^2/R^2: it lies above its chord less k/2
+    (1 - tau^2), and below its tangent in the middle plus k/2 tau^2. Where it is also convex, it lies below its chord.
     """
     ax, ay, az, first = to_part(table, i, cx - ux, cy - uy, cz - uz)
     bx, by, bz, second = to_part(table, i, cx + ux, cy + uy, cz + uz)
@@ -154,7 +153,7 @@ def passes_by(parts, i, cx, cy, cz, ux, uy, uz, speed2, blur):
 
 @inlined
 def within_reach(parts, start, stop, scratch, base, cx, cy, cz, ux, uy, uz, speed2, point_blur):
-    """Copy the parts that reach to the points c + u tau +- blur to rows base.. of scratch; how many rows."""
+    """Copy the parts within reach of the points c + u tau +- blur to rows base.. of scratch; how many rows."""
     found = 0
     i = start
     while i < stop:
@@ -180,9 +179,9 @@ def within_reach(parts, start, stop, scratch, base, cx, cy, cz, ux, uy, uz, spee
 def skeleton_segment(parts, start, stop, scratch, k, base, p, survey):
     """(c0, c1, e) of the density of the skeleton in rows start..stop-1 at the point enclosed in rows p..p+2 of scratch.
 
-    A survey goes down the hierarchy and copies the parts that may count to rows base.. of scratch (their number to
-    scratch[k, 3]); later calls, on pieces of the surveyed segment, look only at those. What counts of these in the
-    segment at hand is copied behind them, where there is room, for calls on pieces of that in turn.
+    With ``survey`` the hierarchy is traversed, and the parts that may count are copied to rows base.. of scratch (their
+    number to scratch[k, 3]); later calls, for pieces of that segment, read only these. Of these the parts that count in
+    the segment of the call are listed behind them, where there is room, for calls on pieces of it.
     """
     cx = scratch[p, 0]
     cy = scratch[p + 1, 0]
@@ -209,7 +208,7 @@ def skeleton_segment(parts, start, stop, scratch, k, base, p, survey):
         group = scratch[i + 1, GROUP]
         weight = scratch[i, WEIGHT]
         end = i
-        rival = np.inf  # one part of the group is nowhere farther; those that are nowhere as near are not the largest
+        rival = np.inf  # least upper bound of r in the group: parts that stay farther never have the largest density
         while end < last and scratch[end + 1, GROUP] == group:
             if end > i or (end + STRIDE < last and scratch[end + STRIDE + 1, GROUP] == group):
                 blur = point_blur + rounding(scratch, end, cx, cy, cz, ux, uy, uz)

@@ -1,10 +1,10 @@
 # mypy: ignore-errors
 """Density fields of skeletons: values and gradients of parts of any shape and kernel, in a hierarchy of boxes.
 
-The density of a part (rows as in skeleton_parts_kernels) is K(s), s the least |x - p|^2/R(p)^2 over the points p of
-the segment a b, the triangle a b c or the quadratic Bezier curve a c b; R changes evenly along a segment from a's
-radius to b's, quadratically along a curve. Of the parts of one group, which follow each other, the largest density
-counts; what groups give is added up.
+The density of a part (rows as in skeleton_parts_kernels) is K(s), s the least |x - p|^2/R(p)^2 over the points p of the
+segment a b, the triangle a b c or the quadratic Bezier curve a c b; R varies linearly along a segment from a's radius
+to b's, quadratically along a curve. Of the parts of a group, which stand in consecutive rows, the largest density
+counts; the densities of groups are added.
 """
 
 import numpy as np
@@ -34,7 +34,7 @@ to_curve = lazy("sceneql.field.skeleton.curve_kernels:to_curve", types.UniTuple(
 
 @inlined
 def to_segment(ax, ay, az, bx, by, bz, ra, rb, x, y, z):
-    """(vector from the point of a segment with the least |x - p|/R to (x, y, z), its place on it from 0 to 1).
+    """(vector from the segment's point p with the least |x - p|/R to (x, y, z), p's parameter q from 0 to 1).
 
     d/dq |w - q s|^2/(ra + q r)^2 has the sign of q den - num.
     """
@@ -64,7 +64,7 @@ def to_segment(ax, ay, az, bx, by, bz, ra, rb, x, y, z):
 
 @inlined
 def to_triangle(ax, ay, az, bx, by, bz, cx, cy, cz, x, y, z):
-    """Vector from the nearest point of a triangle to (x, y, z): the plane's inside the prism, else an edge's."""
+    """Vector from the nearest point of a triangle: on its face for points in the prism over it, else on an edge."""
     ux = bx - ax
     uy = by - ay
     uz = bz - az
@@ -98,7 +98,7 @@ def to_triangle(ax, ay, az, bx, by, bz, cx, cy, cz, x, y, z):
 
 @inlined
 def to_part(parts, i, x, y, z):
-    """(vector from the point of the part at row i with the least |x - p|/R to (x, y, z), its place along it)."""
+    """(vector from the point p of the part at row i with the least |x - p|/R to (x, y, z), parameter of p along it)."""
     ax = parts[i, 0]
     ay = parts[i, 1]
     az = parts[i, 2]
@@ -117,7 +117,7 @@ def to_part(parts, i, x, y, z):
 
 @inlined
 def radius_at(parts, i, q):
-    """Radius of the part at row i at a place along it."""
+    """Radius of the part at row i at a parameter along it."""
     if parts[i + 1, SHAPE] == CURVE:
         ra = parts[i, RADIUS]
         rc = parts[i + 1, MIDDLE]
@@ -127,7 +127,7 @@ def radius_at(parts, i, q):
 
 @inlined
 def outside_node(parts, i, x0, x1, y0, y1, z0, z1):
-    """Whether the box x0..x1, y0..y1, z0..z1 has nothing in common with the node at row i."""
+    """Whether the box x0..x1, y0..y1, z0..z1 and the node at row i are disjoint."""
     return (
         x0 > parts[i, 3] or x1 < parts[i, 0] or y0 > parts[i, 4] or y1 < parts[i, 1] or z0 > parts[i, 5]
         or z1 < parts[i, 2]
@@ -136,7 +136,7 @@ def outside_node(parts, i, x0, x1, y0, y1, z0, z1):
 
 @inlined
 def passed_by(parts, i, x, y, z):
-    """Whether a point is surely out of reach of the curve at row i: of the box around its control points."""
+    """Whether a point is out of reach of the curve at row i, by the bounding box of its control points."""
     if parts[i + 1, SHAPE] != CURVE:
         return False
     away2 = 0.0
@@ -188,7 +188,7 @@ def part_gradient(parts, i, x, y, z):
     weight = parts[i, WEIGHT]
     density = weight * falloff(parts[i + 1, KERNEL], s)
     slope = weight * falloff_slope(parts[i + 1, KERNEL], s)
-    # The place p is the best one, so that its own motion changes s by nothing.
+    # p minimizes s, so the motion of p itself does not change s to first order.
     return density, 2.0 * slope * inverse * wx, 2.0 * slope * inverse * wy, 2.0 * slope * inverse * wz
 
 

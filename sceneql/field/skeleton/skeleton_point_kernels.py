@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Skeletons' densities at a point, and their gradients: what tapes with such parts ask for, compiled then."""
+"""Skeletons' densities and their gradients at a point, compiled only when a tape has such parts."""
 
 from numba import types
 
@@ -18,5 +18,5 @@ def value(parts, start, stop, x, y, z):
 
 @lean(types.UniTuple(F, 3)(*AT), inner=True)
 def gradient(parts, start, stop, x, y, z):
-    """Its gradient."""
+    """The gradient of the density at a point."""
     return skeleton_gradient(parts, start, stop, x, y, z)
