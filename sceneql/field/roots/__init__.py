@@ -1,1 +1,1 @@
-"""First roots, certified, ray by ray."""
+"""Certified first roots, one ray at a time."""

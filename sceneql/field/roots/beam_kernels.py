@@ -1,9 +1,8 @@
 # mypy: ignore-errors
 """Beams: capsules around pieces of neighboring rays, and the parts of a density field that reach into one.
 
-A bundle's rays stand in ``wide`` (WIDE, n), those with nothing to search left out: where each begins, its unit
-direction, how far it goes [m], how much of t makes a meter, and its share of a beam. Behind the last the row goes on
-with it: see ``padded``.
+The rays of a bundle that have a length stand in ``wide`` (WIDE, n): start (3), unit direction (3), length [m], t per
+meter, and the ray's place in its beam. After the last ray copies of it fill the row up: see ``padded``.
 """
 
 import numpy as np
@@ -13,34 +12,34 @@ from sceneql.field.enclose.extent_kernels import extent
 from sceneql.field.skeleton.skeleton_kernels import NODE, RADIUS, SHAPE, STRIDE
 
 PX, PY, PZ, DX, DY, DZ, FAR, INVERSE_SPEED, BEHIND, STRETCH, OFF = range(11)
-"""Rows of rays; the last: how far the ray begins along the axis of its beam, its length for a unit along that, and how
-far it begins off the axis (3 rows)."""
+"""Rows of rays; BEHIND: place of the ray's start along the axis of its beam; STRETCH: length of the ray per unit along
+the axis; OFF: offset of the start from the axis (3 rows)."""
 WIDE = 13
 ORIGIN, WAY, RADIUS_OF, LOW, HIGH, SPREAD = 0, 3, 6, 7, 8, 9
 BEAM = 10
-"""Of a beam: a point and the unit direction of its axis, radius, where it begins and ends along the axis,
-and how much of the radius is due to how the rays part."""
+"""Of a beam: a point and the unit direction of its axis, radius, where it begins and ends along the axis, and the share
+of the radius that is due to the divergence of the rays."""
 RUN = 4
-"""Columns that are gathered together: as many rays as follow each other in the rows."""
+"""Columns that ``gather_whole`` copies at once: as many rays become neighbors in the rows."""
 PADDED = 32
-"""Rays are looked at in multiples of so many."""
+"""The number of rays is filled up to a multiple of this."""
 HAIR = 1.0e-9
 UNIT = 1.0e-15
-"""Directions so near to unit length are taken as they are."""
+"""Squared lengths within this of 1 count as 1."""
 DEEP = 1.0
-"""Depth of a slice, relative to what a part takes of the beam on average."""
+"""Depth of a slice, relative to the mean chord of the parts in the beam."""
 
 
 @inlined
 def gather_whole(rays, count, groups, wide, ids):
-    """Put all rays into ``wide``, RUN columns together, each row of these by itself."""
+    """Copy all rays into ``wide``, one row at a time, by groups of RUN columns."""
     for row in range(8):
         source, target = rays[row], wide[row]
         k = np.uint64(0)
         for g in range(0, groups, RUN):
             for first in range(g, count, groups):
                 j = np.uint64(first)
-                one, two = source[j], source[j + np.uint64(1)]  # all are read before one is written: in one go
+                one, two = source[j], source[j + np.uint64(1)]  # all loads before the first store: vector moves
                 three, four = source[j + np.uint64(2)], source[j + np.uint64(3)]
                 target[k], target[k + np.uint64(1)] = one, two
                 target[k + np.uint64(2)], target[k + np.uint64(3)] = three, four
@@ -55,7 +54,7 @@ def gather_whole(rays, count, groups, wide, ids):
 
 @inlined
 def gather_some(rays, count, groups, wide, ids):
-    """Put the rays that have a length into ``wide``, column by column."""
+    """Copy the rays that have a length into ``wide``, column by column."""
     begin, end = rays[6], rays[7]
     n = 0
     for g in range(groups):
@@ -70,14 +69,14 @@ def gather_some(rays, count, groups, wide, ids):
 
 @inlined
 def padded(n):
-    """Up to where n rays stand, the last of them again and again: loops over whole vectors leave nothing over."""
+    """Number of columns for n rays, copies of the last ray included: loops over whole vectors have no remainder."""
     return (n + PADDED - 1) // PADDED * PADDED
 
 
 @inlined
 def gather(rays, count, groups, wide, ids):
-    """Put the rays that have a length into ``wide``, those of neighboring columns of ``rays`` together; how many there
-    are."""
+    """Copy the rays that have a length into ``wide``, so that neighbors in ``rays`` are neighbors there; returns their
+    number."""
     begin, end = rays[6], rays[7]
     n = np.int32(0)
     for j in range(count):
@@ -118,10 +117,9 @@ def gather(rays, count, groups, wide, ids):
 
 @inlined
 def beam_around(wide, count, beam, spare):
-    """The beam around the first rays; their BEHIND and STRETCH are set. Returns the least cosine between
-    a ray and the axis.
+    """Make the beam around the first ``count`` rays, and set their BEHIND, STRETCH and OFF.
 
-    ``spare`` (5, n) is working memory.
+    Returns the least cosine between a ray and the axis. ``spare`` (5, n) is working memory.
     """
     last = count - 1
     for axis in range(3):
@@ -171,7 +169,7 @@ def beam_around(wide, count, beam, spare):
 
 @inlined
 def beam_within(wide, first, stop, beam, spare, own):
-    """The beam around rays first..stop-1 of a beam, with an axis parallel to its, into ``own``."""
+    """Make ``own``, the beam around rays first..stop-1 of a beam, with the same direction of its axis."""
     last = stop - first - 1
     n = padded(stop - first)
     stop = first + n
@@ -192,8 +190,8 @@ def beam_within(wide, first, stop, beam, spare, own):
 
 @inlined
 def reached(beam, x, y, z, radius):
-    """(enter, leave) along the axis of a beam of what is within ``radius`` of a point; enter > leave: nothing. And how
-    much less the square of its distance is than that of the radius."""
+    """(enter, leave, half2): where a ball of a radius about a point overlaps a beam, along its axis (enter > leave:
+    nowhere), and radius^2 less the squared distance of the point from the beam."""
     ex, ey, ez = x - beam[0], y - beam[1], z - beam[2]
     along = ex * beam[3] + ey * beam[4] + ez * beam[5]
     ex, ey, ez = ex - along * beam[3], ey - along * beam[4], ez - along * beam[5]
@@ -208,7 +206,7 @@ def reached(beam, x, y, z, radius):
 
 @inlined
 def keep_reaching(parts, start, stop, beam, near):
-    """Copy the points of density rows start..stop-1 that reach into a beam to ``near`` (p, 8); how many."""
+    """Copy the points of density rows start..stop-1 that reach into a beam to ``near`` (p, 8); returns their number."""
     kept = 0
     for i in range(start, stop):
         enter, leave, _ = reached(beam, parts[i, 0], parts[i, 1], parts[i, 2], parts[i, RADIUS])
@@ -221,7 +219,7 @@ def keep_reaching(parts, start, stop, beam, near):
 
 @inlined
 def keep_reaching_skeleton(parts, start, stop, beam, near):
-    """The same of skeleton rows, all of them lone points with Wyvill's kernel, by their hierarchy."""
+    """As ``keep_reaching`` for skeleton rows that are lone points with Wyvill's kernel, by their hierarchy."""
     kept = 0
     i = start
     while i < stop:
@@ -243,8 +241,8 @@ def keep_reaching_skeleton(parts, start, stop, beam, near):
 
 @inlined
 def list_parts(near, kept, beam, spans, order):
-    """Those parts that reach into a beam into ``order``, where they do and the most that each gives there into
-    ``spans``; how many."""
+    """List the parts that reach into a beam in ``order``, and for each in ``spans`` where it enters and leaves along
+    the axis and its largest density in the beam; returns their number."""
     m = 0
     for k in range(kept):
         radius = near[k, 6]
@@ -259,7 +257,7 @@ def list_parts(near, kept, beam, spans, order):
 
 @inlined
 def next_slice(spans, m, begin):
-    """(first place at or behind ``begin`` where parts are, where a slice from there on ends); inf: nowhere."""
+    """(start, end) of the next slice, start at the first part from ``begin`` on (inf: none); the last has end = inf."""
     start = np.inf
     last = -np.inf
     chords = 0.0

@@ -1,23 +1,23 @@
 # mypy: ignore-errors
-"""Roots in brackets along a ray, by point values."""
+"""Roots and minima in brackets along a ray, by point values."""
 
 from sceneql.compiled.kernels import woven
 from sceneql.field.tape.gradient_kernels import gradient
 from sceneql.field.tape.tape_kernels import value
 
 FINE = 5.0e-13
-"""Half the width of a bracket, relative to its place on the ray, at which a root is polished."""
+"""Half width of a bracket, relative to its place on the ray, down to which a root is polished."""
 
 
 @woven
 def along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t):
-    """f at the place t of a ray."""
+    """f at the parameter t of a ray."""
     return value(code, constants, parts, scratch, ox + t * dx, oy + t * dy, oz + t * dz)
 
 
 @woven
 def polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign):
-    """Where sign f goes from >= 0 at a to < 0 at b: bisection and the secant by turns."""
+    """The root in a..b, where sign f goes from >= 0 at a to < 0 at b: bisection and secant steps in turn."""
     fa = sign * along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a)
     fb = sign * along(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, b)
     for turn in range(100):
@@ -42,14 +42,14 @@ def polished(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign
 
 @woven
 def slope(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t):
-    """df/dt at the place t of a ray."""
+    """df/dt at the parameter t of a ray."""
     _, gx, gy, gz = gradient(code, constants, parts, scratch, ox + t * dx, oy + t * dy, oz + t * dz)
     return gx * dx + gy * dy + gz * dz
 
 
 @woven
 def lowest(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign):
-    """Where sign df/dt goes from < 0 at a to >= 0 at b: bisection and the secant by turns."""
+    """The minimum of sign f in a..b, where sign df/dt goes from < 0 at a to >= 0 at b: bisection and secant in turn."""
     fa = sign * slope(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a)
     fb = sign * slope(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, b)
     for turn in range(100):

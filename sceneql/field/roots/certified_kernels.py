@@ -1,9 +1,9 @@
 # mypy: ignore-errors
-"""First roots along a ray from outward-rounded intervals of f and df/dt: what decides where enclosures cannot.
+"""First roots along a ray from outward-rounded intervals of f and df/dt: for pieces that enclosures left undecided.
 
 A piece of the ray is cleared by the bounds of f on it, by the mean value form f(m) + (t - m) df/dt, or, where df/dt
 keeps one sign, by f at one end; else it is cut where the mean value form allows no root, or halved, the first part
-first (Moore 1966; Hansen and Walster 2004, chapter 9). Rounding is outward all along, so what is cleared is proved.
+first (Moore 1966; Hansen and Walster 2004, chapter 9). Rounding is outward throughout, so a cleared piece is proved.
 """
 
 import numpy as np
@@ -14,25 +14,25 @@ from sceneql.field.roots.bracket_kernels import FINE, lowest, polished
 from sceneql.field.tape import tape_ops as ops
 
 EVALUATIONS = 1000
-"""Pieces looked at on one ray before it is left undecided."""
+"""Pieces examined on one ray before it is left undecided."""
 SPLIT = 0.4609375
-"""Where pieces are halved: off the middle, so that a root at the end of a piece is not at an end again."""
+"""Where pieces are halved: off the middle, so that a root at an end of a piece does not become an end of its halves."""
 WIDEST = 1.0e-3
-"""Half of the widest piece, relative to the ray, that a root of even multiplicity may be spread over by rounding."""
+"""Half of the widest piece, relative to the ray, over which rounding may spread a root of even multiplicity."""
 CROSSES, TOUCHES, JUMPS, ABSENT, UNKNOWN = range(5)
-"""What may be hidden: a change of sign, a root without one, a pole or an edge of where f is defined, little or nothing
-since f is undefined at both ends; or unknown."""
+"""What an undecided piece may contain: a change of sign; a root without one; a pole or an edge of the domain of f;
+little or nothing, since f is undefined at both ends; unknown."""
 SHORTEST = 4.0e-15
-"""Piece, relative to its place on the ray, that is not cut any more."""
+"""Width of a piece, relative to its place on the ray, that is not cut further."""
 NEARBY = 64.0
-"""How far an edge is looked for behind a piece that is undefined at both ends, in the shortest steps."""
+"""How far an edge of the domain is searched behind a piece undefined at both ends, in the shortest steps."""
 UNDEFINED = 2
 SURE = 1.0 - 1.0e-14
 
 
 @woven
 def surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, sign):
-    """(side, bounds of sign df/dt (2)): 1 where sign f(t) is proved > 0, -1 where < 0, or UNDEFINED; else 0."""
+    """(side, bounds of sign df/dt (2)) at t: 1 where sign f is proved > 0, -1 where < 0, UNDEFINED, or 0 if open."""
     low, high, least, most, status = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t, sign)
     if status == ops.NOWHERE:
         return UNDEFINED, least, most
@@ -43,7 +43,7 @@ def surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, sign):
 
 @woven
 def told(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, least, sign):
-    """(side, t) as ``surely`` at the first place from t0 on, by steps that grow fourfold, where it is not 0."""
+    """(side, t) of ``surely`` at the first of some places from t0 on where it is not 0; steps grow fourfold."""
     t = t0
     step = 0.125 * least
     side, _, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, sign)
@@ -60,12 +60,12 @@ def told(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, least,
     inner=True,
 )
 def hidden(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, t0, t1, least, sign):
-    """(kind, side at the end, place, from, to) of what cannot be told of the piece a..b, within t0..t1.
+    """(kind, side at the end, place, from, to): what the undecided piece a..b, within t0..t1, contains.
 
-    from..to is the piece with a..b in it, grown fourfold until sign f is proved < 0 at an end, or undefined, or > 0 and
-    on its way down at the first or up at the last. It CROSSES zero from > 0 to < 0, or it TOUCHES it, > 0 at both ends.
-    It JUMPS where it is undefined at one end, or goes from > 0 to < 0 on its way from zero at both: at a pole. Where
-    it is undefined at the first and about the last, so that an edge is not near, it is ABSENT.
+    from..to is a..b, extended by fourfold growing steps until at each end sign f is proved: < 0, or undefined, or > 0
+    and falling at the first end or rising at the last. CROSSES: sign f goes from > 0 to < 0. TOUCHES: it is > 0 at both
+    ends, with a minimum between. JUMPS: it is undefined at one end, or goes from > 0 to < 0 while it rises at both, as
+    at a pole. ABSENT: it is undefined at both ends, so that no edge of the domain is near.
     """
     reach = WIDEST * (t1 - t0) + 2.0 * least
     step = least
@@ -108,16 +108,16 @@ def hidden(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, t0, t1
     " float64, float64, float64, float64, float64, boolean, boolean)"
 )
 def certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, finest, sign, anywhere, touching):
-    """(status, t) of the first place in [t0, t1] where sign f < 0 begins, or with ``anywhere`` of any place of it.
+    """(status, t) of the first place in [t0, t1] where sign f < 0 begins, or with ``anywhere`` of any such place.
 
     With ``touching`` the first root of f instead, also one without a change of sign: where f is zero up to its
-    rounding, and df/dt changes sign. UNDECIDED: all before t is proved, and there a piece
-    no longer than ``finest`` could not be told.
-    What begins nearer to an end of [t0, t1] than f can be told from zero is not met: a ray may begin on a surface.
+    rounding, and df/dt changes sign. UNDECIDED: everything before t is proved, and a piece there no longer than
+    ``finest`` is not. Roots so near to an end of [t0, t1] that rounding hides the sign of f are skipped: a ray may
+    begin on a surface.
     """
     a = t0
     end = t1
-    found = ops.MISS  # at `end`
+    found = ops.MISS  # outcome at `end`
     where = t1
     least = max(finest, 4.0e-15 * (abs(t0) + abs(t1)))
     if touching:
@@ -127,7 +127,7 @@ def certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, fin
         if side < 0:
             sign = -sign
     b = end
-    eager = True  # to look at what rounding hides before it is narrowed down
+    eager = True  # examine pieces that rounding hides before they are narrowed down
     for count in range(EVALUATIONS):
         if count > 0 and not a < end:
             return found, where
@@ -152,7 +152,7 @@ def certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, fin
                     found = ops.HIT
                     continue
         if status == ops.WHOLE and not clear:
-            reach = WIDEST * (t1 - t0) + least  # from where f cannot be told from zero to where it is
+            reach = WIDEST * (t1 - t0) + least  # bound of the distance over which rounding hides the sign of f
             if slope0 > 0.0:
                 low, high, _, _, _ = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, a, sign)
                 clear = high >= 0.0 and low >= -slope0 * reach

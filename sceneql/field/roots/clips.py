@@ -1,4 +1,4 @@
-"""Quadrics outside of which a field is proved to be positive: what its rays need not be searched beyond.
+"""Quadrics outside of which a field is proved to be positive, so that rays are clipped to them before the search.
 
 Imports numpy: to be imported by the function that needs it.
 """
@@ -16,25 +16,25 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Tape
 
 PRODUCTS = (0, 1, 2, 0, 1, 2), (0, 1, 2, 1, 2, 0)
-"""Axes whose products the first coefficients are of: squares, then xy, yz and zx."""
+"""Pairs of axes of the first six coefficients: squares, then xy, yz and zx."""
 LINEAR, LAST = 6, 9
-"""First of those of x, y and z; the constant."""
+"""Index of the coefficient of x, followed by y and z; index of the constant."""
 LARGEST = 1e100
-"""Coefficient of a clip, so that its values are numbers wherever solids can be."""
+"""Largest coefficient of a clip, so that its values stay finite wherever solids can be."""
 
 
 def clips_of(tape: Tape) -> Floats:
     """(k, 10) coefficients of polynomials q of degree 1 or 2 with q < 0 wherever the tape is negative.
 
-    They are those of x^2, y^2, z^2, xy, yz, zx, x, y, z and 1, rounded a little.
+    They are the coefficients of x^2, y^2, z^2, xy, yz, zx, x, y, z and 1, with rounding errors.
     """
     return np.array([quadric for quadric, _ in _clips(tape)]).reshape(-1, LAST + 1)
 
 
 def clip_rows(tape: Tape) -> list[int]:
-    """Rows of convex clips: rays that are cut by ``clips_of`` are below zero there, but for rounding at their ends.
+    """Rows of convex clips: they are negative on rays clipped by ``clips_of``, but for rounding at the rays' ends.
 
-    At least one other row is left of what the tape is the largest of.
+    At least one other row of the tape's max is left.
     """
     branches = _branches(tape)
     rows = [row for quadric, row in _clips(tape) if _convex(quadric)]
@@ -42,7 +42,7 @@ def clip_rows(tape: Tape) -> list[int]:
 
 
 def _branches(tape: Tape) -> list[int]:
-    """Rows of which the tape, or a positive multiple, is the largest."""
+    """Rows whose max is the tape, up to positive factors."""
     found = []
     rows = [len(tape.code) - 1]
     while rows:
@@ -56,11 +56,11 @@ def _branches(tape: Tape) -> list[int]:
 
 
 def _clips(tape: Tape) -> list[tuple[Floats, int]]:
-    """Polynomials as of ``clips_of``, each with the row that it has the sign of."""
+    """Polynomials as of ``clips_of``, each with the row whose sign it has."""
     found = []
     for branch in _branches(tape):
         row, radius = root_of(tape, without_factor(tape, branch))
-        with np.errstate(over="ignore", invalid="ignore"):  # what overflows is no clip
+        with np.errstate(over="ignore", invalid="ignore"):  # polynomials that overflow are no clips
             quadric = _expanded(tape, row)
             if quadric is not None and radius >= 0:
                 quadric[LAST] -= tape.constants[radius] ** 2
@@ -70,7 +70,7 @@ def _clips(tape: Tape) -> list[tuple[Floats, int]]:
 
 
 def _convex(quadric: Floats) -> bool:
-    """Whether a polynomial of degree 2 is below zero in a convex region."""
+    """Whether the region where a polynomial of degree 2 is negative is convex."""
     form = np.diag(quadric[:3])
     form[[0, 1, 2], [1, 2, 0]] = form[[1, 2, 0], [0, 1, 2]] = 0.5 * quadric[3:LINEAR]
     values = np.linalg.eigvalsh(form)
@@ -78,7 +78,7 @@ def _convex(quadric: Floats) -> bool:
 
 
 def _expanded(tape: Tape, row: int) -> Floats | None:
-    """Coefficients (10,) of a row, None where it is no polynomial of degree 2 at the most."""
+    """Coefficients (10,) of a row; None unless it is a polynomial of degree 2 or less."""
     op, left, right, _ = map(int, tape.code[row])
     if op == ops.CONSTANT or op in (ops.X, ops.Y, ops.Z):
         plain: Floats = np.zeros(LAST + 1)
@@ -101,7 +101,7 @@ def _expanded(tape: Tape, row: int) -> Floats | None:
 
 
 def _product(a: Floats, b: Floats) -> Floats | None:
-    """Of two polynomials, one of which is a constant or both of degree 1; else None."""
+    """Product of two polynomials, one a constant or both of degree 1; else None."""
     if not b[:LAST].any():
         a, b = b, a
     if not a[:LAST].any():

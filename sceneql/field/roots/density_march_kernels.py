@@ -2,13 +2,13 @@
 """First roots of c - D along rays in lanes, D the density of points with Wyvill's kernel: by one-sided bounds of slope.
 
 Along a ray of unit direction a point has u(t) = P - (t - T)^2/R^2 and the density w max(u, 0)^3. Its slope rises up to
-Q = T - H/sqrt(5), H the half chord, falls through 0 at T to a least value, and rises to 0 where the chord ends. So its
-largest value between a and b stands at b or at the place in [a, b] nearest to Q, and with the sum S of these the ray is
-outside up to a + (c - D(a))/S: Newton's step, which no root escapes (Kalra & Barr 1989, with the slope of one sign).
-Where no part falls between a place outside and one inside, D rises, and the root there is the only one.
+Q = T - H/sqrt(5), H the half chord, falls through 0 at T to a minimum, and rises to 0 where the chord ends. So its
+maximum on [a, b] is at b or at the place in [a, b] nearest to Q, and with the sum S of these the ray is outside up to a
++ (c - D(a))/S: a Newton step that skips no root (Kalra & Barr 1989, with a one-sided bound of the slope). If no part's
+density falls between a place outside and one inside, D is monotonic, and the root there is the only one.
 
-``table`` (k, COLUMNS) has P, T and Q of each part in lanes, then its weight and 1/R^2; ``state`` (ROWS,) is float32
-too, what is told of all lanes one behind the other; places are counted from where the table begins.
+``table`` (k, COLUMNS) has P, T and Q of each part in lanes, then its weight and 1/R^2; ``state`` (ROWS,) is float32,
+with LANES numbers of each kind; places on the ray count from the start of the slice.
 """
 
 import numpy as np
@@ -22,10 +22,10 @@ LANES, VECTOR = 64, 16
 T, Q, WEIGHT, INVERSE = LANES, 2 * LANES, 3 * LANES, 3 * LANES + 1
 COLUMNS = 3 * LANES + 8
 A, B, END, TRIES, FINE, AT_A, AT_B, SLOPE, STATE, ROOT, TOP, DEEP, FALLING = range(0, 13 * LANES, LANES)
-"""Where in state there is: a segment, where the search ends, steps so far, width of a bracket that is good enough; then
-densities at the segment's ends, a sixth of the largest slope of D, outcome (LIVE until there is one; UNDECIDED at the
-first step: the ray begins inside), the root; no less than the largest density of the slice, the first place where one
-part alone has the threshold; how many parts perhaps fall between the ends."""
+"""Offsets in state of: a segment, end of the search, steps so far, bracket width that suffices; densities at the
+segment's ends, a sixth of the largest slope of D, outcome (LIVE until there is one; UNDECIDED at the first step: the
+ray begins inside), the root; an upper bound of the density in the slice, the first place where a single part reaches
+the threshold; number of parts whose density may fall in the segment."""
 ROWS = 13 * LANES
 LIVE, MOST = F(-1.0), F(40.0)
 ZERO, HALF, ONE, TWO, FOUR, SIX, TENTH = F(0.0), F(0.5), F(1.0), F(2.0), F(4.0), F(6.0), F(0.1)
@@ -35,9 +35,9 @@ TINY, HUGE = F(1.0e-30), F(1.0e30)
 
 @lane
 def risen(p, t, q, a, b, inverse, blur):
-    """(u^3 at a, at b, largest u^2 (t - .) in [a, b], 1 where u^3 does not surely rise there, else 0) of a point.
+    """Of a point: (u^3 at a, u^3 at b, largest u^2 (t - x) for x in [a, b], 1 where u^3 may fall there, else 0).
 
-    Places are off by no more than half of ``blur``.
+    Places are off by at most half of ``blur``.
     """
     sa = t - a
     sb = t - b
@@ -52,14 +52,14 @@ def risen(p, t, q, a, b, inverse, blur):
     uc = uc if uc > ZERO else ZERO
     gb = ub * ub * sb
     gc = uc * uc * sc
-    # Where a part falls it is densest at t, or where the segment begins behind t.
+    # A part's density falls only beyond t, where it has its maximum.
     falling = ONE if (t < b + blur) & ((ua > ZERO) | ((p > ZERO) & (a < t + blur))) else ZERO
     return ua * ua * ua, ub * ub * ub, gc if gc > gb else gb, falling
 
 
 @inlined
 def sum_up(table, kept, state, n, blur):
-    """Densities at both ends of n lanes' segments, a sixth of the largest slope between, and how many parts fall."""
+    """Densities at both ends of n lanes' segments, a sixth of D's largest slope there, and how many parts may fall."""
     for i in range(n):
         state[AT_A + i] = state[AT_B + i] = state[SLOPE + i] = state[FALLING + i] = ZERO
     for k in range(kept):
@@ -74,7 +74,7 @@ def sum_up(table, kept, state, n, blur):
                 state[AT_B + i] += weight * db
                 state[SLOPE + i] += steep * g
                 state[FALLING + i] += falling
-        else:  # the slope of a negative part is that of a positive one met from behind
+        else:  # the slope of a negative part is that of a positive one, mirrored
             for i in range(n):
                 t = row[T + i]
                 a, b = t + t - state[B + i], t + t - state[A + i]
@@ -87,10 +87,10 @@ def sum_up(table, kept, state, n, blur):
 
 @inlined
 def advance(state, n, threshold, close, drift, off_slope, bend, anywhere):
-    """The next segment of each lane, or its outcome; ``close`` + ``drift`` t and ``off_slope`` bound the rounding of D
-    at t and of its slope, ``bend`` its second derivative.
+    """Make each lane's next segment, or its outcome.
 
-    Returns how many lanes have no outcome. A ray is met where D is surely below c, then above, and rises between.
+    ``close`` + ``drift`` t and ``off_slope`` bound the rounding of D at t and of its slope, ``bend`` its second
+    derivative. Returns how many lanes have no outcome. A HIT needs D surely below c, then above, and rising between.
     """
     looking = np.int32(0)
     for i in range(n):
@@ -112,7 +112,7 @@ def advance(state, n, threshold, close, drift, off_slope, bend, anywhere):
         begun = fa + off < ZERO
         fine = state[FINE + i]
         narrow = b - start
-        # Where the root may be: by the secant, or Newton's way on.
+        # Next place to look at: just behind the secant's estimate of the root, or further on along Newton's step.
         r = a + fa * (width / (fa - fb if fa > fb else ONE))
         past = r + HALF * (r - start if r > start else ZERO) + HALF * fine
         past = past if past > start else start + HALF * narrow
@@ -134,13 +134,13 @@ def advance(state, n, threshold, close, drift, off_slope, bend, anywhere):
         live = state[STATE + i] == LIVE
         then_state = outcome if live else state[STATE + i]
         state[STATE + i] = then_state
-        # Counted in int32: numba's sum of two would be int64, and half as many lanes go into a vector then.
+        # Counted in int32: numba's sum of two would be int64, and only half as many lanes go into a vector then.
         looking = np.int32(looking + (np.int32(1) if then_state == LIVE else np.int32(0)))
         state[A + i] = start if live else a
-        # Where a ray begins inside, what is known to be inside is its begin.
+        # A ray that begins inside has its hit at its begin.
         stop = (start if begun else b) if hit else then
         state[B + i] = stop if live else b
-        # From behind, Newton's step with the largest slope stays behind the root.
+        # From behind the root, Newton's step with the largest slope stays behind it.
         state[ROOT + i] = b + fb * flat if live else state[ROOT + i]
         state[TRIES + i] = tries
     return looking
@@ -148,8 +148,8 @@ def advance(state, n, threshold, close, drift, off_slope, bend, anywhere):
 
 @inlined
 def refine(table, kept, state, n, threshold):
-    """Bring the roots of n lanes, each the only one between A and B, near enough for one step of polish: by two of
-    Halley's method."""
+    """Two steps of Halley's method for n lanes, each with a single root between A and B: near enough for one step of
+    polish."""
     for _ in range(2):
         for i in range(n):
             state[AT_A + i] = state[AT_B + i] = state[SLOPE + i] = ZERO

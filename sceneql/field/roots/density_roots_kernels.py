@@ -1,9 +1,9 @@
 # mypy: ignore-errors
 """First roots along a bundle of rays of fields c - D and max(c - D, g), D the density of points with Wyvill's kernel.
 
-The parts that reach into the bundle are found once; packets of LANES rays look at them from front to back, a slice of
-their beam at a time, so that what stands behind the first root is seldom looked at. Before the first root of c - D the
-field is outside whatever g is; at the root its value tells.
+The parts that reach into the bundle are collected once; packets of LANES rays search them from front to back, in slices
+of their beam, so that parts behind the first root are seldom read. Before the first root of c - D the field is positive
+whatever g is; at the root g is evaluated.
 """
 
 import numpy as np
@@ -54,20 +54,20 @@ from sceneql.field.roots.density_slice_kernels import (
 from sceneql.field.tape.tape_ops import HIT, MISS, UNDECIDED
 
 LOST, KEPT, ENDED = LANES, 2 * LANES, 3 * LANES
-"""Where in ``live`` (4 LANES,), behind the lanes' rays, there are rays left for the next slice and lanes that go on or
-have an outcome."""
+"""Offsets in ``live`` (4 LANES,), after the lanes' rays, of the rays left for the next slice, and of the lanes that go
+on or have an outcome."""
 MOST_PARTS = 512
-"""Rows of ``table``; where more parts reach into a slice, its rays are left to the certified routine."""
+"""Rows of ``table``; if more parts reach into a slice, its rays are left to the certified routine."""
 ROW_OF, THRESHOLD, OTHER = range(3)
-"""Of a plan: the row of the density, -1 where a field has another form; of c; of g, -1 where there is none."""
+"""Entries of a plan: row of the density D, -1 for a field of another form; index of c; row of g, -1 without one."""
 BENT = 6.0
 """R^2 times the largest second derivative of a density of weight 1."""
 STEEPEST = 1.72
 """R times the largest slope of a density of weight 1, a little more than 96/(25 sqrt(5))."""
 NEARLY = 1.1
-"""Only of densities up to so many times the threshold may rounding change on which side of it they are."""
+"""Only densities below so many times the threshold may be rounded to the other side of it."""
 SURELY = 1.0 - 1.0e-9
-"""Of the threshold: less is below it whatever the rounding in float64."""
+"""Densities below this part of the threshold are below it whatever the rounding in float64."""
 UNIT = 1.2e-7
 """Two half units in the last place."""
 _ids, _wide = types.int64[::1], types.float64[:, ::1]
@@ -80,13 +80,13 @@ density_roots = lazy("sceneql.field.packets.density_bundle_kernels:density_roots
 
 @inlined
 def rounding(rows, bulk, bend, stiff, stiffer, negative, reach, threshold):
-    """How far the computed density about c may be off where the lane begins, how much more for a meter from there, and
-    how far the computed slope, where places are off by UNIT reach; and twice this.
+    """Bounds of rounding errors where places are off by UNIT reach, and 2 UNIT reach.
 
-    ``bulk``, ``stiff`` and ``stiffer`` are the sums of |w|, |w|/R and |w|/R^2, ``bend`` is the largest 1/R.
-    Of positive parts sum w u^2 <= (sum w u^3)^(2/3) (sum w)^(1/3) by Hoelder's inequality, with |du/dt| <= 2/R; of a
-    density of more than NEARLY c no rounding makes less than c. A part felt at x has |T| <= x + R, so that u is off by
-    UNIT (x/R + 1) for T and by 7 half units for the steps to u; a place met from behind is rounded once more.
+    They are of the density near c at the lane's begin, of its growth per meter, and of the slope. ``bulk``, ``stiff``
+    and ``stiffer`` are the sums of |w|, |w|/R and |w|/R^2, ``bend`` is the largest 1/R. Of positive parts sum w u^2 <=
+    (sum w u^3)^(2/3) (sum w)^(1/3) by Hoelder's inequality, with |du/dt| <= 2/R; densities above NEARLY c are not
+    rounded below c. A part within reach at x has |T| <= x + R, so that u is off by UNIT (x/R + 1) for T and by 7 half
+    units for the steps to u; a mirrored place is rounded once more.
     """
     off = UNIT * reach
     level = bulk if negative else NEARLY * abs(threshold)
@@ -102,8 +102,8 @@ def rounding(rows, bulk, bend, stiff, stiffer, negative, reach, threshold):
 
 @inlined
 def note(room, state, count, live, rays, found, queue, met, doubted):
-    """Note the outcomes of the lanes in ``live`` from ENDED on, and put their rays into the queue: hits from its begin
-    on, the undecided from its end. How many of both there are then."""
+    """Write the outcomes of the lanes in ``live`` from ENDED on, and queue their rays: hits at the front of the queue,
+    undecided rays at its end. Returns the numbers of both."""
     bases, inverse = room[SPOT + BASE], room[INVERSE_SPEED]
     outcomes, lows, highs, roots = found[FOUND_STATUS], found[FOUND_LOW], found[FOUND_HIGH], found[FOUND_ROOT]
     last = len(queue) - 1
@@ -128,15 +128,15 @@ def note(room, state, count, live, rays, found, queue, met, doubted):
 
 @inlined
 def move_lanes(row, first, live, n):
-    """Put n lanes, those in ``live`` from KEPT on, of what begins in a row at ``first`` together."""
+    """Compact one quantity, at ``first`` in a row, to the n lanes listed in ``live`` from KEPT on."""
     for i in range(n):
         row[first + i] = row[np.uint64(first + live[KEPT + i])]
 
 
 @inlined
 def settle_lanes(table, rows, state, room, live, width, looking, left, later, rays, found, queue, met, doubted):
-    """Note the outcomes of lanes, and put those ``looking`` on together: (rays left for the next slice, hits,
-    undecided). Where no slice is ``later``, no ray is left for it."""
+    """Write the outcomes of lanes, and compact those still ``looking``: (rays left for the next slice, hits,
+    undecided). Unless there is a ``later`` slice no ray is left for it."""
     settled = 0
     for i in range(width):
         outcome = state[STATE + i]
@@ -169,14 +169,14 @@ def search_slice(
     table, kept, state, room, live, n, looking, later, threshold, off, drift, off_slope, blur, bend, anywhere,
     rays, found, queue, met, doubted,
 ):  # fmt: skip
-    """March all lanes, so many of which are ``looking``: (how many still are at the end of the slice, put first into
-    ``live``, segments, hits, undecided)."""
+    """March all lanes, ``looking`` of them without an outcome: (rays without an outcome at the end of the slice, put
+    first into ``live``, segments, hits, undecided)."""
     spent = 0
     left = 0
     width = n
     while width > 0:
         whole = (width + VECTOR - 1) // VECTOR * VECTOR
-        # Fewer than go into one vector take as long as one.
+        # Fewer lanes than a vector holds cost as much as a whole vector.
         enough = width // 4 if width > VECTOR else 0
         while looking > enough:
             sum_up(table, kept, state, whole, blur)
@@ -195,7 +195,7 @@ def search_slice(
 
 @inlined
 def leave_undecided(room, live, n, rays, found, queue, doubted):
-    """Leave all lanes to the certified routine, from where their slice begins; how many are undecided then."""
+    """Leave all lanes to the certified routine, from the start of their slice; returns the number of undecided rays."""
     last = len(queue) - 1 - doubted
     for i in range(n):
         j = live[i]
@@ -207,7 +207,7 @@ def leave_undecided(room, live, n, rays, found, queue, doubted):
 
 @inlined
 def densest(spans, m, start, end):
-    """No less than the largest density in a slice of a beam."""
+    """An upper bound of the density in a slice of a beam."""
     most = 0.0
     for i in range(m):
         most += spans[2, i] if spans[0, i] < end and spans[1, i] > start else 0.0
@@ -219,7 +219,7 @@ def search_packet(
     room, first, stop, near, kept, threshold, anywhere, table, state, live, order, rays, beam, lowest, found, queue,
     met, doubted,
 ):  # fmt: skip
-    """Settle rays first..stop-1 of a gathered bundle: (segments looked at, hits, undecided), see ``note``."""
+    """First roots of rays first..stop-1 of a gathered bundle: (segments examined, hits, undecided), see ``note``."""
     own = room[OWN_ROW, :BEAM]
     beam_within(room, first, stop, beam, room[SPARE:], own)
     spans = room[SPANS:]

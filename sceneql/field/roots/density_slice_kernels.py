@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""A slice of a bundle of rays made ready to be searched: its lanes, its parts, and what these tell at once."""
+"""Prepares a slice of a bundle of rays: its lanes, its parts, and the rays whose outcome these decide at once."""
 
 import numpy as np
 
@@ -35,14 +35,14 @@ from sceneql.field.tape.tape_ops import HIT, MISS
 
 SPOT, SPANS, BEAM_ROW, OWN_ROW, SPARE, ROOM = WIDE, WIDE + 7, WIDE + 10, WIDE + 11, WIDE + 12, WIDE + 18
 BASE = 6
-"""Rows of ``room`` (ROOM, n): rays, lanes (place, direction, where the slice begins on the ray), where parts are
-entered and left along the axis of a beam and how dense they are in it at most, the bundle's beam and a packet's, and
-working memory of theirs."""
+"""Rows of ``room`` (ROOM, n): rays; lanes (place, direction, begin of the slice on the ray); where parts are entered
+and left along the axis of a beam, and their largest density in it; the bundle's beam and a packet's; working memory of
+both."""
 NARROW, HAIR = F(2.0e-5), F(1.0e-6)
-"""Width of a bracket, and what is searched beyond the parts, relative to the ray's piece."""
+"""Bracket width, and margin of the search beyond the parts, both relative to the length of the ray."""
 TWO, THREE = F(2.0), F(3.0)
 CLEARLY = F(1.001)
-"""Densities so many times the threshold tell the inside, where rounding is less than what is beyond it."""
+"""Densities above so many times the threshold prove the inside if their rounding is below the excess."""
 INFINITE = F(np.inf)
 GOLDEN = F(0.4472136)
 """1/sqrt(5)."""
@@ -50,15 +50,15 @@ GOLDEN = F(0.4472136)
 
 @inlined
 def pick(source, live, n, target):
-    """What lanes have of a row of the rays."""
+    """Gather a row of the rays into the lanes."""
     for i in range(n):
         target[i] = source[np.uint64(live[i])]
 
 
 @inlined
 def place_lanes(room, live, state, given, n, fresh, begin, end, lowest):
-    """Set the rays of n lanes at the begin of a slice, and where on them it ends; those behind the ``given`` reach
-    nothing."""
+    """Set the rays of n lanes at the begin of a slice, and where it ends on them; lanes behind the ``given`` get no
+    length."""
     bases = room[SPOT + BASE]
     far, behind, stretch = room[SPARE], room[SPARE + 1], room[SPARE + 2]
     if fresh:
@@ -102,7 +102,7 @@ def place_lanes(room, live, state, given, n, fresh, begin, end, lowest):
 
 @lane
 def densest(p, t, inverse, end):
-    """The largest u of a point between 0 and ``end``."""
+    """The largest u of a point in 0..``end``."""
     s = t if t < end else end
     s = t - (s if s > ZERO else ZERO)
     u = p - inverse * (s * s)
@@ -111,9 +111,9 @@ def densest(p, t, inverse, end):
 
 @inlined
 def set_part(part, room, row, state, n, level):
-    """A row of the table for a part; how many lanes come into its reach. AT_A and AT_B: where they enter and leave.
+    """Write the table row of a part, and widen AT_A..AT_B to where lanes are within its reach; returns how many are.
 
-    ``level``: u at which the part alone has the threshold.
+    ``level`` is the u at which the part alone has the threshold.
     """
     cx, cy, cz, radius = part[0], part[1], part[2], part[6]
     inverse = 1.0 / (radius * radius)
@@ -154,7 +154,7 @@ def set_part(part, room, row, state, n, level):
 
 @inlined
 def reach_threshold(state, n, threshold, close, drift):
-    """Whether all parts together may in some lane."""
+    """Whether in some lane all parts together may reach the threshold."""
     lanes = np.int32(0)
     for i in range(n):
         off = close + drift * state[END + i]
@@ -164,10 +164,10 @@ def reach_threshold(state, n, threshold, close, drift):
 
 @inlined
 def tighten(table, rows, state, n, threshold, close, drift):
-    """Bring AT_A and AT_B of n lanes together, to where all parts are dense enough for the threshold.
+    """Narrow AT_A..AT_B of n lanes to where the parts are dense enough for the threshold.
 
-    Where all others are densest, a part still has to give what they lack. At densities above the threshold ``close`` +
-    ``drift`` t bounds the rounding of a sum, and of a share, as many times as they are denser.
+    Even with all others at their maxima, a part must contribute the rest. For densities above the threshold ``close`` +
+    ``drift`` t bounds the rounding of a sum; that of a contribution grows in proportion to the density.
     """
     scale = TWO / threshold if threshold > ZERO else ZERO
     for k in range(rows):
@@ -181,7 +181,7 @@ def tighten(table, rows, state, n, threshold, close, drift):
             top = densest(p, t, inverse, end)
             excess = (state[TOP + i] * (MORE + scale * (close + drift * end)) - threshold) * share
             least = top * top * top - excess
-            # No more than the cube root: 1 + z + z >= 3 z^(2/3) for z = least/top^3.
+            # A lower bound of the cube root: 1 + z + z >= 3 z^(2/3) for z = least/top^3.
             level = THREE * LESS * least * top / (top * top * top + TWO * least if least > ZERO else ONE)
             half = reach * np.sqrt(p - level if p > level else ZERO)
             entry, exit = state[AT_A + i], state[AT_B + i]
@@ -193,10 +193,10 @@ def tighten(table, rows, state, n, threshold, close, drift):
 
 @inlined
 def start_lanes(state, n, threshold, close, drift, negative, anywhere):
-    """Begin the search in each lane, where the parts of the slice are dense enough; in how many.
+    """Begin the search in each lane where the slice's parts are dense enough; returns in how many lanes.
 
-    Where all parts together cannot reach the threshold, nothing is met. Where no part is negative, a place is inside
-    if one part alone tells. ``close`` + ``drift`` t: see ``density_march_kernels.advance``.
+    A lane whose parts together cannot reach the threshold is a MISS. Without negative parts, a place where a single
+    part exceeds it is inside. ``close`` + ``drift`` t: see ``density_march_kernels.advance``.
     """
     positive = not negative
     looking = np.int32(0)

@@ -1,10 +1,9 @@
 # mypy: ignore-errors
-"""Polynomials on a segment in Bernstein's basis, in one lane: the hull of whose coefficients holds the polynomial.
+"""Polynomials on a segment in Bernstein's basis, in one lane: the hull of the coefficients contains the polynomial.
 
 About the middle of the segment, sigma in [-1, 1], coefficient k of d stands at 2 k/d - 1; the first and the last are
 the values at the ends, and d/2 times the differences are the coefficients of the derivative (Farouki 2012, The
-Bernstein polynomial basis: a centennial retrospective). No number that a power's coefficient is multiplied by is
-greater than 1.
+Bernstein polynomial basis: a centennial retrospective). All factors of the change of basis are at most 1.
 """
 
 from sceneql.field.enclose.moved_kernels import moved_4, moved_6, moved_8
@@ -13,7 +12,7 @@ from sceneql.field.tape.single_kernels import lane
 
 @lane
 def bernstein_4(c0, c1, c2, c3, c4):
-    """Coefficients of one of degree 4 or less."""
+    """Bernstein coefficients of a polynomial of degree 4 or less."""
     ends, end = c0 + c2 + c4, c1 + c3
     even, odd = c0 - c4, 0.5 * (c1 - c3)
     return ends - end, even - odd, c0 - c2 * (1.0 / 3.0) + c4, even + odd, ends + end
@@ -21,7 +20,7 @@ def bernstein_4(c0, c1, c2, c3, c4):
 
 @lane
 def bernstein_6(c0, c1, c2, c3, c4, c5, c6):
-    """Of degree 6 or less."""
+    """As ``bernstein_4``, of degree 6 or less."""
     ends, end = c0 + c2 + c4 + c6, c1 + c3 + c5
     less, more, last, first = c2 - c4, c2 + c4, c0 - c6, c0 + c6
     even_1, odd_1 = last + less * (1.0 / 3.0), (c1 - c5) * (2.0 / 3.0)
@@ -31,7 +30,7 @@ def bernstein_6(c0, c1, c2, c3, c4, c5, c6):
 
 @lane
 def bernstein_8(c0, c1, c2, c3, c4, c5, c6, c7, c8):
-    """Of degree 8 or less."""
+    """As ``bernstein_4``, of degree 8 or less."""
     ends, end = c0 + c2 + c4 + c6 + c8, c1 + c3 + c5 + c7
     less, more, last, first = c2 - c6, c2 + c6, c0 - c8, c0 + c8
     outer, inner = c1 - c7, c3 - c5
@@ -47,20 +46,20 @@ def bernstein_8(c0, c1, c2, c3, c4, c5, c6, c7, c8):
 
 @lane
 def lower(a, b):
-    """The lower one."""
+    """The lower of two numbers."""
     return a if a < b else b
 
 
 @lane
 def higher(a, b):
-    """The higher one."""
+    """The higher of two numbers."""
     return a if a > b else b
 
 
 @lane
 def hull_4(c0, c1, c2, c3, c4, m, h, off):
-    """(first, last, lowest, highest, steepest way down from the first to another, largest rise to the next) of the
-    coefficients of p - off, degrees up to 4, on m - h..m + h; the way is per segment."""
+    """(first, last, lowest, highest, steepest descent from the first to another, largest rise to the next) of the
+    Bernstein coefficients of p - off, degrees up to 4, on m - h..m + h; descents are per length of the segment."""
     c0, c1, c2, c3, c4 = moved_4(c0, c1, c2, c3, c4, m)
     h2 = h * h
     b0, b1, b2, b3, b4 = bernstein_4(c0 - off, h * c1, h2 * c2, h * h2 * c3, h2 * h2 * c4)
@@ -76,7 +75,7 @@ def hull_4(c0, c1, c2, c3, c4, m, h, off):
 
 @lane
 def hull_6(c0, c1, c2, c3, c4, c5, c6, m, h, off):
-    """Up to 6."""
+    """As ``hull_4``, degrees up to 6."""
     c0, c1, c2, c3, c4, c5, c6 = moved_6(c0, c1, c2, c3, c4, c5, c6, m)
     h2 = h * h
     h4 = h2 * h2
@@ -97,7 +96,7 @@ def hull_6(c0, c1, c2, c3, c4, c5, c6, m, h, off):
 
 @lane
 def hull_8(c0, c1, c2, c3, c4, c5, c6, c7, c8, m, h, off):
-    """Up to 8."""
+    """As ``hull_4``, degrees up to 8."""
     c0, c1, c2, c3, c4, c5, c6, c7, c8 = moved_8(c0, c1, c2, c3, c4, c5, c6, c7, c8, m)
     h2 = h * h
     h4 = h2 * h2

@@ -1,9 +1,9 @@
 # mypy: ignore-errors
-"""First roots of a tape along a ray, proved by enclosures: no gradient bound is asked of anyone.
+"""First roots of a tape along a ray, proved by enclosures: no Lipschitz bound has to be given.
 
 From the start of the ray on, a segment is rejected when its enclosure c0 + c1 tau +- e has no zero, and the next one is
-twice as long; else the segment is cut where the enclosure allows no zero, and halved where that gains little. So all
-that lies before a root returned is proved to be outside, up to the tolerance.
+twice as long; else the segment is cut where the enclosure allows no zero, and halved where that gains little. So the
+ray before a root returned is proved to be outside, up to the tolerance.
 """
 
 from numba import types
@@ -28,7 +28,7 @@ leaps = lazy("sceneql.field.roots.jumps_kernels:leaps", LEAPS)
 EVALUATIONS = 2000
 """Enclosures spent on one ray before it is left undecided."""
 BACK = 2.0e-3
-"""How far before the place where enclosures could not go on the certified intervals begin, relative to the ray."""
+"""How far before the place where enclosures got stuck the certified intervals begin, relative to the ray."""
 
 
 @kernel(
@@ -40,13 +40,13 @@ BACK = 2.0e-3
 def search(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, sign, anywhere):
     """(status, t) of the first entry into {sign f < 0}, or with ``anywhere`` of any place in it; never INSIDE.
 
-    UNDECIDED: all before t is proved to be outside; ``certify`` may tell what is there.
+    UNDECIDED: everything before t is proved outside; ``certify`` may decide what is there.
     """
     a = t0
     b = t1
     end = t1
     held = False  # {sign f < 0} is proved at `end`, so that a root lies before it
-    cut_from = t1  # from here to cut_to nothing is left to find
+    cut_from = t1  # cut_from..cut_to is proved outside
     cut_to = t1
     least = max(tolerance * (t1 - t0), 1.0e-15 * (abs(t0) + abs(t1)))
     outcome = ops.UNDECIDED
@@ -97,7 +97,7 @@ def search(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tole
             break
         if b - a >= 0.5 * width or b - a <= 1.0e-4 * least:
             if b - a <= least:
-                if held and b == end:  # rounding leaves no narrower bracket, but one it is
+                if held and b == end:  # rounding allows no narrower bracket
                     outcome = ops.HIT
                     a = min(max(root, a), b)
                 break
@@ -107,15 +107,15 @@ def search(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tole
 
 @woven
 def begin_of_proof(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t0, t1):
-    """Where the certified intervals begin on [t0, t1], of which enclosures told the piece up to t: there, at an edge of
-    where f is defined, from the undefined side; else BACK, so that f can be told from zero."""
+    """Where the certified intervals begin on [t0, t1] after enclosures got stuck at t: at t where f is undefined, as at
+    an edge of its domain; else BACK before it, so that f is safely away from zero."""
     _, _, _, _, status = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t, 1.0)
     return t if status == ops.NOWHERE else max(t - BACK * (t1 - t0), t0)
 
 
 @woven
 def isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, sign, anywhere):
-    """As ``search``, by the certified intervals from where that could not go on, and past jumps where these cannot."""
+    """As ``search``, continued by certified intervals where enclosures get stuck, and past jumps where these do."""
     status, t = search(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, sign, anywhere)
     if status == ops.UNDECIDED:
         t = begin_of_proof(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t0, t1)
@@ -134,9 +134,9 @@ def isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tol
 def first_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance):
     """(status, t) of the first entry of the ray o + t d, t in [t0, t1], into the solid {f < 0}.
 
-    HIT: all before t is proved outside, and inside begins at t. INSIDE: t0 is inside already. MISS: all of [t0, t1] is
-    proved outside. UNDECIDED: at t something smaller than ``tolerance`` (t1 - t0), as a root of even multiplicity,
-    could not be told from nothing. d need not be a unit vector; undefined places are outside.
+    HIT: the ray is proved outside before t, and inside begins at t. INSIDE: t0 is inside already. MISS: all of [t0, t1]
+    is proved outside. UNDECIDED: at t a feature smaller than ``tolerance`` (t1 - t0), such as a root of even
+    multiplicity, was neither proved nor excluded. d need not be a unit vector; undefined places are outside.
     """
     status, t = isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, 1.0, False)
     if status == ops.HIT and t - t0 <= tolerance * (t1 - t0):
@@ -157,5 +157,5 @@ def exit_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, t
 
 @woven
 def any_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance):
-    """HIT where the ray meets the solid anywhere in [t0, t1], MISS where it proves not to, UNDECIDED: shadow rays."""
+    """For shadow rays: HIT where the ray meets the solid in [t0, t1], MISS if it is proved not to, else UNDECIDED."""
     return isolate(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance, 1.0, True)[0]

@@ -1,10 +1,10 @@
 # mypy: ignore-errors
-"""Rays past places where a field jumps, as at whole numbers of floor, the cut of an angle and poles of quotients.
+"""First roots past jumps of a field, as at whole numbers of floor, the cut of an angle and poles of quotients.
 
-Over a piece of a ray with such a place bounds reach from one side of the step to the other, however short the piece,
-and seem to hold zero where both sides are far from it. But on a short piece a step has two or three sides, and each
-point is on one of them. So f is bounded once for every choice of sides, by a tape that has in place of the steps what
-they are there: where no choice allows zero, nothing is met.
+On a piece of a ray with a jump the bounds span both sides of the step, however short the piece, and may contain zero
+although both sides are far from it. But on a short piece a step has two or three sides, and each point is on one of
+them. So f is bounded once for every choice of sides, by a tape with the steps replaced by their values: where no choice
+allows zero, there is no root.
 """
 
 import numpy as np
@@ -17,18 +17,18 @@ from sceneql.field.roots.isolation_kernels import BEYOND, LEAPS
 from sceneql.field.tape import tape_ops as ops
 
 MOST_STEPS = 4
-"""Operations that may jump at one place."""
+"""Operations that may jump on one piece."""
 SIDES = 3
-"""Of a step at the most: sign is 0 between -1 and 1."""
+"""Most sides of a step: sign is -1, 0 or 1."""
 PASSED = 64
-"""Jumps on one ray, before what is left is undecided."""
+"""Jumps passed on one ray before the rest is left undecided."""
 PIECES = 200
-"""Looked at on the way to one jump."""
+"""Pieces examined on the way to one jump."""
 
 
 @inlined
 def sides_of(code, scratch, k):
-    """How many sides row k has where it jumps within the piece that ``scratch`` holds bounds of; else 0."""
+    """Number of sides of row k if it jumps on the piece whose bounds are in ``scratch``; else 0."""
     op, left, right = code[k, 0], code[k, 1], code[k, 2]
     if op == ops.FLOOR or op == ops.SIGN:
         apart = scratch[k, 1] - scratch[k, 0]
@@ -42,17 +42,17 @@ def sides_of(code, scratch, k):
 
 @inlined
 def put(code, row, op, left, right, third):
-    """Write a row; the number of the next one."""
+    """Write a row; returns the index of the next one."""
     code[row, 0], code[row, 1], code[row, 2], code[row, 3] = op, left, right, third
     return row + 1
 
 
 @inlined
 def on_sides(code, constants, scratch, sides, steps, count, choice, places, chosen, numbers):
-    """Write the tape ``chosen`` with its ``numbers`` in which the rows ``steps`` are what they are on the chosen sides.
+    """Write the tape ``chosen`` with its ``numbers``: the rows ``steps`` are replaced by their values on one side.
 
-    Row k of the old one is at ``places[k]`` of the new one. Returns how many rows that needs, 0 where there is no such
-    side, -1 where a point of parts would no longer stand in three rows that follow each other.
+    ``choice`` numbers the sides; row k becomes ``places[k]``. Returns how many rows that needs, 0 where there is no
+    such side, -1 where the point of a density would not be in three consecutive rows.
     """
     n = step = 0
     for i in range(constants.shape[0]):
@@ -75,7 +75,7 @@ def on_sides(code, constants, scratch, sides, steps, count, choice, places, chos
                 number = constants.shape[0] + 1 + step
                 numbers[number] = scratch[k, 0] + side
                 n = put(chosen, n, ops.CONSTANT, number, 0, 0)
-            elif op == ops.ATAN2:  # the flag lets it go on beyond pi
+            elif op == ops.ATAN2:  # the flag allows values beyond pi
                 n = put(chosen, n, op, left, right, 1)
                 if side == 1:
                     n = put(chosen, n, ops.CONSTANT, constants.shape[0], 0, 0)
@@ -96,13 +96,13 @@ def on_sides(code, constants, scratch, sides, steps, count, choice, places, chos
 
 @inlined
 def clear(low, high, status, sign, touching):
-    """Whether nothing is met on a piece with these bounds of sign f."""
+    """Whether bounds of sign f on a piece exclude an entry, or with ``touching`` a root."""
     return low > 0.0 or (touching and status == ops.WHOLE and high < 0.0) or (status == ops.NOWHERE and sign > 0.0)
 
 
 @inlined
 def clear_on_all_sides(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign, touching):
-    """Whether nothing is met on the piece a..b, whose bounds ``scratch`` holds, on any side of what jumps there."""
+    """Whether ``clear`` holds on the piece a..b, bounded in ``scratch``, for every choice of sides of its jumps."""
     steps = np.empty(MOST_STEPS, np.int64)
     sides = np.empty(MOST_STEPS, np.int64)
     count = 0
@@ -134,7 +134,7 @@ def clear_on_all_sides(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, 
 
 @kernel(f"float64({ops.TAPE}{', float64' * 10}, boolean)", inner=True)
 def passed(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, least, sign, touching):
-    """How far from t on nothing is met, at the most to behind the first jump; t where none is proved."""
+    """The end of what is proved clear from t on, at most just behind the first jump; t where nothing is proved."""
     a = t
     width = least
     for _ in range(PIECES):
@@ -142,7 +142,7 @@ def passed(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, least
             break
         b = min(a + width, t1)
         for k in range(code.shape[0]):
-            scratch[k, 0] = scratch[k, 1] = np.nan  # what is not reached tells of no jump
+            scratch[k, 0] = scratch[k, 1] = np.nan  # rows that are not evaluated have no jump
         low, high, _, _, status = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, sign)
         if clear(low, high, status, sign, touching):
             a = b
@@ -158,7 +158,7 @@ def passed(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t1, least
 
 @lean(BEYOND, inner=True)
 def beyond(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, finest, sign, anywhere, touching):
-    """(status, t) as ``certify``, which could not tell at t0, and is asked again behind each jump where nothing is."""
+    """(status, t) as ``certify``, which got stuck at t0 and is restarted behind each jump that is proved clear."""
     least = max(finest, 4.0e-15 * (abs(t0) + abs(t1)))
     status = ops.UNDECIDED
     t = t0
@@ -180,7 +180,7 @@ def beyond(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, fine
 
 @lean(LEAPS, inner=True)
 def leaps(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
-    """Whether f has no root within ``near`` of t, where its sign changes: it jumps over zero."""
+    """Whether f, whose sign changes within ``near`` of t, is proved to have no root there: it jumps over zero."""
     a, end = t - near, t + near
     for _ in range(PASSED):
         behind = passed(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, end, 0.05 * near, 1.0, True)

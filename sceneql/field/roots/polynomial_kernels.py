@@ -1,27 +1,27 @@
 # mypy: ignore-errors
-"""Polynomials along rays: a tape of sums and products alone is, on a ray, a polynomial whose coefficients it gives.
+"""Polynomials along rays: on a ray a tape of sums and products alone is a polynomial, whose coefficients it computes.
 
 Coefficients are float64, in tau of [-1, 1] over the searched piece of a ray; ``lanes`` has ABREAST numbers for each
-coefficient of an operation, one behind the other. Their rounding is bounded once for a bundle: with |x|, |y|, |z| at
-most some sizes, the absolute values of an operation's coefficients add up to no more than the operation on sizes with
-all signs positive.
+coefficient of an operation, one per ray. Their rounding is bounded once for a bundle: with bounds of |x|, |y|, |z|, the
+absolute values of an operation's coefficients add up to at most the value of the operation at these bounds with all
+signs positive.
 """
 
 from sceneql.compiled.kernels import inlined
 from sceneql.field.tape import tape_ops as ops
 
 POLYNOMIAL, DEGREES = 3, 4
-"""Of a plan: the row of the polynomial p of a field p or max(p, g), -1 where there is none; then, for each row up to
-that, its degree (-1: it is not needed), and where in ``lanes`` its coefficients begin, in ABREAST."""
+"""Of a plan: the row of the polynomial p of a field p or max(p, g), -1 without one; then, for each row up to that one,
+its degree (-1: not needed), and the offset of its coefficients in ``lanes``, in units of ABREAST."""
 ABREAST = 128
-"""Rays that are looked at together."""
+"""Rays that are processed together."""
 UNIT = 1.2e-16
 ONE, TWO, THREE, FOUR = ABREAST, 2 * ABREAST, 3 * ABREAST, 4 * ABREAST
 
 
 @inlined
 def line(a, b, out, n):
-    """The product of two polynomials of degree 1."""
+    """The product of two linear polynomials."""
     for i in range(n):
         a0, a1, b0, b1 = a[i], a[ONE + i], b[i], b[ONE + i]
         out[i] = a0 * b0
@@ -31,7 +31,7 @@ def line(a, b, out, n):
 
 @inlined
 def parabola(a, b, out, n):
-    """The product of two polynomials of degree 2."""
+    """The product of two quadratic polynomials."""
     for i in range(n):
         a0, a1, a2, b0, b1, b2 = a[i], a[ONE + i], a[TWO + i], b[i], b[ONE + i], b[TWO + i]
         out[i] = a0 * b0
@@ -123,10 +123,10 @@ def coefficients(code, constants, plan, rays, first, middle, half, n, lanes):
 
 @inlined
 def rounding(code, constants, plan, sizes, work):
-    """How far p and its derivative in tau may be off, as ``polynomial_steps_kernels`` has them.
+    """Bounds of the errors of p and of its derivative in tau, as ``polynomial_steps_kernels`` uses them.
 
-    ``sizes``: bounds of |x|, |y|, |z|, then of the error of each in units. Of an operation, ``work`` gets the sum of
-    absolute values and the error in units of that.
+    ``sizes``: bounds of |x|, |y|, |z|, then of the error of each in units. ``work`` gets the sum of absolute
+    coefficients of each operation, and its error in units of that.
     """
     rows = plan[POLYNOMIAL] + 1
     for k in range(rows):
@@ -145,7 +145,7 @@ def rounding(code, constants, plan, sizes, work):
             a, e = a + b, max(e, f) + 1.0
         work[2 * k], work[2 * k + 1] = a, e
     degree = plan[DEGREES + rows - 1]
-    # Moved to another middle m by Horner's scheme, a coefficient is off by 2 d units of what |c_j| |m|^(j - k) add up
-    # to, and |m| and the half length together are no more than 1.
+    # Moved to another middle m by Horner's scheme, a coefficient is off by 2 d units of the sum of |c_j| |m|^(j - k),
+    # and |m| and the half length together are at most 1.
     units = work[2 * rows - 1] + 8.0 * degree + 20.0
     return 2.0 * UNIT * units * work[2 * rows - 2] * max(degree, 1)

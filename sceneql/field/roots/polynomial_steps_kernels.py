@@ -1,10 +1,10 @@
 # mypy: ignore-errors
 """Steps towards the first roots of polynomials on pieces of rays, in lanes: Bernstein's basis and Newton's method.
 
-``lanes`` is one array, what is told of all lanes one behind the other; places are tau of [-1, 1] on the ray's piece.
-A segment whose coefficients are all positive is rejected, and all that is left is the next one; else it begins anew
-where the line from its first coefficient, down the steepest way to another, is zero: all coefficients are above that,
-and so is the polynomial (first steps of the clipping of Sederberg & Nishita 1990, at one end).
+``lanes`` is one array with ABREAST numbers of each kind; places are tau of [-1, 1] on the ray's piece. A segment whose
+coefficients are all positive is rejected, and the rest of the search becomes the next one; else its begin moves to the
+zero of the line from the first coefficient along the steepest descent to another: no coefficient is below that line,
+and so neither is the polynomial (first steps of the clipping of Sederberg & Nishita 1990, at one end).
 """
 
 from sceneql.compiled.kernels import inlined
@@ -14,41 +14,41 @@ from sceneql.field.tape.single_kernels import lane
 from sceneql.field.tape.tape_ops import HIT, MISS, UNDECIDED
 
 ROOT, CHANGE, A, B, END, STATE, MIDDLE, HALF_WAY, RAY, C = range(0, 10 * ABREAST, ABREAST)
-"""Root and its change at the last step of the polish, segment, where the search ends, outcome (LIVE until there is
-one), middle and half length of the piece, which ray it is of, then coefficients from the lowest on."""
+"""Offsets in ``lanes``: root and its change at the last step of the polish, segment, end of the search, outcome (LIVE
+until there is one), middle and half length of the ray's piece, index of the ray, coefficients from the lowest on."""
 C1, C2, C3, C4, C5, C6, C7, C8, ROWS = range(C + ABREAST, C + 10 * ABREAST, ABREAST)
 LIVE = -1.0
 MOST = 48
 """Steps after which a ray is left to the certified routine."""
 LEAST = 1.0e-8
-"""Width of a segment that is left to it."""
+"""Width of a segment that is left to the certified routine."""
 BLUR, LESS = 4.0e-16, 1.0 - 1.0e-14
 GAIN, SHORTER = 0.7, 0.3
-"""Part of a segment that may be left of it, and what part of that is looked at next where more is."""
+"""A cut that leaves more than GAIN of a segment is followed by a look at SHORTER of the rest."""
 LATE = 5.0e-6
-"""How far before the end of a segment, relative to it, a place inside is looked for."""
+"""Margin before the end of a segment, relative to it, at which the inside is tested."""
 TURNS, MOST_TURNS = 3, 9
-"""Newton's steps, and as many where they have not settled."""
+"""Newton steps, and their number when they have not converged."""
 UNSETTLED = 2.0e-8
-"""Change of a root at the last step, on a piece of length 2, that asks for another one."""
+"""Change of a root at the last step, on a piece of length 2, above which Newton's method goes on."""
 
 
 @lane
 def advance(lanes, i, first, last, lowest, highest, steepest, rise, off, before, late, last_try):
-    """Reject or cut a lane's segment, or tell its outcome, by what ``hull_4`` tells of p - off there; 1 while it lives.
+    """Reject or cut a lane's segment, or set its outcome, by ``hull_4`` of p - off there; returns 1 if still live.
 
-    ``late`` is how far before the end of a segment a place inside is looked for, ``before`` the degree times that.
+    ``late`` is the margin before the segment's end at which the inside is tested, ``before`` the degree times it.
     """
     a, b, end = lanes[A + i], lanes[B + i], lanes[END + i]
     width = b - a
     clear = lowest > 0.0
-    # No coefficient lies below the line of the steepest way.
+    # No coefficient lies below the line of the steepest descent.
     ahead = (first > 0.0) & (steepest > 0.0)
     start = a + width * (first / (steepest if ahead else 1.0)) * LESS - BLUR
     start = start if ahead & (start > a) else a
     start = start if start < b else b
     begun = first + 2.0 * off < 0.0
-    # A place inside stands before the segment's end: on the end of a ray another field may vanish.
+    # The inside is tested before the segment's end: at the end of a ray a clip may vanish.
     inside = last + before * (highest - last) + 2.0 * off < 0.0
     hit = begun | (inside & ((late > 0.0) | (rise + off < 0.0)))
     narrow = b - start
@@ -68,7 +68,7 @@ def advance(lanes, i, first, last, lowest, highest, steepest, rise, off, before,
 
 @inlined
 def step_4(lanes, n, off, late, last_try):
-    """A step of n lanes, degrees up to 4."""
+    """A step of n lanes, degrees up to 4; returns how many stay live."""
     count = 0
     for i in range(n):
         m, h = 0.5 * (lanes[A + i] + lanes[B + i]), 0.5 * (lanes[B + i] - lanes[A + i]) + BLUR
@@ -81,7 +81,7 @@ def step_4(lanes, n, off, late, last_try):
 
 @inlined
 def step_6(lanes, n, off, late, last_try):
-    """Up to 6."""
+    """As ``step_4``, degrees up to 6."""
     count = 0
     for i in range(n):
         m, h = 0.5 * (lanes[A + i] + lanes[B + i]), 0.5 * (lanes[B + i] - lanes[A + i]) + BLUR
@@ -95,7 +95,7 @@ def step_6(lanes, n, off, late, last_try):
 
 @inlined
 def step_8(lanes, n, off, late, last_try):
-    """Up to 8."""
+    """As ``step_4``, degrees up to 8."""
     count = 0
     for i in range(n):
         m, h = 0.5 * (lanes[A + i] + lanes[B + i]), 0.5 * (lanes[B + i] - lanes[A + i]) + BLUR
@@ -109,7 +109,7 @@ def step_8(lanes, n, off, late, last_try):
 
 @inlined
 def step(lanes, degree, n, off, anywhere, last_try):
-    """A step of n lanes; how many live on."""
+    """A step of n lanes; returns how many stay live."""
     late = LATE if anywhere else 0.0
     if degree <= 4:
         return step_4(lanes, n, off, late, last_try)
@@ -126,7 +126,7 @@ def down(c, p, s, x):
 
 @lane
 def newton_4(lanes, i, p, s, x):
-    """p and its derivative at x, of which those of the coefficients from C4 on are given."""
+    """p and its derivative at x by Horner's scheme; the arguments are theirs from the coefficients C4 and up."""
     p, s = down(lanes[C3 + i], p, s, x)
     p, s = down(lanes[C2 + i], p, s, x)
     p, s = down(lanes[C1 + i], p, s, x)
@@ -135,7 +135,7 @@ def newton_4(lanes, i, p, s, x):
 
 @lane
 def newton_6(lanes, i, p, s, x):
-    """From C6 on."""
+    """As ``newton_4``, from C6 on."""
     p, s = down(lanes[C5 + i], p, s, x)
     p, s = down(lanes[C4 + i], p, s, x)
     return newton_4(lanes, i, p, s, x)
@@ -143,7 +143,7 @@ def newton_6(lanes, i, p, s, x):
 
 @lane
 def newton(lanes, i, p, s, x):
-    """Newton's step from x, held in A..B."""
+    """Newton's step from x, clamped to A..B."""
     root = x - p / s
     root = root if root > lanes[A + i] else lanes[A + i]
     root = root if root < lanes[B + i] else lanes[B + i]
@@ -153,7 +153,7 @@ def newton(lanes, i, p, s, x):
 
 @inlined
 def settled(lanes, n):
-    """Whether the roots of all lanes that hit changed little at the last step."""
+    """Whether the roots of all lanes that hit have converged at the last step."""
     moving = 0
     for i in range(n):
         moving += 1 if (lanes[CHANGE + i] > UNSETTLED) & (lanes[STATE + i] == HIT) else 0

@@ -1,9 +1,9 @@
 # mypy: ignore-errors
-"""First roots of polynomials along a single ray: what ``polynomial_search_kernels`` does for bundles.
+"""First roots of polynomials along a single ray: the counterpart of ``polynomial_search_kernels`` for bundles.
 
 On the searched piece of a ray p is an exact polynomial in tau of [-1, 1], whose float64 coefficients the tape gives
-with a bound of their rounding. Quadratic enclosures of it reject or cut segments; a quadratic g of max(p, g) cuts the
-piece by the roots of that first. What rounding does not let be told is UNDECIDED, for ``isolation_kernels.isolate``.
+with a bound of their rounding. Quadratic enclosures of it reject or cut segments; a quadratic g of max(p, g) first
+clips the piece by its roots. Cases that rounding leaves open are UNDECIDED, for ``isolation_kernels.isolate``.
 """
 
 import numpy as np
@@ -18,20 +18,20 @@ UNIT = 1.2e-16
 MOST = 64
 """Enclosures after which a ray is left undecided."""
 LEAST, BLUR, LESS = 1.0e-8, 4.0e-16, 1.0 - 1.0e-14
-"""Width of a segment that is left undecided; rounding of places, and of a ratio."""
+"""Width of a segment that is left undecided; rounding of places; rounding of a ratio."""
 SHORTER = 0.25
-"""Part of a segment that is looked at next where its begin is not enough nearer to a root."""
+"""Part of a segment that is examined next where a cut did not bring its begin much nearer to a root."""
 BEFORE = 1.0e-5
-"""How far before the end of a segment, relative to half of it, a place inside is looked for: a clip vanishes there."""
+"""How far before the end of a segment, relative to half of it, the inside is tested: a clip vanishes at the end."""
 TURNS, SETTLED = 12, 1.0e-14
-"""Newton's steps at most, and the change of a root at which they end."""
+"""Newton steps at most, and the change of a root at which they end."""
 TOLD = 1.0e-9
-"""Change of a root at the last step, or gap in what is proved of a clip, above which a ray is undecided."""
+"""Change of a root at the last step, or gap in the proved bounds of a clip, above which a ray is undecided."""
 
 
 @lean_inlined
 def multiply(work, a, da, b, db, out):
-    """The product of polynomials of degrees da and db at places of ``work``."""
+    """The product of polynomials of degrees da and db, given by their offsets in ``work``."""
     if da < db:
         a, da, b, db = b, db, a, da
     if db == 0:
@@ -57,7 +57,7 @@ def multiply(work, a, da, b, db, out):
 
 @lean_inlined
 def add(work, a, da, b, db, sign, out):
-    """a + sign b."""
+    """a + sign b, given by their offsets in ``work``."""
     for k in range(min(da, db) + 1):
         work[out + k] = work[a + k] + sign * work[b + k]
     for k in range(db + 1, da + 1):
@@ -68,8 +68,8 @@ def add(work, a, da, b, db, sign, out):
 
 @lean_inlined
 def expand(code, constants, plan, work, origin, way, middle, half, far):
-    """Coefficients of all rows on a piece of a ray, then of each their norm, the sum of absolute values, and how far
-    off the coefficients are in that norm, in UNIT: that of a product is no more than the product of the norms."""
+    """Coefficients of all rows on a piece of a ray; then of each row its norm, the sum of absolute coefficients, and
+    the error of the coefficients in that norm, in UNIT: the norm of a product is at most the product of the norms."""
     count = (plan.shape[0] - DEGREES) // 2
     for k in range(count):
         degree = plan[DEGREES + k]
@@ -110,10 +110,10 @@ def expand(code, constants, plan, work, origin, way, middle, half, far):
 
 @lean_inlined
 def rounding(work, at, degree):
-    """How far a polynomial and its derivative may be off, also about another middle.
+    """Bounds of the errors of a polynomial and of its derivative, also after a shift to another middle.
 
-    Moved to another middle m by Horner's scheme, a coefficient is off by 2 d units of what |c_j| |m|^(j - k) add up to,
-    and |m| and the half length together are no more than 1.
+    Moved to another middle m by Horner's scheme, a coefficient is off by 2 d units of the sum of |c_j| |m|^(j - k), and
+    |m| and the half length together are at most 1.
     """
     return 2.0 * UNIT * (work[at + degree + 2] + (8.0 * degree + 20.0) * work[at + degree + 1]) * degree
 
@@ -138,7 +138,7 @@ def enclosed(c, degree, a, b):
 def march(c, degree, off, a, end, anywhere):
     """(status, from, to) of the first entry into {c < 0} in [a, end], or with ``anywhere`` of any place in it, ``to``.
 
-    INSIDE: a is in it already. A HIT's bracket has a falling c.
+    INSIDE: a is in it already. In the bracket of a HIT c falls.
     """
     b = end
     late = BEFORE if anywhere else 0.0
@@ -149,7 +149,7 @@ def march(c, degree, off, a, end, anywhere):
         width = b - a
         low = q0 - e
         flat = abs(q1)
-        # The parabola's least value stands at an end, or between them at low - q1^2/(4 q2).
+        # The parabola has its minimum at an end, or between them at low - q1^2/(4 q2).
         dips = q2 + q2 > flat and 4.0 * q2 * low * LESS <= q1 * q1
         if low + q2 - flat > 0.0 and not dips:
             if b >= end:
@@ -184,7 +184,7 @@ def march(c, degree, off, a, end, anywhere):
 
 @lean_inlined
 def value(c, degree, x):
-    """(c, its derivative) at a place."""
+    """(c, its derivative) at x."""
     p, s = c[degree], 0.0
     for k in range(degree - 1, -1, -1):
         s = p + x * s
@@ -208,7 +208,7 @@ def polished(c, degree, a, b):
 
 @lean_inlined
 def between(c0, c1, c2, slack):
-    """(low, high) of the places where a convex parabola is below ``slack``, a little wider; low > high: none."""
+    """(low, high) of the interval where a convex parabola is below ``slack``, a little wider; low > high: nowhere."""
     part = 4.0 * (c0 - slack) * c2
     square = c1 * c1 - part + 1.0e-14 * (c1 * c1 + abs(part))
     if square < 0.0:
@@ -224,10 +224,10 @@ def between(c0, c1, c2, slack):
     _nrt=False,
 )
 def polynomial_root(code, constants, parts, scratch, plan, ox, oy, oz, dx, dy, dz, t0, t1, sign, anywhere):
-    """(status, t) as ``isolation_kernels.isolate`` tells, but for INSIDE: the way out is asked of a ray outside.
+    """(status, t) as ``isolation_kernels.isolate``, and INSIDE for the way out (sign < 0) of a ray already outside.
 
-    ``plan`` is that of ``plans.ray_plan``. UNDECIDED says nothing about t, and a HIT ``anywhere`` only that all before
-    t is outside.
+    ``plan`` is that of ``plans.ray_plan``. For UNDECIDED t means nothing, and for a HIT ``anywhere`` it only means that
+    the ray is outside before t.
     """
     work = scratch.reshape(scratch.size)
     middle, half = 0.5 * (t0 + t1), 0.5 * (t1 - t0)
@@ -253,7 +253,7 @@ def polynomial_root(code, constants, parts, scratch, plan, ox, oy, oz, dx, dy, d
         if low > high or low >= 1.0 or high <= -1.0:
             return (ops.MISS if sign > 0.0 else ops.UNDECIDED), t0
         first, last = between(g0, g1, g2, -slack)
-        # What is outside of low..high is proved to be outside, first..last to be inside.
+        # Outside of low..high the clip is proved positive, in first..last negative.
         if first > last or first - low > TOLD or high - last > TOLD:
             return ops.UNDECIDED, t0
         low, high = max(low, -1.0), min(high, 1.0)

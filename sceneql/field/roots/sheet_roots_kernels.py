@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""First roots of a tape along a ray with or without a change of sign: where it meets a sheet."""
+"""First roots of a tape along a ray with or without a change of sign: intersections with sheets."""
 
 import numpy as np
 
@@ -14,16 +14,16 @@ from sceneql.field.tape import tape_ops as ops
 POLES = 16
 """Changes of sign without a root that are passed on one ray."""
 NEARER = 0.95
-"""Part of f that is left half as far from a root, at the most: of |x|^k it is 1/2^k."""
+"""Ratio of |f| at half the distance to a root, at most, to |f| at the distance: for |x|^k it is 1/2^k."""
 NO_ROOT = -2
-"""Beside the sides of f."""
+"""A further value beside the sides of f."""
 
 
 @woven
 def side_of(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, near):
-    """(side, t, whole) as ``told``, or NO_ROOT in start..t1, and whether f is known to be a number all over that.
+    """(side, t, whole): as ``told``, or NO_ROOT for start..t1; and whether f is proved to be defined all over that.
 
-    An enclosure of all of it mostly tells, else one at the start, which is sooner than intervals.
+    An enclosure of start..t1 mostly decides, else one at the start; both are cheaper than intervals.
     """
     c0, c1, e, status = segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, True)
     whole = status == ops.WHOLE
@@ -43,7 +43,7 @@ def side_of(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, start, t1, 
 
 @woven
 def is_defined(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
-    """Whether f is a number all around the place t: no pole, no jump of its domain."""
+    """Whether f is defined all around t: no pole and no edge of its domain."""
     _, _, _, status = segment(
         code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t - 0.01 * near, t + 0.01 * near, True
     )
@@ -56,10 +56,10 @@ def is_defined(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near)
 
 @woven
 def nears_zero(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
-    """Whether f, which is not known to be a number all around t, nears zero there from both sides, where it is one.
+    """Whether f, not proved to be defined all around t, tends to zero there from both sides, where it is defined.
 
-    As acos(1 - |x|) does, of which rounding lets no interval tell that it is defined. A jump leaves f nearly what it is
-    half as far away, and a pole makes it larger.
+    As acos(1 - |x|), which rounding keeps intervals from proving defined. At a jump |f| hardly shrinks at half the
+    distance, and at a pole it grows.
     """
     reach = max(near, 4.0 * FINE * abs(t))
     for side in (-1.0, 1.0):
@@ -75,9 +75,9 @@ def nears_zero(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near)
 
 @woven
 def is_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
-    """Whether f, which is a number all around t, goes through zero there, or to it, and does not jump over it.
+    """Whether f, defined all around t, has a root there instead of a jump over zero.
 
-    A root is looked for as far away as ``search`` may have left it.
+    The root is searched as far away as ``search`` may have left it.
     """
     for k in range(code.shape[0]):
         op = code[k, 0]
@@ -94,8 +94,8 @@ def is_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, near):
 def surface_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, tolerance):
     """(status, t) of the first root of f on the ray o + t d, t in [t0, t1], with or without a change of sign.
 
-    HIT: all before t is proved to have none, and at t is one, up to rounding: see ``certify``. MISS: none is there.
-    UNDECIDED: all before t is proved. Where f jumps or has a pole is no root.
+    HIT: none is before t, proved, and there is one at t, up to rounding: see ``certify``. MISS: there is none.
+    UNDECIDED: none is before t, proved. Jumps and poles of f are no roots.
     """
     near = tolerance * (t1 - t0)
     start = t0
