@@ -14,9 +14,9 @@ from sceneql.field.tape.tape_ops import DENSITY
 def density_roots(
     code, constants, parts, plan, rays, count, groups, anywhere, found, queue, order, room, table, state, short, near
 ):  # fmt: skip
-    """Settle a bundle as ``packet_roots_kernels.first_roots`` does; (segments, rays that may be met, in ``queue``).
+    """First roots of a bundle: (segments examined, rays that may hit, in ``queue``); see ``packet_roots_kernels``.
 
-    ``short`` becomes the tape with the parts alone that reach into the bundle, which are ``near``, as a DENSITY.
+    ``short`` becomes the tape with only the parts that reach into the bundle, copied to ``near``, as a DENSITY.
     """
     k = plan[ROW_OF]
     for row in range(code.shape[0]):

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""The enclosure of a whole tape in lanes: see ``packet_kernels``. A density alone and its bundles do without."""
+"""The enclosure of a whole tape in lanes: see ``packet_kernels``. Not compiled for bundles of a density alone."""
 
 import numpy as np
 
@@ -79,6 +79,6 @@ def enclose(code, constants, parts, registers, point, status, n):
             binary_lanes(op, a, b, out, n, status, row_never_negative(code, left))
         elif op <= ops.SIGN:
             unary_lanes(op, a, out, n, status, row_never_negative(code, left))
-        else:  # nothing is claimed of an operation that has no lanes
+        else:  # operations without a lane version get no bound
             for i in range(n):
                 out[i] = F(np.nan)

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Whether places on rays are inside a tape: for solids that one with an exact form is cut by."""
+"""Tests whether points on rays are inside a tape: for the clips that bound a solid with an exact form."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from sceneql.field.tape.tape_ops import HIT, UNDECIDED
 
 @lean(CHECK_INSIDE, inner=True)
 def check_inside(code, constants, parts, registers, points, rays, queue, count, row, late, found):
-    """Leave rays undecided that are not inside ``late`` times their length behind the place in a row of ``found``."""
+    """Make queued HITs undecided if f >= 0 at ``late`` ray lengths behind the place in a row of ``found``."""
     width = points.shape[1]
     for start in range(0, count, width):
         n = min(width, count - start)

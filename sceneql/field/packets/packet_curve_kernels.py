@@ -1,9 +1,9 @@
 # mypy: ignore-errors
 """Cones and quadratic Bezier curves in lanes of float32: 1 - s along a segment, s the least |x - p|^2/R(p)^2.
 
-s is the least of parabolas in tau, one for each p: less the steepest of their terms in tau^2 it is concave, and so
-above its chord; and below each of them. That needs s at both ends and in the middle. Where the best p is not known
-exactly, a bound of what s loses by that is had from the slope along the part and how fast that rises.
+s is the minimum of parabolas in tau, one for each p: minus the steepest of their quadratic terms it is concave, and so
+above its chord; and it is below each of the parabolas. That needs s at both ends and in the middle. Where the best p is
+known only approximately, the excess of s is bounded by the slope along the part and the growth of that slope.
 """
 
 from sceneql.compiled.kernels import inlined
@@ -35,20 +35,20 @@ FOUR, SIX, EIGHT = F(4.0), F(6.0), F(8.0)
 MORE, LESS = F(1.0 + 4.0e-6), F(1.0 - 4.0e-6)
 QUARTER, SIXTH = F(0.25), F(1.0 / 6.0)
 TURNS = 2
-"""Of Newton's method; what it leaves is bounded."""
+"""Newton steps; the error left is bounded."""
 LOSS, FINEST = F(1.0e-3), F(1.0 / 16.0)
-"""What s may lose before a curve is looked at in pieces, and the shortest piece."""
+"""Error of s above which a curve is subdivided, and its shortest piece in q."""
 
 
 @inlined
 def held(q):
-    """q held in [0, 1]; NaN becomes 0."""
+    """q clamped to [0, 1]; NaN becomes 0."""
     return below(ZERO, q, below(q, ONE, q, ONE), ZERO)
 
 
 @inlined
 def positive(a):
-    """max(a, 0); NaN stays."""
+    """max(a, 0); NaN is propagated."""
     return below(a, ZERO, ZERO, a)
 
 
@@ -66,7 +66,7 @@ def larger_of(a, b):
 
 @inlined
 def cone_place(parts, k, wx, wy, wz):
-    """(vector from the best point of cone k to a + w, 1/R^2 there, what s may lose)."""
+    """(vector from the best point of cone k to a + w, 1/R^2 there, bound of the error of s)."""
     sx, sy, sz = parts[SX, k], parts[SY, k], parts[SZ, k]
     ra = parts[RADIUS_A, k + 1]
     r = parts[RADIUS_B, k + 1] - ra
@@ -81,7 +81,7 @@ def cone_place(parts, k, wx, wy, wz):
     end = below((d2 - TWO * along + length2) * (ratio * ratio), d2, ONE, ZERO)
     q = below(blur, den, held(num / den), end)
     radius = ra + q * r
-    # What is not a number is none at a best place, either.
+    # NaN at the best point must make the error NaN too.
     lost = EIGHT * parts[CUBE, k + 1] * blur * below(blur, den, blur / den, ONE) + ZERO * (den + num)
     return wx - q * sx, wy - q * sy, wz - q * sz, ONE / (radius * radius), lost
 
@@ -98,9 +98,9 @@ def on_piece(h0, h1, h2, h3, h4, begin, width):
 
 @inlined
 def root_on(g0, g1, g2, g3, g4, blur):
-    """(t in [0, 1], largest |g| that s falls by from there, per step of t, and how far at most) of a polynomial g.
+    """For the slope g of s: (its approximate root t in [0, 1], bound of |g| from t to the root, bound of that way).
 
-    Where g rises, a place with g is no further than g/rise from the root; elsewhere |g| may have its largest size.
+    Where g rises, a place with value g is at most g/rise from the root; elsewhere the bounds are max |g| and 1.
     """
     b1 = g0 + QUARTER * g1
     b2 = g0 + HALF * g1 + SIXTH * g2
@@ -115,7 +115,7 @@ def root_on(g0, g1, g2, g3, g4, blur):
         slope = below(slope, rise, rise, slope)
         t = held(t - g / below(slope, TINY, TINY, slope))
     g = (((t * g4 + g3) * t + g2) * t + g1) * t + g0
-    # At an end it may fall inward alone.
+    # At an end of the interval s can only fall inward.
     g = below(ZERO, t, below(t, ONE, abs(g), positive(g)), positive(-ONE * g)) + blur
     most = larger_of(abs(g0), larger_of(larger_of(abs(b1), abs(b2)), larger_of(abs(b3), abs(b4)))) + blur
     return t, below(ZERO, rise, g, most), below(ZERO, rise, below(g, rise, g / rise, ONE), ONE)
@@ -134,7 +134,7 @@ def control(parts, k):
 
 @inlined
 def stationary(curve, wx, wy, wz):
-    """(h0..h4) of h(q) = R^3/2 ds/dq at a + w, as in curve_kernels, and how far h may be off."""
+    """(h0..h4, error bound) of h(q) = R^3/2 ds/dq at a + w, as in curve_kernels."""
     ux, uy, uz, vx, vy, vz, r0, r1, r2 = curve
     uv, n4 = ux * vx + uy * vy + uz * vz, vx * vx + vy * vy + vz * vz
     n0 = wx * wx + wy * wy + wz * wz
@@ -147,7 +147,7 @@ def stationary(curve, wx, wy, wz):
     h4 = n4 * r1 - uv * r2
     size = abs(wx) + abs(wy) + abs(wz) + (abs(ux) + abs(uy) + abs(uz) + abs(vx) + abs(vy) + abs(vz))
     blur = size * size * (F(16.0) * PAD * (abs(r0) + abs(r1) + abs(r2))) + TINY
-    return h0, h1, h2, h3, h4, blur + ZERO * (h0 + h1 + h2 + h3 + h4)  # nothing is known of what is too large
+    return h0, h1, h2, h3, h4, blur + ZERO * (h0 + h1 + h2 + h3 + h4)  # NaN where a coefficient overflows
 
 
 @inlined
@@ -159,7 +159,7 @@ def place_at(curve, wx, wy, wz, q):
 
 @inlined
 def look_at_piece(curve, least_radius, h, wx, wy, wz, begin, width, state):
-    """``state`` (best q, a bound of s from below, least s) with a piece of the curve more."""
+    """Update ``state`` (best q, lower bound of s, least s) by one more piece of the curve."""
     best, bottom, least = state
     g0, g1, g2, g3, g4, blur = h
     if width < ONE:
@@ -168,26 +168,26 @@ def look_at_piece(curve, least_radius, h, wx, wy, wz, begin, width, state):
     q = begin + width * t
     dx, dy, dz, radius = place_at(curve, wx, wy, wz, q)
     s = (dx * dx + dy * dy + dz * dz) / (radius * radius)
-    # R changes by no more than its steepest slope.
+    # R varies by no more than its steepest slope.
     slope = MORE * max(abs(curve[7]), abs(curve[7] + TWO * curve[8]))
     small = larger_of(radius - (slope * width) * way, spread(least_radius))
     cube = small * small * small
-    lost = (TWO * MORE * width) * fall * way / cube + ZERO * cube  # too large for a number, too little would be lost
+    lost = (TWO * MORE * width) * fall * way / cube + ZERO * cube  # NaN where the cube overflows
     return below(s, least, q, best), least_of(bottom, s - lost), least_of(s, least)
 
 
 @inlined
 def unsettled(state):
-    """Whether a bound from below, where a density may be, should be better."""
+    """Whether the lower bound of s is too loose in a lane where the density may not vanish."""
     _, bottom, least = state
     return bits_below(bottom, ONE) & bits_below(LOSS, least - bottom) != 0
 
 
 @inlined
 def on_curve(parts, k, wx, wy, wz, ux, uy, uz):
-    """(s of curve k at a + w - u, at a + w + u, at a + w, its slope there along u, what the first two may lose).
+    """(s of curve k at a + w - u, at a + w + u, at a + w, its slope there along u, error bound of the first two).
 
-    The curve is looked at in pieces if it must be. The three places do not wait for each other.
+    The curve is subdivided where the bounds need it. The three points are independent, for instruction parallelism.
     """
     curve, small = control(parts, k), parts[RADIUS, k] * LESS
     ax, ay, az, bx, by, bz = wx - ux, wy - uy, wz - uz, wx + ux, wy + uy, wz + uz
@@ -213,7 +213,7 @@ def on_curve(parts, k, wx, wy, wz, ux, uy, uz):
 
 @inlined
 def on_cone(parts, k, wx, wy, wz, ux, uy, uz):
-    """The same for a cone."""
+    """As ``on_curve``, for a cone."""
     ax, ay, az, inverse, lost = cone_place(parts, k, wx - ux, wy - uy, wz - uz)
     low = (ax * ax + ay * ay + az * az) * inverse
     ax, ay, az, inverse, more = cone_place(parts, k, wx + ux, wy + uy, wz + uz)
@@ -237,7 +237,7 @@ def by_three(parts, k, straight, px, py, pz, ux, uy, uz, speed, way, loose):
     gap = positive(middle - bottom)
     per = parts[RADIUS, k] * parts[INVERSE, k]
     off = (loose + parts[BLUR, k]) * (MORE * per)
-    # sqrt(s) changes by no more than the way over the least R; within reach of a place where s < 1 it is 1 + 2 way/R.
+    # sqrt(s) has the Lipschitz constant 1/(least R); near a place with s < 1 it is at most 1 + 2 way/R.
     error = HALF * (gap + abs(tangent - slope)) + off * (TWO + FOUR * per * way + THREE * off)
     error = error * MORE + PAD * (low + high + TWO * middle + steep + ONE)
     return ONE - HALF * (bottom + middle), -HALF * (slope + tangent), steep, error

@@ -1,9 +1,9 @@
 # mypy: ignore-errors
 """First-order enclosures of density fields on many ray segments at once, in float32.
 
-With u = 1 - d^2/R^2 the density is max(u, 0)^3, whose second derivative is Lipschitz: it is taken as its Taylor
-polynomial of degree 2 about the middle of the segment, with the third derivative bounded. Terms of degree 2 are added
-up before they are bounded, too.
+With u = 1 - d^2/R^2 the density is max(u, 0)^3, whose second derivative is Lipschitz: it is enclosed by its Taylor
+polynomial of degree 2 about the middle of the segment and a bound of the third derivative. Quadratic terms are summed
+over the parts before they are bounded, too.
 """
 
 import numpy as np
@@ -32,8 +32,7 @@ from sceneql.field.packets.packet_rows import (
 F = np.float32
 LANES, VECTOR = 64, 16
 C1, E, SPARE = LANES, 2 * LANES, 3 * LANES
-"""Columns of a register; in the last, where others keep the sine and cosine of an angle, that of a density has working
-memory."""
+"""Columns of a register; SPARE, which keeps the sine and cosine of an angle, is working memory for a density."""
 PAD = F(5.0e-7)
 GROW = F(1.0 + 4.0e-6)
 TINY = F(1.0e-37)
@@ -42,12 +41,12 @@ INFINITE = F(np.inf)
 THRICE = F(1.8e-7)
 """Three half units in the last place."""
 ROUGH, ROUND = F(2.0e-6), F(2.0e-7)
-"""Rounding of one part's density, and of adding it to the others', relative to the largest it may have."""
+"""Rounding of one part's density, and of adding it to the sum, relative to its maximum."""
 
 
 @inlined
 def extent(c0, c1, e):
-    """Least and largest of what VECTOR lanes reach; lanes that are not numbers are left out."""
+    """Least and largest value enclosed in VECTOR lanes; NaN lanes are left out."""
     reach = (abs(c1) + e) * GROW
     low, high = c0 - reach, c0 + reach
     low = least(below(low, INFINITE, low, INFINITE))
@@ -57,7 +56,7 @@ def extent(c0, c1, e):
 
 @inlined
 def apart(low, high, first, last):
-    """How far low..high and first..last are apart, 0 where they meet."""
+    """Distance between the intervals low..high and first..last, 0 where they overlap."""
     before, behind = low - last, first - high
     off = below(before, behind, behind, before)
     return below(off, ZERO, ZERO, off)
@@ -65,13 +64,13 @@ def apart(low, high, first, last):
 
 @inlined
 def gap(parts, row, k, low, high):
-    """How far the boxes of VECTOR parts from the kth on stay off low..high along one coordinate."""
+    """Distance along one coordinate of low..high from the boxes of VECTOR parts from the kth on."""
     return apart(low, high, load(parts[row], k), load(parts[row + 1], k))
 
 
 @inlined
 def near_box(parts, k, stop, box):
-    """Bits of those of VECTOR parts from the kth on, up to ``stop``, that may have a density in a box."""
+    """Bit mask of those of VECTOR parts from the kth on, up to ``stop``, that may have a density in a box."""
     gx = gap(parts, LOW_X, k, box[0], box[1])
     gy = gap(parts, LOW_Y, k, box[2], box[3])
     gz = gap(parts, LOW_Z, k, box[4], box[5])
@@ -81,9 +80,9 @@ def near_box(parts, k, stop, box):
 
 @inlined
 def beside(parts, k, wx, wy, wz, ux, uy, uz, speed):
-    """From the nearest point of segment k: (wx, wy, wz, half the least and most |u|^2, how far that may be off).
+    """(w from the nearest point of segment k (3), middle and half width of the range of |dw/dtau|^2).
 
-    d^2 to a convex set: its second derivative along a line lies between those of its features.
+    The second derivative of d^2 to a convex set along a line lies between those of the set's features.
     """
     sx, sy, sz, shrink = parts[SX, k], parts[SY, k], parts[SZ, k], parts[SHRINK, k]
     q0 = (wx * sx + wy * sy + wz * sz) * shrink
@@ -118,7 +117,7 @@ def around(parts, k, px, py, pz, ux, uy, uz, speed, way, loose):
 
 @inlined
 def looked_at(x, y, z, i):
-    """Of VECTOR lanes of the point x, y, z from the ith on: (c0 of each, c1 of each, box, how far it may be off)."""
+    """Of VECTOR lanes of the point x, y, z from the ith on: c0 (3), c1 (3), bounding box, |c1| in all, error bound."""
     px, py, pz = load(x, i), load(y, i), load(z, i)
     ux, uy, uz = load(x, C1 + i), load(y, C1 + i), load(z, C1 + i)
     ex, ey, ez = load(x, E + i), load(y, E + i), load(z, E + i)
@@ -132,7 +131,7 @@ def looked_at(x, y, z, i):
 
 @inlined
 def weighed(weight, part, sums):
-    """Sums of polynomials c0, c1, c2, errors and sizes with that of a part more."""
+    """Add a part's polynomial c0, c1, c2, error and size, times its weight, to the sums."""
     d0, d1, d2, d, m = part
     c0, c1, c2, e, size = sums
     much = abs(weight)
@@ -144,8 +143,8 @@ def summed(out, i, sums, added, loose):
     """Write the sum of polynomials c0 + 3 c1 tau + 3 c2 tau^2 +- e as an enclosure in VECTOR lanes of ``out``."""
     c0, c1, c2, e, size = sums
     c1 = THREE * c1
-    c2 = F(1.5) * c2  # half of the term in tau^2, which lies between it and 0
-    c0 = c0 + c2 + ZERO * loose  # nothing is known where the place is not
+    c2 = F(1.5) * c2  # half of the quadratic term, which lies between it and 0
+    c0 = c0 + c2 + ZERO * loose  # NaN where the place is
     e = (e + abs(c2)) * GROW + (ROUGH + added * ROUND) * size
     store(out, i, c0)
     store(out, C1 + i, c1)
@@ -154,9 +153,8 @@ def summed(out, i, sums, added, loose):
 
 @inlined
 def cubed(a0, a1, a2, error):
-    """max(u, 0)^3 for u = a0 + a1 tau - a2 tau^2 +- error, a2 >= 0, as (c0, c1/3, c2/3, e) of a polynomial in tau, and
-    the cube of the largest u.
-    """
+    """(c0, c1/3, c2/3, e) of a polynomial in tau that encloses max(u, 0)^3, and the cube of the largest u, for u = a0 +
+    a1 tau - a2 tau^2 +- error, a2 >= 0."""
     m1 = abs(a1)
     bend = m1 - a2
     half = HALF * m1
@@ -202,7 +200,7 @@ def density_lanes(parts, start, stop, x, y, z, out, n):
 
 @inlined
 def sizes(x, y, z, spare):
-    """Radii of balls that what is enclosed in all lanes stays in."""
+    """Radii, by lane, of balls that contain the enclosed points."""
     for i in range(LANES):
         hx = (abs(x[C1 + i]) + x[E + i]) * GROW + PAD * abs(x[i])
         hy = (abs(y[C1 + i]) + y[E + i]) * GROW + PAD * abs(y[i])
@@ -222,9 +220,9 @@ def within_reach(parts, k, x, y, z, spare, first, stop):
             q = (wx * sx + wy * sy + wz * sz) * shrink
             q = below(q, ZERO, ZERO, below(ONE, q, ONE, q))
             wx, wy, wz = wx - q * sx, wy - q * sy, wz - q * sz
-        # The distance changes no faster than the point moves.
+        # Distance is 1-Lipschitz in the point.
         far = reach + load(spare, i)
-        # Where the place is not a number, nothing is known to be off.
+        # NaN places count as near.
         near = ~bits_below(far * far * GROW + TINY, wx * wx + wy * wy + wz * wz)
         if near & ((1 << min(stop - i, VECTOR)) - (1 << max(first - i, 0))) != 0:
             return True
@@ -233,7 +231,7 @@ def within_reach(parts, k, x, y, z, spare, first, stop):
 
 @inlined
 def keep_near(code, k, registers, first, stop, singles, parts, kept, near_singles, near_parts):
-    """Copy the parts of density row k that are near lanes first..stop-1 behind those kept; how many there are then."""
+    """Append the parts of density row k that are near lanes first..stop-1 to those kept; how many there are then."""
     p = code[k, 3]
     x, y, z, spare = registers[p], registers[p + 1], registers[p + 2], registers[k, SPARE:]
     sizes(x, y, z, spare)

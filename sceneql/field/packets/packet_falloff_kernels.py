@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Kernels of densities in lanes of float32: enclosures of K(s), of which is used that K is convex and falls."""
+"""Kernels of densities in lanes of float32: enclosures of K(s) for any kernel that is convex and does not increase."""
 
 from sceneql.compiled.kernels import inlined
 from sceneql.compiled.lanes_kernels import below, root, spread
@@ -8,7 +8,7 @@ from sceneql.field.skeleton.falloff_kernels import CUT, GAUSSIAN, METABALL, SHAR
 
 K, TAIL, OVER = F(SHARPNESS), F(CUT), F(1.0 / WHOLE)
 ROUGH = F(8.0e-6)
-"""Rounding of K, which is 1 at most."""
+"""Rounding error of K, which is at most 1."""
 NINTH, THIRD = F(1.0 / 9.0), F(1.0 / 3.0)
 
 
@@ -25,7 +25,7 @@ def falling_exponential(x):
 
 @inlined
 def falls(kind, s):
-    """(K, dK/ds) as of falloff_kernels, but of Wyvill's, at s >= 0."""
+    """(K, dK/ds) as in falloff_kernels at s >= 0, for all kernels but Wyvill's."""
     s = below(s, ONE, s, ONE)
     u = ONE - s
     if kind == F(SOFT_OBJECT):
@@ -57,7 +57,7 @@ def fallen(kind, a0, a1, a2, error):
     high = below(high, low, low, high)
     middle, half = HALF * (low + high), HALF * (high - low)
     value, slope = falls(kind, middle)
-    # Rounded, it may rise, or fall where nothing is left.
+    # Rounding may give a positive slope, or one beyond the reach.
     slope = below(middle, ONE, below(slope, ZERO, slope, ZERO), ZERO)
     at_low, _ = falls(kind, low)
     at_high, _ = falls(kind, high)
@@ -69,5 +69,5 @@ def fallen(kind, a0, a1, a2, error):
     flat = HALF * (at_low - at_high) + ROUGH
     c0 = below(e, flat, value + slope * (s0 - middle) + gap, HALF * (at_low + at_high))
     c1 = below(e, flat, slope * s1 * THIRD, ZERO)
-    # What is not a number has no density of 0.
+    # NaN must not become a density of 0.
     return c0 + ZERO * (s0 + s1 + es), c1, spread(ZERO), below(e, flat, e, flat), at_low + ROUGH

@@ -1,9 +1,9 @@
 # mypy: ignore-errors
 """First-order enclosures of a tape on many ray segments at once: operations in the outer loop, lanes in the inner one.
 
-float32; what is enclosed is the tape's value in exact arithmetic, as by ``enclosure_kernels.segment``. ``registers``
-(rows, WIDTH) has c0, c1 and e of an operation in its first three columns of LANES each, then the sine and cosine of an
-angle for its twin; of ``point`` (3, WIDTH), the enclosures of x, y and z, the first n lanes count, n a multiple of 16.
+In float32; enclosed is the tape's value in exact arithmetic, as by ``enclosure_kernels.segment``. ``registers`` (rows,
+WIDTH) has c0, c1 and e of an operation in its first three columns of LANES each, then the sine and cosine of an angle
+for its twin; of ``point`` (3, WIDTH), the enclosures of x, y and z, the first n lanes count, n a multiple of 16.
 """
 
 import numpy as np
@@ -54,7 +54,7 @@ SKELETON_LANES = types.void(_singles, _many, _many, _row, _row, _row, _row, _man
 skeleton_lanes = lazy("sceneql.field.packets.packet_skeleton_kernels:skeleton_lanes", SKELETON_LANES)
 BUNDLE = f"{PACKET}, float32[::1], float32[::1], int64[::1], float64[:, ::1], float32[:, ::1], int64[::1]"
 MEMORY = "float64[:, ::1]," * 6 + "int32[:, ::1], float32[:, ::1], float64[:, ::1]"
-"""Types of a bundle of rays, and of what a tape works in: see ``packets.Memory``."""
+"""Types of a bundle of rays, and of the working memory for a tape: see ``packets.Memory``."""
 _wide = types.float64[:, ::1]
 KEEP_SKELETON = types.UniTuple(_many, 2)(
     _many, _many, _row, _row, _row, _row, _many, _many, _singles, _wide, _many, _singles, _wide
@@ -83,14 +83,14 @@ check_inside = lazy("sceneql.field.packets.inside_kernels:check_inside", CHECK_I
 
 @lane
 def worse(status, i, safe, never):
-    """Note in a lane where an operation is defined."""
+    """Lower a lane's status: unchanged where an operation is ``safe``, NOWHERE where ``never``, else PARTIAL."""
     found = F(ops.WHOLE) if safe else (F(ops.NOWHERE) if never else F(ops.PARTIAL))
     status[i] = found if found > status[i] else status[i]
 
 
 @inlined
 def load_constants(code, constants, registers):
-    """Fill the registers of constants, once for all evaluations of a tape."""
+    """Fill the registers of constants, once per tape."""
     for k in range(code.shape[0]):
         if code[k, 0] == ops.CONSTANT:
             number = constants[code[k, 1]]
@@ -104,7 +104,7 @@ def load_constants(code, constants, registers):
 
 @inlined
 def taken(row, i):
-    """c0, c1 and e of VECTOR lanes of a register from the ith on."""
+    """Read c0, c1 and e of VECTOR lanes of a register from the ith on."""
     return load(row, i), load(row, C1 + i), load(row, E + i)
 
 
@@ -146,7 +146,7 @@ def scale_lanes(a, b, out, n):
 
 @inlined
 def unary_lanes(op, a, out, n, status, positive):
-    """The operations of one argument that are seldom; ``positive``: that is never below 0."""
+    """The rarer operations of one argument; ``positive``: the argument is never below 0."""
     if op == ops.ABS:
         for i in range(n):
             out[i], out[C1 + i], out[E + i] = absolute(a[i], a[C1 + i], a[E + i])
@@ -175,7 +175,7 @@ def unary_lanes(op, a, out, n, status, positive):
 
 @inlined
 def binary_lanes(op, a, b, out, n, status, positive):
-    """The operations of two arguments that are seldom; ``positive``: the first is never below 0."""
+    """The rarer operations of two arguments; ``positive``: the first is never below 0."""
     if op == ops.DIV:
         for i in range(n):
             b0, b1, eb = b[i], b[C1 + i], b[E + i]
@@ -207,7 +207,7 @@ def binary_lanes(op, a, b, out, n, status, positive):
 
 @inlined
 def turn_lanes(a, out, n):
-    """Sine and cosine of an angle, for both."""
+    """Sine and cosine of an angle, stored for both twins."""
     for i in range(n):
         s, c = sine_cosine(a[i])
         out[SINE + i] = s
@@ -216,7 +216,7 @@ def turn_lanes(a, out, n):
 
 @inlined
 def wave_lanes(op, a, out, twin, n):
-    """Sine or cosine; ``twin`` is the register that keeps both."""
+    """Sine or cosine; ``twin`` is the register that stores both."""
     if op == ops.SIN:
         for i in range(n):
             out[i], out[C1 + i], out[E + i] = wave(twin[SINE + i], twin[COSINE + i], a[i], a[C1 + i], a[E + i])
@@ -227,7 +227,7 @@ def wave_lanes(op, a, out, twin, n):
 
 @lane
 def placed(o, d, middle, half):
-    """Enclosure of o + t d, t = middle + half tau, where each of the numbers may be off by half a unit."""
+    """Enclosure of o + t d, t = middle + half tau, with inputs rounded by half a unit in the last place."""
     c1 = half * d
     way = middle * d
     return o + way, c1, TWICE * abs(o) + FIVE_TIMES * (abs(way) + abs(c1)) + TINY
@@ -235,7 +235,7 @@ def placed(o, d, middle, half):
 
 @lane
 def place(row, i, o, d, middle, half):
-    """The same, into lane i."""
+    """Write ``placed`` to lane i."""
     row[i], row[C1 + i], row[E + i] = placed(o, d, middle, half)
 
 

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Which parts of skeletons are near what many ray segments enclose, in float32: those of a bundle are kept."""
+"""Selects the parts of skeletons that are near the segments of a bundle, in float32."""
 
 from sceneql.compiled.kernels import inlined, lean
 from sceneql.compiled.lanes_kernels import bits_below, load
@@ -21,7 +21,7 @@ from sceneql.field.skeleton.skeleton_parts_kernels import NODE, SHAPE, STRIDE
 
 @inlined
 def off_box(parts, k, x, y, z):
-    """The square of how far places are off the box around part k."""
+    """Squared distance of points from the box around part k."""
     gx = apart(x, x, parts[LOW_X, k], parts[LOW_X + 1, k])
     gy = apart(y, y, parts[LOW_Y, k], parts[LOW_Y + 1, k])
     gz = apart(z, z, parts[LOW_Z, k], parts[LOW_Z + 1, k])
@@ -30,14 +30,14 @@ def off_box(parts, k, x, y, z):
 
 @inlined
 def lanes_within(off, far):
-    """Bits of the lanes where ``off`` is no more than far^2; where a place is not a number, nothing is known."""
+    """Bit mask of the lanes where ``off`` is at most far^2, NaN included."""
     return ~bits_below(far * far * GROW + TINY, off) & ((1 << VECTOR) - 1)
 
 
 @inlined
 def within_reach(parts, k, x, y, z, spare, first, stop):
-    """(whether part k may have a density in one of the lanes first..stop-1, whose ``sizes`` are in ``spare``; the same
-    for the middle of what is enclosed in them)."""
+    """(whether part k may have a density in one of the lanes first..stop-1, whose ``sizes`` are in ``spare``; whether
+    it may on the segments through the middles of these lanes)."""
     found, middle = False, False
     for i in range(first // VECTOR * VECTOR, stop, VECTOR):
         off, far = off_box(parts, k, load(x, i), load(y, i), load(z, i)), parts[FAR, k + 1]
@@ -51,7 +51,7 @@ def within_reach(parts, k, x, y, z, spare, first, stop):
 
 @inlined
 def box_around(x, y, z, first, stop):
-    """(box around what is enclosed in lanes first..stop-1 and some beside, whether all of it are numbers)."""
+    """(bounding box of lanes first..stop-1, rounded to whole vectors; whether all of them are finite)."""
     ax, bx, ay, by, az, bz = INFINITE, -INFINITE, INFINITE, -INFINITE, INFINITE, -INFINITE
     known = True
     for i in range(first // VECTOR * VECTOR, stop, VECTOR):
@@ -65,9 +65,9 @@ def box_around(x, y, z, first, stop):
 
 @lean(KEEP_SKELETON, inner=True)
 def keep_skeleton(start, end, x, y, z, spare, first, stop, singles, parts, kept, near_singles, near_parts):
-    """(rows then kept, rays' own): copy what of the skeleton in rows start..end-1 is near lanes first..stop-1 behind.
+    """Append the parts of the skeleton in rows start..end-1 that are near lanes first..stop-1; (rows kept, own).
 
-    The second is how many parts are near the middle of what is enclosed in the lanes.
+    ``own`` is the number of parts near the middle segments of the lanes.
     """
     own = 0
     sizes(x, y, z, spare)

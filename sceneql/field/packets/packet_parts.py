@@ -1,4 +1,4 @@
-"""The parts of a tape in float32, as packets read them: see packet_rows.
+"""The parts of a tape in float32, in the layout of packet_rows.
 
 Imports numpy: to be imported by the function that needs it.
 """
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 BLUR = 4.0e-7
-"""Rounding of a place in float32, six half units in the last place of what is added up there."""
+"""Rounding of a place in float32, six half units in the last place of the terms of the sum."""
 MORE = 1.0 + 8.0e-6
-"""What must not be too small is made larger by so much."""
+"""Factor that makes upper bounds safe from rounding."""
 
 
 def density_columns(parts: Floats) -> NDArray[float32]:
@@ -35,7 +35,7 @@ def density_columns(parts: Floats) -> NDArray[float32]:
 
 
 def skeleton_columns(parts: Floats) -> NDArray[float32]:
-    """(PART, r) of the rows (r, 8) of a SKELETON: two columns a part. What is no part reaches nowhere."""
+    """(PART, r) of the rows (r, 8) of a SKELETON: two columns a part. Nodes get no reach."""
     first, second = parts[::2], parts[1::2]
     shape = second[:, 6]
     a, b, c = first[:, :3], first[:, 3:6], second[:, :3]
@@ -43,7 +43,7 @@ def skeleton_columns(parts: Floats) -> NDArray[float32]:
     one, two = out[:, ::2], out[:, 1::2]
     along, across = b - a, c - a
     curved, flat = shape == CURVE, shape == TRIANGLE
-    # Where there is no way from a to b, the radius is that at a, as in skeleton_kernels.to_segment.
+    # A segment of length 0 has the radius at a, as in skeleton_kernels.to_segment.
     last = np.where(~curved & ((along**2).sum(axis=1) == 0.0), first[:, 6], second[:, 3])
     radii = np.stack([first[:, 6], last, np.where(curved, second[:, 7], first[:, 6])])
     small, large = radii.min(axis=0), radii.max(axis=0)
@@ -77,7 +77,7 @@ def skeleton_columns(parts: Floats) -> NDArray[float32]:
 
 
 def _place(out: Floats, a: Floats, along: Floats, radius: Floats, blur: Floats) -> None:
-    """The rows that say where parts are that begin at a, with an axis (p, 3)."""
+    """Fill the rows of ends a, axes (p, 3), radii and rounding."""
     length2 = (along**2).sum(axis=1)
     out[rows.AX : rows.AX + 3], out[rows.SX : rows.SX + 3] = a.T, along.T
     out[rows.INVERSE], out[rows.RADIUS], out[rows.BLUR] = 1.0 / radius**2, radius, blur
@@ -85,7 +85,7 @@ def _place(out: Floats, a: Floats, along: Floats, radius: Floats, blur: Floats) 
 
 
 def _enclose(out: Floats, corners: Floats, radius: Floats) -> Floats:
-    """The rows of boxes around corners (k, p, 3), and of how far from those there is a density; its root."""
+    """Fill the rows of bounding boxes of corners (k, p, 3) and of REACH; returns the square root of REACH."""
     for axis in range(3):
         out[rows.LOW_X + 2 * axis] = corners[:, :, axis].min(axis=0)
         out[rows.HIGH_X + 2 * axis] = corners[:, :, axis].max(axis=0)
@@ -95,7 +95,7 @@ def _enclose(out: Floats, corners: Floats, radius: Floats) -> Floats:
 
 
 def _single(out: Floats) -> NDArray[float32]:
-    """In float32; of what is too large for that nothing will be claimed."""
+    """As float32; numbers too large for it become infinite, and nothing is then claimed."""
     with np.errstate(over="ignore"):
         single: NDArray[float32] = out.astype(np.float32)
     return single

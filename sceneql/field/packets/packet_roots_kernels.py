@@ -1,9 +1,8 @@
 # mypy: ignore-errors
-"""First roots of a tape along a bundle of neighboring rays: emptied slabs, packets, certified stragglers, polish.
+"""First roots of a tape along a bundle of neighboring rays: culled slabs, packets, certified stragglers, polish.
 
-Rays stand in GROUP rows; those of a column make a beam, which is cut in SLABS along its way. Slabs that a packet proves
-to be outside are left out. What remains is hunted in lanes, and what float32 cannot tell goes to the certified float64
-routine.
+Rays stand in GROUP rows; those of a column make a beam, which is cut into SLABS. Slabs that a packet proves outside are
+culled. The rest is searched in lanes, and rays that float32 leaves undecided go to the certified float64 routine.
 """
 
 import numpy as np
@@ -28,14 +27,14 @@ BOX_OF = types.Tuple((_side, _side, types.int64))(
 box = lazy("sceneql.field.enclose.interval_kernels:box", BOX_OF)
 GROUP = 16
 TOLERANCE = 1e-9
-"""Of the certified routine, relative to the searched piece of the ray."""
+"""Tolerance of the certified routine, relative to the searched piece of the ray."""
 MANY = 64
-"""Hits of a bundle from which on a box around them costs less than to look at each."""
+"""Number of hits in a bundle from which on a test of their bounding box pays."""
 
 
 @inlined
 def certify_ray(code, constants, parts, scratch, rays, j, end, anywhere, found):
-    """Settle ray j from FOUND_LOW on by the certified routine; behind ``end`` it is known to be outside."""
+    """Find the root of ray j from FOUND_LOW on by the certified routine; the ray is outside behind ``end``."""
     ox, oy, oz, dx, dy, dz = rays[0, j], rays[1, j], rays[2, j], rays[3, j], rays[4, j], rays[5, j]
     begin = rays[6, j] + found[FOUND_LOW, j] * (1.0 - 1e-7)
     outcome, t = isolate(
@@ -49,7 +48,7 @@ def certify_ray(code, constants, parts, scratch, rays, j, end, anywhere, found):
 
 @inlined
 def certify_queued(code, constants, parts, scratch, rays, queue, count, end, anywhere, found):
-    """Settle the queued rays that are undecided, which behind ``end`` are outside. Returns their number."""
+    """``certify_ray`` for the queued rays that are undecided; returns their number."""
     certified = 0
     for k in range(count):
         j = np.uint64(queue[k])
@@ -61,7 +60,7 @@ def certify_queued(code, constants, parts, scratch, rays, queue, count, end, any
 
 @inlined
 def leave_safe(rays, queue, count, row, late, safe, unsafe, found, doubtful):
-    """Put those queued rays that hit into ``doubtful`` that ``check_inside`` must look at; how many."""
+    """Copy the queued hits outside safe..unsafe, which ``check_inside`` must test, to ``doubtful``; how many."""
     begins, ends, places, outcomes = rays[6], rays[7], found[row], found[FOUND_STATUS]
     n = 0
     for k in range(count):
@@ -74,7 +73,7 @@ def leave_safe(rays, queue, count, row, late, safe, unsafe, found, doubtful):
 
 @inlined
 def box_inside(code, constants, parts, scratch, sides):
-    """Whether a box, of which ``sides`` has the least and largest x, y and z, is inside a tape."""
+    """Whether a box, given in ``sides`` by its least and largest x, y and z, is proved inside a tape."""
     _, high, status = box(
         code, constants, parts, scratch, sides[0], sides[1], sides[2], sides[3], sides[4], sides[5]
     )  # fmt: skip
@@ -83,7 +82,7 @@ def box_inside(code, constants, parts, scratch, sides):
 
 @inlined
 def enclose_hits(rays, count, found, row, late, room):
-    """Put a box around the places that ``check_inside`` would look at into row BOX of ``room``."""
+    """Write the bounding box of the points that ``check_inside`` would test into row BOX of ``room``."""
     begins, ends, places, outcomes = rays[6], rays[7], found[row], found[FOUND_STATUS]
     sides = room[BOX]
     for axis in range(3):
@@ -101,7 +100,7 @@ def enclose_hits(rays, count, found, row, late, room):
 
 FOUND = f"{MEMORY}, int64[::1], int64[::1], float64[:, ::1], float32[:, ::1], float64[::1], int32[:, ::1]"
 ARGUMENTS = normalize_signature(f"void({BUNDLE}, {FOUND})")[0]
-"""Types of the arrays that ``first_roots`` takes before and behind its two numbers."""
+"""Types of the arrays that ``first_roots`` takes before and after ``count`` and ``anywhere``."""
 
 
 @lean(f"UniTuple(int64, 2)({BUNDLE}, int64, boolean, {FOUND})")
@@ -135,7 +134,7 @@ def first_roots(
     flat,
     other,
 ):
-    """Settle the first ``count`` rays: outcomes and places [t] into rows FOUND_STATUS and FOUND_ROOT of ``found``.
+    """Find the first roots of the first ``count`` rays; into rows FOUND_STATUS and FOUND_ROOT [t] of ``found``.
 
     Returns (enclosures spent, rays left to the certified routine). ``rays`` (RAY, n) holds origins, directions, begin
     and end; a ray with begin >= end is a MISS. They stand in GROUP rows, the last perhaps shorter, neighbors in
@@ -176,7 +175,7 @@ def first_roots(
     if cut and not (boxed and box_inside(other, constants, parts, scratch, room[BOX])):
         left = leave_safe(rays, queue, queued, row, late, safe, unsafe, found, order)
         check_inside(other, constants, parts, doubles, points, rays, order, left, row, late, found)
-    if near_settled:  # but for what is cut away
+    if near_settled:  # all but the rays to be tested against clips are done
         certified += certify_queued(code, constants, parts, scratch, rays, order, left, np.inf, anywhere, found)
     else:
         certified += certify_queued(code, constants, parts, scratch, rays, queue, queued, np.inf, anywhere, found)

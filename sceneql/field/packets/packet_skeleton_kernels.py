@@ -1,8 +1,8 @@
 # mypy: ignore-errors
 """First-order enclosures of skeletons' densities on many ray segments at once, in float32.
 
-For each part u = 1 - s, s the least |x - p|^2/R(p)^2 over its points p, is taken as a parabola a0 + a1 tau - a2 tau^2
-+- e along the segment. Of a group the largest u counts; what its kernel makes of it is added up by its weight.
+For each part u = 1 - s, s the least |x - p|^2/R(p)^2 over its points p, is enclosed by a parabola a0 + a1 tau - a2
+tau^2 +- e along the segment. In a group the largest u counts; K(s) times the weight is added up over the groups.
 """
 
 from sceneql.compiled.kernels import inlined, lean
@@ -50,14 +50,14 @@ from sceneql.field.skeleton.falloff_kernels import WYVILL
 from sceneql.field.skeleton.skeleton_parts_kernels import CURVE, TRIANGLE
 
 COARSE = F(8.0)
-"""|u|^2 relative to R times what a simpler part is off, from which on that is good enough."""
+"""A simpler part is close enough where |u|^2 is at least so many times R times its deviation."""
 NONE = F(-1.0)
 """No group."""
 
 
 @inlined
 def nearest_anchor(parts, k, bits, first, x, y, z, rival):
-    """(x, y, z, 1/R, |p - x|) of the anchor with the least |p - x|/R: ``rival``, or one of ``bits`` in k's group."""
+    """(x, y, z, 1/R, |p - x|) of the anchor p with the least |p - x|/R: ``rival``, or one of ``bits`` in k's group."""
     group = parts[GROUP, k + 1]
     bx, by, bz, inverse, away = rival
     while bits != 0:
@@ -76,10 +76,10 @@ def nearest_anchor(parts, k, bits, first, x, y, z, rival):
 
 @inlined
 def beaten(parts, k, px, py, pz, ux, uy, uz, speed, way, loose, rival):
-    """Bits of the lanes all along which part k has nothing with a |x - p|/R as low as the rival's.
+    """Bit mask of the lanes in all of which part k has no point with |x - p|/R as low as the rival's.
 
-    It lies in a ball about its anchor a of radius g: |x - a| - g > m |x - b| is what is to be shown, m the ratio of
-    radii; the difference of both squares is linear in tau but for (1 - m^2) |u|^2 tau^2.
+    The part lies in a ball of radius g about its anchor a: to be shown is |x - a| - g > m |x - b|, b the rival's
+    anchor, m the ratio of radii; the difference of both squares is linear in tau but for (1 - m^2) |u|^2 tau^2.
     """
     bx, by, bz, inverse, away = rival
     ratio = parts[FAR, k + 1] * inverse * GROW
@@ -101,7 +101,7 @@ def part_parabola(parts, k, px, py, pz, ux, uy, uz, speed, way, loose):
     shape = parts[SHAPE, k + 1]
     if shape == F(TRIANGLE):
         return triangle(parts, k, px, py, pz, ux, uy, uz, speed, way, loose)
-    # What stands for a part is off it by this much wherever it reaches, where |p - x| < R.
+    # The simpler part deviates by this much wherever it is within reach, where |p - x| < R.
     even, cone = parts[EVEN, k + 1], parts[CONE, k + 1]
     rough = COARSE * parts[RADIUS, k]
     if bits_below(speed, rough * even) == 0:
@@ -114,7 +114,7 @@ def part_parabola(parts, k, px, py, pz, ux, uy, uz, speed, way, loose):
 
 @inlined
 def coarse(parts, k, off, ball):
-    """The same for segments as long as R or more, where only what u is not above is of use: below 0 nothing counts."""
+    """As ``part_parabola`` for segments of length R or more: an upper bound of u suffices, as u < 0 has no density."""
     r = root(off) - (ball + TWO * parts[BLUR, k])
     r = below(r, ZERO, ZERO, r) * (LESS / parts[FAR, k + 1])
     most = HALF * (ONE - r * r)
@@ -123,7 +123,7 @@ def coarse(parts, k, off, ball):
 
 @inlined
 def larger(a, b):
-    """The larger of two parabolas: b + the chord of max(a - b, 0), as affine_kernels.larger_of."""
+    """The maximum of two parabolas: b + the chord of max(a - b, 0), as in affine_kernels.larger_of."""
     a0, a1, a2, ea = a
     b0, b1, b2, eb = b
     d0 = a0 - b0
@@ -143,7 +143,7 @@ def larger(a, b):
 def skeleton_lanes(parts, start, stop, x, y, z, out, n):
     """Enclosure of the density of the skeleton in columns start..stop-1 at the point enclosed in x, y, z, into ``out``.
 
-    ``parts`` are those of packet_parts.
+    ``parts`` are laid out as in packet_rows.
     """
     for i in range(0, n, VECTOR):
         px, py, pz, ux, uy, uz, box, way, loose = looked_at(x, y, z, i)

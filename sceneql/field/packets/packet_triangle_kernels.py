@@ -2,7 +2,7 @@
 """Triangles in lanes of float32: 1 - d^2/R^2 along a segment, d the distance.
 
 d^2 to a convex set has a continuous slope along a line, and its second derivative lies between those of the set's
-features: of a triangle between the face's and a corner's.
+features: for a triangle between that of the face and that of a vertex.
 """
 
 from sceneql.compiled.kernels import inlined
@@ -36,7 +36,7 @@ from sceneql.field.packets.packet_rows import (
 
 @inlined
 def from_edge(wx, wy, wz, sx, sy, sz):
-    """(vector from the nearest point of a segment from 0 to s, its square)."""
+    """(vector w from the nearest point of a segment from 0 to s, |w|^2)."""
     t = held((wx * sx + wy * sy + wz * sz) / (sx * sx + sy * sy + sz * sz))
     vx, vy, vz = wx - t * sx, wy - t * sy, wz - t * sz
     return vx, vy, vz, vx * vx + vy * vy + vz * vz
@@ -44,7 +44,7 @@ def from_edge(wx, wy, wz, sx, sy, sz):
 
 @inlined
 def nearer(a, b):
-    """The nearer of two as ``from_edge`` gives them."""
+    """The shorter of two vectors as ``from_edge`` gives them."""
     ax, ay, az, a2 = a
     bx, by, bz, b2 = b
     return below(a2, b2, ax, bx), below(a2, b2, ay, by), below(a2, b2, az, bz), below(a2, b2, a2, b2)

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 def single_parts(tape: Tape) -> NDArray[float32]:
-    """The parts of a tape as packets read them, and some columns more: vectors are loaded whole."""
+    """The parts of a tape in float32, padded by some columns, since vectors are loaded whole."""
     out = lined((PART, len(tape.parts) + VECTOR), np.float32)
     for op, start, stop, _ in tape.code.tolist():
         if op in OF_PARTS:
@@ -60,17 +60,17 @@ def enclosures(tape: Tape, origins: Floats, directions: Floats, t0: Floats, t1: 
 
 
 def plan_of(tape: Tape) -> NDArray[int64]:
-    """How packets look for roots of a tape f or max(f, g), or a positive multiple, as its kernels read it.
+    """How packets find roots of a tape f, max(f, g) or a positive multiple: its form, as their kernels read it.
 
-    (row of D, index of c, row of g, row of p), -1 for the rows where f has not the form; then of a polynomial p the
-    degrees of the rows up to it and where their coefficients begin. Of a tape without such a form, ``Memory`` adds the
-    rows by which rays are cut.
+    (row of the density D, index of c, row of g, row of the polynomial p), -1 for rows that the form has not; then for p
+    the degrees of the rows up to it and the offsets of their coefficients. For a tape of another form ``Memory``
+    appends the rows by which rays are clipped.
     """
     last = without_factor(tape, len(tape.code) - 1)
     rows = [last]
     if tape.code[last, 0] == MAX:
         rows = [without_factor(tape, int(row)) for row in tape.code[last, 1:3]]
-    # Its parts are gathered for each bundle: those of another row are not.
+    # Only one row of parts can be gathered for a bundle.
     alone = sum(int(op) in OF_PARTS for op in tape.code[:, 0]) == 1
     turns = list(zip(rows, [*rows[1:], *rows[:1]] if len(rows) > 1 else [-1], strict=True))
     for row, other in turns:
@@ -84,14 +84,14 @@ def plan_of(tape: Tape) -> NDArray[int64]:
 
 
 def others_of(plan: NDArray[int64]) -> list[int]:
-    """The rows of a tape at which places are looked at where its plan has found a root."""
+    """The rows of a tape that must be negative at the roots of its plan."""
     if plan[density_roots_kernels.ROW_OF] < 0 and plan[POLYNOMIAL] < 0:
         return [int(row) for row in plan[POLYNOMIAL + 1 :]]
     return [int(row) for row in plan[[density_roots_kernels.OTHER]] if row >= 0]
 
 
 def room_for(plan: NDArray[int64]) -> int:
-    """How many numbers polynomials of a plan work in: see polynomial_steps_kernels."""
+    """Numbers of working memory for the polynomials of a plan: see polynomial_steps_kernels."""
     rows = int(plan[POLYNOMIAL]) + 1
     if rows == 0:
         return ROWS
@@ -100,15 +100,15 @@ def room_for(plan: NDArray[int64]) -> int:
 
 
 CACHE_LINE = 64
-"""Bytes: vectors that lie across two of these are read and written at half the speed."""
+"""Bytes: a vector across two cache lines is read and written at half the speed."""
 
 
 STAGGER = 8
-"""Columns that no ray has: rows whose begins are powers of two apart push each other out of the nearest cache."""
+"""Unused columns: rows whose starts are powers of two apart would evict each other from the first-level cache."""
 
 
 def lined(shape: tuple[int, ...] | int, dtype: Any = np.float64) -> NDArray[Any]:
-    """Zeros from the begin of a cache line on."""
+    """Zeros that start at a cache line."""
     size = int(np.prod(shape)) * np.dtype(dtype).itemsize
     raw = np.zeros(size + CACHE_LINE, dtype=np.uint8)
     first = -raw.ctypes.data % CACHE_LINE
@@ -117,15 +117,15 @@ def lined(shape: tuple[int, ...] | int, dtype: Any = np.float64) -> NDArray[Any]
 
 
 class Memory:
-    """What one thread works in for bundles of up to ``count`` rays against a tape.
+    """One thread's working memory for bundles of up to ``count`` rays against a tape.
 
-    Rays are cut by the rows ``cut`` of the tape already (see ``clips.clip_rows``), but for rounding: it is looked at
-    these where a root is found. Rays that are not are met as well, but by the certified routine.
+    Rays are expected to be clipped by the rows ``cut`` of the tape (see ``clips.clip_rows``); since clipping rounds,
+    these rows are tested at each root. Rays that are not clipped are correct as well, but take the certified routine.
     """
 
     def __init__(self, tape: Tape, count: int, cut: Sequence[int] = ()) -> None:
         whole = OCTET * GROUP
-        count = -(-count // whole) * whole  # lanes beyond the rays are looked at, too
+        count = -(-count // whole) * whole  # lanes beyond the rays are computed too
         rows = len(tape.code)
         self.tape = tape
         self.rays = lined((RAY, count))
@@ -141,7 +141,7 @@ class Memory:
         self.asked, self.queue = lined((ASK, count), single), lined(count, np.int64)
         plan = plan_of(tape)
         enclosed = plan[density_roots_kernels.ROW_OF] < 0 and plan[POLYNOMIAL] < 0
-        # An exact form does without enclosures.
+        # A tape of an exact form needs no enclosures.
         self.singles = single_parts(tape) if enclosed else lined((PART, VECTOR), single)
         beams, doubles = lined((BEAM, -(-count // GROUP) + VECTOR)), lined((rows, LANES))
         near = np.zeros((2 * rows, 4), dtype=np.int32), lined(self.singles.shape, single), lined(tape.parts.shape)
@@ -181,9 +181,9 @@ def cast_together(
     anywhere: bool = False,
     cut: Sequence[int] = (),
 ) -> tuple[NDArray[np.int64], Floats]:
-    """(status, t), each (n,): as ``solid.cast``, of rays that pass near each other, in bundles of 256.
+    """(status, t), each (n,): as ``tape_solid.cast``, of neighboring rays, in bundles of 256.
 
-    They are cut by the rows ``cut`` of the tape already: see Memory.
+    Rays are clipped by the rows ``cut`` of the tape before: see Memory.
     """
     size = min(256, len(t0))
     tape, matrix = (tape, np.eye(3, 4)) if len(cut) > 0 else in_own_coordinates(tape)

@@ -17,10 +17,10 @@ from sceneql.field.roots.polynomial_steps_kernels import HALF_WAY, MIDDLE, MOST,
 def polynomial_roots(
     code, constants, rays, count, anywhere, found, queue, plan, order, room, lanes
 ):  # fmt: skip
-    """Settle a bundle as ``packet_roots_kernels.first_roots`` does.
+    """First roots of a bundle as by ``packet_roots_kernels.first_roots``.
 
-    Returns (steps, rays that may be met, in ``queue``). Enclosures of the tape would empty some bundles, but cost all
-    of them what they save in steps.
+    Returns (steps, rays that may hit, in ``queue``). Culling by enclosures of the tape would empty some bundles, but
+    cost all of them as much as it saves.
     """
     n = pack(rays, count, order, room)
     if n == 0:
@@ -30,7 +30,7 @@ def polynomial_roots(
     off = rounding(code, constants, plan, (x[0], y[0], z[0], x[1], y[1], z[1]), lanes)
     rows = plan[POLYNOMIAL] + 1
     degree = plan[DEGREES + rows - 1]
-    kept = C + (max(degree + degree % 2, 4) + 1) * ABREAST  # coefficients up to the next even degree from 4 on
+    kept = C + (max(degree + degree % 2, 4) + 1) * ABREAST  # padded to an even degree of at least 4
     spare = order[rays.shape[1] :]
     spent = queued = 0
     for first in range(0, n, ABREAST):

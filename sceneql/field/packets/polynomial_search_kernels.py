@@ -1,7 +1,7 @@
 # mypy: ignore-errors
-"""First roots of polynomials along a bundle of rays: what ``search_lanes_kernels`` does, from exact coefficients.
+"""First roots of polynomials along a bundle of rays: as ``search_lanes_kernels``, from exact coefficients.
 
-The rays that have a length are packed, and go through lanes together.
+The rays that have a length are packed, and processed together in lanes.
 """
 
 import numpy as np
@@ -38,7 +38,7 @@ polynomial_roots = lazy("sceneql.field.packets.polynomial_bundle_kernels:polynom
 
 @inlined
 def pack(rays, count, ids, wide):
-    """Put the rays that have a length into ``wide``, but for where all have one; how many there are."""
+    """Copy the rays that have a length into ``wide``, unless all have one; returns their number."""
     n = 0
     t0, t1 = rays[T0], rays[T1]
     for j in range(count):
@@ -60,11 +60,11 @@ def pack(rays, count, ids, wide):
 
 @inlined
 def reach(wide, n, axis):
-    """(Bound of a coordinate on n rays, of its error in units of that)."""
+    """(bound of a coordinate on n rays, bound of its error in units of that)."""
     o, d, t0, t1 = wide[axis], wide[3 + axis], wide[T0], wide[T1]
     most, way = np.int64(0), np.int64(0)
     for i in range(n):
-        # Numbers that are not negative are in the order of their bits; loops over integers vectorize.
+        # Nonnegative floats are ordered like their bits; loops over integers vectorize.
         near, far = bits(abs(o[i] + t0[i] * d[i])), bits(abs(o[i] + t1[i] * d[i]))
         near = near if near > far else far
         most = near if near > most else most
@@ -77,7 +77,7 @@ def reach(wide, n, axis):
 
 @inlined
 def take(wide, first, width, n, lanes):
-    """Put packed rays into lanes; those beyond ``width`` have nothing to look for."""
+    """Load packed rays into lanes; lanes beyond ``width`` are MISSes."""
     t0, t1 = wide[T0, first:], wide[T1, first:]
     for i in range(n):
         some = i < width
@@ -92,7 +92,7 @@ def take(wide, first, width, n, lanes):
 
 @inlined
 def count_lanes(lanes, n, outcome):
-    """How many of n lanes have an outcome."""
+    """Number of lanes, of the first n, with an outcome."""
     number = 0
     for i in range(n):
         number += 1 if lanes[STATE + i] == outcome else 0
@@ -101,7 +101,7 @@ def count_lanes(lanes, n, outcome):
 
 @inlined
 def note(lanes, ids, ended, count, rays, anywhere, found, queue, queued):
-    """Note the outcomes of ``ended`` lanes and where they are, and queue their rays; how many are in the queue then."""
+    """Write the outcomes and brackets of ``ended`` lanes, and queue their rays; returns the length of the queue."""
     begins, ends = rays[T0], rays[T1]
     outcomes, lows, highs, roots = found[FOUND_STATUS], found[FOUND_LOW], found[FOUND_HIGH], found[FOUND_ROOT]
     for k in range(count):
@@ -124,9 +124,9 @@ def note(lanes, ids, ended, count, rays, anywhere, found, queue, queued):
 
 @inlined
 def settle_lanes(lanes, rows, degree, ids, kept, width, live, rays, anywhere, found, queue, queued):
-    """Note what became of lanes, and put those that are ``live`` together; how many rays are in the queue.
+    """Write the outcomes of lanes, and compact the ``live`` ones; returns the length of the queue.
 
-    ``kept`` is working memory. A ray whose lane misses is a MISS already.
+    ``kept`` is working memory. Rays are MISSes from the start, so a lane that misses is not written.
     """
     if live + count_lanes(lanes, width, MISS) < width:
         if not anywhere:

@@ -1,9 +1,9 @@
 # mypy: ignore-errors
 """First roots of a tape along many rays at once: isolation_kernels.isolate in lanes, by float32 enclosures.
 
-Rays wait in a queue and take a lane each as soon as one is free. What is claimed is proved; a ray about which float32
-can tell no more is left UNDECIDED at a place up to which all is proved outside, for the certified float64 routine.
-Places along a ray are counted from its own start, so that float32 numbers them finely.
+Rays wait in a queue and take a lane each as soon as one is free. All claims are proved; a ray that float32 cannot
+decide is left UNDECIDED at a place up to which it is proved outside, for the certified float64 routine. Places along a
+ray count from its own begin, where float32 is fine.
 """
 
 import numpy as np
@@ -29,29 +29,29 @@ from sceneql.field.packets.ray_rows import (
 from sceneql.field.tape import tape_ops as ops
 
 OX, OY, OZ, DX, DY, DZ, A, B, END, CUT_FROM, CUT_TO, HELD, TRIES, LENGTH, STATE, ROOT, CHANGE, HALF_WAY = range(18)
-"""Rows of ``lanes``, each of LANES, one behind the other: ray, segment, where the search ends, a piece cut out, whether
-the inside is proved at the end, enclosures so far, length of the search, outcome (LIVE until there is one); of the
-last enclosure its root, how far it changes in half of its length, and that half."""
+"""Rows of ``lanes``, LANES numbers each: ray, segment, end of the search, interval cut out, whether the end is proved
+inside, enclosures so far, length of the search, outcome (LIVE until there is one); of the last enclosure its root,
+change over half of its length, and that half."""
 LIVE = F(-1.0)
 LARGE = F(1.0e36)
 FINE, ROUGH, LEAST = F(2.0e-5), F(1.0e-4), F(2.0e-6)
 """Widths relative to the search: of a bracket good enough; of one that float32 cannot narrow; too small to cut."""
 SAFE, SHORTEST, LONGEST, AFTER_CUT = F(0.8), F(0.25), F(8.0), TWO
-"""The next segment, relative to how far the enclosure foretells the outside; least part of one that is looked at again;
-longest one, relative to the segment just rejected, and to a piece cut out just passed."""
+"""Length of the next segment relative to the outside foretold by the enclosure; least part of a segment that is
+examined next; longest segment relative to the one just rejected, and to an interval cut out just passed."""
 MOST = F(48.0)
 """Enclosures after which a ray is left to the certified routine."""
 
 
 @inlined
 def place_of(row, i):
-    """Where in ``lanes`` a row has its number for lane i."""
+    """Index in ``lanes`` of a row's number for lane i."""
     return np.uint64(row * LANES) + np.uint64(i)
 
 
 @inlined
 def enter(lanes, i, asked, j):
-    """Put ray j into lane i."""
+    """Load ray j into lane i."""
     for axis in range(3):
         lanes[place_of(OX + axis, i)] = asked[START + axis, j]
         lanes[place_of(DX + axis, i)] = asked[WAY_OF + axis, j]
@@ -69,7 +69,7 @@ def enter(lanes, i, asked, j):
 
 @inlined
 def note(lanes, i, j, found):
-    """Note what became of ray j in lane i."""
+    """Write the outcome of ray j, in lane i."""
     found[FOUND_STATUS, j] = lanes[place_of(STATE, i)]
     found[FOUND_LOW, j] = lanes[place_of(A, i)]
     found[FOUND_HIGH, j] = lanes[place_of(B, i)]
@@ -79,7 +79,7 @@ def note(lanes, i, j, found):
 
 @inlined
 def place_lanes(lanes, point, n):
-    """Enclose the segments of n lanes."""
+    """Enclose the points of the segments of n lanes."""
     for i in range(0, n, VECTOR):
         a, b = load(lanes, A * LANES + i), load(lanes, B * LANES + i)
         middle, half = HALF * (a + b), HALF * (b - a)
@@ -133,17 +133,17 @@ def advance(lanes, last, status, n, anywhere):
         stuck = (~bracket) & (narrow <= LEAST * whole_way)
         stuck = stuck | (lanes[TRIES * LANES + i] > MOST)
         stuck = stuck | (bracket & slow & (narrow <= LEAST * whole_way))
-        # How far all is outside from where the field is f on, if the enclosure widens with the square of the length.
+        # Length up to which all is outside from the end with value f on, if e grows with the square of the length.
         f = c0 + c1 if outside else c0 - c1
         fall = c1 if c1 < ZERO else ZERO
         f = f if f > ZERO else ZERO
         way, per = SAFE * f, np.sqrt(fall * fall + e * f) - fall + TINY
-        steep, wide = HALF * m, e + TINY  # their ratio is where the slope tells most
+        steep, wide = HALF * m, e + TINY  # steep / wide: the length if the slope dominates
         either = (not outside) & (steep * per > way * wide)
         far = (steep if either else way) / (wide if either else per)
         share = far if far > SHORTEST else SHORTEST
         now = start + (share if share < HALF else HALF) * narrow if slow & (~hit) else now
-        # What follows a rejected segment.
+        # The segment after a rejected one.
         passed = b == cut_from
         after = cut_to if passed else b
         far = far if far > ONE else ONE
@@ -176,10 +176,10 @@ def advance(lanes, last, status, n, anywhere):
     inner=True,
 )
 def search_lanes(code, constants, parts, registers, point, status, lanes, ids, asked, queue, count, anywhere, found):
-    """Settle the first ``count`` rays of the ``queue``; returns the enclosures spent.
+    """Find the first roots of the first ``count`` rays of the ``queue``; returns the enclosures spent.
 
-    ``asked`` (ASK, n) and ``found`` (5, n) are by ray. A HIT has a bracket low..high with all before
-    it outside and the inside at its end; with ``anywhere`` (shadow rays) high is any place inside. MISS: all outside.
+    ``asked`` (ASK, n) and ``found`` (5, n) are by ray. A HIT has a bracket low..high: outside before low, inside at
+    high; with ``anywhere`` (shadow rays) high is any place inside. MISS: all outside.
     """
     last = registers[code.shape[0] - 1]
     live = min(count, LANES)
@@ -198,7 +198,7 @@ def search_lanes(code, constants, parts, registers, point, status, lanes, ids, a
         for i in range(live):
             ids[np.uint64(LANES + ended)] = i
             ended += 1 if lanes[STATE * LANES + i] != LIVE else 0
-        # From the last on, so that what is moved into the place of an ended lane is live.
+        # From the last on, so that the lane moved into an ended lane's place is live.
         for k in range(ended - 1, -1, -1):
             i = np.uint64(ids[np.uint64(LANES + k)])
             note(lanes, i, np.uint64(ids[i]), found)

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Beams around the columns of a bundle of rays, cut in slabs along their way; in lanes, a beam in each."""
+"""Beams around the columns of a bundle of rays, cut into slabs along their length; one beam a lane."""
 
 import numpy as np
 
@@ -12,23 +12,22 @@ from sceneql.field.tape.tape_ops import NOWHERE, WHOLE
 
 PLACE, WAY, PLACE_OFF, WAY_OFF, BEGIN, STOP = 0, 3, 6, 9, 12, 13
 BEAM = 14
-"""Rows of beams: middle of the places of its rays at the begin of the first, and of their directions; how far they are
-off both; begin and end."""
+"""Rows of beams: middle of the rays' places at the common begin, and of their directions; half widths of both; begin
+and end."""
 FROM, TO, RUN_TO, INSIDE = range(4)
-"""Rows of beams that were looked at, in place of these: where the search begins, ends, where its first segment ends,
-and a place that is inside, -inf where none is known."""
+"""Rows that replace these after the slabs are classified: begin and end of the search, end of its first segment, and a
+place proved inside, -inf if none is known."""
 OCTET = 8
-"""Lanes of float64. Rays and beams are taken so many at a time, behind the last ones, too."""
+"""Lanes of float64; rays and beams are processed so many at a time, so that arrays need room behind the last."""
 NO_LENGTH, ASKED, ENDS_INSIDE, SETTLED = -1.0, 0.0, 1.0, 2.0
-"""What may be in row SURE of ``asked``: nothing is left of the ray, something is, the search ends inside, and this is
-all that was asked."""
+"""Row SURE of ``asked``: the ray has no length; is to be searched; is to be searched and ends inside; is decided."""
 
 
 @inlined
 def bundle(rays, count, groups, beams):
-    """Enclose the rays of each group in a beam; the begin of the earliest ray, where all beams are taken to begin.
+    """Enclose the rays of each group in a beam; returns the begin of the earliest ray, at which all beams start.
 
-    A group of rays without any length ends before it begins. Groups are lanes here: ray j belongs to j % groups.
+    A group whose rays have no length ends before it begins. Groups are lanes: ray j belongs to group j % groups.
     """
     t0, t1 = rays[6], rays[7]
     for j in range(count, min(count + OCTET, rays.shape[1])):
@@ -67,7 +66,7 @@ def bundle(rays, count, groups, beams):
 
 @inlined
 def join(beams, groups, whole):
-    """The beam around all beams into column ``whole``, then each as middle and how far off."""
+    """Make the beam around all beams, in column ``whole``; then turn bounds into middles and half widths."""
     beams[STOP, whole] = -np.inf
     beams[BEGIN, whole] = np.inf
     for g in range(groups):
@@ -91,7 +90,7 @@ def join(beams, groups, whole):
 
 @inlined
 def place_slabs(beams, g, base, begin, end, point):
-    """Enclose LANES slabs, from begin to end, of a beam whose places are those at ``base``."""
+    """Enclose LANES slabs, from begin to end, of a beam whose places are given at ``base``."""
     depth = F((end - begin) / LANES)
     late = begin - base
     for axis in range(3):
@@ -107,7 +106,7 @@ def place_slabs(beams, g, base, begin, end, point):
 
 @inlined
 def cut_beams(beams, groups, begin, end):
-    """Cut beams to what is within begin..end; those of which nothing is left have no length."""
+    """Clip beams to begin..end; beams outside get no length."""
     for g in range(groups):
         low, high = max(beams[BEGIN, g], begin), min(beams[STOP, g], end)
         beams[BEGIN, g] = low if low < high else begin
@@ -116,7 +115,7 @@ def cut_beams(beams, groups, begin, end):
 
 @inlined
 def single_beams(beams, first, base, slabs, singles):
-    """Places, directions and offsets (3 rows each) and depths of slabs of VECTOR beams, rounded, into ``singles``."""
+    """Write middles, directions, half widths (3 rows each) and slab depths of VECTOR beams to ``singles``, rounded."""
     begins, stops = beams[BEGIN, first:], beams[STOP, first:]
     for i in range(0, VECTOR, OCTET):
         a, b = load(begins, i), load(stops, i)
@@ -131,7 +130,7 @@ def single_beams(beams, first, base, slabs, singles):
 
 @inlined
 def place_beams(singles, begun, point):
-    """Enclose as many slabs of VECTOR beams as there are lanes, from slab ``begun`` on."""
+    """Enclose slabs of VECTOR beams, as many as there are lanes, from slab ``begun`` on."""
     depth = load(singles, 9 * VECTOR)
     half = HALF * GROW * depth
     for axis in range(3):
@@ -144,8 +143,8 @@ def place_beams(singles, begun, point):
 
 @inlined
 def left_of_beams(last, status, begun, first, final, deep):
-    """(first, last, first inside) of the slabs of VECTOR beams that are not outside, where lanes from ``begun`` on are
-    looked at behind those before."""
+    """Update (first, last, first inside) of the slabs of VECTOR beams that are not outside, by the slabs from ``begun``
+    on, just enclosed in lanes."""
     for k in range(LANES // VECTOR):
         c0, c1, e = taken(last, k * VECTOR)
         where = load(status, k * VECTOR)
@@ -162,7 +161,7 @@ def left_of_beams(last, status, begun, first, final, deep):
 
 @inlined
 def note_beams(beams, at, slabs, first, final, deep, singles):
-    """Note of VECTOR beams from ``at`` on where to search for roots: rows FROM, TO, RUN_TO and INSIDE."""
+    """Write where VECTOR beams from ``at`` on are to be searched: rows FROM, TO, RUN_TO and INSIDE."""
     store(singles, 0, first)
     store(singles, VECTOR, final)
     store(singles, 2 * VECTOR, deep)
@@ -178,9 +177,9 @@ def note_beams(beams, at, slabs, first, final, deep, singles):
 
 @inlined
 def ask(rays, count, groups, beams, anywhere, safe, unsafe, asked):
-    """Set where the search on each ray begins and ends: ``asked``; in safe..unsafe nothing is cut away.
+    """Write the search interval of each ray to ``asked``; in safe..unsafe no clip cuts the solid.
 
-    It ends where the beam is inside, if the ray comes by there.
+    The search ends where the beam is inside, if the ray passes there.
     """
     t0, t1 = rays[6], rays[7]
     nears, fars, runs, states = asked[NEAR], asked[FAR], asked[RUN], asked[SURE]
@@ -210,7 +209,7 @@ def ask(rays, count, groups, beams, anywhere, safe, unsafe, asked):
 
 @inlined
 def ask_places(rays, count, asked):
-    """Begins, directions and lengths of rays, into ``asked``."""
+    """Write begins, directions and lengths of rays to ``asked``."""
     t0, t1 = rays[6], rays[7]
     lengths = asked[LONG]
     for j in range(count):
@@ -244,7 +243,7 @@ def left_of_slabs(last, status, lane, slabs):
 
 @inlined
 def first_inside(last, status, lane, slabs):
-    """The first of the slabs that is proved to be inside; -1: none."""
+    """The first of the slabs that is proved inside; -1: none."""
     for k in range(slabs):
         i = lane + k
         m = abs(last[C1 + i])

@@ -41,14 +41,14 @@ from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.batch_kernels import evaluate
 
 SLABS = 8
-"""Of a beam."""
+"""Slabs of a beam."""
 FEW = 8
-"""Up to so many beams are not looked at together."""
+"""Up to this number beams are not joined for a first test."""
 
 
 @inlined
 def enqueue(rays, count, groups, asked, found, queue):
-    """Queue the rays of which something is left, beam by beam; how many. What is settled is noted."""
+    """Queue the rays that are to be searched, beam by beam, and write outcomes of decided ones; how many are queued."""
     queued = 0
     states = asked[SURE]
     for g in range(groups):
@@ -67,10 +67,10 @@ def enqueue(rays, count, groups, asked, found, queue):
 
 @inlined
 def polish(code, constants, parts, registers, points, rays, queue, count, found, values, ways):
-    """A step of Newton's method on all hits among the queued rays, in float64, and one of the secant method.
+    """A Newton step on all queued hits, in float64, and a secant step.
 
-    The first has the slope of the last enclosure, which may be a mean of what is enclosed. ``values`` and ``ways``
-    (n,) are memory.
+    The slope of the first is that of the last enclosure, a mean over its segment. ``values`` and ``ways`` (n,) are
+    working memory.
     """
     width = points.shape[1]
     for start in range(0, count, width):
@@ -104,7 +104,7 @@ def polish(code, constants, parts, registers, points, rays, queue, count, found,
 
 @inlined
 def uncut(registers, clips):
-    """(first, end) of the longest run of slabs that all rows ``clips`` leave whole."""
+    """(first, end) of the longest run of slabs that are proved inside all rows ``clips``."""
     first, end, begun = 0, 0, 0
     for i in range(LANES):
         for k in range(clips.shape[0]):
@@ -119,7 +119,7 @@ def uncut(registers, clips):
 
 @inlined
 def all_through(rays, count, low, high):
-    """Whether all rays that have a length come through low..high."""
+    """Whether all rays that have a length pass through low..high."""
     begins, ends = rays[6], rays[7]
     others = 0
     for j in range(count):
@@ -129,7 +129,7 @@ def all_through(rays, count, low, high):
 
 @inlined
 def leave_all(rays, count, found, queue):
-    """Leave all rays that have a length to the certified routine; how many."""
+    """Leave all rays that have a length to the certified routine; returns their number."""
     queued = 0
     for j in range(count):
         if rays[6, j] < rays[7, j]:
@@ -144,10 +144,10 @@ def tape_roots(
     code, constants, singles, registers, point, status, lanes, ids, rays, asked, queue, count, groups, anywhere, found,
     parts, scratch, beams, doubles, points, short, near_singles, near_parts, clips,
 ):  # fmt: skip
-    """Settle a bundle as ``packet_roots_kernels.first_roots`` does, but for what the rows ``clips`` cut away.
+    """First roots of a bundle as by ``packet_roots_kernels.first_roots``, except for the clips in the rows ``clips``.
 
-    Returns (enclosures, rays that may be met, in ``queue``, rows of ``short`` that hold up to where all is looked at,
-    that place; from where to where no ray is cut).
+    Returns (enclosures, rays that may hit, in ``queue``, rows of the shortened tape in ``short``, end of the interval
+    where it is valid, and the interval in which no clip cuts the solid).
     """
     load_constants(code, constants, registers)
     length = code.shape[0]
@@ -189,7 +189,7 @@ def tape_roots(
             load_constants(code, constants, registers)
     cut_beams(beams, groups, begin, end)
     for at in range(0, groups, VECTOR):
-        # The memory of the lanes is free till the hunt.
+        # The memory of the lanes is free until the search.
         single_beams(beams, at, base, SLABS, lanes)
         left, final_slab, deep_slab = spread(F(SLABS)), spread(-ONE), spread(-ONE)
         for begun in range(0, SLABS, LANES // VECTOR):
