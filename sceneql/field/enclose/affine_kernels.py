@@ -1,9 +1,9 @@
 # mypy: ignore-errors
 """First-order enclosures of single operations in float32, without branches, so that loops over lanes vectorize.
 
-Each takes and gives c0 + c1 tau +- e, tau in [-1, 1], as enclosure_kernels does in float64. Rounding is covered twice:
-PAD times the sizes that were added, in e, and GROW for the rounding of e itself. What is not finite stays so: an
-operation that would lose a NaN or an infinity of its arguments does not.
+Operands and results are c0 + c1 tau +- e, tau in [-1, 1], as in enclosure_kernels in float64. Rounding is covered
+twice: by PAD times the magnitudes added, in e, and by GROW for the rounding of e itself. NaN and infinity are
+propagated: an operation that would lose those of its arguments does not.
 """
 
 import numpy as np
@@ -26,10 +26,10 @@ PAD = F(5.0e-7)
 """Eight half units in the last place."""
 GROW = F(1.0 + 2.0e-6)
 TINY = F(1.0e-37)
-"""More than underflow takes away."""
+"""Larger than the loss by underflow."""
 LEAST = F(1.0e-30)
 FAR = F(1.0e18)
-"""Up to here the square of a reciprocal is far from underflow."""
+"""Up to this size the square of a reciprocal does not underflow."""
 ZERO, HALF, ONE, TWO, QUARTER = F(0.0), F(0.5), F(1.0), F(2.0), F(0.25)
 INFINITE = F(np.inf)
 WAVES = F(1.5)
@@ -83,7 +83,7 @@ def scaled(a0, a1, ea, s, es):
 
 @lane
 def clamped(x):
-    """x held in [0, 1]; NaN becomes 0."""
+    """x clamped to [0, 1]; NaN becomes 0."""
     x = x if x > ZERO else ZERO
     return x if x < ONE else ONE
 
@@ -180,7 +180,7 @@ def curve(f, slope, least, most, a1, ea):
 
 @lane
 def wave(s, c, a0, a1, ea):
-    """Enclosure of the sine about a0, whose sine and cosine are s and c; [-1, 1] where that is narrower."""
+    """Enclosure of the sine about a0, given its sine s and cosine c; [-1, 1] where that is narrower."""
     reach = (abs(a1) + ea) * GROW
     least = -s - reach - WAVE_ERROR
     most = reach - s + WAVE_ERROR
@@ -211,7 +211,7 @@ def grown(a0, a1, ea):
 
 @lane
 def logged(a0, a1, ea):
-    """Enclosure of log(a) where a > 0; nothing is claimed where a reaches 0."""
+    """Enclosure of log(a) where a > 0; infinite where a may reach 0."""
     reach = (abs(a1) + ea) * GROW + PAD * abs(a0)
     low = a0 - reach
     high = a0 + reach
@@ -219,7 +219,7 @@ def logged(a0, a1, ea):
     top = high if high > LEAST else LEAST
     f = logarithm(a0 if a0 > LEAST else LEAST)
     slope = ONE / a0
-    ratio = reach / safe  # before it is squared, since 1/a^2 may underflow
+    ratio = reach / safe  # divided before squared, since 1/a^2 may underflow
     sag = QUARTER * ratio * ratio
     c0 = f - sag
     c1 = slope * a1
@@ -238,7 +238,7 @@ def logged(a0, a1, ea):
 
 @lane
 def fraction(b0, b1, eb):
-    """Whether an exponent is surely a constant that is no integer."""
+    """Whether an exponent is proved to be a constant that is no integer."""
     low, high = b0 - GROW * eb, b0 + GROW * eb
     return b1 == ZERO and below(low) == below(high) and low != below(low)
 

@@ -4,7 +4,7 @@
 On the segment o + t d, t = tm + h tau with tau in [-1, 1], every register is enclosed as c0 + c1 tau +- e (columns 0-2
 of its row of scratch), as in the affine arithmetic of Comba & Stolfi (1993) with one symbol kept: e shrinks with h^2,
 so that cutting the segment where the enclosure has no zero converges quadratically. Rounding is covered by widening e
-by some units in the last place of all that was added, and by some of its own.
+by some units in the last place of all magnitudes added, and by some of its own.
 """
 
 import numpy as np
@@ -28,7 +28,7 @@ from sceneql.field.tape import tape_ops as ops
 
 FAR = 1.0e150
 NEAR = 1.0e-300
-"""Beyond these numbers, and squares, slopes would be lost by underflow: next to nothing is claimed there."""
+"""Largest magnitude, and least square, with a useful slope: beyond these it would be lost to underflow."""
 
 
 @inlined
@@ -78,7 +78,7 @@ def curve(f, slope, least, most, a1, ea):
 
 @inlined
 def sine(s, c, a1, ea):
-    """Enclosure of the sine about an argument whose sine and cosine are s and c; [-1, 1] where that is narrower."""
+    """Enclosure of the sine about an argument with sine s and cosine c; [-1, 1] where that is narrower."""
     reach = abs(a1) + ea
     if reach < 1.5:
         c0, c1, e = curve(s, c, max(-s - reach, -1.0), min(reach - s, 1.0), a1, ea)
@@ -101,7 +101,7 @@ def exponential(a0, a1, ea):
 
 @inlined
 def logarithm(a0, a1, ea):
-    """Enclosure of log(a) where a > 0; nothing is claimed where a reaches 0."""
+    """Enclosure of log(a) where a > 0; infinite where a may reach 0."""
     reach = spread(a0, a1, ea)
     low = a0 - reach
     if not low > 0.0:
@@ -154,7 +154,7 @@ def angle(y0, y1, ey, x0, x1, ex):
 
 @inlined
 def binary(op, a0, a1, ea, b0, b1, eb):
-    """Enclosure of the operations of two arguments that are seldom or long."""
+    """Enclosure of the rarer or longer operations of two arguments."""
     if op == ops.DIV:
         r0, r1, er = reciprocal(b0, b1, eb)
         return product(a0, a1, ea, r0, r1, er)
@@ -170,7 +170,7 @@ def binary(op, a0, a1, ea, b0, b1, eb):
 
 @inlined
 def unary(op, a0, a1, ea):
-    """Enclosure of the operations of one argument that are seldom or long."""
+    """Enclosure of the rarer or longer operations of one argument."""
     if op == ops.SQRT:
         return square_root(a0, a1, ea)
     if op == ops.EXP:
@@ -197,9 +197,9 @@ def unary(op, a0, a1, ea):
 
 @inlined
 def domain(op, positive, a0, reach_a, b0, reach_b, b_constant):
-    """WHOLE, PARTIAL or NOWHERE: where an operation's value is a number, as far as the ranges of its arguments tell.
+    """Status of an operation by the ranges of its arguments: WHOLE, PARTIAL or NOWHERE.
 
-    ``positive``: the first of them is never below 0.
+    ``positive``: the first argument is never below 0.
     """
     if op == ops.SQRT:
         return ops.WHOLE if positive or a0 >= reach_a else (ops.NOWHERE if a0 + reach_a < 0.0 else ops.PARTIAL)
@@ -223,9 +223,9 @@ def segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, sur
     """(c0, c1, e, status) of f on the segment o + t d, t in [t0, t1]; ``scratch`` (rows, 8) is overwritten.
 
     Wherever f is defined there, it lies in c0 + c1 tau +- e, t = (t0 + t1)/2 + tau (t1 - t0)/2. ``status`` says WHOLE
-    (defined all over), PARTIAL (perhaps not) or NOWHERE; e is infinite where nothing can be claimed. With ``survey``
-    the parts of density fields within reach of the segment are noted in scratch; a call without it must be for a piece
-    of the segment last surveyed.
+    (defined all over), PARTIAL (perhaps not) or NOWHERE; e is infinite where no bound is known. With ``survey`` the
+    parts of density fields within reach of the segment are listed in scratch; a call without it must be for a piece of
+    the segment last surveyed.
     """
     middle = 0.5 * (t0 + t1)
     half = 0.5 * (t1 - t0) + 2.0e-16 * (abs(t0) + abs(t1))

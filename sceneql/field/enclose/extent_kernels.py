@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Least and largest of many numbers, by their bits: integers are compared in any order, so that loops vectorize."""
+"""Minimum and maximum of many numbers, by integer keys made of their bits: integer loops vectorize."""
 
 import numpy as np
 
@@ -10,13 +10,13 @@ SIGN, REST = np.int64(63), np.int64(0x7FFFFFFFFFFFFFFF)
 
 @inlined
 def number_of(key):
-    """The number with a key."""
+    """The number of an integer key."""
     return np.int64(key ^ ((key >> SIGN) & REST)).view(np.float64)
 
 
 @inlined
 def extent(row, n):
-    """(least, largest) of the first n > 0 numbers; NaN where one is."""
+    """(minimum, maximum) of the first n > 0 numbers; NaN if one is NaN."""
     least, largest = REST, -REST
     for i in range(n):
         bits = np.float64(row[i]).view(np.int64)

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Affine forms c0 + c1 tau +- e, tau in [-1, 1]: what every kernel of enclosures along a ray is made of."""
+"""Affine forms c0 + c1 tau +- e, tau in [-1, 1], and their basic operations, shared by all enclosures along a ray."""
 
 from sceneql.compiled.kernels import inlined
 from sceneql.field.tape import tape_ops as ops
@@ -7,20 +7,20 @@ from sceneql.field.tape import tape_ops as ops
 PAD = 1.0e-15
 LARGE = 1.0e300
 TINY = 1.0e-300
-"""More than underflow takes away."""
+"""Larger than the loss by underflow."""
 WIDER = 1.0 + 4.0e-15
-"""More than the rounding of some sums and products of what is not negative."""
+"""Larger than the rounding of a few sums and products of nonnegative numbers."""
 
 
 @inlined
 def never_negative(op):
-    """Whether values of an operation are at least 0, whatever their enclosure says."""
+    """Whether values of an operation are at least 0, even if their enclosure reaches below."""
     return op == ops.ABS or op == ops.SQUARE or op == ops.SQRT or op == ops.EXP
 
 
 @inlined
 def row_never_negative(code, k):
-    """The same of a row, also where it is a sum of such."""
+    """As ``never_negative`` for a row, sums of such rows included."""
     while code[k, 0] == ops.ADD:
         left, right = code[k, 1], code[k, 2]
         if never_negative(code[left, 0]):
@@ -34,7 +34,7 @@ def row_never_negative(code, k):
 
 @inlined
 def spread(a0, a1, ea):
-    """How far a form goes from a0, and so much more that a0 -+ it, rounded, are still beyond."""
+    """Largest deviation of a form from a0, enlarged so that a0 -+ it, rounded, are still bounds."""
     return (abs(a1) + ea) * WIDER + PAD * abs(a0)
 
 

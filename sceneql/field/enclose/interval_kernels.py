@@ -1,7 +1,7 @@
 # mypy: ignore-errors
-"""Interval bounds of a tape over a box, rounded outward, to cull what a solid cannot reach.
+"""Interval bounds of a tape over a box, rounded outward, to cull boxes without surface.
 
-A bound may be infinite: what a number too large or a pole makes of what comes after is still enclosed.
+A bound may be infinite, after overflow or at a pole: the operations after it still enclose.
 """
 
 import numpy as np
@@ -16,7 +16,7 @@ from sceneql.field.tape.order_kernels import sign_of
 
 LARGE = 1.0e300
 ULPS = 1.2e-15
-"""Five units in the last place: more than any library function is off."""
+"""Five units in the last place: more than the error of any library function."""
 TINY = 1.0e-300
 TURN = 2.0 * np.pi
 OF_PARTS = types.UniTuple(types.float64, 2)(
@@ -28,7 +28,7 @@ skeleton_box = lazy("sceneql.field.skeleton.parts_box_kernels:skeleton_box", OF_
 
 @inlined
 def outward(low, high):
-    """The interval widened by its rounding; infinite bounds stay so."""
+    """The interval widened outward by its rounding; infinite bounds stay."""
     down = min(low * (1.0 - ULPS), low * (1.0 + ULPS))
     up = max(high * (1.0 - ULPS), high * (1.0 + ULPS))
     return down - TINY, up + TINY
@@ -36,13 +36,13 @@ def outward(low, high):
 
 @inlined
 def hull4(p, q, r, s):
-    """Least interval with four numbers."""
+    """Least interval that contains four numbers."""
     return outward(min(min(p, q), min(r, s)), max(max(p, q), max(r, s)))
 
 
 @inlined
 def products(a, b, c, d):
-    """Interval of [a, b] [c, d]; zero times an infinite bound is zero: no number is infinite."""
+    """Interval of [a, b] [c, d]; zero times an infinite bound is zero, since the values themselves are finite."""
     p = a * c
     q = a * d
     r = b * c
@@ -57,7 +57,7 @@ def products(a, b, c, d):
 
 @inlined
 def quotients(a, b, c, d):
-    """Interval of [a, b] / [c, d] with one sign of the divisor; anything over an infinite bound is zero."""
+    """Interval of [a, b] / [c, d] with a divisor of one sign; a finite number over an infinite bound is zero."""
     p = a / c
     q = a / d
     r = b / c
@@ -72,7 +72,7 @@ def quotients(a, b, c, d):
 
 @inlined
 def over_zero(a, b, d):
-    """Interval of [a, b] / [0, d], which is not defined at zero."""
+    """Interval of [a, b] / [0, d], undefined where the divisor is zero."""
     if a >= 0.0:
         return outward(a / d, np.inf)
     return outward(-np.inf, b / d if b <= 0.0 else np.inf)
@@ -95,7 +95,7 @@ def wave(low, high, peak):
     second = sine_cosine(high - peak)[1]
     bottom = min(first, second) - ULPS
     top = max(first, second) + ULPS
-    # Whole turns from the peak, and from the trough, that lie within the interval or a hair outside.
+    # Whether the interval, widened by a hair, contains a peak or a trough.
     hair = 1.0e-9
     if np.floor((high - peak) / TURN + hair) >= np.ceil((low - peak) / TURN - hair):
         top = 1.0
@@ -124,7 +124,7 @@ def binary_box(op, a, b, c, d):
             return -np.inf, np.inf, ops.PARTIAL
         low, high = quotients(a, b, c, d)
     elif op == ops.POW:
-        if c < d:  # the builder has other ways for exponents that vary but not by whole numbers
+        if c < d:  # a varying exponent is a whole number: the builder lowers all others
             c, d = np.ceil(c), np.floor(d)
         if a > 0.0:
             low, high = hull4(a**c, a**d, b**c, b**d)
@@ -191,20 +191,20 @@ def unary_box(op, a, b):
 
 @inlined
 def over_cut(code, scratch, k):
-    """Whether the angle of row k, of which whole turns do not matter, is taken across its cut: y = 0 > x."""
+    """Whether the arguments of row k, an angle free up to whole turns, meet its cut y = 0 > x."""
     y = code[k, 1]
     return code[k, 3] != 0 and scratch[code[k, 2], 1] < 0.0 and scratch[y, 0] <= 0.0 <= scratch[y, 1]
 
 
 @inlined
 def finite(scratch, k):
-    """Whether the bounds of a row are."""
+    """Whether both bounds of a row are finite."""
     return scratch[k, 0] > -LARGE and scratch[k, 1] < LARGE
 
 
 @inlined
 def positive_or_zero(op):
-    """Whether a zero that bounds values of an operation from below is +0, so that one over it is +infinity."""
+    """Whether a lower bound zero of an operation is always +0, so that its reciprocal is +infinity."""
     return never_negative(op) or op == ops.ADD
 
 
@@ -214,10 +214,10 @@ def positive_or_zero(op):
 def box(code, constants, parts, scratch, x0, x1, y0, y1, z0, z1):
     """(low, high, status): f lies in low..high wherever it is defined in the box; ``scratch`` (rows, 8) is overwritten.
 
-    So do all rows, but for angles of which whole turns do not matter: they go on beyond pi.
+    So do all rows in theirs, but angles that are free up to whole turns may go on beyond pi.
 
-    ``status`` says WHOLE (defined all over), PARTIAL (perhaps not, or too large for float64) or NOWHERE. Where nothing
-    can be claimed, as for a box that is no numbers or upside down, the answer is (-inf, inf, PARTIAL).
+    ``status`` says WHOLE (defined all over), PARTIAL (perhaps not, or too large for float64) or NOWHERE. Where no bound
+    is known, as for a box with NaN or low > high, the answer is (-inf, inf, PARTIAL).
     """
     last = code.shape[0] - 1
     status = ops.WHOLE
@@ -251,7 +251,7 @@ def box(code, constants, parts, scratch, x0, x1, y0, y1, z0, z1):
             low, high = over_zero(scratch[left, 0], scratch[left, 1], scratch[right, 1])
             found = ops.PARTIAL
         elif op == ops.ATAN2 and over_cut(code, scratch, k):
-            # pi - atan2(y, -x), or a whole turn less
+            # atan2(y, x) = pi - atan2(y, -x), or a whole turn less
             low, high, _ = binary_box(op, scratch[left, 0], scratch[left, 1], -scratch[right, 1], -scratch[right, 0])
             low, high = outward(np.pi - high, np.pi - low)
         elif op <= ops.ATAN2 and op != ops.COPY:

@@ -1,6 +1,6 @@
 # mypy: ignore-errors
-"""What of a tape matters to the sign of f along a bundle of rays: branches that cannot win in any slab, or change the
-sign of what does, and parts out of reach are left out."""
+"""Tapes shortened for a bundle of rays, with the sign of f: without branches that cannot win, or change the sign, in
+any slab, and without parts out of reach."""
 
 import numpy as np
 
@@ -13,16 +13,16 @@ from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.short_rows_kernels import ALIAS, LIVE, write_row
 
 BY_SIGN, BY_VALUE = 1.0, 2.0
-"""What matters of a row: its sign alone, as of f, or its value."""
+"""What must be kept of a row: only its sign, as of f, or its value."""
 MANY, FEW = 6, 96
-"""So many times as many parts as are near a ray, and so many more, may be near a bundle."""
+"""A bundle may be near MANY times as many parts as a ray, and FEW more, before its rays are searched one by one."""
 CLIPS = 7
-"""Column of scratch: whether a row is a clip."""
+"""Column of scratch: 1 for a clip's row."""
 
 
 @inlined
 def exceeds(a, b, first, stop):
-    """Whether what a register encloses is more than what another does, in lanes first..stop-1."""
+    """Whether register a is proved larger than register b in lanes first..stop-1."""
     doubted = np.int32(0)
     for i in range(first, stop):
         size = abs(a[i]) + abs(b[i]) + abs(a[C1 + i]) + abs(b[C1 + i])
@@ -33,7 +33,7 @@ def exceeds(a, b, first, stop):
 
 @inlined
 def one_sided(a, sign, first, stop):
-    """Whether what a register encloses, times ``sign``, is more than zero in lanes first..stop-1."""
+    """Whether a register times ``sign`` is proved positive in lanes first..stop-1."""
     doubted = np.int32(0)
     for i in range(first, stop):
         m = abs(a[C1 + i])
@@ -44,9 +44,9 @@ def one_sided(a, sign, first, stop):
 
 @inlined
 def counts_alone(op, a, b, by_sign, first, stop):
-    """Whether a branch a of a max or min has its value in lanes first..stop-1, or ``by_sign`` its sign, whatever b is.
+    """Whether max or min has the value of its branch a in lanes first..stop-1, or ``by_sign`` its sign, for any b.
 
-    A max has the sign of a where b is below zero, a min where b is above.
+    A max has the sign of a where b is negative, a min where b is positive.
     """
     if op == ops.MAX:
         return exceeds(a, b, first, stop) or (by_sign and one_sided(b, np.float32(-1.0), first, stop))
@@ -55,9 +55,9 @@ def counts_alone(op, a, b, by_sign, first, stop):
 
 @inlined
 def mark_needed(code, registers, scratch, clips, whole, first, stop):
-    """Mark the rows that f needs in lanes first..stop-1, whose registers are known, and what rows are to be read as.
+    """Mark the rows that f needs in lanes first..stop-1, given the registers there, and the rows that replace others.
 
-    Where a tape is not defined all over (``whole``), all matters, but for the rows ``clips``.
+    Unless the tape is defined everywhere (``whole``), no row but those in ``clips`` is left out.
     """
     last = code.shape[0] - 1
     for k in range(last + 1):
@@ -91,7 +91,7 @@ def mark_needed(code, registers, scratch, clips, whole, first, stop):
                 scratch[k, ALIAS], scratch[k, LIVE] = alone, 0.0
                 scratch[alone, LIVE] = max(scratch[alone, LIVE], use)
                 continue
-        # The sign of these is known by those of what they are made of.
+        # The sign of these operations follows from the signs of their operands.
         signs = op == ops.MIN or op == ops.MAX or op == ops.NEG or op == ops.COPY or op == ops.MUL
         use = use if signs else BY_VALUE
         scratch[left, LIVE] = max(scratch[left, LIVE], use)
@@ -102,7 +102,7 @@ def mark_needed(code, registers, scratch, clips, whole, first, stop):
 
 @inlined
 def whole_in(status, first, stop):
-    """Whether a tape is defined all over lanes first..stop-1."""
+    """Whether a tape is defined everywhere in lanes first..stop-1."""
     torn = np.int32(0)
     for i in range(first, stop):
         torn += np.int32(0) if status[i] == np.float32(ops.WHOLE) else np.int32(1)
@@ -111,14 +111,14 @@ def whole_in(status, first, stop):
 
 @inlined
 def shorten(code, registers, status, first, final, clips, singles, parts, scratch, short, near_singles, near_parts):
-    """Write what matters in slabs first..final into ``short``, behind as many rows as ``code`` has.
+    """Write the tape shortened for slabs first..final into ``short``, from row len(code) on.
 
-    Returns (how many rows, whether the bundle is near so much more of a skeleton than a ray that these are better
-    looked at alone).
+    Returns (number of its rows, whether the bundle is near so many more parts of a skeleton than a ray that its rays
+    are better searched one by one).
 
-    Before those, the whole tape with the parts alone that are near. ``registers`` and ``status`` are those of all slabs
-    in lanes; a branch must win in their neighbors, too, so that it does wherever a ray is looked at. What is written
-    has the sign of f there, not always its value; that of rows ``clips`` is left out, whatever it is.
+    The rows before are the whole tape with only the near parts. ``registers`` and ``status`` are those of all slabs, in
+    lanes; a branch must win in the neighboring slabs, too, so that it does wherever a ray is searched. The short tape
+    has the sign of f there, not always its value; the rows ``clips`` are left out.
     """
     length = code.shape[0]
     low, stop = max(first - 1, 0), min(final + 2, LANES)

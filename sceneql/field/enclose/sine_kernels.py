@@ -10,15 +10,15 @@ HALF_PI_1 = 1.57079632673412561417  # the first 33 bits of pi/2, the next 33, an
 HALF_PI_2 = 6.07710050630396597660e-11
 HALF_PI_3 = 2.02226624879595063154e-21
 LARGEST = 1.0e6
-"""Beyond it three parts of pi/2 no longer suffice, and the library's functions take over."""
+"""Beyond this size three parts of pi/2 are too inaccurate, and the library's functions are used."""
 
 
 @inlined
 def reduced(x):
-    """(sin x, cos x) where |x| <= LARGEST, within 2 units in the last place; without branches, so that loops are wide.
+    """(sin x, cos x) where |x| <= LARGEST, within 2 units in the last place; without branches, so that loops vectorize.
 
-    Argument reduced by three parts of pi/2 (Cody & Waite 1980), then minimax polynomials on [-pi/4, pi/4]
-    (coefficients of Sun's fdlibm, 1993).
+    Argument reduced by three parts of pi/2 (Cody & Waite 1980), then minimax polynomials on [-pi/4, pi/4] (coefficients
+    of Sun's fdlibm, 1993).
     """
     turns = np.floor(x * TWO_OVER_PI + 0.5)
     r = ((x - turns * HALF_PI_1) - turns * HALF_PI_2) - turns * HALF_PI_3

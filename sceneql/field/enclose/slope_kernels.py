@@ -1,8 +1,8 @@
 # mypy: ignore-errors
 """Bounds of a tape's derivatives over a box: forward differentiation with intervals, after ``interval_kernels.box``.
 
-They bound the generalized gradient (Clarke 1975) where branches of min, max and abs meet, so that f still changes by no
-more than the bounds times the way.
+They bound the generalized gradient (Clarke 1975) where branches of min, max and abs meet, so they are Lipschitz bounds
+of f.
 """
 
 import numpy as np
@@ -14,7 +14,7 @@ from sceneql.field.skeleton.skeleton_bounds_kernels import skeleton_steepness
 from sceneql.field.tape import tape_ops as ops
 
 BLUR = 5.0e-16
-"""Rounding of a point of a ray, relative to the sizes of what is added."""
+"""Rounding of a point on a ray, relative to the magnitudes added."""
 
 
 @inlined
@@ -27,7 +27,7 @@ def times(a, b, c, d):
 
 @inlined
 def divided(a, b, c, d):
-    """[a, b] / [c, d]; all numbers where the divisor may be zero."""
+    """[a, b] / [c, d]; all numbers if the divisor may be zero."""
     if c <= 0.0 <= d:
         return -np.inf, np.inf
     return hull4(a / c, a / d, b / c, b / d)
@@ -35,7 +35,7 @@ def divided(a, b, c, d):
 
 @inlined
 def branches(op, a, b, c, d):
-    """(slopes to the first, slopes to the second) of min or max, as bounds; both 0..1 where neither wins."""
+    """(derivative by the first argument, by the second) of min or max, as bounds; both 0..1 if neither branch wins."""
     first = (b < c) if op == ops.MIN else (a > d)
     second = (d < a) if op == ops.MIN else (c > b)
     if first:
@@ -78,7 +78,7 @@ def pair_slopes(op, low, high, a, b, c, d):
 
 @inlined
 def single_slopes(op, low, high, a, b):
-    """Bounds of the derivative of an operation on [a, b] with value in [low, high]; infinite where there is none."""
+    """Bounds of the derivative of an operation on [a, b] with value in [low, high]; infinite where undefined."""
     if op == ops.COPY:
         return 1.0, 1.0
     if op == ops.NEG:
@@ -105,7 +105,7 @@ def single_slopes(op, low, high, a, b):
 
 @inlined
 def chained(gx, ex, gy, ey, gz, ez, scratch, k, p, columns):
-    """Bounds of a gradient in the point, times the slopes of the point's rows p..p+2, into row k of scratch."""
+    """Chain rule: bounds of a gradient in the point, times the slopes of its rows p..p+2, into row k of scratch."""
     gx, ex = outward(gx, ex)
     gy, ey = outward(gy, ey)
     gz, ez = outward(gz, ez)
@@ -120,7 +120,7 @@ def chained(gx, ex, gy, ey, gz, ez, scratch, k, p, columns):
 
 @inlined
 def density_slopes(parts, start, stop, scratch, k, p, columns):
-    """Bounds of a density field's gradient, times the slopes of its point's rows p..p+2, into row k of scratch."""
+    """Bounds of the gradient of a density field times the slopes of its point's rows p..p+2, into row k of scratch."""
     hx = 0.5 * (scratch[p, 1] - scratch[p, 0])
     hy = 0.5 * (scratch[p + 1, 1] - scratch[p + 1, 0])
     hz = 0.5 * (scratch[p + 2, 1] - scratch[p + 2, 0])
@@ -136,7 +136,7 @@ def density_slopes(parts, start, stop, scratch, k, p, columns):
         near = max(distance - diagonal, 0.0)
         if near >= radius * (1.0 + 1.0e-12):
             continue
-        # The vector from the nearest point of a convex set moves no farther than the point does.
+        # The vector from the nearest point of a convex set is 1-Lipschitz in the point.
         most = 1.0 - near * near / (radius * radius)
         far = distance + diagonal
         least = max(1.0 - far * far / (radius * radius), 0.0)
@@ -156,9 +156,9 @@ def density_slopes(parts, start, stop, scratch, k, p, columns):
 
 @inlined
 def differentiate(code, parts, scratch, columns, dx, dy, dz):
-    """Slopes of all rows into columns 2..columns of scratch; whether they are finite.
+    """Bounds of the derivatives of all rows into columns 2..columns of scratch; returns whether they are finite.
 
-    With 8 columns those along x, y and z; with 4 those along (dx, dy, dz).
+    With 8 columns along x, y and z; with 4 along (dx, dy, dz).
     """
     for k in range(code.shape[0]):
         op = code[k, 0]
