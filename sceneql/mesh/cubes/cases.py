@@ -1,8 +1,8 @@
-"""All ways in which a trilinear interpolant's zero surface can meet a cube, made by rule and packed into arrays.
+"""The cases of marching cubes: how a trilinear interpolant's zero surface can meet a cube; by rule, packed into arrays.
 
 A variant is a configuration of the corners' signs, a decision for each ambiguous face (Nielson & Hamann 1991), and
-perhaps a tube between two of the curves so drawn, through which two regions of the cube's surface are connected inside
-(Chernyaev 1995). Every curve that no tube takes is filled by a disk.
+perhaps a tunnel: a tube between two of the curves on the faces, through which two regions are connected inside
+(Chernyaev 1995). Every curve without a tube is filled by a disk.
 """
 
 from __future__ import annotations
@@ -18,36 +18,35 @@ if TYPE_CHECKING:
     from sceneql.frame import Ints
 
 CENTERS = 12
-"""From this number on a corner of a triangle is no edge but a vertex of the cube's own."""
+"""From this number on a vertex of a triangle is not on an edge, but one of the cube's inner vertices."""
 
 
 class Cases(NamedTuple):
     """The table as arrays of int32 (a tuple, so that kernels take it whole)."""
 
     first: Ints
-    """(256,) first variant of a configuration; the bits of its faces' decisions are added."""
+    """(256,) first variant of a configuration, to which the bits of its faces' decisions are added."""
     faces: Ints
-    """(256, 6, 4) corners of its ambiguous faces in turn, the first and third inside; -1 after the last.
-
-    -2 in the first place where no face is ambiguous, but two regions may be connected inside."""
+    """(256, 6, 4) corners of its ambiguous faces in turn, the first and third inside; -1 after the last face, -2 first
+    where no face is ambiguous, but two regions may be connected inside."""
     tunnel: Ints
-    """(v, 8, 8) the variant in which two corners' regions are connected inside; -1 where they are not apart."""
+    """(v, 8, 8) the variant in which two corners' regions are connected inside; -1 where they are one already."""
     start: Ints
     """(v + 1,) where the triangles of a variant begin."""
     triangles: Ints
-    """(t, 3) edges, or CENTERS and what follows it."""
+    """(t, 3) edges, or CENTERS plus the number of an inner vertex."""
     centers: Ints
-    """(v,) number of vertices of its own."""
+    """(v,) number of inner vertices."""
     around: Ints
-    """(v, 2, 12) edges around each of these; -1 after the last."""
+    """(v, 2, 12) edges around each inner vertex; -1 after the last."""
     config: Ints
-    """(v,) the configuration that a variant is of."""
+    """(v,) configuration of a variant."""
     curves: Ints
     """(v, 4, 12) edges along each curve on the cube's faces, counterclockwise seen from outside; -1 after the last."""
 
 
 class Variant(NamedTuple):
-    """Triangles of a variant, the polygons around its own vertices, its configuration and its curves on the faces."""
+    """A variant: triangles, the polygons around its inner vertices, its configuration and its curves on the faces."""
 
     triangles: list[Triangle]
     polygons: list[Loop]
@@ -56,7 +55,7 @@ class Variant(NamedTuple):
 
 
 def variant(config: int, curves: list[Loop], tube: tuple[Loop, Loop] | None) -> Variant:
-    """Disks in all curves, but a tube between two of them."""
+    """The variant with a disk in every curve, but a tube between two of them."""
     triangles: list[Triangle] = []
     polygons: list[Loop] = list(band(*tube)) if tube else []
     for curve in curves:
@@ -72,19 +71,19 @@ def variant(config: int, curves: list[Loop], tube: tuple[Loop, Loop] | None) -> 
 
 
 def sides(config: int, curve: Loop, label: list[int]) -> dict[bool, int]:
-    """The regions on a curve's two sides, inside (True) and outside."""
+    """The regions on the two sides of a curve: inside (True) and outside."""
     return {inside(config, at): label[at] for at in EDGES[curve[0]]}
 
 
 def decisions(config: int) -> list[frozenset[int]]:
-    """Sets of ambiguous faces that are joined, in the order of the numbers whose bits they are."""
+    """Sets of ambiguous faces with joined inside corners, in the order of the numbers whose bits they are."""
     faces = ambiguous(config)
     return [frozenset(f for k, f in enumerate(faces) if bits >> k & 1) for bits in range(1 << len(faces))]
 
 
 @cache
 def cases() -> Cases:
-    """The table."""
+    """The table, built once."""
     import numpy as np
 
     variants: list[Variant] = []
@@ -120,7 +119,7 @@ def cases() -> Cases:
 def packed(
     first: Ints, faces: Ints, tubes: list[tuple[int, int, list[tuple[int, int]]]], variants: list[Variant]
 ) -> Cases:
-    """The arrays of a list of variants."""
+    """The table from a list of variants."""
     import numpy as np
 
     tunnel = np.full((len(variants), 8, 8), -1, dtype=np.int32)

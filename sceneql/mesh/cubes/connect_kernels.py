@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Triangles of blocks: edges to vertices by the block that owns the edge, and the vertices of the cubes' own."""
+"""Triangles of blocks: vertices on edges are found by the block that owns the edge; inner vertices are placed."""
 
 from sceneql.compiled.kernels import inlined, lean
 from sceneql.field.tape.gradient_kernels import gradient
@@ -8,12 +8,12 @@ from sceneql.mesh.cubes.grid import BLOCK
 
 CENTERS = 12
 BEND = 0.5
-"""Cosine of the turn of the normals in a cube, 60 degrees, above which it is too coarse for its surface."""
+"""Cosine of 60 degrees: where normals in a cube turn by more, it is too coarse for its surface."""
 
 
 @inlined
 def owned(keys, low, high, key):
-    """Place of a key among the ascending keys[low:high]."""
+    """Index of a key among the ascending keys[low:high]."""
     while low < high:
         middle = (low + high) // 2
         if keys[middle] < key:
@@ -25,7 +25,7 @@ def owned(keys, low, high, key):
 
 @inlined
 def vertex(edge, x, y, z, block, beyond, begin, keys, local):
-    """The vertex on an edge of the cube (x, y, z) of a block; -1 where the block that owns it was not looked at."""
+    """The vertex on an edge of the cube (x, y, z) of a block; -1 if the block that owns the edge was not extracted."""
     axis = edge >> 2
     u = edge & 1
     v = edge >> 1 & 1
@@ -43,7 +43,7 @@ def vertex(edge, x, y, z, block, beyond, begin, keys, local):
 
 @inlined
 def turns(normal, a, b, c):
-    """Whether the normals of a triangle's corners, where they have any, turn by more than BEND."""
+    """Whether the normals of a triangle's vertices, zero ones apart, turn by more than BEND."""
     ab = normal[a, 0] * normal[b, 0] + normal[a, 1] * normal[b, 1] + normal[a, 2] * normal[b, 2]
     bc = normal[b, 0] * normal[c, 0] + normal[b, 1] * normal[c, 1] + normal[b, 2] * normal[c, 2]
     ca = normal[c, 0] * normal[a, 0] + normal[c, 1] * normal[a, 1] + normal[c, 2] * normal[a, 2]
@@ -52,7 +52,7 @@ def turns(normal, a, b, c):
 
 @inlined
 def settle(code, constants, parts, scratch, place, normal, v, low, h):
-    """Bring a vertex of a cube's own to the surface by Newton's method along the gradient, held in the cube."""
+    """Move an inner vertex to the surface by Newton's method along the gradient, clamped to the cube."""
     for _ in range(8):
         f, gx, gy, gz = gradient(code, constants, parts, scratch, place[v, 0], place[v, 1], place[v, 2])
         square = gx * gx + gy * gy + gz * gz
@@ -77,11 +77,11 @@ def connect(
     code, constants, parts, scratch, grid, blocks, first, last, beyond, begin, cube_at, triangle_at, own_at,
     keys, cubes, start, triangles, around, local, low, place, normal, out, bent,
 ):  # fmt: skip
-    """Triangles of blocks first..last-1 into ``out``, and their cubes' own vertices into ``place`` and ``normal``.
+    """Triangles of blocks first..last-1 into ``out``, and their inner vertices into ``place`` and ``normal``.
 
-    Vertices of block b begin at begin[b], its cubes at cube_at[b], its triangles at triangle_at[b] and its cubes' own
-    vertices at own_at[b]. ``beyond`` has the numbers of the blocks next to each, as in workshop.Found.
-    ``bent`` (cubes,) tells of each cube whether its surface turns by more than BEND.
+    Vertices of block b begin at begin[b], its cubes at cube_at[b], its triangles at triangle_at[b] and its inner
+    vertices at own_at[b]. ``beyond`` has the numbers of the neighboring blocks, as in grid_extraction.Found. ``bent``
+    (cubes,) is 1 where the normals in a cube turn by more than BEND.
     """
     h = grid[3]
     for b in range(first, last):

@@ -1,4 +1,4 @@
-"""The cube of marching cubes: its corners, edges and faces, and the curves that a surface draws on its faces.
+"""The cube of marching cubes: corners, edges, faces, and the curves in which a surface cuts its faces.
 
 Corner c lies at (c & 1, c >> 1 & 1, c >> 2). Edge 4 a + k is parallel to axis a; the bits of k are its place along the
 axes a + 1 and a + 2 (modulo 3). Face 2 a + s is the side s of axis a.
@@ -13,12 +13,12 @@ Segment = tuple[int, int]
 
 
 def corner(axis: int, along: int, k: int) -> int:
-    """The corner at ``along`` on an axis and at the bits of k on the two others."""
+    """The corner at ``along`` on an axis, and at the bits of k on the other two."""
     return along << axis | (k & 1) << (axis + 1) % 3 | (k >> 1) << (axis + 2) % 3
 
 
 EDGES = [(corner(axis, 0, k), corner(axis, 1, k)) for axis in range(3) for k in range(4)]
-"""Ends of each edge, the first at 0 of its axis."""
+"""The two corners of each edge, the lower one along its axis first."""
 EDGE_OF = {frozenset(ends): edge for edge, ends in enumerate(EDGES)}
 FACES = [
     [corner(axis, side, k) for k in ((0, 1, 3, 2) if side else (0, 2, 3, 1))] for axis in range(3) for side in (0, 1)
@@ -28,13 +28,13 @@ FACES_OF = [{f for f, face in enumerate(FACES) if set(ends) <= set(face)} for en
 
 
 def inside(config: int, at: int) -> bool:
-    """Whether a corner is inside; ``config`` has a bit for each corner."""
+    """Whether a corner is inside; ``config`` has one bit a corner."""
     return bool(config >> at & 1)
 
 
 @cache
 def ambiguous(config: int) -> tuple[int, ...]:
-    """Faces on which two opposite corners are inside and two outside."""
+    """Faces whose corners alternate: two opposite ones inside, two outside."""
 
     def alternates(face: list[int]) -> bool:
         signs = [inside(config, at) for at in face]
@@ -44,9 +44,9 @@ def ambiguous(config: int) -> tuple[int, ...]:
 
 
 def segments(config: int, face: int, joined: bool) -> list[Segment]:
-    """Curves on a face as pairs of edges, the inside on their left seen from outside the cube.
+    """Curves on a face as pairs of edges, with the inside to the left as seen from outside the cube.
 
-    On an ambiguous face they keep the two inside corners apart, or with ``joined`` the two outside ones.
+    On an ambiguous face they separate the two inside corners, or with ``joined`` the two outside ones.
     """
     corners = FACES[face]
     enter: list[Segment] = []  # (place on the face's border, edge)
@@ -64,7 +64,7 @@ def segments(config: int, face: int, joined: bool) -> list[Segment]:
 
 
 def loops(config: int, joined: frozenset[int]) -> list[Loop]:
-    """Closed curves of edges that the faces' segments make, counterclockwise seen from outside the solid."""
+    """Closed curves, as lists of edges, counterclockwise seen from outside the solid."""
     after = dict(pair for face in range(6) for pair in segments(config, face, face in joined))
     found = []
     while after:
@@ -78,7 +78,7 @@ def loops(config: int, joined: frozenset[int]) -> list[Loop]:
 
 
 def regions(config: int, joined: frozenset[int]) -> list[int]:
-    """For each corner a number that it shares with those connected to it on the cube's faces."""
+    """For each corner the number of its region: corners connected on the cube's faces."""
     label = list(range(8))
 
     def merge(first: int, second: int) -> None:

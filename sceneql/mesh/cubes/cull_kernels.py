@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Blocks of cells that the surface may meet: boxes are cut until an interval proves them inside or outside."""
+"""Blocks of cells that the surface may meet: boxes are halved until intervals prove them inside or outside."""
 
 from sceneql.compiled.kernels import inlined, lean
 from sceneql.field.enclose.interval_kernels import box
@@ -8,14 +8,14 @@ from sceneql.field.tape.tape_ops import NOWHERE, TAPE, WHOLE
 from sceneql.mesh.cubes.grid import BLOCK
 
 REACH = 4
-"""Blocks along the boxes that are looked at first."""
+"""Blocks along a side of the boxes that are tested first."""
 CLEAR, CUT, BROKEN = range(3)
-"""A box without surface; one that may have some; one where the tape may be undefined besides."""
+"""Of a box: proved without surface; perhaps with surface; the same, with the tape perhaps undefined in it."""
 
 
 @inlined
 def verdict(code, constants, parts, scratch, grid, i, j, k, cells):
-    """CLEAR, CUT or BROKEN: what the box of ``cells`` cells a side from node (i, j, k) on is proved to be."""
+    """CLEAR, CUT or BROKEN for the box of ``cells`` cells a side from node (i, j, k) on."""
     h = grid[3]
     low, high, status = box(
         code,
@@ -36,7 +36,7 @@ def verdict(code, constants, parts, scratch, grid, i, j, k, cells):
 
 @lean(f"int64({TAPE}, int32[:, ::1], float64[:, ::1], float64[::1], int64[::1], int64, int32[:, ::1])")
 def cull(code, constants, parts, scratch, short, near, grid, counts, layer, found):
-    """Write the blocks (x, y, z) of a layer of REACH blocks that the surface may meet into ``found``; their number.
+    """Write the blocks (x, y, z) of a layer of REACH blocks that the surface may meet to ``found``; how many.
 
     ``grid`` holds the first node and the cell [m], ``counts`` the blocks along each axis; ``short`` and ``near`` are
     room for a simplified tape.

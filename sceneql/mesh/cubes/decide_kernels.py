@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Which variant of a cube's configuration the trilinear interpolant of its corners has."""
+"""The variant of a cube's configuration by the trilinear interpolant of its corner values."""
 
 from sceneql.compiled.kernels import inlined
 
@@ -10,23 +10,23 @@ BIG = 1.0e100
 
 @inlined
 def column(k):
-    """The lower corner of the k-th of the four edges along z, in turn around the cube."""
+    """The lower corner of the k-th of the four edges along z, in order around the cube."""
     return k ^ (k >> 1)
 
 
 @inlined
 def in_column(values, k, negative):
-    """The corner of a column that has a sign."""
+    """The corner of a column with a given sign."""
     low = column(k)
     return low if (values[low] < 0.0) == negative else low + 4
 
 
 @inlined
 def tunneled(values, tunnel, variant):
-    """The variant with a tube where two regions are connected inside the cube, else the variant itself.
+    """The variant with a tunnel where two regions are connected inside the cube, else the variant itself.
 
-    Where in a slice across the columns a, b, c, d the signs alternate, the saddle there has the sign of a and c if
-    ac > bd (Chernyaev 1995). A connection inside passes a saddle point of the interpolant, and the slice through that
+    In a slice across the columns a, b, c, d whose signs alternate, the saddle has the sign of a and c if ac > bd
+    (Chernyaev 1995). A connection inside passes through a saddle point of the interpolant, and the slice through that
     shows it; so slices across one axis suffice.
     """
     for turn in range(2):
@@ -79,7 +79,7 @@ def tunneled(values, tunnel, variant):
 
 @inlined
 def decide(values, config, first, faces, tunnel):
-    """The variant of a cube with 8 corner values; NaN and infinity among them count as large."""
+    """The variant of a cube with 8 corner values, clamped; NaN counts as large."""
     variant = first[config]
     for at in range(8):
         v = values[at]

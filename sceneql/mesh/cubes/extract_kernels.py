@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""What the surface does in a block: cubes it passes through with their variants, and its vertices on grid edges."""
+"""The surface in a block: the cubes that it crosses, with their variants, and its vertices on grid edges."""
 
 from sceneql.compiled.kernels import inlined, lean
 from sceneql.field.tape.batch_kernels import LANES, along_z, evaluate
@@ -11,20 +11,20 @@ from sceneql.mesh.cubes.grid import BLOCK
 from sceneql.mesh.cubes.polish_kernels import DX, DY, DZ, FA, FB, SIDE, UNDEFINED, A, B, T, normals, polish
 
 NODES = BLOCK + 1
-"""Nodes along a block; those on its high sides are its neighbors' too."""
+"""Nodes along a block; those on its high sides are shared with its neighbors."""
 LAYERS = NODES // -(-NODES // (LANES // NODES**2))
-"""Of nodes, that are sampled at once: equal shares of NODES that LANES have room for."""
+"""Layers of nodes that are sampled at once: equal shares of NODES, as many as LANES have room for."""
 EDGES = 3 * BLOCK**3
-"""Edges that a block owns: the three that go up from each node but those on its high sides."""
+"""Edges that a block owns: the three from each node upward, for nodes not on its high sides."""
 VERTICES, CUBES, TRIANGLES, OWN = range(4)
-"""Columns of a block's tally: vertices on edges, cubes, triangles, and vertices of the cubes' own."""
+"""Columns of a block's tally: vertices on edges, cubes, triangles, inner vertices."""
 
 
 @inlined
 def sample(code, constants, parts, registers, rest, points, grid, i, j, k, values):
     """f at the nodes of the block whose first node is (i, j, k), x fastest; ``rest`` (rows, 4) is room for a tape.
 
-    Some layers at a time; what does not change with z is evaluated for the first ones alone.
+    Layers are sampled LAYERS at a time; rows of the tape that do not depend on z are evaluated for the first ones only.
     """
     h = grid[3]
     last = code.shape[0] - 1
@@ -43,7 +43,7 @@ def sample(code, constants, parts, registers, rest, points, grid, i, j, k, value
 
 @inlined
 def insides(values, masks):
-    """Into masks (NODES^2,) a bit for each node of a row along x, set where f < 0; whether the nodes differ."""
+    """Write masks (NODES^2,), one a row along x, with a bit set where f < 0; returns whether both signs occur."""
     some = 0
     every = (1 << NODES) - 1
     for row in range(NODES * NODES):
@@ -58,7 +58,7 @@ def insides(values, masks):
 
 @inlined
 def cubes_of(values, masks, corners, first, faces, tunnel, start, own, cubes, at, tally):
-    """Note the cubes with a change of sign as (place in the block, variant) from ``at`` on; count what they make."""
+    """Write the cubes with a change of sign as (place in the block, variant) from ``at`` on; count what they make."""
     n = at
     for z in range(BLOCK):
         for y in range(BLOCK):
@@ -112,7 +112,7 @@ def vertices_of(
     place,
     normal,
 ):
-    """Find the vertices on the edges that the block owns, in the order of the edges, from ``at`` on."""
+    """Find the vertices on the edges that the block owns, in the order of the edges, and write them from ``at`` on."""
     h = grid[3]
     n = 0
     done = at
@@ -172,11 +172,11 @@ def extract(
     grid, blocks, first, faces, tunnel, start, own,
     keys, place, normal, cubes, tally,
 ):  # fmt: skip
-    """Vertices, normals, edge keys and cubes of some blocks, one after the other; their (vertices, cubes).
+    """Vertices, normals, edge keys and cubes of some blocks, in order; returns (vertices, cubes).
 
-    ``tally`` (blocks, 4) counts by block. Those that follow each other in one box of REACH a side begin with what is
-    left of the tape there. ``short`` (3, rows, 4), ``near`` (2, parts, 8), ``registers``, ``slope``, ``points``,
-    ``starts``, ``search``, ``values``, ``masks`` and ``corners`` are room to work in.
+    ``tally`` (blocks, 4) counts by block. Consecutive blocks in one box of REACH a side share the tape simplified for
+    the box. ``short`` (3, rows, 4), ``near`` (2, parts, 8), ``registers``, ``slope``, ``points``, ``starts``,
+    ``search``, ``values``, ``masks`` and ``corners`` are working memory.
     """
     wide = REACH * BLOCK
     x = y = z = -1

@@ -1,4 +1,4 @@
-"""Curves on the faces between coarse and fine cells, as each of them sees them. Imports numpy."""
+"""Curves of the surface on faces between coarse and fine cells, on either side. Imports numpy."""
 
 from __future__ import annotations
 
@@ -15,31 +15,31 @@ if TYPE_CHECKING:
 
 
 class Sides(NamedTuple):
-    """Sides of coarse triangles on faces to fine cells."""
+    """Sides of coarse triangles that lie on faces to fine cells."""
 
     triangles: Keys
     """(s,)"""
     turns: Keys
-    """(s,) which side of it: from this corner to the next."""
+    """(s,) which side of the triangle: from vertex k to vertex k + 1."""
     cells: Keys
     """(s, 3) the coarse cell."""
     ends: Keys
-    """(s,) number of the pair of edges that it goes between."""
+    """(s,) key of the pair of edges that it connects."""
 
 
 class Curves(NamedTuple):
-    """Curves of fine triangles on faces to coarse cells, in the direction of the coarse triangles' sides."""
+    """Curves of fine triangles on faces to coarse cells, directed like the sides of the coarse triangles."""
 
     paths: Keys
-    """(c, n) vertices in turn, the last repeated."""
+    """(c, n) vertices along the curve, the last repeated."""
     cells: Keys
     """(c, 3) the coarse cell."""
     ends: Keys
-    """(c,) number of the pair of coarse edges that it goes between; -1 for what is no such curve."""
+    """(c,) key of the pair of coarse edges that it connects; -1 where it does not connect two."""
 
 
 def among(keys: Keys, ascending: Keys) -> NDArray[np.bool_]:
-    """(n,) whether keys are some of those ascending, of which there must be one."""
+    """(n,) whether keys are among the ascending ones, of which there must be at least one."""
     import numpy as np
 
     at = np.minimum(np.searchsorted(ascending, keys), len(ascending) - 1)
@@ -48,7 +48,7 @@ def among(keys: Keys, ascending: Keys) -> NDArray[np.bool_]:
 
 
 def pair(numbers: Numbering, first: Keys, second: Keys) -> Keys:
-    """(n,) of pairs of edges of one cube (n, 3) by their middles in half cells."""
+    """(n,) keys of pairs of edges of one cube, given by their middles (n, 3) in half cells."""
     import numpy as np
 
     # The difference is within -2..2 along each axis.
@@ -57,7 +57,7 @@ def pair(numbers: Numbering, first: Keys, second: Keys) -> Keys:
 
 
 def face_sides(coarse: Level, kept: NDArray[np.bool_], numbers: Numbering, chosen: Keys, group: int) -> Sides:
-    """The sides of kept triangles on faces of chosen groups."""
+    """The sides of kept coarse triangles that lie on faces of the chosen groups."""
     import numpy as np
 
     rows = np.flatnonzero(kept)
@@ -78,7 +78,7 @@ def face_sides(coarse: Level, kept: NDArray[np.bool_], numbers: Numbering, chose
 
 
 def border_curves(fine: Level, parts: int, numbers: Numbering, chosen: Keys, group: int) -> Curves:
-    """The curves along the border of the fine triangles; ``parts`` is how finely a coarse cell is cut."""
+    """The curves along the border of the fine triangles; a coarse cell's side is cut into ``parts``."""
     import numpy as np
 
     starts, stops = border(fine.triangles)
@@ -91,7 +91,7 @@ def border_curves(fine: Level, parts: int, numbers: Numbering, chosen: Keys, gro
     cells = np.where(among(numbers.of(high // group), chosen)[:, None], low, high)
     on_edge = (fine.doubled % (2 * parts) == 0).sum(axis=1) == 2
     following = np.full(len(fine.doubled), -1)
-    # A vertex inside a face has one curve through it; one on a coarse edge may end several.
+    # On a vertex inside a face one curve goes on; on a coarse edge several may end.
     through = ~on_edge[starts]
     following[starts[through]] = stops[through]
     begins = on_edge[starts]
@@ -111,14 +111,14 @@ def border_curves(fine: Level, parts: int, numbers: Numbering, chosen: Keys, gro
 
 
 def _ends(numbers: Numbering, first: Keys, second: Keys) -> Keys:
-    """As ``pair``, but -1 for both ends on one edge."""
+    """As ``pair``, but -1 where both ends are on one edge."""
     import numpy as np
 
     return np.where((first == second).all(axis=1), -1, pair(numbers, first, second))
 
 
 def _coarse(doubled: Keys, parts: int) -> Keys:
-    """Middles of coarse edges in half coarse cells, of the fine edges on them."""
+    """The coarse edges on which fine edges lie, as middles in half coarse cells."""
     import numpy as np
 
     along = doubled % (2 * parts) != 0
@@ -126,7 +126,7 @@ def _coarse(doubled: Keys, parts: int) -> Keys:
 
 
 def border(triangles: Ints) -> tuple[Keys, Keys]:
-    """(starts, stops) of the sides that triangles lack a neighbor at, in the direction that it would have."""
+    """(starts, stops) of the sides that belong to one triangle, reversed: as a neighbor would have them."""
     import numpy as np
 
     starts = triangles[:, [0, 1, 2]].ravel().astype(np.int64)

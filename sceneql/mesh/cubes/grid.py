@@ -1,4 +1,4 @@
-"""The cells that a solid is looked at in. Imports numpy."""
+"""The grid of cells on which a solid is sampled. Imports numpy."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 BLOCK = 8
 """Cells along a block."""
 MOST_BLOCKS = 2**23
-"""Blocks of a grid, the empty ones included."""
+"""Most blocks of a grid, empty ones included."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -21,7 +21,7 @@ class Grid:
     """Cells of one size around a box, in blocks of BLOCK cells; at least a quarter of a cell lies outside the box."""
 
     low: Floats
-    """(3,) [m]."""
+    """(3,) [m] first node."""
     cell: float
     """[m]"""
     blocks: Ints
@@ -29,14 +29,14 @@ class Grid:
 
     @property
     def numbers(self) -> Floats:
-        """First node and cell, as kernels take them."""
+        """First node and cell size [m], (4,), as kernels take them."""
         import numpy as np
 
         return np.array([*self.low, self.cell])
 
 
 def grid_around(low: Corner, high: Corner, cell: float) -> Grid:
-    """The grid of cells of a size [m] around a box. Raises ValueError for one too fine, or a box that is not finite."""
+    """The grid of cells of a size [m] around a box. Raises ValueError for too many blocks or an infinite box."""
     import numpy as np
 
     corners = np.array([low, high], dtype=np.float64)

@@ -1,4 +1,4 @@
-"""A tape on a grid, looked at block by block on all threads. Imports numpy and numba."""
+"""Extraction of a tape's surface on a grid, block by block on all threads. Imports numpy and numba."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ BATCH = 32
 
 
 class Room:
-    """What one thread works in."""
+    """Working memory of one thread."""
 
     def __init__(self, tape: Tape) -> None:
         import numpy as np
@@ -51,29 +51,29 @@ class Room:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Found:
-    """What the surface does in blocks: of block b the vertices on edges begin at begin[b], the cubes at cube_at[b]."""
+    """The surface in some blocks; block b's vertices on edges begin at begin[b], its cubes at cube_at[b]."""
 
     blocks: Ints
-    """(b, 3)."""
+    """(b, 3) places of the blocks."""
     beyond: Ints
-    """(b, 8) the block one further along the axes whose bits are set; -1 where none was looked at."""
+    """(b, 8) the neighboring block along the axes whose bits are set; -1 where it was not extracted."""
     begin: Ints
     cube_at: Ints
     triangle_at: Ints
     own_at: Ints
-    """(b + 1,) vertices of the cubes' own, counted after those on edges."""
+    """(b + 1,) first inner vertex of each block, counted after the vertices on edges."""
     keys: Ints
-    """(v,) edges of the vertices, ascending in each block."""
+    """(v,) edge of each vertex, ascending within a block."""
     cubes: Ints
     """(c, 2) place in the block and variant."""
     place: Floats
-    """(v + own, 3) [m]; those of the cubes' own are zero, to be filled."""
+    """(v + own, 3) [m] vertices; inner ones are zero until they are placed."""
     normal: Floats
     """(v + own, 3) unit gradients, or zero."""
 
 
 class GridExtraction:
-    """A tape on a grid, and room for each thread."""
+    """A tape on a grid, with working memory for each thread."""
 
     def __init__(self, whole: Tape, grid: Grid) -> None:
         self.whole, self.grid = whole, grid
@@ -81,7 +81,7 @@ class GridExtraction:
         self._own = threading.local()
 
     def room(self) -> Room:
-        """This thread's room."""
+        """This thread's working memory."""
         if not hasattr(self._own, "room"):
             self._own.room = Room(self.whole)
         found: Room = self._own.room
@@ -106,7 +106,7 @@ class GridExtraction:
         return np.concatenate(found)
 
     def extracted(self, blocks: Ints) -> Found:
-        """What the surface does in some blocks; an edge on the high side of one belongs to its neighbor there."""
+        """The surface in some blocks; an edge on the high side of a block belongs to its neighbor there."""
         import numpy as np
 
         table = cases()
@@ -128,12 +128,12 @@ class GridExtraction:
         return gathered(blocks, batches)
 
     def over_blocks(self, count: int, work: Callable[[Room, int, int], None]) -> None:
-        """Call ``work(room, first, last)`` for batches of a number of blocks, on all threads."""
+        """Call ``work(room, first, last)`` for batches of ``count`` blocks, on all threads."""
         over_tiles(-(-count // BATCH), lambda b: work(self.room(), b * BATCH, min((b + 1) * BATCH, count)))
 
 
 def gathered(blocks: Ints, batches: list[Any]) -> Found:
-    """One account of what was found in the batches of blocks."""
+    """The results of batches of blocks as one."""
     import numpy as np
 
     empty = np.zeros((0, 4), np.int64), np.zeros(0, np.int16), np.zeros((0, 2), np.int32)
@@ -151,7 +151,7 @@ def gathered(blocks: Ints, batches: list[Any]) -> Found:
 
 
 def beyond(blocks: Ints) -> Ints:
-    """(b, 8) as in Found, of distinct blocks (b, 3)."""
+    """(b, 8) as in Found, for distinct blocks (b, 3)."""
     import numpy as np
 
     found = np.full((len(blocks), 8), -1, dtype=np.int32)

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Cubes without a change of sign that may yet hide some surface: proved empty or full, or counted."""
+"""Cubes with corners of one sign that may yet contain surface: proved empty or full, or counted."""
 
 from sceneql.compiled.kernels import inlined, lean
 from sceneql.field.enclose.interval_kernels import box
@@ -14,12 +14,12 @@ from sceneql.mesh.cubes.grid import BLOCK
 DEEPEST = 2
 """How often a cube may be halved before it is left unresolved."""
 SHALLOW = 1.0e-12
-"""Where f goes no further than this to the other side of zero, it touches zero but for rounding."""
+"""Depth to which f may go to the other side of zero by rounding, where it touches zero."""
 
 
 @inlined
 def proved(code, constants, parts, scratch, x, y, z, half, negative):
-    """Whether f keeps its sign in the box of half side ``half`` about a point: by its range, or by its mean value."""
+    """Whether f is proved to keep its sign in the box of half side ``half`` about a point: by range or mean value."""
     low, high, status = box(
         code, constants, parts, scratch, x - half, x + half, y - half, y + half, z - half, z + half
     )  # fmt: skip
@@ -41,7 +41,7 @@ def proved(code, constants, parts, scratch, x, y, z, half, negative):
 
 @inlined
 def doubtful(code, constants, parts, scratch, x, y, z, half, negative, deepest, stack):
-    """Volume [m^3] of what in a cube is not proved to have its corners' sign."""
+    """Volume [m^3] of the parts of a cube that are not proved to have its corners' sign."""
     volume = 0.0
     stack[0, 0] = x
     stack[0, 1] = y
@@ -76,7 +76,7 @@ def doubtful(code, constants, parts, scratch, x, y, z, half, negative, deepest, 
 def hidden(
     code, constants, parts, scratch, short, near, registers, points, values, stack, grid, blocks, deepest, cells, rest
 ):
-    """The cubes of some blocks that have one sign at their corners, but not provably all over: their number.
+    """Find the cubes of some blocks with corners of one sign, but no proof for their inside; returns their number.
 
     Cubes are halved up to ``deepest`` times. Their places go into ``cells`` (n, 3), the volumes [m^3] without a proof
     into ``rest``.
@@ -109,7 +109,7 @@ def hidden(
                         v = values[p + (c & 1) + (c >> 1 & 1) * NODES + (c >> 2) * NODES * NODES]
                         same = same and (v < 0.0) == negative
                         least = min(least, abs(v) if v == v else 0.0)
-                    # Every point of a cube is within half a side, along each axis, of a corner.
+                    # Every point of a cube is within half a side of a corner, along each axis.
                     if not same or least > far:
                         continue
                     rest[count] = doubtful(

@@ -1,4 +1,4 @@
-"""Triangles of the cells of one size, and the cells, groups and edges of a grid as numbers. Imports numpy and numba."""
+"""Triangles of cells of one size, and keys of a grid's cells, groups and edges. Imports numpy and numba."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ class Level:
     triangles: Ints
     """(t, 3)"""
     doubled: Keys
-    """(v, 3) middles of the crossed edges in half cells, for the vertices on edges."""
+    """(v, 3) middles of the edges on which vertices lie, in half cells."""
     cells: Keys
-    """(t, 3) the cell of each triangle."""
+    """(t, 3) cell of each triangle."""
     bent: NDArray[np.bool_]
-    """(t,) whether the surface turns much in it."""
+    """(t,) whether the normals in the triangle's cell turn too much for it."""
 
 
 def level(shop: GridExtraction, found: Found, blocks: int) -> Level:
-    """The triangles of the first so many blocks."""
+    """The triangles of the first ``blocks`` blocks."""
     import numpy as np
 
     triangles, bent = connected(shop, found, blocks)
@@ -54,14 +54,14 @@ def level(shop: GridExtraction, found: Found, blocks: int) -> Level:
 
 
 def _within(place: Keys) -> Keys:
-    """(n, 3) of places (n,) in a block."""
+    """(n, 3) places of cells from their index (n,) in a block."""
     import numpy as np
 
     return np.stack([place % BLOCK, place // BLOCK % BLOCK, place // BLOCK**2], axis=1)
 
 
 class Numbering:
-    """Cells, groups and edges of a grid as single numbers."""
+    """Keys of a grid's cells, groups and edges."""
 
     def __init__(self, grid: Grid) -> None:
         import numpy as np
@@ -70,6 +70,6 @@ class Numbering:
         self.strides = np.array([1, size[0], size[0] * size[1]])
 
     def of(self, places: Keys) -> Keys:
-        """(n,) of (n, 3), distinct for cells, for groups, and for middles of edges in half cells."""
+        """(n,) keys of places (n, 3), distinct among cells, groups, or middles of edges in half cells."""
         found: Keys = (places + 1) @ self.strides
         return found

@@ -1,7 +1,7 @@
-"""Triangles for the closed curves of a cube: without chords in the cube's faces, which a neighbor could draw too.
+"""Triangulations of the closed curves of a cube, without chords in its faces, which a neighbor could draw too.
 
-An edge of the mesh then belongs to exactly two triangles: a face's curve to those of the two cubes, a chord to one
-cube's. Where a curve cannot be filled so, a vertex of the cube's own is put in its middle.
+An edge of the mesh then belongs to exactly two triangles: a curve on a face to one of each cube, a chord inside to two
+of one cube. A curve that has no such triangulation gets an inner vertex in its middle.
 """
 
 from __future__ import annotations
@@ -25,18 +25,18 @@ def middle(edge: int) -> tuple[float, float, float]:
 
 
 def chord(first: int, second: int) -> float:
-    """Length of a chord between two edges' middles; infinite in a face."""
+    """Length of a chord between the middles of two edges; infinite if it lies in a face."""
     if FACES_OF[first] & FACES_OF[second]:
         return INFINITY
     return math.dist(middle(first), middle(second))
 
 
 def filled(loop: Loop) -> list[Triangle] | None:
-    """The triangulation of a curve with the least total length of chords; None where each has a chord in a face."""
+    """The triangulation of a curve with the least total length of chords; None if each has a chord in a face."""
 
     @cache
     def best(i: int, j: int) -> tuple[float, tuple[Triangle, ...]]:
-        """Of the polygon loop[i..j], without the length of the side from j to i."""
+        """Best triangulation of the polygon loop[i..j], without the length of its side from j to i."""
         if j == i + 1:
             return 0.0, ()
         choices = []
@@ -53,14 +53,14 @@ def filled(loop: Loop) -> list[Triangle] | None:
 
 
 def fan(polygon: Loop, center: int) -> list[Triangle]:
-    """Triangles around a vertex in the middle."""
+    """Triangles from a center vertex to the sides of a polygon."""
     return [(polygon[k - 1], polygon[k], center) for k in range(len(polygon))]
 
 
 def band(first: Loop, second: Loop) -> tuple[Loop, Loop]:
-    """Two polygons that make a tube between two curves: cut open along the two shortest bridges that lie in no face.
+    """Two polygons that make a tube between two curves, cut open along two bridges that lie in no face.
 
-    Of these the pair is taken that halves both curves best.
+    The bridges are short, and halve both curves as evenly as they can.
     """
     n, m = len(first), len(second)
     bridges = [(i, j) for i, j in product(range(n), range(m)) if chord(first[i], second[j]) < INFINITY]
@@ -75,5 +75,5 @@ def band(first: Loop, second: Loop) -> tuple[Loop, Loop]:
 
 
 def arc(loop: Loop, start: int, stop: int) -> Loop:
-    """The part of a curve from one of its places to another, both included."""
+    """The part of a curve from one index to another, both included."""
     return tuple(loop[(start + k) % len(loop)] for k in range((stop - start) % len(loop) + 1))

@@ -6,22 +6,22 @@ from sceneql.field.tape.batch_gradient_kernels import differentiate
 from sceneql.field.tape.batch_kernels import evaluate
 
 CLOSE = 1.0e-9
-"""How near, in parts of an edge, two guesses end the search: the error of the last is smaller yet.
+"""Distance of two guesses, relative to the edge, that ends the search: the error of the last is smaller yet.
 
-Only where |f| fell from the one to the other, though: where the ends' values differ by many powers of ten, guesses are
-near each other and far from the root. Then a step of CLOSE looks for the root just beyond (after Brent 1973, ch. 4).
+Only if |f| fell from one to the other, though: where the ends' values differ by many powers of ten, guesses are close
+to each other and far from the root. Then a step of CLOSE tests for the root just beyond (after Brent 1973, ch. 4).
 """
 MOST_TURNS = 100
 HALVES_FROM, HALVES_EACH = 8, 3
-"""Turn from which on, and each how many-th, brackets are halved; two chords must follow each other, to be seen near."""
+"""Turn from which on, and period in which, brackets are halved; two chords must be in succession to be found close."""
 UNDEFINED = 1.0e300
-"""Stands for the value where there is none."""
+"""Replaces values that are undefined."""
 A, FA, B, FB, T, SIDE, DX, DY, DZ, LANE, BUSY = range(11)
 """Rows of a search: bracket [A, B] with f(A) < 0, not f(B) < 0, and their values; guess; last side; the edge [m]; the
-lane that it began in; and whether it goes on, 1 or 0.
+index of the edge; and whether it goes on, 1 or 0.
 
-The side is -1 for A and 1 for B, twice that where |f| did not fall to half of what it was at that end; LEVEL for B
-where f is zero at more than one place.
+The side is -1 for A and 1 for B, twice that where |f| did not fall to half of its value at that end; LEVEL for B where
+f is zero at more than one place.
 """
 LEVEL = 3.0
 ROWS = 11
@@ -29,7 +29,7 @@ ROWS = 11
 
 @inlined
 def guess(search, points, starts, turn, n):
-    """Move to where the chord is zero (Illinois, Dowell & Jarratt 1971), or to the middle; how many still moved."""
+    """The next guess: the chord's zero (Illinois, Dowell & Jarratt 1971), or the middle; returns how many moved."""
     busy = 0
     halve = turn >= HALVES_FROM and turn % HALVES_EACH == HALVES_FROM % HALVES_EACH
     for i in range(n):
@@ -42,7 +42,7 @@ def guess(search, points, starts, turn, n):
         t = a + (b - a) * share
         near = abs(t - search[T, i]) <= CLOSE
         wide = abs(b - a) > CLOSE
-        if near and wide and fb == 0.0 and t == b:  # where f < 0 ends is what is looked for: also just before b?
+        if near and wide and fb == 0.0 and t == b:  # the end of {f < 0} is searched: also just before b?
             t = b + 0.5 * (CLOSE if a > b else -CLOSE)
             near = False
         elif near and wide and abs(search[SIDE, i]) == 2.0:
@@ -61,7 +61,7 @@ def guess(search, points, starts, turn, n):
 
 @inlined
 def parted(search, points, starts, place, first, n):
-    """Store what is found of n searches in place[first:], and move the others to the front: how many they are."""
+    """Store the roots of finished searches in place[first:], and move the others to the front; returns their number."""
     busy = 0
     for i in range(n):
         if search[BUSY, i] == 0.0:
@@ -81,9 +81,9 @@ def parted(search, points, starts, place, first, n):
 
 @inlined
 def polish(code, constants, parts, registers, points, search, starts, place, first, n):
-    """Bring the places T (0 at the node, 1 at the next one) of n edges onto the surface, and these to place[first:].
+    """Find the roots T (0 at the node, 1 at the next) on n edges, and write the points to place[first:].
 
-    Most edges end after four values, some after many: when half of them have, only the others go on.
+    Most edges end after four values, some after many: when half of them have ended, the others are compacted.
     """
     found = registers[code.shape[0] - 1]
     left = n
@@ -113,7 +113,7 @@ def polish(code, constants, parts, registers, points, search, starts, place, fir
 
 @inlined
 def normals(code, constants, parts, registers, slope, points, place, out, first, n):
-    """Unit gradients at the n points of place[first:] into out[first:], zero where there is none."""
+    """Unit gradients at the n points of place[first:] into out[first:], zero where undefined."""
     last = code.shape[0] - 1
     for i in range(n):
         for axis in range(3):

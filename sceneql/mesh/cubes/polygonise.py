@@ -1,4 +1,4 @@
-"""Marching cubes on a tape: closed, of the topology of the trilinear interpolant. Imports numpy and numba."""
+"""Marching cubes on a tape: closed, with the topology of the trilinear interpolant. Imports numpy and numba."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 
 def connected(shop: GridExtraction, found: Found, blocks: int) -> tuple[Ints, NDArray[np.int8]]:
-    """Triangles of the first so many blocks, and of each cube whether its surface turns much in it (0 or 1).
+    """Triangles of the first ``blocks`` blocks, and for each cube 1 where its normals turn too much for it, else 0.
 
-    Fills in the places and normals of the cubes' own vertices.
+    Places the inner vertices, with their normals.
     """
     import numpy as np
 

@@ -1,7 +1,7 @@
 """Marching cubes with finer cells where cells are too coarse for the surface, without gaps. Imports numpy and numba.
 
-Cells are refined by groups, whose faces to other groups must show the same curves coarse and fine: a group whose
-neighbor sees more than it does is refined too. The coarse triangles then follow the fine curves of the faces between.
+Cells are refined by groups, on whose faces to other groups the curves of coarse and fine cells must match: a group
+whose neighbor shows more curves than it does is refined too. The coarse triangles then follow the fine curves there.
 """
 
 from __future__ import annotations
@@ -29,29 +29,29 @@ if TYPE_CHECKING:
     Keys = NDArray[np.int64]
 
 MANY_GROUPS = 2**12
-"""With more groups, fine cells are not halved further to prove that they hide nothing, nor are cells cut in FINEST."""
+"""With more groups, fine cells are not halved further to prove them empty, nor are cells cut in FINEST."""
 FINE, FINEST = 4, 8
-"""Parts that a cell's side is cut into, and where these do not bring triangles within a tolerance."""
+"""Parts of a cell's side after a cut, and after one for a tolerance that FINE misses."""
 SAFE = 0.5
-"""Of what so many parts are hoped to bring triangles within, at creases."""
+"""Share of the tolerance that a cut in FINE is expected to reach at creases."""
 FEW = 0.25
-"""Part of the triangles, as along creases, that shorter cells for them alone are better than for all."""
+"""Largest share of triangles, as along creases, for which cutting only their cells is better than shorter cells."""
 AT_CREASE = 5 / 16
-"""How far two planes that turn by 60 degrees are off a side between them, in what their normals differ by along it:
-tan(30 deg) / 2 of its length. Of an arc that is more than twice too much."""
+"""Distance of two planes that meet at 60 degrees from a side between them, over the difference of their normals along
+it: tan(30 deg) / 2 of its length. For an arc that is more than twice too much."""
 MOST_GROUPS = 2**15
-"""Groups to be refined; more are a field of noise, or a grid far too coarse."""
+"""Most groups that are refined; more come from noise, or from a grid far too coarse."""
 
 
 def refined(
     tape: Tape, low: Corner, high: Corner, cell: float, tolerance: float | None = None
 ) -> tuple[Polygons, Unresolved]:
-    """Triangles of the solid {tape < 0} cut at the box low..high, by cells of a size [m]; what is left unresolved.
+    """Triangles of the solid {tape < 0} cut at the box low..high, by cells of a size [m]; and the unresolved cells.
 
-    Cells are cut in which the surface turns much, and those whose corners have one sign without a proof that f keeps it
-    between them; none where that were more than MOST_GROUPS. With a ``tolerance`` [m] those too in which triangles are
-    farther off the surface, where they are FEW, as at creases: else all cells are too long. Closed and 2-manifold; the
-    bytes do not depend on the number of threads. Raises ValueError as ``grid_around``.
+    Cut are cells in which the normals turn too much, and cells with corners of one sign without a proof that f keeps it
+    inside; none if these are more than MOST_GROUPS. With a ``tolerance`` [m] also cells with triangles farther off the
+    surface, if they are FEW, as at creases: else all cells are too long. Closed and 2-manifold; the bytes do not depend
+    on the number of threads. Raises ValueError as ``grid_around``.
     """
     import numpy as np
 
@@ -74,7 +74,7 @@ def refined(
         curves = border_curves(fine, parts, numbers, chosen, group)
         more = _unmatched(sides, curves)
         if not len(more):
-            # Every cell in doubt is in a group, so what the fine cells hide is all.
+            # Every doubtful cell is in a group, so the fine cells account for all.
             left = hidden_in(fine_shop, owned[: len(groups)], DEEPEST if len(groups) < MANY_GROUPS else 0)
             return stitched(whole, coarse, kept, fine, sides, curves), left
         groups = np.unique(np.concatenate([groups, more // group]), axis=0)
@@ -82,7 +82,7 @@ def refined(
 
 
 def _to_cut(tape: Tape, coarse: Level, tolerance: float | None) -> list[tuple[Keys, int]]:
-    """Cells (n, 3) to be cut, with how many parts along a side, from what is best on to what is fewest."""
+    """Choices of cells (n, 3) to be cut, and into how many parts a side, from the most accurate to the cheapest."""
     bent = coarse.cells[coarse.bent]
     if tolerance is None:
         return [(bent, FINE)]
@@ -95,7 +95,7 @@ def _to_cut(tape: Tape, coarse: Level, tolerance: float | None) -> list[tuple[Ke
 
 
 def _off(tape: Tape, found: Level, tolerance: float) -> Floats:
-    """(t,) how far triangles are off the surface [m]: measured where their corners allow more than a tolerance."""
+    """(t,) distances of triangles from the surface [m]; measured only if a bound by normals exceeds the tolerance."""
     import numpy as np
 
     off = np.empty(len(found.triangles))
@@ -107,7 +107,7 @@ def _off(tape: Tape, found: Level, tolerance: float) -> Floats:
 
 
 def _with_owners(groups: Keys) -> Ints:
-    """The groups, and after them those next to them that own edges of theirs."""
+    """The groups, followed by the neighbors that own some of their edges."""
     import numpy as np
 
     steps = np.array([[bits & 1, bits >> 1 & 1, bits >> 2] for bits in range(1, 8)])
@@ -118,7 +118,7 @@ def _with_owners(groups: Keys) -> Ints:
 
 
 def _unmatched(sides: Sides, curves: Curves) -> Keys:
-    """(n, 3) cells whose faces to finer ones do not show the same curves there."""
+    """(n, 3) cells whose curves on faces to the other size of cells do not match."""
     import numpy as np
 
     return np.concatenate(

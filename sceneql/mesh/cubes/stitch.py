@@ -1,4 +1,4 @@
-"""Coarse and fine triangles to one closed mesh. Imports numpy and numba."""
+"""Coarse and fine triangles joined to a closed mesh. Imports numpy and numba."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def stitched(tape: Tape, coarse: Level, kept: NDArray[np.bool_], fine: Level, sides: Sides, curves: Curves) -> Polygons:
-    """The kept coarse triangles and the fine ones; where they meet, the coarse ones follow the fine curves."""
+    """The kept coarse triangles and the fine ones; sides of coarse triangles follow the fine curves that they meet."""
     import numpy as np
 
     offset = len(coarse.places)

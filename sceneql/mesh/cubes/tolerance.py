@@ -1,4 +1,4 @@
-"""Cells fine enough for a distance between the triangles and the surface. Imports numpy and numba."""
+"""Cells short enough for a tolerance of the distance between the triangles and the surface. Imports numpy and numba."""
 
 from __future__ import annotations
 
@@ -16,44 +16,44 @@ if TYPE_CHECKING:
 
 Method = Callable[["Tape", Corner, Corner, float], tuple[Polygons, Unresolved]]
 PROBES = 10_000
-"""Triangles that a distance is measured at."""
+"""Triangles at which a distance is measured."""
 BETWEEN = 16.0 / 15.0
-"""What a smooth surface may be farther from a triangle than at its center and the middles of its edges: the difference
-is sum d_ij l_i l_j in barycentric coordinates, largest beside these places where d = (1, 1, 1/4)."""
+"""Largest distance of a smooth surface from a triangle relative to that at its center and the middles of its edges: it
+is sum d_ij l_i l_j in barycentric coordinates, whose maximum is off these places for d = (1, 1, 1/4)."""
 TRIES = 8
 SAFETY = 0.9
 LONGEST = 0.7
-"""Of a cell, that the next one may be."""
+"""Longest next cell, relative to the last."""
 MOST = 2**23
-"""Triangles that cells may be shortened to for what passes between them; more take minutes and all of a memory."""
+"""Triangles up to which cells are shortened for missed surface; more take minutes and all of the memory."""
 LANDED = 1.0e-3
-"""Parts of a cell that a place found on the surface may be off it."""
+"""Largest distance from the surface, in cells, of a point that Newton's method has brought onto it."""
 
 
 class Within(NamedTuple):
-    """Triangles, and how they were come by."""
+    """Triangles within a tolerance, and the cells that made them."""
 
     polygons: Polygons
     hidden: Unresolved
     cell: float
     """[m]"""
     missed: float
-    """[m] as of ``missed``; above the tolerance where cells that miss less are too many."""
+    """[m] as of ``missed``; above the tolerance if a smaller one takes too many cells."""
 
 
 def distance(tape: Tape, polygons: Polygons) -> float:
     """The largest distance [m] of the triangles from the surface, by their centers and the middles of their edges.
 
     There it is |f| / |grad f|, right to first order; BETWEEN them a surface that is smooth across a triangle is nearer
-    to second order, one with an edge or a corner there may be farther. What has no triangle near it, as a piece that
-    cells do not see, is for ``missed``. Where there are more than PROBES triangles, every so many-th is looked at.
+    to second order, one with an edge or a corner there may be farther. Surface without a triangle near it, as a piece
+    missed by all cells, is left to ``missed``. Of more than PROBES triangles only every so many-th is measured.
     """
     triangles = polygons.triangles[:: max(1, len(polygons.triangles) // PROBES)]
     return float(distances_off(tape, polygons.vertices[triangles]).max(initial=0.0))
 
 
 def distances_off(tape: Tape, corners: Floats) -> Floats:
-    """(t,) [m] of triangles (t, 3, 3) as of ``distance``."""
+    """(t,) distances [m] of triangles (t, 3, 3), as by ``distance``."""
     import numpy as np
 
     middles = 0.5 * (corners + np.roll(corners, 1, axis=1))
@@ -67,9 +67,9 @@ def distances_off(tape: Tape, corners: Floats) -> Floats:
 def missed(tape: Tape, polygons: Polygons, hidden: Unresolved) -> float:
     """The largest distance [m] from the triangles of surface that passes between the corners of unresolved cells.
 
-    Newton's method finds it from the middles of these; what it does not find in or next to the cell it began in is
-    left to the account of what is unresolved. Where there are more than PROBES cells, every so many-th is looked at.
-    Infinite where there is surface, but no triangle.
+    Newton's method from the middles of these cells finds it; cells from which it does not end in the cell or next to it
+    are left to ``Unresolved``. Of more than PROBES cells only every so many-th is tried. Infinite where there is
+    surface, but no triangle.
     """
     import numpy as np
 
@@ -88,11 +88,11 @@ def missed(tape: Tape, polygons: Polygons, hidden: Unresolved) -> float:
 
 
 def polygonise_within(tape: Tape, low: Corner, high: Corner, tolerance: float, cell: float, method: Method) -> Within:
-    """Triangles that are within ``tolerance`` [m] of the surface, as of ``distance``, of cells [m] <= ``cell``.
+    """Triangles within ``tolerance`` [m] of the surface, as by ``distance``, from cells [m] <= ``cell``.
 
-    And the surface of them, as of ``missed``, unless that takes more than MOST triangles. The distance falls with the
-    square of the cell, at edges and corners that are not kept with the cell itself: the cell is shortened by what is
-    measured. Raises ValueError as ``method``, and where TRIES cells do not reach it.
+    And the surface within it of the triangles, as by ``missed``, unless that takes more than MOST triangles. The
+    distance falls with the square of the cell, at edges and corners that are not kept with the cell itself: the cell is
+    shortened by the measured distance. Raises ValueError as ``method``, and if TRIES cells do not reach the tolerance.
     """
     import numpy as np
 
@@ -102,7 +102,7 @@ def polygonise_within(tape: Tape, low: Corner, high: Corner, tolerance: float, c
     for left in reversed(range(TRIES)):
         polygons, hidden = method(tape, low, high, cell)
         found, unseen = distance(whole, polygons), missed(whole, polygons, hidden)
-        # A wall that passes through a cell will be two triangles on either side; they grow with the square of 1 / cell.
+        # A wall thinner than a cell will have two triangles on either side; they grow with the square of 1 / cell.
         count = len(polygons.triangles) + 4 * hidden.cells * (hidden.grid.cell / cell) ** 2
         shortest = float(np.sqrt(count / MOST))
         if found <= tolerance and (unseen <= tolerance or shortest > LONGEST or not left):

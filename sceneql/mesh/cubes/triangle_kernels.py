@@ -1,18 +1,18 @@
 # mypy: ignore-errors
-"""What is asked of every triangle of a mesh, one after the other."""
+"""Loops over all triangles of a mesh: facing, turn of normals, boxes, ray crossings."""
 
 from sceneql.compiled.kernels import inlined, lean
 
 
 @inlined
 def along(normals, v, x, y, z):
-    """Product of a vertex's normal with a vector."""
+    """Dot product of a vertex's normal with a vector."""
     return normals[v, 0] * x + normals[v, 1] * y + normals[v, 2] * z
 
 
 @lean("int64(float64[:, ::1], int32[:, ::1], float64[:, ::1], int64[::1])")
 def unlike_corners(places, triangles, normals, rows):
-    """Put the triangles that do not face as the normals of all their corners do into ``rows``: how many they are."""
+    """Write the triangles whose normal disagrees with one of their vertex normals to ``rows``; returns how many."""
     count = 0
     for t in range(triangles.shape[0]):
         a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
@@ -28,7 +28,7 @@ def unlike_corners(places, triangles, normals, rows):
 
 @inlined
 def turn(places, normals, a, b):
-    """How much the normals of two vertices differ along the way from one to the other [m]."""
+    """Difference of two vertices' normals along the side between them [m]."""
     x, y, z = places[b, 0] - places[a, 0], places[b, 1] - places[a, 1], places[b, 2] - places[a, 2]
     return abs(along(normals, b, x, y, z) - along(normals, a, x, y, z))
 
@@ -43,14 +43,14 @@ def most_turn(places, triangles, normals, out):
 
 @inlined
 def span(places, triangles, t, axis):
-    """Least and largest coordinate of a triangle."""
+    """Least and largest coordinate of a triangle along an axis."""
     a, b, c = places[triangles[t, 0], axis], places[triangles[t, 1], axis], places[triangles[t, 2], axis]
     return min(min(a, b), c), max(max(a, b), c)
 
 
 @inlined
 def parts(low, high, width, count):
-    """(first, last + 1) of ``count`` parts of a width, from 0 on, that low..high meets."""
+    """(first, last + 1) of ``count`` intervals of a width, from 0 on, that low..high meets."""
     if high < 0.0 or low > count * width:
         return 0, 0
     return int(max(low / width, 0.0)), int(min(high / width, count - 1.0)) + 1
@@ -58,7 +58,7 @@ def parts(low, high, width, count):
 
 @lean("int64(float64[:, ::1], int32[:, ::1], boolean[:, :, ::1], float64[::1], float64, int64[::1])")
 def in_cubes(places, triangles, marked, first, width, rows):
-    """Put the triangles whose boxes meet marked cubes, of those from ``first`` (3,) on, into ``rows``: their number."""
+    """Write the triangles whose boxes meet marked cubes, from ``first`` (3,) on, to ``rows``; returns how many."""
     count = 0
     for t in range(triangles.shape[0]):
         low, high = span(places, triangles, t, 0)
@@ -80,11 +80,11 @@ def in_cubes(places, triangles, marked, first, width, rows):
 
 @lean("void(float64[:, ::1], int32[:, ::1], float64[:, ::1], int64[::1], float64[::1], float64, int64, int64[::1])")
 def count_passed(places, triangles, points, begin, first, width, row, around):
-    """Add to ``around`` (n,) for each of ``points`` (n, 3) the triangles that its ray along x leaves by, less those
-    that it enters by.
+    """For a ray along x from each of ``points`` (n, 3), add its exits through triangles, less its entries, to
+    ``around``.
 
-    Points stand by the squares that their y and z are in, of a width, in ``row`` rows of ``row`` from ``first`` (2,)
-    on: those of square s are begin[s] to begin[s + 1].
+    Points are sorted into squares of a width by y and z, ``row`` rows of ``row`` from ``first`` (2,) on: those of
+    square s are begin[s] to begin[s + 1].
     """
     for t in range(triangles.shape[0]):
         low_y, high_y = span(places, triangles, t, 1)
@@ -100,7 +100,7 @@ def count_passed(places, triangles, points, begin, first, width, row, around):
                         continue
                     ya, yb, yc = places[a, 1] - y, places[b, 1] - y, places[c, 1] - y
                     za, zb, zc = places[a, 2] - z, places[b, 2] - z, places[c, 2] - z
-                    # Of each corner, the area of the triangle between the other two and the ray.
+                    # For each vertex, the area of the triangle between the other two and the ray.
                     sa, sb, sc = yb * zc - yc * zb, yc * za - ya * zc, ya * zb - yb * za
                     ahead = sa * (places[a, 0] - x) + sb * (places[b, 0] - x) + sc * (places[c, 0] - x)
                     if sa > 0.0 and sb > 0.0 and sc > 0.0 and ahead > 0.0:

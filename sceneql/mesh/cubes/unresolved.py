@@ -1,4 +1,4 @@
-"""What a grid of cells cannot tell of a solid: told, not dropped. Imports numpy and numba."""
+"""Cells that a grid could not prove empty or full: reported, not dropped. Imports numpy and numba."""
 
 from __future__ import annotations
 
@@ -18,34 +18,34 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Unresolved:
-    """Cells whose corners have one sign, which f could not be proved to keep inside."""
+    """Cells with corners of one sign, for which no proof was found that f keeps it inside."""
 
     where: Ints
-    """(n, 3) cells, counted from the grid's first node."""
+    """(n, 3) places of the cells, counted from the grid's first node."""
     volumes: Floats
-    """(n,) [m^3] of the parts of them that no proof was found for."""
+    """(n,) [m^3] of the parts of the cells without a proof."""
     grid: Grid
-    """That they are cells of."""
+    """The grid of these cells."""
 
     @property
     def cells(self) -> int:
-        """How many they are."""
+        """Number of cells."""
         return len(self.where)
 
     @property
     def volume(self) -> float:
-        """[m^3] in all."""
+        """Their volume [m^3] in all."""
         return float(self.volumes.sum())
 
     @property
     def middles(self) -> Floats:
-        """(n, 3) [m] of the cells."""
+        """(n, 3) [m] middles of the cells."""
         found: Floats = self.grid.low + (self.where + 0.5) * self.grid.cell
         return found
 
 
 def unresolved(tape: Tape, low: Corner, high: Corner, cell: float) -> Unresolved:
-    """What the cells of ``polygonise`` may hide: walls and drops that pass between their corners.
+    """Cells of ``polygonise`` that may hide surface: walls and drops that pass between their corners.
 
     Raises ValueError as ``grid_around``.
     """
@@ -54,9 +54,9 @@ def unresolved(tape: Tape, low: Corner, high: Corner, cell: float) -> Unresolved
 
 
 def hidden_in(shop: GridExtraction, blocks: Ints, deepest: int = DEEPEST) -> Unresolved:
-    """What the cells of some blocks may hide.
+    """Cells of some blocks that may hide surface.
 
-    A cell is halved up to so many times, each part proved by the interval of f or by the mean value theorem (Moore
+    A cell is halved up to ``deepest`` times, each part proved by the interval of f or by the mean value theorem (Moore
     1966).
     """
     import numpy as np
