@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Dual contouring: a vertex for each curve that the surface draws on a cube, where the planes of its edges meet best.
+"""Dual contouring: a vertex for each curve that the surface draws on a cube, at the best intersection of planes.
 
 The planes are those of the surface where it crosses the cube's edges; the vertex is held in its cube or close to it
 (Ju, Losasso, Schaefer & Warren 2002). A curve has one vertex, not a cube (Nielson 2004), so that sheets stay apart.
@@ -14,7 +14,7 @@ from sceneql.mesh.dual.fit_kernels import held
 
 TURNS = 3
 NEARER = 0.05
-"""In each further turn planes are taken from so much nearer to the vertex: where faces are curved, it closes in."""
+"""Factor by which planes move towards the vertex in each further turn: on curved faces the vertex converges."""
 
 
 @inlined
@@ -36,7 +36,7 @@ def add_plane(normal, right, nx, ny, nz, away):
 
 @inlined
 def settle(code, constants, parts, scratch, place, slope, ring, count, low, h, at, room):
-    """Place a vertex in the cube at ``low`` by the planes of the ring's vertices; how many planes it lies on.
+    """Place a vertex in the cube at ``low`` by the planes at the ring's crossings; returns the rank of the planes.
 
     ``at`` (3,) starts in the ring's middle and ends at the vertex.
     """
@@ -100,11 +100,11 @@ def dual(
     code, constants, parts, scratch, grid, blocks, first, last, beyond, begin, cube_at, dual_at,
     keys, cubes, config, curves, local, room, place, normal, out, unit, rings, corners, outward,
 ):  # fmt: skip
-    """Vertices of the curves of blocks first..last-1: their places ``out`` and, where it is smooth, normals ``unit``.
+    """Vertices ``out`` of the curves of blocks first..last-1, and their normals ``unit`` where the surface is smooth.
 
     Those of block b begin at dual_at[b]. ``rings`` (n, 12) are the crossed edges along each curve, -1 after the last;
-    ``corners`` (edges, 4) the vertices around each crossed edge, and ``outward`` whether the surface there faces
-    along its axis.
+    ``corners`` (edges, 4) the vertices around each crossed edge, and ``outward`` whether the surface there faces along
+    its axis.
     """
     h = grid[3]
     low = room[14]
@@ -136,7 +136,7 @@ def dual(
                     rings[fresh, k] = v
                     corners[v, edge & 3] = fresh
                     if edge & 3 == 0:
-                        # The edge's lower end: corner 0 at the place 0 of both other axes.
+                        # Corner 0 is the edge's lower end, which lies at 0 of both other axes.
                         outward[v] = config[variant] & 1
                     count += 1
                     for axis in range(3):

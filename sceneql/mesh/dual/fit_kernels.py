@@ -1,18 +1,18 @@
 # mypy: ignore-errors
-"""Least squares of planes in a box: the point that fits them best, by truncated eigenvectors."""
+"""Least-squares intersection of planes in a box, by truncated eigenvectors."""
 
 from sceneql.compiled.kernels import inlined
 
 SWEEPS = 12
 TRUNCATION = 0.01
-"""Eigenvalues below this part of the largest are taken for zero: planes within about 11 degrees make no edge."""
+"""Eigenvalues below this part of the largest count as zero: planes within about 11 degrees make no edge."""
 LARGEST = 1.0e300
 SLACK = 1.0
-"""Parts of a cell's side that a vertex may leave it by."""
+"""How far a vertex may leave its cell, in sides of the cell."""
 EXACT = 1.0e-7
-"""Planes that a vertex misses by less, in parts of a cell's side, are met."""
+"""Root of the summed squared distances, in sides of a cell, up to which the planes count as met."""
 BETTER = 0.1
-"""What leaving the cell must bring the squared distances down to."""
+"""Factor by which leaving the cell must lower the sum of squared distances."""
 
 
 @inlined
@@ -57,10 +57,10 @@ def diagonalize(a, v):
 
 @inlined
 def fitted(normal, right, sides, box, a, v, step):
-    """Least change ``step`` (3,) from the start that fits the planes best with some axes held; the rank of the rest.
+    """Least change ``step`` (3,) from the start that fits the planes best with some axes held; rank in the free axes.
 
     ``normal`` (3, 3) and ``right`` (3,) are the normal equations, ``box`` (2, 3) the room below and above the start;
-    ``sides`` holds for each axis 0 where it is free, 1 and 2 where it is at its lower and upper bound.
+    ``sides`` holds for each axis a ternary digit: 0 if it is free, 1 and 2 if it is at its lower and upper bound.
     """
     for i in range(3):
         held = sides // 3**i % 3
@@ -87,7 +87,7 @@ def fitted(normal, right, sides, box, a, v, step):
 
 @inlined
 def misfit(normal, right, step):
-    """Sum of squared distances from the planes after a step, less that before."""
+    """Change by a step of the sum of squared distances from the planes."""
     total = 0.0
     for i in range(3):
         total -= 2.0 * right[i] * step[i]
@@ -98,7 +98,7 @@ def misfit(normal, right, step):
 
 @inlined
 def placed(normal, right, box, a, v, step, best):
-    """Best step (3,) within the box, of those with 0 to 3 axes at a bound: (its misfit, rank, whether at no bound)."""
+    """Best step (3,) within the box over all choices of axes at bounds: (its misfit, rank, whether none is at one)."""
     whole = 0
     least = LARGEST
     free = False
@@ -124,10 +124,10 @@ def placed(normal, right, box, a, v, step, best):
 
 @inlined
 def held(normal, right, square, box, h, a, v, step, best):
-    """As ``placed``, in the cell ``box`` of side h or, where the planes meet far better there, a little outside it.
+    """As ``placed``, in the cell ``box`` of side h or, if the planes meet far better there, a little outside it.
 
     ``square`` is the sum of squared distances of the planes before the step. An edge that cuts a corner off a cell
-    passes it by although its planes are seen there.
+    passes it by although its planes are seen there. Returns the rank.
     """
     least, rank, free = placed(normal, right, box, a, v, step, best)
     if free or square + least <= (EXACT * h) ** 2:

@@ -1,4 +1,4 @@
-"""Quads around crossed edges, cut in two triangles each. Imports numpy and numba."""
+"""Quads around crossed edges, each cut into two triangles. Imports numpy and numba."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ if TYPE_CHECKING:
 
 
 def halved(tape: Tape, places: Floats, quads: Ints, ways: Ints) -> Ints:
-    """(2 n, 3) two triangles for each of the quads (n, 4), along the diagonal that folds neither of them over.
+    """(2 n, 3) two triangles for each of the quads (n, 4), cut along the diagonal by which neither folds over.
 
-    Both are to face outward along the edge that they go around, which goes so along the axis 1, 2 or 3, or against it,
-    by ``ways`` (n,): one diagonal is so where the corners lie in the four cells around the edge. Where both are, or
-    none, it is that whose middle is nearer to the surface: so it follows an edge of the solid where it can.
+    Both must face outward along the edge that the quad surrounds, whose axis is 1, 2 or 3 in ``ways`` (n,), negative if
+    outward is against it: at least one diagonal does that if the vertices lie in the four cells around the edge. If
+    both do, or none, the one whose middle is nearer to the surface is taken, so that it follows an edge of the solid.
     """
     import numpy as np
 
     corners = places[quads]
     with np.errstate(all="ignore"):
         off = [np.abs(field_values(tape, 0.5 * (corners[:, k] + corners[:, k + 2]))) for k in (0, 1)]
-    # Twice the areas of the four triangles that diagonals cut off, seen along the edge.
+    # Twice the areas of the four triangles that the diagonals cut off, projected along the edge.
     axes = np.abs(ways)
     across = [np.take_along_axis(corners, ((axes + k) % 3)[:, None, None], axis=2)[:, :, 0] for k in (0, 1)]
     x, y = (np.roll(seen, -1, axis=1) - seen for seen in across)

@@ -1,4 +1,4 @@
-"""Points brought to the planes of a surface beside them. Imports numpy and numba."""
+"""Points moved onto the tangent planes of a surface near them. Imports numpy and numba."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ if TYPE_CHECKING:
 
 TURNS = 3
 NEARER = 0.05
-"""In each further turn planes are taken from so much nearer to the points: where faces are curved, these close in."""
+"""Factor by which planes move towards the points in each further turn: on curved faces the points converge."""
 TRUNCATION = 0.1
-"""Singular values below this part of the largest are taken for zero, as by ``dual``."""
+"""Singular values below this part of the largest count as zero, as in ``dual``."""
 
 
 def onto_planes(tape: Tape, points: Floats, given: NDArray[np.bool_], crossings: Floats, slopes: Floats) -> Floats:
-    """Points (n, 3) moved the least that brings them to the planes of the surface at ``crossings`` (n, k, 3).
+    """Points (n, 3) moved the least that brings them onto the planes of the surface at ``crossings`` (n, k, 3).
 
-    ``given`` (n, k) tells which of these there are, ``slopes`` (n, k, 3) are the unit gradients there. So a point goes
-    onto a face, an edge or a corner of the solid, whichever the planes make.
+    ``given`` (n, k) masks the crossings in use, ``slopes`` (n, k, 3) are the unit gradients there. So a point goes onto
+    a face, an edge or a corner of the solid, by the rank of its planes.
     """
     import numpy as np
 

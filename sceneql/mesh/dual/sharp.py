@@ -1,4 +1,4 @@
-"""Polygonising with edges and corners kept sharp: dual contouring. Imports numpy and numba."""
+"""Polygonization with edges and corners kept sharp: dual contouring. Imports numpy and numba."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints, Tape
 
 AROUND = [0, 1, 3, 2]
-"""The cubes around an edge in turn, counterclockwise seen against its axis, by their edge's last two bits."""
+"""The four cubes around an edge, counterclockwise seen against its axis, by the last two bits of their edge."""
 
 
 def polygonise_sharp(tape: Tape, low: Corner, high: Corner, cell: float) -> Polygons:
@@ -50,7 +50,7 @@ def polygonise_sharp(tape: Tape, low: Corner, high: Corner, cell: float) -> Poly
 
 
 def _vertices(shop: GridExtraction, found: Found) -> tuple[Floats, Floats, Ints, Ints, NDArray[np.int8]]:
-    """(places, normals, rings, corners, outward) as of the kernel ``dual``, of all blocks."""
+    """(places, normals, rings, corners, outward) as of the kernel ``dual``, for all blocks."""
     import numpy as np
 
     table = cases()
@@ -73,7 +73,7 @@ def _vertices(shop: GridExtraction, found: Found) -> tuple[Floats, Floats, Ints,
 
 
 def _means(rings: Ints, crossings: Floats) -> Floats:
-    """(v, 3) [m] the means of the crossings (e, 3) around each corner."""
+    """(v, 3) [m] means of the crossings (e, 3) in each vertex's ring."""
     import numpy as np
 
     given = rings >= 0

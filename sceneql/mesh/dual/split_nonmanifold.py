@@ -1,8 +1,8 @@
-"""Where two sheets meet in one side of dual polygons: they are parted, so that the mesh is a manifold. Imports numpy.
+"""Separates sheets that share a side of dual polygons, so that the mesh is a 2-manifold. Imports numpy.
 
-Two cubes that share a face with two curves on it, both cubes joining these in one curve of their own, have one vertex
-each and between them one side for both curves, which four polygons would share. A vertex on each of the face's curves
-makes two sides of it.
+Of two cubes that share a face with two curves on it, each may join these in one curve of its own, and so have one
+vertex; the single side between the two vertices would be shared by four polygons. A new vertex on each of the face's
+curves makes two sides of it.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ Side = tuple[int, int]
 def split_nonmanifold(
     quads: Ints, rings: Ints, crossings: Floats, fresh: int
 ) -> tuple[NDArray[np.int64], Floats, Ints]:
-    """(quads that are sound, places (n, 3) [m] of vertices to be added, triangles instead of the other quads).
+    """(manifold quads, vertices to be added (n, 3) [m], triangles that replace the other quads).
 
     ``quads`` (e, 4) are the dual vertices around each crossed edge, ``rings`` (v, 12) the crossed edges around each
-    dual vertex, -1 after the last, ``crossings`` (e, 3) [m] where the surface crosses; new vertices count from
-    ``fresh`` on.
+    dual vertex, -1 after the last, ``crossings`` (e, 3) [m] the points where the surface crosses; new vertices count
+    from ``fresh`` on.
     """
     import numpy as np
 
@@ -41,7 +41,7 @@ def split_nonmanifold(
     triangles: list[tuple[int, int, int]] = []
 
     def face_vertex(edge: int, side: Side) -> int:
-        """The vertex on the curve from an edge across the face between a side's two cubes."""
+        """The new vertex on the curve from an edge across the face between the two cubes of a side."""
         if (edge, side) not in on_face:
             other = _beside(rings[side[0]], edge, set(sharing[side]))
             on_face[edge, side] = on_face[other, side] = fresh + len(added)
@@ -70,7 +70,7 @@ def split_nonmanifold(
 
 
 def _beside(ring: Ints, edge: int, among: set[int]) -> int:
-    """The one of some edges that stands next to one in a ring."""
+    """The neighbor of an edge in a ring that is among some edges."""
     members = [int(other) for other in ring if other >= 0]
     at = members.index(edge)
     before, after = members[at - 1], members[(at + 1) % len(members)]
