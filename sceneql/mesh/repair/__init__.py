@@ -1,1 +1,1 @@
-"""Folds, crossing triangles mended."""
+"""Repair of folds and self-intersections."""

@@ -1,4 +1,4 @@
-"""Triangles that face inward, put right by flips of edges. Imports numpy and numba."""
+"""Flips edges of triangles that face inward. Imports numpy and numba."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 ROUNDS = 8
 SLIVER = 1.0e-6
-"""Height of a triangle over its longest side, below which it has no direction."""
+"""Height of a triangle over its longest side below which its normal is noise."""
 
 
 def faced_outward(tape: Tape, places: Floats, triangles: Ints, doubtful: Rows) -> Ints:
-    """The triangles (t, 3) with edges flipped where one of the rows ``doubtful`` (n,) faces away from the gradient.
+    """The triangles (t, 3) with edges flipped where one of the rows ``doubtful`` (n,) faces against the gradient.
 
-    An edge of two triangles becomes the other diagonal of their four corners where both then face the gradient better
-    and that is no edge already: what is closed and 2-manifold stays so.
+    The edge of two triangles is replaced by the other diagonal of their four vertices if both then face the gradient
+    better and that is no edge yet: a closed 2-manifold stays one.
     """
     import numpy as np
 
@@ -43,9 +43,9 @@ def faced_outward(tape: Tape, places: Floats, triangles: Ints, doubtful: Rows) -
 
 
 def facing(tape: Tape, corners: Floats) -> Floats:
-    """(t,) cosine of the angle between the normals of triangles (t, 3, 3) and the gradients in their middles.
+    """(t,) cosine of the angle between the normals of triangles (t, 3, 3) and the gradients at their centers.
 
-    0 where there is no gradient, and of a SLIVER, as along a sharp edge, whose normal is noise.
+    0 where there is no gradient, and for a SLIVER, as along a sharp edge.
     """
     import numpy as np
 
@@ -60,13 +60,13 @@ def facing(tape: Tape, corners: Floats) -> Floats:
 
 
 def _flipped(tape: Tape, places: Floats, triangles: Rows, turned: Rows) -> dict[int, tuple[int, int, int]]:
-    """New corners of some triangles (t, 3), by their rows: the flips of edges of those ``turned`` that gain the most.
+    """New vertices of some triangles (t, 3), by row: the flips of edges of the triangles ``turned`` that gain the most.
 
-    All triangles at the corners of those must be there.
+    ``triangles`` must contain all triangles at the vertices of those.
     """
     import numpy as np
 
-    # What is flipped, of all sides of the triangles turned: the third corners c and d of the two triangles at a side.
+    # The vertices c and d opposite the side a b of a turned triangle and its neighbor.
     a, b, c = (np.roll(triangles[turned], -k, axis=1).ravel() for k in range(3))
     at = np.repeat(turned, 3)
     sides = Sides(triangles, len(places))
@@ -97,7 +97,7 @@ def _flipped(tape: Tape, places: Floats, triangles: Rows, turned: Rows) -> dict[
 
 
 class Sides:
-    """Triangles (t, 3) by their sides, each in the direction in which they go around."""
+    """Index from directed sides to triangles (t, 3)."""
 
     def __init__(self, triangles: Rows, vertices: int) -> None:
         import numpy as np
@@ -107,7 +107,7 @@ class Sides:
         self._ascending = keys[self._order]
 
     def owners(self, first: Rows, last: Rows) -> Rows:
-        """(n,) the triangles with sides from vertices (n,) to others (n,); -1 where there is none."""
+        """(n,) the triangles with directed sides from vertices (n,) to others (n,); -1 for none."""
         import numpy as np
 
         keys = first * self._vertices + last

@@ -1,7 +1,7 @@
-"""Triangles that face inward of their own mesh: it is folded over, or passes through itself. Imports numpy and numba.
+"""Finds triangles that face inward because their mesh folds over or intersects itself. Imports numpy and numba.
 
-The gradient in a triangle's middle does not tell them: along an edge of the solid, and on walls thinner than a cell,
-it is that of another face, and a triangle against it may well part inside from outside.
+The gradient at a triangle's center does not find them: along an edge of the solid, and on walls thinner than a cell, it
+is that of another face, and a triangle against it may well separate inside from outside.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ if TYPE_CHECKING:
     Rows = NDArray[np.int64]
 
 OFF = 1.0e-4
-"""How far from a triangle's middle its outer side is looked at, in square roots of its area."""
+"""Distance from a triangle's center at which its outer side is tested, in square roots of its area."""
 TILT = 0.7548776662466927, 0.5698402909980532
-"""Of the rays, against the axes that meshes follow: none passes along a side of a triangle."""
+"""Slopes of the rays against the axes that meshes follow: no ray runs along a side of a triangle."""
 INSIDE = 1.001
-"""Length of what squares of points cover, in that of what these span: none is at its end."""
+"""Side of the grid of squares relative to the extent of the points: none lies on its far border."""
 
 
 def doubtful(polygons: Polygons) -> Rows:
-    """(n,) rows of triangles that do not face as the normals of all their corners do."""
+    """(n,) rows of triangles whose normal disagrees with one of their vertex normals."""
     import numpy as np
 
     from sceneql.mesh.cubes.triangle_kernels import unlike_corners
@@ -38,19 +38,19 @@ def doubtful(polygons: Polygons) -> Rows:
 
 
 def against(tape: Tape, polygons: Polygons) -> Rows:
-    """(n,) rows of triangles that do not face as their corners do and face against the gradient in their middle."""
+    """(n,) rows of triangles whose normal disagrees with a vertex normal and with the gradient at their center."""
     rows = doubtful(polygons)
     found: Rows = rows[facing(tape, polygons.vertices[polygons.triangles[rows]]) < 0.0]
     return found
 
 
 def folds(tape: Tape, polygons: Polygons) -> Rows:
-    """(n,) rows of triangles against the gradient whose outer side is not outside of the closed mesh."""
+    """(n,) rows of triangles against the gradient whose outer side is inside the closed mesh."""
     return inverted(polygons, against(tape, polygons))
 
 
 def inverted(polygons: Polygons, rows: Rows) -> Rows:
-    """Those of the rows (n,) of triangles whose outer side is not outside of the closed mesh."""
+    """Those of the rows (n,) of triangles whose outer side is inside the closed mesh."""
     import numpy as np
 
     if not len(rows):
@@ -64,14 +64,14 @@ def inverted(polygons: Polygons, rows: Rows) -> Rows:
 
 
 def winding(points: Floats, places: Floats, triangles: Ints) -> Rows:
-    """(n,) how often a closed surface of triangles (t, 3) goes around points (n, 3): 1 inside, 0 outside."""
+    """(n,) winding numbers of a closed surface of triangles (t, 3) around points (n, 3): 1 inside, 0 outside."""
     import numpy as np
 
     from sceneql.mesh.cubes.triangle_kernels import count_passed
 
     if not len(points):
         return np.zeros(0, dtype=np.int64)
-    # Sheared, the rays go along x: what is crossed, and by which side, stays.
+    # A shear makes the rays parallel to x; it keeps crossings and their signs.
     points, places = (
         np.stack([p[:, 0], p[:, 1] - TILT[0] * p[:, 0], p[:, 2] - TILT[1] * p[:, 0]], axis=-1) for p in (points, places)
     )
@@ -88,7 +88,7 @@ def winding(points: Floats, places: Floats, triangles: Ints) -> Rows:
 
 
 def extents(corners: Floats) -> tuple[Floats, Floats]:
-    """(least, most), each (t, k), of the coordinates of triangles (t, 3, k)."""
+    """Bounding boxes (least, most), each (t, k), of triangles (t, 3, k)."""
     import numpy as np
 
     a, b, c = (corners[:, k] for k in range(3))

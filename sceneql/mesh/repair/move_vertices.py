@@ -1,4 +1,4 @@
-"""Triangles that face inward and that no flip puts right: a corner is moved. Imports numpy and numba."""
+"""Moves vertices of triangles that face inward where no flip helps. Imports numpy and numba."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ if TYPE_CHECKING:
     Rows = NDArray[np.int64]
 
 STEPS = 4
-"""Of Newton's method towards the surface."""
+"""Newton steps towards the surface."""
 ROUNDS = 8
 MOST = 256
-"""Triangles that are put right by moves; more are of a field that is too fine for its cells."""
+"""Triangles facing inward up to which vertices are moved; more come from a field too fine for its cells."""
 SHARES = (0.25, 0.5, 0.75, 1.0)
-"""Of the way to the middle of its neighbors that a vertex may go."""
+"""Parts of the way to the mean of its neighbors that are tried for a vertex."""
 
 
 def settled(tape: Tape, begun: Floats, reach: Floats | float = inf) -> tuple[Floats, Floats]:
-    """Places (n, 3) brought to the surface by Newton's method along the gradient, and the unit gradients there.
+    """Points (n, 3) moved to the surface by Newton's method along the gradient, and the unit gradients there.
 
-    Those that would go farther than ``reach`` [m], one or (n,), stay: where f jumps, the method goes anywhere.
+    Points that would go farther than ``reach`` [m], one or (n,), stay: at a jump of f the method diverges.
     """
     import numpy as np
 
@@ -47,10 +47,10 @@ def settled(tape: Tape, begun: Floats, reach: Floats | float = inf) -> tuple[Flo
 
 
 def turned_outward(tape: Tape, polygons: Polygons, doubtful: Rows) -> Polygons:
-    """The polygons with triangles that face inward put right, of the rows ``doubtful`` (n,): by flips, then by moves.
+    """The polygons with inward triangles of the rows ``doubtful`` (n,) repaired: by flips, then by moves of vertices.
 
-    A vertex goes along the surface towards the middle of its neighbors where the worst of its triangles then faces the
-    gradient better; those without a normal, on edges of the solid, stay.
+    A vertex moves along the surface towards the mean of its neighbors if the worst of its triangles then faces the
+    gradient better; vertices without a normal, on edges of the solid, stay.
     """
     import numpy as np
 
@@ -86,17 +86,17 @@ def turned_outward(tape: Tape, polygons: Polygons, doubtful: Rows) -> Polygons:
 
 
 class Stars:
-    """Triangles by their corners."""
+    """Index from vertices to triangles."""
 
     def __init__(self, triangles: Ints) -> None:
         import numpy as np
 
-        corners = triangles.ravel().astype(np.int64)  # as vertices are asked for: else all are converted at each call
+        corners = triangles.ravel().astype(np.int64)  # the type of the vertices asked for: else each call converts all
         self.triangles, self._order = triangles, np.argsort(corners, kind="stable")
         self._ascending = corners[self._order]
 
     def around(self, vertex: int) -> Ints:
-        """(n, 3) the triangles at a vertex, in their order."""
+        """(n, 3) the triangles at a vertex, in order."""
         import numpy as np
 
         first, last = np.searchsorted(self._ascending, [vertex, vertex + 1])
@@ -105,7 +105,7 @@ class Stars:
 
 
 def _moved(tape: Tape, places: Floats, normals: Floats, star: Ints, vertex: int) -> bool:
-    """Move a vertex of the triangles ``star`` (n, 3) around it where they gain by it; whether it was.
+    """Move a vertex of the triangles ``star`` (n, 3) if that improves the worst of them; returns whether it moved.
 
     Newton's method may take it no farther than its triangles reach.
     """

@@ -1,8 +1,8 @@
-"""Dual polygons that fold over, or pass through others, put right by their corners. Imports numpy, numba and scipy.
+"""Repairs folds and self-intersections of dual polygons by moving their vertices. Imports numpy, numba and scipy.
 
-Corners on an edge of the solid may have passed one another: they are moved along it. Where sheets are nearer to each
-other than cells tell, or corners left their cells for an edge outside, they go back towards the means of what the
-surface crosses of their cells' edges: there polygons, halved as they face along their edges, were met in no fold.
+Vertices on an edge of the solid may have passed one another: they are moved along it. Where sheets are nearer to each
+other than a cell, or vertices left their cells for an edge outside, they are pulled towards the means of the crossings
+on their cells' edges: with all vertices there, polygons halved to face along their edges were not seen to fold.
 """
 
 from __future__ import annotations
@@ -27,50 +27,49 @@ if TYPE_CHECKING:
     Rows = NDArray[np.int64]
 
 SLIDES = 2
-"""Rounds in which corners move along the surface and its edges; after them they are drawn off these."""
+"""Rounds in which vertices slide along the surface and its edges; in later rounds they are pulled off these."""
 ROUNDS = 24
 RETRIES = 8
 BESIDE = 2
-"""Rings of triangles around those that pass through others, in which none is turned: flips go from one to the next."""
+"""Rings of triangles around self-intersections in which no edge is flipped, since flips spread to neighbors."""
 MOST = 2**18
-"""Triangles against the gradient among which folds are looked for, so that fields much too fine for their cells do not
-take forever."""
+"""Triangles against the gradient that are tested for folds; a limit for fields much too fine for their cells."""
 FARTHEST = 0.7
-"""Of the corners of triangles that pass through each other those are drawn that are off their means by so many times
-the most of them."""
+"""A vertex of intersecting triangles is moved if its distance from its mean is at least this share of the largest among
+their vertices."""
 WITHIN = 0.02
-"""Of a cell, how far from its faces a corner is put that comes back to it."""
+"""Distance from the faces of its cell, in cells, at which a vertex is put back into it."""
 NEAR = 0.15
-"""Of a cell, how near to its mean a corner is put there."""
+"""Distance from its mean, in cells, below which a vertex is put onto the mean."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Dual:
-    """Quads around crossed edges, and what their corners are of."""
+    """Dual contouring's quads around crossed edges, with the data of their vertices."""
 
     tape: Tape
     quads: Ints
     """(q, 4)"""
     ways: Ints
-    """(q,) axes 1 to 3 of the edges that they go around, below 0 where outward is against the axis."""
+    """(q,) axes 1 to 3 of the crossed edges, negative where outward is against the axis."""
     rings: Ints
-    """(v, 12) the crossed edges around each corner, -1 after the last."""
+    """(v, 12) the crossed edges around each vertex, -1 after the last."""
     crossings: Floats
     """(e, 3) [m]"""
     slopes: Floats
-    """(e, 3) unit gradients there, or zero."""
+    """(e, 3) unit gradients at the crossings, or zero."""
     means: Floats
-    """(v, 3) [m] of each corner's crossings."""
+    """(v, 3) [m] mean of each vertex's crossings."""
     lows: Floats
-    """(v, 3) [m] the first node of its cell."""
+    """(v, 3) [m] first node of each vertex's cell."""
     cell: float
     """[m]"""
 
 
 def repair_folds(dual: Dual, polygons: Polygons) -> Polygons:
-    """The polygons, whose first triangles are the halves of the dual's quads, with corners moved until none folds.
+    """The polygons, whose first triangles are the halved quads of ``dual``, with vertices moved until none folds.
 
-    Vertices that follow on the dual's corners stay.
+    Only dual vertices, which come first, are moved.
     """
     import numpy as np
 
@@ -93,7 +92,7 @@ def repair_folds(dual: Dual, polygons: Polygons) -> Polygons:
 
 
 def _slid(dual: Dual, polygons: Polygons, rows: Rows) -> Rows:
-    """Move corners of some triangles halfway to the middles of their neighbors, along the surface: which they are."""
+    """Move vertices of triangles halfway to the mean of their neighbors, along the surface; returns the vertices."""
     import numpy as np
 
     places, triangles = polygons.vertices, polygons.triangles
@@ -102,7 +101,7 @@ def _slid(dual: Dual, polygons: Polygons, rows: Rows) -> Rows:
     near = np.zeros(len(places), dtype=bool)
     near[corners] = True
     star = triangles[near[triangles].any(axis=1)]
-    # Each side of a closed mesh is met in both directions.
+    # A closed mesh has each side in both directions.
     ends = star[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
     ends = np.unique(ends, axis=0)
     ends = ends[near[ends[:, 0]]]
@@ -126,9 +125,9 @@ def _slid(dual: Dual, polygons: Polygons, rows: Rows) -> Rows:
 
 
 def _drawn(dual: Dual, polygons: Polygons, rows: Rows) -> Rows:
-    """Bring the farthest corners of folded triangles, and of those that pass through them, nearer to their means.
+    """Pull the vertices of folds and of triangles that intersect these, those farthest off, towards their means.
 
-    First back to their cells, then by halves. Where all are at their means, those of the triangles beside are drawn.
+    First back into their cells, then by halves; if all are at their means, vertices of neighboring triangles.
     """
     import numpy as np
 
@@ -158,9 +157,9 @@ def _drawn(dual: Dual, polygons: Polygons, rows: Rows) -> Rows:
 
 
 def repair_turned(tape: Tape, polygons: Polygons) -> Polygons:
-    """The polygons with triangles that face inward put right as by ``turned_outward``, but where that folds others.
+    """The polygons with inward triangles repaired by ``turned_outward``, except where that makes folds.
 
-    At edges of the solid, and on sheets nearer to each other than cells tell, the gradient is of another face.
+    At edges of the solid, and on sheets nearer to each other than a cell, the gradient is that of another face.
     """
     import numpy as np
 

@@ -1,4 +1,4 @@
-"""Triangles that pass through others of their mesh. Imports numpy and scipy: to be imported where it is needed."""
+"""Self-intersections of triangle meshes. Imports numpy and scipy: to be imported where it is needed."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ if TYPE_CHECKING:
     Rows = NDArray[np.int64]
 
 CUBES = 128
-"""Along the side of the box of some triangles, in which others near them are looked for."""
+"""Cubes along the side of the bounding box of some triangles, by which others near them are found."""
 
 
 def self_intersections(places: Floats, triangles: Ints, rows: Rows) -> tuple[Rows, Rows]:
-    """Pairs of rows: of the triangles ``rows`` (n,), and of those (t, 3) that pass through them without a common side.
+    """Pairs of rows: of the triangles ``rows`` (n,), and of triangles (t, 3) that intersect them and share no side.
 
-    One passes through the other where a side of one of them meets the inside of the other. Those in one plane do not.
+    Two triangles intersect if a side of one passes through the inside of the other; coplanar ones do not.
     """
     near = _near(places, triangles, rows)
     corners = places[triangles[near]]
     least, most = extents(corners)
     middles, halves = 0.5 * (least + most), 0.5 * (most - least)
     own = np.searchsorted(near, rows)
-    # Boxes that meet those of the rows are among all whose middles are so near.
+    # Boxes that overlap those of the rows have their middles within this distance.
     reach = halves[own].max(axis=1) + halves.max()
     found = cKDTree(middles).query_ball_point(middles[own], reach, p=np.inf)
     first = np.repeat(own, [len(some) for some in found])
@@ -49,7 +49,7 @@ def self_intersections(places: Floats, triangles: Ints, rows: Rows) -> tuple[Row
 
 
 def _near(places: Floats, triangles: Ints, rows: Rows) -> Rows:
-    """(m,) rows of the triangles (t, 3) whose boxes may meet those of ``rows`` (n,), these too: in the same cubes."""
+    """(m,) rows of the triangles (t, 3), with ``rows`` (n,) themselves, whose boxes share a cube with one of theirs."""
     least, most = extents(places[triangles[rows]])
     first = least.min(axis=0)
     size = (most.max(axis=0) - first).max()
@@ -68,7 +68,7 @@ def _pierced(sides: Floats, corners: Floats) -> NDArray[np.bool_]:
     a, b, c = (corners[:, k] for k in range(3))
     normals = np.cross(b - a, c - a)
     across = np.einsum("nj,nj->n", first - a, normals) * np.einsum("nj,nj->n", last - a, normals) < 0.0
-    # The line passes all three sides of the triangle on the same hand.
+    # The line has all three sides of the triangle on the same hand.
     hands = np.stack(
         [np.einsum("nj,nj->n", np.cross(p - first, q - first), last - first) for p, q in ((a, b), (b, c), (c, a))]
     )
