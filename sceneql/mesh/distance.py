@@ -1,4 +1,4 @@
-"""How far meshes lie apart. Imports numpy and scipy: to be imported by the function that needs it."""
+"""Distances between meshes. Imports numpy and scipy: to be imported by the function that needs it."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
 NEIGHBORS = 24
-"""Triangles, by their middles, among which the nearest one to a point is looked for."""
+"""Triangles, by their middles, among which the one nearest to a point is searched."""
 FLAT = 1e-20
-"""Square of the sine of an angle of a triangle below which it has no plane."""
+"""Squared sine of an angle of a triangle below which it counts as degenerate."""
 BATCH = 4096
 
 
 def hausdorff(a: tuple[Floats, Ints], b: tuple[Floats, Ints], most: int = 50_000) -> float:
     """Hausdorff distance [m] of two meshes (vertices, triangles), from vertices and middles of triangles of both.
 
-    ``most`` points of each are looked at, evenly chosen. Infinite where only one of them has triangles.
+    At most ``most`` points of each, evenly chosen, are measured. Infinite if only one of them has triangles.
     """
     if not len(a[1]) or not len(b[1]):
         return 0.0 if len(a[1]) == len(b[1]) else np.inf
@@ -28,14 +28,14 @@ def hausdorff(a: tuple[Floats, Ints], b: tuple[Floats, Ints], most: int = 50_000
 
 
 def _farthest(mesh: tuple[Floats, Ints], other: tuple[Floats, Ints], most: int) -> float:
-    """How far [m] the farthest of a mesh's points lies from another."""
+    """Largest distance [m] of a mesh's points from another mesh."""
     points = np.concatenate([mesh[0][np.unique(mesh[1])], mesh[0][mesh[1]].mean(axis=1)])
     points = points[:: -(-len(points) // most)]
     return float(distances(points, *other).max())
 
 
 def distances(points: Floats, vertices: Floats, triangles: Ints) -> Floats:
-    """(n,) [m]: from points (n, 3) to the nearest of the triangles around the middles that are nearest to them."""
+    """(n,) [m]: from points (n, 3) to the nearest of the NEIGHBORS triangles whose middles are nearest."""
     corners = vertices[triangles]
     tree = cKDTree(corners.mean(axis=1))
     out = np.empty(len(points))
@@ -48,13 +48,13 @@ def distances(points: Floats, vertices: Floats, triangles: Ints) -> Floats:
 
 
 def to_triangles(points: Floats, corners: Floats) -> Floats:
-    """(...) [m]: distances from points (..., 3) to triangles (..., 3, 3): of the plane's foot inside, else of edges."""
+    """(...) [m]: from points (..., 3) to triangles (..., 3, 3): to the plane over their inside, else to edges."""
     a, b, c = (corners[..., k, :] for k in range(3))
     normal = np.cross(b - a, c - a)
     square = np.einsum("...i,...i", normal, normal)
     height = np.einsum("...i,...i", points - a, normal)
     size = np.maximum(np.einsum("...i,...i", b - a, b - a), np.einsum("...i,...i", c - a, c - a))
-    inside = square > FLAT * size * size  # a triangle that is none has its edges
+    inside = square > FLAT * size * size  # a degenerate triangle has its edges alone
     square = np.where(inside, square, 1.0)
     foot = points - (height / square)[..., None] * normal
     least = np.full(height.shape, np.inf)

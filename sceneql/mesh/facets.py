@@ -1,4 +1,4 @@
-"""Implicit shapes of a frame as meshes, for what draws or measures triangles alone."""
+"""Meshes of a frame's implicit shapes, for renderers and measures that know only triangles."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ if TYPE_CHECKING:
 
 
 def faceted(shape: Implicit, cell: float, smooth: bool) -> Mesh:
-    """The mesh of an implicit shape by marching cubes with cells [m]; with its normals where ``smooth``.
+    """The mesh of an implicit shape by marching cubes with cells [m]; with normals if ``smooth``.
 
-    A painted shape gives its vertices their colors. Raises ValueError as ``polygonise``.
+    The vertices of a painted shape have its colors. Raises ValueError as ``polygonise``.
     """
     from sceneql.field.tape.tape_solid import paint_values
     from sceneql.frame import Mesh
@@ -24,7 +24,7 @@ def faceted(shape: Implicit, cell: float, smooth: bool) -> Mesh:
 
 
 def edges(vertices: Floats, triangles: Ints) -> Floats:
-    """(e, 2, 3) the ends of every edge, once."""
+    """(e, 2, 3) the two ends of every edge, each edge once."""
     import numpy as np
 
     pairs = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)

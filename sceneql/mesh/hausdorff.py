@@ -11,16 +11,16 @@ if TYPE_CHECKING:
     from sceneql.mesh.polygons import Polygons
 
 STEPS = 12
-"""Of Newton's method from a sample to the surface."""
+"""Newton steps from a sample to the surface."""
 
 
 class Hausdorff(NamedTuple):
-    """Largest distances [m] found; the true ones are larger by what lies between the samples."""
+    """Largest distances [m] found at samples: lower bounds of the true ones."""
 
     to_surface: float
-    """Of points of the triangles from the surface."""
+    """From points on the triangles to the surface."""
     to_mesh: float
-    """Of points of the surface from the triangles."""
+    """From points on the surface to the triangles."""
 
     @property
     def distance(self) -> float:
@@ -31,10 +31,9 @@ class Hausdorff(NamedTuple):
 def hausdorff(polygons: Polygons, tape: Tape, samples: int = 20_000) -> Hausdorff:
     """Distances between a mesh and the surface {tape = 0}, at points spread over the mesh by area.
 
-    Each point is moved along the gradient to the surface, by its distance or, at edges, a little more; the foot is a
-    point of the surface, whose distance from the mesh is measured in turn. Surface far from any triangle is not found
-    so. The points are the same in each call.
-    Raises ValueError for a mesh without triangles.
+    Each point is moved along the gradient to the surface, by its distance or, at edges, a little more; the distance of
+    the foot, a point of the surface, from the mesh is measured in turn. Surface far from all triangles is not found so.
+    The points are the same in each call. Raises ValueError for a mesh without triangles.
     """
     import numpy as np
 
@@ -50,14 +49,14 @@ def hausdorff(polygons: Polygons, tape: Tape, samples: int = 20_000) -> Hausdorf
 
 
 def _spread(corners: Floats, samples: int) -> Floats:
-    """(n, 3) points of triangles (m, 3, 3): at equal steps of area, spread in each by the golden ratio and its like."""
+    """(n, 3) points on triangles (m, 3, 3): at equal steps of area, spread in each by a low-discrepancy sequence."""
     import numpy as np
 
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = np.cumsum(np.linalg.norm(across, axis=1))
     k = np.arange(samples)
     chosen = np.minimum(np.searchsorted(area, (k + 0.5) / samples * area[-1]), len(corners) - 1)
-    # The sequence of Roberts (2018), whose numbers are powers of the root of x^3 = x + 1.
+    # The sequence of Roberts (2018): powers of the root of x^3 = x + 1, the golden ratio's counterpart.
     u, v = (0.5 + k * 0.7548776662466927) % 1.0, (0.5 + k * 0.5698402909980532) % 1.0
     over = u + v > 1.0
     u, v = np.where(over, 1.0 - u, u), np.where(over, 1.0 - v, v)
@@ -67,7 +66,7 @@ def _spread(corners: Floats, samples: int) -> Floats:
 
 
 def _feet(tape: Tape, points: Floats) -> tuple[Floats, Ints]:
-    """Points moved to the surface by Newton's method along the gradient, and whether they came there."""
+    """Points moved to the surface by Newton's method along the gradient, and the rows that converged."""
     import numpy as np
 
     feet = points.copy()

@@ -1,4 +1,4 @@
-"""What a triangle mesh encloses and how it hangs together. Imports numpy."""
+"""Volume, area, edges and topology of triangle meshes. Imports numpy."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
 BEND = 0.5
-"""Cosine of the most that a normal may turn from its triangle's, 60 degrees."""
+"""Cosine of 60 degrees: the most by which vertex normals may turn from their triangle's normal."""
 
 
 def volume(vertices: Floats, triangles: Ints) -> float:
-    """Volume [m^3] that triangles enclose, counted counterclockwise from outside: a sum of tetrahedra."""
+    """Volume [m^3] enclosed by triangles that are counterclockwise from outside: a sum of tetrahedra."""
     import numpy as np
 
     middle = vertices.mean(axis=0) if len(vertices) else np.zeros(3)
@@ -21,10 +21,10 @@ def volume(vertices: Floats, triangles: Ints) -> float:
 
 
 def curved_volume(vertices: Floats, triangles: Ints, normals: Floats) -> float:
-    """Volume [m^3] in a surface of which a mesh has points and unit normals (v, 3): of fourth order where it is smooth.
+    """Volume [m^3] in a surface by points and unit normals (v, 3) of a mesh on it: of fourth order where it is smooth.
 
-    Over each triangle the surface is taken as quadratic along the edges, with the mean of the slopes that the normals
-    at their ends tell; a triangle whose normals turn by more than BEND, as at an edge of the solid, counts as flat.
+    Over each triangle the surface is taken as quadratic along the edges, with the mean of the slopes by the normals at
+    their ends; a triangle whose normals turn by more than BEND, as at an edge of the solid, counts as flat.
     """
     import numpy as np
 
@@ -56,7 +56,7 @@ def area(vertices: Floats, triangles: Ints) -> float:
 
 
 def edge_counts(triangles: Ints) -> tuple[int, int, int]:
-    """(edges, edges of one triangle, edges of more than two)."""
+    """(edges, edges of only one triangle, edges of more than two)."""
     import numpy as np
 
     if not len(triangles):
@@ -76,7 +76,7 @@ def euler_characteristic(triangles: Ints) -> int:
 
 
 def pieces(triangles: Ints) -> int:
-    """How many pieces hang together by vertices: the least number of each is handed on until it is everywhere."""
+    """Number of connected components: the least vertex number of each is propagated until nothing changes."""
     import numpy as np
 
     if not len(triangles):

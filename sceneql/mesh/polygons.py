@@ -1,4 +1,4 @@
-"""What polygonising hands out."""
+"""The mesh that polygonization returns."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Polygons:
-    """Triangles of a solid's surface, seen from outside counterclockwise."""
+    """Triangles of a solid's surface, counterclockwise seen from outside."""
 
     vertices: Floats
     """(n, 3) [m]."""

@@ -1,4 +1,4 @@
-"""Triangle meshes to files, whole under their final name."""
+"""Files of triangle meshes; a file appears under its final name only when complete."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def write(path: Path, polygons: Polygons, colors: Floats | None = None) -> None:
     if colors is not None:
         from sceneql.mesh.display_colors import levels
 
-        curved = kind != "glb"  # which has linear ones (glTF 2.0, 3.7.2.1)
+        curved = kind != "glb"  # glb stores linear colors (glTF 2.0, 3.7.2.1)
         mesh.visual = trimesh.visual.ColorVisuals(mesh, vertex_colors=levels(colors, curved=curved))
     normals = {"ply": "vertex_normal", "obj": "include_normals", "glb": "include_normals"}
     options: dict[str, Any] = {normals[kind]: smooth} if kind in normals else {}
