@@ -1,1 +1,1 @@
-"""The ray tracer: rays in waves."""
+"""The ray tracer: waves of rays, records, filters."""

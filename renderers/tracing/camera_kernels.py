@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Rays of a picture's points."""
+"""Camera rays through the points of a picture."""
 
 import numpy as np
 
@@ -7,14 +7,14 @@ from renderers.tracing import layout
 from renderers.tracing.scene_kernels import part
 
 TILE, BLOCK = 16, 4
-"""Pixels are taken in tiles of 16 x 16, blocks of 4 x 4 of them together: a packet's rays are neighbors."""
+"""Pixels are ordered in tiles of 16 x 16, and in these in blocks of 4 x 4, so that a packet's rays are neighbors."""
 
 
 @part
 def camera_ray(reals, px, py):
     """(origin, direction, radius, spread) of the ray through (px, py) [pixels]; pixel (0, 0) covers 0..1 x 0..1.
 
-    The ray stands for a cone: half a pixel's width is ``radius`` + ``spread`` t at distance t.
+    The ray is the axis of a cone: half a pixel's width is ``radius`` + ``spread`` t at distance t.
     """
     camera = layout.CAMERA
     width, height, half_height = reals[layout.WIDTH], reals[layout.HEIGHT], reals[camera + 12]
@@ -22,7 +22,7 @@ def camera_ray(reals, px, py):
     v = (1.0 - 2.0 * py / height) * half_height
     pixel = half_height / height
     if reals[camera + 13] != 0.0:
-        # The window lies in the plane of the origin; what stands before it is seen as well.
+        # The window lies in the plane of the origin; objects before that plane are seen as well.
         back = 1e4 * max(1.0, half_height)
         return (
             reals[camera] + u * reals[camera + 3] + v * reals[camera + 6] + back * reals[camera + 9],
@@ -52,7 +52,7 @@ def camera_ray(reals, px, py):
 
 @part
 def place_of(i):
-    """(x, y) of pixel i of a band that is TILE rows high."""
+    """(x, y) of the ith pixel of a band TILE rows high, in the order of tiles."""
     left, i = i // (TILE * TILE) * TILE, i % (TILE * TILE)
     g, r = i // TILE, i % TILE
     x, y = g & 1 | (g >> 1) & 2, (g >> 1) & 1 | (g >> 2) & 2

@@ -1,4 +1,4 @@
-"""The stages of a picture, each over bands of rows on the thread pool."""
+"""The stages of a ray-traced picture, each over bands of rows on the thread pool."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class Buffers:
-    """Working memory of a picture: layer 0 is of what the camera sees, layer 1 of what is seen in that."""
+    """Working memory of a picture. Layer 0: what the camera sees; layer 1: what is mirrored or refracted in that."""
 
     def __init__(self, width: int, height: int, columns: int) -> None:
         self.shape, count = (width, height, columns), width * height
@@ -43,7 +43,7 @@ class Buffers:
 
 
 _kept: list[Buffers] = []
-"""The last picture's: fresh memory costs the system a tenth of a frame's time."""
+"""The last picture's buffers: fresh memory costs the system a tenth of a frame's time."""
 
 
 def _buffers(*shape: int) -> Buffers:
@@ -52,10 +52,10 @@ def _buffers(*shape: int) -> Buffers:
 
 
 def draw(frame: SeenFrame, samples: int = 8, tolerance: float = TOLERANCE, march: int = 0) -> Picture:
-    """Ray-trace a frame; ``samples``, a power of two from 1 to 64: rays in a pixel in which things meet.
+    """Ray-trace a frame; ``samples``, a power of two from 1 to 64: rays in a pixel at an edge between surfaces.
 
-    ``tolerance`` is that of roots of implicit surfaces; with ``march`` they are looked for at so many places of a ray.
-    At the usual tolerance rays look for those of solids in packets, at others one by one.
+    ``tolerance`` is that of roots of implicit surfaces; with ``march`` they are sampled at so many places of a ray. At
+    the usual tolerance rays are tested against solids in packets, at others one by one.
 
     Roots of implicit surfaces are certified (sceneql.field); shadows and the sky's light are sampled once a pixel by a
     net and averaged over the surface around it, so that the picture has no grain and repeats to the bit.
@@ -79,7 +79,7 @@ def draw(frame: SeenFrame, samples: int = 8, tolerance: float = TOLERANCE, march
     over_rows(height, gather)
     undecided, seconds = map(sum, zip(*counts, strict=True))
     for layer in (1, 0) if seconds else (0,):
-        _filter(refine, buffers, layer)  # what comes last leaves its planes to the edges
+        _filter(refine, buffers, layer)  # layer 0 last: the edges need its planes
 
     def shade(start: int, stop: int) -> None:
         shade_rows(scene, start, stop, buffers.records, buffers.fine, buffers.visibility, buffers.radiance)
@@ -99,7 +99,7 @@ def draw(frame: SeenFrame, samples: int = 8, tolerance: float = TOLERANCE, march
 
 
 def _filter(refine_rows: Callable[..., None], buffers: Buffers, layer: int) -> None:
-    """The filtered visibility of a layer's records, in buffers.fine."""
+    """Filter the visibility of a layer's records into buffers.fine."""
     width, height, columns = buffers.shape
     records, visibility, fine = buffers.records[layer], buffers.visibility[layer], buffers.fine[layer]
     planes, sums, means = buffers.planes, buffers.sums, buffers.means

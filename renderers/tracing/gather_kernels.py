@@ -1,7 +1,7 @@
 # mypy: ignore-errors
-"""What a picture's point shows: a path through it begins, and advances by what its ray meets, to the path's end.
+"""Paths: from a point of the picture from surface to surface to the path's end.
 
-It finds the point's records, and the light that needs no filtering.
+They give the point's records, and the light that needs no filtering.
 """
 
 import numpy as np
@@ -20,11 +20,11 @@ from sceneql.compiled.kernels import kernel
 
 PLACES = types.float64[::1]
 BOUNCES = 8
-"""Surfaces that a ray meets behind the first one, at the most."""
+"""Most surfaces that a ray meets behind the first one."""
 FAINT = 0.025
-"""Weight of a mirrored ray below which the sky's reflection stands for what it would meet; above twice that not."""
+"""Weight of a mirrored ray below which the sky's reflection replaces it; from twice that on it counts in full."""
 QUICK = 8
-"""Samples of light and sky on surfaces that are seen only in a thing seen in another."""
+"""Samples of light and sky on surfaces beyond the second record: seen in a reflection or refraction of another."""
 RADIUS, SPREAD, LIGHT_WEIGHT, GATHERED, STRAIGHT, KEEP, BOUNCE, PERSPECTIVE, LIVE, DOUBTED, DARK = (
     6,
     7,
@@ -32,17 +32,17 @@ RADIUS, SPREAD, LIGHT_WEIGHT, GATHERED, STRAIGHT, KEEP, BOUNCE, PERSPECTIVE, LIV
     11,
     *range(14, 21),
 )
-"""Numbers of a path behind those of its ray: the ray's cone, the weight and sum of what it sees (3 each), whether it
-has only come through things, so that it sees the backdrop; whether its second record is still to be found; surfaces so
-far, whether the camera sees in perspective, whether it goes on, whether a root was undecided,
-whether what it has met is still to be lit."""
+"""Offsets in a path, after its ray: the ray's cone; weight and sum of its light (3 each); whether it was only
+refracted, so that it sees the backdrop; whether its second record is still to be found; surfaces so far; whether the
+camera is a perspective one; whether it goes on; whether a root was undecided; whether its last surface is still to be
+lit."""
 WAITING, LATER, LATER_WEIGHT, LATER_RADIUS, LATER_SPREAD, PATH = 21, 22, 28, 29, 30, 31
-"""Glass is seen by two rays: whether the mirrored one waits, and what it begins with; how many numbers a path has."""
+"""Glass splits a ray: whether the mirrored one waits, and its begin; numbers of a path."""
 
 
 @part
 def begin(reals, px, py, path, first, second):
-    """Put a path (PATH,) at the camera, through the picture's point (px, py); erase its records."""
+    """Start a path (PATH,) at the camera, through the picture's point (px, py); erase its records."""
     ox, oy, oz, dx, dy, dz, radius, spread = camera_ray(reals, px, py)
     path[0], path[1], path[2], path[3], path[4], path[5] = ox, oy, oz, dx, dy, dz
     path[RADIUS], path[SPREAD] = radius, spread
@@ -58,10 +58,10 @@ def begin(reals, px, py, path, first, second):
 
 @kernel(types.void(SCENE, SCRATCH, PLACES, ROW, ROW, ROW), _nrt=False, inner=True)
 def advance(scene, scratch, path, first, second, spare):
-    """Take a path to what its ray meets, and let it go on from there or end.
+    """Take a path to the surface that its ray meets, and let it go on from there or end.
 
-    It writes its records: ``first`` is of what the camera sees, ``second`` of the first matte thing seen in that. What
-    is seen behind is left in ``spare`` (COLUMNS,), for ``light_behind``; the path is DARK until then.
+    It writes its records: ``first`` is of the surface that the camera sees, ``second`` of the first matte one seen in
+    that. One beyond is left in ``spare`` (COLUMNS,), for ``light_behind``; the path is DARK until it is lit.
     """
     ox, oy, oz, dx, dy, dz = path[0], path[1], path[2], path[3], path[4], path[5]
     radius, spread = path[RADIUS], path[SPREAD]
@@ -122,7 +122,7 @@ def advance(scene, scratch, path, first, second, spare):
                     path[LATER + 3], path[LATER + 4], path[LATER + 5] = mirrored(spare)
                     path[LATER_WEIGHT], path[LATER_RADIUS] = back * wr, radius
                     path[LATER_SPREAD] = spread + 2.0 * turn
-                # What is mirrored inside is not followed: it leaves elsewhere, and is taken to leave here.
+                # Reflections inside are not followed: their light is taken to leave here, though it leaves elsewhere.
                 share = clear * (1.0 - back) if outside or bounce == 0 else clear
                 wr, wg, wb = share * wr, share * wg, share * wb
                 if outside:
@@ -158,9 +158,9 @@ def advance(scene, scratch, path, first, second, spare):
 
 @part
 def light_behind(scene, scratch, asked, path, record, visibility):
-    """Add the light of what a path sees behind its records to what it has GATHERED, by QUICK samples, once it is told.
+    """Add the light of a surface beyond a path's records to what it has GATHERED, by QUICK samples.
 
-    Returns whether it is.
+    Returns False where the sampled rays have no answers yet.
     """
     if not look_around(scene, scratch, asked, record, 0, QUICK, QUICK, visibility):
         return False

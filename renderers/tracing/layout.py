@@ -1,10 +1,10 @@
-"""Where what the tracer reads stands in the two arrays of its scene, in its scratch and in its lists of rays."""
+"""Layout of the tracer's scene (two arrays), of its scratch and of its lists of rays."""
 
 NODE_COUNT, ITEM_COUNT, ENDLESS_COUNT, LIGHT_COUNT, NODES_AT, LINKS_AT, SHAPE_COUNT = range(7)
 """The header. The first ENDLESS_COUNT items have no bounds; they stand in the first node, which has none either."""
 
 ITEMS = 8
-"""First of the items, by leaf: kind, place of its reals, place of its surface, index of its shape."""
+"""Offset of the items, by leaf: kind, place of the reals, place of the surface, index of the shape."""
 KIND, REALS_AT, SURFACE_AT, SHAPE = range(4)
 TRIANGLE, ROUND, QUADRIC, HALF_SPACE, IMPLICIT, SHEET, GRID = range(7)
 """Kinds. Their reals:
@@ -17,23 +17,23 @@ IMPLICIT and SHEET: low, high, place of its ranges: 7. The ranges, in ints: plac
 constants, their number, place of the parts, their rows; place of the cells; the same six of its paint and of what a
 sheet lies within (no rows: it has none); place of the plan for single rays (sceneql.field.tape.plans), its length."""
 CELLS_AT, PAINT, WITHIN, PLAN, RANGES = 6, 7, 13, 19, 21
-"""Columns of the ranges, and how many there are."""
+"""Columns of the ranges, and their number."""
 CELLS = 32
-"""Occupancy cells along each axis of an implicit object's box, by which single rays go."""
+"""Occupancy cells along each axis of an implicit object's box, through which single rays walk."""
 
 LINK = 3
-"""Ints of a node: the node to go on with when this one is missed, first item, number of items (0: an inner node)."""
+"""Integers of a node: its skip link (the next node after a miss), first item, number of items (0: an inner node)."""
 
 SKY = 0
 """Zenith, horizon, ground, visible; whether there is a sky, whether `visible` is given: 14."""
 HAS_SKY, HAS_VISIBLE = 12, 13
 TOLERANCE, SAMPLES = 14, 15
-"""Of roots of implicit objects, relative to the searched piece of a ray; samples on it where they are only sampled."""
+"""Tolerance of roots of implicit objects, relative to the searched piece of a ray; number of samples on it instead."""
 CAMERA = 16
 """Origin, right, up, back, half height, orthographic, width, height: 16."""
 WIDTH, HEIGHT = CAMERA + 14, CAMERA + 15
 LIGHTS = 32
-"""First light."""
+"""Offset of the first light."""
 LIGHT = 9
 """Reals of a light: kind, direction to it or position, irradiance or intensity, angular diameter or radius; radius of
 its disk, of a sun at distance 1."""
@@ -42,17 +42,17 @@ SUN, POINT = range(2)
 COLOR, ROUGHNESS, METALLIC, SPECULAR, TRANSMISSION = 0, 3, 4, 5, 6
 INDEX, EMISSION, CHECKER, CHECKER_COLOR = 7, 8, 11, 12
 SURFACE_SIZE = 15
-"""Reals of a surface, and how many there are."""
+"""Offsets in the reals of a surface, and their number."""
 
 EMPTY, MIXED, FULL = range(3)
-"""What an occupancy cell is proved to be: outside, nothing, inside."""
+"""An occupancy cell: proved outside, undecided, proved inside."""
 
 TOLD = 1
 KNOWN, PROBING, REACHED = 1.0, 2.0, 3.0
-"""Of the last row of a thread's scratch (scene_kernels.SCRATCH)."""
+"""In the last row of a thread's scratch (scene_kernels.SCRATCH): a column, and its values."""
 FAR, WANT, ANSWERS = 6, 7, 8
 FIRST, ANYWHERE, NOTHING = range(3)
-"""What is wanted of a ray: what it meets first, whether it meets anything, or nothing: it passes all boxes by."""
+"""Want of a ray: the first hit, any hit, or none, for a ray that misses all boxes."""
 MODE, NEXT, OPEN = range(3)
 PLAIN, ASKING, TELLING = range(3)
-"""Of a list of rays (scene_kernels.ASKED)."""
+"""In the head of a list of rays (scene_kernels.ASKED): columns, and the values of MODE."""

@@ -1,4 +1,4 @@
-"""Absorbing volumes over a finished picture, each as far as what stands in it."""
+"""Absorbing volumes over a finished picture, each as far as the surface that stands in it."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Mist, View
 
 STEP = 0.01
-"""Difference of what is kept from one pixel to the next at which two things meet there."""
+"""Difference of transmittance between neighboring pixels from which on there is an edge."""
 FAINT = 1e-3
-"""Difference of two colors below which it does not matter how much of a pixel each has."""
+"""Difference of two colors below which their shares in a pixel do not matter."""
 
 
 def dim(
     shape: Mist, view: View, records: NDArray[float32], radiance: NDArray[float32], linear: NDArray[float32]
 ) -> None:
-    """Draw a mist over ``linear`` (pixels, 3); ``records``, ``radiance``: what the middle of each pixel shows.
+    """Draw a mist over ``linear`` (pixels, 3); ``records``, ``radiance``: of the center of each pixel.
 
-    Both are drawn on. What is behind is dimmed by exp(-depth) (Beer, Lambert), and as much of the mist's own color is
-    added.
+    Both pictures are changed. The background is dimmed by the transmittance exp(-depth) (Beer, Lambert), and the rest
+    is the mist's own color.
     """
     width, height = view.size
     turn, shift = np.asarray(shape.to_cells)[:, :3], np.asarray(shape.to_cells)[:, 3]
@@ -62,9 +62,9 @@ def dim(
 
 
 def _steps(kept: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Pixels (k,) beside which much more or less is kept (h, w), and of their four neighbors the most different one.
+    """Edges in a transmittance (h, w): pixels (k,), and for each its most different neighbor of four.
 
-    There two things meet, and the picture is a mean of both: each has its own depth.
+    At an edge a pixel's color is a mean of two surfaces, each with a depth of its own.
     """
     number = np.arange(kept.size).reshape(kept.shape)
     best, other = np.full(kept.shape, STEP), number.copy()
@@ -82,13 +82,13 @@ def _steps(kept: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
 
 
 def rays(view: View, start: int, stop: int) -> tuple[Floats, Floats]:
-    """Origins and unit directions (n, 3) of the rays through the middles of some rows' pixels."""
+    """Origins and unit directions (n, 3) of the rays through the centers of some rows' pixels."""
     width, height = view.size
     columns, rows = np.meshgrid(np.arange(width) + 0.5, np.arange(start, stop) + 0.5)
     across = (2.0 * columns.ravel()[:, None] - width) / height * view.half_height * view.axes[0]
     across += (1.0 - 2.0 * rows.ravel()[:, None] / height) * view.half_height * view.axes[1]
     if view.orthographic:
-        # What stands before the window's plane is seen as well.
+        # Objects before the window's plane are seen as well.
         back = 1e4 * max(1.0, view.half_height)
         return np.array(view.origin) + across + back * view.axes[2], np.broadcast_to(-view.axes[2], across.shape)
     ways = across - view.axes[2]

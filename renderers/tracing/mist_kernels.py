@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""How much a field on a grid absorbs along rays: exact for the trilinear interpolant."""
+"""Optical depth of a field on a grid along rays: exact for the trilinear interpolant."""
 
 import math
 
@@ -25,7 +25,7 @@ def depths(starts, ways, ends, field, low, high, out):
     """Write the integral (n,) of a field over t along starts + t ways (n, 3), from t = 0 to ends (n,), in low..high.
 
     All in coordinates in which node (k, j, i) of the field stands at (i, j, k). Between nodes the interpolant along a
-    ray is a cubic of t, which Gauss's rule of two points integrates exactly.
+    ray is a cubic in t, which Gauss's two-point rule integrates exactly.
     """
     nz, ny, nx = field.shape
     values = field.reshape(nx * ny * nz)

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""A picture of normals."""
+"""Kernels of the pictures of normals and of undecided roots."""
 
 import numpy as np
 from numba import types
@@ -17,7 +17,7 @@ UNDECIDED = (1.0, 0.15, 0.0)
 
 @part
 def seen_normal(scene, scratch, px, py):
-    """(whether the picture's point shows a surface, its unit normal (3) on the viewer's side)."""
+    """(whether there is a surface at the picture's point, its unit normal (3) on the viewer's side)."""
     ox, oy, oz, dx, dy, dz, _, _ = camera_ray(scene.reals, px, py)
     t, item, _ = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, np.inf, False)
     if item < 0:
@@ -29,7 +29,7 @@ def seen_normal(scene, scratch, px, py):
 
 @kernel(types.int64(SCENE, SCRATCH, types.int64, types.int64, types.float32[:, :, ::1]), _nrt=False)
 def undecided_rows(scene, scratch, start, stop, picture):
-    """Fill rows start..stop of picture (h, w, 3): UNDECIDED where a root is, else gray, black where nothing is.
+    """Fill rows start..stop of picture (h, w, 3): UNDECIDED where a root is, else gray, black where no surface is.
 
     Returns the number of pixels with an undecided root.
     """
@@ -53,7 +53,7 @@ def undecided_rows(scene, scratch, start, stop, picture):
     types.int64(SCENE, SCRATCH, types.int64, types.int64, types.float64[:, ::1], types.float32[:, :, ::1]), _nrt=False
 )
 def normal_rows(scene, scratch, start, stop, points, picture):
-    """Fill rows start..stop of picture (h, w, 3) with (normal + 1)/2, black where nothing is; a mean over ``points``.
+    """Fill rows start..stop of picture (h, w, 3): mean (normal + 1)/2 over ``points``, black without a surface.
 
     Returns the number of pixels with an undecided root.
     """

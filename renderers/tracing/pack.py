@@ -1,4 +1,4 @@
-"""From a frame's plain values to the tracer's flat arrays."""
+"""Packs a frame into the tracer's flat arrays."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ UNBOUNDED = np.repeat([-np.inf, np.inf], 3)
 def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certain: bool = False) -> tuple[Scene, int]:
     """The scene of a frame, and the rows of scratch that its kernels need.
 
-    With ``samples`` rays are not searched for roots of implicit objects but sampled at so many places; ``certain``:
-    they are searched by certified intervals alone. ValueError names a shape that is none of the closed set.
+    With ``samples`` implicit objects are sampled at so many places of a ray instead of searched for roots; with
+    ``certain`` they are searched by certified intervals alone. ValueError names a shape outside of the closed set.
     """
     tables = Rows()
     for index, shape in enumerate(frame.shapes):
@@ -96,7 +96,7 @@ def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certa
 
 
 class Rows:
-    """The parts of a Scene in the making; places count from the first real of the items, and from the first code."""
+    """A Scene in the making; places count from the items' first real, and from the first integer of code."""
 
     def __init__(self) -> None:
         self.boxes: list[Floats] = []
@@ -107,7 +107,7 @@ class Rows:
         self.codes: list[NDArray[np.int32]] = []
         self.implicits: list[int] = []
         self.still: list[tuple[Packed, NDArray[np.int64]]] = []
-        """Of meshes with trees of their own: what is kept of them, and their items, which are not among the others."""
+        """Meshes with hierarchies of their own: their packed data, and their items, which are not among the others."""
         self.rows = 0
         self._size = 0
         self._code_size = 0
@@ -151,7 +151,7 @@ class Rows:
         return items
 
     def _place(self, reals: Floats) -> int:
-        """Append reals; where they begin."""
+        """Append reals; returns where they begin."""
         begin = self._size
         self.reals.append(np.ascontiguousarray(reals, dtype=np.float64).ravel())
         self._size += reals.size
@@ -190,13 +190,13 @@ class Rows:
         self._items(index, layout.GRID, box(shape), row(shape))
 
     def _tape(self, tape: Tape) -> list[int]:
-        """Append a tape; its ranges."""
+        """Append a tape; returns its ranges."""
         self.rows = max(self.rows, scratch_rows(len(tape.code), len(tape.parts)))
         ranges = [self._code(tape.code), len(tape.code), self._place(tape.constants), len(tape.constants)]
         return [*ranges, self._place(tape.parts), len(tape.parts)]
 
     def _code(self, code: Ints) -> int:
-        """Append integers; where they begin."""
+        """Append integers; returns where they begin."""
         begin = self._code_size
         self.codes.append(code.ravel())
         self._code_size += code.size
@@ -204,7 +204,7 @@ class Rows:
 
 
 def quadric_box(shape: Quadric) -> Floats:
-    """(6,) world bounds of a quadric: of its local box, cut where the quadric itself ends along an axis."""
+    """(6,) world bounds of a quadric: of its local box, cut to the quadric's own extent along each axis."""
     low, high = np.array(shape.low, dtype=np.float64), np.array(shape.high, dtype=np.float64)
     # sum s (p + l/2s)^2 <= sum l^2/4s - constant over the axes with s > 0; bounds only without a linear rest.
     curved = [k for k in range(3) if shape.squares[k] > 0]
@@ -222,7 +222,7 @@ def quadric_box(shape: Quadric) -> Floats:
 
 
 def _half_space(shape: Quadric) -> Floats | None:
-    """(1, 4) unit normal and height of the face of a quadric that is a half-space, else None."""
+    """(1, 4) unit normal and height of the face if a quadric is a half-space, else None."""
     if any(shape.squares) or not np.isinf([*shape.low, *shape.high]).all():
         return None
     normal = np.array([*shape.linear, 0.0]) @ np.vstack([shape.to_local, np.zeros(4)])
@@ -253,7 +253,7 @@ def _lights(lights: tuple[LightSource, ...]) -> Floats:
 
 
 def _sky(lights: tuple[LightSource, ...]) -> Floats:
-    """The sum of all skies; `visible` is the last one's that has it."""
+    """The sum of all skies; `visible` is that of the last one that has it."""
     row = np.zeros(14)
     for sky in lights:
         if isinstance(sky, Sky):

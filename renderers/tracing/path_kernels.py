@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""What happens to a ray at a surface: what is found there, and where the mirrored and the refracted ray go."""
+"""Rays at surfaces: the record of a hit, and the mirrored and the refracted ray."""
 
 import numpy as np
 
@@ -27,7 +27,7 @@ FADE = 0.04
 
 @part
 def describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, radius, record):
-    """Write the record of a met item, but for its weight; returns whether the ray comes from its outer side."""
+    """Write the record of a hit item, but for its weight; returns whether the ray comes from its outer side."""
     x, y, z = ox + t * dx, oy + t * dy, oz + t * dz
     nx, ny, nz, fx, fy, fz, lift, red, green, blue = normal_at(scene, scratch, item, x, y, z)
     outside = dx * fx + dy * fy + dz * fz <= 0.0
@@ -46,7 +46,7 @@ def describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, radius, record):
 
 @part
 def faded(scene, item, record):
-    """Share of an endless item that is seen, rather than the backdrop in front of which it vanishes."""
+    """Share of an endless item that is seen, against the backdrop into which it fades."""
     if item >= scene.ints[layout.ENDLESS_COUNT]:
         return 1.0
     ratio = FADE / facing_ratio(record)
@@ -64,7 +64,7 @@ def mirrored(record):
 
 @part
 def refracted(record, ratio):
-    """Direction of the refracted ray; ``ratio`` of indices, before over behind."""
+    """Direction of the refracted ray; ``ratio`` of refractive indices, before over behind."""
     nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
     vx, vy, vz = float(record[VIEW]), float(record[VIEW + 1]), float(record[VIEW + 2])
     nv = nx * vx + ny * vy + nz * vz
@@ -74,7 +74,7 @@ def refracted(record, ratio):
 
 @part
 def bend(scene, scratch, record):
-    """How much the normal turns within a pixel's radius along the ray: reflections spread by twice that."""
+    """Turn of the normal within a pixel's radius along the ray: reflections spread by twice that."""
     nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
     rx, ry, rz = mirrored(record)
     nv = rx * nx + ry * ny + rz * nz
@@ -91,6 +91,6 @@ def bend(scene, scratch, record):
 
 @part
 def behind(record):
-    """Where a ray through a surface goes on: on its other side."""
+    """Origin of a ray that goes on through a surface: on its other side."""
     x, y, z = start_of(record)
     return 2.0 * record[PLACE] - x, 2.0 * record[PLACE + 1] - y, 2.0 * record[PLACE + 2] - z

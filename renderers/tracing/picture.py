@@ -1,4 +1,4 @@
-"""What a renderer makes of a frame, and the bands of rows in which it does."""
+"""The result of a renderer, and the bands of rows by which it is made."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 BAND = 16
-"""Rows that a thread takes at a time."""
+"""Rows of pixels that a thread takes at a time."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -23,7 +23,7 @@ class Picture:
     linear: NDArray[float32]
     """(h, w, 3): scene-referred linear RGB, or data."""
     undecided: int = 0
-    """Pixels in whose rays root isolation met a place that it could not decide."""
+    """Pixels with a ray on which root isolation left a place undecided."""
 
 
 def over_rows(height: int, work: Callable[[int, int], object]) -> None:

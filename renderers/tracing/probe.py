@@ -1,4 +1,4 @@
-"""Depths and normals of a frame, by any of the ways to find implicit surfaces: what `bench` compares."""
+"""Depths and normals of a frame, by any of the methods for implicit surfaces: compared by `bench`."""
 
 from __future__ import annotations
 
@@ -26,28 +26,28 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Probe:
-    """What the rays through the pixels' centers meet first."""
+    """First hits of the rays through the pixels' centers."""
 
     depth: Floats
-    """(h, w) [m] along the ray; infinite where nothing is met."""
+    """(h, w) [m] along the ray; infinite for a miss."""
     normals: Floats
-    """(h, w, 3) outward unit normals; zero where nothing is met."""
+    """(h, w, 3) outward unit normals; zero for a miss."""
     undecided: NDArray[np.bool_]
-    """(h, w)."""
+    """(h, w) whether a root on the ray is undecided."""
 
 
 class Lines:
     """A thread's working memory for the rays of bands of pixels."""
 
     def __init__(self, scene: Scene, packets: Packets | None, rows: int) -> None:
-        """``packets``: what meets solids in them; ``rows`` of scratch."""
+        """``packets`` to intersect solids by, or None; ``rows`` of scratch."""
         self.scene, self.packets, self.scratch = scene, packets, scratch(rows)
         self.scratch[-1 - int(scene.ints[layout.SHAPE_COUNT]) : -1, 0] = np.nan
         pixels = (int(scene.reals[layout.WIDTH]) + TILE) * TILE
         self.asked = np.zeros((1, layout.ANSWERS)) if packets is None else packets.asked(pixels)
 
     def look(self, start: int, stop: int, *out: Any) -> None:
-        """As probe_kernels.probe_rows: once, or twice where packets are asked."""
+        """As probe_kernels.probe_rows: once, or with packets twice, to collect rays and to use the answers."""
         if self.packets is not None:
             self.asked[0, [layout.MODE, layout.NEXT]] = layout.ASKING, 1
             probe_rows(self.scene, self.scratch, self.asked, start, stop, *out)

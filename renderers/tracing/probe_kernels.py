@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""What the rays through the pixels' centers meet first."""
+"""First hits of the rays through the pixels' centers."""
 
 import numpy as np
 from numba import types
@@ -26,9 +26,9 @@ from sceneql.compiled.kernels import kernel
     _nrt=False,
 )
 def probe_rows(scene, scratch, asked, start, stop, depth, normals, undecided):
-    """Fill rows start..stop, no more than TILE of them, in the mode of ``asked``.
+    """Fill rows start..stop, at most TILE, in the mode of ``asked``.
 
-    The way to what is met [m] (h, w), infinite without; its outward unit normal (h, w, 3).
+    ``depth`` (h, w) is the distance of the hit [m], infinite for a miss, ``normals`` (h, w, 3) its outward unit normal.
     """
     counter = scratch.shape[0] - 1
     width = int(scene.reals[layout.WIDTH])

@@ -1,8 +1,8 @@
 # mypy: ignore-errors
-"""A record: all that lighting a surface point needs, once rays have found it. One pixel has two.
+"""Records: all data that lighting a surface point needs. A pixel has two.
 
-The first is what the camera sees, the second what is seen in it (by reflection or refraction) first. Light and shadow
-are found for whole pictures of records and filtered there, before anything is shaded.
+The first is of the surface that the camera sees, the second of the first one mirrored or refracted in it. Light and
+shadow are found for whole pictures of records and filtered there, before anything is shaded.
 """
 
 from renderers.tracing.scene_kernels import part
@@ -10,11 +10,11 @@ from renderers.tracing.scene_kernels import part
 PLACE, NORMAL, VIEW, TINT, WEIGHT, SURFACE, OWNER, RADIUS, LIFT, TRACED, ITEM = 0, 3, 6, 9, 12, 15, 16, 17, 18, 19, 20
 UNSURE = 21
 """Columns: point, shading normal, direction to the viewer, color, weight in the pixel, place of the surface, shape
-index + 1 (0: no record), radius of the pixel's cone there, lift of shadow rays, share of the reflection that is
-traced, item; whether a root on the pixel's path is undecided (of the first record alone, be there one or not)."""
+index + 1 (0: no record), radius of the pixel's cone there, lift of shadow rays, share of the reflection that is traced,
+item; whether a root on the pixel's path is undecided (in the first record only, even if it is empty)."""
 COLUMNS = 22
 FLATTEST = 0.9
-"""Cosine between normals from which on two records may lie on one smooth piece of surface."""
+"""Cosine between normals from which on two records may lie on one smooth surface."""
 
 
 @part
@@ -28,7 +28,7 @@ def put(record, px, py, pz, nx, ny, nz, vx, vy, vz, r, g, b):
 
 @part
 def alike(a, b, reach):
-    """Whether two records lie on one smooth piece of surface, ``reach`` pixel radii apart at the most off its plane."""
+    """Whether two records lie on one smooth surface, at most ``reach`` pixel radii off its tangent planes."""
     if a[OWNER] != b[OWNER]:
         return False
     if a[NORMAL] * b[NORMAL] + a[NORMAL + 1] * b[NORMAL + 1] + a[NORMAL + 2] * b[NORMAL + 2] < FLATTEST:
@@ -43,7 +43,7 @@ def alike(a, b, reach):
 
 @part
 def start_of(record):
-    """Where shadow rays of a record begin: off the surface, by far less than a pixel."""
+    """Origin of a record's shadow rays: off the surface, by far less than a pixel."""
     size = abs(record[PLACE]) + abs(record[PLACE + 1]) + abs(record[PLACE + 2])
     off = max(0.05 * record[RADIUS], 1e-6 * size) + record[LIFT]
     return (
@@ -55,7 +55,7 @@ def start_of(record):
 
 @part
 def erase(record):
-    """No record, and like none: the columns that are asked where there is none; the others stay as they were."""
+    """Empty a record, so that it is alike to none; only the columns that are read of empty records are reset."""
     record[OWNER] = record[TRACED] = record[UNSURE] = 0.0
     record[NORMAL] = record[NORMAL + 1] = record[NORMAL + 2] = 0.0
 

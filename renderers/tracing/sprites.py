@@ -1,4 +1,4 @@
-"""Soft discs that face the camera, drawn over a finished picture behind what stands before them."""
+"""Soft discs that face the camera, drawn over a finished picture with depth tests."""
 
 from __future__ import annotations
 
@@ -16,14 +16,13 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, SeenFrame, View
 
 SMALLEST = 1.25
-"""Radius [pixels] below which a disc is drawn larger and as much fainter, so that none slips between pixels."""
+"""Radius [pixels] below which a disc is drawn larger and as much fainter, so that none falls between pixels."""
 
 
 def over(frame: SeenFrame, records: NDArray[float32], radiance: NDArray[float32], linear: NDArray[float32]) -> None:
     """Draw the frame's mists, then its soft discs over ``linear`` (pixels, 3), shapes in their order.
 
-    ``records``, ``radiance``: what the middle of each pixel shows. Discs of one shape that cover are drawn from the
-    farthest on.
+    ``records``, ``radiance``: of the center of each pixel. Opaque discs of one shape are drawn from the farthest on.
     """
     for shape in frame.shapes:
         if isinstance(shape, Mist):

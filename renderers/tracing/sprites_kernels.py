@@ -16,7 +16,7 @@ _rows = types.float32[:, ::1]
 
 @lean_inlined
 def depth_of(record, camera):
-    """How far before the camera, along its axis, what it sees in a pixel stands; infinite for the sky."""
+    """Distance before the camera, along its axis, of the surface seen in a pixel; infinite for the sky."""
     if record[OWNER] == 0.0:
         return math.inf
     away = 0.0
@@ -29,8 +29,8 @@ def depth_of(record, camera):
 def cover_rows(start, stop, width, camera, discs, covers, records, linear):
     """Draw the discs (n, 9) of sprites.py in their order over the rows start..stop - 1.
 
-    A disc has the profile (1 - q^2)^2 of the distance q from its middle, in parts of its radius. It fades over its own
-    depth where it cuts through what is seen, so that no edge shows.
+    A disc has the profile (1 - q^2)^2 of the distance q from its middle, relative to its radius. It fades within its
+    own depth where it cuts through a surface, so that no edge shows.
     """
     for k in range(discs.shape[0]):
         x, y, depth, radius, reach = discs[k, 0], discs[k, 1], discs[k, 2], discs[k, 3], discs[k, 4]

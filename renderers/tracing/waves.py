@@ -1,8 +1,8 @@
-"""The stages of a picture that trace rays: all rays of a wave are asked first, so that packets can meet them together.
+"""The stages of a picture that trace rays: rays of a wave are listed first, so that packets can intersect them.
 
-Shadow rays and those to the sky of a whole band make a wave, and so does each turn of all its paths: camera, mirrored
-and refracted rays, with the light on what they see. Single are the rays that light what hides the sky, and all of them
-where there is nothing that packets know.
+Shadow rays and rays to the sky of a whole band make a wave, and so does each step of all its paths: camera, mirrored
+and refracted rays, with the light on their surfaces. Single are rays that light what hides the sky, and all where no
+shape suits packets.
 """
 
 from __future__ import annotations
@@ -39,16 +39,16 @@ if TYPE_CHECKING:
     Array = NDArray[Any]
 
 ROOM = 10 * TILE * TILE
-"""Paths that go together: few enough that what they work in stays in a core's cache."""
+"""Paths of a wave: few enough that their memory stays in a core's cache."""
 RAYS = 4 * ROOM
-"""Rays that are asked at a time."""
+"""Rays listed at a time."""
 
 
 class Waves:
-    """A thread's working memory for bands of a picture, TILE rows high at the most."""
+    """A thread's working memory for bands of a picture, at most TILE rows high."""
 
     def __init__(self, scene: Scene, packets: Packets | None, rows: int, columns: int) -> None:
-        """``packets``: what meets solids in them; ``rows`` of scratch and ``columns`` of visibility."""
+        """``packets`` to intersect solids by, or None; ``rows`` of scratch and ``columns`` of visibility."""
         self.scene, self.packets = scene, packets
         self.scratch = scratch(rows)
         self.scratch[-1 - int(scene.ints[layout.SHAPE_COUNT]) : -1, 0] = np.nan
@@ -65,8 +65,8 @@ class Waves:
     def gather(self, start: int, stop: int, records: Array, radiance: Array, visibility: Array) -> tuple[int, int]:
         """Fill rows start..stop: records (2, h w, COLUMNS), radiance (h w, 3), visibility (2, h w, V).
 
-        Returns how many pixels have an undecided root, and how many a second record. Radiance holds what needs no
-        visibility.
+        Returns the number of pixels with an undecided root, and with a second record. Radiance is the part that needs
+        no visibility.
         """
         undecided = seconds = 0
         for first in range(0, self.pixels, ROOM):
@@ -77,7 +77,7 @@ class Waves:
     def _gather(
         self, start: int, stop: int, first: int, records: Array, radiance: Array, visibility: Array
     ) -> tuple[int, int]:
-        """As ``gather``, of ROOM pixels from the ``first`` on."""
+        """As ``gather``, for ROOM pixels from ``first`` on."""
         scene, asked, at = self.scene, self.asked, np.empty_like(self.at)
         count = begin_paths(scene, start, stop, first, records, self.paths, at)
         self._follow(self.paths[:count], at, records)
@@ -94,7 +94,7 @@ class Waves:
         self, start: int, stop: int, points: Array, undecided: int, planes: Array, records: Array, radiance: Array,
         visibility: Array, picture: Array,
     ) -> None:  # fmt: skip
-        """Fill rows start..stop of ``picture`` (n, 3): as ``radiance``; edges by one ray a point (s, 2)."""
+        """Fill rows start..stop of ``picture`` (n, 3): ``radiance``, but edges by rays through ``points`` (s, 2)."""
         width, size = int(self.scene.reals[layout.WIDTH]), KEYS + visibility.shape[2] * WIDE
         light, own = (records, radiance), (self.marks, self.same, self.edges)
         count = list_edges(start, stop, width, size, undecided, planes, *light, picture, *own)
@@ -109,7 +109,7 @@ class Waves:
         self, edges: Array, points: Array, used: int, records: Array, radiance: Array, visibility: Array,
         picture: Array,
     ) -> Array:  # fmt: skip
-        """Some more samples of pixels; those that are to have still more."""
+        """Take some more samples of pixels; returns the pixels that need still more."""
         scene, some = self.scene, points[used : used + TRIAL]
         each, count = len(some), len(some) * len(edges)
         paths, own, found = self.paths[:count], self.own, self.found
@@ -122,7 +122,7 @@ class Waves:
         return edges[:left]
 
     def _follow(self, paths: Array, at: Array, records: Array) -> None:
-        """Let paths go to their ends."""
+        """Follow paths to their ends."""
         while ask_paths(paths, self.asked):
             if self.packets is not None:
                 self.packets.meet(self.asked)
@@ -130,14 +130,14 @@ class Waves:
                 self._ask(0, len(paths), lambda i, end: self._light(i, end, paths))
 
     def _light(self, start: int, stop: int, paths: Array) -> int:
-        """Light what paths start..stop see behind their records; where it ends."""
+        """Light surfaces beyond the records of paths start..stop; returns where it ends."""
         end: int = light_paths(self.scene, self.scratch, self.asked, start, stop, paths, self.spares, self.found[0])
         return end
 
     def _ask(self, start: int, stop: int, work: Callable[[int, int], int]) -> None:
-        """Do ``work`` twice for each part of start..stop, which it ends: its rays are asked, then they are told.
+        """Do ``work`` twice on each part of start..stop whose rays fit the list: to list them, and with their answers.
 
-        Once for all of it where no packets are to be told anything.
+        Without packets only once, on all of it.
         """
         if self.packets is None:
             work(start, stop)

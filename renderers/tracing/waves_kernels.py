@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""The stage of gathering in waves: all paths of a band ask for their next ray, and go on once packets have told."""
+"""Paths in waves: all paths of a band list their next ray, and go on when packets have answered."""
 
 import numpy as np
 from numba import types
@@ -23,9 +23,9 @@ _many = types.int64[::1]
 
 @kernel(_i(SCENE, _i, _i, _i, _stack, _paths, _many), _nrt=False)
 def begin_paths(scene, start, stop, first, records, paths, at):
-    """Begin paths of rows start..stop, no more than TILE of them, from their ``first`` pixel on in the order of tiles.
+    """Begin paths of rows start..stop, at most TILE, from their ``first`` pixel on in the order of tiles.
 
-    As many as there is room for; how many, and ``at`` which pixel each is.
+    As many as there is room for; returns their number. Path i is of pixel ``at[i]``.
     """
     width = int(scene.reals[layout.WIDTH])
     n = 0
@@ -41,7 +41,7 @@ def begin_paths(scene, start, stop, first, records, paths, at):
 
 @kernel(_i(_paths, ASKED), _nrt=False)
 def ask_paths(paths, asked):
-    """Ask for the next ray of all live paths; how many there are."""
+    """List the next ray of all live paths; returns their number."""
     row = 1
     for i in range(paths.shape[0]):
         if paths[i, LIVE] != 0.0:
@@ -54,9 +54,9 @@ def ask_paths(paths, asked):
 
 @kernel(_i(SCENE, SCRATCH, ASKED, _paths, _many, _stack, _rows), _nrt=False)
 def advance_paths(scene, scratch, asked, paths, at, records, spares):
-    """Let all live paths go on by what is told of their rays; path i has the records ``at[i]``.
+    """Advance all live paths by the answers for their rays; path i has the records ``at[i]``.
 
-    How many are to be lit in what they see behind these, left in ``spares`` (n, COLUMNS).
+    Returns the number of paths whose surface beyond these, left in ``spares`` (n, COLUMNS), is to be lit.
     """
     row = 1
     dark = 0
@@ -72,7 +72,7 @@ def advance_paths(scene, scratch, asked, paths, at, records, spares):
 
 @kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _paths, _rows, _rows), _nrt=False)
 def light_paths(scene, scratch, asked, first, last, paths, spares, visibility):
-    """Light what paths first..last see behind their records; of as many as ``asked`` has room for the rays of.
+    """Light the surfaces beyond the records of paths first..last, while ``asked`` has room for more rays.
 
     Returns where it ends. ``visibility`` (n, V) is working memory.
     """
@@ -93,9 +93,9 @@ def light_paths(scene, scratch, asked, first, last, paths, spares, visibility):
 
 @kernel(types.UniTuple(_i, 2)(_paths, _many, _stack, _rows), _nrt=False)
 def end_paths(paths, at, records, radiance):
-    """The radiance of the pixels ``at`` which paths are, but for their records, and whether they are UNSURE.
+    """Write the radiance of the pixels ``at`` without their records' light, and whether they are UNSURE.
 
-    Returns how many are, and how many have a second record.
+    Returns the number of pixels that are, and of those with a second record.
     """
     doubted = seconds = 0
     for i in range(paths.shape[0]):
@@ -111,7 +111,7 @@ def end_paths(paths, at, records, radiance):
 def look_from(scene, scratch, asked, first, last, at, records, visibility):
     """The visibility of the pixels ``at[first:last]``, one sample of each light and of the sky.
 
-    Of as many as ``asked`` has room for the rays of; returns where it ends.
+    Stops where ``asked`` has no room for more rays; returns where it ends.
     """
     width = int(scene.reals[layout.WIDTH])
     room = asked.shape[0] - 2 * (1 + scene.ints[layout.LIGHT_COUNT])

@@ -1,1 +1,1 @@
-"""Samples to pixels: edges, noise."""
+"""From samples to pixels: visibility filters, antialiased edges."""

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Last stage: pixels in which things meet are drawn anew by several rays, lit by the visibility already found."""
+"""Last stage: pixels on edges are drawn anew by several rays, lit by the visibility found before."""
 
 from numba import types
 
@@ -20,18 +20,18 @@ _stack = types.float32[:, :, ::1]
 _reals = types.float64[:, ::1]
 _many = types.int64[::1]
 BEYOND = 0.25
-"""How much the rays of one pixel may be brighter than white, where they are averaged: about as much as the eye sees."""
+"""How much brighter than white a ray may count in the mean of a pixel: about as much as the eye sees."""
 CONTRAST = 0.08
-"""Difference of brightness, relative to the sum, at which pixels with reflections count as an edge."""
+"""Relative difference of radiance from which on neighboring pixels with reflections count as an edge."""
 TRIAL = 4
-"""Rays after which a pixel is left that shows, after all, one smooth thing."""
+"""Rays after which a pixel is finished if all of them show one smooth surface."""
 ANEW = 8
-"""Samples of light and sky for a ray that meets what no neighboring pixel has met."""
+"""Samples of light and sky for a ray that meets a surface that no neighboring pixel shows."""
 
 
 @part
 def tamed(r, g, b):
-    """A radiance that is brighter than white by its brightest channel p, brought to 1 + BEYOND (1 - 1/p).
+    """A radiance brighter than white, compressed from its brightest channel p to 1 + BEYOND (1 - 1/p).
 
     Rays of a pixel are averaged so (after Karis 2013): in a plain mean one of eight that meets a highlight of radiance
     16 would make the pixel as white as if all met it, and bright edges and lines would be jagged.
@@ -45,7 +45,7 @@ def tamed(r, g, b):
 
 @part
 def untamed(r, g, b):
-    """The radiance that ``tamed`` makes this of."""
+    """The inverse of ``tamed``."""
     peak = max(r, max(g, b))
     if peak <= 1.0:
         return r, g, b
@@ -64,7 +64,7 @@ def contrast(radiance, k, red, green, blue):
 
 @part
 def mark_edges(y, planes, size, chunk, same, marks):
-    """Mark (1, else 0) the pixels of a chunk in row y whose neighbors show something else than they do."""
+    """Set marks to 1 for the pixels of a chunk in row y whose neighbors show another surface, else to 0."""
     a = planes[y, chunk * size + HALO :]
     for i in range(LANES):
         marks[i] = ZERO
@@ -81,7 +81,7 @@ def mark_edges(y, planes, size, chunk, same, marks):
 
 @part
 def unlike(records, radiance, k, x, y, width, height):
-    """Whether a pixel's neighbors have an undecided root or, where it mirrors, other light."""
+    """Whether a pixel's neighborhood has an undecided root or, if the pixel is a mirror, another radiance."""
     glossy = records[0, k, TRACED] > 0.0
     for j in range(max(y - 1, 0), min(y + 1, height - 1) + 1):
         for i in range(max(x - 1, 0), min(x + 1, width - 1) + 1):
@@ -97,7 +97,7 @@ def unlike(records, radiance, k, x, y, width, height):
 
 @part
 def borrow(records, visibility, record, x, y, width, height, found):
-    """Fill ``found`` with the mean visibility of pixels around (x, y) that are like a record, if there is one."""
+    """Fill ``found`` with the mean visibility of pixels around (x, y) alike a record; returns whether there are any."""
     count = 0
     for j in range(max(y - 1, 0), min(y + 1, height - 1) + 1):
         for i in range(max(x - 1, 0), min(x + 1, width - 1) + 1):
@@ -113,10 +113,10 @@ def borrow(records, visibility, record, x, y, width, height, found):
 
 @kernel(_i(_i, _i, _i, _i, _i, _rows, _stack, _rows, _rows, _rows, LINE, _many), _nrt=False)
 def list_edges(start, stop, width, size, undecided, planes, records, radiance, picture, marks, same, edges):
-    """The pixels of rows start..stop, no more than TILE, that are to be drawn anew; the others go to the picture.
+    """List the pixels of rows start..stop, at most TILE, that are to be drawn anew; write the others to the picture.
 
-    ``size`` of a chunk of ``planes``, those of the first records. How many roots are ``undecided``: there, too, pixels
-    are drawn anew. ``marks`` (TILE, chunks LANES) and ``same`` (LANES,) are working memory.
+    ``size`` of a chunk of ``planes``, those of the first records; ``undecided`` roots in the picture: pixels with one
+    are drawn anew as well. ``marks`` (TILE, chunks LANES) and ``same`` (LANES,) are working memory.
     """
     for y in range(start, stop):
         for chunk in range(planes.shape[1] // size):
@@ -142,7 +142,7 @@ def list_edges(start, stop, width, size, undecided, planes, records, radiance, p
 
 @kernel(types.void(SCENE, _reals, _many, _reals, _stack), _nrt=False)
 def begin_samples(scene, points, edges, paths, own):
-    """Begin paths through ``points`` (s, 2) of each of the pixels ``edges``, which have the records ``own``."""
+    """Begin paths through ``points`` (s, 2) of each of the pixels ``edges``; ``own`` are the paths' records."""
     width = int(scene.reals[layout.WIDTH])
     each = len(points)
     for i in range(each * len(edges)):
@@ -153,9 +153,9 @@ def begin_samples(scene, points, edges, paths, own):
 
 @kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _i, _many, _stack, _stack, _stack, _stack), _nrt=False)
 def look_from_samples(scene, scratch, asked, first, last, each, edges, records, visibility, own, found):
-    """The visibility ``found`` of the records ``own`` of samples first..last: that of neighbors alike, else anew.
+    """The visibility ``found`` of the records ``own`` of samples first..last: borrowed from neighbors, or else sampled.
 
-    Of as many as ``asked`` has room for the rays of; returns where it ends.
+    Stops where ``asked`` has no room for more rays; returns where it ends.
     """
     width, height = int(scene.reals[layout.WIDTH]), int(scene.reals[layout.HEIGHT])
     room = asked.shape[0] - 2 * ANEW * (1 + scene.ints[layout.LIGHT_COUNT])
@@ -173,10 +173,10 @@ def look_from_samples(scene, scratch, asked, first, last, each, edges, records, 
 
 @kernel(_i(SCENE, _i, _i, _i, _many, _stack, _rows, _reals, _stack, _stack, _reals, _rows), _nrt=False)
 def add_samples(scene, each, used, whole, edges, records, radiance, paths, own, found, sums, picture):
-    """Add ``each`` samples of the pixels ``edges`` to ``sums`` (n, 4): tamed light, and whether all show one thing.
+    """Add ``each`` samples of the pixels ``edges`` to ``sums`` (n, 4): tamed light, and whether all show one surface.
 
-    ``used`` samples there are then, ``whole`` there shall be. Pixels that need no more go to the picture, the others
-    to the front of ``edges``; how many these are.
+    ``used`` samples are there then, of ``whole``. Finished pixels go to the picture, the others to the front of
+    ``edges``; returns their number.
     """
     left = 0
     for p in range(len(edges)):

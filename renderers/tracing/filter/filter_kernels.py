@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Second stage: visibility averaged over 8 x 8 pixels of the same surface, where each sample of the net stands once."""
+"""Second stage: visibility averaged over 8 x 8 pixels of one surface, which have each sample of the net once."""
 
 from numba import types
 
@@ -25,7 +25,7 @@ REACH = SIDE // 2
 
 @kernel(types.void(LINE, types.float32, LINE, _i, LINE, _i, _i), _nrt=False, inner=True)
 def add_lanes(same, share, values, apart, sums, own_apart, columns):
-    """Add ``share`` times planes of ``values``, so far apart, to those of ``sums``, in lanes that are the ``same``."""
+    """Add ``share`` times planes of ``values``, ``apart`` numbers apart, to those of ``sums``, where ``same`` is 1."""
     for column in range(columns):
         value, total = values[column * apart :], sums[column * own_apart :]
         for i in range(LANES):
@@ -34,7 +34,7 @@ def add_lanes(same, share, values, apart, sums, own_apart, columns):
 
 @kernel(types.void(_i, _i, _i, PLANES, PLANES, LINE), _nrt=False)
 def widen(start, stop, columns, planes, sums, same):
-    """Rows start..stop of ``sums`` from one row of pixels each: weight and weighted visibility, along x.
+    """Filter along x: weight and weighted visibility of rows start..stop into ``sums``.
 
     ``planes`` are those of planes_kernels with the visibility (V columns) behind the keys, ``sums`` has 1 + V planes of
     LANES a chunk. ``same`` (LANES,) is working memory.
@@ -61,9 +61,9 @@ def widen(start, stop, columns, planes, sums, same):
 
 @kernel(types.void(_i, _i, _i, PLANES, PLANES, PLANES, LINE), _nrt=False)
 def deepen(start, stop, columns, planes, sums, means, same):
-    """Rows start..stop of ``means``: number of pixels joined, and their mean visibility, from ``sums`` along y.
+    """Filter along y: number of pixels joined, and their mean visibility, of rows start..stop into ``means``.
 
-    1 + V planes of WIDE a chunk, with the neighbors' at both its ends.
+    It has 1 + V planes of WIDE a chunk, with the neighbors' at both its ends.
     """
     size, of_sums, of_means = KEYS + columns * WIDE, (1 + columns) * LANES, (1 + columns) * WIDE
     chunks = sums.shape[1] // of_sums

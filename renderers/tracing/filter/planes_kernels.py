@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Records as planes of float32 in chunks of pixels: what neighbors are asked is asked in many lanes at once.
+"""Records as planes of float32 in chunks of pixels, so that neighbors are compared in vector lanes.
 
 A chunk is LANES pixels of a row, with HALO more on both sides, so that neighbors in the row stand in the same chunk.
 """
@@ -16,23 +16,23 @@ F = np.float32
 LANES, HALO = 64, SIDE
 WIDE = LANES + 2 * HALO
 NX, NY, NZ, PX, PY, PZ, REACH, OWN, KEYS = (WIDE * plane for plane in range(9))
-"""Where a chunk's planes begin: normal, place, how far off its plane others may be, owner (0: none; outside of the
-picture NONE). Behind those of the keys may be others."""
+"""Offsets of a chunk's planes: normal, point, distance from its tangent plane up to which others are alike, owner (0:
+none; outside of the picture NONE). Other planes may follow these keys."""
 NONE = F(-1.0)
 ZERO, ONE = F(0.0), F(1.0)
 NEAR = F(np.nextafter(F(FLATTEST), F(2.0)))
 """The least float32 not below FLATTEST."""
 SLACK = 3.0
-"""Distance off a plane [pixel radii] up to which a neighbor counts as of the same surface."""
+"""Distance from a plane [pixel radii] up to which a neighbor counts as of the same surface."""
 _i = types.int64
 LINE = types.float32[::1]
 PLANES = types.float32[:, ::1]
-"""Type of planes: a row for each row of the picture, in it one chunk after the other."""
+"""Type of planes: for each row of the picture one chunk after the other."""
 
 
 @kernel(types.void(_i, _i, _i, PLANES, PLANES, PLANES), _nrt=False)
 def lay_out(start, stop, width, records, visibility, planes):
-    """Lay rows of records (n, COLUMNS) and their visibility (n, V) out in planes (h, chunks (8 + V) WIDE)."""
+    """Write rows of records (n, COLUMNS) and their visibility (n, V) as planes (h, chunks (8 + V) WIDE)."""
     columns = visibility.shape[1]
     size = KEYS + columns * WIDE
     for y in range(start, stop):
@@ -58,9 +58,9 @@ def lay_out(start, stop, width, records, visibility, planes):
 
 @kernel(types.void(LINE, LINE, LINE), _nrt=False, inner=True)
 def alike_lanes(a, b, same):
-    """Whether LANES pixels ``a`` and ``b`` (slices of planes) lie on one smooth piece of surface: 1 in ``same``, or 0.
+    """Set ``same`` to 1 where LANES pixels ``a`` and ``b`` (slices of planes) lie on one smooth surface, else to 0.
 
-    As record_kernels.alike; pixels without a record are like none.
+    As record_kernels.alike; pixels without a record are alike to none.
     """
     for i in range(LANES):
         dot = a[NX + i] * b[NX + i] + a[NY + i] * b[NY + i] + a[NZ + i] * b[NZ + i]
@@ -73,7 +73,7 @@ def alike_lanes(a, b, same):
 
 @part
 def itself(a, same):
-    """1 in ``same`` where LANES pixels have a record, else 0."""
+    """Set ``same`` to 1 where LANES pixels have a record, else to 0."""
     for i in range(LANES):
         same[i] = ONE if a[OWN + i] > ZERO else ZERO
 

@@ -18,11 +18,11 @@ _rows = types.float32[:, ::1]
 _stack = types.float32[:, :, ::1]
 CRISP = 1.5
 FINE = 3.0
-"""Widths [pixels] of half-shadows that are searched for in 3 x 3 and in 5 x 5 pixels."""
+"""Widths [pixels] of penumbras that are searched in 3 x 3 and in 5 x 5 pixels."""
 OWN = 16
 """Samples of a light for each pixel of a fine edge."""
 FEW = 20.0
-"""Pixels in the filter's window below which a pixel takes samples of the sky of its own: small things, thin things."""
+"""Pixels joined by the filter below which a pixel takes samples of the sky of its own: on small or thin surfaces."""
 
 
 @part
@@ -38,16 +38,16 @@ def mixed(records, visibility, k, x, y, width, height, column, reach):
 
 @part
 def mean_of(means, columns, x, y, plane):
-    """What the planes of filter_kernels.deepen tell of a pixel."""
+    """A pixel's number in a plane of filter_kernels.deepen."""
     return means[y, (x // LANES * (1 + columns) + plane) * WIDE + HALO + x % LANES]
 
 
 @kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _rows, _rows, _rows, _rows), _nrt=False)
 def refine(scene, scratch, asked, start, stop, records, visibility, means, fine):
-    """Rows of ``fine`` (n, V): of each light its share, and whether that wants smoothing (0 or 1).
+    """Fill rows of ``fine`` (n, V): for each light its share, and whether that needs smoothing (0 or 1).
 
-    The sky's loss, which is there, is better told where few pixels join. Of pixels start..stop, or as many as ``asked``
-    has room for the rays of; returns where it ends.
+    The sky's loss, already there, is resampled where few pixels were joined. For pixels start..stop, or until ``asked``
+    has no room for more rays; returns where it ends.
     """
     width, height = int(scene.reals[layout.WIDTH]), int(scene.reals[layout.HEIGHT])
     columns = visibility.shape[1]
@@ -92,7 +92,7 @@ def refine(scene, scratch, asked, start, stop, records, visibility, means, fine)
 
 @part
 def settle(records, fine, lights, k, x, y, width, height, visibility):
-    """Final visibility of a record: as refined, edges of middling width averaged over 3 x 3 pixels."""
+    """Final visibility of a record: as refined; penumbras of middling width are averaged over 3 x 3 pixels."""
     for c in range(len(visibility)):
         visibility[c] = fine[k, c]
     for l in range(lights):

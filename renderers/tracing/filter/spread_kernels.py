@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""The sky's loss averaged over windows wider than the lights': its net has four times as many samples."""
+"""The sky's loss averaged over wider windows than the lights', since its net has four times as many samples."""
 
 from numba import types
 
@@ -27,14 +27,14 @@ _i = types.int64
 PLAIN, WIDER = F(4.0 * SIDE * SIDE), F(16.0 * SIDE * SIDE)
 """Weights of whole windows of 16 x 16 and of 24 x 24 pixels."""
 OF_SKY = (1 + FIRST_LIGHT) * LANES
-"""Numbers of a chunk's sums: weight and weighted loss."""
+"""Size of a chunk's sums: weight and weighted loss."""
 ROOM = LANES + 2 * OF_SKY
-"""Numbers that ``spread_sky`` works in."""
+"""Size of the working memory of ``spread_sky``."""
 
 
 @part
 def join(planes, means, y, row, at, mean_at, off, share, sums, same):
-    """Add ``share`` times the loss over 8 x 8 pixels about those ``off`` a chunk's in a row, where alike, to ``sums``.
+    """Add ``share`` times the 8 x 8 means of pixels ``off`` columns away, in a row, to ``sums``, where they are alike.
 
     The chunk begins at ``at`` in row y of the planes, at ``mean_at`` in the means.
     """
@@ -53,7 +53,7 @@ def join(planes, means, y, row, at, mean_at, off, share, sums, same):
 
 @part
 def narrower(planes, means, y, at, mean_at, sums, same):
-    """A plain window of 16 x 16 pixels, from four means; where an edge cuts it the one in its middle stands in."""
+    """A plain window of 16 x 16 pixels, from four means; where an edge cuts it the mean in its middle completes it."""
     for i in range(OF_SKY):
         sums[i] = ZERO
     for corner in range(4):
@@ -70,9 +70,9 @@ def narrower(planes, means, y, at, mean_at, sums, same):
 def spread_sky(start, stop, width, columns, planes, means, fine, memory):
     """The sky's loss over 24 x 24 pixels, from nine means over 8 x 8 of weights 1 2 1, 2 4 2, 1 2 1, into ``fine``.
 
-    Each of its samples, one in 16 x 16 pixels, has the same weight in all, and those that come in and go out where the
-    window moves have half of what they have in a plain window, so that stripes are fainter. Where other things are so
-    near, a plain window. Planes and means are those of filter_kernels, ``fine`` is (n, V), ``memory`` (ROOM,).
+    Each of its samples, one in 16 x 16 pixels, has the same weight in all, and samples that enter and leave as the
+    window moves have half of their weight in a plain window, so that stripes are fainter. Near edges the window is a
+    plain one. Planes and means are those of filter_kernels, ``fine`` is (n, V), ``memory`` (ROOM,).
     """
     size, of_means = KEYS + columns * WIDE, (1 + columns) * WIDE
     same, wide, narrow = memory[:LANES], memory[LANES : LANES + OF_SKY], memory[LANES + OF_SKY :]

@@ -1,1 +1,1 @@
-"""Light, shadow and sky at a point."""
+"""Lights, shadows, sky and shading at a point."""

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Sky and reflection: closed forms of the light that comes from all around, and of how surfaces answer it."""
+"""Sky and reflectance in closed form."""
 
 import numpy as np
 
@@ -94,5 +94,5 @@ def smoothstep(low, high, x):
 
 @part
 def sharpness(roughness):
-    """Share of the reflection that is traced as in a mirror; the rest is the sky's, blurred."""
+    """Share of the reflection that is traced as in a mirror; the rest is the sky, blurred."""
     return 1.0 - smoothstep(0.05, 0.4, roughness)

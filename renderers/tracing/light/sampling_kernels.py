@@ -1,10 +1,10 @@
 # mypy: ignore-errors
-"""Which sample a pixel takes: one point of a net for each pixel of a block, 8 x 8 for lights, 16 x 16 for the sky.
+"""The sample of each pixel: one point of a net for each pixel of a block, 8 x 8 for lights, 16 x 16 for the sky.
 
-Pixel (x, y) takes the point whose index is linear over GF(2) in the bits of its place in the block. Any window of the
-block's size then has each point once. The filter's window moves by whole rows and columns of the block, so these are
-nets as well, as nearly as their number of points lets them be, and so are aligned blocks of 2 x 2 and 4 x 4 pixels
-(Ahmed and Wonka 2020 order the points along a curve, which leaves stripes: its rows and columns lie on few lines).
+The index of pixel (x, y)'s point is linear over GF(2) in the bits of its place in the block. Any window of the block's
+size then has each point once. The filter's window moves by whole rows and columns of the block, so these are nets as
+well, as nearly as their number of points allows, and so are aligned blocks of 2 x 2 and 4 x 4 pixels (Ahmed and Wonka
+2020 order the points along a curve, which leaves stripes: its rows and columns lie on few lines).
 """
 
 import numpy as np
@@ -34,13 +34,13 @@ def _second(index):
 
 
 def _net(count):
-    """(count, 2) points of [0, 1)^2: the first of Sobol's sequence, which make a net, in the middle of their cells."""
+    """(count, 2) points of [0, 1)^2, in the middle of their cells: the first of Sobol's sequence, which make a net."""
     bits = count.bit_length() - 1
     return np.array([(_radical_inverse(bits, k), _second(k)) for k in range(count)]) + 0.5 / count
 
 
 def _disk(points):
-    """Points of [0, 1)^2 brought to the unit disk with equal areas."""
+    """Points of [0, 1)^2 mapped to the unit disk with equal areas."""
     radius, angle = np.sqrt(points[:, 0]), 2.0 * np.pi * points[:, 1]
     return np.ascontiguousarray(np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1))
 
@@ -50,7 +50,7 @@ DISK = _disk(_net(COUNT))
 SKY_DISK = _disk(_net(SKY_COUNT))
 """(SKY_COUNT, 2) points of the unit disk; lifted to the hemisphere they are cosine-distributed (Malley)."""
 JITTER = _net(COUNT)[np.arange(COUNT) * 37 % COUNT, ::-1] - 0.5
-"""(COUNT, 2) points of a pixel, from its center, in another order than those of DISK."""
+"""(COUNT, 2) offsets from a pixel's center, in another order than the points of DISK."""
 
 
 def subpixels(samples: int):
@@ -59,12 +59,12 @@ def subpixels(samples: int):
 
 
 ACROSS, DOWN = (1, 135, 29, 64), (2, 11, 165, 128)
-"""What each bit of x and of y adds to the index, found by search; those beyond SIDE leave the lights' as it is."""
+"""Summand of the index for each bit of x and of y, found by search; bits beyond SIDE leave the lights' index."""
 
 
 @part
 def sample_of(x, y):
-    """Index of the sky's sample of pixel (x, y); its remainder by COUNT is that of the lights'."""
+    """Index of the sky's sample of pixel (x, y); modulo COUNT it is that of the lights' sample."""
     number = 0
     for bit in range(4):
         number ^= ((x >> bit) & 1) * ACROSS[bit] ^ ((y >> bit) & 1) * DOWN[bit]

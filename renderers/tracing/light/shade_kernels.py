@@ -17,7 +17,7 @@ SHARPEST = 0.02
 
 @part
 def edge_reflectance(f0):
-    """Reflectance at grazing incidence: 1, but nothing for a surface that reflects nothing at all (specular 0)."""
+    """Reflectance at grazing incidence: 1, but 0 for a surface with no reflection at all (specular 0)."""
     return min(1.0, 50.0 * f0)
 
 
@@ -43,7 +43,7 @@ def facing_ratio(record):
 
 @part
 def mean_specular(reals, record, nv):
-    """Share (3) of uniform light that a record's surface reflects by its gloss."""
+    """Share (3) of uniform light that a record's surface reflects specularly."""
     scale, bias = mean_reflectance(reals[int(record[SURFACE]) + layout.ROUGHNESS], nv)
     r, g, b = reflectance_at_normal(reals, record)
     return (
@@ -65,7 +65,7 @@ def light_width(reals, k, distance, roughness):
 
 @kernel(types.UniTuple(types.float64, 3)(SCENE, ROW, ROW), _nrt=False, inner=True)
 def shade(scene, record, visibility):
-    """Radiance (3) of a record times its weight, but for what is traced further."""
+    """Radiance (3) of a record times its weight, without the rays that are traced further."""
     u = scene.reals
     s = int(record[SURFACE])
     nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
@@ -78,7 +78,7 @@ def shade(scene, record, visibility):
     body = (1.0 - u[s + layout.METALLIC]) * (1.0 - u[s + layout.TRANSMISSION])
     open_sky = sky_ambient(u, ny)
     mirrored_sky = sky_radiance(u, 2.0 * (nx * vx + ny * vy + nz * vz) * ny - vy)
-    sums = (0.0, 0.0, 0.0)  # of matte light, for all channels
+    sums = (0.0, 0.0, 0.0)  # irradiance of the matte part, by channel
     lobes = (0.0, 0.0, 0.0)
     for l in range(int(scene.ints[layout.LIGHT_COUNT])):
         lx, ly, lz, distance, ir, ig, ib = light_at(u, l, x, y, z)

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""How much of each light, and of the sky, a record sees."""
+"""Visibility of the lights and of the sky from a record."""
 
 import numpy as np
 from numba import types
@@ -15,20 +15,20 @@ from sceneql.compiled.kernels import kernel
 
 _i = types.int64
 SKY = 0
-"""First of three columns of visibility: how much less than the open sky's mean radiance comes in (RGB)."""
+"""First of three columns of visibility: mean radiance of the open sky less the incoming one (RGB)."""
 FIRST_LIGHT = 3
-"""Then two columns for each light: the share of it that is seen, and the width [m] of the half-shadow here."""
+"""Then two columns for each light: the visible share of it, and the width [m] of the penumbra here."""
 BARELY = 1e-6
-"""Part of its way that a ray to a lamp ends before its ball, so that a sphere of the same radius is not met."""
+"""Part of its length by which a ray to a lamp ends before its ball, so that a sphere of the same radius is not hit."""
 BRIGHTEST = 4.0
-"""Radiance to which what hides the sky is limited: small spots near a lamp, which few samples meet, left blotches."""
+"""Limit of the radiance of surfaces that hide the sky: small spots near a lamp, hit by few samples, left blotches."""
 AGAIN = 0.5
-"""Share of the sky that a place which hides the sky is taken to see itself."""
+"""Share of the sky that a surface which hides the sky is assumed to see itself."""
 
 
 @part
 def light_at(reals, l, x, y, z):
-    """(direction, distance, irradiance per channel facing it) of light l from a point."""
+    """(direction, distance, irradiance per channel of a surface facing it) of light l from a point."""
     k = layout.LIGHTS + layout.LIGHT * l
     ir, ig, ib = reals[k + 4], reals[k + 5], reals[k + 6]
     if reals[k] == layout.SUN:
@@ -41,10 +41,10 @@ def light_at(reals, l, x, y, z):
 
 @part
 def reach(far, radius, square):
-    """Where a ray, whose direction has a ``square`` >= 1 and the part 1 along ``far``, comes to a lamp's ball.
+    """Parameter at which a ray enters a lamp's ball, of squared direction ``square`` and component 1 along ``far``.
 
-    ``far``: distance of its middle, which is in the plane of the disk that the ray goes to. What is in the ball, such
-    as a sphere that shows the lamp, throws no shadow in its light.
+    ``far`` is the distance of the ball's center, in the plane of the disk that the ray goes to. Objects in the ball,
+    such as a sphere that shows the lamp, throw no shadow in its light.
     """
     inside = max(square * radius * radius - (square - 1.0) * far * far, 0.0)
     return max((1.0 - BARELY) * (far - np.sqrt(inside)) / square, 0.0)
@@ -52,7 +52,7 @@ def reach(far, radius, square):
 
 @part
 def seen(scene, scratch, asked, l, x, y, z, disk_x, disk_y):
-    """(share, distance of what hides it) of the point (disk_x, disk_y) of light l's disk from a place."""
+    """(share, distance of the blocker) of the point (disk_x, disk_y) of light l's disk from a place."""
     dx, dy, dz, far, _, _, _ = light_at(scene.reals, l, x, y, z)
     ax, ay, az, bx, by, bz = across(dx, dy, dz)
     size = scene.reals[layout.LIGHTS + layout.LIGHT * l + 8]
@@ -71,7 +71,7 @@ def seen(scene, scratch, asked, l, x, y, z, disk_x, disk_y):
 
 @part
 def shadow_width(scene, l, x, y, z, blocker):
-    """Width [m] of the half-shadow that an edge at distance ``blocker`` throws on a surface facing light l."""
+    """Width [m] of the penumbra that an edge at distance ``blocker`` throws on a surface facing light l."""
     _, _, _, far, _, _, _ = light_at(scene.reals, l, x, y, z)
     if far == np.inf:
         return scene.reals[layout.LIGHTS + layout.LIGHT * l + 7] * blocker
@@ -80,7 +80,7 @@ def shadow_width(scene, l, x, y, z, blocker):
 
 @part
 def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius):
-    """Radiance (3) that a place sends back: its own light, and the lights and part of the sky reflected once, matte."""
+    """Radiance (3) of a surface that hides the sky: its emission, and lights and sky reflected once, matte."""
     nx, ny, nz, fx, fy, fz, lift, red, green, blue = normal_at(scene, scratch, item, x, y, z)
     if dx * fx + dy * fy + dz * fz > 0.0:
         nx, ny, nz, fx, fy, fz = -nx, -ny, -nz, -fx, -fy, -fz
@@ -109,7 +109,7 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius):
 
 @part
 def sky_loss(scene, scratch, asked, record, sample):
-    """How much less (3) than the sky's radiance comes in along the sample's direction, cosine-distributed."""
+    """The sky's radiance (3) less the incoming one in the direction of a sample, cosine-distributed."""
     nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
     ax, ay, az, bx, by, bz = across(nx, ny, nz)
     u, v = SKY_DISK[sample, 0], SKY_DISK[sample, 1]
@@ -119,7 +119,7 @@ def sky_loss(scene, scratch, asked, record, sample):
     t, item, _ = ask(scene, scratch, asked, x, y, z, dx, dy, dz, np.inf, False)
     if item < 0:
         return 0.0, 0.0, 0.0
-    if asked[0, layout.MODE] == layout.ASKING:  # what lights it is found when all is told
+    if asked[0, layout.MODE] == layout.ASKING:  # found when rays have answers
         asked[0, layout.OPEN] = 1.0
         return 0.0, 0.0, 0.0
     radius = record[RADIUS] + 0.05 * t
@@ -138,9 +138,9 @@ def facing(scene, record, l):
 
 @part
 def shadow_sample(scene, scratch, asked, record, l, sample, jitter):
-    """(share, width of half-shadow) of light l for one sample, from a point up to ``jitter`` pixels off.
+    """(share, width of the penumbra) of light l for one sample, from a point up to ``jitter`` pixels off.
 
-    A surface that faces away counts as lit, since shading takes care of that and no edge of shadow must be seen there.
+    A surface that faces away counts as lit: shading darkens it, and the filter must see no edge of shadow there.
     """
     if not facing(scene, record, l):
         return 1.0, 0.0
@@ -155,10 +155,10 @@ def shadow_sample(scene, scratch, asked, record, l, sample, jitter):
 
 @kernel(types.boolean(SCENE, SCRATCH, ASKED, ROW, _i, _i, _i, ROW), _nrt=False, inner=True)
 def look_around(scene, scratch, asked, record, number, of_sky, of_lights, visibility):
-    """Fill a row of visibility with means of nets of so many samples (powers of two), those of pixel ``number``.
+    """Fill a row of visibility with the means of so many samples of nets (powers of two), those of pixel ``number``.
 
-    Several samples cover the pixel's area, one stands for its center. Returns whether the row has just become what it
-    shall be: where rays are asked it may be at once, and then it stays when they are told; else it is NaN until then.
+    Several samples cover the pixel's area, one is at its center. Returns whether the row has just become final: in the
+    mode ASKING a row without open rays is so at once, and stays in TELLING; others are NaN until then.
     """
     mode, begin = asked[0, layout.MODE], asked[0, layout.NEXT]
     if mode == layout.TELLING and visibility[0] == visibility[0]:

@@ -1,1 +1,1 @@
-"""Rays against what a frame holds."""
+"""Intersections of rays with the shapes of a frame."""

@@ -1,4 +1,4 @@
-"""Rays that meet implicit solids in packets: what each asks is told before it is traced."""
+"""Packets of rays for implicit solids: rays are collected, intersected together, and then traced with the answers."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Packets:
-    """What one thread needs to meet the implicit solids ``solids`` (indices) among ``shapes``."""
+    """One thread's memory to intersect rays with the implicit solids ``solids`` (indices) among ``shapes``."""
 
     def __init__(self, shapes: tuple[Shape, ...], solids: list[int]) -> None:
         self.solids = solids
@@ -35,18 +35,18 @@ class Packets:
         self.chosen, self.spans = np.empty((2, 1 + RAYS), dtype=np.int64), np.empty((2, 2, RAYS))
 
     def asked(self, rays: int) -> Floats:
-        """An empty list for so many rays, see scene_kernels.ASKED."""
+        """An empty list of rays (1 + rays, columns), see scene_kernels.ASKED."""
         asked = np.zeros((1 + rays, layout.ANSWERS + len(self.solids)))
         asked[0, layout.ANSWERS :] = self.solids
         return asked
 
     def meet(self, asked: Floats) -> None:
-        """Tell of all asked rays where they meet the solids."""
+        """Write the first crossings of all listed rays with the solids."""
         for k, (memory, bounds) in enumerate(zip(self.memories, self.bounds, strict=True)):
             more = *bounds, asked, layout.ANSWERS + k, self.chosen, self.spans
             meet_asked(*memory.bundle, memory.found, *memory.rest, *more)
 
 
 def solids_in_lanes(shapes: tuple[Shape, ...]) -> list[int]:
-    """Indices of the shapes that packets know: implicit solids of operations that have lanes."""
+    """Indices of the implicit solids that packets know."""
     return [i for i, shape in enumerate(shapes) if isinstance(shape, Implicit) and shape.within is None]

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Rays of every kind against one implicit solid, in bundles of 256 (sceneql.field)."""
+"""Intersects listed rays, of every kind, with one implicit solid, in bundles of 256 (sceneql.field)."""
 
 import numpy as np
 from numba import types
@@ -15,16 +15,16 @@ from sceneql.field.tape.tape_ops import HIT, MISS
 _rows = types.float64[:, ::1]
 _lists, _spans = types.int64[:, ::1], types.float64[:, :, ::1]
 RAYS = 256
-"""Of a bundle."""
+"""Rays of a bundle."""
 ROUNDED = 1.0e-12
-"""How far a clip may be off, relative to its terms in the box: far more than its rounding."""
+"""Error of a clip, relative to its terms in the box: far more than its rounding."""
 FINE = 1.0e-9
-"""Way to a root, relative to the searched piece of the ray, below which the ray is taken to begin inside."""
+"""Distance to a root, relative to the searched piece of the ray, below which the ray begins inside."""
 
 
 @part
 def in_box(asked, row, box):
-    """(from, to) of an asked ray inside a box (2, 3)."""
+    """(from, to) of a listed ray inside a box (2, 3)."""
     enter, leave = 0.0, asked[row, layout.FAR]
     for axis in range(3):
         first, last = box_span(box[0, axis], box[1, axis], asked[row, axis], inverse(asked[row, 3 + axis]))
@@ -36,7 +36,7 @@ def in_box(asked, row, box):
 
 @part
 def cut(clip, ox, oy, oz, dx, dy, dz, slack):
-    """(from, to) of a line where a quadric (10,), as field.clips has them, is below ``slack``; all where not convex."""
+    """(from, to) of a line where a quadric (10,) of field.clips is below ``slack``; the whole line if not convex."""
     a, b, c = clip[0], clip[1], clip[2]
     xy, yz, zx = clip[3], clip[4], clip[5]
     g2 = a * dx * dx + b * dy * dy + c * dz * dz + xy * dx * dy + yz * dy * dz + zx * dz * dx
@@ -58,7 +58,7 @@ def cut(clip, ox, oy, oz, dx, dy, dz, slack):
 
 @part
 def in_solid(asked, row, box, clips, sizes):
-    """(from, to) of an asked ray in a box and ``clips`` (k, 10), whose values in the box are of ``sizes`` (k,)."""
+    """(from, to) of a listed ray in a box and ``clips`` (k, 10), whose values in the box are of ``sizes`` (k,)."""
     enter, leave = in_box(asked, row, box)
     if clips.shape[0] == 0 or not enter < leave:
         return enter, leave
@@ -77,9 +77,9 @@ def in_solid(asked, row, box, clips, sizes):
 
 @part
 def place(rays, asked, chosen, spans, matrix, n):
-    """Put n asked rays into a bundle, those that follow each other in columns of GROUP; how many there are then.
+    """Write n listed rays into a bundle, consecutive ones in columns of GROUP; returns the number with padding.
 
-    They are told in the coordinates ``matrix`` (3, 4) (x, y, z, 1). What fills the last column up has no length.
+    They are transformed by ``matrix`` (3, 4) (x, y, z, 1). Rays that fill the last column have no length.
     """
     groups = (n + GROUP - 1) // GROUP
     for i in range(groups * GROUP):
@@ -97,16 +97,16 @@ def place(rays, asked, chosen, spans, matrix, n):
 
 @part
 def answer(rays, found, j, anywhere):
-    """Where ray j meets the solid, as it is told; NaN: that the certified routine of single rays must tell."""
+    """The crossing of ray j, inf for a miss; NaN where the certified routine of single rays must decide."""
     if found[FOUND_STATUS, j] == MISS:
         return np.inf
     if found[FOUND_STATUS, j] != HIT:
         return np.nan
     t, t0, t1 = found[FOUND_ROOT, j], rays[6, j], rays[7, j]
-    if anywhere:  # what hides a light is proved to stand between these
+    if anywhere:  # the blocker is proved to be between these
         low = t0 + found[FOUND_LOW, j]
         return min(max(t, low), max(t0 + found[FOUND_HIGH, j], low))
-    # A ray that begins inside leaves first.
+    # A ray that begins inside must leave first.
     return t if t0 > 0.0 or t > t0 + FINE * (t1 - t0) else np.nan
 
 
@@ -116,16 +116,16 @@ def meet_asked(
     beams, doubles, points, short, near_singles, near_parts, plan, order, room, table, flat, other, box, clips,
     sizes, matrix, asked, column, chosen, spans,
 ):  # fmt: skip
-    """Where all rays of ``asked`` meet {f < 0} in ``box`` (2, 3) and ``clips`` (k, 10), into a column of it.
+    """Crossings of all rays of ``asked`` with {f < 0} in ``box`` (2, 3) and ``clips`` (k, 10), into a column of it.
 
-    ``code`` and what belongs to it is f in the coordinates of ``place``; box and clips are in the world's.
-    ``chosen`` (2, 1 + RAYS) and ``spans`` (2, 2, RAYS) are working memory: rows and spans of rays that wait, by what is
-    wanted of them, and behind the rows their number.
+    ``code`` and its data are f in the coordinates of ``place``; box and clips are in the world's. ``chosen`` (2, 1 +
+    RAYS) and ``spans`` (2, 2, RAYS) are working memory: rows and spans of the waiting rays, by what they want, and in
+    the last column of ``chosen`` their number.
     """
     rows = int(asked[0, layout.NEXT])
     chosen[layout.FIRST, RAYS] = chosen[layout.ANYWHERE, RAYS] = 0
     for row in range(1, rows + 2):
-        # Behind the last ray what waits is met, be it a whole bundle or not.
+        # After the last ray the waiting ones are intersected, a whole bundle or not.
         want = int(asked[row, layout.WANT]) if row < rows else (layout.FIRST if row == rows else layout.ANYWHERE)
         if row < rows:
             asked[row, column] = np.inf

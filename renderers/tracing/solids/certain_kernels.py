@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Implicit objects met by certified intervals alone, without occupancy cells or enclosures: a reference, slow."""
+"""Implicit objects by certified intervals alone, without occupancy cells or enclosures: a slow reference."""
 
 from renderers.tracing import layout
 from renderers.tracing.scene_kernels import CROSSING
@@ -11,12 +11,12 @@ from sceneql.field.roots.certified_kernels import certify
 from sceneql.field.tape.tape_ops import HIT, UNDECIDED
 
 ROOTS = 1000
-"""Of a sheet that are passed on one ray, before what it lies within."""
+"""Roots of a sheet passed on one ray before the region that bounds the sheet."""
 
 
 @kernel(CROSSING.signature, _nrt=False, inner=True)
 def certain(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
-    """First place where a ray from outside enters implicit object k or meets it, a sheet; none where undecided."""
+    """First crossing of a ray from outside with implicit object k, solid or sheet; none where undecided."""
     code, constants, parts = tape_of(scene, k)
     code_within, constants_within, parts_within = tape_of(scene, k, layout.WITHIN)
     thin = is_sheet(scene, k)

@@ -6,9 +6,9 @@ import numpy as np
 from renderers.tracing.scene_kernels import part
 
 HALVINGS = 60
-"""Steps of a bracketed root at most; a few are enough where the cubic is not flat."""
+"""Most steps of a bracketed root; a few suffice where the cubic is not flat."""
 CLOSE = 1e-14
-"""Length of a bracket that is a root."""
+"""Length of a bracket that counts as a root."""
 
 
 @part
@@ -24,7 +24,7 @@ def trilinear(r, node, up, deep, u, v, w):
 
 @part
 def inner(x):
-    """A place in a cell, without the rounding that put it beside."""
+    """A place in a cell, clamped to it against rounding."""
     return min(max(x, 0.0), 1.0)
 
 
@@ -52,7 +52,7 @@ def cubic(a, b, c, d, t):
 
 @part
 def turning(a, b, c, d):
-    """The two places, in order, where the cubic turns; where it does not, infinity."""
+    """The two turning points of the cubic, in order; infinity where there are none."""
     p, q, r = b - a, c - b, d - c  # the slope's coefficients, over 3
     lead, half = p - 2.0 * q + r, q - p
     rest = half * half - lead * p
@@ -65,7 +65,7 @@ def turning(a, b, c, d):
 
 @part
 def first_root(a, b, c, d, start, negative):
-    """Where in [start, 1] the cubic's sign first is no longer ``negative``, or 2: between turns it has one root."""
+    """Where in [start, 1] the cubic's sign first differs from ``negative``, or 2: between turns it has one root."""
     if start == 0.0 and (a < 0.0) != negative:
         return 0.0
     if negative and a < 0.0 and b < 0.0 and c < 0.0 and d < 0.0:
@@ -86,9 +86,9 @@ def first_root(a, b, c, d, start, negative):
 
 @part
 def bracketed(a, b, c, d, low, high, negative):
-    """The root between ``low``, where the sign is as told, and ``high``: by secants (Dowell & Jarratt 1971).
+    """The root between ``low``, where the sign is ``negative``, and ``high``: by secants (Dowell & Jarratt 1971).
 
-    The end that is given has the other sign, so that what begins there has this root no more.
+    The end that is returned has the other sign, so that a search from there does not find this root again.
     """
     f, g = cubic(a, b, c, d, low), cubic(a, b, c, d, high)
     side = 0

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Implicit objects met by fixed samples along the ray and bisection: what the certified search is compared with."""
+"""Implicit objects by fixed samples along the ray and bisection: a comparison for the certified search."""
 
 from renderers.tracing import layout
 from renderers.tracing.scene_kernels import CROSSING
@@ -9,14 +9,14 @@ from sceneql.compiled.kernels import kernel
 from sceneql.field.roots.bracket_kernels import along
 
 HALVINGS = 60
-"""Of the piece between two samples: to the last bit."""
+"""Bisections of the piece between two samples: to the last bit."""
 
 
 @kernel(CROSSING.signature, _nrt=False, inner=True)
 def sampled(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """Crossing of implicit object k behind ``near``: the first change of sign between SAMPLES + 1 places on the ray.
 
-    What comes and goes between two of them is not seen, and nothing is undecided.
+    Pairs of roots between two places are missed, and nothing is undecided.
     """
     code, constants, parts = tape_of(scene, k)
     code_within, constants_within, parts_within = tape_of(scene, k, layout.WITHIN)

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Rays against surfaces on grids: the roots of the trilinear interpolant, cell by cell, each of a cubic of its own."""
+"""Rays against surfaces on grids: roots of the trilinear interpolant, a cubic in each cell."""
 
 import math
 
@@ -12,15 +12,15 @@ from renderers.tracing.solids.surface_kernels import unit
 from sceneql.compiled.kernels import kernel
 
 BLOCK = 4
-"""Cells along a side of the blocks that are passed at once where the surface is not."""
+"""Cells along a side of the blocks that are skipped at once if they have no surface."""
 LOW, HIGH, NODES, BOUND, VALUES = 12, 15, 18, 21, 22
 """Reals of a GRID behind its map to nodes (3, 4): corners of its box there, nodes along x, y, z, whether it has bounds;
-the values of its nodes, those of its bounds where it has them, and of each block 1 where the surface may pass."""
+the values of its nodes, those of its bounds if it has them, and for each block 1 if the surface may pass."""
 
 
 @part
 def cell_of(place, low, high):
-    """The cell along one axis in which a place lies, not below ``low`` or above ``high``."""
+    """The cell along one axis that contains a place, clamped to ``low``..``high``."""
     return int(min(max(math.floor(place), low), high))
 
 
@@ -48,7 +48,7 @@ def corners(r, node, nx, deep):
 
 @part
 def within(r, bounds, nx, ny, i, j, l, sx, sy, sz, wx, wy, wz, t):
-    """Whether the bounds, where there are some, are negative at a place of a ray in cell (i, j, l)."""
+    """Whether the bounds, if there are any, are negative at a place of a ray in cell (i, j, l)."""
     return bounds == 0 or interpolant(r, bounds, nx, ny, i, j, l, sx + t * wx, sy + t * wy, sz + t * wz) < 0.0
 
 
@@ -127,7 +127,7 @@ def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
 
 @part
 def rise(r, node, stride, index, count):
-    """Central difference at a node along an axis on which it has an index below ``count``; at an end of one side."""
+    """Central difference at a node, with an index below ``count`` along an axis; at its ends a one-sided one."""
     after, before = min(index + 1, count - 1), max(index - 1, 0)
     return (r[node + (after - index) * stride] - r[node + (before - index) * stride]) / (after - before)
 
@@ -136,8 +136,8 @@ def rise(r, node, stride, index, count):
 def skin(scene, scratch, k, x, y, z):
     """(normal, paint) of the grid whose reals begin at k, at a point of its surface; it has no paint (3 NaN).
 
-    The normal is that of the central differences at the nodes, interpolated: continuous where the surface bends from
-    cell to cell, as that of maps.interpolation for meshes.
+    The normal interpolates the central differences at the nodes: continuous where the surface has a crease between
+    cells, as that of maps.interpolation for meshes.
     """
     r = scene.reals
     px, py, pz = local_point(r, k, x, y, z, 1.0)

@@ -1,4 +1,4 @@
-"""What only frames with surfaces on grids need of the tracer."""
+"""Packing of surfaces on grids."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def found_by_cells(scene: Scene) -> Scene:
-    """The scene with the addresses of what finds its grids."""
+    """The scene with the addresses of the kernels for grids."""
     return scene._replace(grid=address(crossing, CROSSING), grid_skin=address(skin, SKIN))
 
 
@@ -41,12 +41,12 @@ def box(shape: Grid) -> Floats:
 
 
 def met(values: Floats) -> NDArray[bool_]:
-    """(bz, by, bx) blocks of cells that have corners of both signs."""
+    """(bz, by, bx) mask of the blocks with cells that have corners of both signs."""
     return _any(values < 0.0) & _any(values >= 0.0)
 
 
 def _any(corners: NDArray[bool_]) -> NDArray[bool_]:
-    """Whether one of the corners of a block's cells is."""
+    """Whether any corner of a block's cells is set."""
     for axis in range(3):
         starts = np.arange(0, corners.shape[axis] - 1, BLOCK)
         ends = np.minimum(starts + BLOCK, corners.shape[axis] - 1)

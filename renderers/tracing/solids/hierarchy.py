@@ -1,4 +1,4 @@
-"""The hierarchy of a scene's boxes: one of all items, but for meshes that are held, which have trees of their own."""
+"""The bounding volume hierarchy of a scene: one for all items, and one for each mesh that is held."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ class Hierarchy(NamedTuple):
     nodes: Floats
     """(n, 6) low and high corners."""
     links: Ints
-    """(n, 3) next node that is not inside, first item, number of items."""
+    """(n, 3) skip link, first item, number of items."""
 
 
 class Tree:
-    """How items with bounds are split, which is the same for all eyes; and their hierarchy for the last one."""
+    """Splits of items by their bounds, which are the same for all eyes, and the hierarchy for the last eye."""
 
     def __init__(self, boxes: Floats) -> None:
         """``boxes`` (m, 6)."""
@@ -38,13 +38,13 @@ class Tree:
         self._seen: tuple[bytes, Hierarchy] | None = None
 
     def seen_from(self, eye: Floats) -> Hierarchy:
-        """That of the items for an eye (3,), the same as if it were made anew."""
+        """The hierarchy of the items for an eye (3,), the same as if it were built anew."""
         if self._seen is None or self._seen[0] != eye.tobytes():
             if self._splits is not None:
                 made = _built(self.boxes, eye, self._splits, True)
             elif self._seen is None:
                 made = _built(self.boxes, eye)
-            else:  # the eye moves: from now on it is known how items are split
+            else:  # the eye moves: keep the splits from now on
                 splits = np.empty((2 * len(self.boxes), hierarchy_kernels.SPLIT_SIZE))
                 made = _built(self.boxes, eye, splits)
                 self._splits = splits[: len(made.nodes)].copy()
@@ -53,25 +53,25 @@ class Tree:
 
 
 def hierarchy(boxes: Floats, eye: Floats, trees: Sequence[Tree] = ()) -> Hierarchy:
-    """That of items with bounds ``boxes`` (m, 6), and behind these those of trees, for an eye (3,).
+    """The hierarchy of items with bounds ``boxes`` (m, 6), followed by those of ``trees``, for an eye (3,).
 
-    A tree is an item of the hierarchy of all others, and its nodes follow the leaf that it stands in.
+    A tree is an item of the hierarchy of all others, and its nodes follow the leaf that contains it.
     """
     count = len(boxes)
     order, nodes, links = _built(np.concatenate([boxes, *(tree.bounds[None] for tree in trees)]), eye)
     if not trees:
         return Hierarchy(order, nodes, links)
     own = order >= count
-    which = order[own] - count  # in the order in which they are met
+    which = order[own] - count  # in the order of the walk
     seen = [trees[k].seen_from(eye) for k in which]
     starts = count + np.cumsum([0, *(len(tree.boxes) for tree in trees)])
     leaves = np.flatnonzero(links[:, 2])
     at = leaves[np.searchsorted(links[leaves, 1], np.flatnonzero(own), side="right") - 1]
     sizes = [len(one.nodes) for one in seen]
-    before = np.zeros(len(nodes) + 1, dtype=np.int64)  # nodes of trees that come before a node
+    before = np.zeros(len(nodes) + 1, dtype=np.int64)  # nodes of trees before each node
     np.add.at(before, at + 1, sizes)
     before = np.cumsum(before)
-    ahead = np.concatenate([[0], np.cumsum(own)])  # items of this hierarchy that are trees
+    ahead = np.concatenate([[0], np.cumsum(own)])  # trees among the items before each item
     first, last = links[:, 1], links[:, 1] + links[:, 2]
     links = np.stack(
         [links[:, 0] + before[links[:, 0]], first - ahead[first], links[:, 2] - ahead[last] + ahead[first]], axis=1
@@ -88,7 +88,7 @@ def hierarchy(boxes: Floats, eye: Floats, trees: Sequence[Tree] = ()) -> Hierarc
 
 
 def _followed(rows: NDArray[Any], at: NDArray[int64], blocks: Sequence[NDArray[Any]]) -> NDArray[Any]:
-    """Rows with blocks of others behind those of them whose numbers, none below the one before, are given."""
+    """Rows with blocks of rows inserted behind those of the given numbers, which ascend."""
     parts, done = [], 0
     for row, block in zip(at, blocks, strict=True):
         parts += [rows[done : row + 1], block]
@@ -97,7 +97,7 @@ def _followed(rows: NDArray[Any], at: NDArray[int64], blocks: Sequence[NDArray[A
 
 
 def _built(boxes: Floats, eye: Floats, splits: Floats | None = None, known: bool = False) -> Hierarchy:
-    """For items with bounds ``boxes`` (m, 6); see hierarchy_kernels."""
+    """The hierarchy of items with bounds ``boxes`` (m, 6); see hierarchy_kernels."""
     count = len(boxes)
     order = np.arange(count)
     nodes = np.empty((2 * count, 6))

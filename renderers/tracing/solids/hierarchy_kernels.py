@@ -11,9 +11,9 @@ LEAF = 4
 """Items above which a node is always split."""
 BINS = 16
 BOX, AXIS, BIN, LOW, SCALE, CHILD, SPLIT_SIZE = 0, 6, 7, 8, 9, 10, 11
-"""Columns of how a node was split: its box; along which axis (-1: it is a leaf), behind which bin, the lowest middle of
-its items (twice) and bins a length; the row of its lower child, before that of the upper one. Whatever the eye, items
-are split in the same way, only the order of children is another."""
+"""Columns of a node's split: its box; axis (-1: a leaf), last bin of the lower side, lowest middle of its items
+(twice), bins per length; row of the lower child, followed by the upper one. The eye does not change the splits, only
+the order of children."""
 
 _rows = types.float64[:, ::1]
 
@@ -64,14 +64,14 @@ def best_split(boxes, order, start, stop, bins, right):
         if not high > low:
             continue
         scale = BINS / (high - low)
-        if scale == np.inf:  # middles so near to each other that no bin can be told
+        if scale == np.inf:  # middles so near to each other that bins cannot separate them
             continue
         clear_bins(bins, BINS + 1)
         for i in range(start, stop):
             b = bin_of(boxes, order[i], axis, low, scale)
             grow(bins, b, boxes, order[i])
             bins[b, 6] += 1.0
-        for b in range(BINS - 1, 0, -1):  # costs of all to the right, gathered in row BINS
+        for b in range(BINS - 1, 0, -1):  # costs of the upper sides, accumulated in row BINS
             grow(bins, BINS, bins, b)
             bins[BINS, 6] += bins[b, 6]
             right[b] = half_area(bins, BINS) * bins[BINS, 6] if bins[BINS, 6] > 0.0 else 0.0
@@ -106,7 +106,7 @@ def on_the_upper_side(axis, bin, low, scale, eye):
 
 @part
 def divide(boxes, order, start, stop, axis, bin, low, scale, upper):
-    """Part the items behind ``bin`` from the others, those on the side ``upper`` to the front; where they end."""
+    """Partition items by a split at ``bin``, those on the side ``upper`` first; returns where they end."""
     end = start
     for i in range(start, stop):
         if (bin_of(boxes, order[i], axis, low, scale) > bin) == upper:
@@ -135,9 +135,9 @@ def build(boxes, order, eye, nodes, links, stack, bins, right, first_at, splits,
     """Number of nodes written for items with bounds ``boxes`` (m, 6); ``order`` (m,) becomes the order by leaf.
 
     Nodes stand in depth-first order, the child on the side of ``eye`` first, so that a walk without a stack meets near
-    things early. ``nodes`` (2m, 6) and ``links`` (2m, 3) as in Scene; ``stack`` (2m + 2, 3), ``bins`` (BINS + 1, 7),
-    ``right`` (BINS + 1,) and ``first_at`` (m + 1,) are working memory. ``splits`` (2m, SPLIT_SIZE) becomes how nodes
-    are split, unless it has no rows; with ``known`` it says so, for any eye, and nothing is looked for.
+    items early. ``nodes`` (2m, 6) and ``links`` (2m, 3) as in Scene; ``stack`` (2m + 2, 3), ``bins`` (BINS + 1, 7),
+    ``right`` (BINS + 1,) and ``first_at`` (m + 1,) are working memory. ``splits`` (2m, SPLIT_SIZE), unless it has no
+    rows, is filled with the nodes' splits; if they are ``known`` they are read from it instead of searched.
     """
     count = len(order)
     n = 0

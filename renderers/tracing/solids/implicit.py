@@ -1,4 +1,4 @@
-"""What only frames with implicit objects need of the tracer."""
+"""Packing of implicit objects."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def prepared(scene: Scene, rows: int, places: list[int], *, sheets: bool, march: bool, certain: bool) -> Scene:
-    """The scene with the addresses of what finds its implicit objects, whose reals begin at ``places``.
+    """The scene with the addresses of the kernels for its implicit objects, whose reals begin at ``places``.
 
     Solids and ``sheets`` by certified roots in the cells that are not proved empty; with ``march`` by samples on the
     ray, with ``certain`` by certified intervals alone, both without cells.

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Rays against implicit objects: certified roots inside what an occupancy grid leaves of the object's box."""
+"""Rays against implicit objects: certified roots in the occupancy cells of the box that are not proved empty."""
 
 import numpy as np
 from numba import types
@@ -23,9 +23,9 @@ polynomial_root = lazy("sceneql.field.roots.ray_polynomial_kernels:polynomial_ro
 RETRIES = 8
 """Undecided places passed on one ray before it counts as a miss."""
 FARTHER = 10.0
-"""By how much farther each of them is passed than the one before."""
+"""Factor by which the step past an undecided place grows from one to the next."""
 PAD = 1e-7
-"""By which a cell is enlarged, relative to its side, so that rounding in the walk does no harm."""
+"""Enlargement of a cell, relative to its side, against rounding in the walk."""
 
 
 @part
@@ -36,7 +36,7 @@ def step_to(d, low, cell, side, origin, inv):
 
 @part
 def occupied(scene, k, ox, oy, oz, dx, dy, dz, start, stop):
-    """(from, to, full): the first piece of [start, stop] that is not proved empty; from >= stop: none.
+    """(from, to, full): the first piece of [start, stop] in cells not proved empty; from >= stop: none.
 
     It ends at the next empty cell, or behind a full one (``full``): there the ray is certainly inside.
     """
@@ -99,7 +99,7 @@ def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     tolerance = b[layout.TOLERANCE]
     t = enter
     tries = 0
-    past = 0.1 * PAD * side / np.sqrt(dx * dx + dy * dy + dz * dz)  # into the next cell, within what its pad covers
+    past = 0.1 * PAD * side / np.sqrt(dx * dx + dy * dy + dz * dz)  # a step into the next cell, within its pad
     while t < stop and tries < RETRIES:
         begin, end, full = occupied(scene, k, ox, oy, oz, dx, dy, dz, t, stop)
         if not begin < stop:
@@ -125,7 +125,7 @@ def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
         if status == HIT:
             if anywhere or root - begin > tolerance * (end - begin) or begin > enter or enter > near:
                 return root
-            # The ray begins inside: the way out.
+            # A ray that begins inside is searched for the way out.
             status = UNDECIDED
             if formed:
                 status, root = polynomial_root(

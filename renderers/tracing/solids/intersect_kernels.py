@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Rays against the whole scene: what is met first, or how much light comes through; at once, or asked and told."""
+"""Rays against the whole scene: the first hit, or the light that comes through; at once, or by packets."""
 
 from numba import types
 
@@ -38,7 +38,7 @@ def meet(scene, scratch, item, ox, oy, oz, dx, dy, dz, near, far, anywhere):
 
 @part
 def misses(nodes, k, ox, oy, oz, ix, iy, iz, near, far):
-    """Whether a ray (by its inverse direction) passes a node's box by."""
+    """Whether a ray (by its inverse direction) misses a node's box."""
     a = (nodes[k] - ox) * ix
     b = (nodes[k + 3] - ox) * ix
     enter = max(near, min(a, b))
@@ -57,10 +57,10 @@ MET = types.Tuple((types.float64, types.int64, types.float64))
 
 @kernel(MET(SCENE, SCRATCH, *RAY, types.boolean), _nrt=False)
 def walk(scene, scratch, ox, oy, oz, dx, dy, dz, near, far, anywhere):
-    """(t, item, light) of the ray inside (near, far): where it first meets an item, or (inf, -1, 1).
+    """(t, item, light) of the ray inside (near, far): its first hit, or (inf, -1, 1) for a miss.
 
-    With ``anywhere``, for shadow rays, the walk ends as soon as something opaque is met, no matter where; ``light`` is
-    the share that comes through: clear glass dims it, but does not stop it.
+    With ``anywhere``, for shadow rays, the walk ends at any hit of an opaque item; ``light`` is the share that comes
+    through: clear glass dims it, but does not stop it.
     """
     ix = inverse(dx)
     iy = inverse(dy)
@@ -96,7 +96,7 @@ def walk(scene, scratch, ox, oy, oz, dx, dy, dz, near, far, anywhere):
 
 @part
 def put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, want):
-    """Write a ray down, to be met in packets."""
+    """Write a ray into a row of the list for packets."""
     asked[row, 0], asked[row, 1], asked[row, 2] = ox, oy, oz
     asked[row, 3], asked[row, 4], asked[row, 5] = dx, dy, dz
     asked[row, layout.FAR] = far
@@ -105,7 +105,7 @@ def put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, want):
 
 @part
 def tell(scratch, asked, row):
-    """Let the next walk know what is told of a ray."""
+    """Hand a ray's answers from packets to the next walk."""
     last = scratch.shape[0] - 1
     scratch[last, layout.TOLD] = layout.KNOWN
     for column in range(layout.ANSWERS, asked.shape[1]):
@@ -114,7 +114,7 @@ def tell(scratch, asked, row):
 
 @kernel(MET(SCENE, SCRATCH, ASKED, *RAY[1:], types.boolean), _nrt=False, inner=True)
 def ask(scene, scratch, asked, ox, oy, oz, dx, dy, dz, far, anywhere):
-    """As ``walk`` from the ray's origin on, in the mode of ``asked``: one that is asked and open meets nothing."""
+    """As ``walk`` from the ray's origin on, in the mode of ``asked``: in ASKING an open ray is listed and misses."""
     mode = asked[0, layout.MODE]
     if mode == layout.PLAIN:
         return walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, far, anywhere)

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Which cells of an implicit object's box are proved to be empty, or full."""
+"""Occupancy cells of an implicit object's box: proved empty, proved full, or neither."""
 
 from numba import types
 
@@ -12,7 +12,7 @@ from sceneql.field.enclose.interval_kernels import box
 from sceneql.field.tape.tape_ops import NOWHERE, WHOLE
 
 BLOCK = 4
-"""Cells along a side of the coarse blocks that are tried before their cells."""
+"""Cells along a side of the coarse blocks that are tested before their cells."""
 
 
 @part
@@ -37,7 +37,7 @@ def bounds(scene, scratch, k, first, i, j, l, side):
 
 @part
 def region(scene, scratch, k, i, j, l, side):
-    """What the cells (i..i+side, ...) of implicit object k are proved to be."""
+    """EMPTY, FULL or MIXED for the cells (i..i+side, ...) of implicit object k."""
     low, high, status = bounds(scene, scratch, k, 0, i, j, l, side)
     if status == NOWHERE or low > 0.0:
         return layout.EMPTY

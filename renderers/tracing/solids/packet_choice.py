@@ -1,4 +1,4 @@
-"""Whether a frame's rays meet implicit solids in packets, and what each thread needs for that."""
+"""Decides whether a frame's rays use packets, and lends each thread its memory."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Result = TypeVar("Result")
 
 
 def packets_for(frame: SeenFrame, tolerance: float) -> Callable[[], Packets] | None:
-    """What makes a thread's Packets; None where they know no shape. Their kernels are for implicit shapes alone."""
+    """Maker of a thread's Packets; None if no shape suits them. Their kernels are for implicit shapes alone."""
     if tolerance != TOLERANCE or not any(isinstance(shape, Implicit) for shape in frame.shapes):
         return None
     from renderers.tracing.solids.bundles import Packets, solids_in_lanes
@@ -29,7 +29,7 @@ def packets_for(frame: SeenFrame, tolerance: float) -> Callable[[], Packets] | N
 
 
 def lender(make: Callable[[], Made]) -> Callable[[Callable[[Made], Result]], Result]:
-    """Does work with the thing made for a thread: memory that changes threads goes from one core's cache to another."""
+    """Function that lends one thing for each thread: memory that changes threads moves between cores' caches."""
     own = threading.local()
 
     def lend(work: Callable[[Made], Result]) -> Result:

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Where what is known of an implicit object lies in the scene's arrays."""
+"""Accessors of an implicit object's data in the scene's arrays."""
 
 from renderers.tracing import layout
 from renderers.tracing.scene_kernels import part
@@ -10,7 +10,7 @@ from renderers.tracing.solids.solids_kernels import box_span, inverse
 def tape_of(scene, k, first=0):
     """(code, constants, parts) of the implicit object whose reals begin at k.
 
-    Its own are the ranges from the ``first`` on, those of others from PAINT and from WITHIN on.
+    Its own tape has the ranges from ``first`` = 0 on, the others from PAINT and from WITHIN on.
     """
     n = scene.ints
     r = int(scene.reals[k + 6]) + first
@@ -30,7 +30,7 @@ def cells_at(scene, k):
 
 @part
 def plan_at(scene, k):
-    """(begin, end) of how a single ray looks for roots of implicit object k (sceneql.field.tape.plans)."""
+    """(begin, end) of the plan for single rays of implicit object k (sceneql.field.tape.plans)."""
     r = int(scene.reals[k + 6]) + layout.PLAN
     return scene.ints[r], scene.ints[r] + scene.ints[r + 1]
 

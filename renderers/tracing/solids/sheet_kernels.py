@@ -16,7 +16,7 @@ from sceneql.field.tape.tape_ops import HIT, MISS, UNDECIDED
 
 @kernel(CROSSING.signature, _nrt=False, inner=True)
 def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
-    """Crossing of the sheet of implicit object k behind ``near``: its first root inside what it lies within."""
+    """Crossing of the sheet of implicit object k behind ``near``: its first root inside the region that bounds it."""
     code, constants, parts = tape_of(scene, k)
     code_within, constants_within, parts_within = tape_of(scene, k, layout.WITHIN)
     b = scene.reals

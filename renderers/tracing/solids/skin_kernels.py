@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""What a ray finds where it meets an implicit object: its normal, and its color where the field tells one."""
+"""Normal of an implicit object at a hit, and its color if it is painted."""
 
 import numpy as np
 
@@ -12,12 +12,12 @@ from sceneql.field.tape.gradient_kernels import gradient
 from sceneql.field.tape.tape_kernels import value
 
 BESIDE = 1e-5
-"""How far beside a sheet its gradient is asked where it vanishes on it, relative to the box."""
+"""Offset from a sheet, relative to the box, at which its gradient is taken where it vanishes on the sheet."""
 
 
 @part
 def normal(scene, scratch, k, x, y, z):
-    """Outward unit normal of implicit object k: of a face of its box where the point lies on one, else its gradient."""
+    """Outward unit normal of implicit object k: of a face of its box if the point is on one, else of the field."""
     b = scene.reals
     p = (x, y, z)
     for axis in range(3):
@@ -30,8 +30,8 @@ def normal(scene, scratch, k, x, y, z):
     _, gx, gy, gz = gradient(code, constants, parts, scratch, x, y, z)
     if not is_sheet(scene, k):
         return unit(gx, gy, gz)
-    # At a root of multiplicity m > 1 the gradient, m h^(m-1) grad h, vanishes; beside it, on both sides, it is along
-    # grad h: turned around for an even m, where the difference of the two is left, not for an odd one.
+    # At a root of multiplicity m > 1 the gradient, m h^(m-1) grad h, vanishes; on either side it is along grad h:
+    # reversed for an even m, so that the difference of the two remains, not for an odd one.
     best = gx * gx + gy * gy + gz * gz
     step = BESIDE * (b[k + 3] - b[k] + b[k + 4] - b[k + 1] + b[k + 5] - b[k + 2])
     for axis in range(3):
@@ -49,7 +49,7 @@ def normal(scene, scratch, k, x, y, z):
 
 @part
 def painted(scene, scratch, k, x, y, z):
-    """Color (3) of implicit object k at a point by its paint; NaN where it has none, or that says nothing."""
+    """Color (3) of implicit object k at a point by its paint; NaN where it has none, or the paint is undefined."""
     code, constants, parts = tape_of(scene, k, layout.PAINT)
     last = code.shape[0] - 1
     if last < 0:
@@ -60,7 +60,7 @@ def painted(scene, scratch, k, x, y, z):
 
 @kernel(SKIN.signature, _nrt=False, inner=True)
 def skin(scene, scratch, k, x, y, z):
-    """(normal, paint) of implicit object k at a point of its surface; the paint (3) is NaN where it tells no color."""
+    """(normal, paint) of implicit object k at a point of its surface; the paint (3) is NaN where it has no color."""
     nx, ny, nz = normal(scene, scratch, k, x, y, z)
     r, g, b = painted(scene, scratch, k, x, y, z)
     return nx, ny, nz, r, g, b

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Where a ray meets one item: the first crossing behind `near`, be it on the way in or out."""
+"""A ray's crossing with one item: the first behind `near`, whether it enters or leaves."""
 
 import numpy as np
 
@@ -24,7 +24,7 @@ def inverse(d):
 
 @part
 def roots(a, b, c):
-    """The span where a t^2 + b t + c <= 0 for a >= 0, empty as (1, 0); by the stable formula."""
+    """The interval where a t^2 + b t + c <= 0 for a >= 0, empty as (1, 0); by the stable formula."""
     if a > 1e-14 * abs(b):
         rest = b * b - 4.0 * a * c
         if rest <= 0.0:
@@ -42,7 +42,7 @@ def roots(a, b, c):
 
 @part
 def crossing(enter, leave, near, far):
-    """First end of a span inside (near, far), or infinity."""
+    """First end of an interval inside (near, far), or infinity."""
     if enter >= leave:
         return NONE
     if near < enter < far:
@@ -133,7 +133,7 @@ def round_solid(r, k, ox, oy, oz, dx, dy, dz, near, far):
 
 @part
 def ball(px, py, pz, dx, dy, dz, dd, radius2):
-    """Span inside a ball: from the point of closest approach, which keeps the digits of far and small ones."""
+    """Interval inside a ball, from the point of closest approach, which is accurate for balls far away and small."""
     t = -(px * dx + py * dy + pz * dz) / dd
     cx = px + t * dx
     cy = py + t * dy

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""What a ray finds where it meets an item: normal, color, and how far a smooth mesh's facets lie off its curve."""
+"""Normal and color of an item at a hit, and the distance of a smooth mesh's facets from the curved surface."""
 
 import numpy as np
 from numba import types
@@ -15,7 +15,7 @@ _f = types.float64
 
 @part
 def unit(x, y, z):
-    """The vector scaled to length one; up, where it has none."""
+    """The vector scaled to length one; (0, 1, 0) for a zero vector."""
     length = np.sqrt(x * x + y * y + z * z)
     if not length > 0.0:
         return 0.0, 1.0, 0.0
@@ -24,7 +24,7 @@ def unit(x, y, z):
 
 @part
 def quadric_normal(q, k, x, y, z):
-    """Outward unit normal of quadric k at a point of its surface: of the face or of the curve, whichever is nearer."""
+    """Outward unit normal of quadric k at a point of its surface: of its box or of the quadric, if that is nearer."""
     p = local_point(q, k, x, y, z, 1.0)
     value = q[k + 18]
     size2 = 0.0
@@ -80,7 +80,7 @@ def barycentric(m, k, x, y, z):
 
 @part
 def triangle_normal(scene, k, x, y, z):
-    """(normal, true facet normal, lift): lift is how far the curve that the normals tell of lies above the facet.
+    """(normal, facet normal, lift): lift is the height of the surface that the normals imply above the facet.
 
     A shadow ray that starts lifted does not see the facets (Hanika 2021, Hacking the Shadow Terminator).
     """
@@ -114,7 +114,7 @@ def triangle_normal(scene, k, x, y, z):
 def normal_at(scene, scratch, item, x, y, z):
     """(normal, facet normal, lift, paint) of an item at a point of its surface.
 
-    Only meshes tell the first two apart; the paint (3) is NaN where a place has no color of its own.
+    Only for meshes the two normals differ; the paint (3) is NaN where the point has no color of its own.
     """
     kind = scene.ints[layout.ITEMS + 4 * item + layout.KIND]
     k = scene.ints[layout.ITEMS + 4 * item + layout.REALS_AT]

@@ -1,4 +1,4 @@
-"""Meshes as items; of large ones that are held what is made of them is kept from frame to frame."""
+"""Packing of meshes; the data of large meshes that are held is kept from frame to frame."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Mesh
 
 LARGE = 4096
-"""Triangles from which a mesh that is held has a tree of its own: below it would save less than it costs."""
+"""Triangles from which on a held mesh has a hierarchy of its own: below it would save less than it costs."""
 
 
 class Packed(NamedTuple):
-    """A mesh with a tree of its own."""
+    """A mesh with a hierarchy of its own."""
 
     tree: Tree
     rows: Floats
@@ -30,7 +30,7 @@ _rows: OfHeld[Floats] = OfHeld()
 
 
 def still_mesh(mesh: Mesh) -> Packed:
-    """The tree and the reals of a mesh that is held: those of the frame before, where it is the same."""
+    """The hierarchy and the reals of a mesh that is held: those of the last frame, if it is the same."""
     corners = cache(lambda: corners_of(mesh))
     tree = _trees.get((mesh.vertices, mesh.triangles), None, lambda: Tree(boxes_of(corners())))
     whole = mesh.vertices, mesh.triangles, mesh.normals, mesh.colors
@@ -38,12 +38,12 @@ def still_mesh(mesh: Mesh) -> Packed:
 
 
 def corners_of(mesh: Mesh) -> Floats:
-    """(m, 3, 3) places of the corners of triangles."""
+    """(m, 3, 3) vertices of the triangles."""
     return np.asarray(mesh.vertices, dtype=np.float64)[mesh.triangles]
 
 
 def boxes_of(corners: Floats) -> Floats:
-    """(m, 6) low and high ends of triangles (m, 3, 3)."""
+    """(m, 6) bounds of triangles (m, 3, 3)."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     return np.concatenate([np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)], axis=1)
 
