@@ -1,1 +1,1 @@
-"""Triangles drawn by OpenGL."""
+"""Rasterization by OpenGL."""

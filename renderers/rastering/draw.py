@@ -1,4 +1,4 @@
-"""A frame as pyrender's scene, and its picture."""
+"""A frame as a scene of pyrender, and its picture."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ if TYPE_CHECKING:
     from sceneql.frame import RGB, Floats, LightSource, SeenFrame, View
 
 GAMMA = 2.2
-"""What pyrender's shader takes the root of, so that 8 bits reach further down."""
+"""Exponent that decodes pyrender's pictures: its shader stores roots of light, so that 8 bits resolve dark colors."""
 NEAR, REACH = 1e-3, 50.0
-"""Where seeing begins, and how far planes go: in units of the way to the far end of all that is bounded."""
+"""The near plane, and the extent of planes, in units of the distance of the far end of all bounded shapes."""
 _meshes: OfHeld[Any] = OfHeld()
 
 
 def draw(frame: SeenFrame, cells: int, sharp: bool, samples: int, shadows: bool, brightest: float) -> Picture:
     """The Picture of a frame: linear (h, w, 3). Raises ValueError for what cannot be drawn.
 
-    ``samples`` in a pixel, a square number; light above ``brightest`` is not told apart.
+    ``samples`` in a pixel, a square number; radiance is clipped at ``brightest``.
     """
     gl = library()
     made = [part for shape in frame.shapes if not boundless(shape) for part in triangles(shape, cells, sharp)]
@@ -47,7 +47,7 @@ def draw(frame: SeenFrame, cells: int, sharp: bool, samples: int, shadows: bool,
     for light in frame.lights:
         _add_light(gl, scene, light, brightest)
     _add_camera(gl, scene, frame.view, far)
-    # What throws shadows is as large as what is bounded: a map of all of a plane would be too coarse for them.
+    # The shadow map covers the bounded shapes alone: one of a whole plane would be too coarse for them.
     scene._bounds = np.array([low, high])
     fine = math.isqrt(samples)
     width, height = (fine * side for side in frame.view.size)
@@ -64,7 +64,7 @@ def draw(frame: SeenFrame, cells: int, sharp: bool, samples: int, shadows: bool,
 
 
 def _mesh(gl: Any, part: Triangles, brightest: float) -> Any:
-    """What pyrender draws triangles as: that of the frame before, which OpenGL still has, where all is the same."""
+    """The pyrender mesh of some triangles; if they are those of the last frame, the one that OpenGL still holds."""
     arrays = part.vertices, part.triangles, part.normals, part.colors
     key = part.surface, part.flat, brightest
     return _meshes.get(arrays, key, lambda: gl.Mesh([primitive(gl, part, brightest)]))
@@ -78,7 +78,7 @@ def _bounds(made: Iterable[Triangles]) -> tuple[Floats, Floats]:
 
 
 def _pose(axes: Floats, origin: Any) -> Floats:
-    """(4, 4) of what looks along -z: columns right, up, back and its place."""
+    """(4, 4) pose of an object that faces -z: columns right, up, back and origin."""
     pose = np.eye(4)
     pose[:3, :3], pose[:3, 3] = axes, origin
     return pose
@@ -86,7 +86,7 @@ def _pose(axes: Floats, origin: Any) -> Floats:
 
 def _add_camera(gl: Any, scene: Any, view: View, far: float) -> None:
     origin, aspect = np.array(view.origin), view.size[0] / view.size[1]
-    if view.orthographic:  # its window lies in the plane of the origin; what stands before it is seen as well
+    if view.orthographic:  # its window lies in the plane of the origin; objects before that plane are seen as well
         camera = gl.OrthographicCamera(
             aspect * view.half_height, view.half_height, znear=NEAR * far, zfar=2 * REACH * far
         )
@@ -106,7 +106,7 @@ def _add_light(gl: Any, scene: Any, light: LightSource, brightest: float) -> Non
 
 
 def _turned(sun: Sun) -> Floats:
-    """(3, 3) columns right, up, back of what shines along -z."""
+    """(3, 3) columns right, up, back of a light that shines along -z."""
     back = np.array(sun.direction)
     right = np.cross(np.eye(3)[int(np.argmin(np.abs(back)))], back)
     right /= np.linalg.norm(right)
@@ -114,7 +114,7 @@ def _turned(sun: Sun) -> Floats:
 
 
 def _mapped(places: Floats, suns: Iterable[Sun], middle: Floats, size: float) -> NDArray[bool_]:
-    """Which places (h, w, 3) lie in the shadow maps of all suns: squares of 2 ``size`` about the middle."""
+    """Mask of places (h, w, 3) in the shadow maps of all suns: squares of half side ``size`` about the middle."""
     known = np.ones(places.shape[:2], dtype=bool)
     for sun in suns:
         known &= (np.abs((places - middle) @ _turned(sun)[:, :2]) < 0.99 * size).all(axis=-1)
@@ -122,7 +122,7 @@ def _mapped(places: Floats, suns: Iterable[Sun], middle: Floats, size: float) ->
 
 
 def _parted(light: RGB, brightest: float) -> tuple[Floats, float]:
-    """A color whose largest part is 1, and what it is multiplied by."""
+    """A color scaled to a largest component of 1, and the scale."""
     most = max(*light, 1e-300)
     return np.array(light) / most, most / brightest
 
@@ -142,7 +142,7 @@ def _window(view: View, width: int, height: int) -> tuple[Floats, Floats]:
 
 
 def _places(view: View, depth: Floats, far: float) -> Floats:
-    """(h, w, 3) [m] what is seen, of pyrender's depth (h, w), which it reckons as a perspective camera has it."""
+    """(h, w, 3) [m] points seen, from pyrender's depth (h, w), which it always computes as of a perspective camera."""
     u, v = _window(view, *depth.shape[::-1])
     right, up, back = view.axes
     origin: Floats = np.array(view.origin)
@@ -159,7 +159,7 @@ def _places(view: View, depth: Floats, far: float) -> Floats:
 
 
 def _backdrop(view: View, lights: Iterable[LightSource], width: int, height: int) -> Floats:
-    """(height, width, 3) radiance that is seen where nothing is."""
+    """(height, width, 3) radiance of the backdrop, seen where no shape is."""
     skies = [light for light in lights if isinstance(light, Sky)]
     seen = [sky.visible for sky in skies if sky.visible is not None]
     if seen or not skies:

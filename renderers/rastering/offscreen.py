@@ -24,7 +24,7 @@ def library() -> Any:
         os.environ["PYOPENGL_PLATFORM"] = found  # read when OpenGL is first imported
     viewer = ModuleType("pyrender.viewer")
     viewer.__dict__["Viewer"] = None
-    sys.modules.setdefault("pyrender.viewer", viewer)  # the true one wants a screen as soon as it is imported
+    sys.modules.setdefault("pyrender.viewer", viewer)  # the real module opens a screen when imported
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -37,7 +37,7 @@ def library() -> Any:
 
 
 def canvas(width: int, height: int) -> Any:
-    """What draws pictures of a size [pixels]. Raises ValueError where OpenGL gives none."""
+    """A canvas for pictures of a size [pixels]. Raises ValueError where OpenGL gives none."""
     made = _context()
     made.viewport_width, made.viewport_height = width, height
     return made
@@ -45,7 +45,7 @@ def canvas(width: int, height: int) -> Any:
 
 @cache
 def _context() -> Any:
-    """The one context, which is kept: ending one would end them all."""
+    """The one OpenGL context, never closed: closing one would close all."""
     gl = library()
     try:
         made = gl.OffscreenRenderer(16, 16)

@@ -1,4 +1,4 @@
-"""Implicit solids as triangles to look at."""
+"""Display meshes of implicit solids."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ if TYPE_CHECKING:
     from sceneql.frame import Implicit
 
 EDGE = math.radians(30)
-"""Triangles that meet at less are shaded as one smooth surface where edges are kept."""
+"""Angle below which neighboring triangles are shaded as one smooth surface, where edges are kept."""
 
 
 def skin(shape: Implicit, cells: int, sharp: bool) -> Mesh:
     """Triangles of an implicit solid with normals, and its colors where it is painted.
 
-    ``cells`` along its longest side, finer where the surface turns much or parts may be thinner. ``sharp``: edges are
-    kept instead. Raises ValueError as ``grid_around``.
+    ``cells`` along its longest side, finer where normals turn much or cells may hide thin parts; with ``sharp`` edges
+    are kept instead. Raises ValueError as ``grid_around``.
     """
     from sceneql.field.tape.tape_solid import paint_values
     from sceneql.mesh.cubes.refine import refined
@@ -38,7 +38,7 @@ def skin(shape: Implicit, cells: int, sharp: bool) -> Mesh:
 
 
 def _creased(polygons: Polygons) -> Polygons:
-    """The same triangles parted at edges, with normals of their own on either side."""
+    """The same triangles split at edges, with separate normals on either side."""
     import trimesh
 
     if not len(polygons.triangles):

@@ -1,4 +1,4 @@
-"""Triangles of the simple solids: points (n, 3), unit normals (n, 3), triangles (m, 3), counterclockwise in front."""
+"""Triangle meshes of simple solids: points (n, 3), unit normals (n, 3), triangles (m, 3), counterclockwise in front."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ if TYPE_CHECKING:
     Solid = tuple[Floats, Floats, Ints]
 
 AROUND = 96
-"""Sides of a round column."""
+"""Sides of the prism that stands for a round column."""
 AROUND_ROD = ((500, 48), (5_000, 24), (50_000, 12), (math.inf, 6))
-"""Up to how many rods each has so many sides."""
+"""(number of rods, sides of each): up to so many rods each has so many sides."""
 
 
 @cache
 def unit_ball(detail: int) -> tuple[Floats, Ints]:
-    """Directions (n, 3) and triangles of an icosahedron, each of whose faces is cut in four so often."""
+    """Directions (n, 3) and triangles of an icosahedron whose faces are subdivided ``detail`` times into four."""
     from trimesh.creation import icosphere
 
     ball = icosphere(subdivisions=detail)
@@ -36,7 +36,7 @@ def ellipsoid(middle: Floats, radii: Floats) -> Solid:
 
 
 def faces(low: Floats, high: Floats) -> Solid:
-    """A block, each of its faces with corners of its own."""
+    """A block; each of its faces has vertices of its own, with its normal."""
     points: list[Floats] = []
     normals: list[Floats] = []
     order: list[list[int]] = []
@@ -89,7 +89,7 @@ def round_column(axis: int, middle: Floats, radii: Floats, low: float, high: flo
 
 
 def capsule_sides(ends: Floats, radii: Floats) -> Solid:
-    """Of rods between ``ends`` (n, 2, 3) the round sides, without the balls at their ends."""
+    """Round sides of rods between ``ends`` (n, 2, 3), without the balls at their ends."""
     n = next(sides for most, sides in AROUND_ROD if len(ends) <= most)
     along = ends[:, 1] - ends[:, 0]
     length = np.linalg.norm(along, axis=1, keepdims=True)

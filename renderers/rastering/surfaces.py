@@ -1,4 +1,4 @@
-"""Triangles with their surface as a primitive of pyrender."""
+"""Triangles with their material as a primitive of pyrender."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ if TYPE_CHECKING:
     from sceneql.frame import RGB, Floats
 
 FILM = 0.8
-"""How much of what is behind a clear surface is seen through it."""
+"""Transparency of a clear surface."""
 TEXELS = 64
 """Texels along a square of a checker."""
 
 
 def primitive(gl: Any, part: Triangles, brightest: float) -> Any:
-    """What pyrender draws; light is in units of ``brightest``."""
+    """The pyrender primitive of some triangles; radiance is in units of ``brightest``."""
     surface, colors, places = part.surface, part.colors, None
     base: RGB = surface.color
     texture = None
@@ -39,7 +39,7 @@ def primitive(gl: Any, part: Triangles, brightest: float) -> Any:
         baseColorFactor=[*base, 1.0 - FILM * clear],
         metallicFactor=surface.metallic,
         roughnessFactor=surface.roughness,
-        emissiveFactor=np.sqrt(np.clip(np.array(surface.emission) / brightest, 0.0, 1.0)),  # the shader squares it
+        emissiveFactor=np.sqrt(np.clip(np.array(surface.emission) / brightest, 0.0, 1.0)),  # squared by the shader
         baseColorTexture=texture,
         alphaMode="BLEND" if clear > 0 else "OPAQUE",
         doubleSided=True,
@@ -56,7 +56,7 @@ def primitive(gl: Any, part: Triangles, brightest: float) -> Any:
 
 
 def _places(vertices: Floats, normals: Floats, size: float) -> Floats:
-    """(n, 2) places in the texture, two squares a side, by the two axes that a face lies along most."""
+    """(n, 2) texture coordinates, two squares a side, along the two axes to which a face is most nearly parallel."""
     axis = np.argmax(np.abs(normals), axis=1)
     axis[np.abs(normals[:, 1]) > 0.9] = 1
     squares = vertices / size
@@ -67,9 +67,9 @@ def _places(vertices: Floats, normals: Floats, size: float) -> Floats:
 
 
 def _checks(gl: Any, even: RGB, odd: RGB) -> Any:
-    """A texture of two by two squares."""
+    """A texture of two by two squares of a checkerboard."""
     k = np.arange(2 * TEXELS) // TEXELS
-    # The first row of a picture is its top, and so at the high end of the second axis.
+    # A picture's first row is its top, the high end of the second axis.
     board = np.where((k[::-1, None] + k[None, :])[..., None] % 2 == 0, np.array(even), np.array(odd))
     gltf = gl.GLTF
     sampler = gl.Sampler(

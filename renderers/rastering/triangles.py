@@ -1,4 +1,4 @@
-"""The closed set of shapes as triangles with normals."""
+"""Triangle meshes with normals for the closed set of shapes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 MOST_BALLS = 500_000
 DETAIL = ((100, 4), (1_000, 3), (8_000, 2), (40_000, 1), (MOST_BALLS, 0))
-"""Up to how many balls each is subdivided so often."""
+"""(number of balls, subdivisions): up to so many balls each is subdivided so often."""
 
 
 _flat: OfHeld[tuple[Floats, Floats, Ints]] = OfHeld()
@@ -33,13 +33,13 @@ class Triangles:
     normals: Floats
     triangles: Ints
     colors: Floats | None = None
-    """(n, 3) linear RGB in place of the surface's."""
+    """(n, 3) linear RGB that replaces the surface's color."""
     flat: bool = False
-    """Whether its faces are planes, each with vertices of its own."""
+    """Whether all faces are planes with vertices of their own."""
 
 
 def boundless(shape: Shape) -> bool:
-    """Whether it goes on for ever, as a plane does."""
+    """Whether a shape is infinite, as a plane."""
     if not isinstance(shape, Quadric) or any(shape.squares):
         return False
     return any(shape.linear) or not np.isfinite([shape.low, shape.high]).all()
@@ -48,7 +48,7 @@ def boundless(shape: Shape) -> bool:
 def triangles(shape: Shape, cells: int, sharp: bool = False, reach: float = 0.0) -> Iterator[Triangles]:
     """A shape as triangles; implicit ones as ``skin`` makes them, boundless ones as far as ``reach`` [m].
 
-    Raises ValueError for what has none.
+    Raises ValueError for a shape that has none.
     """
     if isinstance(shape, Mesh):
         yield _of_mesh(shape)
@@ -78,7 +78,7 @@ def _of_mesh(mesh: Mesh) -> Triangles:
 
 
 def _parted(mesh: Mesh) -> tuple[Floats, Floats, Ints]:
-    """Corners (3 m, 3), their normals and triangles (m, 3) of a mesh whose faces are flat; held."""
+    """Vertices (3 m, 3), normals and triangles (m, 3) of a mesh with flat faces; cached."""
     corners = mesh.vertices[mesh.triangles]
     normals = np.repeat(_unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])), 3, axis=0)
     order = np.arange(3 * len(corners), dtype=np.int32).reshape(-1, 3)
@@ -86,7 +86,7 @@ def _parted(mesh: Mesh) -> tuple[Floats, Floats, Ints]:
 
 
 def _of_quadric(shape: Quadric, reach: float) -> Triangles:
-    """A ball, an ellipsoid, a column, a block or a plane: the convex solids that words lower themselves to."""
+    """A ball, an ellipsoid, a column, a block or a plane: the convex solids that words lower to quadrics."""
     squares, linear = np.array(shape.squares, dtype=float), np.array(shape.linear, dtype=float)
     low, high = np.array(shape.low), np.array(shape.high)
     place = np.linalg.inv(np.vstack([shape.to_local, [0.0, 0.0, 0.0, 1.0]]))[:3]
@@ -116,7 +116,7 @@ def _of_quadric(shape: Quadric, reach: float) -> Triangles:
 
 
 def _half_space(shape: Quadric, reach: float) -> tuple[Floats, Floats, Ints]:
-    """A square of the plane linear . p + constant = 0, (reach) about the point of it nearest to the world's origin."""
+    """A square of the plane linear . p + constant = 0, of half side ``reach`` about its point nearest to the origin."""
     normal = np.array(shape.linear) @ shape.to_local[:, :3]
     offset = float(np.dot(shape.linear, shape.to_local[:, 3]) + shape.constant)
     length = float(np.linalg.norm(normal))
