@@ -1,1 +1,1 @@
-"""Words that draw a frame; its pixels developed."""
+"""Renderers, the words that draw a frame, and the development of pixels."""

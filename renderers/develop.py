@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 BAND = 16
-"""Rows that a thread takes at a time."""
+"""Rows of pixels that a thread takes at a time."""
 
 
 def develop(linear: NDArray[float32], exposure: float = 0.0, *, data: bool = False) -> NDArray[uint8]:

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""The development of pixels, compiled; see develop.py for what it does."""
+"""The development of pixels, compiled; see develop.py for the tone curve."""
 
 import numpy as np
 from numba import types
@@ -9,12 +9,12 @@ from sceneql.compiled.kernels import inlined, kernel
 SHOULDER = 0.6
 """Where the tone curve leaves the straight line."""
 WHITENING = 0.15
-"""How fast what is brighter than white loses its hue."""
+"""How fast colors brighter than white lose their hue."""
 
 
 @inlined
 def toned(r, g, b):
-    """A color of any brightness, brought to 0..1."""
+    """A color of any brightness, mapped to 0..1."""
     peak = max(r, max(g, b))
     if peak <= SHOULDER:
         return r, g, b
@@ -44,7 +44,7 @@ def encoded(x):
 
 @inlined
 def threshold(x, y):
-    """Bayer's 8 x 8 threshold of a pixel in (0, 1): the bits of x ^ y and y interleaved, lowest first."""
+    """Bayer's 8 x 8 dither threshold of a pixel, in (0, 1): the bits of x ^ y and y interleaved, lowest first."""
     rank = 0
     for bit in range(3):
         rank = 4 * rank + 2 * (((x ^ y) >> bit) & 1) + ((y >> bit) & 1)
@@ -53,7 +53,7 @@ def threshold(x, y):
 
 @inlined
 def known(x):
-    """A number for what is none or below zero: black."""
+    """x, with NaN and negative numbers replaced by 0."""
     return min(x, 65504.0) if x > 0.0 else 0.0
 
 

@@ -20,7 +20,7 @@ class March(Renderer):
     samples: int = field("Places on a ray at which a field is sampled.", 64, at_least=1, at_most=100000)
 
     def kernels(self, traced: Collection[str]) -> tuple[str, ...]:
-        """Of the tracer."""
+        """The tracer's kernel modules."""
         own = "renderers.tracing.draw"
         also = ("renderers.tracing.solids.implicit", "renderers.tracing.solids.fixed_samples_kernels")
         return (own, *also) if traced else (own,)

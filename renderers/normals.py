@@ -19,7 +19,7 @@ class Normals(Renderer):
     samples: Literal[1, 2, 4, 8, 16, 32, 64] = field("Rays in a pixel; 1 keeps every normal's length.", 1)
 
     def kernels(self, traced: Collection[str]) -> tuple[str, ...]:
-        """Of the tracer."""
+        """The tracer's kernel modules."""
         from renderers.tracing.certified import certified
 
         return certified("renderers.tracing.normals") if traced else ("renderers.tracing.normals",)

@@ -25,7 +25,7 @@ class Trace(Renderer):
     samples: Literal[1, 2, 4, 8, 16, 32, 64] = field("Rays in a pixel in which things meet.", 8)
 
     def kernels(self, traced: Collection[str]) -> tuple[str, ...]:
-        """Of the tracer."""
+        """The tracer's kernel modules."""
         from renderers.tracing.certified import TOLERANCE, certified
 
         if not traced:

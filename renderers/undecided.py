@@ -20,7 +20,7 @@ class Undecided(Renderer):
     tolerance: FixedScalar = field("As of `trace`.", "1e-9", above=0, at_most=1e-3)
 
     def kernels(self, traced: Collection[str]) -> tuple[str, ...]:
-        """Of the tracer."""
+        """The tracer's kernel modules."""
         from renderers.tracing.certified import certified
 
         return certified("renderers.tracing.normals") if traced else ("renderers.tracing.normals",)

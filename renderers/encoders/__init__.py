@@ -1,1 +1,1 @@
-"""Files of pictures and films."""
+"""Encoders of pictures and films."""
