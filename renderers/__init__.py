@@ -1,1 +1,1 @@
-"""Renderers, the words that draw a frame, and the development of pixels."""
+"""Words that draw a frame; its pixels developed."""

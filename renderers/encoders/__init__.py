@@ -1,1 +1,1 @@
-"""Encoders of pictures and films."""
+"""Files of pictures and films."""

@@ -1,1 +1,1 @@
-"""Rasterization by OpenGL."""
+"""Triangles drawn by OpenGL."""

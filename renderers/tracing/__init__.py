@@ -1,1 +1,1 @@
-"""The ray tracer: waves of rays, records, filters."""
+"""The ray tracer: rays in waves."""

@@ -1,1 +1,1 @@
-"""From samples to pixels: visibility filters, antialiased edges."""
+"""Samples to pixels: edges, noise."""

@@ -1,1 +1,1 @@
-"""Lights, shadows, sky and shading at a point."""
+"""Light, shadow and sky at a point."""

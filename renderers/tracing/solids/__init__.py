@@ -1,1 +1,1 @@
-"""Intersections of rays with the shapes of a frame."""
+"""Rays against a frame's shapes."""

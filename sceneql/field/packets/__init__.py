@@ -1,1 +1,1 @@
-"""First roots of many rays at once, in vector lanes."""
+"""First roots of rays in lanes."""

@@ -1,1 +1,1 @@
-"""Certified first roots, one ray at a time."""
+"""First roots, certified, ray by ray."""

@@ -1,1 +1,1 @@
-"""Density fields of skeletons: points, segments, triangles, curves."""
+"""Densities of points and curves."""

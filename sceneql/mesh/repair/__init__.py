@@ -1,1 +1,1 @@
-"""Repair of folds and self-intersections."""
+"""Folds, self-intersections repaired."""
