@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from sceneql.march.march_kernels import ALTERED
 from sceneql.pipeline import load
 from sceneql.run.run import Run
 
@@ -50,6 +51,30 @@ def test_a_pin_that_stands_where_it_must_costs_no_accuracy(tmp_path, pins):
     found, _, led = march(tmp_path, f"pins: {{{pins}}}", "dop853: {tolerance: 1e-9}")
     assert np.abs(found - exact).max() < 1e-9
     assert led.statistics.steps < 400  # far apart enough that the cubic through their ends is off by more
+
+
+def test_a_pin_that_is_led_evenly_is_moved_by_hardly_any_step(tmp_path):
+    path = tmp_path / "scene.yaml"
+    pins = "pins: {top: {shift: [0 m, 0.2 m/s^2*time^2, 0.3 m/s*time]}}"
+    solver = "dop853: {tolerance: 1e-9}"
+    path.write_text(CLOTH.format(cells="4 4", stiffness="100 N/m", more=pins, solver=solver, end=1))
+    run = Run(load(path))
+    march, ends = run.islands[0].march, {}
+    for moment in run.moments(np.linspace(0, 1, 4001)):
+        assert moment.now <= march.time
+        ends[march.time] = bool(march._counts[ALTERED])
+    assert len(ends) > 100
+    assert sum(ends.values()) <= 2
+
+
+def test_a_pin_that_is_led_evenly_leaves_bdf2_its_order(tmp_path):
+    more, errors = "pins: {top: {shift: [0 m, 0 m, 0.3 m/s*time]}}", []
+    exact, _, _ = march(tmp_path, more, "dop853: {tolerance: 1e-12}", cells="4 4")
+    for step in ("2 ms", "1 ms", "0.5 ms"):
+        found, _, _ = march(tmp_path, more, f"bdf2: {{step: {step}}}", cells="4 4")
+        errors.append(np.abs(found - exact).max())
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert (orders > 1.6).all(), (errors, orders)
 
 
 def test_springs_tear_within_a_step_of_the_times_that_a_finer_run_tells(tmp_path):

@@ -11,8 +11,8 @@ POSITION_AT, VELOCITY_AT, WORK_AT, MASS_AT, INVERSE_AT = range(5)
 EARLIER, NOW, LATER, APART, STARTS, UNTIL, COUNT, MASSES = range(5, 13)
 """Floats' places of the shift a little earlier, now and a little later (3 each), of that little time, of the masses'
 starts (3 each) and of the time at which they are let go; the number of masses, and from MASSES on the masses."""
-EPSILON, SAFE = 2.0**-52, 8.0
-"""Relative rounding of a number, and how many of it a difference may have."""
+EPSILON, SAFE = 2.0**-52, 100.0
+"""Relative rounding of a number, and how many of it steps may have gathered before a pin is put in place again."""
 
 
 @inlined
@@ -55,16 +55,20 @@ def lead(t, y, rate, floats, ints):
 
 @inlined
 def rounding(floats, ints, place, order, h):
-    """What rounding of the differences makes of a place [m], or of its rate of an order, in a step of length h."""
+    """How far rounding of the differences leads a place [m] (order 0) or velocity [m/s] (1) off in a step of length h.
+
+    That of the acceleration is some EPSILON |place| / APART^2.
+    """
     apart = floats[ints[APART]]
-    return SAFE * EPSILON * abs(place) * (1.0 + h / apart) / apart**order
+    return SAFE * EPSILON * place * (1.0 + h / apart) ** (2 - order) / apart**order
 
 
 @kernel(AFTER_STEP, inner=True)
 def put(t0, t1, y0, rate0, y1, floats, ints):
     """Put the pins where they must be at the end of a step (keyframes may have kinks), and let go of them in time.
 
-    Returns whether one was elsewhere, but for rounding, or was let go.
+    One that is elsewhere by no more than rounding stays: multistep methods and dense output go on from the solver's own
+    state. Returns whether any was moved or let go.
     """
     changed = False
     for k in range(ints[COUNT]):
@@ -75,10 +79,12 @@ def put(t0, t1, y0, rate0, y1, floats, ints):
             start, shift, speed = floats[ints[STARTS] + 3 * k + c], floats[ints[NOW] + c], velocity(floats, ints, c)
             x, v = ints[POSITION_AT] + 3 * mass + c, ints[VELOCITY_AT] + 3 * mass + c
             size = abs(start) + abs(shift)
-            changed |= abs(start + shift - y1[x]) > rounding(floats, ints, size, 0, t1 - t0)
-            changed |= abs(speed - y1[v]) > rounding(floats, ints, size, 1, t1 - t0)
-            y1[x] = start + shift
-            y1[v] = speed
+            if abs(start + shift - y1[x]) > rounding(floats, ints, size, 0, t1 - t0) or abs(speed - y1[v]) > rounding(
+                floats, ints, size, 1, t1 - t0
+            ):
+                y1[x] = start + shift
+                y1[v] = speed
+                changed = True
         if t1 >= floats[ints[UNTIL]]:
             floats[ints[INVERSE_AT] + mass] = 1.0 / floats[ints[MASS_AT] + mass]
             changed = True

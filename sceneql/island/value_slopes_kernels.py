@@ -19,7 +19,7 @@ from sceneql.system.signatures_kernels import TERM
 
 VALUES, TERMS, ROWS, COLUMNS, VALUES_AT, READINGS_AT, TERMS_AT, ROWS_AT, COLUMNS_AT, END = range(10)
 
-STEP = 1e-5
+STEP = 1e-7
 """Of differences, in parts of the value, or of what such parts of the entries that it reads make of it: short, for a
 value may be large beside what a term does with it, as a place far from 0 is."""
 LEAST = 1e-2

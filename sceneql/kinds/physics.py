@@ -201,7 +201,7 @@ class Solver(Kind):
 
     on: tuple[ModelRef, ...] | None = field("The models it marches; by default all.", None)
 
-    def choice(self) -> str:
+    def explanation(self) -> str:
         """What it chose to do and why, where it chooses a method by itself."""
         return ""
 

@@ -286,9 +286,9 @@ def march(
                 if counts[LAST_STAGE] < 0 and counts[HELD] > 0 and counts[ORDER] > 1:
                     rate(t1, y1, rate1, floats, ints)
             floats[channels.STEP_END] = floats[channels.HOLDS] = 0.0
+        if counts[LOCAL] > 0 or counts[ACTS] > 0:
             copy(y1, sample)
         if counts[ACTS] > 0:
-            copy(y1, sample)
             counts[ALTERED] = after_step(t0, t1, y0, rate0, y1, floats, ints)
             unknown = counts[LAST_STAGE] < 0 and leaving.size == 0
             if counts[LOCAL] == 0 and (counts[ALTERED] > 0 or unknown):

@@ -112,7 +112,7 @@ def _chosen(run: IslandRun) -> list[str]:
 def _why(run: IslandRun) -> tuple[str, ...]:
     """Why it is solved by itself, what its solver chose, how that works here, and what takes over when."""
     march, methods = run.march, run.methods
-    return run.island.reason, run.solver.choice(), *_chosen(run), march.prepared_text, methods.remark
+    return run.island.reason, run.solver.explanation(), *_chosen(run), march.prepared_text, methods.remark
 
 
 def _remarks(graph: SimulationGraph, run: IslandRun) -> dict[str, str]:

@@ -33,7 +33,7 @@ class Auto(Solver):
         below=1,
     )
 
-    def choice(self) -> str:
+    def explanation(self) -> str:
         """What it chooses from."""
         return "dopri5, and radau where the scene is stiff"
 
