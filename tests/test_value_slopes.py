@@ -134,6 +134,11 @@ def test_models_have_them_too(tmp_path, name):
     check_derivatives(tmp_path, written(more=f"other: {{{MODELS[name]}}}"))
 
 
+def test_what_values_alone_read_has_derivatives_of_its_own(tmp_path):
+    gravity = "{gravity: {strength: 9.81 m/s^2*(2 + other.a)}}"
+    check_derivatives(tmp_path, written(gravity, more=f"other: {{{MODELS['equations read']}}}"))
+
+
 def test_springs_have_them(tmp_path):
     check_derivatives(tmp_path, written(stiffness=f"'20 N/m*{FACTOR}'", damping=f"'0.3 N*s/m*{FACTOR}'"))
 
@@ -142,6 +147,33 @@ def test_springs_have_them(tmp_path):
 def test_the_derivative_of_a_value_is_that_of_its_formula(tmp_path, expression):
     force = f"{{attractor: {{position: 1 0 0 m, strength: '1 m^2/s^2*({expression})'}}}}"
     check_derivatives(tmp_path, written(force))
+
+
+def test_a_value_far_from_the_origin_has_slopes_as_exact_as_the_force(tmp_path):
+    """A satellite and the planet that attracts it, moved together, feel no other force."""
+    path = tmp_path / "scene.yaml"
+    path.write_text("""
+models:
+  planet: {particles: {list: {a: {position: 1.5e11 0 0 m}}}}
+  satellite: {particles: {list: {a: {position: 150007000000 0 0 m}}}}
+forces: [{attractor: {position: planet.a.position, strength: 4e14 m^3/s^2, on: [satellite]}}]
+solvers: {main: {bdf2: {step: 1 s}}}
+""")
+    graph = load(path, pruned=False)
+    run = IslandRun(graph, graph.islands[0])
+    march = March(run.assembly.finish(jacobian=True), Rk4().stepper(), 1.0)
+    pattern, system = march.system.pattern, march.system
+    values = np.zeros(pattern.room)
+    jacobian(system)(march._functions, 0.0, system.y, values, march.floats.copy(), system.ints)
+    found = np.zeros((len(system.y),) * 2)
+    found[pattern.rows, pattern.columns] = values[: pattern.count]
+    own, planet = run.bodies["satellite"], run.bodies["planet"]
+    assert own is not None
+    assert planet is not None
+    rows = found[own.velocity_at : own.velocity_at + 3]
+    by_own, by_planet = (rows[:, at : at + 3] for at in (own.position_at, planet.position_at))
+    assert np.abs(by_own).max() > 1e-7
+    np.testing.assert_allclose(by_planet, -by_own, atol=1e-6 * np.abs(by_own).max())
 
 
 END = 0.05
