@@ -64,13 +64,16 @@ def test_nobody_but_the_channels_says_where_a_slot_is():
     assert {str(path): found for path, text in TEXTS.items() if (found := slots_without_a_name(text))} == {}
 
 
-def integers_without_a_name(text):
-    """Integers of kernels that a text reads by number."""
+def read_by_number(text, *arrays):
+    """Entries of arrays that a text reads by number."""
     found = (node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Subscript))
-    found = (node for node in found if ast.unparse(node.value) == "ints" and isinstance(node.slice, ast.Constant))
+    found = (node for node in found if ast.unparse(node.value) in arrays and isinstance(node.slice, ast.Constant))
     return [ast.unparse(node) for node in found]
 
 
 def test_kernels_read_their_integers_by_name():
-    assert integers_without_a_name("a, b = ints[2], ints[COUNT]") == ["ints[2]"]
-    assert {str(path): found for path, text in TEXTS.items() if (found := integers_without_a_name(text))} == {}
+    assert read_by_number("a, b = ints[2], ints[COUNT]", "ints") == ["ints[2]"]
+    assert {str(path): found for path, text in TEXTS.items() if (found := read_by_number(text, "ints"))} == {}
+    kernels = {path: text for path, text in TEXTS.items() if path.stem.endswith("_kernels")}
+    of_steps = {str(path): read_by_number(text, "numbers", "settings") for path, text in kernels.items()}
+    assert {path: found for path, found in of_steps.items() if found} == {}

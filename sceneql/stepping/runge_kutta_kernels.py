@@ -12,6 +12,9 @@ from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
 from sceneql.system.signatures_kernels import STEP
 
+STAGES, EMBEDDED = range(2)
+RELATIVE, ABSOLUTE = range(2)
+
 
 @lean_inlined
 def add_stages(settings, row, count, h, y0, rate0, work, out):
@@ -32,7 +35,7 @@ def add_stages(settings, row, count, h, y0, rate0, work, out):
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after a step of length h; the embedded error in the norm of Hairer, Norsett & Wanner (1993, eq. II.4.11)."""
     rate = rate_at(functions[AT_RATE])
-    stages = numbers[0]
+    stages = numbers[STAGES]
     n = y0.size
     c, b, e = 2, 2 + stages, 2 + 2 * stages
     row = 2 + 3 * stages
@@ -41,13 +44,13 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         row += i
         rate(t + settings[c + i] * h, y1, work[i * n : (i + 1) * n], floats, ints)
     add_stages(settings, b, stages, h, y0, rate0, work, y1)
-    if numbers[1] == 0:
+    if numbers[EMBEDDED] == 0:
         return 0.0
     total = 0.0
     for k in range(n):
         error = settings[e] * rate0[k]
         for j in range(1, stages):
             error += settings[e + j] * work[j * n + k]
-        error *= h / (settings[1] + settings[0] * max(abs(y0[k]), abs(y1[k])))
+        error *= h / (settings[ABSOLUTE] + settings[RELATIVE] * max(abs(y0[k]), abs(y1[k])))
         total += error * error
     return math.sqrt(total / n)

@@ -10,6 +10,8 @@ from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
 from sceneql.island import layout
 from sceneql.system.signatures_kernels import STEP
 
+DRIFTS, KICKS = 0, 0
+
 
 @lean_inlined
 def keep_positions(slope, ints):
@@ -26,12 +28,12 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after kicks and drifts (splitting.py)."""
     rate = rate_at(functions[AT_RATE])
     n = y0.size
-    drifts = numbers[0]
+    drifts = numbers[DRIFTS]
     slope, seen = work[:n], work[n : 2 * n]
     for k in range(n):
         slope[k] = rate0[k]
     keep_positions(slope, ints)
-    kick = h * settings[0]
+    kick = h * settings[KICKS]
     for k in range(n):
         y1[k] = y0[k] + kick * slope[k]
     passed = 0.0

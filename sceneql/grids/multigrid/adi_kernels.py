@@ -11,6 +11,7 @@ from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
 from sceneql.grids.multigrid.stencil_kernels import dot
 from sceneql.system.signatures_kernels import STEP, A, F, N
 
+AT, NX, NY, NZ, VOLUMES, SINK, FACES = range(7)
 LINE = types.void(N, N, N, F, F, A, A, A, A, A, A)
 
 
@@ -60,10 +61,10 @@ def solve_line(start, stride, count, scale, share, volume, sink, g, d, factors, 
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 = y0 + prod (1 - h/2 A_k)^-1 h f(t + h/2, y0), A_k the operator along axis k; fixed steps."""
     rate = rate_at(functions[AT_RATE])
-    at, nx, ny, nz = numbers[0], numbers[1], numbers[2], numbers[3]
+    at, nx, ny, nz = numbers[AT], numbers[NX], numbers[NY], numbers[NZ]
     plane = nx * ny
     n, m = plane * nz, y0.size
-    volume, sink = floats[numbers[4] : numbers[4] + n], floats[numbers[5] : numbers[5] + n]
+    volume, sink = floats[numbers[VOLUMES] : numbers[VOLUMES] + n], floats[numbers[SINK] : numbers[SINK] + n]
     slope, d, factors, extra = work[:m], work[m : m + n], work[2 * m : 2 * m + n], work[3 * m : 3 * m + n]
     rate(t + 0.5 * h, y0, slope, floats, ints)
     scale = 2.0 / h
@@ -72,7 +73,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     for c in range(n):
         d[c] = h * slope[at + c]
     for axis in range(axes):
-        g = floats[numbers[6 + axis] : numbers[6 + axis] + n]
+        g = floats[numbers[FACES + axis] : numbers[FACES + axis] + n]
         for c in range(n):
             d[c] *= scale * volume[c]
         if axis == 0:

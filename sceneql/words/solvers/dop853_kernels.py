@@ -11,9 +11,10 @@ import math
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
-from sceneql.stepping.runge_kutta_kernels import add_stages
+from sceneql.stepping.runge_kutta_kernels import ABSOLUTE, RELATIVE, add_stages
 from sceneql.system.signatures_kernels import DENSE, STEP
 
+CONTROLLED, EXTENDED = range(2)
 STAGES = 12
 LAST = 16
 ROWS = 2
@@ -58,14 +59,14 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     n = y0.size
     for i in range(1, STAGES + 1):
         stage(i, rate, t, h, y0, rate0, y1, work, settings, floats, ints)
-    if numbers[1] != 0:
+    if numbers[EXTENDED] != 0:
         extend(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints)
-    if numbers[0] == 0:
+    if numbers[CONTROLLED] == 0:
         return 0.0
     fifths = 0.0
     thirds = 0.0
     for k in range(n):
-        scale = settings[1] + settings[0] * max(abs(y0[k]), abs(y1[k]))
+        scale = settings[ABSOLUTE] + settings[RELATIVE] * max(abs(y0[k]), abs(y1[k]))
         fifth = settings[FIFTH] * rate0[k]
         third = settings[THIRD] * rate0[k]
         for i in range(5, STAGES):

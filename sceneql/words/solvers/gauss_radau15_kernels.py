@@ -16,6 +16,8 @@ from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
 from sceneql.system.signatures_kernels import DENSE, STEP
 
+CONTROLLED, PUSHED, POSITIONS, GROUPS, ENTRIES = range(5)
+TOLERANCE = 0
 NEXT, BEGAN, TRIED, BEFORE = range(4)
 """Scalars of work: length of the next step; start and length of the last try; length of the step before it [s]."""
 HEAD = 8
@@ -111,7 +113,7 @@ def inside(end, h, y0, rate0, vectors, settings, numbers, out, m, p):
     newton, low, left = vectors[NEWTON * n :], vectors[LOW * n :], vectors[LOW_END * n :]
     once, twice = settings[FOR_VELOCITIES + end * DEGREE :], settings[FOR_POSITIONS + end * DEGREE :]
     for j in range(m):
-        k = numbers[4 + j]
+        k = numbers[ENTRIES + j]
         g0, g1, g2, g3 = newton[j], newton[n + j], newton[2 * n + j], newton[3 * n + j]
         g4, g5, g6 = newton[4 * n + j], newton[5 * n + j], newton[6 * n + j]
         change = (once[6] * g6 + once[5] * g5) + (once[4] * g4 + once[3] * g3) + (once[2] * g2 + once[1] * g1)
@@ -119,7 +121,7 @@ def inside(end, h, y0, rate0, vectors, settings, numbers, out, m, p):
         out[k] = y0[k] + total
         left[k] = (out[k] - y0[k]) - total
         if j < p:
-            at = numbers[4 + m + j]
+            at = numbers[ENTRIES + m + j]
             change = (twice[6] * g6 + twice[5] * g5) + (twice[4] * g4 + twice[3] * g3) + (twice[2] * g2 + twice[1] * g1)
             change = s * ((change + twice[0] * g0) + 0.5 * rate0[k])
             total = s * (change + (y0[k] - low[k])) - low[at]
@@ -134,7 +136,7 @@ def correct(i, m, watched, rate0, vectors, settings, numbers, n):
     inverse = settings[DIFFERENCES + i * DEGREE :]
     most = 0.0
     for j in range(m):
-        k = numbers[4 + j]
+        k = numbers[ENTRIES + j]
         value = (slope[k] - rate0[k]) * inverse[0]
         for before in range(i):
             value = (value - newton[before * n + j]) * inverse[before + 1]
@@ -155,14 +157,14 @@ def shortest_square(n, m, p, groups, rate0, vectors, numbers):
     """
     b = vectors[B * n :]
     largest = 0.0
-    for j in range(numbers[3 + m + p + groups]):
-        largest = max(largest, abs(rate0[numbers[4 + j]]))
+    for j in range(numbers[ENTRIES - 1 + m + p + groups]):
+        largest = max(largest, abs(rate0[numbers[ENTRIES + j]]))
     best = 1e300
     j = 0
     for group in range(groups):
         zeroth = first = second = third = 0.0
-        while j < numbers[4 + m + p + group]:
-            f0 = rate0[numbers[4 + j]]
+        while j < numbers[ENTRIES + m + p + group]:
+            f0 = rate0[numbers[ENTRIES + j]]
             f1 = f2 = f3 = 0.0
             for i in range(DEGREE):
                 term, power = b[i * n + j], i + 1.0
@@ -188,8 +190,8 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after a step of length h; the error is a quarter of it against the length that fits."""
     rate = rate_at(functions[AT_RATE])
     n = y0.size
-    m, p, groups = numbers[1], numbers[2], numbers[3]
-    watched = numbers[3 + m + p + groups]
+    m, p, groups = numbers[PUSHED], numbers[POSITIONS], numbers[GROUPS]
+    watched = numbers[ENTRIES - 1 + m + p + groups]
     vectors = work[HEAD:]
     remember(t, y0, work, vectors)
     work[TRIED] = h
@@ -210,7 +212,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
             change = correct(i, m, watched, rate0, vectors, settings, numbers, n)
         size = 0.0
         for j in range(watched):
-            k = numbers[4 + j]
+            k = numbers[ENTRIES + j]
             size = max(size, max(abs(slope[k]), abs(rate0[k])))
         change = change / size if size > 0.0 else 0.0
         if sweep > 0 and (change * change < CONVERGED * previous or (sweep > 1 and change >= previous)):
@@ -220,11 +222,11 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     convert(TO_POWERS, NEWTON, B, n, m, vectors, settings)
     for k in range(n):
         vectors[END * n + k] = y1[k]
-    if numbers[0] == 0:
+    if numbers[CONTROLLED] == 0:
         return 0.0
     square = shortest_square(n, m, p, groups, rate0, vectors, numbers)
     longest = h / SHRINKAGE
-    work[NEXT] = min(longest, h * math.sqrt(square) * (5040.0 * settings[0]) ** (1.0 / 7.0))
+    work[NEXT] = min(longest, h * math.sqrt(square) * (5040.0 * settings[TOLERANCE]) ** (1.0 / 7.0))
     return SHRINKAGE * h / work[NEXT]
 
 
@@ -232,17 +234,17 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
 def dense(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
     """The polynomial's own integrals, up to theta."""
     n = y0.size
-    m, p = numbers[1], numbers[2]
+    m, p = numbers[PUSHED], numbers[POSITIONS]
     s = h * theta
     b = work[HEAD + B * n :]
     for j in range(m):
-        k = numbers[4 + j]
+        k = numbers[ENTRIES + j]
         once = 0.0
         for i in range(DEGREE, 0, -1):
             once = theta * (once + b[(i - 1) * n + j] / (i + 1))
         out[k] = y0[k] + s * (rate0[k] + once)
     for j in range(p):
-        k, at = numbers[4 + j], numbers[4 + m + j]
+        k, at = numbers[ENTRIES + j], numbers[ENTRIES + m + j]
         twice = 0.0
         for i in range(DEGREE, 0, -1):
             twice = theta * (twice + b[(i - 1) * n + j] / ((i + 1) * (i + 2)))

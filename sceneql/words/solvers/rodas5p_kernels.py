@@ -22,6 +22,7 @@ from sceneql.stepping.error_scales_kernels import foresee, weigh_anew
 from sceneql.system.signatures_kernels import DENSE, STEP
 
 STAGES, SCALES_AT, ROOM, SIZES_AT, SCALED, HEAD = range(6)
+RELATIVE, ABSOLUTE, GAMMA = range(3)
 LOBATTO = 0.27639320225002106
 """(1 - 1/sqrt 5)/2: the inner nodes of Lobatto's quadrature, order 6, stand there and at 1 less that."""
 
@@ -78,7 +79,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     jacobian = work[stages_end + 3 * n : stages_end + 3 * n + numbers[ROOM]]
     store = work[stages_end + 3 * n + numbers[ROOM] :]
     scales, plan = settings[numbers[SCALES_AT] :], numbers[HEAD + numbers[SCALED] :]
-    a = settings[2] * h
+    a = settings[GAMMA] * h
     c, d = 3, 3 + stages
     row, inner = 3 + 2 * stages, 3 + 2 * stages + (stages - 2) * (stages - 3) // 2
     slopes(functions, t, y0, jacobian, floats, ints)
@@ -127,10 +128,10 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     if numbers[SCALED] > 0:
         sizes, groups = settings[numbers[SIZES_AT] :], numbers[HEAD:]
         foresee(functions, t, h, y0, rate0, sizes, groups, sample, drift, floats, ints)
-        weigh_anew(t, settings[0], h, y0, rate0, sample, sizes, groups, weights)
+        weigh_anew(t, settings[RELATIVE], h, y0, rate0, sample, sizes, groups, weights)
     else:
         for k in range(n):
-            weights[k] = 1.0 / (settings[1] + settings[0] * max(abs(y0[k]), abs(y1[k])))
+            weights[k] = 1.0 / (settings[ABSOLUTE] + settings[RELATIVE] * max(abs(y0[k]), abs(y1[k])))
     for k in range(n):
         part = u[k] * weights[k]
         total += part * part
