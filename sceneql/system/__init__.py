@@ -10,11 +10,11 @@ Kernel signatures (numba; the types are in signatures_kernels.py), all ``-> None
     term(t, y, rate, floats, ints)          adds its part to rate (n,). Forces add newtons to the velocity entries
     gap(t, y, gaps, floats, ints)           writes signed distances [m] of its contact pairs, > 0 apart (exact mode)
     impact(t, y, pair, floats, ints)        changes y by the impulse of that pair (exact mode)
-    settle(t0, t1, y0, rate0, y1, floats, ints)   backs each mass off to its own impact within the step (local mode);
-                                            where channels.STEP_END is above 0 it only lowers that
+    settle(t0, t1, y0, rate0, y1, floats, ints)   resolves each mass's impacts within the step, in y1 (local mode);
+                                            where channels.STEP_END is above 0 it only lowers that end of the step
     after_step(t0, t1, y0, rate0, y1, floats, ints) -> bool   acts at the end of an accepted step, before contacts do;
-                                            whether it changed the state or numbers: then frames inside the step are
-                                            read off the cubic through its ends, and the rate is computed anew
+                                            True where it changed the state or the floats: then frames inside the step
+                                            are read off its cubic Hermite interpolant, and the rate is evaluated anew
     step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints) -> error   one step of a solver: writes
                                             y1; the error is scaled by the tolerance (accept when <= 1), 0 for fixed
                                             steps
@@ -23,13 +23,14 @@ Kernel signatures (numba; the types are in signatures_kernels.py), all ``-> None
     slopes(t, y, entries, floats, ints)     adds the derivatives of one term (see Slopes)
     jacobian(functions, t, y, values, floats, ints)   the derivative of the island's rate (see Pattern)
 
-A step gets what it may call as addresses: ``rate = rate_at(functions[AT_RATE])`` and, where it needs the Jacobian,
+A step gets the addresses of the functions it may call: ``rate = rate_at(functions[AT_RATE])`` and, for the Jacobian,
 ``jacobian = jacobian_at(functions[AT_JACOBIAN])`` (compiled/pointers_kernels.py); pass `functions` on to jacobian.
 It may be called again from the same start with another h (a rejected step; the search for an event), and `dense`
 belongs to the latest call. After an event y0 is not the y1 of the step before.
 
 Stages: the terms run in the order `internal` (a model's own), `force`, `close` (a model turns newtons into
-accelerations by its inverse masses and writes dx/dt = v), `constrain` (a resting contact removes what pushes in).
+accelerations by its inverse masses and writes dx/dt = v), `constrain` (a resting contact removes accelerations into
+the surface).
 """
 
 from sceneql.system.assembly import Assembly, Mode

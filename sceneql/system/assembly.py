@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from sceneql.system.fields import Grid
 
 Mode = Literal["exact", "local"]
-"""Of contacts: located events and impulses, or masses that back off within a step."""
+"""How contacts act: by events located in time and impulses (exact), or by impacts resolved within a step (local)."""
 
 
 class Assembly(Protocol):
@@ -37,8 +37,8 @@ class Assembly(Protocol):
     def value(self, value: Value) -> int:
         """Store a value of the script, a varying one to be evaluated at stage times; the offset of its first float.
 
-        It is read by terms and contacts of the word that is being assembled: where it depends on the state, what these
-        terms do by it is part of the Jacobian (system.Slopes).
+        Terms and contacts of the word that is being assembled read it. Where it depends on the state, the derivatives
+        of these terms through it are part of the Jacobian (system.Slopes).
         """
 
     def initial(self, value: Value) -> Any:
@@ -54,13 +54,13 @@ class Assembly(Protocol):
     ) -> None:
         """Add a term to the rate; ``kernel`` is ``"package.module:function"``.
 
-        ``jacobian``: its derivatives, or what gives them if a solver asks; None: unknown, then the island uses
-        differences of the whole rate. ``apart``: what it does to a body depends on that body and the time alone, so
-        that a large island may be solved in blocks of its bodies.
+        ``jacobian``: its derivatives, or a function that gives them if a solver needs them; None: unknown, then the
+        island takes differences of the whole rate. ``apart``: its force on a body depends on that body and the time
+        alone, so that a large island may be solved in blocks of its bodies.
         """
 
     def inertia(self, velocity_at: int, inverse_at: int, count: int) -> None:
-        """Say that a close term multiplies rate[velocity_at + 3k : +3] by floats[inverse_at + k]: slopes likewise."""
+        """Say that a close term scales rate[velocity_at + 3k : +3], and so its slopes, by floats[inverse_at + k]."""
 
     def contact(
         self,
@@ -72,60 +72,59 @@ class Assembly(Protocol):
     ) -> None:
         """Add contacts: kernels (gap, impact) with the number of pairs for `exact`, (settle,) for `local`.
 
-        ``apart``: as of a term, for local ones.
+        ``apart``: as for a term; for local contacts only.
         """
 
     def after_step(self, kernel: str, ints: Sequence[int], apart: bool = False) -> None:
-        """Add what happens at the end of each accepted step: springs that tear, particles that are born.
+        """Add a kernel that acts at the end of each accepted step: springs that tear, particles that are born.
 
-        ``kernel`` is ``"package.module:function"``; it returns whether it has changed anything. ``apart``: as of a
-        term.
+        ``kernel`` is ``"package.module:function"``; it returns whether it changed anything. ``apart``: as for a term.
         """
 
     def grid(self, grid: Grid) -> None:
         """Say that the entries of the state from grid.at on are a field, for solvers that know grids.
 
-        What else a model has in the state (tallies) must depend on the field alone, and nothing on it.
+        Other entries of the model (tallies) must depend on the field alone, and nothing may depend on them.
         """
 
     def offer(self, output: str, grid: Grid) -> None:
-        """Say where a field of the model that is being assembled lies: its inflow follows its cells in the state."""
+        """Name a field output of the model that is being assembled; its tally of inflow follows its cells in y."""
 
     def field_of(self, link: Link) -> Grid | None:
-        """Where the field lies that a link is of; None where it is of none of this island."""
+        """The grid of the field that a link reads; None where this island has no such field."""
 
     def object(self, ref: Ref) -> Kind:
         """The kind of an object of the script."""
 
     def changing(self, at: int, count: int) -> None:
-        """Say that bodies come and go, and that floats[at:] change as they do, alike in every block of bodies."""
+        """Say that bodies come and go, and that floats[at : at + count] change with them, alike in every block."""
 
     def remember(self, *ints: int) -> None:
-        """Keep integers for the word's own reading: ModelState.ints (a force: for each model; a contact: of all)."""
+        """Keep integers for the word's outputs: ModelState.ints (a force's for each model; a contact's for all)."""
 
     def formula(self, link: Link) -> Expr | None:
         """A linked output as an expression of time; None for one of a model that is solved."""
 
     def step_at_most(self, seconds: float) -> None:
-        """Say that steps of a length chosen by a tolerance must not be longer: something happens that it cannot see."""
+        """Bound the adaptive step [s], where something happens that the error estimate cannot see."""
 
     def stop_at(self, time: float) -> None:
-        """Say that something happens at an instant [s]: such steps end there."""
+        """Add a breakpoint [s]: adaptive steps end there."""
 
     def stop_at_breakpoints(self, expr: Expr) -> None:
-        """Say that a formula is read: such steps end where the time switches it. (So they do for each `value`.)"""
+        """Add the breakpoints of a formula of time: adaptive steps end there. (Those of each `value` are added.)"""
 
     def start(self) -> Any:
         """The state reserved so far (n,), at the start of the run."""
 
     def numbers(self) -> Any:
-        """The floats stored so far; of values that vary in time, those at the start."""
+        """The floats stored so far, with values that vary in time as they are at the start."""
 
     def line(self) -> Span | None:
-        """Where in the script the word stands that is being assembled."""
+        """The place in the script of the word that is being assembled."""
 
     def places(self, link: Link) -> Any:
-        """Where in y the output of a model of the island stands, as indices of its shape; None where it is computed."""
+        """Indices into y of a model's output, in an array of its shape; None where the output is computed."""
 
     def body_count(self) -> int:
         """Number of bodies of the island (contacts choose their mode by it)."""

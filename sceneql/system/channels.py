@@ -1,36 +1,36 @@
-"""The channels of an island: what solvers, the march, terms and contacts tell one another in its array of floats.
+"""The channels of an island: how solvers, the march, terms and contacts pass numbers to one another in its floats.
 
-It begins with HEAD numbers that any kernel may read as ``floats[channels.STAGE]``; numbers of the script and memories
-of words follow. Where a solver asks for slopes it ends with three arrays of the state's size n. This is the only
-place that says where they are.
+The array begins with HEAD numbers that any kernel may read as ``floats[channels.STAGE]``; numbers of the script and
+memories of words follow. Where a solver needs slopes, three arrays of the state's size n end it. Only this file says
+where they are.
 """
 
 RATES, STEP_END, HOLDS, CHANGED, DEFINITE, STAGE, STAGES, HEAD = range(8)
 """
 RATES: how many times the rate was evaluated.
 
-STEP_END: above 0 local contacts are only asked when the step, planned up to that time [s], should end, which they
-lower; 0 when they are to back off.
+STEP_END: above 0, the planned end [s] of the step, which local contacts may only lower in this call; 0 where they
+resolve impacts.
 
-HOLDS: not 0 where a local contact holds something, and so reads next time what terms leave in floats for the state at
-the step's end: the rate must be evaluated there.
+HOLDS: not 0 where a body rests on a local contact. In the next step the contact reads numbers that terms leave in the
+floats for the state at the step's end, so the rate must be evaluated there.
 
-CHANGED: not 0 where an exact contact, put in order at the end of a step, changed the state or a flag.
+CHANGED: not 0 where an exact contact, updating its resting pairs at the end of a step, changed the state or a flag.
 
-DEFINITE: above 0 while slopes are asked for by Newton's method, and wherever slopes contain the force itself, it is
-that which the latest change foresaw (BEFORE, AFTER). Far from a solution it is finite, and systems are to be positive
-definite: what pushes masses away is left out as far as it exceeds DEFINITE [1/s^2] times the mass (system.Slopes).
+DEFINITE: above 0 while Newton's method evaluates slopes. A force that occurs in its own slopes is then the one that the
+latest Newton update predicted (BEFORE, AFTER). Finite far from a solution, where the matrix is to be positive definite:
+negative stiffness beyond DEFINITE [1/s^2] times the mass is left out (system.Slopes).
 
-STAGE: a [s] in a stage of Newton's method, y = base + a f(t, y), with its base in BASE; else one of the three below.
+STAGE: the coefficient a [s] of an implicit stage y = base + a f(t, y), its base in BASE; else one of the three below.
 
-STAGES: how many such stages there were.
+STAGES: how many implicit stages there were.
 """
 
 NO_SLOPES, OUTSIDE, BETWEEN = 0.0, -1.0, -2.0
-"""Of STAGE, for contacts. NO_SLOPES: they act between steps, and no solver asks for slopes. OUTSIDE: they act within
-the stages of Newton's method, and none is being solved. BETWEEN: they act between steps, but a solver asks for slopes:
-what rests at a step's start stays tied to its end, so that the rate is smooth there, and slopes are known."""
+"""Values of STAGE, for contacts. NO_SLOPES: they act between steps, and no solver needs slopes. OUTSIDE: they act
+within implicit stages, and none is being solved. BETWEEN: they act between steps, but a solver needs slopes: a body
+that rests at a step's start stays tied up to its end, so that the rate is smooth within the step and has slopes."""
 
 ARRAYS = BASE, BEFORE, AFTER = 3, 2, 1
-"""The arrays at the end begin at ``floats.size - channels.BASE * n``. BASE: the base of a stage; BEFORE: the state
-before the latest change of Newton's method, whose slopes foresaw the force; AFTER: the state after it."""
+"""The arrays at the end begin at ``floats.size - channels.BASE * n``. BASE: the base of a stage; BEFORE and AFTER: the
+states before and after the latest Newton update, across which the slopes predicted the force linearly."""

@@ -23,11 +23,11 @@ class Cells:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Grid:
-    """An island that is one field on a regular grid, V dc/dt = sum over faces of g (neighbor - c) - sink c + fed.
+    """A finite volume field on a regular grid, V dc/dt = sum over faces of g (neighbor - c) - sink c + fed.
 
-    The value of cell n is y[at + n]; all other offsets are into the island's floats, one number a cell. A face's
-    conductance g stands with the cell on its high side, at the first cell of a row that between its last and its first
-    (0 where the field is not periodic). Cells outside the domain have V = 1 and nothing else.
+    The value of cell n is y[at + n]; all other offsets are into the island's floats, one number per cell. A face's
+    conductance g [m^3/s] is stored with the cell on its high side; the first cell of a row has the face between the
+    row's last and first cells (0 where the field is not periodic). Cells outside the domain have V = 1 and no faces.
     """
 
     cells: Cells
@@ -35,12 +35,12 @@ class Grid:
     volumes_at: int
     sink_at: int
     faces_at: tuple[int, int, int]
-    """Along x, y, z; that along z is not read where nz is 1."""
+    """Conductances along x, y, z; those along z are not read where nz is 1."""
     varying: bool
-    """Whether g and sink depend on time or on the field: the rate leaves them in the floats."""
+    """Whether g and sink depend on time or on the field: each evaluation of the rate then writes them."""
     fed_at: int
-    """What is fed, where it does not vary; else -1."""
+    """Sources fed into the cells, where these are constant; else -1."""
     carried: bool
-    """Whether a drift acts on it."""
+    """Whether a drift (advection) acts on it."""
     keeps: tuple[float, float] = (-math.inf, math.inf)
-    """Values that it stays between by the maximum principle."""
+    """Bounds of its values by the maximum principle."""

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""The numba types of the system contract (system.py says what each function does)."""
+"""The numba types of the system contract (system/__init__.py says what each function does)."""
 
 from numba import types
 

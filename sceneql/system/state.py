@@ -1,4 +1,4 @@
-"""The state of an island as words see it: where point masses stand in it, and what it is at an instant."""
+"""The state of an island as words see it: the offsets of its point masses, and a model's view at an instant."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ class Bodies:
     radius_at: int
     """floats[radius_at + k]: collision radius [m]."""
     period: float = float("inf")
-    """No oscillation of the springs between them is faster at the start [s]; infinite without springs."""
+    """Lower bound of the periods of the springs' oscillations at the start [s]; infinite without springs."""
     tied: Any = None
-    """(m, 2) int: the bodies at the ends of these springs; None without."""
+    """(m, 2) int: the bodies at the ends of these springs; None without springs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +44,6 @@ class ModelState:
     floats: Floats
     bodies: Bodies | None
     ints: tuple[int, ...]
-    """What the word asked to be remembered (`Assembly.remember`)."""
+    """The integers that the word has stored by `Assembly.remember`."""
     potential: float = 0.0
     """Potential energy [J] of the model in the forces that act on it."""

@@ -1,4 +1,4 @@
-"""What a solver hands to the march: its compiled step, how that is controlled, and what it needs of the island."""
+"""What a solver hands to the march: its compiled step, its step size control, and its needs of the island."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """What a step works with on one island."""
+    """The arrays that a step works with on one island."""
 
     settings: Any
     """Floats for the step, which it may change."""
@@ -23,12 +23,12 @@ class Prepared:
     work: int
     """Floats of scratch, zero before the first step."""
     text: str = ""
-    """How it works there, for `explain`."""
+    """How the method solves this island, for `explain`."""
 
 
 @dataclass(frozen=True, slots=True)
 class Method:
-    """The compiled step and what belongs to it whatever the island; functions are ``"package.module:function"``."""
+    """The compiled step and its data for any island; functions are ``"package.module:function"``."""
 
     step: str
     order: int
@@ -41,20 +41,20 @@ class Method:
     work: int = 1
     """Arrays of the size of y that the step needs as scratch."""
     last_stage: int = -1
-    """Array of ``work`` that after a step holds the rate at its end (first same as last); -1: none does."""
+    """Index of the array of ``work`` with the rate at the step's end (first same as last); -1: none."""
     extend: str | None = None
-    """Function of the step's signature, for what `dense` needs beyond the step (more stages, into `work`):
-    called once before a frame is read off a step. Where contacts are exact, `dense` is read after every step without
-    it, so the step does that itself (see `Needs.prepare`)."""
+    """Function of the step's signature that adds the further stages of dense output to `work`; called once before a
+    frame is read off a step. Where contacts are exact, `dense` is read after every step without this call, so the step
+    computes these stages itself (see `Needs.prepare`)."""
     stability: tuple[float, ...] = ()
-    """Of an explicit method: coefficients of its stability function, that of z^0 first."""
+    """Coefficients of an explicit method's stability function, that of z^0 first."""
     name: str = ""
-    """What `explain` calls it, where the march goes from one method to another."""
+    """Its name in `explain`, where the march switches methods."""
 
 
 @dataclass(frozen=True, slots=True)
 class Control:
-    """How long steps are: a given length, or a tolerance."""
+    """Step size control: a fixed length, or a tolerance."""
 
     first_step: float = 0.0
     """The fixed step [s], or the first of an adaptive method (0: choose)."""
@@ -62,19 +62,19 @@ class Control:
     tolerance: float = 0.0
     """Relative tolerance of an adaptive method."""
     absolute: float | tuple[float, ...] = 0.0
-    """Absolute tolerance, or one of each entry of y."""
+    """Absolute tolerance, of all entries of y or one for each."""
     by_scale: bool = False
-    """Whether an adaptive method that knows scales measures errors by these, not by ``absolute``: by how large entries
-    have been (stepping/error_scales_kernels.py), or on a grid by the largest value at the start."""
+    """Whether an adaptive method measures errors by scales in place of ``absolute``: by the sizes that entries have
+    had (stepping/error_scales_kernels.py), or on a grid by the largest value at the start."""
     largest_step: float = float("inf")
     """[s]"""
     self_controlled: bool = False
-    """Whether an adaptive step leaves in work[0] the length [s] to try next, after acceptance or rejection; else
-    the march controls by the error."""
+    """Whether an adaptive step writes the next length to try [s] to work[0], after acceptance or rejection; else the
+    march controls the step by its error."""
     unsolved: str = ""
-    """What it means where a step of a given length has no finite end; else that the step is unstable."""
+    """The message where a step of fixed length has no finite end; empty: that the step is unstable."""
     halves: bool = False
-    """Whether such a step is halved first, and halved again."""
+    """Whether such a step is first halved repeatedly."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,19 +84,19 @@ class Needs:
     jacobian: bool = False
     """Whether the step calls the island's Jacobian (System.pattern)."""
     newton: bool = False
-    """Whether all its stages are solved by linear/newton_kernels.py (Slopes.in_stages)."""
+    """Whether linear/newton_kernels.py solves all its stages (Slopes.in_stages)."""
     prepare: str | None = None
-    """Called with (System, Stepper) -> Prepared in place of settings, numbers and work: for what depends on the
-    island, such as the ordering of a factorization."""
+    """Called with (System, Stepper) -> Prepared, which replaces settings, numbers and work where these depend on the
+    island, as the ordering of a factorization does."""
     linear: str = "auto"
-    """How linear systems are solved, where `prepare` can make them be solved in several ways."""
+    """The script's choice of linear solver, where `prepare` has several."""
     likely: str | None = None
-    """Called with the System: modules of kernels that `prepare` will ask for, to be compiled early; None: those of
+    """Called with the System: modules of kernels that `prepare` will need, to be compiled early; None: those of
     linear/stage.py."""
     beside: tuple[str, ...] = ()
-    """Modules of kernels that `prepare` may ask for, compiled beside but not waited for."""
+    """Modules of kernels that `prepare` may need, compiled in the background and not waited for."""
     march: str | None = None
-    """A march.March of its own, in place of compiled steps."""
+    """A subclass of march.March that replaces compiled steps."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,13 +110,13 @@ class Stepper:
 
 @dataclass(frozen=True, slots=True)
 class IslandFacts:
-    """What a solver may know of an island when it chooses its methods (`Solver.choose`)."""
+    """Facts of an island by which a solver chooses its methods (`Solver.choose`)."""
 
     entries: int = 0
-    """Of its state."""
+    """Size of its state."""
     local_contacts: bool = False
-    """Whether contacts back masses off within a step."""
+    """Whether contacts resolve impacts within a step."""
     grid: Grid | None = None
-    """Of an island that is one field on a grid and nothing else."""
+    """The grid, where the island is one field and nothing else."""
     floats: Callable[[], Floats] | None = None
     """The island's floats, which the grid's offsets are into."""

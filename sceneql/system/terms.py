@@ -1,4 +1,4 @@
-"""Terms of an island's rate: their stages, their slopes, and the pattern of the Jacobian that slopes make."""
+"""Terms of an island's rate: their stages, their derivatives (slopes), and the Jacobian's sparsity pattern."""
 
 from __future__ import annotations
 
@@ -14,41 +14,41 @@ Stage = Literal["internal", "force", "close", "constrain"]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Slopes:
-    """The derivatives of one term's addition to the rate: where they stand, and the kernel that computes them.
+    """The derivatives of one term's addition to the rate: their places in the Jacobian, and the kernel.
 
     The kernel has the signature of a term, ``(t, y, entries, floats, ints)``, and adds to entries[i] (its own slice
     (k,), zero before) the derivative of what the term adds to rate[rows[i]] with respect to y[columns[i]]: for forces
-    newtons per meter and per m/s, since the island multiplies by inverse masses and adds dx/dt = v. Places may repeat
-    (their entries are summed) and stay the same for the run; rows of the energy taken out (Bodies.work_at) are left
-    out. It stands in a kernel file of its own, which explicit solvers then never load.
+    N/m and N s/m, since the island multiplies by inverse masses and adds dx/dt = v. Places may repeat (their entries
+    are summed) and stay the same for the run; rows of the energy taken out (Bodies.work_at) are left out. The kernel
+    has a file of its own, which explicit solvers then never load.
 
-    What it adds by values that read the state is not asked for: the island has it from differences of the term itself
-    by the floats of these values (island/value_slopes.py).
+    Derivatives through values that read the state are not the kernel's: the island takes them from differences of the
+    term with respect to the floats of these values (island/value_slopes.py).
 
-    While channels.DEFINITE is above 0, Newton's method asks for what serves it best: the force itself, where slopes
-    contain it, is that which the latest change foresaw, and where DEFINITE is finite, a kernel that can leaves out what
-    pushes masses away, such as the part of a spring's compression across it.
+    While channels.DEFINITE is above 0, the slopes serve Newton's method: a force that they contain is the one that the
+    latest Newton update predicted, and where DEFINITE is finite, a kernel that can leaves out negative stiffness, such
+    as the transverse part of a compressed spring's.
     """
 
     kernel: str
     """``"package.module:function"``."""
     rows: Any
-    """(k,) int; empty where nothing that the term adds depends on y."""
+    """(k,) int; empty where the term does not depend on y."""
     columns: Any
     """(k,) int."""
     ints: Any = None
     """The kernel's integers; None: those of the term."""
     shared: Any = None
-    """(k,) int, where several places have the same entry: which one each place adds, e, or takes away, -1 - e."""
+    """(k,) int, where places share entries: e where a place adds entry e, -1 - e where it subtracts entry e."""
 
     blocks: bool = False
-    """Places and entries are blocks of 3x3, of which ``rows`` and ``columns`` give the first row and column; the nine
-    numbers of an entry follow one another, row by row. Thrice as quick, where masses act on masses."""
+    """Whether entries are 3x3 blocks, row by row, with the first row and column of each in ``rows`` and ``columns``:
+    three times as fast for forces between masses."""
 
     in_stages: bool = False
-    """They are known where the term acts in another way than it does for explicit methods: within stages of Newton's
-    method (Stepper.newton), or between steps for others that ask for slopes (channels.STAGE); for these, slopes of
-    small islands are found by differences."""
+    """Whether the slopes are those of the term as it acts for implicit solvers, other than for explicit ones: within
+    the stages of Newton's method (Needs.newton), or between steps for others that need slopes (channels.STAGE), which
+    on small islands take differences."""
 
     @property
     def entries(self) -> int:
@@ -61,24 +61,24 @@ class Slopes:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pattern:
-    """Where an island's Jacobian may differ from zero, all of the diagonal included: no place twice.
+    """The sparsity pattern of an island's Jacobian, all of the diagonal included, no place twice.
 
     Its values are first those of the blocks, nine for each, row by row, then the others one by one.
     """
 
     blocks: NDArray[int64]
-    """(b, 2) first row and first column of the blocks of 3x3, rising: rows of velocities of masses."""
+    """(b, 2) first row and first column of the 3x3 blocks, ascending: rows of velocities of masses."""
     others: NDArray[int64]
-    """(s, 2) row and column of each value outside blocks, rising."""
+    """(s, 2) row and column of each value outside blocks, ascending."""
     known: NDArray[bool_]
-    """(s,) which of those come from slopes; the rest are zeros on the diagonal."""
+    """(s,) whether a value outside blocks comes from slopes; the rest are zeros on the diagonal."""
     room: int
-    """Length of the array ``values`` that the jacobian is called with: the values first, then scratch of its own."""
+    """Length of the array ``values`` of the jacobian kernel: the values first, then its scratch."""
     exact: bool
-    """False: by differences of the rate, the pattern is full."""
+    """False: the Jacobian is full, found by differences of the rate."""
     tallies: NDArray[int64]
-    """Entries of y that have no slopes at all, such as the energy taken out: nothing depends on them, and what they
-    depend on is left out."""
+    """Entries of y without slopes, such as the energy taken out: nothing depends on them, and their own rows are left
+    out."""
 
     @property
     def count(self) -> int:
