@@ -1,4 +1,4 @@
-"""The blocks of an island, the integers of terms and contacts, and how they lie in the one array that kernels read."""
+"""The blocks of an island, the integers of each term and contact, and their layout in the array that kernels read."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """What one term or contact handed in."""
+    """The kernels and integers of one term or contact."""
 
     kernels: tuple[str, ...]
     ints: tuple[int, ...]
@@ -30,11 +30,11 @@ class Block:
     part: str = ""
     span: Span | None = None
     model: str | None = None
-    """That a force acts on."""
+    """The model that a force acts on."""
 
 
 def grouped(blocks: list[Block], laid: list[Block]) -> list[tuple[tuple[str, ...], int]]:
-    """Kernels in order of first use with their numbers of blocks; the blocks, in that order, are put on ``laid``."""
+    """Kernels in order of first use with their numbers of blocks; appends the blocks in that order to ``laid``."""
     by_kernels: dict[tuple[str, ...], list[Block]] = {}
     for block in blocks:
         by_kernels.setdefault(block.kernels, []).append(block)
@@ -46,7 +46,7 @@ def grouped(blocks: list[Block], laid: list[Block]) -> list[tuple[tuple[str, ...
 def lay_out(
     triples: list[tuple[int, int, int]], blocks: list[Block], first_blocks: list[int], pairs: list[int]
 ) -> NDArray[int64]:
-    """The one array of integers: see layout.py."""
+    """The island's array of integers: see layout.py."""
     triples_at = layout.GROUPS_AT + len(first_blocks)
     table_at = triples_at + layout.TRIPLE * len(triples)
     ranges_at = table_at + len(blocks) + 1

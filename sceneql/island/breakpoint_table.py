@@ -1,7 +1,6 @@
-"""Instants at which values of a script change their course (breakpoints.py): steps that a tolerance chooses end there.
-
-Such a step may be as long as nothing happens, and would go over a key, a pulse or a switch between two of its stages
-without a sign of it in its error.
+"""The table of breakpoints (breakpoints.py): instants at which values of a script are not smooth; adaptive steps end
+there, for a long step would pass over a keyframe, a pulse or a switch between two of its stages without a sign of it
+in its error estimate.
 """
 
 from __future__ import annotations
@@ -12,24 +11,24 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 Breakpoint = tuple[float, float]
-"""An instant at which what is new holds, and the period that it comes again with, 0 for none [s]."""
+"""(instant from which the new value holds, period of its repetition or 0 for none) [s]."""
 
 APART = 1e-12
-"""Instants nearer to each other than this part of the run count as one."""
+"""Breakpoints nearer to each other than this part of the run count as one."""
 
 
 def after(time: float, steps: int = 4) -> float:
-    """As little later as tells that rounding leaves it on the other side of an instant."""
+    """The instant [s] so many ulps later, past the rounding error of ``time``."""
     return time + steps * math.ulp(time)
 
 
 def before(time: float) -> float:
-    """As little earlier."""
+    """The instant [s] 4 ulps earlier."""
     return time - 4 * math.ulp(time)
 
 
 class BreakpointTable(NamedTuple):
-    """BreakpointTable in the order in which they are looked up."""
+    """Breakpoints in the order in which they are looked up."""
 
     once: tuple[float, ...] = ()
     """Instants without a period, ascending [s]."""
@@ -37,13 +36,13 @@ class BreakpointTable(NamedTuple):
 
     @classmethod
     def of(cls, found: Iterable[Breakpoint]) -> BreakpointTable:
-        """Those found, in any order."""
-        known = sorted(stop for stop in found if not math.isnan(stop[0]))  # no order holds where one is no number
+        """The table of breakpoints in any order."""
+        known = sorted(stop for stop in found if not math.isnan(stop[0]))  # a NaN has no place in the order
         return cls(tuple(at for at, period in known if period <= 0.0), tuple(stop for stop in known if stop[1] > 0.0))
 
 
 def next_breakpoint(known: BreakpointTable, time: float, end: float) -> float:
-    """The first of them after an instant, at most the end of the run [s]."""
+    """The first breakpoint after an instant, at most the end of the run [s]."""
     best, least = end, time + APART * end
     first = bisect_right(known.once, least)
     if first < len(known.once) and known.once[first] < end - APART * end:

@@ -1,8 +1,9 @@
-"""Where expressions of the time turn: keys, comparisons and whatever else a smooth step must not go over.
+"""Breakpoints of expressions of time: keyframes, jumps, kinks and narrow pulses, which no step should cross.
 
-What goes evenly with the time is met in closed form. All else is sampled over the run, and each change is closed in on;
-what turns inside a formula is found before it and sampled at both its sides: so a pulse is seen however short it is. So
-are smooth ones: bells, where the argument of an exponential is largest or a divisor least, and poles.
+Arguments linear in time are solved in closed form. Others are sampled over the run, and each change is bracketed and
+refined. The breakpoints of subexpressions are found first, and the whole is sampled at both sides of them, so that a
+pulse is seen however short it is. Smooth pulses (bells) are found too, where the argument of an exponential is largest
+or a divisor least, and poles.
 """
 
 from __future__ import annotations
@@ -24,25 +25,25 @@ from sceneql.quantities.key_tables import known_table
 from sceneql.quantities.span import Span
 
 MOST = 10_000
-"""Instants of a run; of what turns more often none are kept."""
+"""Most breakpoints of an operation in a run; where there are more, none is kept."""
 SAMPLES = (8192, 65536)
-"""Steps of the grid over the run; the second where every other sample of the first tells of other changes."""
+"""Intervals of the sampling grid over the run; the second where half the samples of the first show fewer changes."""
 FALLEN = (1.0, 4.0, 12.0, 30.0)
-"""Of the logarithm of a pulse, where steps that are to see its sides end."""
+"""Decreases of a pulse's logarithm from its maximum at which breakpoints are set, so that steps resolve its flanks."""
 MOST_BELLS = 1000
-"""Of a formula that are stopped at: steps see by themselves what swings so often."""
+"""Most bells of a formula that become breakpoints: the error estimate sees an oscillation of more."""
 PARTS = 32
-"""Into which a piece that holds a change is divided, again and again."""
+"""Parts into which an interval with a change is divided, recursively."""
 
 Cells = Callable[[Any], Any]
-"""Numbers to the cells that they lie in: what reads them turns where the cell changes."""
+"""Maps an argument to a piece number (its floor or sign, say): the operation has a breakpoint where that changes."""
 Even = tuple[float, float]
-"""Of what goes evenly with the time its value at 0 and its rate."""
+"""An expression linear in time: (value at 0, rate [1/s])."""
 
 
 @dataclass
 class Breakpoints:
-    """The instants at which expressions turn in a run from 0 to ``end`` [s].
+    """The breakpoints of expressions in a run from 0 to ``end`` [s].
 
     ``formula`` gives a linked output as an expression of time; None for one that is solved.
     """
@@ -50,17 +51,17 @@ class Breakpoints:
     formula: Callable[[Link], Expr | None]
     end: float
     stops: set[Breakpoint] = field(default_factory=set)
-    """Within the run, and those that come again."""
+    """Breakpoints within the run, and periodic ones."""
     beyond: list[Span | None] = field(default_factory=list)
-    """Where the script writes what turns more often than can be kept."""
+    """Places in the script of operations with more breakpoints than MOST."""
     _followed: dict[int, Expr] = field(default_factory=dict)
     _formulas: dict[Link, Expr | None] = field(default_factory=dict)
     _even: dict[int, Even | None] = field(default_factory=dict)
-    """By the identity of a node of the time alone; None: not evenly."""
+    """By the identity of a node that depends on time alone; None: it is not linear."""
 
     @np.errstate(all="ignore")
     def follow(self, expr: Expr, span: Span | None = None) -> None:
-        """Look where an expression turns, if it was not looked at before; ``span``: where its parts say no place."""
+        """Find the breakpoints of a new expression; ``span``: the place in the script of parts without their own."""
         for node in each_once(expr, below=self._below) if id(expr) not in self._followed else ():
             if id(node) in self._followed:
                 continue
@@ -68,7 +69,7 @@ class Breakpoints:
             known = [id(child) in self._even for child in self._below(node)]
             other = isinstance(node, Symbol) and node.name not in TIME
             if other or not all(known) or (isinstance(node, Link) and not known):
-                continue  # it reads what is solved
+                continue  # it reads the state
             self._even[id(node)] = self._evenly(node)
             found = [instant for number, cells in _turning(node) for instant in self._instants(number, cells)]
             found += [stop for number in _bells(node) for stop in self._bell(number)]
@@ -89,7 +90,7 @@ class Breakpoints:
         return () if meaning is None else (meaning,)
 
     def _evenly(self, node: Expr) -> Even | None:
-        """Value at 0 and rate, of the time alone."""
+        """Value at 0 and rate of a node that depends on time alone; None where it is not linear in time."""
         if id(node) in self._even:
             return self._even[id(node)]
         parts = [self._evenly(child) for child in self._below(node)]
@@ -119,7 +120,7 @@ class Breakpoints:
         return None
 
     def _values(self, expr: Expr, times: Floats) -> Floats | None:
-        """(n,) of a scalar at instants (n,) [s]; None of what is no number at each."""
+        """Values (n,) of a scalar at instants (n,) [s]; None where it has none."""
 
         def look_up(node: Symbol | Link) -> Any:
             return times if isinstance(node, Symbol) else evaluate(self._below(node)[0], look_up, arrays=True)
@@ -136,12 +137,12 @@ class Breakpoints:
             yield from self._sampled(argument, _between(table))
         elif even[1] != 0.0 and math.isfinite(even[0] + even[1] * self.end):
             here, slope = even
-            for time in table.times:  # what is new holds at a key: behind it where the argument falls
+            for time in table.times:  # the next piece holds from its key on; past the key where the argument falls
                 at = (time - here) / slope
                 yield (at if slope > 0.0 else after(at, 2)), table.cycle / abs(slope)
 
     def _instants(self, number: Expr, cells: Cells) -> Iterator[Breakpoint]:
-        """Where the cell of a number changes."""
+        """The breakpoints where the piece number of an argument changes."""
         even = self._evenly(number)
         if even is None:
             yield from self._sampled(number, cells)
@@ -156,7 +157,7 @@ class Breakpoints:
                 yield after((whole - here) / slope, 2), 0.0
 
     def _sampled(self, number: Expr, cells: Cells) -> Iterator[Breakpoint]:
-        """Where the cell changes on a grid, and between its points where the number turns round."""
+        """These breakpoints by sampling, on a grid refined where the argument has extrema."""
         grid = np.linspace(0.0, self.end, SAMPLES[0] + 1)
         where = self._cell(number, cells, grid)
         if where is None:
@@ -174,23 +175,23 @@ class Breakpoints:
             changes = _changes(self._cell(number, cells, pieces.ravel()).reshape(pieces.shape))
             low, high = pieces[:, :-1][changes], pieces[:, 1:][changes]
         last = math.inf
-        for time in high[: MOST + 1][::-1].tolist():  # of those as good as one the last: there all is new
+        for time in high[: MOST + 1][::-1].tolist():  # of changes nearly at one instant the last, behind all of them
             if last - time > APART * self.end:
                 yield after(time, 2), 0.0
                 last = time
 
     def _cell(self, number: Expr, cells: Cells, times: Floats) -> Any:
-        """(n,) cells at instants (n,) [s]; None of what is no number."""
+        """Piece numbers (n,) at instants (n,) [s]; None where the argument has no values."""
         found = self._values(number, times)
         return None if found is None else np.nan_to_num(cells(found), nan=1e300)
 
     def _turned_round(self, number: Expr, cells: Cells, grid: Floats) -> Floats:
-        """The instants near which a number is least or most, where that may bring it to another cell."""
+        """The instants near the argument's local extrema, where these may reach another piece between samples."""
         values = self._values(number, grid)
         assert values is not None
         rise = np.sign(np.diff(values))
         at = np.flatnonzero(rise[:-1] != rise[1:]) + 1
-        way = np.where(rise[at] != 0.0, rise[at], -rise[at - 1])  # 1 where it is least
+        way = np.where(rise[at] != 0.0, rise[at], -rise[at - 1])  # 1 at a minimum
         if cells is np.sign:
             at, way = at[way * values[at] > 0.0], way[way * values[at] > 0.0]
         if len(at) == 0 or len(at) > MOST:
@@ -198,7 +199,7 @@ class Breakpoints:
         return self._closed_in(number, grid[at - 1], grid[at + 1], way)
 
     def _bell(self, number: Expr) -> list[Breakpoint]:
-        """Where a number is largest of those around, and has fallen by FALLEN from it to both sides, or does begin."""
+        """Breakpoints at the local maxima of a pulse's logarithm and where it has decreased by FALLEN on each side."""
         if self._evenly(number) is not None:
             return []
         grid = np.linspace(0.0, self.end, SAMPLES[0] + 1)
@@ -227,7 +228,7 @@ class Breakpoints:
         return [(after(time, 2), 0.0) for time in stops]
 
     def _closed_in(self, number: Expr, low: Floats, high: Floats, way: Any) -> Floats:
-        """The instants (k,) between low and high (k,) at which a number is least (way 1) or most (-1)."""
+        """The instants (k,) between low and high (k,) at which a number is minimal (way 1) or maximal (-1)."""
         way, rows = np.broadcast_to(way, low.shape), np.arange(len(low))
         for _ in range(9):  # to 2^-27 of a step: beyond, a smooth number is flat
             pieces = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, 17)
@@ -239,7 +240,7 @@ class Breakpoints:
 
 
 def _turning(node: Expr) -> list[tuple[Expr, Cells]]:
-    """The numbers whose cells decide what an operation does. (`where` turns with what turns in its condition.)"""
+    """The arguments, each with its pieces, between which an operation is smooth. (`where`: those of its condition.)"""
     if not isinstance(node, Call) or any(arg.type.shape for arg in node.args):
         return []
     args = node.args
@@ -275,7 +276,7 @@ def _turning(node: Expr) -> list[tuple[Expr, Cells]]:
 
 
 def _bells(node: Expr) -> list[Expr]:
-    """Logarithms of what an operation gives, where that may be a pulse as narrow as you like."""
+    """Logarithms of an operation's value, where that may be an arbitrarily narrow pulse."""
     if not isinstance(node, Call) or any(arg.type.shape for arg in node.args):
         return []
     match node:
@@ -287,7 +288,7 @@ def _bells(node: Expr) -> list[Expr]:
 
 
 def _between(table: Table) -> Cells:
-    """Between which keys a number lies, and in which cycle."""
+    """The pieces of a keyframe curve: between which keys an argument lies, and in which cycle."""
     times = np.array(table.times)
 
     def cells(number: Floats) -> Any:
@@ -301,12 +302,12 @@ def _between(table: Table) -> Cells:
 
 
 def _changes(cells: Any) -> Any:
-    """(..., n - 1) whether neighbors of (..., n) differ."""
+    """(..., n - 1) bool: whether neighbors along the last axis of (..., n) differ."""
     return cells[..., 1:] != cells[..., :-1]
 
 
 def _again(stop: Breakpoint, end: float) -> Iterator[float]:
-    """An instant and those that it comes again at, from the start of the run to its end."""
+    """The instants [s] of a breakpoint and its repetitions up to the end of the run."""
     time, period = stop
     if period <= 0.0:
         yield time

@@ -46,30 +46,30 @@ Lowered = Any
 
 
 Word = tuple[str, str | None]
-"""A part, and the model that a force acts on."""
+"""A part of the scene, and the model where the part is a force on one."""
 Stored = tuple[int, Value, Word]
-"""A value that varies: its first float, and who reads it."""
+"""A value that varies: offset of its first float, the value, the word that reads it."""
 
 
 class WithoutSlopes(Exception):
-    """A part or value whose derivatives are not known: its name."""
+    """A part or value whose derivatives are not known; the text is its name."""
 
 
 @dataclass(frozen=True, slots=True)
 class ValueSlopes:
-    """The derivatives of a value by the state."""
+    """The derivatives of a value with respect to the state."""
 
     program: list[int]
-    """The rows that evaluate them."""
+    """The rows of the program that evaluates the derivatives."""
     readings: list[list[tuple[int, Register]]]
-    """For each of its floats the entries of y that it reads, and where in the floats its derivative by each stands."""
+    """For each float of the value: (entry of y that it reads, offset of its derivative with respect to that entry)."""
 
 
 class Inputs:
     """Lowers the values of one island.
 
-    ``formula``: a linked output as an expression, None for one that is solved; ``places``: where in y that one stands;
-    ``start``: y at the start; ``store``: puts numbers into the floats, for their offset.
+    ``formula``: a linked output as an expression, None for one that is solved; ``places``: its indices in y then;
+    ``start``: y at the start; ``store``: puts numbers into the floats and gives their offset.
     """
 
     def __init__(
@@ -84,11 +84,11 @@ class Inputs:
         self._rows: list[int] = []
 
     def at_start(self, value: Value) -> Any:
-        """The value at time 0: float or float64 array. Raises ScriptError where it reads what has no place in y."""
+        """The value at time 0: float or float64 array. Raises ScriptError where it reads an output not stored in y."""
         return evaluate(value.expr, self._look_up, arrays=True)
 
     def reads_state(self, expr: Expr) -> bool:
-        """Whether it reads what is solved, directly or through formulas."""
+        """Whether an expression reads the state, directly or through formulas."""
         for node in walk(expr):
             if isinstance(node, Link):
                 formula = self._formula(node)
@@ -97,7 +97,7 @@ class Inputs:
         return False
 
     def program(self, value: Value, first: int) -> list[int]:
-        """The rows that evaluate a value into floats[first:]. Raises ScriptError for what cannot vary in a system."""
+        """The rows that evaluate a value into floats[first:]. Raises ScriptError for operations that cannot vary."""
         from sceneql.island.inputs_kernels import COPY
 
         self._rows = []
@@ -107,7 +107,7 @@ class Inputs:
         return self._rows
 
     def reading(self, values: Sequence[Stored]) -> list[Stored]:
-        """Those that read the state."""
+        """The values that read the state."""
         return [one for one in values if self.reads_state(one[1].expr)]
 
     def slopes(self, value: Value) -> ValueSlopes:
@@ -130,7 +130,7 @@ class Inputs:
         return ValueSlopes(self._rows, readings)
 
     def _meaning(self, link: Link) -> Any:
-        """What a link stands for: a formula, or symbols of entries of y whose names are their numbers."""
+        """The tree that a link stands for: a formula, or symbols named by indices into y."""
         formula = self._formula(link)
         return _mapped(lambda place: Symbol(str(place)), self._found(link).tolist()) if formula is None else formula
 
@@ -239,7 +239,7 @@ def _place(symbol: Symbol) -> int:
 
 
 def _mapped(function: Callable[[Any], Any], value: Any) -> Any:
-    """A function on every number of nested lists."""
+    """Apply a function to every number of nested lists."""
     return [_mapped(function, item) for item in value] if isinstance(value, list) else function(value)
 
 

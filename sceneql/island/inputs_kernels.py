@@ -36,7 +36,7 @@ ROTATION = 4
 
 @lean_inlined
 def floor(a):
-    """Largest whole number not above a; numba's own costs half a second to compile."""
+    """Largest integer not above a; numba's own takes half a second to compile."""
     return a if math.isinf(a) else a - a % 1.0
 
 
@@ -118,7 +118,7 @@ def binary(code, a, b):
 
 @lean_inlined
 def slerp(floats, a, b, s, out):
-    """Constant angular speed between the unit quaternions at offsets a and b (Shoemake 1985)."""
+    """Interpolate the unit quaternions at offsets a and b with constant angular speed (Shoemake 1985)."""
     cosine = 0.0
     for c in range(4):
         cosine += floats[a + c] * floats[b + c]

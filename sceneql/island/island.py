@@ -1,7 +1,7 @@
 """An island under construction: words reserve state, store numbers and add terms; `finish` lays it out as arrays.
 
-It knows no word. What it makes is a `System`: the start, two arrays of numbers, and a `Structure`, which is all that
-decides which code is compiled.
+It knows no word. It makes a `System`: the state at the start, the arrays of floats and integers, and a `Structure`,
+which alone decides which code is compiled.
 """
 
 from __future__ import annotations
@@ -41,24 +41,24 @@ if TYPE_CHECKING:
 
 STAGES: tuple[Stage, ...] = ("internal", "force", "close", "constrain")
 VECTORS = 12
-"""Arrays of the state's size that a run keeps: ends and rates of a step, and the stages of a solver."""
+"""Arrays of the state's size that a run keeps: states and rates at a step's ends, and the stages of a solver."""
 
 
 @dataclass
 class IslandAssembly:
     """The Assembly (system.py) of one island.
 
-    ``places`` says where in y the output of a solved model stands (None: it is computed); it may be set until `finish`.
+    ``places`` gives the indices into y of a solved model's output (None: it is computed); settable until `finish`.
     """
 
     setting: Setting
     whole: int = 0
-    """Of a block: the bodies of the whole island."""
+    """In a block: the number of bodies of the whole island."""
     places: Callable[[Link], NDArray[int64] | None] = lambda link: None
     fields: dict[tuple[str, str], Grid] = field(default_factory=dict)
-    """By model and output."""
+    """The grids by model and output."""
     changes: list[tuple[int, int]] = field(default_factory=list)
-    """Floats that change as bodies come and go; none where none do."""
+    """(offset, count) of floats that change as bodies come and go."""
     _starts: list[Floats] = field(default_factory=list)
     _size: int = 0
     _bodies: int = 0
@@ -82,7 +82,7 @@ class IslandAssembly:
 
     @contextmanager
     def word(self, name: str, span: Span | None, model: str | None = None) -> Iterator[None]:
-        """What is added inside comes from the part ``name`` (a force's for one model)."""
+        """Mark what is added inside the context as the part ``name``'s (a force's on ``model``)."""
         before = self._word
         self._word = (name, span, model)
         try:
@@ -102,7 +102,7 @@ class IslandAssembly:
         return first
 
     def room(self, entries: float, span: Span | None) -> None:
-        """Raise LimitRefused when a state of so many entries cannot be held; call it before making large arrays."""
+        """Raise LimitRefused where a state of so many entries exceeds memory; call it before making large arrays."""
         memory = 8.0 * entries * VECTORS
         if memory > LARGEST_MEMORY:
             raise LimitRefused(
@@ -130,7 +130,7 @@ class IslandAssembly:
         if value.constant:
             return self.floats(self.initial(value))
         shape = value.expr.type.shape
-        # The output of a model that is solved may have no place yet.
+        # An output of a solved model may have no place in y yet.
         later = None not in shape and self._inputs().reads_state(value.expr)
         first = self.floats(np.zeros([k or 0 for k in shape]) if later else self.initial(value))
         self._varying.append((first, value, (self._word[0], self._word[2])))
@@ -202,17 +202,17 @@ class IslandAssembly:
         self._stops.add((time, 0.0))
 
     def stop_at_breakpoints(self, expr: Expr) -> None:
-        """Let them end where a formula turns (system.Assembly)."""
-        if not self.whole:  # the steps of blocks are given
+        """Let adaptive steps end at the breakpoints of a formula (system.Assembly)."""
+        if not self.whole:  # blocks have fixed steps
             self.breakpoints.follow(expr, expr.span or self.line())
 
     @cached_property
     def breakpoints(self) -> Breakpoints:
-        """Where values and formulas turn in the run."""
+        """The breakpoints of values and formulas in the run."""
         return Breakpoints(self.setting.formula, self.setting.end)
 
     def line(self) -> Span | None:
-        """Where in the script the word stands that is being assembled."""
+        """The place in the script of the word that is being assembled."""
         return self._word[1]
 
     def body_count(self) -> int:
@@ -229,17 +229,17 @@ class IslandAssembly:
         self._remembered[name, model] = self._remembered.get((name, model), ()) + ints
 
     def remembered(self, name: str, model: str | None = None) -> tuple[int, ...]:
-        """What a word asked to be remembered (a force: for this model)."""
+        """The integers that a word has stored by `remember` (a force: for this model)."""
         return self._remembered.get((name, model), ())
 
     @property
     def apart(self) -> bool:
-        """Whether no body feels another one, by what its terms and contacts say."""
+        """Whether bodies do not interact, by the ``apart`` of the island's terms and contacts."""
         return self._apart and not self._inputs().reading(self._varying)
 
     @property
     def contact_mode(self) -> str:
-        """How its contacts work: exact, local, both or none."""
+        """The modes of its contacts: exact, local, both or none."""
         modes = [mode for mode, blocks in (("exact", self._exact), ("local", self._local)) if blocks]
         return " and ".join(modes) or "none"
 
@@ -307,7 +307,7 @@ class IslandAssembly:
         return np.concatenate(self._numbers)
 
     def _program(self, inputs: Inputs) -> list[int]:
-        """What evaluates the values that vary."""
+        """The program that evaluates the values that vary."""
         program: list[int] = []
         found = Diagnostics()
         for first, value, _ in self._varying:
@@ -327,7 +327,7 @@ class IslandAssembly:
         try:
             found = own_slopes(self._terms, newton or self._size > BY_DIFFERENCES)
             found += value_slopes(inputs.reading(self._varying), self._terms, [one for one, _ in found], layout, inputs)
-        except (WithoutSlopes, ScriptError) as error:  # the latter is told with all others by `_program`
+        except (WithoutSlopes, ScriptError) as error:  # `_program` reports the latter with all other errors
             self._unsloped = str(error)
             return None
         return [one for one in found if len(one[0].rows)]

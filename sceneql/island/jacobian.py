@@ -1,4 +1,4 @@
-"""An island's Jacobian as it is laid out: its pattern, and the section of integers that its kernel works by."""
+"""The layout of an island's Jacobian: its sparsity pattern, and the section of integers for its kernel."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     Triples = Sequence[tuple[int, int, int]]
 
 BY_DIFFERENCES = 400
-"""Up to so many entries of y a Jacobian is found by differences where a term does not know its own."""
+"""Entries of y up to which the Jacobian is found by differences where a term gives no derivatives."""
 TILE = 20_000
-"""Values that a thread sums at a time; fewer are not worth threads."""
+"""Values in a thread's tile; fewer are not worth threads."""
 _NONE = np.zeros(0, dtype=np.int64)
 
 
@@ -39,7 +39,7 @@ def full(size: int) -> Pattern | None:
 def section(
     at: int, size: int, slopes: Sequence[tuple[Slopes, Sequence[int]]], masses: Triples, pairs: Triples
 ) -> tuple[Pattern, tuple[str, ...], Numbers]:
-    """The pattern of ``size`` rows, the kernels in order, and the section that is to stand ``at`` an index of ints.
+    """The pattern of ``size`` rows, the kernels in order, and the section of integers that begins at ints[at].
 
     ``slopes`` with the integers of each; ``masses``: (velocity_at, inverse_at, count) of each model of masses;
     ``pairs``: (position_at, velocity_at, count of entries).
@@ -75,7 +75,7 @@ def section(
 def _pattern(
     size: int, slopes: Sequence[Slopes], masses: Triples, pairs: Triples
 ) -> tuple[Pattern, tuple[Numbers, Numbers, Numbers, Numbers]]:
-    """The pattern; the table and parts of blocks, those of singles (whose table has an end of its own)."""
+    """The pattern; the table and parts of blocks; those of single values (whose table includes its end)."""
     top, inverse = _masses_of(size, masses, pairs)
     first = list(accumulate((one.entries for one in slopes), initial=0))
     blocks, singles = ([one for one in zip(slopes, first, strict=False) if one[0].blocks == kind] for kind in (1, 0))
@@ -85,7 +85,7 @@ def _pattern(
         tallies[places] = False
     for places in (block_rows, block_columns):
         tallies[(places[:, None] + np.arange(3)).ravel()] = False
-    # The diagonal is there in any case, and what stands in rows of masses makes blocks.
+    # The pattern always has the diagonal; values in rows of masses make blocks.
     diagonal = np.arange(size, dtype=np.int64)
     summed = np.repeat([True, False], [len(rows), size])
     rows, columns = np.concatenate([rows, diagonal]), np.concatenate([columns, diagonal])
@@ -123,10 +123,8 @@ def _pattern(
 
 
 def _masses_of(size: int, masses: Triples, pairs: Triples) -> tuple[Numbers, Numbers]:
-    """Of each entry of y the first one of the position or velocity of its mass, and where a velocity's inverse mass is.
-
-    -1 where it is none.
-    """
+    """For each entry of y the first entry of its mass's position or velocity, and for velocities the offset of the
+    inverse mass; -1 where there is none."""
     top, inverse = np.full(size, -1, dtype=np.int64), np.full(size, -1, dtype=np.int64)
     for velocity_at, inverse_at, count in masses:
         own = np.arange(count).repeat(3)
@@ -139,7 +137,7 @@ def _masses_of(size: int, masses: Triples, pairs: Triples) -> tuple[Numbers, Num
 
 
 def _joined(slopes: Sequence[tuple[Slopes, int]]) -> tuple[Numbers, Numbers, Numbers]:
-    """Rows, columns and parts of slopes, whose entries start where it is said."""
+    """Rows, columns and parts of slopes, each given with the index of its first entry."""
     rows, columns, parts = [_NONE], [_NONE], [_NONE]
     for one, at in slopes:
         size = 9 if one.blocks else 1
@@ -151,7 +149,7 @@ def _joined(slopes: Sequence[tuple[Slopes, int]]) -> tuple[Numbers, Numbers, Num
 
 
 def _distinct(keys: Numbers, more: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-    """All keys, rising, each once; where each one's of ``keys`` start in their order, and the end; and that order."""
+    """All keys, ascending, each once; the starts (and end) of each key's run in sorted ``keys``; that order."""
     order = np.argsort(keys, kind="stable")
     ordered = keys[order]
     kept = rising(np.concatenate([ordered, more]))

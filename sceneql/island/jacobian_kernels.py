@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""An island's Jacobian, put together of the slopes of its terms."""
+"""An island's Jacobian, assembled from the slopes of its terms."""
 
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.threads_kernels import TILE, over_threads
@@ -9,7 +9,7 @@ from sceneql.system.signatures_kernels import TERM
 
 @lean(TILE)
 def block_tile(number, t, y, values, floats, ints):
-    """The blocks of a tile as sums of their entries, which stand behind the values, times inverse masses."""
+    """Sum the entries, stored behind the values, to the 3x3 blocks of a tile and multiply by inverse masses."""
     at = ints[layout.SLOPES_AT]
     count, blocks, tiles = ints[at + layout.VALUES], ints[at + layout.BLOCKS], ints[at + layout.BLOCK_TILES]
     table, parts = ints[at + layout.BLOCKS_AT], ints[at + layout.BLOCK_PARTS_AT]
@@ -37,7 +37,7 @@ def block_tile(number, t, y, values, floats, ints):
 
 @lean(TILE)
 def single_tile(number, t, y, values, floats, ints):
-    """The singles of a tile likewise; those inside blocks are added to them."""
+    """Sum the entries to the single values of a tile likewise; single entries inside blocks are added to these."""
     at = ints[layout.SLOPES_AT]
     count, singles, tiles = ints[at + layout.VALUES], ints[at + layout.SINGLES], ints[at + layout.SINGLE_TILES]
     table, parts = ints[at + layout.SINGLES_AT], ints[at + layout.SINGLE_PARTS_AT]
@@ -56,7 +56,7 @@ def single_tile(number, t, y, values, floats, ints):
 
 @lean(TERM, inner=True)
 def gather(t, y, values, floats, ints):
-    """Sum the entries to values and multiply their rows by inverse masses: any number of threads, the same bytes."""
+    """Sum the entries to values and multiply rows by inverse masses: the same bytes for any number of threads."""
     at = ints[layout.SLOPES_AT]
     entry, threads = ints[at + layout.ENTRY], ints[at + layout.THREADS]
     block_tiles, single_tiles = ints[at + layout.BLOCK_TILES], ints[at + layout.SINGLE_TILES]

@@ -1,7 +1,7 @@
 """Operations on vectors and rotations, and the derived ones on numbers, written as scalar operations.
 
-``do(op, *operands)`` applies a scalar operation (component by component); an operand is what ``do`` gave, a list of
-such, or a float.
+``do(op, *operands)`` applies a scalar operation (component by component); an operand is a result of ``do``, a list of
+such results, or a float.
 """
 
 from __future__ import annotations
@@ -81,20 +81,20 @@ def ease(do: Do, x: Any) -> Any:
 
 
 def about(do: Do, axis: list[Any], angle: Any) -> Any:
-    """The quaternion of a turn by an angle [rad] about an axis."""
+    """The unit quaternion of a rotation by an angle [rad] about an axis."""
     half = do("div", angle, 2.0)
     return [do("cos", half), *do("mul", normalize(do, axis), do("sin", half))]
 
 
 def turn(do: Do, a: list[Any], b: list[Any]) -> Any:
-    """The turn b, then the turn a: Hamilton's product."""
+    """Hamilton's product a b of quaternions: the rotation b, then a."""
     scalar = do("sub", do("mul", a[0], b[0]), dot(do, a[1:], b[1:]))
     vector = do("add", do("mul", a[0], b[1:]), do("mul", b[0], a[1:]))
     return [scalar, *do("add", vector, cross(do, a[1:], b[1:]))]
 
 
 def euler(order: str, do: Do, angles: list[Any]) -> Any:
-    """Intrinsic turns about the axes in this order."""
+    """The quaternion of intrinsic rotations by angles [rad] about the axes in this order."""
     first, second, third = (about(do, AXES[axis], angle) for axis, angle in zip(order, angles, strict=True))
     return turn(do, turn(do, first, second), third)
 

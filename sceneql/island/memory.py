@@ -1,24 +1,24 @@
-"""How much memory bodies and springs take: what is too much is refused before it is made."""
+"""Estimates of the memory that bodies and springs take, so that too many are refused before they are made."""
 
 from __future__ import annotations
 
 from sceneql.kinds import Exceeds
 
 LARGEST_MEMORY = 8 * 2**30
-"""[bytes] that a model may take."""
+"""[bytes] Most memory of a model."""
 BODY, SPRING, PLACE = 900, 350, 100
-"""[bytes] of a mass with its part of the state, of an explicit solver's stages and of the picture; of a spring; of a
-place of a grid that is looked at. Measured as the growth of the peak of runs by `rk4` with the count."""
+"""[bytes] of a mass with its parts of the state, of an explicit solver's stages and of the picture; of a spring; of a
+candidate place on a grid. Measured as the growth of the peak memory of runs by `rk4` with the count."""
 
 
 def bounded(count: float, what: str = "particles", each: int = BODY) -> None:
-    """Raise Exceeds for more particles, or others of ``each`` bytes, than memory is allowed for."""
+    """Raise Exceeds where ``count`` items of ``each`` bytes take more than LARGEST_MEMORY."""
     if count * each > LARGEST_MEMORY:
         raise Exceeds(f"{_needs(count, what, count * each)}, {LARGEST_MEMORY / each:.2g} {what}, are allowed")
 
 
 def bounded_net(masses: float, springs: float) -> None:
-    """Raise Exceeds for more masses and springs than memory is allowed for."""
+    """Raise Exceeds where masses and springs take more than LARGEST_MEMORY."""
     memory = masses * BODY + springs * SPRING
     if memory > LARGEST_MEMORY:
         raise Exceeds(f"{_needs(masses, f'masses and {springs:.3g} springs', memory)} are allowed")

@@ -1,4 +1,4 @@
-"""Sets of places in a pattern: whole numbers in order, each once."""
+"""Sets of places in a sparsity pattern: ascending integers, each once."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def rising(keys: NDArray[int64]) -> NDArray[int64]:
-    """Numbers from 0 on in order, each once; numpy's own `unique` hashes them, which takes many times as long."""
+    """Nonnegative integers, ascending, each once; numpy's `unique` hashes them and takes many times as long."""
     import numpy as np
 
     ordered = np.sort(keys)

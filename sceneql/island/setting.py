@@ -1,4 +1,4 @@
-"""What an island's assembly asks of the scene."""
+"""The part of the scene that an island's assembly reads."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from sceneql.quantities.expression import Expr, Link
 
 
 class Setting(Protocol):
-    """What an assembly asks of the scene."""
+    """The part of the scene that an assembly reads."""
 
     @property
     def end(self) -> float:
-        """Of the run [s]."""
+        """End of the run [s]."""
 
     def object(self, ref: Ref) -> Object:
         """The kind of an object of the script."""

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Start:
-    """What an object's field and extent may ask of a moment (part of kinds.Moment)."""
+    """The part of kinds.Moment that an object's field and extent may read, at the start."""
 
     time = 0.0
 

@@ -1,4 +1,4 @@
-"""How fast forces make masses swing, slow down and turn, by what scripts alone tell of these: for `check`."""
+"""Frequencies and decay rates that forces give to masses, estimated from constants of the script: for `check`."""
 
 from __future__ import annotations
 
@@ -16,29 +16,29 @@ from sceneql.quantities.expression import TIME_SYMBOL, Expr, Link, Symbol, Type,
 On = Mapping[str, Mapping[str, StaticMass]]
 """Masses by model and name."""
 MOST = 200
-"""Masses of which every one, or every pair, is looked at."""
+"""Most masses that are examined one by one, or in pairs."""
 MOTION = ("x", "y", "z", "vx", "vy", "vz")
 
 
 def number(value: Value) -> Any:
-    """What a constant value is; None of one that varies."""
+    """The number or array of a constant value; None for one that varies."""
     return value.number() if value.constant else None
 
 
 def each(on: On) -> list[StaticMass]:
-    """The first of all masses that move."""
+    """The first MOST of all masses that move."""
     return [one for masses in on.values() for one in masses.values() if not one.fixed][:MOST]
 
 
 def slowed(coefficient: float | None, on: On, what: str, at: str) -> Iterator[Oscillation]:
-    """What a drag of so much force for a speed [N s/m] makes of the lightest."""
+    """The decay rate of the lightest mass under linear drag, ``coefficient`` [N s/m]."""
     masses = [one.mass for one in each(on)]
     if coefficient and masses:
         yield Oscillation(0.0, coefficient / min(masses), what, (at,))
 
 
 def pulled(square: Callable[[StaticMass, StaticMass], float], on: On, what: str, at: str) -> Iterator[Oscillation]:
-    """The fastest of two masses at told places; ``square`` gives (angular frequency)^2 [1/s^2], at most 0: none."""
+    """The fastest oscillation of two masses at known places; ``square``: its (angular frequency)^2 [1/s^2]."""
     placed = [one for masses in on.values() for one in masses.values() if one.position is not None][:MOST]
     squares = [square(a, b) for a, b in combinations(placed, 2) if math.dist(a.position or (), b.position or ()) > 0.0]
     if squares and max(squares) > 0.0:
@@ -48,7 +48,7 @@ def pulled(square: Callable[[StaticMass, StaticMass], float], on: On, what: str,
 def by_formulas(
     rows: Sequence[Expr], on: On, what: str, at: str, others: Mapping[str, float] | None = None
 ) -> Iterator[Oscillation]:
-    """What a force [N] of three formulas makes of the masses at told places; nothing where these read other parts."""
+    """The modes of masses at known places under a force [N] of three formulas; none where these read other parts."""
     if any(isinstance(node, Link) for row in rows for node in walk(row)):
         return
     slopes = [[differentiate(row, Symbol(name)) for name in MOTION] for row in rows]
@@ -61,7 +61,7 @@ def by_formulas(
             found = evaluate(formulas, {Symbol(name): value for name, value in known.items()})
             matrices[tuple(tuple(told_slope(slope) / one.mass for slope in row) for row in found)] = None
     fastest: list[Oscillation] = []
-    for matrix in matrices:  # masses that are alike have the same
+    for matrix in matrices:  # one for all masses that are alike
         place, motion = ([row[part] for row in matrix] for part in (slice(3), slice(3, 6)))
         if any(map(any, motion)):
             fastest += oscillations(motion, what, (at,))
@@ -71,5 +71,5 @@ def by_formulas(
 
 
 def told_slope(value: float) -> float:
-    """A derivative at the start; 0 of one without a value, as at the tip of a root: the run says more."""
+    """A derivative at the start; 0 where it is not finite, as that of a square root at 0: the run reports such."""
     return value if math.isfinite(value) else 0.0

@@ -1,4 +1,4 @@
-"""An island as arrays: what its assembly lays out, and the march works on."""
+"""An island as arrays, laid out by its assembly for the march."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Structure:
-    """The kernels of an island by name, each once for each stage. Nothing of the script's text or numbers."""
+    """The kernels of an island by name, each once for each stage, without text or numbers of the script."""
 
     terms: tuple[str, ...]
     exact: tuple[tuple[str, str], ...]
     """(gap, impact)."""
     local: tuple[str, ...]
     after: tuple[str, ...]
-    """What acts at the end of steps."""
+    """Kernels that act at the end of steps."""
     varying: bool
     """Whether values vary in time."""
     slopes: tuple[str, ...] | None = None
-    """The kernels of the Jacobian; None: it is not asked for, or found by differences."""
+    """The kernels of the Jacobian; None: there is none, or it is found by differences."""
 
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Where entries of the state come from."""
+    """The part and lines of the script that entries of the state come from."""
 
     part: str
     span: Span | None
@@ -49,31 +49,31 @@ class System:
     """(n,) the start."""
     floats: Floats
     ints: NDArray[int64]
-    """Offsets, then the integers of every block (layout.py says how they lie)."""
+    """Offsets, then the integers of every block (layout.py)."""
     pairs: int
-    """Contact pairs of exact contacts."""
+    """Number of pairs of exact contacts."""
     partner: NDArray[int64]
     """(n,) for a position its velocity's index, else -1."""
     ranges: tuple[tuple[int, int, str, tuple[Span | None, ...]], ...]
     largest_step: float = float("inf")
-    """[s], of steps that a tolerance chooses."""
+    """Largest adaptive step [s]."""
     stops: BreakpointTable = field(default_factory=BreakpointTable)
-    """Where such steps end."""
+    """Breakpoints, where adaptive steps end."""
     pattern: Pattern | None = None
-    """Of its Jacobian; None: not asked for, or too large to be found by differences."""
+    """Sparsity pattern of its Jacobian; None: there is none, or it is too large to be found by differences."""
     grid: Grid | None = None
-    """Of an island that is one field on a grid."""
+    """The grid, where the island is one field and nothing else."""
     unsloped: str = ""
-    """The part that gives no slopes, where one gives none."""
+    """Name of the first part without slopes; empty where all have them."""
     grids: tuple[Grid, ...] = ()
-    """Of all its fields."""
+    """The grids of all its fields."""
     masses: tuple[tuple[int, int, int], ...] = ()
-    """Of each model of masses: where in y their velocities start, where in floats their inverse masses, how many."""
+    """For each model of masses: offset of velocities in y, offset of inverse masses in floats, number of masses."""
     terms: tuple[Origin, ...] = ()
-    """Where the terms of the rate come from, in the order in which they act."""
+    """The origins of the terms of the rate, in the order in which they act."""
 
     def origin(self, index: int) -> Origin:
-        """Part and line of an entry of y."""
+        """Part and line of the script of an entry of y."""
         for first, last, part, spans in self.ranges:
             if first <= index < last:
                 return Origin(part, spans[(index - first) * len(spans) // (last - first)])

@@ -1,8 +1,8 @@
-"""The slopes of terms by the state: their own, and through values that they read, as the place of an attractor.
+"""Slopes of terms with respect to the state: their own, and through values that they read (an attractor's place).
 
 By the chain rule d rate/dy = (partial d term/dy) + (d term/d value) (d value/dy). Terms give the first part
-(system.Slopes). Of the second, a value's derivatives follow from its formula (Inputs.slopes), and those of the terms by
-the few floats of a value are differences of their own kernels: a word says nothing for it, and every word has it.
+(system.Slopes). Of the second, d value/dy is exact, from the value's formula (Inputs.slopes), and d term/d value is a
+difference of the term's own kernel by the few floats of the value: so every word has it without code of its own.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ KERNEL = "sceneql.island.value_slopes_kernels:by_values"
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """Whose the entries of y are."""
+    """The parts that own the entries of y."""
 
     size: int
     ranges: Sequence[tuple[int, int, str, Any]]
-    """(first, end, part, lines)."""
+    """(first entry, end, part, lines of the script)."""
     pairs: Sequence[tuple[int, int, int]]
     """(positions at, velocities at, entries)."""
     inertia: Sequence[tuple[int, int, int]]
@@ -60,17 +60,15 @@ class Layout:
         return any(first <= at < end for first, end in own for at, _ in self.masses)
 
     def rows(self, word: Word) -> Numbers:
-        """Entries of the rate that a word's terms may add to, but for sums over the state such as the energy lost.
-
-        Of a model of masses, and of what acts on it, their velocities; of other models all that is theirs.
-        """
+        """Entries of the rate that a word's terms may add to, without sums over the state such as the energy lost:
+        velocities for a model of masses and forces on it, all entries of other models."""
         acted = word[0] if word[1] is None else word[1]
         ranges = [(first, end) for first, end, part, _ in self.ranges if part == acted] or [(0, self.size)]
         inside = [own for own in self.masses if any(first <= own[0] < end for first, end in ranges)]
         return np.concatenate([np.arange(first, end) for first, end in inside or ranges])
 
     def sums(self) -> NDArray[bool_]:
-        """(size,) entries of models of masses and of fields that are neither: their rows are in no slopes."""
+        """(size,) bool: entries of models that belong to no mass and no cell (tallies), whose rows have no slopes."""
         found = np.zeros(self.size, dtype=bool)
         for first, end, *_ in self.ranges:
             found[first:end] = any(first <= at < end for at, _ in (*self.masses, *self.cells))
@@ -82,7 +80,7 @@ class Layout:
 
 
 def own_slopes(terms: Mapping[Stage, Sequence[Block]], in_stages: bool) -> list[tuple[Slopes, Sequence[int]]]:
-    """The slopes that terms give, with their integers; ``in_stages``: also those known there alone.
+    """The slopes that terms give, with their integers; ``in_stages``: including those with `Slopes.in_stages`.
 
     Raises WithoutSlopes.
     """
@@ -104,7 +102,7 @@ def value_slopes(
 ) -> list[tuple[Slopes, Sequence[int]]]:
     """The slopes through values, with their integers. ``known``: the terms' own slopes.
 
-    Raises WithoutSlopes. Of what contacts hold, their own slopes are all that is told.
+    Raises WithoutSlopes. Derivatives of contact constraints through values are left out.
     """
     if not reading:
         return []
@@ -120,7 +118,7 @@ def value_slopes(
     used[read] = True
     found = []
     for word in dict.fromkeys(word for _, _, word in reading):
-        # What closes a model of masses is known: inverse masses multiply what is found here.
+        # The close term of masses is left out: the Jacobian multiplies by inverse masses itself.
         stages = [
             stage for stage in terms if stage != "constrain" and not (stage == "close" and layout.has_masses(word))
         ]

@@ -1,11 +1,11 @@
 # mypy: ignore-errors
-"""The derivatives of terms by the state through the values that they read: the chain rule, with differences of terms.
+"""Derivatives of terms with respect to the state through values that they read: chain rule, with differences of terms.
 
-Integers of `by_values`: how many values, terms, rows and columns there are, and where their tables start, all relative
-to the first of them. The program that evaluates the derivatives of the values stands from END up to the first table.
-A value: its float, its first reading and the last one's end. A reading: a column's number, and the float of the value's
-derivative by it. A term: the number by which its kernel is found, and where its integers start and end. A row: an entry
-of the rate. A column: an entry of y.
+Integers of `by_values`: the numbers of values, terms, rows and columns, and the starts of their tables, relative to the
+first integer. From END up to the first table: the program that evaluates the derivatives of the values. A value: its
+offset in the floats, start and end of its readings. A reading: the number of a column, and the offset of the value's
+derivative with respect to it. A term: its kernel's number, start and end of its integers. A row: an entry of the rate.
+A column: an entry of y.
 """
 
 import math
@@ -20,13 +20,13 @@ from sceneql.system.signatures_kernels import TERM
 VALUES, TERMS, ROWS, COLUMNS, VALUES_AT, READINGS_AT, TERMS_AT, ROWS_AT, COLUMNS_AT, END = range(10)
 
 STEP = 1e-7
-"""Of differences, in parts of the value, or of what such parts of the entries that it reads make of it: short, for a
-value may be large beside what a term does with it, as a place far from 0 is."""
+"""Relative difference step: of the value, or of its change by such parts of the entries that it reads. Short, for a
+value (a place far from 0, say) may be large beside the length on which the term varies."""
 LEAST = 1e-2
-"""Part of the largest entry read that counts as the size of those that are smaller."""
+"""Least size that an entry counts as, as a part of the largest entry read."""
 SETTLED = 0.4
-"""Part by which differences over one and two steps may be apart: beyond there is no slope, as of what pulls a mass to
-its own place, or at a jump."""
+"""Relative deviation of differences over one and two steps beyond which there is no slope, as at a jump or for an
+attractor at a mass's own place."""
 
 term_at = kernel_at(TERM)
 
@@ -43,7 +43,7 @@ def act(t, y, rate, floats, ints):
 
 @lean_inlined
 def step_of(value, first, end, y, floats, ints):
-    """How far to move a value for differences; 0 where nothing that it reads moves it, or its slope is not finite."""
+    """The difference step of a value; 0 where the value's derivatives are all zero or not finite."""
     columns_at = ints[COLUMNS_AT]
     largest, moved = 0.0, 0.0
     for c in range(ints[COLUMNS]):
@@ -56,10 +56,8 @@ def step_of(value, first, end, y, floats, ints):
 
 @kernel(TERM, inner=True)
 def by_values(t, y, entries, floats, ints):
-    """Entry c rows + r: what the terms add to the derivative of rate[row r] by y[column c] through their values.
-
-    A term's derivative by a value is a difference of fourth order; the value's own by what it reads is exact.
-    """
+    """Add to entry c rows + r the terms' part of d rate[row r]/d y[column c] through their values: d term/d value by
+    fourth-order differences, d value/dy exactly."""
     refresh(t, y, floats, ints[END : ints[VALUES_AT]])
     rows = ints[ROWS]
     rate, near, far = np.zeros(y.size), np.zeros(rows), np.zeros(rows)
@@ -86,4 +84,4 @@ def by_values(t, y, entries, floats, ints):
             slope = (4.0 * near[r] - far[r]) / (3.0 * step)
             for k in range(first, end, 2):
                 entries[ints[k] * rows + r] += slope * floats[ints[k + 1]]
-    act(t, y, rate, floats, ints)  # what terms leave in the floats is that of the values again
+    act(t, y, rate, floats, ints)  # leave in the floats what terms write there for the unchanged values
