@@ -16,16 +16,16 @@ from sceneql.quantities.expression import Expr, Link
 from sceneql.system import Bodies, IslandFacts, ModelState, Stepper
 
 BLOCK = 4608
-"""Bodies of a block, or a few more: some 300 bytes each, they stay in a core's own cache from step to step."""
+"""Bodies of a block, roughly: at some 300 bytes each they stay in a core's cache from step to step."""
 
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """What an island's assembly may ask of the scene."""
+    """The part of the scene that an island's assembly reads."""
 
     tasks: Mapping[str, Task]
     end: float
-    """Of the run [s]."""
+    """End of the run [s]."""
 
     def object(self, ref: Ref) -> Object:
         """The kind of an object of the script, as written."""
@@ -50,11 +50,11 @@ class Assembled:
     assembly: IslandAssembly
     bodies: dict[str, Bodies | None] = field(default_factory=dict)
     found: Diagnostics = field(default_factory=Diagnostics)
-    """What is wrong with its parts."""
+    """The errors of its parts."""
 
     @contextmanager
     def word(self, name: str, model: str | None = None) -> Iterator[None]:
-        """What is added inside comes from the part ``name``; what is wrong with it does not hide what else is."""
+        """Mark what is added inside as the part ``name``'s; its errors are collected, and other parts still checked."""
         with self.assembly.word(name, self.graph.tasks[name].span, model):
             try:
                 yield
@@ -62,7 +62,7 @@ class Assembled:
                 self.found.extend(error.diagnostics)
 
     def facts(self) -> IslandFacts:
-        """What a solver may ask when it chooses its methods, once forces and contacts are added."""
+        """The facts by which a solver chooses its methods; call it once forces and contacts are added."""
         made = self.assembly
         return IslandFacts(len(made.start()), "local" in made.contact_mode, made.only_field, made.numbers)
 
@@ -72,7 +72,7 @@ class Assembled:
         for force in dict.fromkeys(force for force, _ in self.island.forces):
             self._add_force(force)
         contacts = dict.fromkeys(contact for contact, _, _ in self.island.contacts)
-        # Masses among themselves last: objects need the whole path of a step as the solver made it.
+        # Contacts between masses come last: those with objects need the path of the whole step as the solver made it.
         for contact in sorted(contacts, key=lambda name: cast(Contact, tasks[name].kind).mutual):
             self._add_contact(contact)
 
@@ -103,7 +103,7 @@ class Assembled:
 
 
 def models_of(graph: SimulationGraph, island: Island) -> Assembled:
-    """The island's models, on which nothing acts yet."""
+    """An island with its models, without forces and contacts yet."""
     made = Assembled(graph, island, IslandAssembly(Setting(graph.tasks, graph.settings.clock.end)))
     for name in island.models:
         with made.word(name):
@@ -117,16 +117,16 @@ class Block:
 
     system: System
     places: tuple[tuple[int, int, int], ...]
-    """(first in the island's state, first in the block's, how many): where its entries stand, those of sums apart."""
+    """(offset in the island's state, offset in the block's, count) of its entries, except sums."""
     sums: tuple[tuple[int, int], ...]
     """(in the island's state, in the block's): entries that are sums over the bodies."""
     assembly: IslandAssembly
     changes: tuple[tuple[int, int, int], ...]
-    """As ``places``, of the floats that change where bodies come and go."""
+    """As ``places``, for the floats that change as bodies come and go."""
 
 
 def blocks_of(whole: Assembled, system: System, stepper: Stepper) -> list[Block]:
-    """The island in blocks that fit into a cache; none where bodies feel one another, or steps are chosen for all."""
+    """The island in blocks that fit into a cache; none where bodies interact or steps are adaptive."""
     count = sum(0 if bodies is None else bodies.count for bodies in whole.bodies.values()) // BLOCK
     needs = stepper.needs
     fixed = not stepper.control.adaptive and not needs.jacobian and needs.prepare is None

@@ -12,7 +12,7 @@ ROUNDING = 2.2e-16
 
 @lean(JACOBIAN)
 def differences(functions, t, y, values, floats, ints):
-    """The full Jacobian by forward differences; moves as in RADAU5 (Hairer & Wanner 1996, IV.8).
+    """The full Jacobian by forward differences; increments as in RADAU5 (Hairer & Wanner 1996, IV.8).
 
     ``values``: (n * n,) row by row, then 3n of scratch.
     """

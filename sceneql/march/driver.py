@@ -1,7 +1,7 @@
-"""The generated driver of an island: kernels that call the island's own kernels on their integers.
+"""The generated driver of an island: kernels that call the island's own kernels with their integers.
 
 Its text depends on the `Structure` alone, so that it is written and compiled once for all scenes of that structure.
-island.layout says how ``ints`` lie.
+``ints`` are laid out as in island.layout.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def driver(structure: Structure) -> Driver:
 
 
 def jacobian(system: System) -> Any:
-    """The Jacobian of an island that was asked for it; None where it is too large to be found by differences."""
+    """The Jacobian kernel of an island laid out with one; None where it is too large to be found by differences."""
     if system.pattern is None:
         return None
     if system.pattern.exact:
@@ -83,14 +83,14 @@ def jacobian_text(structure: Structure) -> str:
 
 
 def modules(structure: Structure) -> tuple[str, ...]:
-    """What the kernels of an island are imported from; contacts, as a rule the largest, first."""
+    """The modules of an island's kernels; those of contacts, as a rule the largest, first."""
     after = (*(structure.slopes or ()), *structure.after)
     names = (*structure.local, *chain(*structure.exact), *after, *structure.terms)
     return tuple(dict.fromkeys(name.partition(":")[0] for name in names))
 
 
 def lazy_first(structure: Structure) -> list[str]:
-    """Modules that contacts will soon ask for, in their order, when this process will be busy with the others."""
+    """Lazily compiled modules that contacts will soon need, in order: another process can begin with these."""
     local = dict.fromkeys(name.partition(":")[0] for name in structure.local)
     return [first for module in local for first in getattr(load(module), "LAZY_FIRST", ())]
 
@@ -162,6 +162,6 @@ def _contacts(structure: Structure, names: dict[str, str], first: int, refresh: 
 
 
 def _digest(module: str) -> str:
-    """Hash of a module's text: numba would not notice that a function of another file has changed."""
+    """Hash of a module's text: numba's cache would not notice a changed function of another file."""
     path = load(module).__file__
     return "" if path is None else hashlib.sha256(Path(path).read_bytes()).hexdigest()[:16]

@@ -1,21 +1,21 @@
 # mypy: ignore-errors
 """Exact events: the first contact inside a step, found on dense output, located with the solver's own step.
 
-What locates it is compiled when the first one comes (locate_kernels).
+The code that locates an event is compiled at the first one (locate_kernels).
 
 A pair whose gap at the step's start is at most ``slop`` touches. ``leaving[pair]`` is 1 when its impact was applied at
-this very instant: then it moves apart, however shortly, and the next root is sought by deflation (the root at the
+this very instant: then the pair separates, however briefly, and the next root is sought by deflation (the root at the
 start divided out), so that bounces far shorter than the step are found one after the other.
 
-What contact kernels may count on, and owe:
+The contract of contact kernels:
 - gap: a resting pair writes 1e300 and has no events.
 - impact(t, y, pair): called for the pair of an event after a rate evaluation at that very (t, y). It leaves the pair
   separating or resting, and changes nothing where the pair is separating already.
-- impact(t, y, -1): called for each contact before the first step and after every accepted one, to put resting pairs in
-  order; it sets channels.CHANGED when it changed y or a flag, and the rate is evaluated afresh.
-- memory (flags, tallies, times) is kept in floats and changed by impact and settle alone; what terms write there may
-  be of any trial stage.
-- an impact is applied when the step after it begins, so frames up to it read the flight before it.
+- impact(t, y, -1): called for each contact before the first step and after every accepted one, to update resting
+  pairs; it sets channels.CHANGED when it changed y or a flag, and the rate is evaluated anew.
+- memory (flags, tallies, times) is kept in floats and changed by impact and settle alone; numbers that terms write
+  there may belong to any trial stage.
+- an impact is applied when the step after it begins, so frames up to its instant show the flight before it.
 """
 
 from numba import types
@@ -26,7 +26,7 @@ from sceneql.compiled.pointers_kernels import AT_DENSE, AT_GAP, dense_at, gap_at
 from sceneql.system.signatures_kernels import EVENT, A, F, I, N
 
 SAMPLES = 6
-"""Places inside a step where the gaps are looked at; a body that enters and leaves between two of them is missed."""
+"""Samples of the gaps inside a step; a body that enters and leaves between two samples is missed."""
 
 FIRST_OF = types.Tuple((N, F))(I, N, F, F, F, A, A, A, A, A, A, I, A, I, A, A, A, I, F)
 
@@ -54,7 +54,7 @@ def find_event(
 ):  # fmt: skip
     """First contact in the accepted step (t0, h): (pair, length of the step up to it), or (-1, h).
 
-    With a length below h, y1 and rate1 are moved there. (pair, 0): a pair in contact presses on from the start.
+    With a length below h, y1 and rate1 are those at the contact. (pair, 0): a touching pair approaches at the start.
     """
     dense, gap = dense_at(functions[AT_DENSE]), gap_at(functions[AT_GAP])
     pairs = leaving.size

@@ -1,4 +1,4 @@
-"""The march of a field on a box with constant coefficients: its solution, at any instant."""
+"""The march of a field on a box with constant coefficients: its exact solution at any instant."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ NAMES = ("z", "y", "x")
 
 
 class ExactMarch(March):
-    """Every mode by itself: c(t) = c0 exp(-k t) + f (1 - exp(-k t))/k. No steps are made."""
+    """Solves each mode by itself, c(t) = c0 exp(-k t) + f (1 - exp(-k t))/k, without steps."""
 
     def _engage(self, stepper: Stepper) -> None:
-        """Find the modes. Raises ScriptError where the island is no field, LimitRefused where it has none of these."""
+        """Find the modes. Raises ScriptError where the island is no field, LimitRefused where it has no such modes."""
         grid = self.system.grid
         if grid is None:
             _, _, part, spans = self.system.ranges[0]
@@ -62,7 +62,7 @@ class ExactMarch(March):
         return found
 
     def _reach(self, t: float) -> tuple[Floats, bool]:
-        """The state at an instant: by as many transforms back as there are axes."""
+        """The state at an instant, by an inverse transform along each axis."""
         if not self._started:
             self._start()
         started = time.perf_counter()
@@ -84,7 +84,7 @@ class ExactMarch(March):
             for k, axis in enumerate(self._axes):
                 field = axis.backward(field, k)
             y[cells] = field.real.ravel()
-            # Fluxes inside cancel: what there is more of has come in.
+            # Fluxes inside cancel, so the increase of the total is the inflow.
             y[grid.at + n] += volume * float((y[cells] - self._y1[cells]).sum())
         self.statistics.seconds += time.perf_counter() - started
         return y, False

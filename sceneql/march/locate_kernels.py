@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Where in a step an event is, by steps of the solver itself (events_kernels)."""
+"""Location of an event inside a step, by steps of the solver itself (events_kernels)."""
 
 import math
 
@@ -20,11 +20,11 @@ def locate(
     functions, pair, contact, deflate, t0, low, high,
     y0, rate0, y1, work, settings, numbers, floats, ints, now,
 ):  # fmt: skip
-    """Length of the step from t0 that ends in contact, on the side where the pair is still apart; y1 is its end.
+    """Length [s] of the step from t0 up to contact, rounded to where the pair is still apart; y1 is the state there.
 
     The root of (gap - contact), divided by the length if ``deflate``, by Chandrupatla's hybrid of bisection and inverse
-    quadratic interpolation (Chandrupatla 1997) on steps of the solver itself. 0: it never leaves contact. Negative:
-    no contact up to -length.
+    quadratic interpolation (Chandrupatla 1997) on steps of the solver itself. 0: the pair never leaves contact.
+    Negative: no contact up to -length.
     """
     step, gap = step_at(functions[AT_STEP]), gap_at(functions[AT_GAP])
     step(functions, t0, high, y0, rate0, y1, work, settings, numbers, floats, ints)
@@ -88,7 +88,7 @@ def first_of(
     functions, pair, t0, low, high, y0, rate0, y1, rate1,
     work, settings, numbers, floats, ints, start, now, above, leaving, slop,
 ):  # fmt: skip
-    """Locate the contact of a pair and, as long as another pair is in contact even earlier, of that one."""
+    """Locate the contact of a pair, and then of each other pair that is found to be in contact even earlier."""
     rate, gap = rate_at(functions[AT_RATE]), gap_at(functions[AT_GAP])
     while True:
         touched = above[pair] == 0.0

@@ -1,4 +1,4 @@
-"""The march of one island: compiled steps up to the instant asked for, which is read off the last step."""
+"""The march of one island: compiled steps past the requested instant, at which dense output gives the state."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from sceneql.system import Stepper
 
 GROWTH_LIMIT = 1e12
-"""A run fails when an entry of y exceeds this times the largest of the start (at least 1, or what its rate adds)."""
+"""A run fails when an entry of y exceeds this times the largest at the start (at least 1, or a change by the rate)."""
 
 TOUCHING = 1e-13
 """Gap that counts as touching, relative to the largest position at the start or 1 m."""
@@ -38,7 +38,7 @@ ENTRIES_A_CALL = 20_000_000
 """Entries of y to step over in one compiled call, so that a long run can be interrupted."""
 
 LARGEST = 1e100
-"""Of a number at the start, in SI: the square of its growth can still be told."""
+"""Largest number at the start in SI units, so that the square of its growth does not overflow."""
 MESSAGES = {
     kernels.NOT_FINITE: "a value is no longer finite: the step is unstable, or the equations have no value there",
     kernels.GROWTH: f"the state has grown beyond {GROWTH_LIMIT:.0e} times its start: {{}}",
@@ -49,11 +49,11 @@ MESSAGES = {
 
 @dataclass(slots=True)
 class Statistics:
-    """What a march has cost so far."""
+    """The cost of a march so far."""
 
     steps: int = 0
     rejected: int = 0
-    """Steps tried again with a smaller length."""
+    """Rejected steps."""
     events: int = 0
     """Impacts of exact contacts."""
     evaluations: int = 0
@@ -63,7 +63,7 @@ class Statistics:
 
 
 class March:
-    """An island on its way from 0 to ``end`` [s] by one solver."""
+    """The integration of an island from 0 to ``end`` [s] by one solver."""
 
     def __init__(
         self,
@@ -75,9 +75,9 @@ class March:
         otherwise: Stepper | None = None,
         with_jacobian: Callable[[], System] | None = None,
     ) -> None:
-        """``stiff``, ``otherwise``: what may take the stepper's place (kinds.Methods).
+        """``stiff``, ``otherwise``: methods that may replace ``stepper`` (kinds.Methods).
 
-        ``with_jacobian``: what lays the island out again for one of them that needs it.
+        ``with_jacobian``: lays the island out again, with its Jacobian, for one of them that needs it.
         """
         self.system, self.stepper, self.end = system, stepper, end
         self._otherwise, self._with_jacobian = otherwise, with_jacobian
@@ -106,7 +106,7 @@ class March:
         self._engage(stepper)
 
     def _engage(self, stepper: Stepper) -> None:
-        """Go on with a method."""
+        """Continue with a method."""
         method, control, needs = stepper.method, stepper.control, stepper.needs
         if needs.jacobian and self._with_jacobian is not None:
             self.system = self._with_jacobian()
@@ -119,7 +119,7 @@ class March:
         between = needs.jacobian and not needs.newton
         if local:
             self.floats[channels.STAGE] = system.floats[channels.STAGE] if needs.jacobian else channels.NO_SLOPES
-        # What is changed after a step, its own dense output does not know: contacts may change it in every one.
+        # A step's own dense output does not have changes made after it, which local contacts may make in every step.
         self._mixed = between and (local or bool(system.structure.after))
         dense = None if local and not between else method.dense
         self._dense = kernels.hermite if dense is None else function(dense)
@@ -143,19 +143,19 @@ class March:
         self._counts[kernels.HALVES] = control.halves
 
     def _look_for_breakpoint(self, time: float) -> None:
-        """Find what turns next after an instant: a step of chosen length ends before it, by as little as can be."""
+        """Find the next breakpoint after an instant: an adaptive step ends a few ulps before it."""
         self._stop = next_breakpoint(self.system.stops, time, self.end) if self.stepper.control.adaptive else self.end
         self._step_end = before(self._stop) if self._stop < self.end else self.end
 
     def _pass_breakpoint(self) -> None:
-        """Go on behind what turns: the next step begins with what is there then."""
+        """Move past a breakpoint: the next step begins with the values that hold behind it."""
         self._clock[kernels.T1] = self._stop
         self._rate1[:] = self.rate(self._stop, self._y1)
         self._floats_time = math.nan
         self._look_for_breakpoint(self._stop)
 
     def _change(self, switch: Switch, t: float) -> None:
-        """Go on with the method that a switch has chosen, if it takes this island."""
+        """Continue with the method that a switch has chosen, if it accepts this island."""
         try:
             self._engage(switch.active)
         except LimitRefused as refusal:
@@ -163,7 +163,7 @@ class March:
             self._engage(switch.active)
 
     def choices(self) -> list[tuple[float, str]]:
-        """When [s] which method was taken, and why, where the solver chooses by itself; before the run, the first."""
+        """(time [s], method and reason) of each choice of a method by the solver; before the run, of the first."""
         if self._switch is None:
             return []
         if not self._started:
@@ -172,7 +172,7 @@ class March:
 
     @property
     def scratch(self) -> Floats:
-        """What the steps work in; a solver may keep a record of its doings there."""
+        """Scratch of the steps, where a solver may record statistics."""
         return self._work
 
     def rate(self, t: float, y: Floats) -> Floats:
@@ -185,13 +185,13 @@ class March:
         return rate
 
     def floats_at(self, t: float, y: Floats) -> Floats:
-        """The island's floats with the values that vary at a time [s]."""
+        """The island's floats, with varying values evaluated at a time [s]."""
         if self._floats_time != t:
             self.rate(t, y)
         return self.floats
 
     def advance(self, t: float) -> tuple[Floats, Floats]:
-        """State and rate at an instant [s], not before the one asked for last; beyond the end, those at the end.
+        """State and rate (n,) at an instant [s], not before the last one requested; past the end, those at the end.
 
         Raises RunFailure, with the part and line of the entry of the state that failed.
         """
@@ -201,17 +201,17 @@ class March:
         return y, self.rate(t, y)
 
     def view(self, t: float) -> tuple[Floats, Floats]:
-        """As `advance`, valid until the next call; at the end of a step the rate is that which the step found."""
+        """As `advance`, without copies: valid until the next call; at the end of a step with the step's own rate."""
         t = min(t, self.end)
         y, at_the_end = self._reach(t)
         return y, self._rate1 if at_the_end else self.rate(t, y)
 
     def memory(self, name: str, assembly: IslandAssembly, t: float, y: Floats) -> tuple[Floats, tuple[int, ...]]:
-        """What a contact remembers at the instant reached: floats and the integers that say where in them."""
+        """A contact's memory at the instant reached: the island's floats, and the integers with offsets into them."""
         return self.floats_at(t, y), assembly.remembered(name)
 
     def _reach(self, t: float) -> tuple[Floats, bool]:
-        """March on to an instant: the state there, and whether it is the end of a step, in the march's own array."""
+        """March to an instant: the state there, and whether it is the end of a step, in the march's own array."""
         if not self._started:
             self._start()
         if t > self._clock[kernels.T1]:
@@ -237,7 +237,7 @@ class March:
         return y, False
 
     def _extend_step(self, t0: float, h: float) -> None:
-        """Let the last step get what its dense output needs; not counted as cost, as frames must not change it."""
+        """Compute the further stages of the last step's dense output; not counted, as frames must not change costs."""
         assert self._extend is not None
         counted = self.floats[channels.RATES]
         step = (self._y0, self._rate0, self._y1, self._work, self._settings, self._numbers)
@@ -289,7 +289,7 @@ class March:
         started = time.perf_counter() - compiled.seconds
         counts, clock = self._counts, self._clock
         if counts[kernels.HELD] and not math.isnan(self._floats_time):
-            # What terms leave for contacts to read is that of the step's end again, wherever frames have looked.
+            # Frames have evaluated terms elsewhere: write again what contacts read of them at the step's end.
             self.rate(float(clock[kernels.T1]), self._y1)
         self._floats_time = math.nan
         while True:
@@ -348,7 +348,7 @@ class March:
         self._fail(-1 if status == kernels.STUCK else at, unsolved or MESSAGES[status].format(why), ahead)
 
     def _look(self) -> None:
-        """Let the other method take over where it is time to see which is the better one."""
+        """Switch methods where it is time to compare and the other one is better."""
         switch, clock = self._switch, self._clock
         steps = int(self._counts[kernels.STEPS]) - self._last_look
         if switch is None or steps < switch.until_look:
@@ -360,10 +360,10 @@ class March:
             clock[kernels.STEP] = switch.stable(t, self._y1, step)
             clock[kernels.ERROR] = 1e-4
         if self._counts[kernels.HELD]:
-            self.rate(t, self._y1)  # what contacts are to read is that of the state again
+            self.rate(t, self._y1)  # write again what contacts read of the terms at this state
 
     def _goes_on(self, status: int) -> bool:
-        """Whether another method goes on where one finds no step."""
+        """Whether another method continues where the present one finds no step."""
         if status == kernels.NOT_FINITE and self._otherwise is not None:
             self.stepper, self._otherwise = self._otherwise, None
             self._engage(self.stepper)
@@ -371,7 +371,7 @@ class March:
         return status == kernels.STEP_TOO_SMALL and self._give_up()
 
     def _give_up(self) -> bool:
-        """Whether the explicit method goes on where the stiff one finds no step short enough."""
+        """Whether the explicit method continues where the stiff one finds no step short enough."""
         switch, clock = self._switch, self._clock
         t = float(clock[kernels.T1])
         if switch is None or not switch.give_up(t):
@@ -383,7 +383,7 @@ class March:
         return True
 
     def _fail(self, entry: int, message: str, ahead: float | None = None) -> None:
-        """``ahead`` [s]: a term may have no finite value so much later, which then is named."""
+        """Raise RunFailure. ``ahead`` [s]: names a term that is not finite so much later, if there is one."""
         origin, t = self.system.origin(entry), float(self._clock[kernels.T1])
         span = origin.span
         if ahead is not None:

@@ -1,7 +1,7 @@
-"""The march of an island whose bodies feel no other one: block by block, whole steps at a time, on all threads.
+"""The march of an island whose bodies do not interact: block by block, on all threads.
 
-A block is an island of its own, small enough for a core's cache. Which bodies are in which one follows from their
-number alone, so the bytes do not depend on the threads.
+A block is an island of its own, small enough for a core's cache. The division into blocks follows from the number of
+bodies alone, so the bytes do not depend on the threads.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ if TYPE_CHECKING:
 FLOATS = ("_y0", "_rate0", "_y1", "_rate1", "_sample", "_work", "_settings", "floats", "_gaps", "_clock")
 """Arrays of a march, in the order of the kernels' columns from Y0 on."""
 FULL = ("_y1", "_settings", "floats", "_clock")
-"""Those that are not all zeros before the first step."""
+"""The arrays that are not all zeros before the first step."""
 TILES = 16
 """Runs of blocks for each thread, one compiled call each."""
 
 
 class BlockMarch(March):
-    """An island in blocks; what it gives is valid until it is advanced again."""
+    """The march of an island in blocks; arrays that it returns are valid until the next call."""
 
     def __init__(self, system: System, stepper: Stepper, end: float, blocks: Sequence[Block]) -> None:
         super().__init__(system, stepper, end)
@@ -50,7 +50,7 @@ class BlockMarch(March):
         self.prepared_text = f"in {len(blocks)} blocks of bodies, each for itself"
 
     def _gather(self) -> None:
-        """Bring what the marches of the blocks work on into one array of floats, and the integers into another."""
+        """Gather the arrays of the blocks' marches into one array of floats and one of integers."""
         floats, words = [], []
         for march, part in zip(self._blocks, self._parts, strict=True):
             floats += [getattr(march, name) for name in FLOATS]
@@ -73,7 +73,7 @@ class BlockMarch(March):
             row[kernels.SIZE] = len(march.system.y)
 
     def advance(self, t: float) -> tuple[Floats, Floats]:
-        """State and rate at an instant [s], of all blocks. Raises the earliest RunFailure of theirs."""
+        """State and rate (n,) at an instant [s]. Raises the earliest RunFailure of the blocks."""
         started = time.perf_counter() - compiled.seconds
         t = min(t, self.end)
         blocks = len(self._blocks)
@@ -103,14 +103,14 @@ class BlockMarch(March):
         return y, rate
 
     def _add_up(self, seconds: float) -> None:
-        """The cost so far: all blocks take the same steps."""
+        """Update the cost so far: all blocks take the same steps."""
         done, first = self.statistics, self._blocks[0]
         done.steps, done.evaluations = int(first._counts[STEPS]), int(first.floats[channels.RATES])
         done.rejected = sum(int(block._counts[REJECTED]) for block in self._blocks)
         done.seconds += seconds
 
     def floats_at(self, t: float, y: Floats) -> Floats:
-        """The island's floats with the values that vary at a time [s]."""
+        """The island's floats, with varying values evaluated at a time [s]."""
         if self._floats_time != t and self.system.structure.varying:
             from sceneql.island.inputs_kernels import refresh
 
@@ -125,7 +125,7 @@ class BlockMarch(March):
         return self.floats
 
     def memory(self, name: str, assembly: IslandAssembly, t: float, y: Floats) -> tuple[Floats, tuple[int, ...]]:
-        """What a contact remembers, as floats and integers of all blocks."""
+        """A contact's memory, as floats and integers of all blocks."""
         at = self._table[:, kernels.FLOATS]
         ints = [int(at[k]) + n for k, part in enumerate(self._parts) for n in part.assembly.remembered(name)]
         return self._arena, tuple(ints)

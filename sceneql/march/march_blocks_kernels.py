@@ -1,8 +1,8 @@
 # mypy: ignore-errors
-"""Some blocks of an island (march_blocks.py), one after the other, without a word to Python in between.
+"""The march of several blocks of an island (march_blocks.py), one after the other, in one compiled call.
 
-All floats of all blocks stand in one array and all integers in another; a row of COLUMNS integers says where those of
-a block begin.
+All floats of all blocks are in one array and all integers in another; a row of COLUMNS integers has the offsets of a
+block's arrays.
 """
 
 import numpy as np
@@ -30,12 +30,12 @@ from sceneql.system.signatures_kernels import A, F, I, N
 Y0, RATE0, Y1, RATE1, SAMPLE, WORK, SETTINGS, FLOATS, GAPS, CLOCK, FLOATS_END = range(11)
 NUMBERS, INTS, LEAVING, COUNTING, PLACES, SUMS, INTS_END = range(11, 18)
 SIZE, STATUS, LOOKED, COLUMNS = range(18, 22)
-"""Entries of its state; how its march ended; whether a frame was read off after the last step."""
+"""Entries of a block's state; status of its march; whether a frame was interpolated after the last step."""
 
 
 @lean_inlined
 def add_to(whole, part, places):
-    """Copy a block's entries to where they stand in the island's."""
+    """Copy a block's entries to their places in the island's state."""
     for k in range(0, places.size, 3):
         there, here = whole[places[k] : places[k] + places[k + 2]], part[places[k + 1] : places[k + 1] + places[k + 2]]
         for i in range(there.size):
@@ -46,8 +46,8 @@ def add_to(whole, part, places):
 def advance(functions, first, last, target, end, most, arena, words, table, y, rate, sums):
     """March blocks first..last-1 to a target [s] and write their part of the island's state and rate (n,) there.
 
-    ``most``: entries to step over for a block; PAUSED where that was not enough: call again. Else REACHED; what became
-    of each block is table[.., STATUS]. sums (blocks, 2, sums): entries that are sums over bodies, in state and rate.
+    ``most``: entries to step over for a block; PAUSED where that was not enough: call again. Else REACHED; each block
+    has its status in table[.., STATUS]. sums (blocks, 2, sums): entries that are sums over bodies, in state and rate.
     """
     rate_of, dense = rate_at(functions[AT_RATE]), dense_at(functions[AT_DENSE])
     for b in range(first, last):
@@ -64,7 +64,7 @@ def advance(functions, first, last, target, end, most, arena, words, table, y, r
         counts = words[row[COUNTING] : row[COUNTING] + COUNTS]
         if clock[T1] < target:
             if counts[HELD] != 0 and row[LOOKED] != 0:
-                # What terms leave for contacts to read is that of the step's end again.
+                # The frame has evaluated terms elsewhere: write again what contacts read of them at the step's end.
                 counted = floats[channels.RATES]
                 rate_of(clock[T1], y1, sample, floats, ints)
                 floats[channels.RATES] = counted

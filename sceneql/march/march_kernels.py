@@ -1,10 +1,10 @@
 # mypy: ignore-errors
-"""The one loop that marches an island in time: fixed grid or error control, exact events, local contacts, the watch.
+"""The time loop of an island: fixed or adaptive steps, exact events, local contacts, checks of growth.
 
-All state of a march lies in arrays of the caller, so that it can stop anywhere and go on: the last accepted step
-(y0, rate0 at clock[T0]; y1, rate1 at clock[T1]; where counts[SWAPPED] is 1 they have changed places; ``work`` as its
-solver left it, for dense output), ``clock`` and ``counts`` with the entries named below. An impact is applied when the
-step after it begins, so that frames up to the impact read the state before it.
+All state of a march lies in arrays of the caller, so that it can stop after any step and continue: the last accepted
+step (y0, rate0 at clock[T0]; y1, rate1 at clock[T1]; swapped where counts[SWAPPED] is 1; ``work`` as the solver left
+it, for dense output), ``clock`` and ``counts`` with the entries named below. An impact is applied when the step after
+it begins, so that frames up to the impact show the state before it.
 """
 
 import math
@@ -30,20 +30,20 @@ from sceneql.compiled.pointers_kernels import (
 from sceneql.system.signatures_kernels import AFTER_STEP, BACK_OFF, DENSE, GAP, IMPACT, A, F, I
 
 T0, T1, STEP, ERROR, LARGEST, LIMIT, SLOP, CLOCKS = range(8)
-"""Ends of the last step [s]; the step to try next, or the grid's; the last error; largest step [s]; largest |y|; gap
-that counts as touching [m]."""
+"""Ends of the last step [s]; the step to try next, or the fixed one [s]; the last error; largest step [s]; largest |y|;
+gap that counts as touching [m]."""
 
 STEPS, REJECTED, EVENTS, REPEATS, LEFT, INDEX, GRID, PENDING = range(8)
 """Tallies; impacts since time moved; steps left in this call; the entry that a failure names; grid points passed; the
 pair whose impact is due (-1: none)."""
 
 ADAPTIVE, ORDER, LOCAL, LAST_STAGE, CONTROLS, HALVES, HELD, SWAPPED, ACTS, ALTERED, COUNTS = range(8, 19)
-"""What solver and island are (system.Stepper); whether a local contact holds something (channels.HOLDS); whether the
-arrays of a step's start and end have changed places, for the end of a step is the next one's start; whether something
-acts at the end of steps (Assembly.after_step), and whether it has changed anything at the end of the last one."""
+"""Properties of solver and island (system.Stepper); whether a body rests on a local contact (channels.HOLDS); whether
+the arrays of the step's start and end are swapped, for the end of a step is the next one's start; whether there are
+kernels that act after steps (Assembly.after_step), and whether they changed anything after the last one."""
 
 SHORTEST = 1e-3
-"""Part of a step of given length below which it is not halved any more."""
+"""Part of a fixed step below which it is not halved any more."""
 
 REACHED, PAUSED, NOT_FINITE, GROWTH, STEP_TOO_SMALL, STUCK = range(6)
 
@@ -64,11 +64,11 @@ def hermite(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
 
 @lean(DENSE)
 def straightened(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
-    """As `hermite`, but a line where the rates at the ends are not those of a curve that such a step could follow.
+    """As `hermite`, but a line for entries whose end rates do not fit a smooth curve through the end states.
 
-    For what contacts have changed after a stiff step, which may pass over all that follows an impact: its rates are
-    gone long before the step's end. Of most smooth curves, what the mean of the rates misses is far less than their
-    difference.
+    For states that contacts have changed after a stiff step: that step may be far longer than the transients after an
+    impact, whose rates say nothing of its interior. For most smooth curves (y1 - y0)/h differs from the mean of the end
+    rates by far less than these differ from each other.
     """
     for k in range(y0.size):
         difference, first, last = y1[k] - y0[k], h * rate0[k], h * rate1[k]
@@ -80,28 +80,28 @@ def straightened(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
 
 @lean(GAP, inner=True)
 def no_gap(t, y, gaps, floats, ints):
-    """Of an island without exact contacts."""
+    """Stands in on an island without exact contacts."""
 
 
 @lean(IMPACT, inner=True)
 def no_impact(t, y, pair, floats, ints):
-    """Of an island without exact contacts."""
+    """Stands in on an island without exact contacts."""
 
 
 @lean(BACK_OFF, inner=True)
 def no_back_off(t0, t1, y0, rate0, y1, floats, ints):
-    """Of an island without local contacts."""
+    """Stands in on an island without local contacts."""
 
 
 @lean(AFTER_STEP, inner=True)
 def no_act(t0, t1, y0, rate0, y1, floats, ints):
-    """Of an island in which nothing acts at the end of steps."""
+    """Stands in on an island without kernels that act after steps."""
     return False
 
 
 @lean_inlined
 def copy(source, target):
-    """Entry by entry: numba's slice assignment costs seconds to compile."""
+    """Copy entry by entry: numba's slice assignment takes seconds to compile."""
     for k in range(target.size):
         target[k] = source[k]
 
@@ -148,8 +148,8 @@ def next_factor(error, previous, order, rejected):
 
 @lean_inlined
 def try_steps(step, functions, t0, t1, y0, rate0, y1, work, settings, numbers, floats, ints, clock, counts):
-    """Step until the error is accepted: (end of the step, status). A fixed step is tried once, but halved where its
-    equations have no solution: contacts let steps end before the grid's next point, too."""
+    """Step until the error is accepted: (end of the step [s], status). A fixed step is tried once, but halved where
+    its equations have no solution; contacts, too, may end it before the next point of the time grid."""
     adaptive = counts[ADAPTIVE] > 0
     rejected = False
     while True:
@@ -183,7 +183,7 @@ def try_steps(step, functions, t0, t1, y0, rate0, y1, work, settings, numbers, f
 
 @lean_inlined
 def apply_impact(rate, impact, t, y, slope, floats, ints, leaving, counts):
-    """The impact that is due. Contacts may read what the terms left in floats for the state before it."""
+    """Apply the impact that is due. Contacts may read numbers that terms write to floats for the state before it."""
     pair = counts[PENDING]
     counts[PENDING] = -1
     counts[EVENTS] += 1
@@ -198,7 +198,7 @@ def apply_impact(rate, impact, t, y, slope, floats, ints, leaving, counts):
 
 @lean_inlined
 def take_back(length, t0, y0, rate0, y1, rate1, clock, counts):
-    """Take back a step that fails on a part of its length, as an implicit one's may; whether to try a shorter one."""
+    """Undo a step whose retry up to an event fails, as an implicit one may; whether to try a shorter step."""
     counts[REJECTED] += 1
     counts[INDEX] = largest(rate0)
     clock[STEP] = 0.3 * length
@@ -214,9 +214,9 @@ def march(
 ):  # fmt: skip
     """Take steps until clock[T1] >= target; the status. ``functions``: addresses (pointers_kernels).
 
-    y0, rate0, y1, rate1, sample are of y's size, and sample is left as the step's end was before local contacts, and
-    what acts at the end of steps, changed it; leaving (pairs,), gaps (3 pairs,). On a failure the step is taken
-    back: (clock[T1], y1, rate1) is the last good state, counts[INDEX] the entry of y (STUCK: the pair) at fault.
+    y0, rate0, y1, rate1, sample are of y's size; sample is left with the step's end before local contacts and kernels
+    that act after steps changed it; leaving (pairs,), gaps (3 pairs,). On a failure the step is undone: (clock[T1], y1,
+    rate1) is the last good state, counts[INDEX] the entry of y (STUCK: the pair) at fault.
     """
     step, rate = step_at(functions[AT_STEP]), rate_at(functions[AT_RATE])
     impact, back_off = impact_at(functions[AT_IMPACT]), back_off_at(functions[AT_BACK_OFF])
@@ -249,7 +249,7 @@ def march(
         if counts[LAST_STAGE] >= 0:
             copy(work[counts[LAST_STAGE] * n :], rate1)
         elif (counts[LOCAL] == 0 and counts[ACTS] == 0) or leaving.size > 0 or (counts[HELD] > 0 and counts[ORDER] > 1):
-            # (What a first-order method holds may follow what pressed at the step's start.)
+            # (Resting contacts of a first-order method may use the load at the step's start.)
             rate(t1, y1, rate1, floats, ints)
         if leaving.size > 0:
             pair, reached = event_at(functions[AT_EVENT])(

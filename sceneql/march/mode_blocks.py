@@ -1,4 +1,4 @@
-"""Modes of an island as small real systems, which a solver's growth function is asked about one by one."""
+"""Modes of an island as small real systems, on each of which a solver's growth function is evaluated."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from sceneql.march.modes import Modes
 
 ERROR = 1e-6
-"""Part of a mode's eigenvalue below which there is nothing but the error of differences."""
+"""Part of a mode's eigenvalue below which a number is but the error of differences."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,13 +30,13 @@ class Block:
     jacobian: Floats
     partner: NDArray[int64]
     own: float = 0.0
-    """How fast it may grow: twice as fast as it does by itself, for no method follows that exactly."""
+    """Allowed growth rate: twice the mode's own, which no method follows exactly."""
 
 
 def alone(value: complex) -> Block:
     """A mode by its eigenvalue alone: an oscillator x' = v, v' = -|value|^2 x + 2 Re(value) v, or a scalar.
 
-    For methods that treat positions and velocities alike; what grows by itself counts as neutral.
+    For methods that treat positions and velocities alike; a mode that grows by itself counts as neutral.
     """
     damping = 0.0 if abs(value.real) < NEUTRAL or value.real > 0 else value.real
     if value.imag == 0.0:
@@ -49,9 +49,8 @@ def paired(march: March, modes: Modes) -> list[Block]:
     """The modes for methods that advance positions by velocities, time scaled by the fastest.
 
     Along a mode with v = x' and v' = K x + C v these are v' = k x + c v, k = <x, K x>/<x, x> and c = <v, C v>/<v, v> by
-    the masses, which is right to the square of the mode's error where forces have a potential: an oscillation is
-    k < 0, a charge that runs round in a magnetic field an imaginary c without k. Entries without velocities turn and
-    decay by themselves.
+    the masses, whose error is of second order in the mode's where forces have a potential: an oscillation has k < 0, a
+    charge that gyrates in a magnetic field an imaginary c without k. Modes of entries without velocities are scalar.
     """
     weights = _weights(march)
     return [_block(march, modes, k, weights) for k in range(len(modes.values))]
@@ -85,13 +84,13 @@ def _product(march: March, vector: NDArray[complex128]) -> NDArray[complex128]:
 
 
 def _quotient(vector: NDArray[complex128], change: NDArray[complex128], weights: Floats) -> complex:
-    """Rayleigh's; 0 of what is nowhere."""
+    """The Rayleigh quotient; 0 where the vector is zero."""
     square = np.vdot(vector, weights * vector).real
     return complex(np.vdot(vector, weights * change) / square) if square > 0.0 else 0j
 
 
 def _real(matrix: NDArray[complex128], partner: list[int]) -> Block:
-    """A complex system as a real one: real and imaginary parts side by side, if there are imaginary ones."""
+    """A complex system as a real one, with real and imaginary parts as unknowns if it has imaginary parts."""
     of = np.array(partner)
     values = np.linalg.eigvals(matrix)
     own = max(0.0, float(values.real.max()))
@@ -104,7 +103,7 @@ def _real(matrix: NDArray[complex128], partner: list[int]) -> Block:
 
 
 def _cleaned(number: complex, least: float) -> complex:
-    """Without the parts that are errors."""
+    """The number without a real or imaginary part below ``least``, an error of differences."""
     return complex(*(0.0 if abs(part) <= least else part for part in (number.real, number.imag)))
 
 

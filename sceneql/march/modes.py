@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     from sceneql.march.march import March
 
 DENSE = 400
-"""Up to so many entries all modes are computed; above, the fastest alone."""
+"""Entries of y up to which all modes are computed; above, the fastest alone."""
 FASTEST, CLOSE = 24, 1e-4
-"""Modes sought of a large island, and their residuals, in parts of the eigenvalue."""
+"""Number of modes sought on a large island, and their residuals relative to the eigenvalue."""
 MANY, FEW, ROUGH = 20_000, 6, 1e-2
-"""Above so many entries fewer modes are sought, and less closely: a fine grid's lie so dense that the iteration to part
-them takes minutes, while the largest eigenvalue is known to the residual's square."""
+"""Above MANY entries FEW modes are sought with residual ROUGH: eigenvalues of a fine grid lie so dense that separating
+them takes minutes, while the largest one is accurate to the square of the residual."""
 DIFFERENCE = 6e-6
 """Relative perturbation of central differences: the cube root of the rounding unit."""
 
@@ -96,7 +96,7 @@ def product(march: March, vector: Floats) -> Floats:
 
 
 def active(matrix: Floats) -> NDArray[int64]:
-    """The entries that others depend on; the rest (tallies of energy, places under uniform gravity) only follow."""
+    """The entries on which others depend, without tallies of energy or positions under uniform gravity."""
     kept = np.arange(len(matrix))
     while True:
         used = np.any(matrix[np.ix_(kept, kept)] != 0.0, axis=0)
@@ -124,7 +124,7 @@ def _fastest(march: March) -> tuple[Any, Any]:
 
     operator = LinearOperator((len(y), len(y)), matvec=in_units, dtype=np.float64)
     start = np.random.Generator(np.random.Philox(1)).standard_normal(len(y))
-    if not in_units(in_units(start)).any():  # free flight, or nothing there yet: no eigenvalue but 0
+    if not in_units(in_units(start)).any():  # free flight, or an island still empty: no eigenvalue but 0
         return np.zeros(0), np.zeros((len(y), 0))
     count, close = (FASTEST, CLOSE) if len(y) <= MANY else (FEW, ROUGH)
     try:

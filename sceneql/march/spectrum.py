@@ -1,4 +1,4 @@
-"""The fastest mode of an island at any moment of its run, for little more than a dozen evaluations of the rate."""
+"""The fastest mode of an island at any moment of its run, by little more than a dozen evaluations of the rate."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     """dy/dt (n,) at a time [s] and state."""
 
 SMALL = 12
-"""Up to so many entries of y the whole Jacobian is found; above, the Krylov space of so many products."""
+"""Entries of y up to which the whole Jacobian is found; above, the dimension of the Krylov space."""
 MOVE = 1.5e-8
 """Relative size of differences: the root of the rounding unit."""
 
@@ -62,9 +62,9 @@ def dominant(rate_at: Rate, partner: Partners, t: float, y: Floats) -> complex:
 
 
 def units_of(rate_at: Rate, partner: Partners, t: float, y: Floats, scale: float) -> Floats:
-    """Units (n,) in which positions and velocities of stiff springs are alike in size.
+    """Units (n,) in which positions and velocities of stiff springs are of one size.
 
-    Without them the Krylov space sees how far the matrix is from a normal one, not its eigenvalues.
+    Without them the matrix is far from normal, and Ritz values of a small Krylov space are far from its eigenvalues.
     """
     units = np.ones(len(y))
     positions = np.flatnonzero(partner >= 0)

@@ -1,7 +1,7 @@
-"""The stable step of a solver on an assembled island: sharp, and named by the part and line that sets it.
+"""The largest stable step of a solver on an assembled island, with the part and line of the script that limits it.
 
-The rate is linearized at the start of the run; a solver's growth factor is asked for on the modes of the Jacobian, each
-as a small system of its own (mode_blocks.py). What a mode grows by itself is the scene's, not the step's.
+The rate is linearized at the start of the run, and a solver's growth factor is evaluated on each mode of the Jacobian
+as a small system (mode_blocks.py). A mode's own growth is the scene's and does not count as instability.
 """
 
 from __future__ import annotations
@@ -26,19 +26,19 @@ if TYPE_CHECKING:
     from sceneql.quantities.span import Span
 
 WHOLE = 200
-"""Up to so many entries a method that uses pairs is asked about the whole Jacobian where modes are no oscillations."""
+"""Entries of y up to which methods that use pairs are tested on the whole Jacobian where modes are no oscillations."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stability:
-    """What is known about the step before the run."""
+    """The stability of the step, known before the run."""
 
     step: float
     """Largest stable step [s]; 0: none is; inf: any is."""
     growth: float
     """Factor by which the worst mode grows in a step of the script's own length; 1 for adaptive methods."""
     frequency: float
-    """|lambda|/(2 pi) of what sets the bound [1/s]."""
+    """|lambda|/(2 pi) of the mode that sets the bound [1/s]."""
     part: str
     span: Span | None
     text: str
@@ -76,7 +76,7 @@ def stability(march: March, solver: Solver) -> Stability:
 
 
 def _yardstick(blocks: list[Block], fastest: float) -> str:
-    """What the method that everybody knows would ask for: how much another one saves."""
+    """The stable step of rk4 as a text, for comparison."""
     bound = _Reduced(lambda jacobian, partner, step: CLASSIC.growth(jacobian, step), blocks).bound() / fastest
     return f"; rk4 would need steps of at most {bound:.4g} s" if 0 < bound < math.inf else ""
 
@@ -97,25 +97,25 @@ def _text(bound: float, script: float, growth: float, mode: str, adaptive: bool)
 
 @dataclass(frozen=True)
 class _Reduced:
-    """Growth on single modes, time scaled so that the fastest has frequency 1."""
+    """Stability on single modes, time scaled so that the fastest has frequency 1."""
 
     growth: Callable[[Floats, Any, float], float]
-    """Of a solver (kinds.Solver.growth)."""
+    """A solver's growth function (kinds.Solver.growth)."""
     blocks: list[Block]
 
     def growth_of(self, block: Block, step: float) -> float:
-        """Beside what the mode grows by itself."""
+        """Growth factor of a step beyond the mode's own growth."""
         return self.growth(block.jacobian, block.partner, step) * math.exp(-block.own * step)
 
     def bound(self) -> float:
-        """Largest stable scaled step; 0 where it is rounding alone that would allow one (below 100 LEAST)."""
+        """Largest stable scaled step; 0 below 100 LEAST, where rounding alone makes a step look stable."""
         sharp = self._bound(NEUTRAL)
         if sharp < 100 * LEAST or self._bound(NEUTRAL / 100) < 0.8 * sharp:
             return 0.0
         return sharp
 
     def _bound(self, neutral: float) -> float:
-        """The bound of the fastest mode, and then of those too that do not hold at it."""
+        """The bound of the fastest mode, lowered by each mode that is unstable at it."""
         asked = {max(range(len(self.blocks)), key=lambda k: float(np.abs(self.blocks[k].jacobian).max()))}
         while True:
 
@@ -131,13 +131,13 @@ class _Reduced:
 
 
 def _mixed(modes: Modes) -> bool:
-    """Whether modes that matter decay, each by the others' pairs, and none grows by itself, which would hide them."""
+    """Whether relevant modes are damped, so that pairs couple them, and no mode grows by itself, hiding their bound."""
     rates = modes.values.real / modes.fastest
     return bool(rates.min() < -1e-3 and rates.max() < 1e-3)
 
 
 def _whole(march: March, solver: Solver, guess: float, own: float) -> float:
-    """The bound [s] by the whole Jacobian, from that of the modes; ``own`` [1/s]: what grows by itself."""
+    """The bound [s] by the whole Jacobian, starting from that of the modes; ``own`` [1/s]: the modes' own growth."""
     matrix, partner = jacobian(march), march.system.partner
 
     def stable(step: float) -> bool:

@@ -1,8 +1,8 @@
-"""Which of two methods marches an island, an explicit or a stiff one: decided at the start and looked at again.
+"""The switch between an explicit and a stiff method on an island: chosen at the start, reconsidered during the run.
 
-An explicit step is held by stability, not by the tolerance, where its length times the fastest mode stands at the
+An explicit step is limited by stability, not by the tolerance, where its length times the fastest mode lies at the
 boundary of its stability region (Hairer & Wanner 1996, IV.2). Then a stiff method is tried, and kept as long as its
-steps replace more explicit ones than they cost. All is decided by counts of steps and operations, never by a clock.
+steps replace more explicit ones than they cost. Costs are counts of steps and operations, never times of a clock.
 """
 
 from __future__ import annotations
@@ -18,27 +18,27 @@ if TYPE_CHECKING:
     from sceneql.system import Stepper
 
 HELD = 0.5
-"""Part of the stability boundary from which on a step counts as held by it."""
+"""Part of the stability boundary from which on stability counts as limiting the step."""
 FIRST, LAST = 200, 6400
-"""Steps up to the first look, and at most between two."""
+"""Explicit steps before the first check, and at most between two checks."""
 TRIAL = 100
-"""Steps of a stiff method after which it is looked at first, and after which it is first judged."""
+"""Steps of a stiff method before a mean step length is measured, and again until it is first judged by that."""
 PATIENCE = 1 / 3
-"""Part of its cost that a stiff step has to replace: vibrations that its start excites take it some time to damp."""
+"""Part of its cost that a stiff step has to replace: vibrations excited at its start take some time to damp."""
 
 
 class Switch:
-    """The choice for one march."""
+    """The choice of the method of one march."""
 
     def __init__(self, explicit: Stepper, stiff: Stepper, rate_at: Rate, partner: Partners) -> None:
-        """``rate_at``, ``partner``: of the island, see `dominant`."""
+        """``rate_at``, ``partner``: the island's, see `dominant`."""
         self.explicit, self.stiff = explicit, stiff
         self._rate_at, self._partner = rate_at, partner
         self.size = int((partner < 0).sum())
         """Unknowns of the stiff method's linear systems."""
         self.active = explicit
         self.history: list[tuple[float, str]] = []
-        """When [s] which method was taken, and why."""
+        """(time [s], method and reason) of each choice."""
         self.until_look = self._between = FIRST
         self._since = 0.0
         self._warming = False
@@ -51,11 +51,11 @@ class Switch:
 
     @property
     def _often(self) -> int:
-        """Stiff steps between two looks: as many as cost what the most of explicit ones do."""
+        """Stiff steps between two checks: as many as cost LAST explicit ones."""
         return max(TRIAL, int(LAST / self.cost))
 
     def start(self, y: Floats, step: float) -> None:
-        """Choose the method to begin with; ``step`` [s]: what the tolerance seems to allow at the start."""
+        """Choose the first method; ``step`` [s]: an estimate of the step that the tolerance allows at the start."""
         speed = self._fastest(0.0, y)
         explicit_steps = self._steps(step, speed)
         if explicit_steps > self.cost and self._possible:
@@ -66,7 +66,7 @@ class Switch:
             self._take(self.explicit, 0.0, "no mode makes the start stiff")
 
     def look(self, t: float, y: Floats, step: float, steps: int) -> bool:
-        """Whether the other method is taken from t [s] on, with ``step`` to try next, after so many steps."""
+        """Whether to switch at t [s], after ``steps`` steps; ``step`` [s] is the next to try."""
         mean = (t - self._since) / max(1, steps)
         self._since = t
         if self._warming:
@@ -84,14 +84,14 @@ class Switch:
         if gain >= PATIENCE * self.cost:
             return False
         self._take(self.explicit, t, f"a stiff step replaces but {gain:.2g} explicit ones and costs {self.cost:.2g}")
-        # A trial in vain is not to cost more than what it is between.
+        # A trial in vain must not cost more than the steps before the next one.
         self.until_look = max(self.until_look, int(TRIAL * self.cost))
         return True
 
     def give_up(self, t: float) -> bool:
         """Whether the explicit method takes over from a stiff one that finds no step short enough at t [s].
 
-        Where friction turns, a rate jumps: its Jacobian then says nothing, however short the step.
+        Where friction reverses, a rate jumps: its Jacobian is then useless, however short the step.
         """
         if self.active is self.explicit:
             return False
@@ -100,12 +100,12 @@ class Switch:
         return True
 
     def refuse(self, t: float, why: str) -> None:
-        """The stiff method cannot take this island: the explicit one goes on to the end."""
+        """Exclude the stiff method, which cannot solve this island: the explicit one continues to the end."""
         self._possible = False
         self._take(self.explicit, t, why)
 
     def stable(self, t: float, y: Floats, step: float) -> float:
-        """The step [s], or what of it the active method can take."""
+        """``step`` [s], or the largest stable step of the active method if that is shorter."""
         steps = self._steps(step, self._fastest(t, y)) if self.active is self.explicit else 0.0
         return step * min(1.0, HELD / steps) if steps else step
 
