@@ -1,10 +1,9 @@
 # mypy: ignore-errors
-"""Local contacts that act within the stages of Newton's method (stage_contacts_kernels): what is left to do between the
-steps.
+"""The end of a step with local contacts inside the stages of Newton's method (stage_contacts_kernels).
 
-Masses that a stage has stopped on a surface have their impact now: they leave with the restitution, or rest. Listed for
-the next step is what may come near in it. What was not, and met something all the same, is settled as where contacts
-act between steps alone (respond_kernels).
+Masses that a stage has stopped on a surface have their impact now: they leave with the restitution, or rest. Masses
+that may touch a surface in the next step are listed for its stages. An impact of a mass that was not listed is resolved
+as where contacts act between steps alone (respond_kernels).
 """
 
 import math
@@ -27,20 +26,20 @@ from sceneql.system.signatures_kernels import A, F, I, N
 back_off_found = lazy("sceneql.contacts.respond_kernels:back_off_found", ANSWER)
 
 AHEAD = 3.0
-"""Steps of the present speed within which what comes near is listed."""
+"""Steps at the present speed within which a mass has to come near a surface to be listed."""
 TOUCH = 1e-9
-"""Depth, as a part of the coordinates (or of a meter), from which on a mass at a step's end is put outside."""
+"""Depth, relative to the coordinates (or to a meter), from which on a mass at a step's end is moved outside."""
 
 
 @lean_inlined
 def whole_way(path):
-    """How far apart the ends of a path are."""
+    """Distance [m] between the ends of a path."""
     return math.sqrt((path[6] - path[0]) ** 2 + (path[7] - path[1]) ** 2 + (path[8] - path[2]) ** 2)
 
 
 @lean(types.void(F, A, A, A, A, A, A, A, I), inner=True)
 def find_missed(h, y0, y1, found, listed, path, mean, floats, ints):
-    """Leave found[k] = 1 where a mass met something that no stage has stopped it at."""
+    """Leave found[k] = 1 for masses that met a surface without having been stopped there by a stage."""
     find_near(h, y0, y1, found, floats, ints)
     thinnest = math.inf
     for j in range(ints[layout.OBJECTS]):
@@ -63,8 +62,8 @@ def find_missed(h, y0, y1, found, listed, path, mean, floats, ints):
 def arrive(t1, h, k, j, y0, y1, floats, ints):
     """The impact of a pair that a stage of the step of length h has stopped, or the beginning of its rest.
 
-    What the stages took of the speed of approach, and the other forces' work along the normal, are counted here: what
-    loads at the ends of stages say of that is off by as much as an impact has.
+    The energy of approach that the stages took, and the work of other forces along the normal, are counted here: the
+    loads at the ends of stages give them with an error as large as the impact.
     """
     memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
     at = layout.HEAD + layout.OBJECT * j
@@ -92,7 +91,7 @@ def arrive(t1, h, k, j, y0, y1, floats, ints):
 
 @lean(types.void(F, F, N, N, A, A, A, I), inner=True)
 def put_right(t1, h, k, j, y0, y1, floats, ints):
-    """What a step of length h has made of a listed pair: it arrives, rests on or is let go, and is outside."""
+    """Update a listed pair after a step of length h: its impact, rest or release; then move the mass outside."""
     memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
     at = layout.HEAD + layout.OBJECT * j
     load = floats[memory + layout.LOAD]
@@ -119,7 +118,7 @@ def put_right(t1, h, k, j, y0, y1, floats, ints):
 
 @lean(types.void(F, A, A, A, A, I), inner=True)
 def list_near(h, y0, y1, found, floats, ints):
-    """List the masses that may touch something in the next step; found (bodies,) is scratch."""
+    """List the masses that may touch a surface in the next step; found (bodies,) is scratch."""
     n = ints[layout.BODIES]
     at, to = ints[layout.POSITION], ints[layout.VELOCITY]
     x1, v1 = y1[at : at + 3 * n], y1[to : to + 3 * n]
@@ -148,7 +147,7 @@ def list_near(h, y0, y1, found, floats, ints):
 
 @kernel(BACK_OFF_IN_STAGES, inner=True)
 def back_off_in_stages(t0, t1, y0, y1, floats, ints):
-    """Change y1 where masses met something in the step from t0 to t1, and list those that may in the next one."""
+    """Resolve in y1 the impacts of the step from t0 to t1, and list the masses that may touch in the next one."""
     h = t1 - t0
     found, listed = np.zeros(ints[layout.BODIES]), np.zeros(ints[layout.BODIES])
     path, mean = np.empty(layout.PATH), np.empty(3)

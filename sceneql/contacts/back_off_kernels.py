@@ -1,8 +1,8 @@
 # mypy: ignore-errors
-"""Contacts in `local` mode: every body backs off to its own impacts within the step and flies the rest of it.
+"""Contacts in `local` mode: every body has its impacts within the step, and flies on for the rest of it.
 
-Here the bodies are found that may meet something; what becomes of them is in respond_kernels, and how they rest in
-resting_kernels and support_kernels: code that is compiled when the first body comes near enough.
+This file finds the bodies that may touch a surface. Impacts are in respond_kernels and rest in resting_kernels and
+support_kernels, which are compiled when the first body comes near enough.
 """
 
 import numpy as np
@@ -29,15 +29,12 @@ LAZY_FIRST = (
     "sceneql.contacts.support_kernels",
     "sceneql.contacts.search_kernels",
 )
-"""Of what is compiled lazily, modules that a process beside does best to begin with (driver.lazy_first)."""
+"""Lazily compiled modules with which a background process begins (driver.lazy_first)."""
 
 
 @lean(types.void(F, A, A, A, A, I), inner=True)
 def find_near(h, y0, y1, found, floats, ints):
-    """Set found[k] to 1 for the bodies that may touch something in the step, or rest: the others cost next to nothing.
-
-    found (bodies,): zeros.
-    """
+    """Set found[k], 0 before, to 1 for bodies that rest or may touch a surface in the step; cheap for all others."""
     n = ints[layout.BODIES]
     at, to = ints[layout.POSITION], ints[layout.VELOCITY]
     x0, v0, x1, v1 = y0[at : at + 3 * n], y0[to : to + 3 * n], y1[at : at + 3 * n], y1[to : to + 3 * n]
@@ -62,7 +59,7 @@ def find_near(h, y0, y1, found, floats, ints):
 
 @lean_inlined
 def may_be_cut(t0, t1, floats, ints):
-    """Whether the step may end sooner, and note it if it is a new one."""
+    """Whether the step may be cut once more; records the step where it is a new one."""
     memory = ints[layout.LAST]
     if t1 > floats[memory + layout.END]:
         floats[memory + layout.END], floats[memory + layout.WHOLE], floats[memory + layout.CUTS] = t1, t1 - t0, 0.0
@@ -80,7 +77,7 @@ def some(found):
 
 @kernel(BACK_OFF, inner=True)
 def back_off(t0, t1, y0, rate0, y1, floats, ints):
-    """Change y1 so that no body went through a surface in the step from t0 to t1; or only say when it should end."""
+    """Resolve impacts of the step from t0 to t1 in y1; while STEP_END is above 0, only lower it to cut the step."""
     asked = floats[channels.STEP_END] > 0.0
     if floats[channels.STAGE] == channels.OUTSIDE:
         if not asked:
@@ -103,7 +100,7 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
 
 @lean(TERM, inner=True)
 def constrain(t, y, rate, floats, ints):
-    """What the surfaces do to the accelerations; free pairs cost nothing."""
+    """Add normal and friction forces to the accelerations of bodies that rest; free pairs cost nothing."""
     if floats[ints[layout.LAST] + layout.RESTING] > 0.0:
         if floats[channels.STAGE] > 0.0:
             hold(y, rate, floats, ints)

@@ -71,14 +71,14 @@ def length_bound(path):
 
 @lean_inlined
 def clear_piece(path, length, s, ds, floats, ints, at, reach):
-    """Whether it is proved that a body of that reach is clear of the object from s to s + ds."""
+    """Whether a body of radius ``reach`` is proved to be clear of the object from s to s + ds."""
     x, y, z = place(path, s + 0.5 * ds)
     return clear(floats, ints, at, x, y, z, 0.5 * ds * length + reach)
 
 
 @lean_inlined
 def stays_above(path, floats, ints, at, reach):
-    """Whether a path does not come down to a plane, or not below where it starts to leave it: by its control points."""
+    """Whether a path stays above a plane, or above its start on it: by the control points of its cubic."""
     third = path[12] / 3.0
     start, nx, ny, nz = facing(floats, ints, at, path[0], path[1], path[2])
     end = facing(floats, ints, at, path[6], path[7], path[8])[0]
@@ -90,9 +90,9 @@ def stays_above(path, floats, ints, at, reach):
 
 @lean(types.float64(A, A, I, N, F), inner=True)
 def first_contact(path, floats, ints, at, reach):
-    """Where on the path (0 <= s <= 1) a body of that reach first enters the object at ints[at:]; NEVER if nowhere.
+    """Where on the path (0 <= s <= 1) a body of radius ``reach`` first enters the object at ints[at:], or NEVER.
 
-    A body that touches at the start and approaches has s = 0; one that leaves is followed until it comes back.
+    A body that touches at the start and approaches has s = 0; a separating one is followed until it returns.
     """
     if ints[at + layout.FLAT] != 0 and stays_above(path, floats, ints, at, reach):
         return NEVER

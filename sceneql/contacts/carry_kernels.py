@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""What carries a body that rests on several objects at once, compiled when the first one does."""
+"""Normal forces on a body that rests on several objects at once, compiled at the first such body."""
 
 from sceneql.compiled.kernels import lean
 from sceneql.contacts import layout
@@ -11,7 +11,7 @@ SWEEPS = 50
 
 @lean(OF_BODY, inner=True)
 def carry(k, y, rate, floats, ints):
-    """Normal forces, none negative, that leave no resting pair pressing: projected Gauss-Seidel over the pairs."""
+    """Nonnegative normal forces that leave no acceleration into a surface: projected Gauss-Seidel over the pairs."""
     to = ints[layout.VELOCITY] + 3 * k
     for _ in range(SWEEPS):
         change = 0.0

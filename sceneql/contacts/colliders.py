@@ -1,4 +1,4 @@
-"""The integers by which contact kernels know the surfaces of objects (shape_kernels)."""
+"""The integers that describe the surfaces of objects to contact kernels (shape_kernels)."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly
 
 OFTEN = 1 / 240
-"""Longest step [s] that a tolerance may choose where contacts act at the ends of steps or objects move unevenly: it
-sees neither, and what comes as slowly as gravity makes it in two steps is taken to rest."""
+"""Longest adaptive step [s] where contacts act at the ends of steps or objects accelerate: the error estimate sees
+neither, and a body that approaches no faster than gravity makes it in two steps is taken to rest."""
 SHIFTING = ("position", "height")
-"""What only shifts an object that may be collided with; `height` is a plane's."""
+"""Fields of an object that only translate it; `height` is a plane's."""
 FAR_APART = 1.0
-"""Seconds between the poses of an object that moves evenly: exact for any, and its velocity is as good as its place."""
+"""Seconds between the poses of an object in uniform motion: exact for any, and a long one loses least to rounding."""
 
 
 def surfaces(refs: Sequence[Ref], assembly: Assembly, at: int) -> tuple[int, ...]:
-    """The objects' integers, to stand at ``at`` in a contact's, each shape's further ones behind those of all.
+    """The objects' integers, from index ``at`` of a contact's on; further integers of the shapes follow them.
 
     Raises ScriptError for an object that cannot be collided with.
     """
@@ -40,7 +40,7 @@ def surfaces(refs: Sequence[Ref], assembly: Assembly, at: int) -> tuple[int, ...
 
 
 def must_be_outside(model: str, refs: Sequence[Ref], ints: Sequence[int], assembly: Assembly) -> None:
-    """Raise ScriptError where a moving body starts with its center inside an object; ``ints`` are the contact's."""
+    """Raise ScriptError where a moving body's center starts inside an object; ``ints``: the contact's integers."""
     import numpy as np
 
     from sceneql.contacts.start_kernels import deepest
@@ -54,7 +54,7 @@ def must_be_outside(model: str, refs: Sequence[Ref], ints: Sequence[int], assemb
 
 
 def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """All but the last of an object's integers, and the further ones of its shape."""
+    """An object's integers without the last, and the further integers of its shape."""
     from sceneql.compiled.numbered_kernels import number_of
     from sceneql.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, NEAR_TYPE, SURFACE_TYPE
 
@@ -95,7 +95,7 @@ def _collider(kind: Object, assembly: Assembly) -> Collider:
 
 
 def _shifted(kind: Object, by: float, assembly: Assembly) -> tuple[int, int]:
-    """Position and rotation of an object's collider a little earlier or later."""
+    """Offsets of position and rotation of an object's collider, ``by`` [s] later."""
     there = shifted(kind, by, assembly)
     if not _has_own(kind):
         return implicit.place(there, assembly)
@@ -104,12 +104,12 @@ def _shifted(kind: Object, by: float, assembly: Assembly) -> tuple[int, int]:
 
 
 def is_moving(kind: Object) -> bool:
-    """Whether any of its values varies in time."""
+    """Whether any value of the object varies in time."""
     return any(isinstance(value, Value) and not value.constant for _, value in kind)
 
 
 def _moves_evenly(kind: Object, assembly: Assembly) -> bool:
-    """Whether it is known to go straight on at one speed: what it does to masses is then what one at rest does."""
+    """Whether an object is known to move uniformly: its contacts then are those of one at rest."""
     return all(
         name in SHIFTING and goes_evenly(value.expr, assembly.formula)
         for name, value in kind

@@ -26,7 +26,7 @@ NO_EVENT = 1e300
 
 @lean_inlined
 def swept(t, k, at, x, y, z, vx, vy, vz, distance, reach, path, floats, ints):
-    """The gap; negative also where the path since the last accepted instant went through the object."""
+    """The gap [m]; negative also where the path since the last accepted instant passed through the object."""
     last = ints[layout.LAST] + layout.INSTANT * k
     gap = distance - reach
     if not t > floats[last]:
@@ -36,7 +36,7 @@ def swept(t, k, at, x, y, z, vx, vy, vz, distance, reach, path, floats, ints):
     path[6], path[7], path[8], path[9], path[10], path[11] = x, y, z, vx, vy, vz
     path[12] = t - floats[last]
     if ints[at + layout.MOVING] != 0:
-        # So far in that what the path is off by cannot feign it.
+        # Require a depth beyond the error of the path.
         off = from_object(floats, ints, at, path)
         if not off < 0.5 * (floats[ints[at + layout.DEPTH]] + reach):
             return gap
@@ -53,7 +53,7 @@ def swept(t, k, at, x, y, z, vx, vy, vz, distance, reach, path, floats, ints):
 
 @kernel(GAP, inner=True)
 def gap(t, y, gaps, floats, ints):
-    """Signed distances [m] of all pairs; of a sliding one its speed [m/s]; none for one that rests or is fixed."""
+    """Gaps of all pairs: signed distance [m]; speed [m/s] of a sliding pair; 1e300 for a resting or fixed one."""
     objects = ints[layout.OBJECTS]
     path = np.empty(layout.PATH)
     for k in range(ints[layout.BODIES]):
@@ -79,7 +79,7 @@ def gap(t, y, gaps, floats, ints):
 
 @lean_inlined
 def note_instant(t, k, y, floats, ints):
-    """Remember where body k is and how fast, at an accepted instant."""
+    """Store place and velocity of body k at an accepted instant."""
     last = ints[layout.LAST] + layout.INSTANT * k
     floats[last] = t
     for c in range(3):
@@ -89,7 +89,7 @@ def note_instant(t, k, y, floats, ints):
 
 @lean_inlined
 def hold(t, y, floats, ints):
-    """Keep what rests on its surface, let go what has left it, and note the accepted instant."""
+    """Keep resting bodies on their surfaces, release those that have left, and store the accepted instant."""
     for k in range(ints[layout.BODIES]):
         for j in range(ints[layout.OBJECTS]):
             memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
@@ -110,7 +110,7 @@ def impact(t, y, pair, floats, ints):
 
 @lean_inlined
 def first_near(y, floats, ints):
-    """The first body that rests or is so near to an object that it matters how it would press; -1 for none."""
+    """The first body that rests, or is near enough to an object to need its free normal acceleration; -1 for none."""
     for k in range(ints[layout.BODIES]):
         if floats[ints[layout.INVERSE] + k] == 0.0:
             continue
@@ -123,7 +123,7 @@ def first_near(y, floats, ints):
 
 @lean(TERM, inner=True)
 def constrain(t, y, rate, floats, ints):
-    """What the surfaces do to the accelerations; impacts want to know how free pairs press."""
+    """Add normal and friction forces to the accelerations; impacts need the free normal accelerations, too."""
     first = first_near(y, floats, ints)
     if first >= 0:
         support(first, y, rate, floats, ints)

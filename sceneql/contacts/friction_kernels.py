@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Coulomb's friction of pairs that rest or slide, compiled where there is any."""
+"""Coulomb friction of pairs that rest or slide, compiled where there is any."""
 
 import math
 
@@ -13,12 +13,12 @@ from sceneql.contacts.shape_kernels import acceleration, surface, velocity
 from sceneql.contacts.slide_kernels import tangential
 
 FAST = 4.0
-"""Slip, as a multiple of what friction can take from it in a step, above which its direction hardly turns."""
+"""Slip, as a multiple of its largest change by friction in a step, above which its direction hardly changes."""
 
 
 @lean_inlined
 def hold_still(memory, vx, vy, vz, nx, ny, nz, dx, dy, dz, pull, to, rate, floats, ints):
-    """Take away all of a pull d along the surface, and what slip is left of a velocity v relative to it."""
+    """Cancel a tangential acceleration d, and the rest of the slip of a velocity v relative to the surface."""
     if pull > 0.0:
         along = memory + layout.ALONG
         floats[along], floats[along + 1], floats[along + 2] = dx / pull, dy / pull, dz / pull
@@ -31,7 +31,7 @@ def hold_still(memory, vx, vy, vz, nx, ny, nz, dx, dy, dz, pull, to, rate, float
 
 @lean(OF_BODY, inner=True)
 def rub(k, y, rate, floats, ints):
-    """Coulomb's friction of resting pairs: against the sliding, or up to its bound against the pull."""
+    """Coulomb friction of resting pairs: against the slip, or up to its bound against the tangential acceleration."""
     mu = floats[ints[layout.FRICTION]]
     to = ints[layout.VELOCITY] + 3 * k
     for j in range(ints[layout.OBJECTS]):
@@ -51,7 +51,7 @@ def rub(k, y, rate, floats, ints):
         size = math.sqrt(dx * dx + dy * dy + dz * dz)
         floats[memory + layout.PULL] = size
         if floats[memory] == layout.STICKS and floats[channels.STAGE] == channels.BETWEEN:
-            # To the end of the step, which sees whether the pull was too much.
+            # Hold up to the end of the step, where the pull is compared with friction's bound.
             hold_still(memory, vx, vy, vz, nx, ny, nz, dx, dy, dz, size, to, rate, floats, ints)
             continue
         if floats[memory] == layout.STICKS:
@@ -62,7 +62,7 @@ def rub(k, y, rate, floats, ints):
             vn = vx * nx + vy * ny + vz * nz
             dx, dy, dz = vx - vn * nx, vy - vn * ny, vz - vn * nz
             size = math.sqrt(dx * dx + dy * dy + dz * dz)
-            # Past the instant when it stops the force goes on, so that the stop is a clean root.
+            # The force continues past the stop, so that the slip has a simple root there.
             if size < STILL:
                 dx, dy, dz, size = ax, ay, az, 1.0
             elif dx * ax + dy * ay + dz * az < 0.0:
@@ -78,10 +78,10 @@ def rub(k, y, rate, floats, ints):
 
 @lean(BRAKE, inner=True)
 def brake(t, k, j, h, y0, y1, floats, ints):
-    """Coulomb's friction of a creeping pair in the step of length h, which was made without: at most it stops the slip.
+    """Coulomb friction of a creeping pair, added after a step of length h without it: at most it stops the slip.
 
-    It goes against the slip at the end: implicit, so no step is too long (Moreau 1988). The way that it takes back does
-    work for what pulls. A pair that has become fast slides, one that has become slow creeps.
+    It opposes the slip at the end: implicit, so no step is too long (Moreau 1988). The work of the pull on the distance
+    taken back is counted. A pair that has become fast slides, one that has become slow creeps.
     """
     memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
     mu = floats[ints[layout.FRICTION]]
@@ -105,7 +105,7 @@ def brake(t, k, j, h, y0, y1, floats, ints):
         most = 0.5 * (most + mu * floats[memory + layout.EARLIER] * h)
     floats[memory + layout.EARLIER] = floats[memory + layout.LOAD]
     back = 0.0
-    if speed <= most:  # it stops: where the slip from the start would, slowed down evenly
+    if speed <= most:  # it stops, where a uniform deceleration of the slip from the start would have it stop
         cx, cy, cz = -vx, -vy, -vz
         if before > 0.0:
             bx, by, bz = bx / before, by / before, bz / before

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""What an impact does in `exact` mode, compiled when the first one comes (collision_kernels)."""
+"""Impulses of impacts in `exact` mode, compiled at the first impact (collision_kernels)."""
 
 from sceneql.compiled.kernels import lean
 from sceneql.contacts import layout
@@ -10,7 +10,7 @@ from sceneql.contacts.shape_kernels import surface, velocity
 from sceneql.system.signatures_kernels import IMPACT
 
 LOWEST_FLIGHT = 4e-13
-"""Height of a bounce, as a part of the coordinates, that rounding can still resolve: below it the body rests."""
+"""Height of a bounce, relative to the coordinates, below which rounding hides it and the body rests."""
 
 
 @lean(IMPACT, inner=True)
@@ -39,12 +39,12 @@ def hit(t, y, pair, floats, ints):
         vx, vy, vz = bounce(vx, vy, vz, nx, ny, nz, e, floats[ints[layout.FRICTION]])
         if up <= STILL or (press < 0.0 and up * up < -2.0 * press * LOWEST_FLIGHT * scale_of(px, py, pz)):
             vx, vy, vz = vx - up * nx, vy - up * ny, vz - up * nz
-            # What is left of the bouncing is a geometric series of flights.
+            # The remaining bounces are a geometric series of flights.
             left = 2.0 * up / (-press * (1.0 - e)) if press < 0.0 and e < 1.0 else 0.0
             come_to_rest(t + left, memory, vx, vy, vz, nx, ny, nz, floats, ints)
         set_velocity(k, vx + ux, vy + uy, vz + uz, y, floats, ints)
     elif vn <= STILL:
-        # Also where nothing presses yet: one that is pulled off is let go at the end of the step.
+        # Also without a load yet: a body that is pulled off is released at the end of the step.
         vx, vy, vz = vx - vn * nx, vy - vn * ny, vz - vn * nz
         come_to_rest(t, memory, vx, vy, vz, nx, ny, nz, floats, ints)
         set_velocity(k, vx + ux, vy + uy, vz + uz, y, floats, ints)

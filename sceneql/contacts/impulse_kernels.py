@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""What an impact does to a velocity, and the tally of impacts."""
+"""The change of velocity in an impact, and the tally of impacts."""
 
 import math
 
@@ -7,18 +7,18 @@ from sceneql.compiled.kernels import lean_inlined
 from sceneql.contacts import layout
 
 MOST_CUTS = 16
-"""Times that one step is cut. Where it stands from the beginning with an END that never comes, none is (collision)."""
+"""Most cuts of one step. The contact starts with this count and an END that never comes where no step is cut."""
 
 STILL = 1e-9
-"""Speed [m/s] that counts as none."""
+"""Speed [m/s] that counts as zero."""
 
 
 @lean_inlined
 def bounce(vx, vy, vz, nx, ny, nz, restitution, friction):
     """The velocity after an impact with velocity v relative to the surface of normal n, approaching (v.n < 0).
 
-    Newton's restitution along n; across it Coulomb's friction: the impulse is at most friction times the normal one
-    and never turns the slip around.
+    Newton's restitution along n; across it Coulomb friction: the impulse is at most friction times the normal one and
+    never reverses the slip.
     """
     vn = vx * nx + vy * ny + vz * nz
     tx, ty, tz = vx - vn * nx, vy - vn * ny, vz - vn * nz
@@ -32,7 +32,7 @@ def bounce(vx, vy, vz, nx, ny, nz, restitution, friction):
 
 @lean_inlined
 def count_hit(floats, at, t, speed):
-    """Enter an impact at time t with this speed of approach into the tally."""
+    """Add an impact at time t [s] with this speed of approach [m/s] to the tally."""
     floats[at + layout.HITS] += 1.0
     if math.isnan(floats[at + layout.FIRST_TIME]):
         floats[at + layout.FIRST_TIME] = t
@@ -43,5 +43,5 @@ def count_hit(floats, at, t, speed):
 
 @lean_inlined
 def scale_of(x, y, z):
-    """Size of the coordinates [m], at least 1: what rounding errors of distances grow with."""
+    """Size of the coordinates [m], at least 1: the scale of rounding errors of distances."""
     return max(1.0, max(abs(x), max(abs(y), abs(z))))

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""What a body meets first on its path (body_path_kernels)."""
+"""The first contact of a body on its path (body_path_kernels)."""
 
 from numba import types
 
@@ -27,7 +27,7 @@ def shift(path, ux, uy, uz, h):
 
 @lean_inlined
 def seen(path, s, floats, ints, at):
-    """Where the body is at s, as `earliest` sees it from an object: that stands where it is at the path's end."""
+    """The body's place at s in the frame of an object, as `earliest` uses it: the object's pose at the path's end."""
     x, y, z = place(path, s)
     left = (1.0 - s) * path[12]
     ux, uy, uz = velocity(floats, ints, at, path[0], path[1], path[2])
@@ -36,10 +36,8 @@ def seen(path, s, floats, ints, at):
 
 @lean(types.Tuple((F, N))(N, F, A, A, I), inner=True)
 def earliest(k, reach, path, floats, ints):
-    """The first contact on the path with an object that the body does not rest on: (s, the object).
-
-    The path is seen from the object as it moves.
-    """
+    """The first contact on the path with an object that the body does not rest on: (s, the object), by the path in the
+    moving frame of each object."""
     best = NEVER
     first = 0
     h = path[12]

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""How an object's own points move, by central differences of its poses, and paths as they are seen from it."""
+"""Velocities and accelerations of an object's points, by central differences of its poses, and paths in its frame."""
 
 import math
 
@@ -10,7 +10,7 @@ from sceneql.contacts.shape_kernels import FROM_TYPE, MOTION_TYPE, inward, turn
 
 @lean_inlined
 def carried(floats, ints, at, pose, x, y, z):
-    """Where a point that is fixed to the object stands in its pose BEFORE or AFTER."""
+    """The place of a point fixed to the object in its pose BEFORE or AFTER."""
     a, b, c = inward(floats, ints, at, x, y, z)
     a, b, c = turn(floats, ints[at + pose + 1], a, b, c)
     p = ints[at + pose]
@@ -19,7 +19,7 @@ def carried(floats, ints, at, pose, x, y, z):
 
 @lean(MOTION_TYPE, inner=True)
 def moving_velocity(floats, ints, at, x, y, z):
-    """Velocity [m/s] of the point at (x, y, z) of one that moves."""
+    """Velocity [m/s] of the point at (x, y, z) of a moving object."""
     apart = floats[ints[at + layout.MOVING]]
     a, b, c = carried(floats, ints, at, layout.BEFORE, x, y, z)
     p, q, r = carried(floats, ints, at, layout.AFTER, x, y, z)
@@ -28,7 +28,7 @@ def moving_velocity(floats, ints, at, x, y, z):
 
 @lean(MOTION_TYPE, inner=True)
 def moving_acceleration(floats, ints, at, x, y, z):
-    """Acceleration [m/s^2] of the same."""
+    """Acceleration [m/s^2] of the point at (x, y, z) of a moving object."""
     apart = floats[ints[at + layout.MOVING]]
     a, b, c = carried(floats, ints, at, layout.BEFORE, x, y, z)
     p, q, r = carried(floats, ints, at, layout.AFTER, x, y, z)
@@ -38,9 +38,9 @@ def moving_acceleration(floats, ints, at, x, y, z):
 
 @lean(FROM_TYPE, inner=True)
 def from_object(floats, ints, at, path):
-    """Change a path (body_path_kernels) to what is seen of it from one that moves, where that stands at the path's end.
+    """Change a path (body_path_kernels) to the frame of a moving object, in its pose at the path's end.
 
-    Returns how far off it may be [m]: half the object's acceleration at either end times the square of the duration.
+    Returns a bound of the error [m]: half the object's acceleration at either end times the square of the duration.
     """
     h = path[12]
     most = 0.0
@@ -51,7 +51,7 @@ def from_object(floats, ints, at, path):
         u, v, w = moving_velocity(floats, ints, at, x, y, z)
         p, q, r = path[end + 3] - u, path[end + 4] - v, path[end + 5] - w
         if end == 0:
-            # What the object has turned since turns the velocity, too.
+            # The object's rotation up to the end rotates the velocity, too.
             a, b, c = moving_velocity(floats, ints, at, x + p, y + q, z + r)
             p, q, r = p + h * (a - u), q + h * (b - v), r + h * (c - w)
             path[0], path[1], path[2] = x + h * u, y + h * v, z + h * w

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Which bodies may touch a surface, for shapes that say no more than whether they are clear of a ball."""
+"""Which bodies may touch a surface, for shapes without a kernel `near`: by their kernel `clear`."""
 
 from sceneql.compiled.kernels import lean
 from sceneql.contacts import layout
@@ -8,7 +8,7 @@ from sceneql.contacts.shape_kernels import NEAR_TYPE, clear_at
 
 @lean(NEAR_TYPE, inner=True)
 def near(floats, ints, at, h, x0, v0, x1, v1, radii, more, found):
-    """One by one: a ball about the path's end that it does not leave."""
+    """Test for each body a ball about the path's end that contains the path."""
     clear_of = clear_at(ints[at + layout.CLEAR])
     for k in range(radii.size):
         way = 0.0

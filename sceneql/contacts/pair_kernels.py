@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""What contact kernels ask of a body and of a pair, before what rests or meets is compiled; the types of that."""
+"""Queries of a body and of a pair that every contact kernel needs, and signatures of the lazily compiled kernels."""
 
 from numba import types
 
@@ -10,9 +10,9 @@ from sceneql.contacts.shape_kernels import surface
 from sceneql.system.signatures_kernels import A, F, I, N
 
 NEAR = 1e-9
-"""Distance, as a part of the coordinates, within which a free pair's normal acceleration is worth knowing."""
+"""Distance, relative to the coordinates, within which a free pair's normal acceleration is computed."""
 FIRM = 1e3
-"""How much more than inertia and springs a tie holds within a stage, as the linear systems see it."""
+"""Strength of a tie within a stage, as a multiple of that of inertia and springs in the linear systems."""
 
 ANSWER = types.void(F, F, A, A, A, A, A, A, I)
 """(start and end of the step, state at both, bodies found, room for a path and its mean acceleration, floats, ints)."""
@@ -23,9 +23,9 @@ KEEP = types.boolean(F, N, N, A, A, I)
 HOLD = types.void(A, A, A, I)
 """(state, rate, floats, ints)."""
 LONGEST = 1.0
-"""Step [s] up to which ties are firmer than springs where slopes are asked for between steps."""
+"""Step [s] up to which ties are stiffer than springs where contacts act between steps and solvers need slopes."""
 FIRMEST = 1e6
-"""Least rate [1/s] at which a tie takes away what normal velocity is left, where slopes are asked for between steps."""
+"""Least rate [1/s] at which such a tie damps the remaining normal velocity."""
 
 OF_BODY = types.void(N, A, A, A, I)
 """(body, state, rate, floats, ints)."""
@@ -34,12 +34,12 @@ OF_PAIR = types.void(N, N, F, F, F, A, A, A, I)
 BACK_OFF_IN_STAGES = types.void(F, F, A, A, A, I)
 """(start and end of the step, state at both, floats, ints)."""
 SUPPORT = types.void(N, A, A, A, I)
-"""(first body whose free pairs are looked at; -1: those that rest alone; state, rate, floats, ints)."""
+"""(first body whose free pairs are included; -1: resting pairs alone; state, rate, floats, ints)."""
 
 
 @lean_inlined
 def body_of(ints, k, y):
-    """Place of body k, its velocity, and its reach's offset parts."""
+    """Place [m] and velocity [m/s] of body k."""
     at = ints[layout.POSITION] + 3 * k
     to = ints[layout.VELOCITY] + 3 * k
     return y[at], y[at + 1], y[at + 2], y[to], y[to + 1], y[to + 2]
@@ -56,20 +56,20 @@ def away(k, j, y, floats, ints):
 
 @lean_inlined
 def is_flat(ints):
-    """Whether a plane that never moves is all that the bodies can meet: then resting costs little."""
+    """Whether the only object is a plane that never moves: then resting costs little."""
     return ints[layout.OBJECTS] == 1 and ints[layout.HEAD + layout.FLAT] != 0
 
 
 @lean_inlined
 def firmness(a, floats, ints):
-    """How firm ties are in a stage of coefficient a [1/s]; the square of the springs' frequency follows the list."""
+    """Rate [1/s] at which ties act in a stage of coefficient a [s]; the springs' squared frequency follows the list."""
     return FIRM * (1.0 + a * a * floats[ints[layout.LAST] + layout.LIST + ints[layout.BODIES]]) / a
 
 
 @lean_inlined
 def tightness(floats, ints):
-    """The rate [1/s] at which a tie takes away normal velocity where slopes are asked for between steps.
+    """The rate [1/s] at which a tie damps normal velocity where contacts act between steps and solvers need slopes.
 
-    For steps up to LONGEST it is far above what springs could do against it, which slopes leave out.
+    For steps up to LONGEST it is far above the effect of springs, which the slopes of ties leave out.
     """
     return max(FIRMEST, FIRM * LONGEST * floats[ints[layout.LAST] + layout.LIST + ints[layout.BODIES]])

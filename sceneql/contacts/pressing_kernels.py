@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""How a pair presses, if nothing holds it."""
+"""The acceleration of a free pair along the normal."""
 
 from sceneql.compiled.kernels import lean
 from sceneql.contacts import layout

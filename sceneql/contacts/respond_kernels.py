@@ -1,11 +1,11 @@
 # mypy: ignore-errors
-"""What becomes of bodies that meet something within a step, or rest: compiled when the first one does.
+"""Impacts and rest of bodies within a step, compiled when the first body touches a surface.
 
 The body's path in the step is the cubic Hermite curve of its ends; after an impact it flies on with the step's mean
-acceleration, which costs the solver's order. So where few bodies meet something, the march is asked to end the step
-right after the first impact and to go on from there; and wherever a tie is torn off, for one cut serves all that are
-at that instant. An approach slower than what the pressing acceleration gives in two steps is no impact: the body rests
-(resting_kernels), and slides for the rest of the step.
+acceleration, which loses the solver's order. So where few bodies have impacts, the march is asked to end the step right
+after the first impact and to continue from there; and so wherever a tie breaks, for one cut serves all ties that break
+at that instant. An approach slower than the speed that the acceleration into the surface gives in two steps is no
+impact: the body rests (resting_kernels), and slides for the rest of the step.
 """
 
 import math
@@ -28,9 +28,9 @@ from sceneql.system.signatures_kernels import A, F, I, N
 brake = lazy("sceneql.contacts.friction_kernels:brake", BRAKE)
 
 MOST_IMPACTS = 8
-"""Impacts of a body in one step; after that it is only kept outside."""
+"""Most impacts of a body in one step; after these it is only kept outside."""
 FEW = 8
-"""Bodies with an impact in a step, above which it is not cut."""
+"""Bodies with an impact in a step above which the step is not cut."""
 AFTER_IMPACT = 1e-4
 """Where a cut step ends, in parts of the step after the impact."""
 
@@ -49,7 +49,7 @@ def hits(s, whole, j, path, mean, floats, ints):
 
 @lean_inlined
 def fly(k, t1, whole, reach, path, mean, floats, ints):
-    """Take the path through its impacts; the energy by mass that they take [J/kg]. ``whole``: length of a step."""
+    """Change the path by its impacts; the energy per mass that they dissipate [J/kg]. ``whole``: length of a step."""
     length = path[12]
     lost = 0.0
     for _ in range(MOST_IMPACTS):
@@ -61,7 +61,7 @@ def fly(k, t1, whole, reach, path, mean, floats, ints):
         vx, vy, vz = moving(path, s)
         qx, qy, qz = seen(path, s, floats, ints, at)
         d, nx, ny, nz = surface(floats, ints, at, qx, qy, qz)
-        # Onto the surface: a root is found to rounding, a body may start a little inside.
+        # Move it onto the surface: roots have rounding errors, and a body may start slightly inside.
         d = min(0.0, d - reach)
         ux, uy, uz = velocity(floats, ints, at, qx, qy, qz)
         rx, ry, rz = vx - ux, vy - uy, vz - uz
@@ -93,7 +93,7 @@ def fly(k, t1, whole, reach, path, mean, floats, ints):
 
 @lean_inlined
 def push_out(reach, path, mean, floats, ints):
-    """Put the path's end outside of all objects; the energy by mass of approach and of place that this takes."""
+    """Move the path's end out of all objects; the kinetic and potential energy per mass that this takes [J/kg]."""
     work = 0.0
     before = path[9] ** 2 + path[10] ** 2 + path[11] ** 2
     for _ in range(3):
@@ -120,7 +120,7 @@ def push_out(reach, path, mean, floats, ints):
 
 @lean_inlined
 def slack(memory, floats, ints):
-    """By how much the pull on a pair along its surface may grow [m/s^2]; NaN where it does not stick."""
+    """Margin [m/s^2] of static friction over the pull along the surface; NaN where the pair does not stick."""
     if floats[memory] != layout.STICKS or floats[ints[layout.FRICTION]] == 0.0:
         return math.nan
     return floats[ints[layout.FRICTION]] * floats[memory + layout.LOAD] - floats[memory + layout.PULL]
@@ -128,7 +128,7 @@ def slack(memory, floats, ints):
 
 @lean_inlined
 def crossing(before, after):
-    """Where in a step what goes evenly from ``before`` to ``after`` turns negative; 1 where it does not (or NaN)."""
+    """Part of a step after which a number linear from ``before`` to ``after`` is negative; 1 where it is not (NaN)."""
     if before > 0.0 and after < 0.0:
         return before / (before - after)
     return 1.0
@@ -136,7 +136,7 @@ def crossing(before, after):
 
 @lean_inlined
 def torn_off(k, floats, ints):
-    """Where in a step the first tie of body k began to pull, or to ask too much of friction; 1 where none does."""
+    """Part of a step after which the first tie of body k pulls, or exceeds static friction; 1 where none does."""
     first = 1.0
     for j in range(ints[layout.OBJECTS]):
         memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
@@ -148,7 +148,7 @@ def torn_off(k, floats, ints):
 
 @lean_inlined
 def let_go(k, floats, ints):
-    """End the ties of body k that pull, or that friction could not hold; of the others the load is noted."""
+    """Break the ties of body k that pull or exceed static friction; store the loads of the others."""
     for j in range(ints[layout.OBJECTS]):
         memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
         if floats[memory] == layout.FREE:
@@ -165,10 +165,8 @@ def let_go(k, floats, ints):
 
 @lean(ANSWER, inner=True)
 def cut(t0, t1, y0, y1, found, path, mean, floats, ints):
-    """When the step should end: after its first impact, where few of the bodies with found[k] = 1 have one.
-
-    Or after the first tie is torn off, however many are: mostly they are at one instant, or few.
-    """
+    """The time at which to end the step: after its first impact, where few of the bodies with found[k] = 1 have one,
+    or after the first tie breaks: these are few, or mostly break at one instant."""
     h = t1 - t0
     memory = ints[layout.LAST]
     ties = floats[channels.STAGE] == channels.BETWEEN
@@ -198,7 +196,7 @@ def cut(t0, t1, y0, y1, found, path, mean, floats, ints):
 
 @lean(ANSWER, inner=True)
 def back_off_found(t0, t1, y0, y1, found, path, mean, floats, ints):
-    """Settle the bodies with found[k] = 1, and note which ones rest."""
+    """Resolve impacts and rest of the bodies with found[k] = 1 in y1, and list those that rest."""
     h = t1 - t0
     resting = 0
     ties = floats[channels.STAGE] == channels.BETWEEN
@@ -220,7 +218,7 @@ def back_off_found(t0, t1, y0, y1, found, path, mean, floats, ints):
             keep(t1, k, j, y1, floats, ints)
         pair = ints[layout.PAIRS] + layout.PAIR * k
         if ints[layout.OBJECTS] == 1 and floats[pair] != layout.FREE and floats[pair + layout.PRESS] < 0.0:
-            # Held on the only thing that it can meet.
+            # It rests on the only object.
             floats[ints[layout.LAST] + layout.LIST + resting] = k
             resting += 1
             continue

@@ -1,9 +1,9 @@
 # mypy: ignore-errors
-"""Resting contact: how a body comes to rest or slides, and what keeps it on the surface.
+"""Resting contact: transitions to rest and sliding, and drift correction onto the surface.
 
-The direction of Coulomb's friction turns at a rate of friction / speed: infinitely stiff as the speed goes to 0. So a
-body slower than CREEP sticks: friction there goes against the pull, not against the velocity, and what velocity is
-left is taken away once the pull is too weak. Only one that slides to its end, with little pull, stops by itself.
+The direction of Coulomb friction changes at a rate of friction / speed: infinitely stiff as the speed goes to 0. So a
+body slower than CREEP sticks: friction there opposes the pull, not the velocity, and the remaining velocity is removed
+once the pull is below friction's bound. Only a body that slides with little pull stops by itself.
 """
 
 import math
@@ -18,12 +18,12 @@ from sceneql.contacts.shape_kernels import surface, velocity
 from sceneql.system.signatures_kernels import A, F, I, N
 
 CREEP = 1e-3
-"""Speed along the surface [m/s] below which friction goes against the pull."""
+"""Speed along the surface [m/s] below which friction opposes the pull."""
 
 
 @lean_inlined
 def set_velocity(k, x, y, z, state, floats, ints):
-    """Give body k a velocity; the kinetic energy that this takes is counted as dissipated."""
+    """Set the velocity of body k; the decrease of its kinetic energy is counted as dissipated."""
     at = ints[layout.VELOCITY] + 3 * k
     before = state[at] ** 2 + state[at + 1] ** 2 + state[at + 2] ** 2
     after = x * x + y * y + z * z
@@ -33,7 +33,7 @@ def set_velocity(k, x, y, z, state, floats, ints):
 
 @lean(types.void(F, N, F, F, F, F, F, F, A, I), inner=True)
 def come_to_rest(t, memory, vx, vy, vz, nx, ny, nz, floats, ints):
-    """Note that a pair rests from t on: sliding along v (relative to the surface), or sticking."""
+    """Mark a pair as resting from t on: sliding along v (relative to the surface), or sticking."""
     if math.isnan(floats[ints[layout.TALLY] + layout.REST_TIME]):
         floats[ints[layout.TALLY] + layout.REST_TIME] = t
     vn = vx * nx + vy * ny + vz * nz
@@ -50,7 +50,7 @@ def come_to_rest(t, memory, vx, vy, vz, nx, ny, nz, floats, ints):
 
 @lean(KEEP, inner=True)
 def keep(t, k, j, y, floats, ints):
-    """Hold a resting pair on its surface, or let it go when it has left: whether anything changed."""
+    """Correct a resting pair onto its surface, or release it when it has left: whether anything changed."""
     memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
     if floats[memory] == layout.FREE:
         return False
@@ -69,7 +69,7 @@ def keep(t, k, j, y, floats, ints):
     if changed:
         to = ints[layout.POSITION] + 3 * k
         y[to], y[to + 1], y[to + 2] = px - d * nx, py - d * ny, pz - d * nz
-        # What presses does work on that way.
+        # The load does work on that distance.
         y[ints[layout.WORK]] -= floats[ints[layout.MASS] + k] * floats[memory + layout.PRESS] * d
         set_velocity(k, vx - vn * nx, vy - vn * ny, vz - vn * nz, y, floats, ints)
     if floats[memory] == layout.CREEPS:
@@ -87,10 +87,8 @@ def keep(t, k, j, y, floats, ints):
 
 @lean_inlined
 def lies(k, level, nx, ny, nz, y, floats, ints):
-    """Whether body k lies on the plane n . x + level = 0 as it should, sticking or without friction.
-
-    Then `keep` and `brake` would change nothing.
-    """
+    """Whether body k is at rest on the plane n . x + level = 0, sticking or without friction, so that `keep` and
+    `brake` would change nothing."""
     memory = ints[layout.PAIRS] + layout.PAIR * k
     px, py, pz, vx, vy, vz = body_of(ints, k, y)
     if floats[memory + layout.PRESS] >= 0.0:

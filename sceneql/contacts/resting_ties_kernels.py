@@ -1,10 +1,10 @@
 # mypy: ignore-errors
-"""Ties of bodies that rest, between whose steps contacts act: for solvers that ask for slopes.
+"""Ties of resting bodies, for solvers that need slopes where contacts act between steps.
 
-What rests at the start of a step is tied to the surface up to its end, also where the tie pulls: Newton's method finds
-no way across the edge between the two. The end of the step lets go (respond_kernels). The tie takes from the
-acceleration all that leads off the surface, and the normal velocity at a rate far above that of springs: this is zero
-at the solution, but slopes that have it say that the mass is held, and lose no symmetry
+A body that rests at the start of a step is tied to the surface up to its end, even where the tie pulls: Newton's method
+does not converge across the discontinuity. The end of the step releases it (respond_kernels). The tie removes the
+normal acceleration, and damps the normal velocity at a rate far above that of springs: this term is zero at the
+solution, but its slopes show the constraint to the linear systems and keep them symmetric
 (stage_contacts_slopes_kernels).
 """
 
@@ -15,14 +15,14 @@ from sceneql.contacts.pressing_kernels import pressing
 from sceneql.contacts.shape_kernels import surface, velocity
 
 SWEEPS = 50
-"""Over the objects that a body rests on at once."""
+"""Most Gauss-Seidel sweeps over the objects that a body rests on at once."""
 CLOSE = 1e-12
-"""Change of a sweep that ends them, in parts of what accelerates the body."""
+"""Change in a sweep, relative to the body's acceleration, that ends the sweeps."""
 
 
 @lean_inlined
 def restrain(k, memory, nx, ny, nz, y, rate, floats, ints):
-    """Note what the pair bears, and take its normal velocity away."""
+    """Store the pair's load and damp its normal velocity."""
     floats[memory + layout.PRESS] = -floats[memory + layout.LOAD]
     floats[memory + layout.LOAD] = max(0.0, floats[memory + layout.LOAD])
     to = ints[layout.VELOCITY] + 3 * k
@@ -37,7 +37,7 @@ def restrain(k, memory, nx, ny, nz, y, rate, floats, ints):
 
 @lean(OF_PAIR, inner=True)
 def tie_one(k, memory, nx, ny, nz, y, rate, floats, ints):
-    """Tie body k to the only thing that it rests on, whose pressing is known."""
+    """Tie body k to the only object that it rests on, given the acceleration into it."""
     to = ints[layout.VELOCITY] + 3 * k
     press = floats[memory + layout.PRESS]
     floats[memory + layout.LOAD] = -press
@@ -49,7 +49,7 @@ def tie_one(k, memory, nx, ny, nz, y, rate, floats, ints):
 
 @lean(OF_BODY, inner=True)
 def tie(k, y, rate, floats, ints):
-    """Tie body k to all that it rests on."""
+    """Tie body k to all objects that it rests on."""
     to = ints[layout.VELOCITY] + 3 * k
     objects = ints[layout.OBJECTS]
     size = abs(rate[to]) + abs(rate[to + 1]) + abs(rate[to + 2])

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Where a path that is not proved to be clear of a surface first meets it: compiled when the first comes near."""
+"""The first contact on a path that is not proved to be clear of a surface; compiled at the first such path."""
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts import layout
@@ -8,7 +8,7 @@ from sceneql.contacts.impulse_kernels import STILL
 from sceneql.contacts.shape_kernels import surface
 
 TOUCH = 1e-12
-"""Distance, as a part of the coordinates (or of a meter), below which a body touches."""
+"""Distance, relative to the coordinates (or to a meter), below which a body touches."""
 
 
 @lean_inlined
@@ -48,10 +48,10 @@ def root(path, floats, ints, at, reach, contact, deflate, low, f_low, high, f_hi
 
 @lean(SEARCH, inner=True)
 def search(path, length, floats, ints, at, reach):
-    """Where on the path of at most that length [m] a body of that reach first enters an object (`first_contact`).
+    """Where on a path of at most ``length`` [m] a body of radius ``reach`` first enters an object (`first_contact`).
 
-    Pieces of the path are proved to be clear of the object, halved where they are not, down to those that are shorter
-    than half the object's depth, which cannot jump over it: there the gap is looked at.
+    Pieces of the path that are not proved to be clear of the object are halved until they are shorter than half the
+    object's depth and cannot jump over it: there the gap is evaluated.
     """
     x, y, z = place(path, 0.0)
     d, nx, ny, nz = surface(floats, ints, at, x, y, z)
@@ -78,7 +78,7 @@ def search(path, length, floats, ints, at, reach):
         s = min(1.0, s + smallest)
         gap = gap_at(path, s, floats, ints, at, reach)
         if gap < contact - slack:
-            if leaving:  # not yet apart: the root at the start is divided out
+            if leaving:  # not yet apart: deflate the root at the start
                 return root(path, floats, ints, at, reach, start, True, 0.0, approach, s, (gap - start) / s)
             above = gap_at(path, low, floats, ints, at, reach)
             return root(path, floats, ints, at, reach, 0.0, False, low, above, s, gap)

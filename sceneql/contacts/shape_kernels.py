@@ -1,18 +1,18 @@
 # mypy: ignore-errors
-"""What contacts know of a surface: four kernels of its shape, reached by address, and how it moves.
+"""The surface of an object as contacts see it: four kernels of its shape, called by address, and its motion.
 
 A shape's file has
 
     surface(floats, ints, at, x, y, z) -> d, nx, ny, nz   signed distance [m] of a point, > 0 outside, and the unit
-                                    normal outwards there; of a field that is no distance: near its surface, as good
-                                    as one
-    bend(floats, ints, at, x, y, z, vx, vy, vz)   v . H v [m/s^2] with H the second derivative of the distance: how
-                                    fast a straight path leaves the surface
+                                    normal outwards there; a field that is no distance has to be one to first order
+                                    near its surface
+    bend(floats, ints, at, x, y, z, vx, vy, vz)   v . H v [m/s^2] with H the Hessian of the distance: the normal
+                                    acceleration of a straight path relative to the surface
     clear(floats, ints, at, x, y, z, radius)   whether it is proved that no point of the object is within radius [m];
-                                    asked of bodies that come from outside
+                                    called for bodies that come from outside
     near(floats, ints, at, h, x0, v0, x1, v1, radii, more, found)   sets found[k] to 1 for every body of radius
                                     radii[k] + more that is not proved clear on its cubic path in a time h from x0 with
-                                    velocity v0 to x1, v1 (3 n,); a shape that does not have it asks `clear` for each
+                                    velocity v0 to x1, v1 (3 n,); without it `clear` is called for each body
 
 An object is OBJECT integers at ints[at:]: the four addresses; offsets into the floats of position (3), rotation (4,
 unit quaternion [w, x, y, z]), size (the shape's own) and depth (how deep a point can be inside, or less); of the
@@ -32,7 +32,7 @@ from sceneql.contacts import layout
 from sceneql.system.signatures_kernels import A, F, I, N
 
 UNIT = 4e-16
-"""How far from 1 the square of a normal may be that counts as of unit length: an ulp or two."""
+"""Deviation from 1 of the square of a unit normal: an ulp or two."""
 
 FOUR = types.UniTuple(F, 4)
 THREE = types.UniTuple(F, 3)
@@ -50,7 +50,7 @@ surface_at, bend_at, clear_at, near_at = (kernel_at(kind) for kind in (SURFACE_T
 
 @lean_inlined
 def turn(floats, at, x, y, z):
-    """A vector turned by the quaternion at floats[at:]."""
+    """A vector rotated by the unit quaternion at floats[at:]."""
     w, a, b, c = floats[at], floats[at + 1], floats[at + 2], floats[at + 3]
     p = b * z - c * y + w * x
     q = c * x - a * z + w * y
@@ -82,7 +82,7 @@ def surface(floats, ints, at, x, y, z):
 
 @lean_inlined
 def bend(floats, ints, at, x, y, z, vx, vy, vz):
-    """How fast a straight path leaves the surface of the object at ints[at:]."""
+    """v . H v [m/s^2] at the surface of the object at ints[at:]."""
     if ints[at + layout.FLAT] != 0:
         return 0.0
     return bend_at(ints[at + layout.BEND])(floats, ints, at, x, y, z, vx, vy, vz)
@@ -98,7 +98,7 @@ def clear(floats, ints, at, x, y, z, radius):
 
 @lean_inlined
 def unturn(floats, at, x, y, z):
-    """A vector turned back."""
+    """A vector rotated back."""
     w, a, b, c = floats[at], -floats[at + 1], -floats[at + 2], -floats[at + 3]
     p = b * z - c * y + w * x
     q = c * x - a * z + w * y

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""How a body slides in `local` mode: in the rest of a step after an impact, and in whole steps."""
+"""Sliding in `local` mode: in the rest of a step after an impact, and in whole steps."""
 
 import math
 
@@ -12,7 +12,7 @@ from sceneql.system.signatures_kernels import A, F
 
 @lean_inlined
 def start_with(path, x, y, z):
-    """Start with another velocity; the kinetic energy by mass that this takes."""
+    """Set the velocity at the path's start; the decrease of kinetic energy per mass [J/kg]."""
     before = path[3] ** 2 + path[4] ** 2 + path[5] ** 2
     path[3], path[4], path[5] = x, y, z
     return 0.5 * (before - x * x - y * y - z * z)
@@ -44,7 +44,7 @@ def tangential(x, y, z, nx, ny, nz):
 
 @lean(F(A, A, F, F, F, F, F, F, F, F), inner=True)
 def slide(path, mean, nx, ny, nz, ux, uy, uz, press, friction):
-    """The rest of the path along the surface, with Coulomb's friction; its work by mass [J/kg]."""
+    """The rest of the path along the surface, with Coulomb friction; friction's work per mass [J/kg]."""
     normal = mean[0] * nx + mean[1] * ny + mean[2] * nz
     away = max(0.0, normal)
     ax, ay, az = mean[0] - normal * nx, mean[1] - normal * ny, mean[2] - normal * nz

@@ -1,14 +1,14 @@
 # mypy: ignore-errors
-"""Local contacts within a stage of Newton's method, y = base + a f(t, y): what keeps masses outside and holds them.
+"""Local contacts within an implicit stage y = base + a f(t, y): normal forces and friction on masses that touch.
 
-A mass that may touch in the step (listed by back_off_in_stages_kernels) is tied to the surface from when the iteration
-has it inside until the tie pulls: its normal acceleration is that which has it end the stage on the surface. With the
-gap d at the place that the iteration has reached, that is n . (v + dv) = n . v - d/a (Stewart & Trinkle 1996).
-Coulomb's friction takes from its slip at the stage's end what it can, up to all of it (Moreau 1988).
+A listed mass (back_off_in_stages_kernels) is tied to the surface from the iterate that has it inside until the tie
+pulls: its normal acceleration is the one with which it ends the stage on the surface. With the gap d of the present
+iterate the condition is n . (v + dv) = n . v - d/a (Stewart & Trinkle 1996). Coulomb friction reduces the slip at the
+stage's end as far as its bound allows, at most to zero (Moreau 1988).
 
-That ties the mass to the surface whatever its springs do, which slopes have to say without losing their symmetry: so
-what is left of a tie is multiplied by FIRM times the stiffest that springs have, and so are its slopes (Baraff & Witkin
-1998 change the matrix instead). Where ties leave nothing, at the solution, that changes nothing.
+The tie holds whatever the springs do, and slopes have to show that without losing their symmetry: so the residual of a
+tie is multiplied by FIRM times the stiffness of inertia and springs, and so are its slopes (Baraff & Witkin 1998 change
+the matrix instead). At the solution the residual is zero, and the factor changes nothing.
 """
 
 import math
@@ -22,16 +22,16 @@ from sceneql.contacts.pair_kernels import HOLD, body_of, firmness
 from sceneql.contacts.shape_kernels import surface, velocity
 
 SWEEPS = 50
-"""Over the objects that a mass touches at once."""
+"""Most Gauss-Seidel sweeps over the objects that a mass touches at once."""
 PATIENCE = 3
-"""Evaluations in which a tie has to pull before it is let go: forces of iterates far from the solution say little."""
+"""Evaluations in which a tie has to pull before its release: forces of iterates far from the solution say little."""
 MOST_LET_GO = 2
-"""Times that a pair is let go in a stage; then it is left to the end of the step, so that the iteration ends."""
+"""Most releases of a pair in a stage; then it is left to the end of the step, so that the iteration ends."""
 
 
 @lean_inlined
 def change_tie(memory, gap, floats):
-    """Tie a pair that is inside; let go one that has been pulling."""
+    """Tie a pair that is inside; release one that has been pulling."""
     tied = floats[memory + layout.TIED]
     if tied == 0.0:
         if gap < 0.0:
@@ -47,7 +47,7 @@ def change_tie(memory, gap, floats):
 
 @lean_inlined
 def press(k, a, base, fresh, y, rate, seen, floats, ints):
-    """Normal forces that close the gaps of ties, one after the other; ``fresh``: ties may change.
+    """Normal forces that close the gaps of ties, by Gauss-Seidel sweeps; ``fresh``: ties may change.
 
     ``seen`` (4 objects,): gap and normal of each.
     """
@@ -85,10 +85,10 @@ def press(k, a, base, fresh, y, rate, seen, floats, ints):
 
 @lean_inlined
 def rub(k, j, a, base, firm, nx, ny, nz, y, rate, floats, ints):
-    """Friction of a pair that presses: it holds, or goes against the slip at the stage's end.
+    """Coulomb friction of a loaded pair: it sticks, or friction opposes the slip at the stage's end.
 
-    Its bound is by the load of the step before, where there was one, so that slopes are symmetric. A mass that only
-    arrives has it from its impact.
+    The bound follows the load of the step before, where there was one, so that slopes are symmetric. A mass that only
+    arrives has friction in its impact.
     """
     memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
     to = ints[layout.VELOCITY] + 3 * k
@@ -126,7 +126,7 @@ def rub(k, j, a, base, firm, nx, ny, nz, y, rate, floats, ints):
 
 @lean_inlined
 def begins(floats, ints):
-    """Whether the stage is another one than last time."""
+    """Whether this is the first evaluation of a stage."""
     at = ints[layout.LAST] + layout.LIST + ints[layout.BODIES] + 1
     other = floats[at] != floats[channels.STAGES]
     floats[at] = floats[channels.STAGES]
@@ -135,13 +135,13 @@ def begins(floats, ints):
 
 @kernel(HOLD, inner=True)
 def hold(y, rate, floats, ints):
-    """Add what the surfaces do to the accelerations of listed masses within a stage."""
+    """Add normal and friction forces to the accelerations of listed masses within a stage."""
     a = floats[channels.STAGE]
     base = floats.size - channels.BASE * y.size
     firm = firmness(a, floats, ints)
     objects = ints[layout.OBJECTS]
     seen = np.empty(4 * objects)
-    fresh = floats[channels.DEFINITE] == 0.0  # ties are to stay while slopes are asked for
+    fresh = floats[channels.DEFINITE] == 0.0  # ties must not change while slopes are evaluated
     first = begins(floats, ints)
     for i in range(int(floats[ints[layout.LAST] + layout.RESTING])):
         k = int(floats[ints[layout.LAST] + layout.LIST + i])
@@ -150,7 +150,7 @@ def hold(y, rate, floats, ints):
         to = ints[layout.VELOCITY] + 3 * k
         for j in range(objects if first else 0):
             memory = ints[layout.PAIRS] + layout.PAIR * (k * objects + j)
-            # What an earlier stage has stopped stays to the end of the step, for its impact.
+            # A mass stopped by an earlier stage stays tied to the end of the step, where it has its impact.
             stopped = floats[memory] == layout.FREE and floats[memory + layout.TIED] > 0.0
             floats[memory + layout.LET_GO] = MOST_LET_GO if stopped else 0.0
         if press(k, a, base, fresh, y, rate, seen, floats, ints) == 0:
@@ -163,7 +163,7 @@ def hold(y, rate, floats, ints):
                 px, py, pz, vx, vy, vz = body_of(ints, k, y)
                 ux, uy, uz = velocity(floats, ints, layout.HEAD + layout.OBJECT * j, px, py, pz)
                 speed = (vx - ux) * nx + (vy - uy) * ny + (vz - uz) * nz
-                if floats[memory] != layout.FREE:  # what an impact takes is told when the step is done
+                if floats[memory] != layout.FREE:  # the energy of an impact is counted at the end of the step
                     rate[ints[layout.WORK]] -= floats[ints[layout.MASS] + k] * floats[memory + layout.LOAD] * speed
                 tie = firm * gap / a
                 rate[to] -= tie * nx

@@ -28,7 +28,7 @@ def add_square(entries, at, factor, x, y, z):
 
 @lean_inlined
 def add_around(entries, at, across, along, nx, ny, nz, dx, dy, dz):
-    """Add what holds a mass along the normal n, and across both n and d."""
+    """Add ties along the normal n and across both n and d to the block."""
     add_square(entries, at, across - along, nx, ny, nz)
     add_square(entries, at, across, dx, dy, dz)
     for c in range(0, 9, 4):
@@ -37,7 +37,7 @@ def add_around(entries, at, across, along, nx, ny, nz, dx, dy, dz):
 
 @lean_inlined
 def grip(memory, k, j, nx, ny, nz, y, floats, ints):
-    """How friction turns with the slip [1/s], and the slip's direction, of a pair that rests between steps."""
+    """d friction/d slip [1/s] across the slip, and the slip's direction, of a pair that rests between steps."""
     if floats[ints[layout.FRICTION]] > 0.0 and floats[memory] == layout.STICKS:
         return tightness(floats, ints), 0.0, 0.0, 0.0
     if floats[ints[layout.FRICTION]] > 0.0 and floats[memory] == layout.SLIDES:
@@ -54,7 +54,7 @@ def grip(memory, k, j, nx, ny, nz, y, floats, ints):
 
 @lean(TERM, inner=True)
 def holds(t, y, entries, floats, ints):
-    """Of body k, the block by its own velocity from 9 k on: ties, as firm as `hold` has left them in the memory."""
+    """Add ties to the block of body k by its own velocity at entries[9 k:], with the rates that `hold` has stored."""
     between = floats[channels.STAGE] == channels.BETWEEN
     if floats[channels.STAGE] <= 0.0 and not between:
         return

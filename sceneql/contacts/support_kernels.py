@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""The normal force that carries bodies that rest, and Coulomb's friction: compiled when the first body needs them."""
+"""Normal forces on bodies that rest, and Coulomb friction: compiled when the first body rests."""
 
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
@@ -17,9 +17,9 @@ tie_one = lazy("sceneql.contacts.resting_ties_kernels:tie_one", OF_PAIR)
 
 @lean_inlined
 def press_of_pairs(k, near, y, rate, floats, ints):
-    """Store how each resting pair would press if nothing held it, and each free one if asked.
+    """Store the free normal acceleration of each resting pair of body k, and of free ones where ``near``.
 
-    The number of resting ones; of the last of these the memory and the normal (3).
+    Returns the number of resting pairs; memory and normal (3) of the last of them.
     """
     resting, last = 0, 0
     nx, ny, nz = 0.0, 0.0, 0.0
@@ -39,7 +39,7 @@ def press_of_pairs(k, near, y, rate, floats, ints):
 
 @lean_inlined
 def bear(k, memory, nx, ny, nz, rate, floats, ints):
-    """The normal force that leaves a single resting pair not pressing."""
+    """The normal force that cancels the acceleration of a single resting pair into its surface."""
     to = ints[layout.VELOCITY] + 3 * k
     load = max(0.0, -floats[memory + layout.PRESS])
     floats[memory + layout.LOAD] = load
@@ -50,7 +50,7 @@ def bear(k, memory, nx, ny, nz, rate, floats, ints):
 
 @lean_inlined
 def bear_lying(y, rate, floats, ints):
-    """What `support` does, on a single plane that never moves."""
+    """As `support`, on a single plane that never moves."""
     _, nx, ny, nz = facing(floats, ints, layout.HEAD, 0.0, 0.0, 0.0)
     resting_at = ints[layout.LAST] + layout.LIST
     for i in range(int(floats[ints[layout.LAST] + layout.RESTING])):
@@ -66,9 +66,9 @@ def bear_lying(y, rate, floats, ints):
 
 @lean(SUPPORT, inner=True)
 def support(first, y, rate, floats, ints):
-    """Take from the acceleration of bodies that rest what pushes into the surface, and add Coulomb's friction.
+    """Remove the accelerations of resting bodies into their surfaces, and add Coulomb friction.
 
-    With ``first`` at least 0, bodies from that one on are looked at, and it is also noted how free pairs would press.
+    With ``first`` at least 0 it starts with that body, and stores the normal accelerations of free pairs, too.
     """
     near = first >= 0
     ties = floats[channels.STAGE] == channels.BETWEEN

@@ -1,7 +1,7 @@
 # mypy: ignore-errors
 """Masses that collide with one another in `local` mode: which pairs may meet in a step.
 
-What becomes of these is compiled when the first two come near each other (sphere_meet_kernels).
+Their impacts are compiled when the first two come near each other (sphere_meet_kernels).
 """
 
 import math
@@ -33,7 +33,7 @@ meet_all = lazy("sceneql.contacts.mutual.sphere_meet_kernels:meet_all", MEET)
 
 @inlined
 def twice(numbers):
-    """The numbers, with room for as many more."""
+    """A copy of the array of twice its length."""
     more = np.empty(2 * numbers.size, dtype=np.int64)
     for k in range(numbers.size):
         more[k] = numbers[k]
@@ -42,9 +42,9 @@ def twice(numbers):
 
 @kernel(types.Tuple((I, I))(F, A, A, A, I), inner=True)
 def candidates(h, y0, y1, floats, ints):
-    """The pairs that may meet in the step: first of each mass (n + 1), and the masses of larger number.
+    """The pairs that may meet in the step: start of each mass's pairs (n + 1), and the other masses, of larger number.
 
-    Also those that would meet if one took over the way of the fastest.
+    Includes pairs that would meet if either moved as far as the fastest mass, for impacts hand on velocities.
     """
     n = ints[COUNT]
     first = np.zeros(n + 1, dtype=np.int64)
@@ -72,7 +72,7 @@ def candidates(h, y0, y1, floats, ints):
             for c in range(3):
                 square += (floats[points + c * n + k] - floats[points + c * n + j]) ** 2
             fixed = floats[of(ints, k, INVERSE)] + floats[of(ints, j, INVERSE)] == 0.0
-            # Without mass: a place for a particle that is not there now.
+            # Zero mass: a slot for a particle that is absent now.
             absent = floats[of(ints, k, MASS)] == 0.0 or floats[of(ints, j, MASS)] == 0.0
             if fixed or absent or square > (radii(k, j, floats, ints) + 2.0 * math.sqrt(longest)) ** 2:
                 continue

@@ -19,7 +19,7 @@ hit = lazy("sceneql.contacts.mutual.sphere_hit_kernels:hit", IMPACT)
 
 @kernel(F(N, N, F, A, A, I), inner=True)
 def passed(i, j, t, y, floats, ints):
-    """Minus the way that two masses have gone since they met on a straight relative path; 0 if they did not meet."""
+    """Minus the distance [m] traveled since two masses met on a straight relative path; 0 if they did not meet."""
     a, b = ints[POINTS] + INSTANT * i, ints[POINTS] + INSTANT * j
     h = t - floats[a]
     if not h > 0.0:
@@ -41,7 +41,7 @@ def passed(i, j, t, y, floats, ints):
 
 @kernel(GAP, inner=True)
 def gap(t, y, gaps, floats, ints):
-    """Distances [m] of the surfaces of all pairs; negative also where two went through each other."""
+    """Distances [m] between the surfaces of all pairs; negative also where two passed through each other."""
     pair = 0
     for i in range(ints[COUNT]):
         for j in range(i + 1, ints[COUNT]):
@@ -58,7 +58,7 @@ def gap(t, y, gaps, floats, ints):
 
 @inlined
 def note(t, y, floats, ints):
-    """Remember places and velocities at an accepted instant."""
+    """Store places and velocities at an accepted instant."""
     for k in range(ints[COUNT]):
         at = ints[POINTS] + INSTANT * k
         floats[at] = t
@@ -69,7 +69,7 @@ def note(t, y, floats, ints):
 
 @kernel(IMPACT, inner=True)
 def impact(t, y, pair, floats, ints):
-    """The impulse of a pair that approaches; pair -1: note the instant."""
+    """The impulse of a pair that approaches; pair -1: store the accepted instant."""
     note(t, y, floats, ints)
     if pair >= 0:
         hit(t, y, pair, floats, ints)

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""What an impact of two masses does in `exact` mode, compiled when the first one comes (sphere_events_kernels)."""
+"""Impulses of two masses in `exact` mode, compiled at the first impact (sphere_events_kernels)."""
 
 import numpy as np
 

@@ -1,9 +1,9 @@
 # mypy: ignore-errors
-"""Impacts of masses with one another within a step, first ones first, then rest (sphere_back_off_kernels).
+"""Impacts of masses with one another within a step, in order of time, then rest (sphere_back_off_kernels).
 
-In the step a mass moves on with its mean velocity, and with the acceleration that it has at the start; an impact
-changes both ends of what is left of its way. Two masses that are each other's next impact are taken together, in
-passes, so the order of masses does not matter.
+In the step a mass moves with its mean velocity and its acceleration at the start; an impact changes both ends of the
+rest of its path. A pass resolves all pairs of masses that are each other's next impact, so that the order of masses
+does not matter.
 """
 
 import math
@@ -38,7 +38,7 @@ rest = lazy("sceneql.contacts.mutual.sphere_rest_kernels:rest", REST)
 
 @inlined
 def relative(i, j, left, y1, mean, pull, r, v, ints):
-    """Place r and velocity v of mass i seen from j, ``left`` before the step's end."""
+    """Place r and velocity v of mass i relative to j, ``left`` [s] before the step's end."""
     for c in range(3):
         r[c] = y1[of(ints, i, X) + c] - y1[of(ints, j, X) + c] - left * (mean[i, c] - mean[j, c])
         v[c] = y1[of(ints, i, V) + c] - y1[of(ints, j, V) + c] - left * (pull[i, c] - pull[j, c])
@@ -46,7 +46,7 @@ def relative(i, j, left, y1, mean, pull, r, v, ints):
 
 @kernel(F(N, N, F, A, ROWS, ROWS, A, A, A, A, I), inner=True)
 def meet(i, j, h, since, mean, pull, y1, r, v, floats, ints):
-    """How long before the step's end two masses meet, fast enough for an impact; -1 if they do not."""
+    """Time [s] before the step's end at which two masses meet fast enough for an impact; -1 if they do not."""
     left = h - max(since[i], since[j])
     relative(i, j, left, y1, mean, pull, r, v, ints)
     reach = radii(i, j, floats, ints)
@@ -72,7 +72,7 @@ def meet(i, j, h, since, mean, pull, y1, r, v, floats, ints):
 
 @inlined
 def collide(i, j, left, t1, h, since, mean, pull, y1, r, v, floats, ints):
-    """The impact of two masses ``left`` before the step's end; half of what it takes is counted for each."""
+    """The impact of two masses ``left`` [s] before the step's end; each is booked half of the energy lost."""
     relative(i, j, left, y1, mean, pull, r, v, ints)
     px, py, pz, speed = impulse(i, j, r, v, floats, ints)
     count_hit(floats, ints[TALLY], t1 - left, speed)
@@ -96,13 +96,13 @@ def collide(i, j, left, t1, h, since, mean, pull, y1, r, v, floats, ints):
 
 @kernel(MEET, inner=True)
 def meet_all(t1, h, first, others, y0, rate0, y1, floats, ints):
-    """Change y1 so that no mass went through another of the pairs found in the step of length h up to t1."""
+    """Resolve in y1 the impacts of the pairs found in the step of length h up to t1."""
     n = ints[COUNT]
     mean, pull = np.empty((n, 3)), np.empty((n, 3))
     for k in range(n):
         for c in range(3):
             mean[k, c] = (y1[of(ints, k, X) + c] - y0[of(ints, k, X) + c]) / h
-            # Not the mean of the step, in which objects may have given impulses.
+            # Not the mean acceleration of the step, which may contain impulses by objects.
             pull[k, c] = rate0[of(ints, k, V) + c]
     since, next_left = np.zeros(n), np.empty(n)
     partner = np.empty(n, dtype=np.int64)
@@ -116,7 +116,7 @@ def meet_all(t1, h, first, others, y0, rate0, y1, floats, ints):
                 left = meet(i, j, h, since, mean, pull, y1, r, v, floats, ints)
                 if left < 0.0:
                     continue
-                # Of pairs at one instant the first in the order of the list counts, for both.
+                # Of simultaneous pairs both masses take the first in the list.
                 if left > next_left[i]:
                     next_left[i], partner[i] = left, j
                 if left > next_left[j]:

@@ -1,11 +1,11 @@
 # mypy: ignore-errors
-"""Pairs of masses as spheres: layout, when two meet in a step, and what an impact does to both.
+"""Pairs of masses as spheres: layout, cell lists of neighbors, and the impulse of an impact.
 
-ints: number of masses, offsets of restitution, friction and tally in the floats, of the places, the sorted places,
-numbers and starts of the cell lists, table of cells (neighbors.table), number of objects, where the tied ones stand in
-the ints (0: there are none); BODY integers a mass: places in y of position, velocity and work, in floats of mass,
-inverse mass and radius; the objects (shape_kernels). Of the tied ones n + 1 places where those of each mass begin, and
-then for each the masses of larger number that it does not meet.
+ints: number of masses; offsets in the floats of restitution, friction and tally, of the places, the sorted places,
+numbers and starts of the cell lists, table of cells (neighbors.table); number of objects; offset in the ints of the
+tied pairs (0: none); BODY integers for each mass: offsets in y of position, velocity and work, in the floats of mass,
+inverse mass and radius; the objects (shape_kernels). Tied pairs, which do not collide, are n + 1 starts, one for each
+mass and the end, and then for each mass its partners of larger number.
 """
 
 import math
@@ -22,12 +22,12 @@ X, V, WORK, MASS, INVERSE, RADIUS, BODY = range(7)
 FOUR = types.UniTuple(F, 4)
 ROWS = types.float64[:, ::1]
 MEET = types.void(F, F, I, I, A, A, A, A, I)
-"""(end of the step, its length, the pairs: first of each mass and the others, state and rate at the start, state at the
-end, floats, ints)."""
+"""(end of the step, its length, the pairs: starts and other masses, state and rate at the start, state at the end,
+floats, ints)."""
 REST = types.void(F, I, I, ROWS, A, A, I)
 """(length of the step, the pairs, mean accelerations (n, 3), state at the end, floats, ints)."""
 TOUCHING = 1e-9
-"""Distance, as a part of the radii, below which two masses touch."""
+"""Distance, relative to the radii, below which two masses touch."""
 
 
 @inlined
@@ -56,7 +56,7 @@ def tied(i, j, ints):
 def impulse(i, j, r, v, floats, ints):
     """Impulse [N s] on mass i, its negative on j, at r = x_i - x_j with relative velocity v; the speed of approach.
 
-    Newton's restitution along r; across it Coulomb's friction, which never turns the slip round.
+    Newton's restitution along r; across it Coulomb friction, which never reverses the slip.
     """
     length = math.sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2])
     nx, ny, nz = r[0] / length, r[1] / length, r[2] / length
@@ -71,7 +71,7 @@ def impulse(i, j, r, v, floats, ints):
 
 @inlined
 def rests_below(i, j, h, pull, floats, ints):
-    """Speed of approach [m/s] below which two masses rest: what they gain in two steps; elastic ones never do."""
+    """Speed of approach [m/s], that gained in two steps, below which two masses rest; elastic ones never rest."""
     if floats[ints[RESTITUTION]] >= 1.0:
         return 1e-12
     a, b = 0.0, 0.0
@@ -94,14 +94,14 @@ def approach(i, j, y, ints):
 
 @inlined
 def sort_cells(edge, floats, ints):
-    """Sort the places of all masses (floats[ints[POINTS]:], all x, all y, all z) into cells of that edge."""
+    """Sort the places of all masses (floats[ints[POINTS]:], all x, all y, all z) into cubic cells, ``edge`` [m]."""
     lists = (ints[SIZE], ints[P], ints[Q], ints[SORTED], ints[ORDER], ints[START])
     sort_by_cell(floats, ints[COUNT], ints[POINTS], edge, *lists)
 
 
 @kernel(N(N, F, I, A, I), inner=True)
 def neighbors(k, edge, found, floats, ints):
-    """Masses of larger number in the cells around mass k, into ``found``; how many, at most as many as it holds."""
+    """Write masses of larger number in the cells around mass k to ``found``, as many as fit; their number."""
     n, points = ints[COUNT], ints[POINTS]
     i = cell_of(floats[points + k], edge)
     j = cell_of(floats[points + n + k], edge)

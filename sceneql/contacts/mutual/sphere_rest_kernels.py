@@ -1,9 +1,9 @@
 # mypy: ignore-errors
-"""Masses that rest on one another and on objects: impulses at the end of a step, and overlaps undone.
+"""Masses that rest on one another and on objects: impulses at the end of a step, and removal of overlaps.
 
-Impulses that never pull, with Coulomb's friction, swept over the contacts until none approaches (projected
-Gauss-Seidel; Moreau 1988). A mass is taken back by half the step times what its velocity changes, as if the force had
-acted during the step: so what rests stays where it is, and the work of the pull on that way is no loss.
+Nonnegative normal impulses with Coulomb friction, iterated over the contacts until none approaches (projected
+Gauss-Seidel; Moreau 1988). A mass is moved by half the step times its change of velocity, as if the contact force had
+acted during the step: so resting masses stay in place, and the work of gravity on that distance is no loss.
 """
 
 import math
@@ -42,7 +42,7 @@ NONE = -1
 
 @inlined
 def in_touch(k, y1, floats, ints, near, u):
-    """The objects that mass k touches, as rows of near (.., 3: normals) and u (.., 3: velocities); how many."""
+    """Write normals (.., 3) and velocities (.., 3) of the objects that mass k touches to near and u; their number."""
     count = 0
     reach = floats[of(ints, k, RADIUS)]
     slack = TOUCHING * max(reach, 1e-3)
@@ -62,7 +62,7 @@ def in_touch(k, y1, floats, ints, near, u):
 
 @kernel(types.Tuple((types.int64[:, ::1], ROWS))(F, I, I, ROWS, A, A, I), inner=True)
 def contacts(h, first, others, pull, y1, floats, ints):
-    """Pairs (c, 2) that rest, the second -1 for an object, and (c, 9): normal, velocity of the object, impulses."""
+    """Resting pairs (c, 2), the second -1 for an object, and (c, 9): normal, velocity of the object, impulse."""
     n = ints[COUNT]
     pairs = np.empty((first[n] + n * min(3, ints[OBJECTS]), 2), dtype=np.int64)
     rows = np.zeros((pairs.shape[0], 9))
@@ -125,7 +125,7 @@ def sweep(pairs, rows, v, floats, ints):
         x, y, z = v[i, 0] - rows[one, 3], v[i, 1] - rows[one, 4], v[i, 2] - rows[one, 5]
         if j != NONE:
             x, y, z = x - v[j, 0], y - v[j, 1], z - v[j, 2]
-        # The impulse so far plus what would stop all slip and approach, put back into Coulomb's cone.
+        # Add the impulse that stops all slip and approach, and project the sum onto Coulomb's cone.
         px, py, pz = rows[one, 6] - x / inverse, rows[one, 7] - y / inverse, rows[one, 8] - z / inverse
         normal = max(0.0, px * nx + py * ny + pz * nz)
         tangent = px * nx + py * ny + pz * nz
@@ -147,7 +147,7 @@ def part_them(pairs, rows, moved, y1, floats, ints):
     for one in range(pairs.shape[0]):
         i, j = pairs[one, 0], pairs[one, 1]
         if j == NONE:
-            # Never into the object again.
+            # Do not move it into the object again.
             into = moved[i, 0] * rows[one, 0] + moved[i, 1] * rows[one, 1] + moved[i, 2] * rows[one, 2]
             for c in range(3):
                 moved[i, c] -= min(0.0, into) * rows[one, c]
@@ -171,7 +171,7 @@ def part_them(pairs, rows, moved, y1, floats, ints):
 
 @kernel(REST, inner=True)
 def rest(h, first, others, pull, y1, floats, ints):
-    """Let what touches at the end of the step of length h approach no more; ``pull`` (n, 3): mean accelerations."""
+    """End the approach of masses that touch at the end of a step of length h; ``pull`` (n, 3): mean accelerations."""
     pairs, rows = contacts(h, first, others, pull, y1, floats, ints)
     if pairs.shape[0] == 0:
         return

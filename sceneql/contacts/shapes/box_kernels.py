@@ -10,7 +10,7 @@ from sceneql.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, SURFACE_TYPE, 
 
 @lean_inlined
 def beyond(x, half):
-    """How far a coordinate is past the side, with its sign; 0 between the sides."""
+    """Signed distance [m] of a coordinate beyond the nearer side; 0 between the sides."""
     return math.copysign(max(abs(x) - half, 0.0), x)
 
 

@@ -1,6 +1,6 @@
 """Closed meshes: whether they are closed, the normals of their features, and a tree of boxes around their triangles.
 
-What `contacts/shapes/mesh_kernels.py` finds nearest points by. Imports numpy: to be imported by the method that runs.
+For the nearest points of `contacts/shapes/mesh_kernels.py`. Imports numpy: to be imported by the method that runs.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
 LEAF = 4
-"""Most triangles of a box that is not divided."""
+"""Most triangles of a leaf of the tree."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,7 +33,7 @@ class ClosedMesh:
     boxes: Floats
     """(b, 6) low and high corners, depth first."""
     tree: NDArray[int64]
-    """(b, 3) next box that is not inside, first triangle, number held."""
+    """(b, 3) next box outside this one in depth-first order, first triangle, number of triangles (0: no leaf)."""
 
 
 def closed(vertices: Floats, triangles: Ints) -> ClosedMesh:
@@ -50,7 +50,7 @@ def closed(vertices: Floats, triangles: Ints) -> ClosedMesh:
 
 
 def _welded(vertices: Floats, triangles: Ints) -> tuple[Floats, Ints]:
-    """Vertices at one place made one; triangles without area left out."""
+    """The mesh with coincident vertices merged and triangles without area left out."""
     places, same = np.unique(vertices, axis=0, return_inverse=True)
     triangles = same.reshape(-1)[triangles].astype(np.int32)
     corners = places[triangles]
@@ -59,7 +59,7 @@ def _welded(vertices: Floats, triangles: Ints) -> tuple[Floats, Ints]:
 
 
 def _must_be_closed(triangles: Ints) -> None:
-    """Raise ValueError unless every edge has one triangle on either side, which run along it in opposite directions."""
+    """Raise ValueError unless every edge belongs to two triangles with opposite directions along it."""
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]).astype(np.int64)
     largest = int(triangles.max(initial=0)) + 1
     there = np.sort(edges[:, 0] * largest + edges[:, 1])
@@ -107,7 +107,7 @@ def _tree(corners: Floats) -> tuple[NDArray[int64], Floats, NDArray[int64]]:
     todo = [(0, len(corners), -1)]
     while todo:
         first, last, closes = todo.pop()
-        if closes >= 0:  # all that is inside this box has been laid out
+        if closes >= 0:  # all boxes inside this one have been laid out
             tree[closes][0] = len(boxes)
             continue
         held = order[first:last]

@@ -1,4 +1,4 @@
-"""Colliders of all objects that have a field: its tape in the object's own coordinates."""
+"""Colliders of all objects with a field: the field's tape in the object's own coordinates."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly
 
 SMALLEST = 1e-4
-"""Thickness, as a part of a solid's size, below which a fast body might not see it."""
+"""Thickness, relative to a solid's size, below which a fast body might pass through it."""
 ORIGIN = Value(Vector((Number(0.0), Number(0.0), Number(0.0)), Type((3,), LENGTH)))
 UPRIGHT = Value(Vector((Number(1.0), Number(0.0), Number(0.0), Number(0.0)), Type((4,))))
 
@@ -65,19 +65,19 @@ def collider(kind: Object, assembly: Assembly) -> Collider:
 
 
 def place(kind: Object, assembly: Assembly) -> tuple[int, int]:
-    """Where its position and rotation stand in the floats."""
+    """Offsets in the floats of an object's position and rotation."""
     position, rotation = (kind.position, kind.rotation) if isinstance(kind, Placed) else (ORIGIN, UPRIGHT)
     return assembly.value(position), assembly.value(rotation)
 
 
 def changes(kind: Object, assembly: Assembly) -> bool:
-    """Whether any value of it or of its members varies in time."""
+    """Whether any value of an object or of its members varies in time."""
     own = any(isinstance(value, Value | Formula) and not value.constant for _, value in kind)
     return own or any(changes(cast(Object, assembly.object(ref)), assembly) for ref in kind.members())
 
 
 def packed(tape: Tape) -> NDArray[int64]:
-    """The tape's code (n, 4) int32, two integers a row."""
+    """The tape's code (n, 4) int32, packed into two int64 a row."""
     import numpy as np
 
     return np.ascontiguousarray(tape.code, dtype=np.int32).reshape(-1).view(np.int64)

@@ -1,9 +1,9 @@
 # mypy: ignore-errors
-"""The solid {f < 0} of a tape in its own coordinates; size: a length [m] that it is of.
+"""The solid {f < 0} of a tape in its own coordinates; size: its order of magnitude [m].
 
-Distances are to the nearest point of the surface, which is found by Newton's method where the field is smooth; where
-that fails (in front of the sharp edges of combined solids, far away) they are f / |grad f|. What is clear of the solid
-is proved by interval arithmetic, which asks for no bound of a slope.
+Distances are to the nearest point of the surface, found by Newton's method where the field is smooth; where that fails
+(in front of the sharp edges of combined solids, far away) they are f / |grad f|. Balls are proved to be clear of the
+solid by interval arithmetic, which needs no Lipschitz bound.
 
 Further integers: offset and number of the tape's constants, of its parts and of its rows of scratch in the floats, rows
 of code, and the code, two integers a row.
@@ -68,7 +68,7 @@ def bend(floats, ints, at, x, y, z, vx, vy, vz):
 
 @lean(CLEAR_TYPE, inner=True)
 def clear(floats, ints, at, x, y, z, radius):
-    """By the least value of f in the box around the ball."""
+    """By a lower bound of f in the box around the ball."""
     x, y, z = inward(floats, ints, at, x, y, z)
     code, constants, parts, room = tape_of(floats, ints, at)
     least, _, status = box(

@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
 MOST_TRIANGLES = 500_000
 THINNEST = 1e-4
-"""Thickness, as a part of the mesh's size, below which a fast body might not see it."""
+"""Thickness, relative to the mesh's size, below which a fast body might pass through it."""
 
 
 def collider(vertices: Floats, triangles: Ints, position_at: int, rotation_at: int, assembly: Assembly) -> Collider:
     """The surface of vertices (n, 3) and triangles (m, 3) in the mesh's own coordinates.
 
-    Raises ValueError for one that is not closed, LimitRefused for one that is too large.
+    Raises ValueError for a mesh that is not closed, LimitRefused for one that is too large.
     """
     if len(triangles) > MOST_TRIANGLES:
         raise LimitRefused(f"a mesh of {len(triangles)} triangles is too large for contacts, at most {MOST_TRIANGLES}")

@@ -14,8 +14,8 @@ from sceneql.system.signatures_kernels import A, I, N
 def distances(floats, ints, points, out, first, last):
     """out[k] = signed distance of points[k] (n, 3), below 0 inside, for first <= k < last.
 
-    The sign is that of the normal of the nearest feature (Baerentzen & Aanaes 2005). ``ints`` is an object's data as
-    contacts have it.
+    The sign follows from the normal of the nearest feature (Baerentzen & Aanaes 2005). ``ints``: the further integers
+    of a contact's object.
     """
     for k in range(first, last):
         square, a, b, c, t, feature = nearest(floats, ints, 0, points[k, 0], points[k, 1], points[k, 2], math.inf)

@@ -5,8 +5,8 @@ The sign of the distance is that of the nearest feature's normal: of a face, or 
 faces weighted by their angles there, which is right for every closed surface (Baerentzen & Aanaes 2005).
 
 Further integers: offsets of the boxes (n, 6: low, high corner) and of the triangles (m, 30) in the floats, n, and for
-each box in depth-first order: the next one that is not inside it, first triangle, number of triangles (0: it has boxes
-inside). A triangle: three vertices, then normals of the face, of the edges 01, 12, 20 and of the vertices.
+each box in depth-first order: the next box outside it, first triangle, number of triangles (0: it contains boxes). A
+triangle: three vertices, then normals of the face, of the edges 01, 12, 20 and of the vertices.
 """
 
 import math
@@ -79,10 +79,8 @@ def on_triangle(floats, t, x, y, z):
 
 @lean(types.Tuple((F, F, F, F, N, N))(A, I, N, F, F, F, F), inner=True)
 def nearest(floats, ints, at, x, y, z, within):
-    """Vector from the nearest point of the surface to a point, its square, and offset and feature of the triangle.
-
-    Nothing farther than ``within`` is looked at; offset -1 where there is nothing.
-    """
+    """Vector from the nearest point of the surface to a point, its square, and offset and feature of the triangle;
+    offset -1 where the surface is farther than ``within``."""
     d = ints[at + layout.DATA]
     best, found, feature = within * within, -1, 0
     bx, by, bz = 0.0, 0.0, 0.0
@@ -142,6 +140,6 @@ def bend(floats, ints, at, x, y, z, vx, vy, vz):
 
 @lean(CLEAR_TYPE, inner=True)
 def clear(floats, ints, at, x, y, z, radius):
-    """By the distance, looking no farther than the radius."""
+    """By the distance, searched no farther than the radius."""
     x, y, z = inward(floats, ints, at, x, y, z)
     return nearest(floats, ints, at, x, y, z, radius)[4] < 0

@@ -41,8 +41,8 @@ def solve(h, a, b, c):
 def nearest(floats, ints, at, x, y, z):
     """Signed distance of a point and normal, in the solid's own coordinates.
 
-    Down the gradient onto the surface, then Newton's method for the nearest point p: x - p = m grad f(p), f(p) = 0,
-    with second derivatives from differences of gradients.
+    Steps along the gradient onto the surface, then Newton's method for the nearest point p: x - p = m grad f(p),
+    f(p) = 0, with second derivatives from differences of gradients.
     """
     size = floats[ints[at + layout.SIZE]]
     f, a, b, c = slope(floats, ints, at, x, y, z)
