@@ -7,7 +7,7 @@ from sceneql.system.signatures_kernels import DENSE
 
 @lean(DENSE)
 def dopri5_dense(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
-    """The fourth-order interpolant of Dormand & Prince's pair (Hairer, Norsett & Wanner 1993, II.6, code DOPRI5)."""
+    """The interpolant of order 4 (Hairer, Norsett & Wanner 1993, II.6, code DOPRI5)."""
     n = y0.size
     for k in range(n):
         last = work[6 * n + k]

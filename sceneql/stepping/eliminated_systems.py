@@ -1,4 +1,4 @@
-"""The plan by which eliminated_systems_kernels.py makes an island's linear systems smaller."""
+"""The plan by which eliminated_systems_kernels.py reduces an island's linear systems (Schur complement)."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 # mypy: ignore-errors
-"""Linear systems (mu - J) d = r of an island, real and complex, without what can be eliminated at once.
+"""Linear systems (mu - J) d = r of an island, real and complex, reduced by elimination of trivial rows.
 
-Where a row of J says dx/dt = v (one of its pair (x, v)), dx = (r_x + s dv)/(mu - c) with s = J_xv and c = J_xx goes
-into the other rows; what nothing depends on, and masses that are held, are r/mu. What is left is factored in full.
+For a pair (x, v) with dx/dt = v, dx = (r_x + s dv)/(mu - c) with s = J_xv and c = J_xx is substituted into the other
+rows; entries on which none depends, and fixed masses, have d = r/mu. The reduced matrix is factored in full.
 
 ``plan`` (stepping/eliminated_systems.py): [left m, pairs, idle, direct, through], then the m entries left; (x, v among
 those left, places of c and s among the values) of each pair; the idle entries; (place of the value, place in the

@@ -1,4 +1,4 @@
-"""Which entries of a state are measured together (stepping/error_scales_kernels.py)."""
+"""The groups of entries of a state with a common error scale (stepping/error_scales_kernels.py)."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 
 def error_scales(system: System) -> tuple[NDArray[int64], Floats]:
-    """The plan and the scales before the first step. The island has a pattern.
+    """The plan and the scales before the first step. The island must have a pattern.
 
-    Positions of a model's masses count together, their velocities, and cells of a field; all else by itself. Sums that
-    nothing depends on, such as the energy that damping takes, count at least by 1 in SI units.
+    Positions of a model's masses share a scale, and so do their velocities, and the cells of a field; other entries
+    have their own. Sums on which nothing depends, such as the energy lost by damping, have a scale of at least 1 in SI.
     """
     assert system.pattern is not None
     group = np.full(len(system.y), -1, dtype=np.int64)

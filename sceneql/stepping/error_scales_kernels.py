@@ -1,16 +1,15 @@
 # mypy: ignore-errors
-"""What the entries of a state are measured by where a script gives but a relative tolerance: by how large they are.
+"""Error scales of the entries of a state, where a script gives a relative tolerance alone: from their magnitudes.
 
-An entry that stands for itself counts by its largest magnitude of late, half of which is forgotten with every step:
-what has decayed by many decades may still matter (in chemical kinetics it does), and an entry that passes through zero
-does not count for nothing there. Entries that belong together, such as the positions of a model's masses, all count
-by the largest that any of them has ever been, or by 1 in SI units where that is less, or by its own size where it is
-more: one mass that flies off must not blur the others. Velocities count at least by what crosses their model's
-positions in a second: what comes to rest must not be followed through the last of its vibrations. Before an entry has
-any size, what its rate will make of it tells. Where a force sets in on a state at rest that is nothing for the first
-instant, and what grows as a power of the time is as hard to follow in short steps as in long ones: there what the step
-that is tried first makes of it counts, or 1 in SI units where that is less. No error is asked for below the rounding of
-the largest entry.
+The scale of a single entry is its largest recent magnitude, halved with every step: an entry that has decayed by many
+decades may still matter (in chemical kinetics it does), and one that passes through zero keeps a scale there. Entries
+of a group, such as the positions of a model's masses, share the largest magnitude that any of them has had, but at most
+1 in SI units, or each its own magnitude where that is larger: one mass that flies off must not relax the tolerance of
+the others. Velocities have at least the scale that crosses their model's positions in a second, so that the last
+vibrations of a mass coming to rest are not resolved. An entry still zero has a scale from its rate. A force that sets
+in on a state at rest makes no change at the first instant, and growth as a power of time is as hard to follow in short
+steps as in long ones: there the scale is the change in the first step tried, but at most 1 in SI units. No error is
+required below the rounding of the largest entry.
 
 ``scales``: [the largest magnitude of all so far, the size of each group, its rate]. ``plan``
 (stepping/error_scales.py): [groups, how many of the first have several entries, how many of these are of masses
@@ -30,18 +29,18 @@ LARGEST, SIZES = range(2)
 GROUPS, SHARED, MASSES, GROUP_OF = range(4)
 
 KEPT = 0.5
-"""Part of its size that an entry keeps with every step that it is smaller."""
+"""Factor of an entry's scale in every step in which its magnitude is smaller."""
 EARLY = 0.1
-"""Part of what a rate makes of an entry in the step ahead that counts as its size."""
+"""Part of an entry's predicted change in the next step that counts as its scale."""
 WOKEN = 1e3
-"""Times the rate at the start that one at the end is where the time wakes it."""
+"""Ratio of the rates at a step's end and start above which a force is taken to set in within the step."""
 ROUNDING = 1e-14
-"""Error, in units of the largest entry so far, below which there is but rounding."""
+"""Error, relative to the largest entry so far, that is rounding alone."""
 
 
 @lean(WEIGH, inner=True)
 def weigh(new, tolerance, h, y0, rate0, later, scales, plan, weights):
-    """``weights`` (n,): one by the error allowed to each entry in a step of length h. ``new``: the start is another.
+    """Write ``weights`` (n,): 1/(allowed error of each entry) in a step of length h. ``new``: y0 is a new start.
 
     ``later`` (n,): rates within the step, where they are known; else rate0.
     """
@@ -67,14 +66,14 @@ def weigh(new, tolerance, h, y0, rate0, later, scales, plan, weights):
         scale = max(sizes[j], EARLY * h * rates[j])
         if j < shared:
             scale = max(abs(y0[k]), min(1.0, scale))
-        # Of a state that is all zero and stays so nothing is known.
+        # A state that is all zero and stays so has no scale.
         allowed = max(tolerance * scale, least)
         weights[k] = 1.0 / (allowed if allowed > 1e-100 else tolerance)
 
 
 @lean_inlined
 def weigh_anew(t, tolerance, h, y0, rate0, later, scales, plan, weights):
-    """As `weigh`; a step from another time than that in the last of ``scales`` is a new one."""
+    """As `weigh`; a step from another time than the one stored last in ``scales`` has a new start."""
     last = scales.size - 1
     weigh(t != scales[last], tolerance, h, y0, rate0, later, scales, plan, weights)
     scales[last] = t
@@ -82,16 +81,16 @@ def weigh_anew(t, tolerance, h, y0, rate0, later, scales, plan, weights):
 
 @lean_inlined
 def copy_of(source, target):
-    """Entry by entry."""
+    """Copy entry by entry."""
     for k in range(target.size):
         target[k] = source[k]
 
 
 @lean_inlined
 def foresee(functions, t, h, y0, rate0, scales, plan, later, moved, floats, ints):
-    """``later`` (n,): rate0, or what the rates are at the end of a step in which the time wakes a state without a size.
+    """Write ``later`` (n,): rate0, or the rates at the end of a step in which a force sets in on a state without scale.
 
-    ``moved`` (n,): scratch. What rate0 itself foretells needs no look, nor does a rate that does not read the time.
+    ``moved`` (n,): scratch. No rate is evaluated where rate0 gives a scale or the rate does not depend on time.
     """
     early = False
     for k in range(y0.size):

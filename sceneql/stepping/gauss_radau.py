@@ -1,4 +1,4 @@
-"""Everhart's method of order 15: the numbers that follow from its nodes, and what a step does to a linear system.
+"""Everhart's method of order 15: the coefficients that follow from its nodes, and its stability on linear systems.
 
 Inside a step of length h, at s = (t - t0)/h, the rate is the polynomial f0 + b1 s + b2 s^2 + ... + b7 s^7 that meets
 the rate at eight Gauss-Radau nodes. Its Newton form f0 + g1 s + g2 s (s - s1) + ... is built up node by node.
@@ -26,12 +26,12 @@ NODES = (
 """The roots of (P7 + P8)(2 s - 1) / s, P the Legendre polynomials; the first node is 0 (Radau 1880)."""
 DEGREE = len(NODES)
 CONTRACTION = 0.3
-"""Factor of a pass beyond which the iteration is taken not to converge: 12 of them gain 6 digits."""
+"""Contraction per pass above which the iteration is taken not to converge: 12 passes at this factor gain 6 digits."""
 
 
 @cache
 def settings() -> tuple[float, ...]:
-    """What the kernels read: 8 ends of integration; the weights of the Newton form there, integrated once and twice.
+    """The settings of the kernels: 8 ends of integration; the weights of the Newton form there, integrated once, twice.
 
     (8, 7) each, divided by the end and by its square. Then three (7, 7) matrices: inverse differences of the nodes,
     Newton form to powers, powers to Newton form; and the binomials (7, 7) that shift a polynomial to the step after.

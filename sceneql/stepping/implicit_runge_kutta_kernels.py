@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""One step of any diagonally implicit Runge-Kutta method with one coefficient on its diagonal: the tableau is data.
+"""One step of any singly diagonally implicit Runge-Kutta method (SDIRK): the tableau is data.
 
 ``settings``: the memory of Newton's method (newton_kernels), then the diagonal g, c (s), b (s), b - b_hat (s), the rows
 of a below the diagonal, packed; then the scales of the stage plan. ``numbers``: [stages, 1 if the first is explicit,
@@ -17,7 +17,7 @@ from sceneql.system.signatures_kernels import DENSE, STEP
 
 STAGES, EXPLICIT_FIRST, STIFFLY_ACCURATE, EMBEDDED, ERROR_ORDER, SCALES_AT, ROOM, HEAD = range(8)
 KEPT = 1.2
-"""A longer step by less than that is not worth a factorization."""
+"""Increase of the step below which a new factorization does not pay."""
 
 
 @lean_inlined
@@ -48,7 +48,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     a = h * diagonal
     first = numbers[EXPLICIT_FIRST]
     slope = work[n : 2 * n]
-    # Where stiff parts ring on, as they do unless the last stage is the end, the rate at the start is a poor guess.
+    # Unless the method is stiffly accurate, stiff components keep ringing: the rate at the start is a poor guess.
     if first == 1 or numbers[STIFFLY_ACCURATE] == 1 or settings[FACTORED] == 0.0:
         for k in range(n):
             slope[k] = rate0[k]
@@ -87,6 +87,6 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
 
 @lean(DENSE)
 def linear(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
-    """The line between the ends: what a collocation method of one stage takes its solution for."""
+    """Linear dense output: the collocation polynomial of a method of one stage."""
     for k in range(y0.size):
         out[k] = (1.0 - theta) * y0[k] + theta * y1[k]

@@ -1,4 +1,4 @@
-"""Diagonally implicit Runge-Kutta methods as data: the tableau, its stability function, how a run is prepared."""
+"""Diagonally implicit Runge-Kutta methods as data: the tableau, its stability function, preparation for an island."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SHARE = 0.02
 
 @dataclass(frozen=True)
 class ImplicitTableau:
-    """Coefficients of a method whose stages are implicit in themselves alone, all with one coefficient (SDIRK).
+    """Coefficients of a singly diagonally implicit method (SDIRK).
 
     Row i of ``a`` has its i entries below the diagonal and the diagonal's own; the first may be empty: the stage is
     the rate at the start (Alexander 1977; Kennedy & Carpenter 2016).
@@ -35,7 +35,7 @@ class ImplicitTableau:
     b_hat: tuple[float, ...] | None = None
     """Weights of the embedded method whose difference is the error."""
     error_order: int = 0
-    """The power of the step that the error goes by."""
+    """The power of the step length by which the error estimate scales."""
     dense: str | None = None
 
     @property
@@ -45,12 +45,12 @@ class ImplicitTableau:
 
     @property
     def diagonal(self) -> float:
-        """The coefficient of a stage in itself."""
+        """The diagonal coefficient."""
         return self.a[-1][-1]
 
     @property
     def stiffly_accurate(self) -> bool:
-        """Whether the last stage is the step's end."""
+        """Whether the last stage is the step's end (stiffly accurate)."""
         return self.a[-1] == self.b
 
     @cached_property
@@ -59,7 +59,7 @@ class ImplicitTableau:
         return tuple(sum(row) for row in self.a)
 
     def fixed(self, step: float, newton: float = NEWTON) -> Stepper:
-        """Steps of one length [s]; ``newton``: relative and absolute error that may be left in a stage."""
+        """Steps of one length [s]; ``newton``: relative and absolute tolerance of Newton's method in a stage."""
         return self._stepper(first_step=step, newton=newton)
 
     def adaptive(
@@ -128,7 +128,7 @@ class ImplicitTableau:
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
-    """What implicit_runge_kutta_kernels.step works with on an island."""
+    """The settings, integers and scratch of implicit_runge_kutta_kernels.step on an island."""
     import numpy as np
 
     from sceneql.linear.newton_kernels import ABSOLUTE

@@ -48,7 +48,7 @@ INSIDE = 0.01826
 
 @lean_inlined
 def begin(t, y0, work, start, z, before):
-    """Take note of what became of the try before: whether its stages can be extrapolated. True: y0 is a new start."""
+    """Record the outcome of the try before, and whether its stages can be extrapolated. True: y0 is a new start."""
     n = y0.size
     same = work[layout.BEGUN] > 0.0 and t == work[layout.START]
     follows = work[layout.BEGUN] > 0.0 and not same
@@ -106,7 +106,7 @@ def guess_stages(n, ratio, known, z, before, w, ahead):
 
 @lean_inlined
 def tallies_move(numbers, n, z):
-    """Whether any sum that nothing depends on changes in the step."""
+    """Whether any tally changes in the step."""
     for k in range(layout.HEAD, layout.HEAD + numbers[layout.TALLIES]):
         i = numbers[k]
         if z[i] != 0.0 or z[n + i] != 0.0 or z[2 * n + i] != 0.0:
@@ -138,10 +138,10 @@ def estimate(h, rate0, work, numbers, plan, rows, z, f, weights, values, store):
 
 @lean_inlined
 def unevenness(ratio, z, ahead, weights):
-    """The largest error of dense output in units of the tolerance, by how far the polynomial before missed this step.
+    """The largest error of dense output in units of the tolerance, from the extrapolation error of the step before.
 
-    Both are fourth differences, scaled by the products of the distances to the nodes. The embedded formula does not
-    see it in components that a stiff mode pulls along: they are right at the ends of steps of any length.
+    Both errors are fourth differences, scaled by the products of the distances to the nodes. The embedded formula does
+    not see it in components slaved to a stiff mode, which are accurate at the ends of steps of any length.
     """
     n = weights.size
     total = 0.0
@@ -154,7 +154,7 @@ def unevenness(ratio, z, ahead, weights):
 
 @lean_inlined
 def control(h, error, iterations, work, contracts):
-    """Length of the next step (Gustafsson 1994); nearly the same one is kept, with its factors."""
+    """Length of the next step (Gustafsson 1994); one nearly the same is kept, with its factorization."""
     safety = min(SAFETY, SAFETY * (1.0 + 2.0 * ITERATIONS) / (iterations + 2.0 * ITERATIONS))
     divisor = min(5.0, max(0.125, error**0.25 / safety))
     if error >= 1.0:

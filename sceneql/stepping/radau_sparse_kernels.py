@@ -25,9 +25,9 @@ from sceneql.stepping.radau_systems_kernels import (
 )
 
 ENOUGH = 0.01
-"""The last change, in units of the solution, that ends the iterations: Newton's method repairs what is left."""
+"""Relative change of the solution that ends the iterations: Newton's method corrects the remaining error."""
 MOST = 25
-"""Iterations: in modes that grow they may not converge."""
+"""Most iterations: in growing modes they may not converge."""
 
 RE, IM = ALPHA / REAL - 1.0, BETA / REAL
 """d/g."""

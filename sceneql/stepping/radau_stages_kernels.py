@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""The stages of radau: how its work is laid out, and Newton's iteration on the stages (see radau_kernels.py).
+"""The stages of radau: the layout of its work, and Newton's iteration on the stages (see radau_kernels.py).
 
 ``settings``: [relative tolerance, tolerance of Newton's iteration relative to that of the step, contraction of that
 iteration below which the Jacobian serves one more step; then the absolute tolerance of each entry or the scales of
@@ -95,11 +95,11 @@ def iterate(functions, t, h, y0, y1, work, settings, numbers, floats, ints, valu
             contraction = now if count == 2 else math.sqrt(now * rate_before)
             rate_before = now
             if count == 2 and contraction >= 0.99 and size > enough:
-                # Stiff springs that turn: every other change is large, so two together tell.
+                # Stiff springs that rotate: every other change is large, so compare two together.
                 before = size
                 continue
             if contraction >= 0.99:
-                # Rounding keeps very stiff systems from getting closer.
+                # Rounding keeps very stiff systems from converging further.
                 return (count, 0.0) if size <= enough else (count, 0.5)
             work[layout.CONTRACTION] = contraction
             convergence = contraction / (1.0 - contraction)

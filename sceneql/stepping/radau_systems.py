@@ -1,4 +1,4 @@
-"""What solves radau's linear systems on an island: full factors where it is small, else sparse ones."""
+"""The solver of radau's linear systems on an island: full LU factors where it is small, else sparse ones."""
 
 from __future__ import annotations
 
@@ -15,27 +15,27 @@ if TYPE_CHECKING:
     from sceneql.island.system import System
 
 FULL = 100
-"""Unknowns up to which full matrices are factored: at so many both ways take as long."""
+"""Unknowns up to which full matrices are factored: the break-even with sparse ones."""
 LARGEST = 100_000
-"""Unknowns up to which `auto` thinks of radau: a Jacobian, its factors and the stages take some 10 kB each."""
+"""Unknowns up to which `auto` considers radau: Jacobian, factors and stages take some 10 kB for each."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Systems:
-    """A solver as radau_systems_kernels.py calls it."""
+    """A linear solver and its data for radau_systems_kernels.py."""
 
     kernels: tuple[int, int, int]
-    """The numbers of its kernels: factor, solve, filter."""
+    """The numbers of its kernels factor, solve and filter."""
     plan: NDArray[int64]
     rows: Floats
     store: int
     contraction: float
-    """Contraction of Newton's iteration that solutions as exact as its own allow: below, a Jacobian is kept."""
+    """Contraction of Newton's iteration, given the accuracy of these solutions, below which a Jacobian is kept."""
     text: str
 
 
 def radau_systems(system: System) -> Systems:
-    """Analyze an island whose Jacobian was asked for, and has a pattern."""
+    """Choose and prepare the linear solver of an island whose Jacobian has a pattern."""
     from sceneql.stepping.eliminated_systems import elimination
 
     few = _unknowns(system) <= FULL
@@ -53,7 +53,7 @@ def step_cost(unknowns: int) -> float:
 
 
 def likely_kernels(system: System) -> tuple[str, ...]:
-    """Modules that will be asked for, to be compiled while the island is built."""
+    """Modules of kernels to be compiled while the island is built."""
     from sceneql.linear.stage import likely_kernels as likely
 
     if system.pattern is None:
@@ -64,7 +64,7 @@ def likely_kernels(system: System) -> tuple[str, ...]:
 
 
 def _unknowns(system: System) -> int:
-    """Entries that are neither positions of masses nor like them: these are eliminated."""
+    """Number of entries without positions of masses and others with a velocity, which are eliminated."""
     return int((system.partner < 0).sum())
 
 

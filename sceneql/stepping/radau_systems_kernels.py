@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""How radau calls what solves its linear systems: by the numbers of three kernels in its plan.
+"""The interface of radau's linear solvers: three kernels, called by their numbers in the plan.
 
 The systems are (REAL/h - J) x = b and (ALPHA/h + i BETA/h - J)(x + i y) = b + i c.
 
@@ -8,8 +8,8 @@ The systems are (REAL/h - J) x = b and (ALPHA/h + i BETA/h - J)(x + i y) = b + i
     filter(plan, h, values, rows, store, r) -> the same for the real system alone
 
 ``plan``: the solver's own integers, which it may change; ``values`` (room of the pattern): the Jacobian; ``rows``: the
-solver's factors of rows, if it has any; ``store``: what it keeps; ``weights`` (n,): one by the error that an entry may
-have; ``r`` (3n,): b of the real system, b and c of the complex one; (n,) for `filter`.
+solver's factors of rows, if it has any; ``store``: its memory; ``weights`` (n,): 1/(allowed error of an entry); ``r``
+(3n,): b of the real system, b and c of the complex one; (n,) for `filter`.
 """
 
 from numba import types

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Sums that nothing depends on, at the end of a step of radau_kernels: compiled when the first one changes."""
+"""Tallies (sums on which nothing depends) at the end of a step of radau: compiled when the first one changes."""
 
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
@@ -10,7 +10,7 @@ from sceneql.stepping.radau_stages_kernels import ROOT6, evaluate_stages
 
 @lean(FINISH, inner=True)
 def finish_tallies(functions, t, h, y0, y1, numbers, floats, ints, z, f):
-    """Their stages z from the rates at the final stages, their slopes having been left out; f and y1 are scratch."""
+    """Compute their stages z, left out of Newton's method, from the rates at the final stages; f, y1: scratch."""
     rate = rate_at(functions[AT_RATE])
     n = y0.size
     evaluate_stages(rate, t, h, y0, y1, z, f, floats, ints)

@@ -17,19 +17,20 @@ if TYPE_CHECKING:
 class Splitting:
     """A kick first and last, a drift between each two: the exact flows of v' = a(x) and of x' = v, one after the other.
 
-    As each is a canonical map when the forces come from a potential, so is the step (Yoshida 1990; McLachlan & Quispel
-    2002). A force that depends on the velocity sees it half a kick ahead, by the acceleration before; states that are
-    no velocities change with the kicks. With either the order is 2 and nothing is symplectic.
+    Each flow is symplectic where the forces have a potential, and so is the step (Yoshida 1990; McLachlan & Quispel
+    2002). A force that depends on the velocity is evaluated at one extrapolated by half a kick with the acceleration
+    before; entries of y without velocities change with the kicks. With either, the order is 2 and the step not
+    symplectic.
     """
 
     kicks: tuple[float, ...]
     """Shares of the step, one more than the drifts."""
     drifts: tuple[float, ...]
     order: int
-    """For forces that depend on the positions alone."""
+    """The order for forces that depend on the positions alone."""
 
     def fixed(self, step: float) -> Stepper:
-        """Steps of one length [s]; the rate at a step's end serves the next, so it costs one evaluation a drift."""
+        """Steps of one length [s]; the rate at a step's end serves the next, so a drift costs one evaluation."""
         return Stepper(
             Method(
                 step="sceneql.stepping.splitting_kernels:step",
@@ -43,7 +44,7 @@ class Splitting:
         )
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
-        """Spectral radius of the step's own map of the state and of the rate that it hands on: a (2n, 2n) matrix."""
+        """Spectral radius of the step's linear map of (state, rate handed on), a (2n, 2n) matrix."""
         import numpy as np
 
         j, of = np.asarray(jacobian, dtype=float), np.asarray(partner)
@@ -76,7 +77,7 @@ class Splitting:
         return half + sqrt(half * half - 1.0) if half > 1.0 else 1.0
 
     def _damped(self, frequency: float, damping: complex, step: float) -> float:
-        """As `growth`, of position, velocity and rate: the change in a step has the eigenvalues (growth - 1)/step."""
+        """As `growth`, for one mode's position, velocity and rate: eigenvalues of the step's change over its length."""
         columns = []
         for x0, v0, rate in ((1.0, 0.0, 0j), (0.0, 1.0, 0j), (0.0, 0.0, 1 + 0j)):
             moved, pushed, last = 0j, self.kicks[0] * rate, rate
@@ -90,7 +91,7 @@ class Splitting:
         return max(abs(1.0 + step * change) for change in changes)
 
     def leads(self) -> tuple[float, ...]:
-        """How far ahead of the velocity each evaluation looks: to the middle of its kick, which the last shares."""
+        """Parts of the step by which each evaluation extrapolates the velocity: to the middle of its kick."""
         return (*(0.5 * kick for kick in self.kicks[1:-1]), self.kicks[-1])
 
 

@@ -15,7 +15,7 @@ DRIFTS, KICKS = 0, 0
 
 @lean_inlined
 def keep_positions(slope, ints):
-    """Take out what a rate says about the positions of the island's pairs: they drift."""
+    """Zero the rates of positions that have velocities: they change by the drifts."""
     for pair in range(ints[layout.TRIPLES]):
         at = ints[layout.TRIPLES_AT] + layout.TRIPLE * pair
         position, count = ints[at + layout.POSITION], ints[at + layout.COUNT]
