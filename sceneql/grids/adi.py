@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
-    """What adi_kernels.step works with. Raises ScriptError where the island is not one field on a grid."""
+    """Settings and scratch of adi_kernels.step. Raises ScriptError where the island is not one field on a grid."""
     grid = system.grid
     if grid is None:
         _, _, part, spans = system.ranges[0]

@@ -1,4 +1,4 @@
-"""Fields that spread over cells, as state, numbers and terms of an island."""
+"""Diffusing fields on cells, as state, numbers and terms of an island."""
 
 from __future__ import annotations
 
@@ -36,27 +36,27 @@ class Spreading(Protocol):
 
     @property
     def coefficient(self) -> Formula | None:
-        """D; None: 0."""
+        """Diffusion coefficient D [m^2/s]; None: 0."""
 
     @property
     def initial(self) -> Formula | Picture | None:
-        """At the start; None: 0."""
+        """The field at the start; None: 0."""
 
     @property
     def source(self) -> Formula | None:
-        """What comes in a second and cubic meter."""
+        """Source per second and cubic meter."""
 
     @property
     def made(self) -> bool:
-        """Whether anything inside makes or takes it."""
+        """Whether there are sources or sinks inside the domain."""
 
     @property
     def positive(self) -> bool:
-        """Whether nothing of it can be below 0."""
+        """Whether the field cannot be negative."""
 
 
 def add_field(field: Spreading, boundary: Boundary, drift: Drift | None, ground: Ground, assembly: Assembly) -> Grid:
-    """Reserve a number a cell and one for the inflow, and add the terms of the rate.
+    """Reserve an entry of y per cell and one for the inflow, and add the terms of the rate.
 
     Raises ScriptError for a coefficient below 0 and for boundary parts that overlap.
     """
@@ -116,9 +116,9 @@ class _Builder:
         )
 
     def _keeps(self, given: list[Condition]) -> tuple[float, float]:
-        """Values that the field has no reason to leave (Protter and Weinberger 1967, chapter 3); infinite where it has.
+        """Bounds of the field by the maximum principle (Protter and Weinberger 1967, chapter 3), else infinite.
 
-        What is made inside, or let in at a rate, may have any value; but no concentration is below 0.
+        Sources and given fluxes allow any value, but no concentration is below 0.
         """
         gathered = self.drift is not None and not self.drift.incompressible
         made, positive = self.field.made or gathered, self.field.positive
@@ -139,14 +139,14 @@ class _Builder:
         return least, float(values.max(initial=-math.inf))
 
     def _drifts(self, drift: Drift, flow: Flow, given: list[Condition], periodic: tuple[bool, ...]) -> None:
-        """What goes through the boundary with the drift, and the drift itself."""
+        """Add the drift and its fluxes through the boundary."""
         from sceneql.grids.carrying import add_drift
 
         forth, back = self._exchange(flow.through, given), self._exchange([-out for out in flow.through], given)
         add_drift(drift, flow, self.at, self.ground, periodic, (*forth, *back), self.assembly)
 
     def _exchange(self, through: Sequence[Floats], given: list[Condition]) -> tuple[int, int]:
-        """Offsets of what a flow out through the boundary brings in a second, and of its part that leaves."""
+        """Offsets of the inflow that a boundary flow carries in per second, and of its outward part."""
         assembly, n = self.assembly, self.count
         leaving, coming = np.zeros(n), np.zeros(n)
         later: list[tuple[Condition, Floats]] = []
@@ -265,7 +265,7 @@ class _Builder:
         return faces, sink, [np.full(len(one.cells), np.nan) for one in everything], bend
 
     def _fed(self, weights: list[Floats]) -> tuple[int, int]:
-        """Offsets of what is fed, and of d(source)/dc times the volume (0: none)."""
+        """Offsets of the sources fed into cells, and of d(source)/dc times the volume (0: none)."""
         assembly, n = self.assembly, self.count
         moving = varies(self.field.coefficient)
         fixed = np.zeros(n)
@@ -313,11 +313,11 @@ class _Builder:
         self.assembly.term("internal", kernel, ints, self._dummy(kernel))
 
     def _dummy(self, kernel: str) -> Slopes:
-        """What fills the floats before the slopes are read: its own entry stays 0."""
+        """Slopes of a kernel that only writes floats for the slopes after it: its own entry stays 0."""
         return Slopes(kernel, [self.at], [self.at])
 
     def _slopes(self, periodic: tuple[bool, bool, bool]) -> tuple[Any, Any]:
-        """Rows and columns of the entries of diffusion_slopes_kernels.spread; those of no tie go to the diagonal."""
+        """Rows and columns of the entries of diffusion_slopes_kernels.spread; missing neighbors' on the diagonal."""
         own = np.arange(self.count, dtype=np.int64)
         rows, columns = [own], [own]
         nx, ny, nz = self.cells.shape

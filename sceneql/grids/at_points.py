@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def at_points(formula: Formula, points: Floats, **more: Any) -> Floats:
-    """A formula of the place (and of the symbols in ``more``) at points (k, 3): (k,)."""
+    """Values (k,) of a formula of the place (and of the symbols in ``more``) at points (k, 3) [m]."""
     known = {"x": points[:, 0], "y": points[:, 1], "z": points[:, 2], **more}
 
     def look_up(node: Any) -> Any:

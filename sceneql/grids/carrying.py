@@ -1,4 +1,4 @@
-"""What a drift carries, as a term of an island."""
+"""Advection of a field by a drift, as a term of an island."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ def add_drift(
 ) -> None:  # fmt: skip
     """Add the drift of the field at ``at`` in y.
 
-    ``exchange``: offsets of what comes in through the boundary a second (cells,) and of the flow out through it
-    (cells,), and of both where the flow runs backwards.
+    ``exchange``: offsets of the inflow through the boundary per second (cells,) and of the flow out through it
+    (cells,), and of both for a reversed flow.
     """
     axes = [assembly.floats(one) for one in flow.axes]
     strength = assembly.value(drift.strength)
@@ -52,7 +52,7 @@ def _places(
     for axis in range(axes):
         count = shape[axis]
         numbers = [np.arange(count) + shift for shift in (-2, -1, 1)]
-        # Entries of neighbors that are missing are 0, and go to the ends of the row.
+        # Entries of missing neighbors are 0; their columns are clipped to the row's ends.
         kept = [number % count if periodic[axis] else np.clip(number, 0, count - 1) for number in numbers]
         behind, before, after = (index.take(number, axis=2 - axis).ravel() for number in kept)
         for row in (before, own):

@@ -1,10 +1,10 @@
 """Formulas of place, time and the field, printed as kernels that evaluate them for all cells or boundary faces.
 
-Both add weight * value to what stands there: ``floats[target + cell] = floats[base + cell] + floats[weight + cell] *
-value`` for cells, ``floats[target + cell] += floats[weight + k] * value`` for face k of the cell. ints of the first:
-constants, field (in y), target, base, weight, nx, ny, nz, box (low corner and spacing: 6 floats), then values read from
-other parts; of the second: constants, field, target, weight, faces, points (3 floats a face), inputs, where the cells
-start in ints: then the inputs' offsets and the cells.
+Both add weight * value: ``floats[target + cell] = floats[base + cell] + floats[weight + cell] * value`` for cells,
+``floats[target + cell] += floats[weight + k] * value`` for face k of the cell. ints of the first: constants, field (in
+y), target, base, weight, nx, ny, nz, box (low corner and spacing: 6 floats), then values read from other parts; of the
+second: constants, field, target, weight, faces, points (3 floats a face), number of inputs, index of the cells in ints,
+then the inputs' offsets and the cells.
 """
 
 from __future__ import annotations

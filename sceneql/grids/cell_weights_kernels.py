@@ -1,7 +1,7 @@
 # mypy: ignore-errors
 """The cells around a point, and their weights in the linear interpolant between the centers of cells.
 
-Cells outside the domain have no weight; the others' sum to 1, or there are none.
+Cells outside the domain have weight 0; the other weights sum to 1, or all are 0.
 """
 
 import math
@@ -9,14 +9,14 @@ import math
 from sceneql.compiled.kernels import lean_inlined
 
 AT, NX, NY, NZ, VOLUMES_AT, BOX_AT, PERIODIC = range(7)
-"""Integers of a field, from ``first`` on: volumes are 0 outside, a box is low corner and sides (6 floats), and from
-PERIODIC on stands 1 where it is periodic along x, y, z."""
+"""Integers of a field, from ``first`` on: volumes are 0 outside, a box is low corner and sides (6 floats), and the
+three from PERIODIC on are 1 where it is periodic along x, y, z."""
 CORNERS = 8
 
 
 @lean_inlined
 def moved(cell, axis, way, floats, ints, first):
-    """The neighbor of a cell along an axis, round a periodic grid; the cell itself where that is outside."""
+    """The neighbor of a cell along an axis, periodic where the grid is; the cell itself where that is outside."""
     nx, ny, nz = ints[first + NX], ints[first + NY], ints[first + NZ]
     count = nx if axis == 0 else (ny if axis == 1 else nz)
     stride = 1 if axis == 0 else (nx if axis == 1 else nx * ny)
@@ -31,7 +31,7 @@ def moved(cell, axis, way, floats, ints, first):
 
 @lean_inlined
 def around(x, y, z, floats, ints, first, cells, weights):
-    """Fill cells and weights (CORNERS,); False where the point lies outside, half a cell away from its last cells."""
+    """Fill cells and weights (CORNERS,); False where the point lies more than half a cell outside the domain."""
     nx, ny, nz = ints[first + NX], ints[first + NY], ints[first + NZ]
     box, volumes = ints[first + BOX_AT], ints[first + VOLUMES_AT]
     total = 0.0

@@ -1,8 +1,8 @@
 # mypy: ignore-errors
-"""The rate of a field on a grid: fluxes through faces, exchange with the boundary, and what is fed.
+"""The rate of a field on a grid: fluxes through faces, exchange with the boundary, and sources.
 
-Arrays in ``floats`` have one number a cell, (cells,), at the offsets in ``ints``; a face stands with the cell on its
-high side (system.Grid).
+Arrays in ``floats`` have one number per cell, (cells,), at the offsets in ``ints``; a face is stored with the cell on
+its high side (system.Grid).
 """
 
 import math
@@ -12,17 +12,17 @@ from sceneql.grids.multigrid.stencil_kernels import flow
 from sceneql.system.signatures_kernels import TERM
 
 AT, NX, NY, NZ, VOLUMES, SINK, FED, GX, GY, GZ, INFLOW = range(11)
-"""Of `spread`: the first cell in y, and the entry of the inflow."""
+"""Integers of `spread`: the first cell in y, ..., and the entry of the inflow."""
 COEFFICIENTS, FACES, TIES, SINKS, OWNERS, AREAS, DISTANCES, RESISTANCES, WEIGHTS, OWNERS_AT = 0, 4, 7, *range(10, 17)
-"""Of `conduct`, around NX, NY, NZ: conductances along x, y, z, the same of area/distance; how many faces the boundary
-has, and from OWNERS_AT on the cell of each."""
+"""Integers of `conduct`, around NX, NY, NZ: conductances along x, y, z, and area/distance likewise; the number of
+boundary faces, and from OWNERS_AT on the cell of each."""
 CELLS, BASE, TARGET = range(3)
-"""Of `begin`."""
+"""Integers of `begin`."""
 
 
 @lean(TERM, inner=True)
 def spread(t, y, rate, floats, ints):
-    """V dc/dt = sum of g (neighbor - c) + fed - sink c; the last two, summed over all cells, are what comes in."""
+    """V dc/dt = sum of g (neighbor - c) + fed - sink c; the last two, summed over all cells, are the inflow."""
     at, nx, ny, nz = ints[AT], ints[NX], ints[NY], ints[NZ]
     n = nx * ny * nz
     volume, sink = floats[ints[VOLUMES] : ints[VOLUMES] + n], floats[ints[SINK] : ints[SINK] + n]
@@ -54,8 +54,8 @@ def spread(t, y, rate, floats, ints):
 def conduct(t, y, rate, floats, ints):
     """Conductances, boundary exchange and its weights from the coefficients of cells, which vary.
 
-    A face has the mean of its cells' coefficients times area/distance; a boundary face, through the way to it and its
-    own resistance r, the weight A D / (D r + distance).
+    A face has the mean of its cells' coefficients times area/distance; a boundary face of resistance r, in series with
+    the distance from the cell's center, the weight A D / (D r + distance).
     """
     d, nx, ny, nz = ints[COEFFICIENTS], ints[NX], ints[NY], ints[NZ]
     plane = nx * ny
@@ -85,6 +85,6 @@ def conduct(t, y, rate, floats, ints):
 
 @lean(TERM, inner=True)
 def begin(t, y, rate, floats, ints):
-    """What is fed, before what varies is added."""
+    """Set the sources to their constant part, before varying ones are added."""
     for c in range(ints[CELLS]):
         floats[ints[TARGET] + c] = floats[ints[BASE] + c]

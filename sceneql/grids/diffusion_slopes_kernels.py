@@ -12,7 +12,7 @@ on the field); d(source)/dc times the volume (0: none)."""
 
 @lean(TERM, inner=True)
 def spread(t, y, entries, floats, ints):
-    """Of the term `spread`: n diagonal entries, then of every axis the entries (cell, before), (before, cell)."""
+    """Slopes of the term `spread`: n diagonal entries, then for every axis entries (cell, before), (before, cell)."""
     at, nx, ny, nz = ints[term.AT], ints[term.NX], ints[term.NY], ints[term.NZ]
     plane = nx * ny
     n = plane * nz

@@ -1,4 +1,4 @@
-"""What a script says of a flow that carries fields."""
+"""The description of a flow that advects fields."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from sceneql.quantities.expression import Call, Expr, Symbol
 
 PLACE = Annotated[Formula, Symbols(("x", "y", "z"))]
 SAMPLES = {2: 24, 3: 8}
-"""Places along each side at which a flow is looked at before the run."""
+"""Samples of a flow along each side before the run."""
 LIMITED = 4.0
 """No step h lets new extrema arise up to h sum |v|/spacing = 1/2 (Sweby 1984, with limiters up to 2), for the method
 that bounds h times this sum and factor by 2: the explicit Euler method. Without a limiter up to twice that."""
@@ -60,7 +60,7 @@ class Drift(Record):
         return differentiate(stream, Symbol("y")), Call("neg", (differentiate(stream, Symbol("x")),))
 
     def fastest(self, corner: Sequence[float], size: Sequence[float], spacing: Sequence[float]) -> float:
-        """The rate [1/s] that an explicit step is bounded by on a box, looked for at some places; 0: not known."""
+        """The rate [1/s] that bounds explicit steps on a box, by samples; 0: not known."""
         if not self.strength.constant:
             return 0.0
         try:

@@ -1,10 +1,10 @@
 # mypy: ignore-errors
-"""A field that a flow carries from cell to cell: limited upwind values at faces, so that no new extrema arise.
+"""Advection of a field by a flow: limited upwind values at faces, so that no new extrema arise (TVD).
 
-A face's flow [m^3/s] stands with the cell on its high side (system.Grid), positive along the axis. The value it carries
-is the upstream cell's and half a limited slope (Sweby 1984, SIAM J. Numer. Anal. 21, 995-1011), of order 2 (van Leer
+A face's flow [m^3/s] is stored with the cell on its high side (system.Grid), positive along the axis. The face value is
+the upstream cell's plus half a limited slope (Sweby 1984, SIAM J. Numer. Anal. 21, 995-1011), of order 2 (van Leer
 1974, J. Comput. Phys. 14, 361-370) or 3 (Koren 1993, Notes on Numerical Fluid Mechanics 45, 117-138) where the field is
-smooth; where the cell behind it is missing, or none is asked for, the upstream cell's alone.
+smooth; without a limiter, or where the cell behind the upstream one is missing, the upstream cell's alone.
 """
 
 from sceneql.compiled.kernels import lean, lean_inlined
@@ -18,7 +18,7 @@ STRENGTH, BROUGHT, LEAVING, BROUGHT_BACK, LEAVING_BACK, INFLOW = range(13, 19)
 
 @lean_inlined
 def half_slope(kind, behind, ahead):
-    """Half the limited difference from the upstream cell to the face, of those behind it and ahead of it."""
+    """Half the limited slope at the upstream cell, from the differences behind it and ahead of it."""
     if behind * ahead <= 0.0 or kind == UPWIND:
         return 0.0
     if kind == VAN_LEER:
@@ -42,7 +42,7 @@ def beyond(cell, place, count, stride, way, periodic, floats, volumes):
 
 @lean(TERM, inner=True)
 def carry(t, y, rate, floats, ints):
-    """V dc/dt = what flows in less what flows out, and what goes through the boundary, which is inflow."""
+    """V dc/dt = inflow minus outflow through faces; flow through the boundary is added to the tally of inflow."""
     at, nx, ny, nz = ints[AT], ints[NX], ints[NY], ints[NZ]
     divisors, volumes, kind = ints[DIVISORS], ints[VOLUMES], ints[LIMITER]
     strength = floats[ints[STRENGTH]]

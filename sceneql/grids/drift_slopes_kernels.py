@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""The derivatives of what a flow carries."""
+"""The derivatives of advection by a flow."""
 
 import math
 
@@ -26,10 +26,11 @@ def bends(kind, behind, ahead):
 
 @lean(TERM, inner=True)
 def carry(t, y, entries, floats, ints):
-    """Of drift_kernels.carry: a cell's own entries, then of every axis eight a face.
+    """Slopes of drift_kernels.carry: a cell's own entries, then for every axis eight for each face.
 
-    Rows before and cell, each by the columns before the one before, before, cell, after the cell. Where slopes are to
-    be definite (system.Slopes), those without a limiter: with them steps are found where its bends are in the way.
+    These are the rows of the cell before the face and the one behind it, each with the columns from one cell before
+    those two to one after. While DEFINITE is finite (system.Slopes) they are those of the scheme without a limiter,
+    whose kinks can keep Newton's method from converging.
     """
     at, nx, ny, nz = ints[term.AT], ints[term.NX], ints[term.NY], ints[term.NZ]
     divisors, volumes, kind = ints[term.DIVISORS], ints[term.VOLUMES], ints[term.LIMITER]

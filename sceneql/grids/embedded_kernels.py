@@ -18,7 +18,7 @@ from sceneql.grids.multigrid import layout
 from sceneql.grids.multigrid.linear_kernels import solver_at
 
 KEPT = 1.2
-"""A longer step by less than that is not worth new factors."""
+"""Increase of the step below which a new factorization does not pay."""
 
 
 @lean(EMBEDDED_ERROR, inner=True)

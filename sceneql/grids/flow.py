@@ -1,4 +1,4 @@
-"""The flow through the faces of cells that a script's velocity or stream function says, free of divergence if asked."""
+"""The flow through the faces of cells by a script's velocity or stream function, made free of divergence if asked."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 LARGEST_FACTORED = {2: 300_000, 3: 20_000}
 """Cells of a flat or deep grid up to which the projection's system is factored."""
 SMALL = 1e-12
-"""Divergence that is rounding, in parts of the largest flow through a face."""
+"""Divergence that counts as rounding, relative to the largest flow through a face."""
 ROUNDS = 2
-"""Projections: what is left after the first is its rounding, which small cells would feel."""
+"""Number of projections: the second removes the first one's rounding errors, which matter in small cells."""
 UNBALANCED = 1e-6
-"""Part of the flow through a boundary that may fail to leave where a given velocity is sampled at faces."""
+"""Relative imbalance of the flow through a boundary that is allowed, for a given velocity is sampled at faces."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,7 +39,7 @@ class Flow:
     """Outward through the faces of each condition."""
 
     def outward(self, cells: Cells, conditions: list[Condition]) -> Floats:
-        """What leaves each cell, less what enters it (cells,)."""
+        """Net outflow of each cell (cells,) [m^3/s]."""
         total = np.zeros(len(cells.volumes))
         for axis, flow in enumerate(self.axes):
             total += np.roll(flow.reshape(cells.shape[::-1]), -1, axis=2 - axis).ravel() - flow
@@ -53,8 +53,8 @@ def flow_of(
 ) -> Flow:
     """The flow of a drift; ``ties``: area over distance of the faces of each axis.
 
-    Through the boundary it goes where a condition lets it (``through``). Raises ScriptError where it is not finite, or
-    cannot be made free of divergence since not all that comes in may leave.
+    It crosses the boundary where a condition has ``through``. Raises ScriptError where it is not finite, or cannot be
+    made free of divergence since inflow and outflow through the boundary do not balance.
     """
     found = _given(drift, cells, ties, conditions)
     formula = drift.formula
@@ -122,10 +122,8 @@ def _at(formula: Formula, points: Floats) -> list[Floats]:
 def _projected(
     given: Flow, divergence: Floats, cells: Cells, ties: list[Floats], conditions: list[Condition], formula: Formula
 ) -> Flow:
-    """The nearest flow free of divergence: less the gradient of a potential that has the divergence (Chorin 1968).
-
-    Where the boundary is open the potential is 0, so that the flow there is free.
-    """
+    """The nearest flow free of divergence, by projection: minus the gradient of a potential (Chorin 1968), which is 0
+    on open boundaries, where the flow is free."""
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import connected_components
     from scipy.sparse.linalg import cg, splu
@@ -182,7 +180,7 @@ def _projected(
 
 
 def _less(flow: Flow, potential: Floats, befores: list[Any], ties: list[Floats], conditions: list[Condition]) -> Flow:
-    """A flow less the gradient of a potential."""
+    """A flow minus the gradient of a potential."""
     axes = tuple(
         one - tie * (potential - potential[before]) for one, tie, before in zip(flow.axes, ties, befores, strict=True)
     )

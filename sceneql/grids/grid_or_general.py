@@ -1,4 +1,4 @@
-"""Which way an implicit method marches a field: by its grid, or as any other system."""
+"""The choice of an implicit method's linear systems for a field: those of its grid, or of a general system."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ if TYPE_CHECKING:
 
 KERNELS = "sceneql.grids.grid_stage_kernels"
 MOST_CARRIED = {2: 300_000, 3: 30_000}
-"""Cells of a flat or deep grid up to which systems with all that a drift ties are made."""
+"""Cells of a flat or deep grid up to which general systems with a drift's entries are assembled."""
 UNSOLVED = "Newton's method finds no solution of this step: take a shorter one"
 UNSOLVED_AS_NAMED = f"{UNSOLVED}, or with a drift `linear: auto`"
 BEYOND = "by Newton's method on all that its drift ties, from the first step on that this does not solve"
 
 
 def grid_or_general(solver: Solver, linear: str, island: IslandFacts) -> Methods:
-    """What marches an island by an implicit Runge-Kutta method; ``linear``: how it solves the systems of a grid.
+    """The methods that march an island by an implicit Runge-Kutta method; ``linear``: the solver of a grid's systems.
 
-    The systems of grids know the spread and go over what drifts again and again, which is quick but converges up to
-    about a cell a step. Newton's method on all slopes, the limiter's among them, has no such bound: it takes over where
-    a step of a given length is not solved, and makes those that a tolerance chooses.
+    Systems of grids contain diffusion and iterate on advection, which is fast but converges up to Courant numbers of
+    about 1. Newton's method on all slopes, with the limiter's, has no such bound: it takes over where a fixed step does
+    not converge, and makes all adaptive steps.
     """
     general, grid = solver.stepper(), island.grid
     if grid is None:

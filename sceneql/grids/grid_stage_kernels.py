@@ -1,9 +1,9 @@
 # mypy: ignore-errors
 """One step of a diagonally implicit Runge-Kutta method on an island that is one field on a grid (system.Grid).
 
-Every stage y = base + a f(t, y) is solved to a small residual by the linear solver of the plan, and then its slope is
-evaluated: f of what was found. So what the fluxes conserve is conserved to rounding, however the systems are solved.
-Stages that are not linear and errors of steps are compiled when a step asks (iterate_kernels, embedded_kernels).
+Every stage y = base + a f(t, y) is solved to a small residual by the linear solver of the plan, and then its slope
+f(t, y) is evaluated at the solution. So the fluxes conserve to rounding, however inexactly the systems are solved.
+Nonlinear stages and error estimates are compiled at the first step that needs them (iterate_kernels, embedded_kernels).
 
 ``settings``: relative and absolute size of a residual that is small, the diagonal g of the tableau, then c (s), b (s),
 b - b_hat (s), the rows of a below the diagonal, packed. ``numbers``: [stages, 1 if the first is explicit, 1 if there is
@@ -33,12 +33,12 @@ STAGES, EXPLICIT_FIRST, EMBEDDED, ERROR_ORDER, HEAD = range(5)
 RELATIVE, ABSOLUTE, DIAGONAL, TABLEAU = range(4)
 
 SHARE = 0.02
-"""Part of the tolerance of adaptive steps that a residual may be: settings hold it times the tolerance."""
+"""Largest residual relative to the tolerance of adaptive steps: settings hold it times the tolerance."""
 
 
 @lean_inlined
 def solve_stage(functions, t, a, base, y, slope, r, d, store, plan, settings, floats, ints):
-    """y = base + a f(t, y) from a guess, and slope = f(t, y) of what was found; False where it was not."""
+    """Solve y = base + a f(t, y) from a guess, and set slope = f(t, y); False where it is not solved."""
     at = plan[layout.AT]
     n = plan[layout.NX] * plan[layout.NY] * plan[layout.NZ]
     r, d = r[:n], d[:n]
@@ -108,6 +108,6 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
 
 @lean(DENSE)
 def linear(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
-    """The line between the ends, which stays between them: of order 2, as the methods of fixed steps here are."""
+    """Linear dense output, which stays within the bounds of the ends: of order 2, as the methods of fixed steps are."""
     for k in range(y0.size):
         out[k] = (1.0 - theta) * y0[k] + theta * y1[k]

@@ -1,4 +1,4 @@
-"""The cells of a model with their numbers in an island."""
+"""The cells of a model, with their offsets in an island."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Ground:
-    """Centers, volumes and what is divided by them, as offsets into the floats of the island."""
+    """Centers, volumes and divisors of a model's cells, as offsets into the floats of the island."""
 
     def __init__(self, cells: Cells, assembly: Assembly) -> None:
         self.cells = cells
@@ -25,9 +25,9 @@ class Ground:
         self.box_at = assembly.floats([*cells.low[:2], low_z, *cells.spacing])
         self.volumes_at = assembly.floats(cells.volumes)
         self.divisors_at = assembly.floats(np.where(self.inside, cells.volumes, 1.0))
-        """1 outside, where nothing is divided by it."""
+        """Volumes as divisors: 1 outside."""
 
     @property
     def memory(self) -> tuple[int, ...]:
-        """What medium.layout_of reads."""
+        """The integers that medium.layout_of reads."""
         return (self.volumes_at, self.box_at, *self.cells.shape)

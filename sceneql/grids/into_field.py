@@ -1,4 +1,4 @@
-"""What ties masses to a field on a grid."""
+"""The coupling of masses to a field on a grid."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 
 
 def unfit(of: Value, name: str) -> Iterator[Problem]:
-    """What is wrong with a value that should be a field itself; ``name`` of the word's own field."""
+    """The errors of a value that has to be a field itself; ``name``: the word's field that has the value."""
     if not isinstance(of.expr, Link):
         yield Problem("this is the field of a model itself: `lake.concentration`", (name,))
 
 
 def dimension(of: Value) -> Dimension | None:
-    """Of the field."""
+    """The dimension of the field's values."""
     return of.expr.type.dimension
 
 

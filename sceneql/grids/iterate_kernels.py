@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""A stage on a grid that is not linear, or is not solved to rounding at once: by residuals (grid_stage_kernels)."""
+"""A nonlinear or inexactly solved stage on a grid: iterations on its residual (grid_stage_kernels)."""
 
 import math
 
@@ -12,7 +12,7 @@ from sceneql.grids.multigrid.stencil_kernels import dot
 
 MOST_NEWTON = 40
 UNSOLVED = 1e-13
-"""Part of what cancels in a residual that counts as rounding."""
+"""Rounding error of a residual, relative to the numbers that cancel in it."""
 
 
 @lean_inlined
@@ -45,7 +45,7 @@ def stiffest(plan, floats):
 
 @lean(ITERATE, inner=True)
 def iterate(functions, t, a, base, y, slope, r, d, store, plan, settings, floats, ints):
-    """y = base + a f(t, y) from a guess, and slope = f(t, y) of what was found; False where it was not."""
+    """Solve y = base + a f(t, y) from a guess, and set slope = f(t, y); False where it does not converge."""
     rate, solve = rate_at(functions[AT_RATE]), solver_at(plan[layout.SOLVER])
     at, n = plan[layout.AT], r.size
     volume, x = floats[plan[layout.VOLUME] : plan[layout.VOLUME] + n], y[at : at + n]
@@ -57,7 +57,7 @@ def iterate(functions, t, a, base, y, slope, r, d, store, plan, settings, floats
         if not size < math.inf:
             return False
         if iteration == 0 and size > 2.0 * whole and plan[layout.VARYING] == 0:
-            # Far from the solution: nothing is a better guess than what changes fast.
+            # The guess is far from the solution: y = 0 is better than one that changes fast.
             for c in range(n):
                 x[c] = 0.0
             rate(t, y, slope, floats, ints)
@@ -67,7 +67,7 @@ def iterate(functions, t, a, base, y, slope, r, d, store, plan, settings, floats
         if size <= max(target, rounding) or (size > 0.5 * before and size <= 100.0 * rounding):
             return True
         before = size
-        # Where all was 0 the size of what is to come is not known yet, but that of the residual is.
+        # For y = 0 the solution's size is not known yet, but that of the residual is.
         target = max(target, rounding, settings[RELATIVE] * size)
         if not solve(plan, a, 0.5 * target, floats, r, d, store):
             return False

@@ -1,4 +1,4 @@
-"""What models of fields on grids share: where they spread, what holds on the boundary, what is read of a field."""
+"""The common part of models of fields on grids: their domain, boundary conditions and outputs."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class FieldLayout:
     shape: tuple[int, int, int]
     at: int
     volumes_at: int
-    """In the floats."""
+    """Offset of the volumes in the floats."""
     low: tuple[float, ...]
     """Low corner [m]."""
     spacing: tuple[float, ...]
@@ -59,7 +59,7 @@ class FieldLayout:
 
     @property
     def count(self) -> int:
-        """Cells, also those outside."""
+        """Number of cells, with those outside."""
         return self.shape[0] * self.shape[1] * self.shape[2]
 
     def cell(self, place: tuple[float, ...]) -> int:
@@ -102,7 +102,7 @@ class Part(Record):
     within: FixedLength | None = field("How far around it.", None, above=0)
 
     def problems(self) -> Iterable[Problem]:
-        """More than one thing that holds, or none; a place without its size."""
+        """Errors: more than one condition, or none; a place without its size."""
         given = [self.value is not None, self.flux is not None, self.robin is not None, self.periodic, self.open]
         if sum(given) != 1:
             yield Problem("a part of the boundary has one of `value`, `flux`, `robin`, `periodic` and `open`")
@@ -113,7 +113,7 @@ class Part(Record):
 
     @property
     def chosen(self) -> bool:
-        """Whether it says by itself where it holds."""
+        """Whether the part has a place of its own."""
         return self.where is not None or self.near is not None
 
 
@@ -121,7 +121,7 @@ Boundary = dict[str, Part]
 
 
 def number_in(formula: Formula | None) -> float | None:
-    """The number that a formula is; None where it depends on anything, or there is none."""
+    """The number of a constant formula; None where the formula varies, or there is none."""
     if formula is None or any(isinstance(node, Symbol | Link) for node in walk(formula.expr)):
         return None
     return float(evaluate(formula.expr, {}))
@@ -152,11 +152,11 @@ class Medium(Model):
     )
 
     def boundaries(self) -> Iterable[Boundary]:
-        """What holds on the boundary, of every field."""
+        """The boundary conditions of every field."""
         raise NotImplementedError
 
     def coefficients(self) -> Iterable[tuple[Formula | None, tuple[str, ...]]]:
-        """How every field spreads, and where that is told."""
+        """The diffusion coefficient of every field, and its place in the script."""
         raise NotImplementedError
 
     def problems(self) -> Iterable[Problem]:
@@ -200,7 +200,7 @@ class Medium(Model):
             yield Problem("a deep drift has a velocity, not a stream function", ("drift",))
 
     def spreading(self, coefficient: Formula | None) -> Oscillation | None:
-        """What limits the explicit step of a field of constant D: the decay of the checkerboard, and the drift.
+        """The rates that limit explicit steps of a field of constant D: the decay of the checkerboard, and the drift.
 
         The first is at most 4 D sum of 1/spacing^2 (von Neumann's bound); None where a coefficient varies.
         """

@@ -1,4 +1,4 @@
-"""How implicit steps are prepared on a grid: which linear solver, what it keeps, why."""
+"""Preparation of implicit steps on a grid: the choice of the linear solver, its memory, and the reason."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from sceneql.island.system import System
 
 DIRECT_CELLS = {2: 40_000, 3: 4_000}
-"""Up to so many cells of a flat or deep grid factors are small: `auto` takes them."""
+"""Cells of a flat or deep grid up to which `auto` takes direct factors."""
 LARGEST_FACTORED = {2: 500_000, 3: 30_000}
 MOST = {
     "multigrid": 100,
@@ -28,7 +28,7 @@ MOST = {
     "direct": 1,
     "fast_transform": 1,
 }
-"""Iterations for one system; 1: it is solved to rounding."""
+"""Iterations for one system; 1: direct, solved to rounding."""
 KERNELS = {
     "multigrid": "sceneql.grids.multigrid.multigrid_kernels:solve",
     "conjugate_gradient": "sceneql.grids.multigrid.relaxation_kernels:solve_conjugate_gradient",
@@ -38,7 +38,7 @@ KERNELS = {
     "fast_transform": "sceneql.grids.multigrid.transform_kernels:solve",
 }
 FIRST = {"direct": ("sceneql.linear.multifrontal_symmetric_kernels",)}
-"""What of a solver's own the second process begins with, while this one begins with another part."""
+"""Modules of a solver that the background process compiles first, while this one compiles others."""
 COARSEST = 2
 LONGEST_ROW = 512
 """Cells of a row up to which `auto` transforms: a cell costs twice as many multiplications."""
@@ -54,17 +54,17 @@ class _Plan:
 
 @dataclass(frozen=True, slots=True)
 class LinearReport:
-    """What the linear solver of a march has done so far."""
+    """Statistics of the linear solver of a march."""
 
     systems: int
     iterations: int
     residuals: tuple[float, ...]
-    """2-norms of the residual of the last system, as it was solved: by sweep groups of relaxation_kernels.CHECKED for
-    gauss_seidel and sor, by iteration for the others."""
+    """2-norms of the residual of the last system: after every relaxation_kernels.CHECKED sweeps for gauss_seidel and
+    sor, after every iteration for the others."""
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
-    """What grid_stage_kernels.step works with. Raises LimitRefused where a named linear solver cannot take the grid."""
+    """The arrays of grid_stage_kernels.step. Raises LimitRefused where a named linear solver cannot take the grid."""
     import numpy as np
 
     from sceneql.compiled.generated import function
@@ -98,7 +98,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
 
 
 def likely_kernels(grid: Grid, linear: str) -> tuple[str, ...]:
-    """Modules of the linear solver that `prepare` will most likely ask for, to be compiled meanwhile."""
+    """Modules of the linear solver that `prepare` will most likely need, to be compiled in the background."""
     try:
         name = _choice(grid, linear, _may_separate(grid, linear))[0]
     except LimitRefused:
@@ -107,14 +107,14 @@ def likely_kernels(grid: Grid, linear: str) -> tuple[str, ...]:
 
 
 def report(scratch: Floats) -> LinearReport:
-    """What the linear solver of an implicit method on a grid has done so far; ``scratch``: what its steps work in."""
+    """Statistics of the linear solver of an implicit method on a grid; ``scratch``: the march's scratch."""
     record = scratch[-layout.RECORD :]
     residuals = tuple(float(size) for size in record[layout.HISTORY :] if size >= 0.0)
     return LinearReport(int(record[layout.SOLVES]), int(record[layout.ITERATIONS]), residuals)
 
 
 def _choice(grid: Grid, asked: str, separable: bool) -> tuple[str, str]:
-    """The linear solver by name, and why."""
+    """The name of the linear solver, and the reason for it."""
     nx, ny, nz = grid.cells.shape
     dims, cells = (3 if nz > 1 else 2), nx * ny * nz
     if asked == "direct" and cells > LARGEST_FACTORED[dims]:
@@ -171,7 +171,7 @@ def _direct(grid: Grid) -> _Plan:
 
 
 def _may_separate(grid: Grid, asked: str) -> bool:
-    """Whether it is worth looking for modes of rows."""
+    """Whether a search for modes of rows pays."""
     nx, _, nz = grid.cells.shape
     wanted = asked == "fast_transform" or (asked == "auto" and nx <= LONGEST_ROW)
     deep_or_bent = nz > 1 or grid.varying or grid.cells.periodic[1] or nx > 4 * LONGEST_ROW or grid.cells.outside.any()

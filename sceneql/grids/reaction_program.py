@@ -36,7 +36,7 @@ def add_reaction(system: RateSystem, ground: Ground, fields: Sequence[int], asse
 
 
 def _slopes(system: RateSystem, ground: Ground, fields: Sequence[int], assembly: Assembly) -> Slopes | None:
-    """None where an operation has no derivative."""
+    """The symbolic Jacobian; None where an operation has no derivative."""
     import numpy as np
 
     from sceneql.system import Slopes

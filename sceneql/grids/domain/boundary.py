@@ -1,4 +1,4 @@
-"""The conditions on a domain's boundary: which faces each part of the script has, and how they tie to their cells."""
+"""The conditions on a domain's boundary: the faces of each part of the script, and their exchange with cells."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ GIVEN_FLUX = -1.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Condition:
-    """One part of the boundary on its m faces: a flux w (outside - c) of every cell, or a given one."""
+    """One part of the boundary on its m faces: a flux w (outside - c) into every cell, or a given flux."""
 
     cells: NDArray[int64]
     areas: Floats
@@ -36,17 +36,17 @@ class Condition:
     formula: Formula | None
     """The value outside or the flux; None: 0."""
     resistance: float
-    """Of the boundary itself [s/m], 0 where the value is given; GIVEN_FLUX."""
+    """Resistance of the boundary itself [s/m]: 0 where the value is given; or GIVEN_FLUX."""
     open: bool = False
-    """Whether a drift goes through freely, and nothing else does."""
+    """Whether a drift passes freely, without diffusion."""
 
     @property
     def through(self) -> bool:
-        """Whether a drift goes through."""
+        """Whether a drift passes."""
         return self.open or self.resistance == 0.0
 
     def weights(self, d: Floats) -> Floats:
-        """What multiplies the formula: w = A D/(D r + distance) by the cells' coefficients, or the area."""
+        """Factor of the formula: w = A D/(D r + distance) by the cells' coefficients, or the area."""
         if self.resistance == GIVEN_FLUX:
             return self.areas
         if self.open:
@@ -56,9 +56,9 @@ class Condition:
 
 
 def conditions(boundary: Boundary, cells: Cells, line: Span | None) -> tuple[list[Condition], tuple[bool, bool, bool]]:
-    """The conditions that let something through, and which directions are periodic. Raises ScriptError.
+    """The conditions of boundaries that are not closed, and which directions are periodic. Raises ScriptError.
 
-    ``line`` of the script where the model stands.
+    ``line``: the model's place in the script.
     """
     faces = cells.boundary
     taken = np.zeros(len(faces.cells), dtype=bool)

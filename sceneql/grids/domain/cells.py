@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 SIDES = ("left", "right", "bottom", "top", "back", "front")
-"""Of a box: low and high along x, y and z."""
+"""The sides of a box: low and high along x, y and z."""
 MOST_CELLS = 50_000_000
 
 
@@ -23,7 +23,7 @@ class BoundaryFaces:
     """The faces of a domain's boundary."""
 
     cells: NDArray[int64]
-    """(m,) the cell that each belongs to."""
+    """(m,) the cell of each face."""
     areas: Floats
     """(m,) [m^2]."""
     distances: Floats
@@ -49,7 +49,7 @@ class Cells:
     """Along x, y, z, each (cells,) [m^2]: of a cell's face on its low side; 0 on the boundary."""
     boundary: BoundaryFaces
     names: tuple[str, ...]
-    """Of the boundary's pieces."""
+    """Names of the boundary's pieces."""
     around: tuple[Floats, Floats]
     """Low and high corner (3,) of the box around the domain [m]; along z of no account where it is flat."""
 

@@ -1,12 +1,12 @@
 """Cells that the boundary of a domain cuts: volumes, open areas of faces, and the boundary's own areas.
 
-The domain is {phi < 0}. In a cell and in a face the boundary is the plane that phi's value and gradient at the center
-say, and what lies below it has a closed form (Scardovelli & Zaleski 2000, J. Comput. Phys. 164, 228-237). A cell's
-boundary is what closes the surface of its open faces. Fluxes between neighbors go by the open areas and the distance of
-the centers, which is of second order where nothing crosses the boundary (Ng, Min & Gibou 2009, J. Comput. Phys. 228,
-8807-8829). Where a value is given, cells are whole, those whose centers lie inside, and the boundary is as far from
-them along each axis as it is (Gibou, Fedkiw, Cheng & Kang 2002, J. Comput. Phys. 176, 205-227), which is of second
-order there. ``staircase`` takes whole cells everywhere and half a cell for that distance.
+The domain is {phi < 0}. In a cell and in a face the boundary is the plane given by phi's value and gradient at the
+center, and the volume below it has a closed form (Scardovelli & Zaleski 2000, J. Comput. Phys. 164, 228-237). A cell's
+boundary area closes the surface of its open faces. Fluxes between neighbors use the open areas and the distance of the
+centers, which is of second order for zero flux through the boundary (Ng, Min & Gibou 2009, J. Comput. Phys. 228,
+8807-8829). Where a value is given (Dirichlet), the cells with centers inside are whole, and the boundary is at its true
+distance along each axis (Gibou, Fedkiw, Cheng & Kang 2002, J. Comput. Phys. 176, 205-227), which is of second order
+there. ``staircase`` takes whole cells everywhere and half a cell for that distance.
 """
 
 from __future__ import annotations
@@ -28,15 +28,15 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 LEAST_SLOPE = 1e-4
-"""Of a plane along an axis, in parts of all: below, differences of its cubes would be rounding."""
+"""Relative slope of a plane along an axis, below which differences of cubes in the closed form would be rounding."""
 LEAST_VOLUME = 1e-6
-"""Of a cell, in parts of a whole one: less is left out. The open face of its neighbor is closed then, which costs the
-second order where it is no sliver too."""
+"""Volume of a cell, relative to a whole one, below which it is left out. Its neighbor's open face is then closed, which
+loses second order where that face is no sliver too."""
 CROWDED = 0.3
-"""Least volume of a cell, in parts of what its open faces would need for the explicit limit of a whole one: more would
-rule the largest error."""
+"""Least volume of a cell, relative to that with which its open faces have the explicit step limit of a whole cell: a
+larger one would dominate the maximum error."""
 NEAREST = 0.2
-"""Of a cell's size: its center is taken to be no nearer to the boundary."""
+"""Least distance of a cell's center from the boundary, relative to the cell's size."""
 NEAREST_HELD = 0.05
 """The same where the boundary's value is given."""
 
@@ -45,13 +45,13 @@ class Level(Protocol):
     """A domain as a level set."""
 
     names: tuple[str, ...]
-    """Of the pieces of its boundary."""
+    """Names of the pieces of its boundary."""
 
     def values(self, points: Floats) -> Floats:
-        """phi at points (k, 3): (k,), negative inside; near the boundary like a distance but for a factor."""
+        """phi (k,) at points (k, 3), negative inside; near the boundary proportional to the distance."""
 
     def pieces(self, points: Floats) -> NDArray[int64]:
-        """(k,) which piece of the boundary is nearest."""
+        """(k,) indices of the nearest piece of the boundary."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -220,7 +220,7 @@ def staircase(level: Level, grid: Frame) -> Cells:
 
 
 def _shifted(values: Any, grid: Frame, axis: int) -> tuple[Any, Any]:
-    """What the cell before has, round the grid, and which cells are the first."""
+    """The value of the cell before along an axis, periodically, and which cells are the first."""
     index = np.arange(values.size).reshape(grid.shape[::-1])
     first = np.zeros(index.shape, dtype=bool)
     first[tuple(0 if k == 2 - axis else slice(None) for k in range(3))] = True
@@ -238,7 +238,7 @@ def _both(area: Floats, grid: Frame, axis: int) -> Floats:
 
 
 def _held_faces(level: Level, grid: Frame, phi: Floats, cells: Any, areas: list[Floats]) -> BoundaryFaces:
-    """The closed faces of whole cells beside a boundary whose value is given, as far from them as it is."""
+    """The boundary faces of whole cells where a value is given, at the true distance of the boundary."""
     centers = grid.points()
     index = np.arange(len(phi)).reshape(grid.shape[::-1])
     parts = []

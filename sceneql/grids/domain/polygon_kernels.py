@@ -31,7 +31,7 @@ def distances(points, sides, boxes, firsts, out, nearest, begin, end):
     """Signed distance of points (m, 3) from begin to end, below 0 inside, and the number of the nearest side."""
     for p in range(begin, end):
         x, y = points[p, 0], points[p, 1]
-        # What was nearest to the point before is a good bound.
+        # The side nearest to the point before gives a good bound.
         found = nearest[p - 1] if p > begin else 0
         best = square(x, y, sides, found)
         inside = False

@@ -19,9 +19,9 @@ from sceneql.grids.domain.svg_path import Curve, curves
 LARGEST_FILE = 4 * 2**20
 MOST_CORNERS = 20_000
 CHORD = 5e-5
-"""How far a chord may be from its curve, in parts of the picture's size."""
+"""Largest distance of a chord from its curve, relative to the picture's size."""
 DEEPEST = 100
-"""Groups inside groups."""
+"""Deepest nesting of groups."""
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 TRANSFORM = re.compile(r"\s*,?\s*(\w+)\s*\(([^()]*)\)")
 UNDRAWN = {"defs", "symbol", "clipPath", "mask", "pattern", "marker"}

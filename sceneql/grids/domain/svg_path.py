@@ -15,7 +15,7 @@ NUMBER = re.compile(r"[\s,]*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)")
 FLAG = re.compile(r"[\s,]*([01])")
 COMMAND = re.compile(r"[\s,]*([MLHVCSQTAZmlhvcsqtaz])")
 ARC = math.pi / 8
-"""Most of an ellipse that one curve stands for: it is then within 1e-7 of its radius."""
+"""Largest arc of one curve, which is then within 1e-7 of its radius."""
 
 
 def curves(data: str) -> list[list[Curve]]:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 SIZE = 512
-"""Of a table."""
+"""Colors in a table."""
 
 TO_CONES = np.array(
     [
@@ -40,7 +40,7 @@ def oklab(rgb: Any) -> Floats:
 
 
 def from_oklab(lab: Any) -> Floats:
-    """Linear RGB (..., 3) of OKLab (..., 3); what a screen cannot show is brought to the nearest side of 0 and 1."""
+    """Linear RGB (..., 3) of OKLab (..., 3), clipped to 0..1."""
     rgb = (np.asarray(lab, dtype=float) @ np.linalg.inv(TO_LAB).T) ** 3 @ np.linalg.inv(TO_CONES).T
     shown: Floats = np.clip(rgb, 0.0, 1.0)
     return shown
@@ -57,7 +57,7 @@ def table(name: str) -> Floats:
 def _curve(points: Floats, t: Floats) -> Floats:
     """The cubics through points (n, 3) at 0, 1, ... with the slopes of chords (Catmull & Rom 1974), at t (k,): (k, 3).
 
-    A slope is held so that no component turns between two points (Fritsch & Carlson 1980: at most three chords).
+    Slopes are limited so that components are monotone between points (Fritsch & Carlson 1980: at most three chords).
     """
     chords = np.diff(points, axis=0)
     before, after = np.concatenate([chords[:1], chords]), np.concatenate([chords, chords[-1:]])
@@ -73,7 +73,7 @@ def _curve(points: Floats, t: Floats) -> Floats:
 
 
 def colored(values: Floats, scale: tuple[float, float], name: str) -> Floats:
-    """Linear RGB (n, 3) of values (n,) on a scale from its low to its high end; what lies beyond has the end's."""
+    """Linear RGB (n, 3) of values (n,) on a scale from its low to its high end, clipped to the ends."""
     low, high = scale
     place = np.clip((values - low) / (high - low), 0.0, 1.0) * (SIZE - 1)
     first = np.minimum(place.astype(int), SIZE - 2)

@@ -1,4 +1,4 @@
-"""Where a field is seen: its flat domain, sections through a deep one, and its surface, whole or cut open."""
+"""Surfaces on which a field is drawn: its flat domain, sections of a deep one, and its surface, whole or cut open."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from sceneql.kinds import Moment, Ref
 
 FINEST = 4
-"""Steps of a sheet in a cell, at most."""
+"""Most steps of a sheet in a cell."""
 MOST = 25_000
-"""Parallelograms of a flat sheet, about."""
+"""Rough number of parallelograms of a flat sheet."""
 CREASE = 0.75
 """Cosine between a facet and the surface's normal, 41 degrees, from which an edge is sharp."""
 
@@ -153,7 +153,7 @@ def _box(layout: FieldLayout) -> Sheet:
 
 
 def cut_open(whole: Sheet, sections: Sequence[Sheet], planes: Sequence[Plane]) -> Sheet:
-    """A surface without what lies before all of some planes, closed by their sections.
+    """A surface without its part in front of all of some planes, closed by their sections.
 
     ``sections``: that of each plane.
     """
@@ -170,6 +170,6 @@ def cut_open(whole: Sheet, sections: Sequence[Sheet], planes: Sequence[Plane]) -
 
 
 def _before(plane: Plane) -> Side:
-    """How far points lie before a plane."""
+    """Signed distances [m] of points in front of a plane."""
     through, normal = plane
     return lambda points: (points - through) @ normal

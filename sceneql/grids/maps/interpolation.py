@@ -1,4 +1,4 @@
-"""A field between the centers of its cells: linear, and carried on over the boundary of its domain."""
+"""Linear interpolation of a field between the centers of its cells, extrapolated beyond the boundary of its domain."""
 
 from __future__ import annotations
 
@@ -15,27 +15,26 @@ if TYPE_CHECKING:
     from sceneql.grids.medium import FieldLayout
 
 LAYERS = 3
-"""Of cells outside that get values: what a point of the domain lies between is among them."""
+"""Layers of cells outside the domain that get values, so that each point of the domain lies between known cells."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Source:
-    """Where the values of a layer's cells come from along one direction: the next three cells."""
+    """The next three cells along one direction, from which the values of a layer's cells are extrapolated."""
 
     cells: tuple[Any, Any, Any]
     """Each (targets,)."""
     sloped: NDArray[np.bool_]
     """(targets,) whether all three have values."""
     used: NDArray[np.bool_]
-    """(targets,) whether they say something: all that are sloped or, where none is, all whose first has a value."""
+    """(targets,) whether they are used: all that are sloped or, where none is, all whose first has a value."""
 
 
 class Interpolation:
     """The linear interpolant on a grid with a layer of cells around it; x, y, z are the axes 2, 1, 0 of its arrays.
 
-    A cell outside the domain has the mean of what its neighbors inside say: the value that goes on with the lesser of
-    their two last slopes where these agree in sign, else the neighbor's own (the minmod limiter: Roe 1986). So no
-    value is made that a jump does not have.
+    A cell outside the domain has the mean of extrapolations from its neighbors inside, each with the lesser of the two
+    last slopes where these agree in sign, else constant (the minmod limiter: Roe 1986), so that jumps do not overshoot.
     """
 
     def __init__(self, layout: FieldLayout, inside: NDArray[np.bool_]) -> None:

@@ -1,4 +1,4 @@
-"""What is made of a field's model once for all frames: domains do not move."""
+"""A cache of results made of a field's model once for all frames: domains do not move."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class Kept(Generic[T]):
         self._found: OrderedDict[tuple[int, Hashable], tuple[Any, T]] = OrderedDict()
 
     def get(self, model: Any, key: Hashable, make: Callable[[], T]) -> T:
-        """What was made for it before, else what ``make`` makes now."""
+        """The cached result, else that of ``make``."""
         place = id(model), key
         if place not in self._found:
             self._found[place] = model, make()

@@ -1,4 +1,4 @@
-"""What the colors of a field mean, for legends."""
+"""The color scale of a field, for legends."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A field as a word sees it at a moment: from a script's value to numbers at any place."""
+"""A field at a moment as words read it: from a script's value to numbers at any place."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ class Seen:
 
 
 def seen(of: Value, moment: Moment) -> Seen:
-    """The field that a value tells now. Raises ValueError where it is of no field."""
+    """The field of a value at a moment. Raises ValueError where the value reads no field."""
     import numpy as np
 
     from sceneql.grids.maps.interpolation import interpolation
@@ -91,9 +91,9 @@ def seen(of: Value, moment: Moment) -> Seen:
 
 
 class AtStart:
-    """What an object's field and extent may ask of a moment (part of kinds.Moment), as of the start of the run.
+    """The part of kinds.Moment that an object's field and extent may read, at the start of the run.
 
-    Fields spread where an object is at the start. What it reads of other parts is taken as it is now.
+    Fields spread where an object is at the start. Outputs of other parts are read as they are now.
     """
 
     time = 0.0

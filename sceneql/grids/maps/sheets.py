@@ -1,4 +1,4 @@
-"""Sheets of triangles that a field is seen on, and what is cut off them."""
+"""Sheets of triangles on which a field is drawn, and their clipping."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
 POLISH = 6
-"""Steps by which a place on a curved boundary is brought to it."""
+"""Root finding steps of a point on a curved boundary."""
 
 Side = Callable[["Floats"], "Floats"]
-"""From points (k, 3) to numbers (k,) that are negative where something is."""
+"""Maps points (k, 3) to numbers (k,), negative on the side that is kept."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,7 +45,7 @@ def lattice(corner: Any, along: Any, across: Any, counts: tuple[int, int]) -> Sh
 
 
 def joined(sheets: list[Sheet]) -> Sheet:
-    """All of them as one; with normals where every one has them. An empty list is an empty sheet."""
+    """All sheets as one; with normals where every sheet has them. An empty list is an empty sheet."""
     if not sheets:
         return Sheet(np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int32))
     starts = np.cumsum([0, *(len(sheet.vertices) for sheet in sheets)])
@@ -134,7 +134,7 @@ def _crossings(vertices: Floats, value: Floats, ends: Ints, side: Side) -> tuple
 
 
 def _tidy(sheet: Sheet) -> Sheet:
-    """Without the vertices that no triangle has."""
+    """The sheet without vertices that no triangle has."""
     used = np.unique(sheet.triangles)
     number = np.zeros(len(sheet.vertices), dtype=np.int32)
     number[used] = np.arange(len(used))

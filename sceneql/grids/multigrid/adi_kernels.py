@@ -90,6 +90,6 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         y1[k] = y0[k]
     for c in range(n):
         y1[at + c] += d[c]
-    # Fluxes inside cancel, so what there is more of has come in.
+    # Fluxes inside cancel, so the increase of the total is the inflow.
     y1[at + n] += dot(volume, d)
     return 0.0

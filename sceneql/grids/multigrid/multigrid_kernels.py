@@ -24,9 +24,9 @@ from sceneql.grids.multigrid.stencil_kernels import dot, multiply
 
 LEVEL = 4
 SWEEPS = 2
-"""Before and after the coarser levels: with one, twice as many iterations are needed, which cost more."""
+"""Smoothing sweeps before and after the coarser levels: one would need twice as many iterations and cost more."""
 BOTTOM = 16
-"""On the coarsest level."""
+"""Sweeps on the coarsest level."""
 
 
 @lean_inlined
@@ -88,7 +88,7 @@ def coarsen(table, level, arrays):
 
 @lean_inlined
 def shift(table, levels, arrays, scale):
-    """The inverse diagonals of scale * volume + K on all levels; 1 for a cell that nothing is tied to."""
+    """The inverse diagonals of scale * volume + K on all levels; 1 for a cell whose diagonal is 0."""
     for level in range(levels):
         nx, ny, nz, gx, gy, gz, volume, sink, inverse, _, _ = parts(table, level, arrays)
         plane = nx * ny
@@ -110,7 +110,7 @@ def cycle(table, levels, arrays):
     """One V-cycle on level 0: its x from its b, from x = 0; the last numbers of ``arrays`` are scratch."""
     line = arrays[arrays.size - table[0] :]
     for stage in range(2 * levels):
-        # Down and up again in one loop: what stands here once is compiled once.
+        # Down and up in one loop, so that inlined kernels are compiled once.
         down = stage < levels
         level = stage if down else 2 * levels - 1 - stage
         nx, ny, nz, gx, gy, gz, _, _, inverse, x, b = parts(table, level, arrays)

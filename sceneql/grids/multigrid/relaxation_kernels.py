@@ -14,7 +14,7 @@ from sceneql.grids.multigrid.linear_kernels import SOLVE, divided, forget, matri
 from sceneql.grids.multigrid.stencil_kernels import multiply
 
 CHECKED = 4
-"""Sweeps from one look at the residual to the next."""
+"""Sweeps between two evaluations of the residual."""
 
 
 @lean_inlined

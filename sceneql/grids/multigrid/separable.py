@@ -26,18 +26,18 @@ MOST_DENSE = 2048
 Transform = Callable[[Any, int], Any]
 """(values, axis) -> values."""
 CLOSED, GIVEN = 0.0, 2.0
-"""Of an end: what sinks there, in units of the rate between cells."""
+"""Sink at an axis's end, in units of the rate between cells: zero flux, and a given value."""
 
 
 @dataclass(frozen=True)
 class Axis:
-    """n cells in a row of the equation dc/dt = rate (left + right - 2 c), at its ends less what sinks there."""
+    """n cells in a row of the equation dc/dt = rate (left + right - 2 c), with sinks at the ends."""
 
     count: int
     rate: float
     """[1/s]"""
     low: float
-    """What sinks at the ends, in units of the rate."""
+    """Sink at the low end, then at the high one, in units of the rate."""
     high: float
     periodic: bool
 
@@ -62,7 +62,7 @@ class Axis:
 
     @cached_property
     def decays(self) -> Floats:
-        """How fast each mode decays (n,) [1/s]."""
+        """Decay rates (n,) of the modes [1/s]."""
         n = self.count
         if self.kind == "own modes":
             return self.rate * np.maximum(0.0, self._eigen[0])
@@ -100,7 +100,7 @@ class Axis:
 
 
 def axes_of(grid: Grid, floats: Floats) -> tuple[Axis, ...] | None:
-    """The axes z (of a deep grid), y, x of a box, as its arrays stand; None where it is none of these boxes."""
+    """The axes z (of a deep grid), y, x of a box, in the order of its arrays; None where it is not separable."""
     if grid.varying or grid.fed_at < 0 or grid.cells.outside.any():
         return None
     nx, ny, nz = grid.cells.shape

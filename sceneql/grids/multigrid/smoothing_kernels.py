@@ -36,7 +36,7 @@ def pull_row(nx, row, low, high, down, up, deep, gx, gy, gz, x, out):
 
 @lean(types.void(N, N, N, S, S, S, S, S, S, N, S), inner=True)
 def sweep(nx, ny, nz, inverse, gx, gy, gz, x, b, color, line):
-    """Make the equations of the cells of one color of the checkerboard true (Young 1971); ``inverse`` diagonal of M.
+    """Gauss-Seidel on the cells of one color of the checkerboard (Young 1971); ``inverse``: of the diagonal of M.
 
     ``line``: scratch of nx numbers.
     """
@@ -57,7 +57,7 @@ def sweep(nx, ny, nz, inverse, gx, gy, gz, x, b, color, line):
 
 @lean_inlined
 def first_sweep(nx, ny, nz, inverse, x, b, color):
-    """The same where all of x is 0."""
+    """As `sweep`, for x = 0."""
     for k in range(nz):
         for j in range(ny):
             row = nx * (j + ny * k)
