@@ -1,4 +1,4 @@
-"""Nested dissection of a pattern whose unknowns lie in space: domains are halved by planes, separators come last.
+"""Geometric nested dissection of a sparsity pattern: domains are halved by planes, separators are eliminated last.
 
 Sources: George (1973), SIAM J. Numer. Anal. 10, 345-363; Miller, Teng, Thurston & Vavasis (1997), J. ACM 44, 1-29.
 """
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 LEAF = 12
-"""Vertices of a domain that is not divided any more."""
+"""Most vertices of a domain that is not divided any more."""
 
 
 def dissected(graph: Any, points: Floats) -> tuple[list[NDArray[int64]], list[int]]:

@@ -1,4 +1,4 @@
-"""What is left of an island's implicit stages, (1 - a J) d = r, when positions and idle entries are eliminated."""
+"""The systems (1 - a J) d = r of implicit stages, reduced by elimination of positions and idle entries."""
 
 from __future__ import annotations
 
@@ -24,42 +24,42 @@ _THREE = np.arange(3)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Left:
-    """The unknowns that are left, in units of one entry or of a mass's three, and where values of the Jacobian go."""
+    """The unknowns of the reduced system, in units of one entry or of a mass's three, and the map of the Jacobian."""
 
     unit: int
     """Entries of a unit: 1 or 3. Values are blocks of as many rows and columns, row by row."""
     core: Numbers
     """(m,) entries of y."""
     positions: Numbers
-    """(p, 3): position, velocity, place of the one in its row of the Jacobian."""
+    """(p, 3): position, velocity, index among the Jacobian's values of the 1 in the position's row."""
     first: Numbers
-    """(., 3): place in the Jacobian, row and column (units) of what is left: the coefficient is -a."""
+    """(., 3): place in the Jacobian, row and column (units) of the reduced matrix: the coefficient is -a."""
     second: Numbers
-    """(., 4): place, row and column likewise, which position (the first of the unit): the coefficient is -a^2."""
+    """(., 4): place, row and column likewise, number of the position (the unit's first): the coefficient is -a^2."""
     tallies: Numbers
-    """Entries that depend on others by unknown slopes and that nothing depends on."""
+    """Entries without slopes, on which nothing depends."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Kinds:
-    """What becomes of every entry of y."""
+    """The role of every entry of y in the elimination."""
 
     core: Mask
     position: Mask
     tally: Mask
     one: Numbers
-    """Place in the Jacobian by which a position depends on its velocity; -1: none."""
+    """Index among the Jacobian's values of d(dx/dt)/dv for a position x; -1: none."""
 
 
 def kinds_of(system: System, inverse: Floats) -> Kinds:
-    """Which entries are positions whose rows say dx/dt = v, which are held or idle; ``inverse`` masses (n,)."""
+    """Find the positions with rows dx/dt = v, and fixed or idle entries; ``inverse`` masses (n,)."""
     pattern = system.pattern
     assert pattern is not None
     n = len(system.y)
     (rows, columns), known, partner = pattern.others.T, pattern.known, system.partner
     in_blocks, by_blocks = ((pattern.blocks[:, side, None] + _THREE).ravel() for side in (0, 1))
     off = (rows != columns) & known
-    # A position whose row has nothing but its velocity.
+    # Rows with entries other than their own velocity are no such positions.
     alien = np.bincount(rows[off & (columns != partner[rows])], minlength=n) > 0
     alien[in_blocks] = True
     ones = off & (columns == partner[rows])
@@ -74,7 +74,7 @@ def kinds_of(system: System, inverse: Floats) -> Kinds:
 
 
 def left_by_masses(system: System, kinds: Kinds) -> Left | None:
-    """In units of three; None where something else is left than whole masses that act on one another."""
+    """The system in units of three; None where its unknowns are not all velocities of whole masses."""
     pattern, partner = system.pattern, system.partner
     assert pattern is not None
     core = np.flatnonzero(kinds.core)
@@ -96,7 +96,7 @@ def left_by_masses(system: System, kinds: Kinds) -> Left | None:
 
 
 def left_by_entries(system: System, kinds: Kinds) -> Left:
-    """In units of one."""
+    """The system in units of one."""
     pattern = system.pattern
     assert pattern is not None
     known = np.concatenate([np.ones(9 * len(pattern.blocks), dtype=bool), pattern.known])

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Sparse systems by iterations: conjugate gradients where they are symmetric, else BiCGStab, with incomplete factors.
+"""Sparse systems by Krylov iterations: conjugate gradients where symmetric, else BiCGStab, preconditioned by ILU(0).
 
 The integers: [unknowns, starts of rows (n + 1), places of the diagonal (n), columns, rising in each row, number of the
 preconditioner], then its own. The pattern is symmetric. Sources: Hestenes & Stiefel (1952); van der Vorst (1992), SIAM
@@ -12,15 +12,15 @@ from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.linear.solver_kernels import FACTOR_SYSTEM, PRECONDITION, SOLVE_SYSTEM, precondition_at
 
 REDUCTION = 1e-11
-"""Of the residual, until the iterations end."""
+"""Relative residual at which the iterations end."""
 MOST = 3000
 ACCEPTED = 1e-7
-"""A reduction that is accepted after MOST iterations."""
+"""Relative residual that is accepted after MOST iterations."""
 
 
 @lean(FACTOR_SYSTEM)
 def factor_system(plan, values, factors, work, symmetric):
-    """Incomplete L U on the pattern itself; the diagonal of U as reciprocals. A pivot that is lost is the matrix's."""
+    """ILU(0), the diagonal of U as reciprocals; a pivot that breaks down is replaced by the matrix's diagonal."""
     n = plan[0]
     diagonal, columns = 2 + n, 2 + 2 * n
     for k in range(plan[1 + n]):
@@ -51,7 +51,7 @@ def factor_system(plan, values, factors, work, symmetric):
 
 @lean_inlined
 def own_at(plan):
-    """Where in the plan the number of the preconditioner stands."""
+    """Index in the plan of the number of the preconditioner."""
     n = plan[0]
     return 2 + 2 * n + plan[1 + n]
 
@@ -96,7 +96,7 @@ def inner(x, y):
 
 @lean_inlined
 def conjugate_gradients(plan, values, factors, b, x, r, z, p, q):
-    """Solve from x = 0, r = b; the reduction of the residual that was reached."""
+    """Solve from x = 0, r = b; the relative residual reached."""
     near = precondition_at(plan[own_at(plan)])
     start = math.sqrt(inner(b, b))
     left = start
@@ -123,7 +123,7 @@ def conjugate_gradients(plan, values, factors, b, x, r, z, p, q):
 
 @lean_inlined
 def bicgstab(plan, values, factors, b, x, r, z, p, q, s, t):
-    """Solve from x = 0, r = b; the reduction of the residual that was reached. b stays as the shadow residual."""
+    """Solve from x = 0, r = b; the relative residual reached. b stays as the shadow residual."""
     near = precondition_at(plan[own_at(plan)])
     start = math.sqrt(inner(b, b))
     left = start

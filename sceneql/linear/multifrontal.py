@@ -1,4 +1,4 @@
-"""Symbolic analysis of sparse systems for the multifrontal method: which fronts there are and what each takes in.
+"""Symbolic analysis of sparse systems for the multifrontal method: the fronts, and the entries assembled into each.
 
 Done once for a pattern; multifrontal_kernels.py factors any values on it. Sources: Duff & Reid (1983), ACM TOMS 9,
 302-325; Liu (1992), SIAM Review 34, 82-109.
@@ -24,29 +24,29 @@ if TYPE_CHECKING:
     Rows = NDArray[int64]
 
 MERGED = 12
-"""A front and its parent become one when both together eliminate no more than this."""
+"""A front is merged into its parent when both together eliminate no more unknowns than this."""
 WORTH_THREADS = 1e7
-"""Multiplications of a factorization from which on it is shared by threads."""
+"""Multiplications of a factorization above which threads share it."""
 WORTH_SINGLE = 1e8
-"""Those from which on it is tried in single precision first."""
+"""Multiplications above which single precision is tried first."""
 PIECE = 0.55
-"""Part of all operations above which a subtree is taken apart: what two threads share is then nearly even."""
+"""Part of all operations above which a subtree is divided, so that two threads have nearly equal shares."""
 MOST_PIECES = 16
-"""Subtrees that threads share."""
+"""Most subtrees that threads share."""
 
 
 @dataclass(slots=True)
 class _Front:
     columns: list[int]
-    """Places (of groups) that are eliminated here, rising."""
+    """Places (of groups) eliminated in the front, ascending."""
     rows: Rows
-    """Places that the front reaches, its own columns first, rising."""
+    """Row structure of the front, its own columns first, ascending."""
     parent: int
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
-    """How to factor values on a pattern: integers for the kernels (multifrontal_kernels says how they lie)."""
+    """The plan of a factorization on a pattern: integers for the kernels (layout: multifrontal_kernels)."""
 
     numbers: Rows
     factors: int
@@ -64,7 +64,7 @@ def plan(
 
     ``points`` (n, 3): where the unknowns lie in space, for an order by nested dissection; else by minimum degree.
     ``unit``: so many unknowns for each of the n; value k of the pattern is a block of unit x unit, row by row. Not
-    ``exact``: solutions may have errors of some percent, for an iteration that repairs them.
+    ``exact``: solutions may have errors of some percent, for an iteration that corrects them.
     """
     import numpy as np
 
@@ -122,7 +122,7 @@ def _fronts(graph: Any, parents: list[int], sizes: Rows) -> list[_Front]:
         if last >= 0:
             own = fronts[last]
             width = sum(weight[k] for k in own.columns) + weight[j]
-            # No new entry, or few: the column joins the front of the one before.
+            # No fill or little: the column joins the front of the column before.
             if len(own.rows) - len(own.columns) == len(rows) or width <= MERGED:
                 reached = np.concatenate([own.columns, rows])
                 fronts[last] = _Front([*own.columns, j], reached, parent)
@@ -253,7 +253,7 @@ def _runs(places: Rows, counts: Rows) -> tuple[Rows, Rows]:
 
 
 def _pieces(parents: list[int], operations: list[float]) -> list[tuple[int, int]]:
-    """Subtrees that threads share, none of more than PIECE of all operations: (first front, root), rising."""
+    """Subtrees that threads share, none of more than PIECE of all operations: (first front, root), ascending."""
     weights, sizes = list(operations), [1] * len(parents)
     children: list[list[int]] = [[] for _ in parents]
     for k, parent in enumerate(parents):
@@ -275,7 +275,7 @@ def _pieces(parents: list[int], operations: list[float]) -> list[tuple[int, int]
 
 
 def _updates(parents: list[int], sizes: list[int], pieces: list[tuple[int, int]]) -> tuple[list[int], int]:
-    """Where each front's update stands, and the floats for all.
+    """Offsets of the fronts' update matrices, and the floats for all.
 
     Updates stand in two stacks by turns, so that a front's own never lies over its children's: those of a depth wait
     with those of other depths of the same parity. A piece has stacks of its own, the fronts above the pieces too.

@@ -13,7 +13,7 @@ from sceneql.linear.multifrontal_plan_kernels import PASS, at_front
 
 @lean_inlined
 def substitute(panel, height, k, rows, own):
-    """Solve rows k.. of U, all that comes after them in ``own`` being known."""
+    """Solve rows k.. of U, given the solution of the rows after them in ``own``."""
     lanes = BYTES // own.itemsize
     p = q = r = s = spread(own.dtype.type(0.0))
     if rows == layout.ROWS:
@@ -63,5 +63,5 @@ def backward_of(plan, factors, x, carried, begin, end):
 
 @lean(PASS, inner=True)
 def backward(plan, factors, x, carried, begin, end):
-    """The second."""
+    """The second pass in double precision."""
     backward_of(plan, factors, x, carried, begin, end)

@@ -13,7 +13,7 @@ from sceneql.linear.multifrontal_plan_kernels import PASS, at_front
 
 @lean_inlined
 def take_in(own, child, runs):
-    """Add what a child carries at its places in the front's ``own``: ``runs`` (end, place) of them."""
+    """Add a child's update vector to the front's ``own`` at ``runs`` (end, place)."""
     first = run = 0
     while first < child.size:
         end, place = runs[run], runs[run + 1]

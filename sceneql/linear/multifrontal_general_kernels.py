@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Multifrontal factors L and U of matrices that are not symmetric: compiled when one comes (multifrontal_kernels)."""
+"""Multifrontal LU factors of unsymmetric matrices, compiled at the first such matrix (multifrontal_kernels)."""
 
 import math
 
@@ -72,7 +72,7 @@ def update(front, height, begin, end, low, high):
 
 @lean_inlined
 def eliminate(front, height, begin, end, pivots):
-    """Rows begin..end of U, their pivots sought among themselves, and L below them."""
+    """Factor rows begin..end to U, with pivoting among these rows alone, and L below them."""
     for k in range(begin, end):
         row = k * height
         best = k

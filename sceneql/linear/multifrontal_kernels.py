@@ -28,7 +28,7 @@ from sceneql.linear.solver_kernels import FACTOR_SYSTEM, SOLVE_SYSTEM
 from sceneql.system.signatures_kernels import A, I
 
 RESTS = 7
-"""Factorizations in double precision after one in single precision was not good enough."""
+"""Factorizations in double precision after one in single precision was too inaccurate."""
 
 FACTOR_GENERAL = types.boolean(I, A, A, A)
 SOLVE_GENERAL = types.void(I, A, A, A)

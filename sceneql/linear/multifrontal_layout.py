@@ -1,4 +1,4 @@
-"""How the integers of a plan lie (multifrontal_kernels says what they are): indices by name."""
+"""The layout of a plan's integers (described in multifrontal_kernels): indices by name."""
 
 PIECES_AT, PIECES, ENTRY, THREADS, PIECE_AT, UNIT, FORWARD, BACKWARD = range(8, 16)
 SINGLE_FACTOR, SINGLE_SOLVE, SINGLE_PIECE, SINGLE_FORWARD, SINGLE_BACKWARD = range(16, 21)
@@ -9,4 +9,4 @@ FIELDS = 11
 PAD = 16
 """Zeros behind the factors of each front: lanes reach that far beyond a row."""
 ROWS = 4
-"""Of the factors, that a pass of a solution reads at a time."""
+"""Rows of the factors that a solution reads at a time."""

@@ -11,7 +11,7 @@ from sceneql.linear.multifrontal_symmetric_kernels import factor_fronts
 
 @kernel(TILE)
 def piece(number, t, values, factors, work, plan):
-    """The fronts of a piece; its third integer says that all pivots were regular."""
+    """Factor the fronts of a piece; its third integer is set where all pivots were regular."""
     at = plan[layout.PIECES_AT] + 3 * number
     plan[at + 2] = 1 if factor_fronts(plan, values, factors, work, plan[at], plan[at + 1]) else 0
 
@@ -25,6 +25,6 @@ def forward_piece(number, t, factors, x, carried, plan):
 
 @kernel(TILE)
 def backward_piece(number, t, factors, x, carried, plan):
-    """The second."""
+    """The second pass over a piece."""
     at = plan[layout.PIECES_AT] + 3 * number
     backward(plan, factors, x, carried, plan[at], plan[at + 1])

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""How the integers of a plan lie (multifrontal_kernels.py says what they are)."""
+"""Access to the integers of a plan (layout: multifrontal_kernels.py)."""
 
 from numba import types
 
