@@ -14,7 +14,7 @@ RATE, START, TOTAL, LIFETIME, VARIATION, NARROW, MASS, RADIUS, SPEC = range(9)
 and of the speed; 1 - cos of the cone's half angle; mass and radius of a particle."""
 
 FIRST, BORN, BEFORE, MEMORY = 0, 1, 2, 9
-"""Memory: births before the last step, births so far; time of the last settling (below 0: none
+"""Memory: births before the last step, births so far; time of the last step (below 0: none
 is known), place and velocity (3 each) then."""
 
 POSITION_AT, VELOCITY_AT, COUNT, MASS_AT, INVERSE_AT, RADIUS_AT = range(6)

@@ -46,7 +46,7 @@ VECTORS = 12
 
 @dataclass
 class IslandAssembly:
-    """The Assembly (system.py) of one island.
+    """The Assembly (system/assembly.py) of one island.
 
     ``places`` gives the indices into y of a solved model's output (None: it is computed); settable until `finish`.
     """

@@ -23,7 +23,7 @@ REFRESH = f"    refresh(t, y, floats, ints[ints[{TABLE}] : ints[{TABLE} + 1]])"
 
 
 class Driver(NamedTuple):
-    """The kernels of an island (system.py has their signatures)."""
+    """The kernels of an island (system/__init__.py has their signatures)."""
 
     rate: Any
     gap: Any

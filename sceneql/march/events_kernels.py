@@ -13,7 +13,7 @@ The contract of contact kernels:
   separating or resting, and changes nothing where the pair is separating already.
 - impact(t, y, -1): called for each contact before the first step and after every accepted one, to update resting
   pairs; it sets channels.CHANGED when it changed y or a flag, and the rate is evaluated anew.
-- memory (flags, tallies, times) is kept in floats and changed by impact and settle alone; numbers that terms write
+- memory (flags, tallies, times) is kept in floats and changed by impact and back_off alone; numbers that terms write
   there may belong to any trial stage.
 - an impact is applied when the step after it begins, so frames up to its instant show the flight before it.
 """

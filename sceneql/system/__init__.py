@@ -10,7 +10,7 @@ Kernel signatures (numba; the types are in signatures_kernels.py), all ``-> None
     term(t, y, rate, floats, ints)          adds its part to rate (n,). Forces add newtons to the velocity entries
     gap(t, y, gaps, floats, ints)           writes signed distances [m] of its contact pairs, > 0 apart (exact mode)
     impact(t, y, pair, floats, ints)        changes y by the impulse of that pair (exact mode)
-    settle(t0, t1, y0, rate0, y1, floats, ints)   resolves each mass's impacts within the step, in y1 (local mode);
+    back_off(t0, t1, y0, rate0, y1, floats, ints)   resolves each mass's impacts within the step, in y1 (local mode);
                                             where channels.STEP_END is above 0 it only lowers that end of the step
     after_step(t0, t1, y0, rate0, y1, floats, ints) -> bool   acts at the end of an accepted step, before contacts do;
                                             True where it changed the state or the floats: then frames inside the step

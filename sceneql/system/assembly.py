@@ -70,7 +70,7 @@ class Assembly(Protocol):
         pairs: int,
         apart: bool = False,
     ) -> None:
-        """Add contacts: kernels (gap, impact) with the number of pairs for `exact`, (settle,) for `local`.
+        """Add contacts: kernels (gap, impact) with the number of pairs for `exact`, (back_off,) for `local`.
 
         ``apart``: as for a term; for local contacts only.
         """
