@@ -3,6 +3,7 @@
 
 from sceneql.compiled.kernels import inlined, lean
 from sceneql.compiled.lanes_kernels import bits_below, load
+from sceneql.field.packets import packet_rows as rows
 from sceneql.field.packets.packet_density_kernels import (
     C1,
     GROW,
@@ -15,16 +16,15 @@ from sceneql.field.packets.packet_density_kernels import (
     sizes,
 )
 from sceneql.field.packets.packet_kernels import KEEP_SKELETON
-from sceneql.field.packets.packet_rows import FAR, LOW_X, LOW_Y, LOW_Z, PART
 from sceneql.field.skeleton.skeleton_parts_kernels import NODE, SHAPE, STRIDE
 
 
 @inlined
 def off_box(parts, k, x, y, z):
     """Squared distance of points from the box around part k."""
-    gx = apart(x, x, parts[LOW_X, k], parts[LOW_X + 1, k])
-    gy = apart(y, y, parts[LOW_Y, k], parts[LOW_Y + 1, k])
-    gz = apart(z, z, parts[LOW_Z, k], parts[LOW_Z + 1, k])
+    gx = apart(x, x, parts[rows.LOW_X, k], parts[rows.LOW_X + 1, k])
+    gy = apart(y, y, parts[rows.LOW_Y, k], parts[rows.LOW_Y + 1, k])
+    gz = apart(z, z, parts[rows.LOW_Z, k], parts[rows.LOW_Z + 1, k])
     return gx * gx + gy * gy + gz * gz
 
 
@@ -40,7 +40,7 @@ def within_reach(parts, k, x, y, z, spare, first, stop):
     it may on the segments through the middles of these lanes)."""
     found, middle = False, False
     for i in range(first // VECTOR * VECTOR, stop, VECTOR):
-        off, far = off_box(parts, k, load(x, i), load(y, i), load(z, i)), parts[FAR, k + 1]
+        off, far = off_box(parts, k, load(x, i), load(y, i), load(z, i)), parts[rows.FAR, k + 1]
         chosen = (1 << min(stop - i, VECTOR)) - (1 << max(first - i, 0))
         if lanes_within(off, far + load(spare, i)) & chosen != 0:
             found = True
@@ -80,7 +80,7 @@ def keep_skeleton(start, end, x, y, z, spare, first, stop, singles, parts, kept,
             found, middle = within_reach(singles, k, x, y, z, spare, first, stop)
             own += 1 if middle else 0
             if found:
-                for j in range(PART):
+                for j in range(rows.PART):
                     near_singles[j, kept] = singles[j, k]
                     near_singles[j, kept + 1] = singles[j, k + 1]
                 for j in range(8):

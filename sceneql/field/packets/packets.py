@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sceneql.field.packets import packet_roots_kernels
+from sceneql.field.packets import packet_roots_kernels, ray_rows
 from sceneql.field.packets.packet_kernels import LANES, VECTOR, WIDTH
 from sceneql.field.packets.packet_parts import density_columns, skeleton_columns
 from sceneql.field.packets.packet_roots_kernels import GROUP
 from sceneql.field.packets.packet_rows import PART
-from sceneql.field.packets.ray_rows import ASK, FOUND_ROOT, FOUND_STATUS, LANE_ROWS, RAY
 from sceneql.field.packets.slab_kernels import BEAM, OCTET
 from sceneql.field.roots import density_march_kernels, density_roots_kernels, density_slice_kernels
 from sceneql.field.roots.polynomial_kernels import ABREAST, DEGREES, POLYNOMIAL
@@ -128,17 +127,17 @@ class Memory:
         count = -(-count // whole) * whole  # lanes beyond the rays are computed too
         rows = len(tape.code)
         self.tape = tape
-        self.rays = lined((RAY, count))
+        self.rays = lined((ray_rows.RAY, count))
         self.found = lined((5, count))
         single = np.float32
         self.packet = (
             lined((rows, WIDTH), single),
             lined((3, WIDTH), single),
             lined(LANES, single),
-            lined(max(LANE_ROWS * LANES, density_march_kernels.ROWS), single),
+            lined(max(ray_rows.LANE_ROWS * LANES, density_march_kernels.ROWS), single),
             lined(2 * LANES, np.int64),
         )
-        self.asked, self.queue = lined((ASK, count), single), lined(count, np.int64)
+        self.asked, self.queue = lined((ray_rows.ASK, count), single), lined(count, np.int64)
         plan = plan_of(tape)
         enclosed = plan[density_roots_kernels.ROW_OF] < 0 and plan[POLYNOMIAL] < 0
         # A tape of an exact form needs no enclosures.
@@ -199,6 +198,6 @@ def cast_together(
         memory.rays[:3, :n], memory.rays[3:6, :n] = origins[ray].T, directions[ray].T
         memory.rays[6, :n], memory.rays[7, :n] = t0[ray], t1[ray]
         memory.settle(n, anywhere)
-        status[ray] = memory.found[FOUND_STATUS, :n]
-        t[ray] = memory.found[FOUND_ROOT, :n]
+        status[ray] = memory.found[ray_rows.FOUND_STATUS, :n]
+        t[ray] = memory.found[ray_rows.FOUND_ROOT, :n]
     return status, t
