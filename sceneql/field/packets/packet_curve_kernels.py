@@ -108,7 +108,7 @@ def control(parts, k):
     return (
         TWO * parts[rows.CX, k + 1], TWO * parts[rows.CY, k + 1], TWO * parts[rows.CZ, k + 1],
         parts[rows.VX, k + 1], parts[rows.VY, k + 1], parts[rows.VZ, k + 1],
-        r0, TWO * (rc - r0), r0 - TWO * rc + parts[rows.RADIUS_B, k + 1],
+        r0, TWO * (rc - r0), r0 - TWO * rc + parts[rows.RADIUS_B, k + 1]
     )  # fmt: skip
 
 

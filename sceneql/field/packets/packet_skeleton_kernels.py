@@ -7,32 +7,16 @@ tau^2 +- e along the segment. In a group the largest u counts; K(s) times the we
 
 from sceneql.compiled.kernels import inlined, lean
 from sceneql.compiled.lanes_kernels import below, bits_below, first_bit, root, spread
+from sceneql.field.packets import packet_density_kernels as density
 from sceneql.field.packets import packet_rows as rows
 from sceneql.field.packets.packet_curve_kernels import LESS, by_three
-from sceneql.field.packets.packet_density_kernels import (
-    GROW,
-    HALF,
-    INFINITE,
-    ONE,
-    PAD,
-    TINY,
-    TWO,
-    VECTOR,
-    ZERO,
-    F,
-    around,
-    cubed,
-    looked_at,
-    near_box,
-    summed,
-    weighed,
-)
+from sceneql.field.packets.packet_density_kernels import GROW, HALF, INFINITE, ONE, PAD, TINY, TWO, VECTOR, ZERO, F
 from sceneql.field.packets.packet_falloff_kernels import fallen
 from sceneql.field.packets.packet_kernels import SKELETON_LANES
 from sceneql.field.packets.packet_near_kernels import lanes_within, off_box
 from sceneql.field.packets.packet_triangle_kernels import triangle
+from sceneql.field.skeleton import skeleton_parts_kernels as part
 from sceneql.field.skeleton.falloff_kernels import WYVILL
-from sceneql.field.skeleton.skeleton_parts_kernels import CURVE, TRIANGLE
 
 COARSE = F(8.0)
 """A simpler part is close enough where |u|^2 is at least so many times R times its deviation."""
@@ -89,14 +73,14 @@ def beaten(parts, k, px, py, pz, ux, uy, uz, speed, way, loose, rival):
 def part_parabola(parts, k, px, py, pz, ux, uy, uz, speed, way, loose):
     """1 - s of part k at p + u tau +- loose, tau in [-1, 1]: a0 + a1 tau - a2 tau^2 +- the last of the four."""
     shape = parts[rows.SHAPE, k + 1]
-    if shape == F(TRIANGLE):
+    if shape == F(part.TRIANGLE):
         return triangle(parts, k, px, py, pz, ux, uy, uz, speed, way, loose)
     # The simpler part deviates by this much wherever it is within reach, where |p - x| < R.
     even, cone = parts[rows.EVEN, k + 1], parts[rows.CONE, k + 1]
     rough = COARSE * parts[rows.RADIUS, k]
     if bits_below(speed, rough * even) == 0:
-        return around(parts, k, px, py, pz, ux, uy, uz, speed, way, loose + even)
-    straight = shape != F(CURVE) or bits_below(speed, rough * cone) == 0
+        return density.around(parts, k, px, py, pz, ux, uy, uz, speed, way, loose + even)
+    straight = shape != F(part.CURVE) or bits_below(speed, rough * cone) == 0
     if straight:
         loose = loose + cone
     return by_three(parts, k, straight, px, py, pz, ux, uy, uz, speed, way, loose)
@@ -136,7 +120,7 @@ def skeleton_lanes(parts, start, stop, x, y, z, out, n):
     ``parts`` are laid out as in packet_rows.
     """
     for i in range(0, n, VECTOR):
-        px, py, pz, ux, uy, uz, box, way, loose = looked_at(x, y, z, i)
+        px, py, pz, ux, uy, uz, box, way, loose = density.looked_at(x, y, z, i)
         speed = ux * ux + uy * uy + uz * uz
         none = spread(ZERO)
         sums = none, none, none, none, none
@@ -147,21 +131,21 @@ def skeleton_lanes(parts, start, stop, x, y, z, out, n):
         rival, fresh = nobody, True
         group, kernel, weight = NONE, ZERO, ZERO
         first = start
-        bits = near_box(parts, first, stop, box)
+        bits = density.near_box(parts, first, stop, box)
         while True:
             while bits == 0 and first + VECTOR < stop:
                 first += VECTOR
                 fresh = True
-                bits = near_box(parts, first, stop, box)
+                bits = density.near_box(parts, first, stop, box)
             last = bits == 0
             k = 0 if last else first + first_bit(bits)
             if last or parts[rows.GROUP, k + 1] != group:
                 if group != NONE:
                     g0, g1, g2, ge = best
                     if kernel == F(WYVILL):
-                        sums = weighed(weight, cubed(g0, g1, g2, ge), sums)
+                        sums = density.weighed(weight, density.cubed(g0, g1, g2, ge), sums)
                     else:
-                        sums = weighed(weight, fallen(kernel, g0, g1, g2, ge), sums)
+                        sums = density.weighed(weight, fallen(kernel, g0, g1, g2, ge), sums)
                     added += ONE
                     group = NONE
             if last:
@@ -180,4 +164,4 @@ def skeleton_lanes(parts, start, stop, x, y, z, out, n):
                 found = part_parabola(parts, k, px, py, pz, ux, uy, uz, speed, way, loose)
             best = found if group == NONE else larger(found, best)
             group, kernel, weight = parts[rows.GROUP, k + 1], parts[rows.KERNEL, k + 1], parts[rows.WEIGHT, k]
-        summed(out, i, sums, added, loose)
+        density.summed(out, i, sums, added, loose)
