@@ -66,9 +66,7 @@ def plain_parts(near, first, found):
     return rows
 
 
-@lean(
-    "UniTuple(int64, 2)(int32[:, ::1], float64[:, ::1], float64[:, ::1], boolean, int32[:, ::1], float64[:, ::1])",
-)
+@lean("UniTuple(int64, 2)(int32[:, ::1], float64[:, ::1], float64[:, ::1], boolean, int32[:, ::1], float64[:, ::1])")
 def simplify(code, parts, scratch, whole, short, near):
     """Write the tape shortened for a box into ``short`` and ``near``, as large as code and parts; (rows, parts) used.
 
