@@ -11,9 +11,9 @@ from common_scenes import tape_of
 from moment import IDENTITY, FakeMoment, const, formula
 from plain_tapes import implicit, kernels
 from random_tapes import PARTS, rays, tapes
-from ray_bundles import agree_with_the_certified, bundle
+from ray_bundles import agree_with_the_certified, bundle, cast_together
 from sceneql.field.packets import ray_rows
-from sceneql.field.packets.packets import Memory, cast_together, plan_of
+from sceneql.field.packets.packets import Memory, plan_of
 from sceneql.field.roots.clips import clip_rows
 from sceneql.field.skeleton.skeleton import Skeleton
 from sceneql.field.tape import tape_ops as ops

@@ -10,7 +10,7 @@ from sceneql.compiled.kernels import inlined, lean
 from sceneql.field.skeleton import skeleton_parts_kernels as part
 from sceneql.field.skeleton.density_kernels import offset
 from sceneql.field.skeleton.falloff_kernels import WYVILL
-from sceneql.field.skeleton.skeleton_bounds_kernels import skeleton_near
+from sceneql.field.skeleton.skeleton_bounds_kernels import box_of, skeleton_near
 from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.short_rows_kernels import ALIAS, LIVE, mark, write_row
 
@@ -18,12 +18,7 @@ from sceneql.field.tape.short_rows_kernels import ALIAS, LIVE, mark, write_row
 @inlined
 def within_reach(parts, i, scratch, p):
     """Whether the box in rows p..p+2 of scratch may be within reach of part i."""
-    hx = 0.5 * (scratch[p, 1] - scratch[p, 0])
-    hy = 0.5 * (scratch[p + 1, 1] - scratch[p + 1, 0])
-    hz = 0.5 * (scratch[p + 2, 1] - scratch[p + 2, 0])
-    x = scratch[p, 0] + hx
-    y = scratch[p + 1, 0] + hy
-    z = scratch[p + 2, 0] + hz
+    x, y, z, hx, hy, hz = box_of(scratch, p)
     wx, wy, wz = offset(parts, i, x, y, z)
     blur = 1.0e-12 * (abs(x) + abs(y) + abs(z) + abs(parts[i, 0]) + abs(parts[i, 1]) + abs(parts[i, 2]) + parts[i, 6])
     blur += 1.0e-12 * (abs(parts[i, 3]) + abs(parts[i, 4]) + abs(parts[i, 5]))
