@@ -10,6 +10,7 @@ from sceneql.field.enclose.shorten_kernels import shorten
 from sceneql.field.packets import ray_rows
 from sceneql.field.packets import slab_kernels as slab
 from sceneql.field.packets.packet_kernels import C1, LANES, TAPE_ROOTS, VECTOR, E, enclose, has, load_constants
+from sceneql.field.packets.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_SLOPE, FOUND_STATUS
 from sceneql.field.packets.search_lanes_kernels import search_lanes
 from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.batch_kernels import evaluate
@@ -31,9 +32,9 @@ def enqueue(rays, count, groups, asked, found, queue):
             queue[np.uint64(queued)] = ray
             if states[j] == slab.SETTLED:
                 far = asked[ray_rows.FAR, j]
-                found[ray_rows.FOUND_STATUS, j] = ops.HIT
-                found[ray_rows.FOUND_LOW, j] = found[ray_rows.FOUND_HIGH, j] = far
-                found[ray_rows.FOUND_ROOT, j] = rays[6, j] + far
+                found[FOUND_STATUS, j] = ops.HIT
+                found[FOUND_LOW, j] = found[FOUND_HIGH, j] = far
+                found[FOUND_ROOT, j] = rays[6, j] + far
             else:
                 queued += 1 if states[j] >= 0.0 else 0
     return queued
@@ -51,7 +52,7 @@ def polish(code, constants, parts, registers, points, rays, queue, count, found,
         n = min(width, count - start)
         own, times = queue[start:], registers[0]
         for turn in range(2):
-            begins, roots = rays[6], found[ray_rows.FOUND_ROOT]
+            begins, roots = rays[6], found[FOUND_ROOT]
             for i in range(n):
                 j = np.uint64(own[i])
                 times[i] = begins[j] + roots[j]
@@ -64,21 +65,18 @@ def polish(code, constants, parts, registers, points, rays, queue, count, found,
             last = registers[code.shape[0] - 1]
             for i in range(n):
                 j = np.uint64(queue[start + i])
-                step = last[i] / found[ray_rows.FOUND_SLOPE, j]
+                step = last[i] / found[FOUND_SLOPE, j]
                 rise = last[i] - values[j]
-                if turn == 1 and ways[j] != ZERO and rise * ways[j] * found[ray_rows.FOUND_SLOPE, j] > 0.0:
+                if turn == 1 and ways[j] != ZERO and rise * ways[j] * found[FOUND_SLOPE, j] > 0.0:
                     step = last[i] * ways[j] / rise
-                root = min(
-                    max(found[ray_rows.FOUND_ROOT, j] - step, found[ray_rows.FOUND_LOW, j]),
-                    found[ray_rows.FOUND_HIGH, j],
-                )
-                values[j], ways[j] = last[i], root - found[ray_rows.FOUND_ROOT, j]
-                left = min(abs(step), found[ray_rows.FOUND_HIGH, j] - found[ray_rows.FOUND_LOW, j])
+                root = min(max(found[FOUND_ROOT, j] - step, found[FOUND_LOW, j]), found[FOUND_HIGH, j])
+                values[j], ways[j] = last[i], root - found[FOUND_ROOT, j]
+                left = min(abs(step), found[FOUND_HIGH, j] - found[FOUND_LOW, j])
                 if turn == 1 and not (
                     left <= ray_rows.SETTLED * (rays[7, j] - rays[6, j]) and rays[6, j] + root < rays[7, j]
                 ):
-                    found[ray_rows.FOUND_STATUS, j] = ops.UNDECIDED
-                found[ray_rows.FOUND_ROOT, j] = root
+                    found[FOUND_STATUS, j] = ops.UNDECIDED
+                found[FOUND_ROOT, j] = root
 
 
 @inlined
@@ -113,7 +111,7 @@ def leave_all(rays, count, found, queue):
     for j in range(count):
         if rays[6, j] < rays[7, j]:
             queue[np.uint64(queued)] = j
-            found[ray_rows.FOUND_STATUS, j], found[ray_rows.FOUND_LOW, j] = ops.UNDECIDED, 0.0
+            found[FOUND_STATUS, j], found[FOUND_LOW, j] = ops.UNDECIDED, 0.0
             queued += 1
     return queued
 
@@ -186,20 +184,10 @@ def tape_roots(
     if not anywhere:
         hits = 0
         for k in range(queued):  # hits to the front of the queue
-            if found[ray_rows.FOUND_STATUS, queue[k]] == ops.HIT:
+            if found[FOUND_STATUS, queue[k]] == ops.HIT:
                 queue[hits], queue[k] = queue[k], queue[hits]
                 hits += 1
-        polish(
-            code,
-            constants,
-            near_parts if rows > 0 else parts,
-            doubles,
-            points,
-            rays,
-            queue,
-            hits,
-            found,
-            asked[ray_rows.NEAR],
-            asked[ray_rows.RUN],
-        )
+        near, run = asked[ray_rows.NEAR], asked[ray_rows.RUN]
+        own_parts = near_parts if rows > 0 else parts
+        polish(code, constants, own_parts, doubles, points, rays, queue, hits, found, near, run)
     return spent, queued, rows, end, safe, unsafe
