@@ -32,9 +32,8 @@ def hit(t, y, pair, floats, ints):
         p = px if c == 0 else (py if c == 1 else pz)
         a, b = floats[of(ints, i, spheres.INVERSE)] * p, floats[of(ints, j, spheres.INVERSE)] * p
         u, w = y[of(ints, i, spheres.V) + c], y[of(ints, j, spheres.V) + c]
-        lost = -floats[of(ints, i, spheres.MASS)] * a * (u + 0.5 * a) + floats[of(ints, j, spheres.MASS)] * b * (
-            w - 0.5 * b
-        )
+        mi, mj = floats[of(ints, i, spheres.MASS)], floats[of(ints, j, spheres.MASS)]
+        lost = -mi * a * (u + 0.5 * a) + mj * b * (w - 0.5 * b)
         y[of(ints, i, spheres.WORK)] += 0.5 * lost
         y[of(ints, j, spheres.WORK)] += 0.5 * lost
         y[of(ints, i, spheres.V) + c] = u + a

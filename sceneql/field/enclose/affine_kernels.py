@@ -9,7 +9,7 @@ propagated: an operation that would lose those of its arguments does not.
 import numpy as np
 
 from sceneql.field.tape import single_kernels as single
-from sceneql.field.tape.single_kernels import lane
+from sceneql.field.tape.single_kernels import LOG_ERROR, lane
 
 F = np.float32
 PAD = F(5.0e-7)
@@ -213,14 +213,10 @@ def logged(a0, a1, ea):
     sag = QUARTER * ratio * ratio
     c0 = f - sag
     c1 = slope * a1
-    e = (
-        (sag + abs(slope) * ea) * GROW
-        + single.LOG_ERROR * (ONE + abs(f))
-        + PAD * (abs(f) + sag + (abs(a1) + ea) / safe)
-    )
+    e = (sag + abs(slope) * ea) * GROW + LOG_ERROR * (ONE + abs(f)) + PAD * (abs(f) + sag + (abs(a1) + ea) / safe)
     bottom = single.logarithm(safe)
     top = single.logarithm(top)
-    flat_e = HALF * (top - bottom) * GROW + (single.LOG_ERROR + PAD) * (ONE + abs(top) + abs(bottom))
+    flat_e = HALF * (top - bottom) * GROW + (LOG_ERROR + PAD) * (ONE + abs(top) + abs(bottom))
     flat = not (e < flat_e)
     e = flat_e if flat else e
     return (

@@ -11,9 +11,9 @@ from numba.core.sigutils import normalize_signature
 
 from sceneql.compiled.kernels import inlined, lean
 from sceneql.compiled.numba.lazy_kernels import lazy
-from sceneql.field.packets import ray_rows
 from sceneql.field.packets.packet_kernels import BUNDLE, MEMORY, check_inside, tape_roots
 from sceneql.field.packets.polynomial_search_kernels import polynomial_roots
+from sceneql.field.packets.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS, SETTLED
 from sceneql.field.roots.density_roots_kernels import ROW_OF, density_roots
 from sceneql.field.roots.isolation_kernels import isolate
 from sceneql.field.roots.polynomial_kernels import POLYNOMIAL
@@ -36,14 +36,14 @@ MANY = 64
 def certify_ray(code, constants, parts, scratch, rays, j, end, anywhere, found):
     """Find the root of ray j from FOUND_LOW on by the certified routine; the ray is outside behind ``end``."""
     ox, oy, oz, dx, dy, dz = rays[0, j], rays[1, j], rays[2, j], rays[3, j], rays[4, j], rays[5, j]
-    begin = rays[6, j] + found[ray_rows.FOUND_LOW, j] * (1.0 - 1e-7)
+    begin = rays[6, j] + found[FOUND_LOW, j] * (1.0 - 1e-7)
     outcome, t = isolate(
         code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, begin, min(rays[7, j], end), TOLERANCE, 1.0, anywhere
     )
-    found[ray_rows.FOUND_STATUS, j] = outcome
-    found[ray_rows.FOUND_ROOT, j] = t - rays[6, j]
+    found[FOUND_STATUS, j] = outcome
+    found[FOUND_ROOT, j] = t - rays[6, j]
     if anywhere:
-        found[ray_rows.FOUND_HIGH, j] = t - rays[6, j]
+        found[FOUND_HIGH, j] = t - rays[6, j]
 
 
 @inlined
@@ -52,7 +52,7 @@ def certify_queued(code, constants, parts, scratch, rays, queue, count, end, any
     certified = 0
     for k in range(count):
         j = np.uint64(queue[k])
-        if found[ray_rows.FOUND_STATUS, j] == ops.UNDECIDED:
+        if found[FOUND_STATUS, j] == ops.UNDECIDED:
             certified += 1
             certify_ray(code, constants, parts, scratch, rays, j, end, anywhere, found)
     return certified
@@ -61,7 +61,7 @@ def certify_queued(code, constants, parts, scratch, rays, queue, count, end, any
 @inlined
 def leave_safe(rays, queue, count, row, late, safe, unsafe, found, doubtful):
     """Copy the queued hits outside safe..unsafe, which ``check_inside`` must test, to ``doubtful``; how many."""
-    begins, ends, places, outcomes = rays[6], rays[7], found[row], found[ray_rows.FOUND_STATUS]
+    begins, ends, places, outcomes = rays[6], rays[7], found[row], found[FOUND_STATUS]
     n = 0
     for k in range(count):
         j = np.uint64(queue[k])
@@ -83,7 +83,7 @@ def box_inside(code, constants, parts, scratch, sides):
 @inlined
 def enclose_hits(rays, count, found, row, late, room):
     """Write the bounding box of the points that ``check_inside`` would test into row BOX of ``room``."""
-    begins, ends, places, outcomes = rays[6], rays[7], found[row], found[ray_rows.FOUND_STATUS]
+    begins, ends, places, outcomes = rays[6], rays[7], found[row], found[FOUND_STATUS]
     sides = room[BOX]
     for axis in range(3):
         o, d, x = rays[axis], rays[3 + axis], room[X + axis]
@@ -141,7 +141,7 @@ def first_roots(
     columns. Outcomes are those of ``isolation_kernels.isolate``.
     """
     for j in range(count):
-        found[ray_rows.FOUND_STATUS, j] = ops.MISS
+        found[FOUND_STATUS, j] = ops.MISS
     groups = (count + GROUP - 1) // GROUP
     safe = unsafe = np.inf
     certified = left = 0
@@ -167,7 +167,7 @@ def first_roots(
             length = code.shape[0]
             near = short[length : length + rows]
             certified = certify_queued(near, constants, near_parts, scratch, rays, queue, queued, end, anywhere, found)
-    row, late = (ray_rows.FOUND_HIGH, 0.0) if anywhere else (ray_rows.FOUND_ROOT, ray_rows.SETTLED)
+    row, late = (FOUND_HIGH, 0.0) if anywhere else (FOUND_ROOT, SETTLED)
     boxed = plan[ROW_OF] >= 0 and not anywhere and queued > 0
     if cut and plan[POLYNOMIAL] >= 0 and queued > MANY:
         enclose_hits(rays, count, found, row, late, room)
@@ -179,7 +179,7 @@ def first_roots(
         certified += certify_queued(code, constants, parts, scratch, rays, order, left, np.inf, anywhere, found)
     else:
         certified += certify_queued(code, constants, parts, scratch, rays, queue, queued, np.inf, anywhere, found)
-    begins, roots = rays[6], found[ray_rows.FOUND_ROOT]
+    begins, roots = rays[6], found[FOUND_ROOT]
     for k in range(queued):
         j = np.uint64(queue[k])
         roots[j] += begins[j]

@@ -34,12 +34,8 @@ def nearest_anchor(parts, k, bits, first, x, y, z, rival):
         if parts[rows.GROUP, k + 1] != group:
             break
         bits &= bits - 1
-        ax, ay, az, per = (
-            parts[rows.ANCHOR_X, k],
-            parts[rows.ANCHOR_Y, k],
-            parts[rows.ANCHOR_Z, k],
-            parts[rows.ANCHORED, k],
-        )
+        ax, ay, az = parts[rows.ANCHOR_X, k], parts[rows.ANCHOR_Y, k], parts[rows.ANCHOR_Z, k]
+        per = parts[rows.ANCHORED, k]
         wx, wy, wz = x - ax, y - ay, z - az
         r = root(wx * wx + wy * wy + wz * wz)
         one, other = r * per, away * inverse

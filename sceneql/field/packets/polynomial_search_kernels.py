@@ -10,7 +10,7 @@ from numba import types
 from sceneql.compiled.arithmetic_kernels import bits, from_bits
 from sceneql.compiled.kernels import inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
-from sceneql.field.packets import ray_rows
+from sceneql.field.packets.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS, SETTLED
 from sceneql.field.roots import polynomial_steps_kernels as steps
 from sceneql.field.roots.polynomial_kernels import ABREAST
 from sceneql.field.tape.tape_ops import HIT, MISS, UNDECIDED
@@ -91,12 +91,7 @@ def count_lanes(lanes, n, outcome):
 def note(lanes, ids, ended, count, rays, anywhere, found, queue, queued):
     """Write the outcomes and brackets of ``ended`` lanes, and queue their rays; returns the length of the queue."""
     begins, ends = rays[T0], rays[T1]
-    outcomes, lows, highs, roots = (
-        found[ray_rows.FOUND_STATUS],
-        found[ray_rows.FOUND_LOW],
-        found[ray_rows.FOUND_HIGH],
-        found[ray_rows.FOUND_ROOT],
-    )
+    outcomes, lows, highs, roots = found[FOUND_STATUS], found[FOUND_LOW], found[FOUND_HIGH], found[FOUND_ROOT]
     for k in range(count):
         i = np.uint64(ended[np.uint64(k)])
         ray = ids[np.uint64(lanes[steps.RAY + i])]
@@ -105,7 +100,7 @@ def note(lanes, ids, ended, count, rays, anywhere, found, queue, queued):
         outcome = lanes[steps.STATE + i]
         middle, half = lanes[steps.MIDDLE + i] - t0, lanes[steps.HALF_WAY + i]
         root = middle + half * lanes[steps.ROOT + i]
-        safe = (half * lanes[steps.CHANGE + i] <= ray_rows.SETTLED * (t1 - t0)) & (t0 + root < t1)
+        safe = (half * lanes[steps.CHANGE + i] <= SETTLED * (t1 - t0)) & (t0 + root < t1)
         lost = (outcome == HIT) & (not anywhere) & (not safe)
         outcomes[j] = float(UNDECIDED) if lost else outcome
         lows[j] = middle + half * lanes[steps.A + i]

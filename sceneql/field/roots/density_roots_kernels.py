@@ -11,7 +11,7 @@ from numba import types
 
 from sceneql.compiled.kernels import inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
-from sceneql.field.packets import ray_rows
+from sceneql.field.packets.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS
 from sceneql.field.roots import beam_kernels as beams
 from sceneql.field.roots import density_march_kernels as march
 from sceneql.field.roots import density_slice_kernels as slices
@@ -71,12 +71,7 @@ def note(room, state, count, live, rays, found, queue, met, doubted):
     """Write the outcomes of the lanes in ``live`` from ENDED on, and queue their rays: hits at the front of the queue,
     undecided rays at its end. Returns the numbers of both."""
     bases, inverse = room[slices.SPOT + slices.BASE], room[beams.INVERSE_SPEED]
-    outcomes, lows, highs, roots = (
-        found[ray_rows.FOUND_STATUS],
-        found[ray_rows.FOUND_LOW],
-        found[ray_rows.FOUND_HIGH],
-        found[ray_rows.FOUND_ROOT],
-    )
+    outcomes, lows, highs, roots = found[FOUND_STATUS], found[FOUND_LOW], found[FOUND_HIGH], found[FOUND_ROOT]
     last = len(queue) - 1
     for k in range(count):
         i = np.uint64(live[np.uint64(ENDED + k)])
@@ -170,8 +165,8 @@ def leave_undecided(room, live, n, rays, found, queue, doubted):
     last = len(queue) - 1 - doubted
     for i in range(n):
         j = live[i]
-        found[ray_rows.FOUND_STATUS, rays[j]] = UNDECIDED
-        found[ray_rows.FOUND_LOW, rays[j]] = room[slices.SPOT + slices.BASE, i] * room[beams.INVERSE_SPEED, j]
+        found[FOUND_STATUS, rays[j]] = UNDECIDED
+        found[FOUND_LOW, rays[j]] = room[slices.SPOT + slices.BASE, i] * room[beams.INVERSE_SPEED, j]
         queue[last - i] = rays[j]
     return doubted + n
 

@@ -6,18 +6,12 @@ import numpy as np
 from sceneql.compiled.kernels import inlined
 from sceneql.field.roots import beam_kernels as beams
 from sceneql.field.roots import density_march_kernels as march
+from sceneql.field.roots.beam_kernels import WIDE
 from sceneql.field.roots.density_march_kernels import HALF, LESS, MORE, ONE, ZERO, F
 from sceneql.field.tape.single_kernels import lane
 from sceneql.field.tape.tape_ops import HIT, MISS
 
-SPOT, SPANS, BEAM_ROW, OWN_ROW, SPARE, ROOM = (
-    beams.WIDE,
-    beams.WIDE + 7,
-    beams.WIDE + 10,
-    beams.WIDE + 11,
-    beams.WIDE + 12,
-    beams.WIDE + 18,
-)
+SPOT, SPANS, BEAM_ROW, OWN_ROW, SPARE, ROOM = WIDE, WIDE + 7, WIDE + 10, WIDE + 11, WIDE + 12, WIDE + 18
 BASE = 6
 """Rows of ``room`` (ROOM, n): rays; lanes (place, direction, begin of the slice on the ray); where parts are entered
 and left along the axis of a beam, and their largest density in it; the bundle's beam and a packet's; working memory of

@@ -5,7 +5,7 @@ import numpy as np
 
 from sceneql.compiled.kernels import inlined
 from sceneql.field.enclose.extent_kernels import extent
-from sceneql.field.packets import ray_rows
+from sceneql.field.packets.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS, SETTLED
 from sceneql.field.tape.tape_ops import UNDECIDED
 
 X, DX, ROOT, SPEED, DENSITY, SLOPE, BEND, BEGIN, END, SEARCH, BOX = 0, 3, 6, 7, 8, 9, 10, 11, 12, 13, 14
@@ -45,11 +45,7 @@ def polish(parts, kept, threshold, rays, queue, count, room, found):
     searches behind."""
     roots, lows, highs, searches = room[ROOT], room[BEGIN], room[END], room[SEARCH]
     begins, ends = rays[6], rays[7]
-    found_root, found_low, found_high = (
-        found[ray_rows.FOUND_ROOT],
-        found[ray_rows.FOUND_LOW],
-        found[ray_rows.FOUND_HIGH],
-    )
+    found_root, found_low, found_high = found[FOUND_ROOT], found[FOUND_LOW], found[FOUND_HIGH]
     for i in range(count):
         j = np.uint64(queue[i])
         roots[i], lows[i], highs[i] = found_root[j], found_low[j], found_high[j]
@@ -68,13 +64,13 @@ def polish(parts, kept, threshold, rays, queue, count, room, found):
         root = root if root > lows[i] else lows[i]
         root = root if root < highs[i] else highs[i]
         # The term of the second derivative is far larger than that of the third, and so bounds the error.
-        settled = (abs(bent) <= ray_rows.SETTLED * searches[i]) & (root < searches[i])
+        settled = (abs(bent) <= SETTLED * searches[i]) & (root < searches[i])
         bend[i] = 1.0 if settled else 0.0
         step = root - roots[i]
         x[i], y[i], z[i] = x[i] + step * dx[i], y[i] + step * dy[i], z[i] + step * dz[i]
         roots[i] = root
         dx[i] = searches[i] * searches[i] * speed[i]
-    outcomes = found[ray_rows.FOUND_STATUS]
+    outcomes = found[FOUND_STATUS]
     for i in range(count):
         j = np.uint64(queue[i])
         found_root[j] = roots[i]
@@ -83,7 +79,7 @@ def polish(parts, kept, threshold, rays, queue, count, room, found):
     if count > 0:
         for row in range(4):
             box[2 * row], box[2 * row + 1] = extent(room[X + row], count)
-        late = ray_rows.SETTLED * np.sqrt(box[7])
+        late = SETTLED * np.sqrt(box[7])
         for row in range(3):
             low, high = box[2 * row], box[2 * row + 1]
             hair = late + HAIR * (abs(low) + abs(high))
