@@ -34,7 +34,6 @@ def develop(linear: NDArray[float32], exposure: float = 0.0, *, data: bool = Fal
     pixels = np.empty(light.shape, dtype=np.uint8)
     gain = 2.0**exposure
     over_tiles(
-        -(-height // BAND),
-        lambda band: develop_rows(light, gain, pixels, band * BAND, min(band * BAND + BAND, height)),
+        -(-height // BAND), lambda band: develop_rows(light, gain, pixels, band * BAND, min(band * BAND + BAND, height))
     )
     return pixels

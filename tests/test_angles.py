@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from common_scenes import TOLERANCE, certified, tape_of
+from ray_bundles import cast_together
 from sceneql.field.enclose.interval_kernels import box
 from sceneql.field.enclose.slope_kernels import on_ray
-from sceneql.field.packets.packets import cast_together, tape_of_rows
+from sceneql.field.packets.packets import tape_of_rows
 from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.simplify_kernels import simplify
 from sceneql.field.tape.tape_solid import cast, field_values, scratch

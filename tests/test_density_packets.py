@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from plain_tapes import kernels
-from sceneql.field.packets.packets import Memory, cast_together
+from ray_bundles import cast_together
+from sceneql.field.packets.packets import Memory
 from sceneql.field.tape.tape_ops import HIT
 
 RADIUS, THRESHOLD = 0.4, 0.3

@@ -11,9 +11,9 @@ from common_scenes import tape_of
 from moment import IDENTITY, FakeMoment, const, formula
 from plain_tapes import implicit, kernels
 from random_tapes import PARTS, rays, tapes
-from ray_bundles import agree_with_the_certified, bundle
-from sceneql.field.packets.packets import Memory, cast_together, plan_of
-from sceneql.field.packets.ray_rows import FOUND_ROOT, FOUND_STATUS
+from ray_bundles import agree_with_the_certified, bundle, cast_together
+from sceneql.field.packets import ray_rows
+from sceneql.field.packets.packets import Memory, plan_of
 from sceneql.field.roots.clips import clip_rows
 from sceneql.field.skeleton.skeleton import Skeleton
 from sceneql.field.tape import tape_ops as ops
@@ -200,9 +200,9 @@ def test_rays_that_begin_where_they_are_cut_need_no_certified_routine():
     for anywhere in (False, True):
         _, certified = memory.settle(256, anywhere)
         assert certified == 0
-        assert (memory.found[FOUND_STATUS] == ops.HIT).all()
+        assert (memory.found[ray_rows.FOUND_STATUS] == ops.HIT).all()
         if not anywhere:
-            assert memory.found[FOUND_ROOT] == pytest.approx(along - reach, abs=1e-9)
+            assert memory.found[ray_rows.FOUND_ROOT] == pytest.approx(along - reach, abs=1e-9)
 
 
 @pytest.mark.parametrize("text", ["max({}, sin(x) - 2)", "min(exp(x), {})", "-min(-({}), 2 - sin(x))*3"])
@@ -213,7 +213,7 @@ def test_branches_that_do_not_change_the_sign_cost_no_enclosures(text):
         memory = Memory(tape_of(one), 256)
         origins, directions = bundle(np.array([0.1, 0.2, -3.0]), np.array([0.0, 0.05, 1.0]), generator, 256, 0.02)
         memory.rays[:3], memory.rays[3:6], memory.rays[6], memory.rays[7] = origins.T, directions.T, 0.1, 4.0
-        spent.append((memory.settle(256, False), memory.found[FOUND_ROOT].copy()))
+        spent.append((memory.settle(256, False), memory.found[ray_rows.FOUND_ROOT].copy()))
     assert spent[0][0] == spent[1][0]
     assert np.abs(spent[0][1] - spent[1][1]).max() < 1e-9
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from common_scenes import tape_of
-from sceneql.field.packets.packets import cast_together
+from ray_bundles import cast_together
 from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.tape_solid import cast
 

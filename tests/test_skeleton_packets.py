@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from lane_checks import check_enclosures
 from plain_tapes import implicit
 from random_tapes import MIXED
-from ray_bundles import agree_with_the_certified, bundle
-from sceneql.field.packets.packets import Memory, cast_together, enclosures
+from ray_bundles import agree_with_the_certified, bundle, cast_together
+from sceneql.field.packets.packets import Memory, enclosures
 from sceneql.field.roots.clips import clip_rows
 from sceneql.field.skeleton.skeleton import KERNELS, Skeleton
 from sceneql.field.tape import tape_ops as ops

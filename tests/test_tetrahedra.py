@@ -8,11 +8,22 @@ import pytest
 
 from runs import complaint, watch
 from sceneql.bodies.filling.stuffing import stuffed
-from sceneql.bodies.filling.tetrahedra import boundary, dihedral_angles, edges, volumes
+from sceneql.bodies.filling.tetrahedra import ENDS, FACES, boundary, edges, volumes
 from sceneql.frame import Mesh
 from sceneql.mesh.measures import edge_counts, euler_characteristic, volume
 from sceneql.pipeline import load
 from sceneql.run.run import Run
+
+
+def dihedral_angles(points, tetrahedra):
+    """(t, 6) angles [rad] between the two faces at each edge of ENDS."""
+    corners = points[tetrahedra]
+    normals = [np.cross(corners[:, b] - corners[:, a], corners[:, c] - corners[:, a]) for a, b, c in FACES]
+    normals = [n / np.linalg.norm(n, axis=1, keepdims=True) for n in normals]
+    # The faces at an edge are those across from the two other corners.
+    others = [[k for k in range(4) if k not in ends] for ends in ENDS]
+    cosines = np.stack([-np.einsum("ij,ij->i", normals[a], normals[b]) for a, b in others], axis=1)
+    return np.arccos(np.clip(cosines, -1.0, 1.0))
 
 
 def filled(field, half, spacing):

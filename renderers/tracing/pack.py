@@ -12,28 +12,14 @@ from renderers.tracing.certified import TOLERANCE
 from renderers.tracing.scene_kernels import Scene
 from renderers.tracing.solids.hierarchy import hierarchy
 from renderers.tracing.solids.triangles import LARGE, Packed, boxes_of, corners_of, rows_of, still_mesh
+from sceneql import frame as seen
 from sceneql.field.tape.plans import ray_plan
 from sceneql.field.tape.tape_ops import scratch_rows
-from sceneql.frame import (
-    Grid,
-    Implicit,
-    Mesh,
-    Mist,
-    Points,
-    Quadric,
-    SeenFrame,
-    Segments,
-    Sky,
-    Sun,
-    Surface,
-    View,
-    is_held,
-)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from sceneql.frame import Floats, Ints, LightSource, Tape
+    from sceneql.frame import Floats, Ints, LightSource, SeenFrame, Tape
 
 
 UNBOUNDED = np.repeat([-np.inf, np.inf], 3)
@@ -81,7 +67,7 @@ def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certa
         ranges[[2, 4, layout.PAINT + 2, layout.PAINT + 4, layout.WITHIN + 2, layout.WITHIN + 4]] += reals_at
         reals[reals_at + tables.implicits[k] + 6] = place
     scene = Scene(reals, ints, 0, 0, 0, 0, 0)
-    if any(isinstance(shape, Grid) for shape in frame.shapes):
+    if any(isinstance(shape, seen.Grid) for shape in frame.shapes):
         from renderers.tracing.solids.grids import found_by_cells
 
         scene = found_by_cells(scene)
@@ -90,7 +76,7 @@ def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certa
         from renderers.tracing.solids.implicit import prepared
 
         places = [reals_at + place for place in tables.implicits]
-        sheets = any(isinstance(shape, Implicit) and shape.within is not None for shape in frame.shapes)
+        sheets = any(isinstance(shape, seen.Implicit) and shape.within is not None for shape in frame.shapes)
         scene = prepared(scene, rows, places, sheets=sheets, march=samples > 0, certain=certain)
     return scene, rows
 
@@ -115,24 +101,24 @@ class Rows:
     def add(self, index: int, shape: Any) -> None:
         """Append shape number ``index`` of the frame."""
         self.surfaces.append(_surface(shape.surface))
-        if isinstance(shape, Mesh):
+        if isinstance(shape, seen.Mesh):
             self._mesh(index, shape)
-        elif isinstance(shape, Quadric):
+        elif isinstance(shape, seen.Quadric):
             plane = _half_space(shape)
             if plane is None:
                 self._items(index, layout.QUADRIC, quadric_box(shape)[None, :], _quadric(shape))
             else:
                 self._items(index, layout.HALF_SPACE, UNBOUNDED[None, :], plane)
-        elif isinstance(shape, Implicit):
+        elif isinstance(shape, seen.Implicit):
             self._implicit(index, shape)
-        elif isinstance(shape, Grid):
+        elif isinstance(shape, seen.Grid):
             self._grid(index, shape)
-        elif isinstance(shape, Mist) or (isinstance(shape, Points) and shape.soft is not None):
+        elif isinstance(shape, seen.Mist) or (isinstance(shape, seen.Points) and shape.soft is not None):
             pass  # drawn over the picture (sprites.py)
-        elif isinstance(shape, Points):
+        elif isinstance(shape, seen.Points):
             zero = np.zeros((len(shape.centers), 3))
             self._rounds(index, shape.centers, zero, shape.radii, shape.colors)
-        elif isinstance(shape, Segments):
+        elif isinstance(shape, seen.Segments):
             self._rounds(index, shape.ends[:, 0], shape.ends[:, 1] - shape.ends[:, 0], shape.radii, shape.colors)
         else:
             raise ValueError(f"shape {index} is a {type(shape).__name__}, which is none of the closed set")
@@ -157,8 +143,8 @@ class Rows:
         self._size += reals.size
         return begin
 
-    def _mesh(self, index: int, mesh: Mesh) -> None:
-        if len(mesh.triangles) >= LARGE and is_held(mesh.vertices) and is_held(mesh.triangles):
+    def _mesh(self, index: int, mesh: seen.Mesh) -> None:
+        if len(mesh.triangles) >= LARGE and seen.is_held(mesh.vertices) and seen.is_held(mesh.triangles):
             packed = still_mesh(mesh)
             self.still.append((packed, self._rows(index, layout.TRIANGLE, packed.rows)))
         else:
@@ -172,7 +158,7 @@ class Rows:
         rows = np.concatenate([ends, axes, radii, shades], axis=1)
         self._items(index, layout.ROUND, np.concatenate([low, high], axis=1), rows)
 
-    def _implicit(self, index: int, shape: Implicit) -> None:
+    def _implicit(self, index: int, shape: seen.Implicit) -> None:
         box = np.array([[*shape.low, *shape.high, 0.0]], dtype=np.float64)
         self.implicits.append(self._size)
         self._items(index, layout.IMPLICIT if shape.within is None else layout.SHEET, box[:, :6], box)
@@ -184,7 +170,7 @@ class Rows:
         ranges += [self._code(plan), len(plan)]
         self.ranges.append(np.array(ranges))
 
-    def _grid(self, index: int, shape: Grid) -> None:
+    def _grid(self, index: int, shape: seen.Grid) -> None:
         from renderers.tracing.solids.grids import box, row
 
         self._items(index, layout.GRID, box(shape), row(shape))
@@ -203,7 +189,7 @@ class Rows:
         return begin
 
 
-def quadric_box(shape: Quadric) -> Floats:
+def quadric_box(shape: seen.Quadric) -> Floats:
     """(6,) world bounds of a quadric: of its local box, cut to the quadric's own extent along each axis."""
     low, high = np.array(shape.low, dtype=np.float64), np.array(shape.high, dtype=np.float64)
     # sum s (p + l/2s)^2 <= sum l^2/4s - constant over the axes with s > 0; bounds only without a linear rest.
@@ -221,7 +207,7 @@ def quadric_box(shape: Quadric) -> Floats:
     return np.concatenate([middle - reach, middle + reach])
 
 
-def _half_space(shape: Quadric) -> Floats | None:
+def _half_space(shape: seen.Quadric) -> Floats | None:
     """(1, 4) unit normal and height of the face if a quadric is a half-space, else None."""
     if any(shape.squares) or not np.isinf([*shape.low, *shape.high]).all():
         return None
@@ -231,12 +217,12 @@ def _half_space(shape: Quadric) -> Floats | None:
     return None if length == 0 else np.array([[*normal[:3], -normal[3]]]) / length
 
 
-def _quadric(shape: Quadric) -> Floats:
+def _quadric(shape: seen.Quadric) -> Floats:
     values = [*shape.squares, *shape.linear, shape.constant, *shape.low, *shape.high]
     return np.concatenate([np.asarray(shape.to_local, dtype=np.float64).ravel(), values])[None, :]
 
 
-def _surface(s: Surface) -> Floats:
+def _surface(s: seen.Surface) -> Floats:
     answer = (s.roughness, s.metallic, s.specular, s.transmission, s.index_of_refraction)
     return np.array([*s.color, *answer, *s.emission, s.checker_size, *s.checker_color], dtype=np.float64)
 
@@ -244,10 +230,10 @@ def _surface(s: Surface) -> Floats:
 def _lights(lights: tuple[LightSource, ...]) -> Floats:
     rows = []
     for light in lights:
-        if isinstance(light, Sun):
+        if isinstance(light, seen.Sun):
             direction = np.array(light.direction) / np.linalg.norm(light.direction)
             rows.append([layout.SUN, *direction, *light.irradiance, light.angle, math.tan(0.5 * light.angle)])
-        elif not isinstance(light, Sky):
+        elif not isinstance(light, seen.Sky):
             rows.append([layout.POINT, *light.position, *light.intensity, light.radius, light.radius])
     return np.array(rows, dtype=np.float64).reshape(-1, layout.LIGHT)
 
@@ -256,7 +242,7 @@ def _sky(lights: tuple[LightSource, ...]) -> Floats:
     """The sum of all skies; `visible` is that of the last one that has it."""
     row = np.zeros(14)
     for sky in lights:
-        if isinstance(sky, Sky):
+        if isinstance(sky, seen.Sky):
             row[:9] += [*sky.zenith, *sky.horizon, *sky.ground]
             row[12] = 1.0
             if sky.visible is not None:
@@ -265,6 +251,6 @@ def _sky(lights: tuple[LightSource, ...]) -> Floats:
     return row
 
 
-def _camera(view: View) -> Floats:
+def _camera(view: seen.View) -> Floats:
     axes = np.asarray(view.axes, dtype=np.float64).ravel()
     return np.array([*view.origin, *axes, view.half_height, float(view.orthographic), *view.size], dtype=np.float64)

@@ -4,20 +4,9 @@
 import numpy as np
 
 from renderers.tracing import layout
+from renderers.tracing import record_kernels as records
 from renderers.tracing.light.shade_kernels import facing_ratio
-from renderers.tracing.record_kernels import (
-    ITEM,
-    LIFT,
-    NORMAL,
-    OWNER,
-    PLACE,
-    RADIUS,
-    SURFACE,
-    TRACED,
-    VIEW,
-    put,
-    start_of,
-)
+from renderers.tracing.record_kernels import NORMAL, PLACE, VIEW, start_of
 from renderers.tracing.scene_kernels import part
 from renderers.tracing.solids.surface_kernels import color_at, normal_at
 
@@ -34,13 +23,13 @@ def describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, radius, record):
     if not outside:
         nx, ny, nz, lift = -nx, -ny, -nz, 0.0
     r, g, b = color_at(scene, item, (red, green, blue), x, y, z, nx, ny, nz, dx, dy, dz, radius)
-    put(record, x, y, z, nx, ny, nz, -dx, -dy, -dz, r, g, b)
-    record[SURFACE] = scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT]
-    record[OWNER] = scene.ints[layout.ITEMS + 4 * item + layout.SHAPE] + 1
-    record[RADIUS] = radius
-    record[LIFT] = lift
-    record[TRACED] = 0.0
-    record[ITEM] = item
+    records.put(record, x, y, z, nx, ny, nz, -dx, -dy, -dz, r, g, b)
+    record[records.SURFACE] = scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT]
+    record[records.OWNER] = scene.ints[layout.ITEMS + 4 * item + layout.SHAPE] + 1
+    record[records.RADIUS] = radius
+    record[records.LIFT] = lift
+    record[records.TRACED] = 0.0
+    record[records.ITEM] = item
     return outside
 
 
@@ -82,9 +71,9 @@ def bend(scene, scratch, record):
     length = np.sqrt(hx * hx + hy * hy + hz * hz)
     if length < 1e-3:
         hx, hy, hz, length = ny, nz, nx, 1.0
-    step = record[RADIUS] / length
+    step = record[records.RADIUS] / length
     x, y, z = record[PLACE] + step * hx, record[PLACE + 1] + step * hy, record[PLACE + 2] + step * hz
-    mx, my, mz, _, _, _, _, _, _, _ = normal_at(scene, scratch, int(record[ITEM]), x, y, z)
+    mx, my, mz, _, _, _, _, _, _, _ = normal_at(scene, scratch, int(record[records.ITEM]), x, y, z)
     turn = abs(mx * nx + my * ny + mz * nz)
     return np.sqrt(max(2.0 - 2.0 * turn, 0.0)) / max(nv, 0.1)
 

@@ -19,14 +19,7 @@ from renderers.tracing.filter.refine_kernels import refine
 from renderers.tracing.gather_kernels import PATH
 from renderers.tracing.record_kernels import COLUMNS
 from renderers.tracing.scratch import scratch
-from renderers.tracing.waves_kernels import (
-    advance_paths,
-    ask_paths,
-    begin_paths,
-    end_paths,
-    light_paths,
-    look_from,
-)
+from renderers.tracing.waves_kernels import advance_paths, ask_paths, begin_paths, end_paths, light_paths, look_from
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -7,24 +7,10 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from sceneql import kinds
 from sceneql.bodies.filling.fill import Fill, chance_key, draws, filled
 from sceneql.island.memory import bounded
-from sceneql.kinds import (
-    Color,
-    Exceeds,
-    FixedAngle,
-    FixedFrequency,
-    FixedScalar,
-    FixedTime,
-    Length,
-    ObjectRef,
-    Position,
-    Problem,
-    Record,
-    Value,
-    Velocity,
-    field,
-)
+from sceneql.kinds import Exceeds, Problem, Record, Value, field
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Link, Number, Type, Vector, walk
 
@@ -50,8 +36,8 @@ def _aged(value: Value, age: float) -> Any:
 class Aging(Record):
     """How a particle changes with its age: here `time` counts from its birth, in values and keyframes alike."""
 
-    color: Color | None = field("Its color, in place of the model's.", None)
-    radius: Length | None = field("Its radius in the picture, in place of the model's.", None)
+    color: kinds.Color | None = field("Its color, in place of the model's.", None)
+    radius: kinds.Length | None = field("Its radius in the picture, in place of the model's.", None)
 
     def problems(self) -> Iterator[Problem]:
         """Values that are none of an age alone."""
@@ -90,21 +76,21 @@ class Emit(Record):
     Chance is counter-based: what birth j draws depends on the part's name, the seed and j alone.
     """
 
-    rate: FixedFrequency = field("Births a second.", "100 Hz", above=0)
-    from_: Position = field("Where they are born.", "0 0 0 m")
-    within: ObjectRef | None = field(
+    rate: kinds.FixedFrequency = field("Births a second.", "100 Hz", above=0)
+    from_: kinds.Position = field("Where they are born.", "0 0 0 m")
+    within: kinds.ObjectRef | None = field(
         "An object within which they are born, as it stands at the start; `from` is added.", None
     )
-    velocity: Velocity = field("Their mean velocity at birth.", "0 3 0 m/s")
-    spread: FixedAngle = field(
+    velocity: kinds.Velocity = field("Their mean velocity at birth.", "0 3 0 m/s")
+    spread: kinds.FixedAngle = field(
         "Half angle of the cone that they are thrown into, evenly.", "0 deg", at_least=0, at_most=math.pi
     )
-    variation: FixedScalar = field(
+    variation: kinds.FixedScalar = field(
         "Largest relative deviation of the speed and of the lifetime.", "0", at_least=0, below=1
     )
-    lifetime: FixedTime = field("How long they live.", "4 s", above=0)
-    start: FixedTime = field("Time of the first birth.", "0 s", at_least=0)
-    until: FixedTime | None = field("No births after it.", None, above=0)
+    lifetime: kinds.FixedTime = field("How long they live.", "4 s", above=0)
+    start: kinds.FixedTime = field("Time of the first birth.", "0 s", at_least=0)
+    until: kinds.FixedTime | None = field("No births after it.", None, above=0)
     count: int | None = field("No more births than that.", None, at_least=1)
     most: int | None = field(
         "How many may live at once; the oldest goes for one too many. By default as many as will.", None, at_least=1

@@ -9,23 +9,9 @@ from itertools import product
 from math import prod
 from typing import TYPE_CHECKING, Annotated, Any
 
+from sceneql import kinds
 from sceneql.island.memory import bounded_net
-from sceneql.kinds import (
-    Axis,
-    Exceeds,
-    FixedDamping,
-    FixedLength,
-    FixedMass,
-    FixedPosition,
-    FixedScalar,
-    FixedStiffness,
-    FixedVelocity,
-    Problem,
-    Quantity,
-    Record,
-    Rotation,
-    field,
-)
+from sceneql.kinds import Exceeds, Problem, Quantity, Record, field
 from sceneql.quantities import dimension as dim
 
 if TYPE_CHECKING:
@@ -95,9 +81,9 @@ def turned(points: Floats, center: Sequence[float], quaternion: Sequence[float])
 class MassPoint(Record):
     """One named mass."""
 
-    mass: FixedMass | None = field("Its mass; by default the model's.", None, above=0)
-    position: FixedPosition = field("Where it starts.", "0 0 0 m")
-    velocity: FixedVelocity | None = field("How fast it starts; by default the model's.", None)
+    mass: kinds.FixedMass | None = field("Its mass; by default the model's.", None, above=0)
+    position: kinds.FixedPosition = field("Where it starts.", "0 0 0 m")
+    velocity: kinds.FixedVelocity | None = field("How fast it starts; by default the model's.", None)
     fixed: bool = field("It never moves.", False)
 
     def problems(self) -> Iterator[Problem]:
@@ -110,11 +96,13 @@ class Spring(Record):
     """One spring between two named masses."""
 
     between: tuple[str, str] = field("The masses at its ends.")
-    rest: FixedLength | None = field(
+    rest: kinds.FixedLength | None = field(
         "Its length without force; by default the distance at the start.", None, at_least=0
     )
-    stiffness: FixedStiffness | None = field("Force for a stretch; by default the model's.", None, above=0)
-    damping: FixedDamping | None = field("Force for a speed of stretching; by default the model's.", None, at_least=0)
+    stiffness: kinds.FixedStiffness | None = field("Force for a stretch; by default the model's.", None, above=0)
+    damping: kinds.FixedDamping | None = field(
+        "Force for a speed of stretching; by default the model's.", None, at_least=0
+    )
     name: str | None = field("Its name, for `name.length` and `name.tension`.", None)
 
     def problems(self) -> Iterator[Problem]:
@@ -164,10 +152,10 @@ class Lattice(Record):
     """A block of masses: springs along the edges of its cells and along their face and body diagonals."""
 
     count: tuple[int, int, int] = field("Masses along x, y and z.", (3, 3, 3), at_least=1)
-    spacing: FixedLength = field("Distance of neighbors.", "0.3 m", above=0)
-    center: FixedPosition = field("Where its middle starts.", "0 0 0 m")
-    rotation: Rotation | None = field("How it is turned at the start.", None)
-    shear: FixedScalar = field(
+    spacing: kinds.FixedLength = field("Distance of neighbors.", "0.3 m", above=0)
+    center: kinds.FixedPosition = field("Where its middle starts.", "0 0 0 m")
+    rotation: kinds.Rotation | None = field("How it is turned at the start.", None)
+    shear: kinds.FixedScalar = field(
         "Stiffness of the diagonals as a part of the edges'; 0 leaves them out.", "1", at_least=0
     )
 
@@ -213,15 +201,15 @@ class Cloth(Record):
 
     size: Annotated[tuple[float, float], Quantity(dim.LENGTH, (2,))] = field("Width and height.", "2 2 m", above=0)
     cells: tuple[int, int] = field("Cells across the width and the height.", (20, 20), at_least=1)
-    center: FixedPosition = field("Where its middle starts.", "0 2 0 m")
-    facing: Axis = field("Where its front faces: y lies flat, z hangs with its top up.", "0 1 0")
-    shear: FixedScalar = field("Stiffness of the diagonals as a part of the sides'.", "0.5", at_least=0)
-    bend: FixedScalar = field("Stiffness over two cells as a part of the sides'.", "0.1", at_least=0)
+    center: kinds.FixedPosition = field("Where its middle starts.", "0 2 0 m")
+    facing: kinds.Axis = field("Where its front faces: y lies flat, z hangs with its top up.", "0 1 0")
+    shear: kinds.FixedScalar = field("Stiffness of the diagonals as a part of the sides'.", "0.5", at_least=0)
+    bend: kinds.FixedScalar = field("Stiffness over two cells as a part of the sides'.", "0.1", at_least=0)
 
     def problems(self) -> Iterator[Problem]:
         """More masses than are possible, or no side that faces anywhere."""
-        kinds = 1 + (self.shear > 0) + (self.bend > 0)
-        yield from _too_many(self.mass_count(), 2 * kinds * self.mass_count(), "cells")
+        sorts = 1 + (self.shear > 0) + (self.bend > 0)
+        yield from _too_many(self.mass_count(), 2 * sorts * self.mass_count(), "cells")
         if not any(self.facing):
             yield Problem("a cloth that faces 0 0 0 faces nowhere", ("facing",))
 
@@ -282,8 +270,8 @@ class Cloth(Record):
 class Rope(Record):
     """A line of masses, each tied to the next."""
 
-    from_: FixedPosition = field("Where its first mass starts.", "0 2 0 m")
-    to: FixedPosition = field("Where its last mass starts.", "2 2 0 m")
+    from_: kinds.FixedPosition = field("Where its first mass starts.", "0 2 0 m")
+    to: kinds.FixedPosition = field("Where its last mass starts.", "2 2 0 m")
     count: int = field("Number of masses.", 20, at_least=2)
 
     def problems(self) -> Iterator[Problem]:

@@ -9,8 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from sceneql.compiled import generated
-from sceneql.compiled.printer import IMPORTS, Constants, Printer, printable
+from sceneql.compiled.printer import Constants, Printer, printable, write_term
 from sceneql.kinds import Formula, Value
 from sceneql.quantities.derivative import components, differentiate
 from sceneql.quantities.evaluate import evaluate
@@ -130,18 +129,8 @@ def potential_at(
 
 
 def _kernel(function: str, printer: Printer, outputs: Sequence[str]) -> str:
-    constants = printer.constants
     lines = [
-        *IMPORTS,
-        "from sceneql.compiled.kernels import kernel",
-        "from sceneql.system.signatures_kernels import TERM",
-        "",
-        "",
-        "@kernel(TERM)",
-        f"def {function}(t, y, out, floats, ints):",
         "    position_at, velocity_at, mass_at, inverse_at = ints[1], ints[2], ints[4], ints[5]",
-        *(f"    c{k} = floats[ints[0] + {k}]" for k in range(len(constants.values))),
-        *(f"    u{k} = floats[ints[{HEAD + k}]]" for k in range(len(constants.inputs))),
         "    for k in range(ints[3]):",
         "        if floats[inverse_at + k] == 0.0:",
         "            continue",
@@ -151,4 +140,4 @@ def _kernel(function: str, printer: Printer, outputs: Sequence[str]) -> str:
         "        own_q = floats[ints[7] + k * ints[8]]",
         *(f"        {line}" for line in (*printer.lines, *outputs)),
     ]
-    return f"{generated.write(function, chr(10).join(lines) + chr(10))}:{function}"
+    return write_term(function, printer.constants, HEAD, lines)

@@ -8,24 +8,11 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import PrivateAttr
 
+from sceneql import kinds
 from sceneql.bodies import bodies as point_masses
 from sceneql.bodies.filling.fill import chance_key, draws
 from sceneql.bodies.pins import Pin, guide, pinned, start_velocity
-from sceneql.kinds import (
-    Color,
-    FixedLength,
-    FixedScalar,
-    FixedVelocity,
-    Gives,
-    MaterialRef,
-    Model,
-    Moment,
-    Problem,
-    Quantity,
-    Record,
-    field,
-    quantity_type,
-)
+from sceneql.kinds import Gives, Model, Moment, Problem, Quantity, Record, field, quantity_type
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Type
 
@@ -45,8 +32,8 @@ MOST_COILS = 40
 class Tear(Record):
     """When springs break, for good: at the end of the solver's step in which one is stretched too far."""
 
-    at: FixedScalar = field("Its length then, as a part of its rest length.", "1.5", above=1)
-    variation: FixedScalar = field(
+    at: kinds.FixedScalar = field("Its length then, as a part of its rest length.", "1.5", above=1)
+    variation: kinds.FixedScalar = field(
         "Largest relative deviation of that from spring to spring.", "0", at_least=0, below=1
     )
     seed: int = field("Another number, other weak springs.", 0, at_least=0)
@@ -82,11 +69,11 @@ class SpringModel(Model):
         (),
     )
     tear: Tear | None = field("When springs break; by default never.", None)
-    velocity: FixedVelocity = field("Velocity of all at the start.", "0 0 0 m/s")
+    velocity: kinds.FixedVelocity = field("Velocity of all at the start.", "0 0 0 m/s")
     spin: Annotated[tuple[float, float, float], Quantity(dim.FREQUENCY, (3,))] = field(
         "Angular velocity at the start, about the center of mass [rad/s].", "0 0 0 rad/s"
     )
-    radius: FixedLength | None = field(
+    radius: kinds.FixedLength | None = field(
         "Radius of the masses in contacts and in the picture; by default a tenth of the shortest spring.",
         None,
         at_least=0,
@@ -96,8 +83,8 @@ class SpringModel(Model):
         "solid as its surface.",
         "auto",
     )
-    material: MaterialRef | None = field("How it looks where no object draws it.", None)
-    color: Color | None = field("Color in place of the material's.", None)
+    material: kinds.MaterialRef | None = field("How it looks where no object draws it.", None)
+    color: kinds.Color | None = field("Color in place of the material's.", None)
 
     _made: tuple[Net, Floats] | None = PrivateAttr(None)
 

@@ -11,28 +11,18 @@ import numba
 import numpy as np
 
 from sceneql.compiled.kernels import address, function_at
-from sceneql.system.signatures_kernels import (
-    AFTER_STEP_FUNCTION,
-    BACK_OFF_FUNCTION,
-    DENSE_FUNCTION,
-    EVENT_FUNCTION,
-    GAP_FUNCTION,
-    IMPACT_FUNCTION,
-    JACOBIAN_FUNCTION,
-    RATE_FUNCTION,
-    STEP_FUNCTION,
-)
+from sceneql.system import signatures_kernels as signatures
 
 KINDS = (
-    STEP_FUNCTION,
-    DENSE_FUNCTION,
-    RATE_FUNCTION,
-    GAP_FUNCTION,
-    IMPACT_FUNCTION,
-    BACK_OFF_FUNCTION,
-    AFTER_STEP_FUNCTION,
-    JACOBIAN_FUNCTION,
-    EVENT_FUNCTION,
+    signatures.STEP_FUNCTION,
+    signatures.DENSE_FUNCTION,
+    signatures.RATE_FUNCTION,
+    signatures.GAP_FUNCTION,
+    signatures.IMPACT_FUNCTION,
+    signatures.BACK_OFF_FUNCTION,
+    signatures.AFTER_STEP_FUNCTION,
+    signatures.JACOBIAN_FUNCTION,
+    signatures.EVENT_FUNCTION,
 )
 AT_STEP, AT_DENSE, AT_RATE, AT_GAP, AT_IMPACT, AT_BACK_OFF, AT_AFTER_STEP, AT_JACOBIAN, AT_EVENT = range(len(KINDS))
 """Indices into the array of addresses: ``rate = rate_at(functions[AT_RATE])``."""

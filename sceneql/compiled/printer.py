@@ -7,21 +7,27 @@ general power costs some twenty multiplications.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from sceneql.compiled import generated
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Expr, Link, Number, Symbol, walk
 
 PRODUCTS = {2.0: "{0} * {0}", 3.0: "{0} * {0} * {0}", 4.0: "({0} * {0}) * ({0} * {0})"}
 """A power by its exponent."""
 
-IMPORTS = (
+TERM_HEAD = (
     "import math",
     "",
     "import numpy as np",
     "",
     "from sceneql.compiled.printer_kernels import ease, smoothstep, truth",
+    "from sceneql.compiled.kernels import kernel",
+    "from sceneql.system.signatures_kernels import TERM",
+    "",
+    "",
+    "@kernel(TERM)",
 )
 
 TEXTS: Mapping[str, str] = {
@@ -153,3 +159,19 @@ def exponent(expr: Expr) -> float:
     if isinstance(expr, Call) and expr.op == "pow" and isinstance(expr.args[1], Number):
         return expr.args[1].value
     return float("nan")
+
+
+def write_term(function: str, constants: Constants, first: int, lines: Sequence[str]) -> str:
+    """Write a kernel with the signature of a term; returns its ``"module:function"``.
+
+    ``lines``: its body. The constants stand in floats from ints[0] on, each value read from other parts at one of
+    ints[first:].
+    """
+    text = [
+        *TERM_HEAD,
+        f"def {function}(t, y, out, floats, ints):",
+        *(f"    c{k} = floats[ints[0] + {k}]" for k in range(len(constants.values))),
+        *(f"    u{k} = floats[ints[{first + k}]]" for k in range(len(constants.inputs))),
+        *lines,
+    ]
+    return f"{generated.write(function, chr(10).join(text) + chr(10))}:{function}"

@@ -14,27 +14,12 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
+from sceneql import kinds
 from sceneql.compiler import limits, paint, values
 from sceneql.compiler.formulas import read_formula
 from sceneql.compiler.names import Names
 from sceneql.compiler.paths import read_path
 from sceneql.compiler.texts import read_text
-from sceneql.kinds import (
-    Exceeds,
-    Formula,
-    Interpolated,
-    Kind,
-    Paint,
-    Problem,
-    Quantity,
-    Ref,
-    Refers,
-    SceneFile,
-    Symbols,
-    Turn,
-    Value,
-    written_name,
-)
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, broken, unsure, whole
 from sceneql.language.tree import written as plainly
@@ -54,7 +39,7 @@ class Reader:
 
     names: Names
     found: Diagnostics
-    refer: Callable[[Node, Refers, str], Ref | None]
+    refer: Callable[[Node, kinds.Refers, str], kinds.Ref | None]
     """(node, families that it may name, name for an entry written in place)."""
     owner: str
     """Name of the part whose fields these are."""
@@ -71,20 +56,20 @@ class Reader:
         elif node is not None and broken(node):
             raise Unreadable
         elif node is not None and not (isinstance(node, Scalar) and node.kind == "null"):
-            fields = ", ".join(map(written_name, cls.model_fields))
+            fields = ", ".join(map(kinds.written_name, cls.model_fields))
             raise self._fail("wrong-shape", f"{title} takes fields, `{{name: value}}`", node.span, f"it has {fields}")
         symbols = self.symbols
-        if isinstance(node, MappingNode) and issubclass(cls, Kind):
+        if isinstance(node, MappingNode) and issubclass(cls, kinds.Kind):
             symbols = cls.formula_symbols(plainly(node))
         ok = True
         got: dict[str, Any] = {}
         mistaken: set[str | None] = set()
         if isinstance(node, MappingNode):
-            known = [written_name(name) for name in cls.model_fields]
+            known = [kinds.written_name(name) for name in cls.model_fields]
             ok = report_unknown(node, known, title, self.found) and not node.partial
             mistaken = {_meant(name, known) for name in node.entries if name not in known}
         for python_name, info in cls.model_fields.items():
-            name = written_name(python_name)
+            name = kinds.written_name(python_name)
             if name not in written:
                 if info.is_required():
                     ok = False
@@ -101,18 +86,18 @@ class Reader:
         if not ok:
             raise Unreadable
         try:
-            context: list[tuple[BaseModel, Problem]] = []
+            context: list[tuple[BaseModel, kinds.Problem]] = []
             result = cls.model_validate(got, context=context)
         except ValidationError as error:
             for problem in error.errors():
-                exceeds = isinstance(problem.get("ctx", {}).get("error"), Exceeds)
+                exceeds = isinstance(problem.get("ctx", {}).get("error"), kinds.Exceeds)
                 code = "limit-refused" if exceeds else "invalid"
                 self.found.error(code, _text(problem), _place(problem["loc"], node, span))
             raise Unreadable from None
         problems = [problem for one, problem in context if one is result]  # those inside were reported
         for told in problems:
             self.found.error(told.code, told.text, _place(told.path, node, span, at_key=told.at_key))
-        if problems and issubclass(cls, Kind):
+        if problems and issubclass(cls, kinds.Kind):
             raise Unreadable
         return result  # the record or word around it may have problems of its own
 
@@ -140,19 +125,19 @@ class Reader:
                 return replace(self, names=outer).read(node, annotation, what)
         base, marks = _unwrap(annotation)
         for mark in marks:
-            if isinstance(mark, Quantity):
+            if isinstance(mark, kinds.Quantity):
                 return self._quantity(node, base, mark, what)
-            if isinstance(mark, Paint):
+            if isinstance(mark, kinds.Paint):
                 return self._some(paint.read_color(node, self.names, self.found))
-            if isinstance(mark, Turn):
+            if isinstance(mark, kinds.Turn):
                 return self._some(paint.read_rotation(node, self.names, self.found))
-            if isinstance(mark, Refers):
+            if isinstance(mark, kinds.Refers):
                 return self._some(self.refer(node, mark, self.owner))
-            if isinstance(mark, Interpolated):
+            if isinstance(mark, kinds.Interpolated):
                 return self._some(read_text(node, mark, what, self.names, self.found))
-            if isinstance(mark, SceneFile):
+            if isinstance(mark, kinds.SceneFile):
                 return self._some(read_path(node, self.folder, what, self.found))
-            if isinstance(mark, Symbols):
+            if isinstance(mark, kinds.Symbols):
                 return self._formula(node, mark, what)
         origin, arms = get_origin(base), get_args(base)
         if origin in (Union, types.UnionType):
@@ -165,8 +150,8 @@ class Reader:
             return self._dict(node, arms, what)
         if isinstance(base, type) and issubclass(base, BaseModel):
             return self.record(node, base, node.span, what)
-        if base is Formula:
-            return self._formula(node, Symbols(None), what)
+        if base is kinds.Formula:
+            return self._formula(node, kinds.Symbols(None), what)
         if base is bool:
             return self._bool(node, what)
         if base in (int, float):
@@ -181,9 +166,9 @@ class Reader:
 
     # --- one method a shape ---
 
-    def _quantity(self, node: Node, base: Any, mark: Quantity, what: str) -> Any:
+    def _quantity(self, node: Node, base: Any, mark: kinds.Quantity, what: str) -> Any:
         value = self._some(values.read_value(node, mark, what, self.names, self.found))
-        if base is Value:
+        if base is kinds.Value:
             return value
         if not value.constant:
             raise self._fail("not-constant", f"{what} must be constant", node.span)
@@ -192,11 +177,11 @@ class Reader:
             raise self._fail("not-finite", f"{what} is {number}", node.span)
         return number
 
-    def _formula(self, node: Node, mark: Symbols, what: str) -> Formula:
+    def _formula(self, node: Node, mark: kinds.Symbols, what: str) -> kinds.Formula:
         expr = self._some(
             read_formula(node, self.symbols if mark.names is None else mark.names, what, self.names, self.found)
         )
-        return Formula(expr, node.span)
+        return kinds.Formula(expr, node.span)
 
     def _union(self, node: Node, arms: tuple[Any, ...], what: str) -> Any:
         if type(None) in arms and isinstance(node, Scalar) and node.kind == "null":
@@ -340,7 +325,7 @@ def _could_be(annotation: Any, node: Node) -> bool:
     """Whether a node's shape suits a type, to choose among the arms of a union."""
     base, marks = _unwrap(annotation)
     origin = get_origin(base)
-    if any(isinstance(mark, Quantity | Paint | Turn | Refers) for mark in marks):
+    if any(isinstance(mark, kinds.Quantity | kinds.Paint | kinds.Turn | kinds.Refers) for mark in marks):
         return True
     if origin is dict or (isinstance(base, type) and issubclass(base, BaseModel)):
         return isinstance(node, MappingNode)
@@ -359,10 +344,10 @@ def _text(problem: Any) -> str:
 def _place(path: tuple[int | str, ...], node: Node | None, span: Span, *, at_key: bool = False) -> Span:
     """The span of the deepest node on a validation error's path, or of the last step's key."""
     for number, step in enumerate(path, 1):
-        if isinstance(node, MappingNode) and isinstance(step, str) and written_name(step) in node.entries:
+        if isinstance(node, MappingNode) and isinstance(step, str) and kinds.written_name(step) in node.entries:
             if at_key and number == len(path):
-                return node.keys[written_name(step)].span
-            node = node.entries[written_name(step)]
+                return node.keys[kinds.written_name(step)].span
+            node = node.entries[kinds.written_name(step)]
         elif isinstance(node, Sequence) and isinstance(step, int) and step < len(node.items):
             node = node.items[step]
         else:

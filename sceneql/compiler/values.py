@@ -13,16 +13,7 @@ from sceneql.quantities.bind import bind
 from sceneql.quantities.diagnostic import Diagnostics, Note, ScriptError, suggestion
 from sceneql.quantities.dimension import PLAIN, TIME, Dimension
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import (
-    Expr,
-    Link,
-    Number,
-    Shape,
-    Symbol,
-    Type,
-    Vector,
-    walk,
-)
+from sceneql.quantities.expression import Expr, Link, Number, Shape, Symbol, Type, Vector, walk
 from sceneql.quantities.parser import parse_value
 from sceneql.quantities.printing import describe
 from sceneql.quantities.span import Span

@@ -10,8 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from sceneql.compiled import generated
-from sceneql.compiled.printer import IMPORTS, Constants, Printer
+from sceneql.compiled.printer import Constants, Printer, write_term
 from sceneql.quantities.derivative import components, differentiate, simplify
 from sceneql.quantities.expression import TIME_SYMBOL, Call, Expr, Number, Symbol, walk
 
@@ -119,15 +118,6 @@ def _kernel(
     size = len(system.states)
     constants = printer.constants
     lines = [
-        *IMPORTS,
-        "from sceneql.compiled.kernels import kernel",
-        "from sceneql.system.signatures_kernels import TERM",
-        "",
-        "",
-        "@kernel(TERM)",
-        f"def {function}(t, y, out, floats, ints):",
-        *(f"    c{k} = floats[ints[0] + {k}]" for k in range(len(constants.values))),
-        *(f"    u{k} = floats[ints[{3 + k}]]" for k in range(len(constants.inputs))),
         "    for copy in range(ints[2]):",
         "        number = float(copy)",
         f"        first = ints[1] + copy * {size}",
@@ -135,5 +125,5 @@ def _kernel(
         *(f"        s{k} = y[first + {k}]" for k in range(size)),
         *(f"        {line}" for line in (*printer.lines, *outputs)),
     ]
-    module = generated.write(function, "\n".join(lines) + "\n")
-    return Kernel(f"{module}:{function}", tuple(constants.values), tuple(constants.inputs), places)
+    kernel = write_term(function, constants, 3, lines)
+    return Kernel(kernel, tuple(constants.values), tuple(constants.inputs), places)

@@ -12,8 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from sceneql.compiled import generated
-from sceneql.compiled.printer import IMPORTS, Constants, Printer
+from sceneql.compiled.printer import Constants, Printer, write_term
 from sceneql.kinds import Value
 from sceneql.quantities.derivative import components
 from sceneql.quantities.expression import TIME_SYMBOL, Expr
@@ -33,7 +32,6 @@ def over_cells(
     lines = [
         "    field, target, base, weight = ints[1], ints[2], ints[3], ints[4]",
         "    nx, ny, nz, box = ints[5], ints[6], ints[7], ints[8]",
-        *_inputs(constants, 9),
         "    for k in range(nz):",
         "        own_z = floats[box + 2] + (k + 0.5) * floats[box + 5]",
         "        for j in range(ny):",
@@ -49,7 +47,7 @@ def over_cells(
         f"                floats[target + cell] = floats[base + cell] + floats[weight + cell] * {value}",
     ]
     ints = (assembly.floats(constants.values), at, *arrays, *shape, box, *_stored(assembly, constants))
-    return _kernel("cells", lines), ints
+    return write_term("cells", constants, 9, lines), ints
 
 
 def over_faces(
@@ -59,7 +57,6 @@ def over_faces(
     constants, printer, value = _printed(expr)
     lines = [
         "    field, target, weight, points = ints[1], ints[2], ints[3], ints[5]",
-        *_inputs(constants, 7),
         "    for k in range(ints[4]):",
         "        cell = ints[ints[6] + k]",
         "        own_x, own_y, own_z = floats[points + 3 * k], floats[points + 3 * k + 1], floats[points + 3 * k + 2]",
@@ -69,7 +66,7 @@ def over_faces(
     ]
     inputs = _stored(assembly, constants)
     head = (assembly.floats(constants.values), at, target, weight, len(cells), points, 7 + len(inputs))
-    return _kernel("faces", lines), (*head, *inputs, *cells)
+    return write_term("faces", constants, 7, lines), (*head, *inputs, *cells)
 
 
 def _printed(expr: Expr) -> tuple[Constants, Printer, str]:
@@ -78,26 +75,5 @@ def _printed(expr: Expr) -> tuple[Constants, Printer, str]:
     return constants, printer, printer.name(constants.lift(components(expr)[0]))
 
 
-def _inputs(constants: Constants, first: int) -> list[str]:
-    return [
-        *(f"    c{k} = floats[ints[0] + {k}]" for k in range(len(constants.values))),
-        *(f"    u{k} = floats[ints[{first + k}]]" for k in range(len(constants.inputs))),
-    ]
-
-
 def _stored(assembly: Assembly, constants: Constants) -> list[int]:
     return [assembly.value(Value(expr)) for expr in constants.inputs]
-
-
-def _kernel(function: str, lines: list[str]) -> str:
-    text = [
-        *IMPORTS,
-        "from sceneql.compiled.kernels import kernel",
-        "from sceneql.system.signatures_kernels import TERM",
-        "",
-        "",
-        "@kernel(TERM)",
-        f"def {function}(t, y, out, floats, ints):",
-        *lines,
-    ]
-    return f"{generated.write(function, chr(10).join(text) + chr(10))}:{function}"

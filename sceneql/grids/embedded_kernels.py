@@ -4,16 +4,7 @@
 import math
 
 from sceneql.compiled.kernels import lean
-from sceneql.grids.grid_stage_kernels import (
-    ABSOLUTE,
-    EMBEDDED_ERROR,
-    ERROR_ORDER,
-    HEAD,
-    RELATIVE,
-    SHARE,
-    STAGES,
-    TABLEAU,
-)
+from sceneql.grids import grid_stage_kernels as stage
 from sceneql.grids.multigrid import layout
 from sceneql.grids.multigrid.linear_kernels import solver_at
 
@@ -21,15 +12,15 @@ KEPT = 1.2
 """Increase of the step below which a new factorization does not pay."""
 
 
-@lean(EMBEDDED_ERROR, inner=True)
+@lean(stage.EMBEDDED_ERROR, inner=True)
 def embedded_error(h, a, y0, y1, work, settings, numbers, floats):
     """The error in units of the tolerance, filtered by the stage system; the length to try next in work[0]."""
-    n, stages = y0.size, numbers[STAGES]
+    n, stages = y0.size, numbers[stage.STAGES]
     base, scratch = work[:n], work[(1 + stages) * n : (2 + stages) * n]
     change, store = work[(2 + stages) * n : (3 + stages) * n], work[(3 + stages) * n :]
-    plan = numbers[HEAD:]
+    plan = numbers[stage.HEAD :]
     solve = solver_at(plan[layout.SOLVER])
-    e = TABLEAU + 2 * stages
+    e = stage.TABLEAU + 2 * stages
     at = plan[layout.AT]
     size = 0.0
     for k in range(n):
@@ -46,9 +37,9 @@ def embedded_error(h, a, y0, y1, work, settings, numbers, floats):
         return math.inf
     error = 0.0
     for c in range(cells if size > 0.0 else 0):
-        allowed = settings[ABSOLUTE] + settings[RELATIVE] * max(abs(y0[at + c]), abs(y1[at + c]))
-        error += (SHARE * change[c] / allowed) ** 2
+        allowed = settings[stage.ABSOLUTE] + settings[stage.RELATIVE] * max(abs(y0[at + c]), abs(y1[at + c]))
+        error += (stage.SHARE * change[c] / allowed) ** 2
     error = math.sqrt(error / cells)
-    factor = min(5.0, max(0.2, 0.9 * max(error, 1e-8) ** (-1.0 / numbers[ERROR_ORDER])))
+    factor = min(5.0, max(0.2, 0.9 * max(error, 1e-8) ** (-1.0 / numbers[stage.ERROR_ORDER])))
     work[0] = h if 1.0 <= factor <= KEPT else h * factor
     return error

@@ -5,7 +5,7 @@ import math
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
-from sceneql.grids.grid_stage_kernels import ABSOLUTE, ITERATE, RELATIVE
+from sceneql.grids import grid_stage_kernels as stage
 from sceneql.grids.multigrid import layout
 from sceneql.grids.multigrid.linear_kernels import solver_at
 from sceneql.grids.multigrid.stencil_kernels import dot
@@ -43,7 +43,7 @@ def stiffest(plan, floats):
     return most
 
 
-@lean(ITERATE, inner=True)
+@lean(stage.ITERATE, inner=True)
 def iterate(functions, t, a, base, y, slope, r, d, store, plan, settings, floats, ints):
     """Solve y = base + a f(t, y) from a guess, and set slope = f(t, y); False where it does not converge."""
     rate, solve = rate_at(functions[AT_RATE]), solver_at(plan[layout.SOLVER])
@@ -62,13 +62,13 @@ def iterate(functions, t, a, base, y, slope, r, d, store, plan, settings, floats
                 x[c] = 0.0
             rate(t, y, slope, floats, ints)
             size, whole, largest = residual(n, a, volume, base[at:], x, slope[at:], r, d)
-        target = settings[RELATIVE] * max(whole, largest) + settings[ABSOLUTE] * cells / a
+        target = settings[stage.RELATIVE] * max(whole, largest) + settings[stage.ABSOLUTE] * cells / a
         rounding = UNSOLVED * (1.0 + a * stiffest(plan, floats)) * max(whole, largest)
         if size <= max(target, rounding) or (size > 0.5 * before and size <= 100.0 * rounding):
             return True
         before = size
         # For y = 0 the solution's size is not known yet, but that of the residual is.
-        target = max(target, rounding, settings[RELATIVE] * size)
+        target = max(target, rounding, settings[stage.RELATIVE] * size)
         if not solve(plan, a, 0.5 * target, floats, r, d, store):
             return False
         for c in range(n):

@@ -7,23 +7,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+from sceneql import kinds
 from sceneql.grids.domain.cells import MOST_CELLS, SIDES, centers_of, counts
 from sceneql.grids.drift import Drift
-from sceneql.kinds import (
-    File,
-    FixedLength,
-    FixedScalar,
-    Formula,
-    Gives,
-    Model,
-    ObjectRef,
-    Problem,
-    Quantity,
-    Record,
-    Symbols,
-    field,
-    quantity_type,
-)
+from sceneql.kinds import Formula, Gives, Model, Problem, Quantity, Record, Symbols, field, quantity_type
 from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
@@ -84,9 +71,9 @@ class Exchange(Record):
 class Picture(Record):
     """A field from the brightness of a picture that covers the box around the domain in x and y."""
 
-    file: File = field("Path of the picture, inside the scene's folder.")
-    black: FixedScalar = field("The field where it is black, in SI.", "0")
-    white: FixedScalar = field("The field where it is white, in SI.", "1")
+    file: kinds.File = field("Path of the picture, inside the scene's folder.")
+    black: kinds.FixedScalar = field("The field where it is black, in SI.", "0")
+    white: kinds.FixedScalar = field("The field where it is white, in SI.", "1")
 
 
 class Part(Record):
@@ -99,7 +86,7 @@ class Part(Record):
     open: bool = field("A drift goes through: out with what it carries, in with nothing.", False)
     where: PLACE | None = field("Only where this formula is above 0.", None)
     near: SIZES | None = field("Only around this place, of two or three numbers.", None)
-    within: FixedLength | None = field("How far around it.", None, above=0)
+    within: kinds.FixedLength | None = field("How far around it.", None, above=0)
 
     def problems(self) -> Iterable[Problem]:
         """Errors: more than one condition, or none; a place without its size."""
@@ -133,7 +120,9 @@ class Medium(Model):
     has_bodies = False
     is_field = True
 
-    domain: ObjectRef | None = field("The object whose inside, at the start, it spreads in; or give `size`.", None)
+    domain: kinds.ObjectRef | None = field(
+        "The object whose inside, at the start, it spreads in; or give `size`.", None
+    )
     flat: bool = field("The section of that object at z = 0 alone.", False)
     edges: Literal["cut_cell", "staircase"] = field(
         "How cells meet the object's boundary: cut by it, or whole where their centers lie inside.", "cut_cell"
@@ -142,8 +131,8 @@ class Medium(Model):
         "Sides of a box in place of a domain: two for a flat one, three for a deep one.", None, above=0
     )
     corner: SIZES | None = field("Low corner of that box; by default the origin.", None)
-    depth: FixedLength = field("How thick a flat domain is.", "1 m", above=0)
-    cell: FixedLength = field("Largest side of a cell.", above=0)
+    depth: kinds.FixedLength = field("How thick a flat domain is.", "1 m", above=0)
+    cell: kinds.FixedLength = field("Largest side of a cell.", above=0)
     drift: Drift | None = field("A given flow that carries what spreads.", None)
     probes: dict[str, SIZES] = field(
         "Places by name: the value of the cell there is an output of that name, which other parts may read while all "

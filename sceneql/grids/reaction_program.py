@@ -11,8 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from sceneql.compiled import generated
-from sceneql.compiled.printer import IMPORTS, Constants, Printer
+from sceneql.compiled.printer import Constants, Printer, write_term
 from sceneql.formulas.rate_program import ZERO, RateSystem, derivatives, lifted
 from sceneql.kinds import Value
 
@@ -74,7 +73,6 @@ def _kernel(
 ) -> str:
     """Module and function that add values to ``out`` at targets; ``tally``: times the volume to the inflow too."""
     size = len(system.states)
-    constants = printer.constants
     text = "\n".join(printer.lines + list(values))
     place = [
         *(["own_x = floats[box] + (i + 0.5) * floats[box + 3]"] if "own_x" in text else []),
@@ -82,18 +80,9 @@ def _kernel(
         *(["own_z = floats[box + 2] + (k + 0.5) * floats[box + 5]"] if "own_z" in text else []),
     ]
     lines = [
-        *IMPORTS,
-        "from sceneql.compiled.kernels import kernel",
-        "from sceneql.system.signatures_kernels import TERM",
-        "",
-        "",
-        "@kernel(TERM)",
-        f"def {function}(t, y, out, floats, ints):",
         "    volumes, box, nx, ny, nz = ints[1], ints[2], ints[3], ints[4], ints[5]",
         "    cells = nx * ny * nz",
         *(f"    f{k} = ints[{HEAD + k}]" for k in range(size)),
-        *(f"    c{k} = floats[ints[0] + {k}]" for k in range(len(constants.values))),
-        *(f"    u{k} = floats[ints[{HEAD + size + k}]]" for k in range(len(constants.inputs))),
         *([f"    total{k} = 0.0" for k in range(size)] if tally else []),
         "    for row in range(ny * nz):",
         "        j, k = row % ny, row // ny",
@@ -108,4 +97,4 @@ def _kernel(
         *([f"            total{k} += volume * {value}" for k, value in enumerate(values)] if tally else []),
         *([f"    out[f{k} + cells] += total{k}" for k in range(size)] if tally else []),
     ]
-    return f"{generated.write(function, chr(10).join(lines) + chr(10))}:{function}"
+    return write_term(function, printer.constants, HEAD + size, lines)

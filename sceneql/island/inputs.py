@@ -19,18 +19,7 @@ from sceneql.kinds.values import MOST_READ
 from sceneql.quantities.derivative import components, differentiate
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import (
-    TIME_SYMBOL,
-    Call,
-    Expr,
-    Keys,
-    Link,
-    Number,
-    Symbol,
-    Vector,
-    each_once,
-    walk,
-)
+from sceneql.quantities.expression import TIME_SYMBOL, Call, Expr, Keys, Link, Number, Symbol, Vector, each_once, walk
 from sceneql.quantities.key_tables import keys_table
 from sceneql.quantities.simplify import ZERO
 

@@ -11,20 +11,7 @@ from numba import types
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import kernel, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_DENSE, AT_RATE, dense_at, rate_at
-from sceneql.march.march_kernels import (
-    ALTERED,
-    CLOCKS,
-    COUNTS,
-    HELD,
-    LEFT,
-    PAUSED,
-    REACHED,
-    SWAPPED,
-    T0,
-    T1,
-    hermite,
-    march,
-)
+from sceneql.march import march_kernels as marching
 from sceneql.system.signatures_kernels import A, F, I, N
 
 Y0, RATE0, Y1, RATE1, SAMPLE, WORK, SETTINGS, FLOATS, GAPS, CLOCK, FLOATS_END = range(11)
@@ -52,43 +39,43 @@ def advance(functions, first, last, target, end, most, arena, words, table, y, r
     rate_of, dense = rate_at(functions[AT_RATE]), dense_at(functions[AT_DENSE])
     for b in range(first, last):
         row = table[COLUMNS * b : COLUMNS * (b + 1)]
-        if row[STATUS] != REACHED:
+        if row[STATUS] != marching.REACHED:
             continue
         n = row[SIZE]
         y0, y1 = arena[row[Y0] : row[Y0] + n], arena[row[Y1] : row[Y1] + n]
         rate0, rate1 = arena[row[RATE0] : row[RATE0] + n], arena[row[RATE1] : row[RATE1] + n]
         sample, work = arena[row[SAMPLE] : row[WORK]], arena[row[WORK] : row[SETTINGS]]
         settings, floats = arena[row[SETTINGS] : row[FLOATS]], arena[row[FLOATS] : row[GAPS]]
-        clock = arena[row[CLOCK] : row[CLOCK] + CLOCKS]
+        clock = arena[row[CLOCK] : row[CLOCK] + marching.CLOCKS]
         numbers, ints = words[row[NUMBERS] : row[INTS]], words[row[INTS] : row[LEAVING]]
-        counts = words[row[COUNTING] : row[COUNTING] + COUNTS]
-        if clock[T1] < target:
-            if counts[HELD] != 0 and row[LOOKED] != 0:
+        counts = words[row[COUNTING] : row[COUNTING] + marching.COUNTS]
+        if clock[marching.T1] < target:
+            if counts[marching.HELD] != 0 and row[LOOKED] != 0:
                 # The frame has evaluated terms elsewhere: write again what contacts read of them at the step's end.
                 counted = floats[channels.RATES]
-                rate_of(clock[T1], y1, sample, floats, ints)
+                rate_of(clock[marching.T1], y1, sample, floats, ints)
                 floats[channels.RATES] = counted
             row[LOOKED] = 0
-            counts[LEFT] = 1 + most // n
-            status = march(
+            counts[marching.LEFT] = 1 + most // n
+            status = marching.march(
                 functions, target, end, y0, rate0, y1, rate1, sample, work, settings, numbers, floats, ints,
                 arena[row[GAPS] : row[CLOCK]], words[row[LEAVING] : row[COUNTING]], clock, counts,
             )  # fmt: skip
-            if counts[SWAPPED] != 0:
+            if counts[marching.SWAPPED] != 0:
                 row[Y0], row[Y1], row[RATE0], row[RATE1] = row[Y1], row[Y0], row[RATE1], row[RATE0]
                 y0, y1, rate0, rate1 = y1, y0, rate1, rate0
-                counts[SWAPPED] = 0
-            if status == PAUSED:
-                return PAUSED
-            if status != REACHED:
+                counts[marching.SWAPPED] = 0
+            if status == marching.PAUSED:
+                return marching.PAUSED
+            if status != marching.REACHED:
                 row[STATUS] = status
                 continue
         now, slope = y1, rate1
-        if target < clock[T1]:
-            h = clock[T1] - clock[T0]
-            theta = (target - clock[T0]) / h
-            if counts[ALTERED] != 0:
-                hermite(theta, h, y0, rate0, y1, rate1, work, settings, numbers, sample)
+        if target < clock[marching.T1]:
+            h = clock[marching.T1] - clock[marching.T0]
+            theta = (target - clock[marching.T0]) / h
+            if counts[marching.ALTERED] != 0:
+                marching.hermite(theta, h, y0, rate0, y1, rate1, work, settings, numbers, sample)
             else:
                 dense(theta, h, y0, rate0, y1, rate1, work, settings, numbers, sample)
             now, slope = sample, np.empty(n)
@@ -102,4 +89,4 @@ def advance(functions, first, last, target, end, most, arena, words, table, y, r
         for k in range(of_sums.size):
             sums[(2 * b) * of_sums.size + k] = now[of_sums[k]]
             sums[(2 * b + 1) * of_sums.size + k] = slope[of_sums[k]]
-    return REACHED
+    return marching.REACHED

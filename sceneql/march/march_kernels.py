@@ -12,21 +12,8 @@ import math
 from numba import types
 
 import sceneql.system.channels as channels
+from sceneql.compiled import pointers_kernels as pointers
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.compiled.pointers_kernels import (
-    AT_AFTER_STEP,
-    AT_BACK_OFF,
-    AT_EVENT,
-    AT_IMPACT,
-    AT_RATE,
-    AT_STEP,
-    after_step_at,
-    back_off_at,
-    event_at,
-    impact_at,
-    rate_at,
-    step_at,
-)
 from sceneql.system.signatures_kernels import AFTER_STEP, BACK_OFF, DENSE, GAP, IMPACT, A, F, I
 
 T0, T1, STEP, ERROR, LARGEST, LIMIT, SLOP, CLOCKS = range(8)
@@ -218,9 +205,10 @@ def march(
     that act after steps changed it; leaving (pairs,), gaps (3 pairs,). On a failure the step is undone: (clock[T1], y1,
     rate1) is the last good state, counts[INDEX] the entry of y (STUCK: the pair) at fault.
     """
-    step, rate = step_at(functions[AT_STEP]), rate_at(functions[AT_RATE])
-    impact, back_off = impact_at(functions[AT_IMPACT]), back_off_at(functions[AT_BACK_OFF])
-    after_step = after_step_at(functions[AT_AFTER_STEP])
+    step, rate = pointers.step_at(functions[pointers.AT_STEP]), pointers.rate_at(functions[pointers.AT_RATE])
+    impact = pointers.impact_at(functions[pointers.AT_IMPACT])
+    back_off = pointers.back_off_at(functions[pointers.AT_BACK_OFF])
+    after_step = pointers.after_step_at(functions[pointers.AT_AFTER_STEP])
     n = y0.size
     while clock[T1] < target:
         if counts[LEFT] <= 0:
@@ -252,7 +240,7 @@ def march(
             # (Resting contacts of a first-order method may use the load at the step's start.)
             rate(t1, y1, rate1, floats, ints)
         if leaving.size > 0:
-            pair, reached = event_at(functions[AT_EVENT])(
+            pair, reached = pointers.event_at(functions[pointers.AT_EVENT])(
                 functions, t0, t1 - t0, y0, rate0, y1, rate1,
                 sample, work, settings, numbers, floats, ints, gaps, leaving, clock[SLOP],
             )  # fmt: skip

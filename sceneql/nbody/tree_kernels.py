@@ -14,19 +14,8 @@ from sceneql.compiled.arithmetic_kernels import fma, inverse_root, widest
 from sceneql.compiled.kernels import inlined, kernel
 from sceneql.compiled.threads_kernels import TILE, over_threads
 from sceneql.nbody import layout
-from sceneql.nbody.octree_kernels import (
-    BEGIN,
-    CHILD,
-    CHILDREN,
-    END,
-    GROUP,
-    NODE,
-    RADIUS,
-    build,
-    groups,
-    moments,
-    sort_by_key,
-)
+from sceneql.nbody import octree_kernels as octree
+from sceneql.nbody.octree_kernels import GROUP
 from sceneql.nbody.shared_masses_kernels import gather, velocity_of
 from sceneql.nbody.weights_kernels import FLOOR, weights
 from sceneql.system.signatures_kernels import TERM
@@ -103,20 +92,20 @@ def walk(floats, ints, lanes, count, box):
     top = 1
     while top > 0:
         top -= 1
-        node = root + NODE * stack[top]
+        node = root + octree.NODE * stack[top]
         square = 0.0
         for c in range(3):
             away = max(0.0, max(box[c] - floats[node + c], floats[node + c] - box[3 + c]))
             square += away * away
-        radius = floats[node + RADIUS]
-        children = int(floats[node + CHILDREN])
+        radius = floats[node + octree.RADIUS]
+        children = int(floats[node + octree.CHILDREN])
         if radius * radius < opening * opening * square:
             far(floats, node, lanes, count)
         elif children == 0:
-            near(floats, ints, int(floats[node + BEGIN]), int(floats[node + END]), lanes, count)
+            near(floats, ints, int(floats[node + octree.BEGIN]), int(floats[node + octree.END]), lanes, count)
         else:
             for child in range(children):
-                stack[top] = int(floats[node + CHILD]) + child
+                stack[top] = int(floats[node + octree.CHILD]) + child
                 top += 1
 
 
@@ -158,13 +147,13 @@ def tree(t, y, rate, floats, ints):
             return
     keys = np.empty(n, dtype=np.int64)
     order = np.empty(n, dtype=np.int64)
-    sort_by_key(floats, n, n, ints[layout.POINTS], keys, order)
+    octree.sort_by_key(floats, n, n, ints[layout.POINTS], keys, order)
     for k in range(n):
         floats[ints[ORDER] + k] = order[k]
         floats[ints[MASSES] + k] = floats[ints[layout.WEIGHTS] + order[k]]
         for c in range(3):
             floats[ints[SORTED] + c * room + k] = floats[ints[layout.POINTS] + c * n + order[k]]
-    count = build(floats, n, keys, ints[NODES], ints[MOST])
-    moments(floats, count, ints[NODES], ints[SORTED], room, ints[MASSES])
-    tiles = groups(floats, count, ints[NODES], ints[STARTS])
+    count = octree.build(floats, n, keys, ints[NODES], ints[MOST])
+    octree.moments(floats, count, ints[NODES], ints[SORTED], room, ints[MASSES])
+    tiles = octree.groups(floats, count, ints[NODES], ints[STARTS])
     over_threads(ints[ENTRY], ints[THREADS], ints[TILE_AT], tiles, t, y, rate, floats, ints)

@@ -67,12 +67,7 @@ def _excerpt(span: Span) -> list[str]:
     width = max(1, min(span.end - span.start, len(text) - shift))
     number = str(line)
     gutter = " " * len(number)
-    return [
-        f"{gutter}--> {span}",
-        f"{gutter} |",
-        f"{number} | {text}",
-        f"{gutter} | {' ' * shift}{'^' * width}",
-    ]
+    return [f"{gutter}--> {span}", f"{gutter} |", f"{number} | {text}", f"{gutter} | {' ' * shift}{'^' * width}"]
 
 
 class ScriptError(Exception):

@@ -9,23 +9,9 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel
 
+from sceneql import kinds
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.failure import Unsuitable
-from sceneql.kinds import (
-    REQUIRED,
-    Formula,
-    Interpolated,
-    Kind,
-    Object,
-    Paint,
-    Quantity,
-    Ref,
-    Refers,
-    SceneFile,
-    Turn,
-    Value,
-    written_name,
-)
 from sceneql.quantities.diagnostic import suggestion
 from sceneql.quantities.units import unit_of
 
@@ -52,7 +38,7 @@ def manual(catalogue: Catalogue, word: str) -> str:
     return "\n\n".join(_page(family, word, cls) for family, cls in classes)
 
 
-def _page(family: str, word: str, cls: type[Kind]) -> str:
+def _page(family: str, word: str, cls: type[kinds.Kind]) -> str:
     also = f"; may also stand under {cls.also_under}" if cls.also_under else ""
     lines = [f"{word} ({family}{also})", "", inspect.cleandoc(cls.__doc__ or ""), "", "fields:"]
     lines += _fields(cls, "  ")
@@ -61,7 +47,7 @@ def _page(family: str, word: str, cls: type[Kind]) -> str:
         for name, gives in cls.gives.items():
             unit = "" if gives.type.dimension is None else f" [{unit_of(gives.type.dimension)}]"
             lines.append(f"  {name}{_shape(gives.type.shape)}{unit}: {gives.doc}")
-    if issubclass(cls, Object):
+    if issubclass(cls, kinds.Object):
         lines += ["", "Quantities among its fields are outputs too: `name.position`."]
     return "\n".join(lines)
 
@@ -71,14 +57,14 @@ def _fields(cls: type[BaseModel], indent: str) -> list[str]:
     for name, info in cls.model_fields.items():
         annotation = Annotated[(info.annotation, *info.metadata)] if info.metadata else info.annotation
         extra: dict[str, Any] = info.json_schema_extra if isinstance(info.json_schema_extra, dict) else {}
-        default = extra.get("default", REQUIRED)
+        default = extra.get("default", kinds.REQUIRED)
         notes = [type_text(annotation)]
         notes += [f"{limit.replace('_', ' ')} {bound:.12g}" for limit, bound in extra.get("limits", {}).items()]
-        if default is REQUIRED:
+        if default is kinds.REQUIRED:
             notes.append("required")
         elif default not in (None, "", (), {}) and not isinstance(default, BaseModel):
             notes.append(f"default {_plain(default)}")
-        lines.append(f"{indent}{written_name(name)} ({', '.join(notes)}): {info.description}")
+        lines.append(f"{indent}{kinds.written_name(name)} ({', '.join(notes)}): {info.description}")
         for record in _records(annotation):
             lines += _fields(record, indent + "  ")
     return lines
@@ -104,20 +90,20 @@ def type_text(annotation: Any) -> str:
         base, *rest = get_args(annotation)
         marks = tuple(rest)
     for mark in marks:
-        if isinstance(mark, Quantity):
+        if isinstance(mark, kinds.Quantity):
             unit = "any quantity" if mark.dimension is None else "angle" if mark.needs_unit else unit_of(mark.dimension)
             unit = "number" if unit == "1" else unit
-            constant = "" if base is Value else "constant "
+            constant = "" if base is kinds.Value else "constant "
             return f"{constant}{unit}{_shape(mark.shape or ())}"
-        if isinstance(mark, Paint):
+        if isinstance(mark, kinds.Paint):
             return "color"
-        if isinstance(mark, Turn):
+        if isinstance(mark, kinds.Turn):
             return "rotation"
-        if isinstance(mark, Refers):
+        if isinstance(mark, kinds.Refers):
             return f"one of {mark}"
-        if isinstance(mark, Interpolated):
+        if isinstance(mark, kinds.Interpolated):
             return "text, values in {braces}"
-        if isinstance(mark, SceneFile):
+        if isinstance(mark, kinds.SceneFile):
             return "path of a file"
     origin, arms = get_origin(base), get_args(base)
     if origin in (Union, types.UnionType):
@@ -136,7 +122,8 @@ def type_text(annotation: Any) -> str:
         return f"{keys} with {type_text(arms[1])}"
     if isinstance(base, type) and issubclass(base, BaseModel):
         return "fields"
-    names = {bool: "yes or no", int: "whole number", float: "number", str: "text", Formula: "formula", Ref: "a part"}
+    names = {bool: "yes or no", int: "whole number", float: "number", str: "text"}
+    names |= {kinds.Formula: "formula", kinds.Ref: "a part"}
     return names.get(base, "value")
 
 
@@ -146,7 +133,7 @@ def _shape(shape: tuple[int | None, ...]) -> str:
     return "(" + ", ".join("n" if size is None else str(size) for size in shape) + ")"
 
 
-def _summary(cls: type[Kind] | None) -> str:
+def _summary(cls: type[kinds.Kind] | None) -> str:
     text = inspect.cleandoc((cls.__doc__ if cls is not None else "") or "")
     text = text.split("\n\n")[0].replace("\n", " ")
     return re.split(r"\.\s+(?=[A-Z])", text)[0].rstrip(".")

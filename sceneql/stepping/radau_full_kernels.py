@@ -7,14 +7,7 @@ m, two vectors.
 
 from sceneql.compiled.kernels import lean
 from sceneql.stepping.eliminated_systems_kernels import LEFT, factor_pair, factor_real, solve_pair, solve_real
-from sceneql.stepping.radau_systems_kernels import (
-    ALPHA,
-    BETA,
-    FACTOR_STAGES,
-    FILTER,
-    REAL,
-    SOLVE_STAGES,
-)
+from sceneql.stepping.radau_systems_kernels import ALPHA, BETA, FACTOR_STAGES, FILTER, REAL, SOLVE_STAGES
 
 
 @lean(FACTOR_STAGES)

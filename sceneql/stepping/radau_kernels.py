@@ -16,23 +16,9 @@ from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.compiled.pointers_kernels import AT_JACOBIAN, jacobian_at
 from sceneql.stepping import radau_layout as layout
+from sceneql.stepping import radau_stages_kernels as stages
 from sceneql.stepping.error_scales_kernels import foresee, weigh
-from sceneql.stepping.radau_stages_kernels import (
-    C1,
-    C2,
-    I11,
-    I12,
-    I13,
-    I21,
-    I22,
-    I23,
-    I31,
-    I32,
-    I33,
-    ITERATIONS,
-    ROOT6,
-    iterate,
-)
+from sceneql.stepping.radau_stages_kernels import C1, C2
 from sceneql.stepping.radau_systems_kernels import factor_at, filter_at
 from sceneql.system.signatures_kernels import DENSE, STEP, A, F, I
 
@@ -40,7 +26,7 @@ FINISH = types.void(I, F, F, A, A, I, A, I, A, A)
 finish_tallies = lazy("sceneql.stepping.radau_tallies_kernels:finish_tallies", FINISH)
 
 SAFETY = 0.9
-E1, E2, E3 = (-13.0 - 7.0 * ROOT6) / 3.0, (-13.0 + 7.0 * ROOT6) / 3.0, -1.0 / 3.0
+E1, E2, E3 = (-13.0 - 7.0 * stages.ROOT6) / 3.0, (-13.0 + 7.0 * stages.ROOT6) / 3.0, -1.0 / 3.0
 
 INSIDE = 0.01826
 """Largest |s (s - C1) (s - C2) (s - 1)| for s from 0 to 1."""
@@ -99,9 +85,9 @@ def guess_stages(n, ratio, known, z, before, w, ahead):
         z[n + k] = b
         z[2 * n + k] = c
         ahead[k] = c
-        w[k] = I11 * a + I12 * b + I13 * c
-        w[n + k] = I21 * a + I22 * b + I23 * c
-        w[2 * n + k] = I31 * a + I32 * b + I33 * c
+        w[k] = stages.I11 * a + stages.I12 * b + stages.I13 * c
+        w[n + k] = stages.I21 * a + stages.I22 * b + stages.I23 * c
+        w[2 * n + k] = stages.I31 * a + stages.I32 * b + stages.I33 * c
 
 
 @lean_inlined
@@ -155,7 +141,7 @@ def unevenness(ratio, z, ahead, weights):
 @lean_inlined
 def control(h, error, iterations, work, contracts):
     """Length of the next step (Gustafsson 1994); one nearly the same is kept, with its factorization."""
-    safety = min(SAFETY, SAFETY * (1.0 + 2.0 * ITERATIONS) / (iterations + 2.0 * ITERATIONS))
+    safety = min(SAFETY, SAFETY * (1.0 + 2.0 * stages.ITERATIONS) / (iterations + 2.0 * stages.ITERATIONS))
     divisor = min(5.0, max(0.125, error**0.25 / safety))
     if error >= 1.0:
         work[layout.REJECTED] = 1.0
@@ -212,7 +198,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         shorter = 0.5
         if work[layout.FACTORED] > 0.0:
             guess_stages(n, h / work[layout.BEFORE] if known else 0.0, known, z, before, w, ahead)
-            iterations, shorter = iterate(
+            iterations, shorter = stages.iterate(
                 functions, t, h, y0, y1, work, settings, numbers, floats, ints, values, plan, rows, store
             )
         if shorter == 0.0:

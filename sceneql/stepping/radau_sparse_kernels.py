@@ -15,14 +15,7 @@ import math
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.linear.stage_kernels import SIZE, factor_stage, solve_stage
-from sceneql.stepping.radau_systems_kernels import (
-    ALPHA,
-    BETA,
-    FACTOR_STAGES,
-    FILTER,
-    REAL,
-    SOLVE_STAGES,
-)
+from sceneql.stepping.radau_systems_kernels import ALPHA, BETA, FACTOR_STAGES, FILTER, REAL, SOLVE_STAGES
 
 ENOUGH = 0.01
 """Relative change of the solution that ends the iterations: Newton's method corrects the remaining error."""

@@ -62,14 +62,7 @@ class Assembly(Protocol):
     def inertia(self, velocity_at: int, inverse_at: int, count: int) -> None:
         """Say that a close term scales rate[velocity_at + 3k : +3], and so its slopes, by floats[inverse_at + k]."""
 
-    def contact(
-        self,
-        mode: Mode,
-        kernels: Sequence[str],
-        ints: Sequence[int],
-        pairs: int,
-        apart: bool = False,
-    ) -> None:
+    def contact(self, mode: Mode, kernels: Sequence[str], ints: Sequence[int], pairs: int, apart: bool = False) -> None:
         """Add contacts: kernels (gap, impact) with the number of pairs for `exact`, (back_off,) for `local`.
 
         ``apart``: as for a term; for local contacts only.

@@ -18,8 +18,8 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from plain_tapes import implicit
+from sceneql.field.packets import ray_rows
 from sceneql.field.packets.packets import Memory
-from sceneql.field.packets.ray_rows import FOUND_ROOT, FOUND_STATUS
 from sceneql.field.skeleton.skeleton import KERNELS, Skeleton
 from sceneql.field.tape.own_coordinates import in_own_coordinates
 from sceneql.field.tape.tape_ops import HIT, INSIDE, UNDECIDED
@@ -85,7 +85,7 @@ def met(tape: Tape, bundles: list[Rays], anywhere: bool) -> tuple[list[tuple[Flo
         begun = time.process_time()
         certified += memory.settle(TILE * TILE, anywhere)[1]
         seconds += time.process_time() - begun
-        found.append((memory.found[FOUND_STATUS, :n].copy(), memory.found[FOUND_ROOT, :n].copy()))
+        found.append((memory.found[ray_rows.FOUND_STATUS, :n].copy(), memory.found[ray_rows.FOUND_ROOT, :n].copy()))
     return found, seconds, certified
 
 

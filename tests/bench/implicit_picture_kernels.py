@@ -4,9 +4,9 @@
 import numpy as np
 
 from sceneql.compiled.kernels import inlined, lean
+from sceneql.field.packets import ray_rows
 from sceneql.field.packets.packet_kernels import LANES, PACKET, has
 from sceneql.field.packets.packet_roots_kernels import first_roots
-from sceneql.field.packets.ray_rows import FOUND_ROOT, FOUND_STATUS
 from sceneql.field.roots.density_roots_kernels import ROW_OF
 from sceneql.field.roots.polynomial_kernels import POLYNOMIAL
 from sceneql.field.tape.batch_gradient_kernels import differentiate
@@ -149,7 +149,7 @@ def draw_row(
         certified += b
         base = top * width + left
         met = 0
-        outcomes, roots, begins = found[FOUND_STATUS], found[FOUND_ROOT], rays[6]
+        outcomes, roots, begins = found[ray_rows.FOUND_STATUS], found[ray_rows.FOUND_ROOT], rays[6]
         for i in range(n):
             j = np.uint64(turns[i])
             hits[np.uint64(met)] = turns[i]

@@ -3,21 +3,9 @@
 
 from numba import types
 
+from renderers.tracing.filter import planes_kernels as chunks
 from renderers.tracing.filter.filter_kernels import REACH, add_lanes
-from renderers.tracing.filter.planes_kernels import (
-    HALO,
-    KEYS,
-    LANES,
-    LINE,
-    OWN,
-    PLANES,
-    WIDE,
-    ZERO,
-    F,
-    alike_lanes,
-    itself,
-    known,
-)
+from renderers.tracing.filter.planes_kernels import HALO, LANES, WIDE, ZERO, F
 from renderers.tracing.light.sampling_kernels import SIDE
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT
 from renderers.tracing.scene_kernels import part
@@ -41,9 +29,9 @@ def join(planes, means, y, row, at, mean_at, off, share, sums, same):
     if row < 0 or row >= planes.shape[0]:
         return
     if row == y and off == 0:
-        itself(planes[y, at:], same)
+        chunks.itself(planes[y, at:], same)
     else:
-        alike_lanes(planes[y, at:], planes[row, at + off :], same)
+        chunks.alike_lanes(planes[y, at:], planes[row, at + off :], same)
     mean = means[row, mean_at + off :]
     for i in range(LANES):
         same[i] = share * same[i] * mean[i]
@@ -66,7 +54,7 @@ def narrower(planes, means, y, at, mean_at, sums, same):
     add_lanes(same, F(1.0), mean[WIDE:], WIDE, sums[LANES:], LANES, FIRST_LIGHT)
 
 
-@kernel(types.void(_i, _i, _i, _i, PLANES, PLANES, PLANES, LINE), _nrt=False)
+@kernel(types.void(_i, _i, _i, _i, chunks.PLANES, chunks.PLANES, chunks.PLANES, chunks.LINE), _nrt=False)
 def spread_sky(start, stop, width, columns, planes, means, fine, memory):
     """The sky's loss over 24 x 24 pixels, from nine means over 8 x 8 of weights 1 2 1, 2 4 2, 1 2 1, into ``fine``.
 
@@ -74,13 +62,13 @@ def spread_sky(start, stop, width, columns, planes, means, fine, memory):
     window moves have half of their weight in a plain window, so that stripes are fainter. Near edges the window is a
     plain one. Planes and means are those of filter_kernels, ``fine`` is (n, V), ``memory`` (ROOM,).
     """
-    size, of_means = KEYS + columns * WIDE, (1 + columns) * WIDE
+    size, of_means = chunks.KEYS + columns * WIDE, (1 + columns) * WIDE
     same, wide, narrow = memory[:LANES], memory[LANES : LANES + OF_SKY], memory[LANES + OF_SKY :]
     for y in range(start, stop):
         for chunk in range(means.shape[1] // of_means):
             at, mean_at = chunk * size + HALO, chunk * of_means + HALO
             a = planes[y, at:]
-            if not known(a):
+            if not chunks.known(a):
                 continue
             for i in range(OF_SKY):
                 wide[i] = ZERO
@@ -90,11 +78,11 @@ def spread_sky(start, stop, width, columns, planes, means, fine, memory):
                 join(planes, means, y, y + SIDE * down, at, mean_at, SIDE * across, share, wide, same)
             cut = False
             for i in range(LANES):
-                cut = cut or (a[OWN + i] > ZERO and wide[i] < WIDER)
+                cut = cut or (a[chunks.OWN + i] > ZERO and wide[i] < WIDER)
             if cut:
                 narrower(planes, means, y, at, mean_at, narrow, same)
             for i in range(min(LANES, width - chunk * LANES)):
-                if a[OWN + i] > ZERO:
+                if a[chunks.OWN + i] > ZERO:
                     sums = narrow if wide[i] < WIDER else wide
                     for c in range(FIRST_LIGHT):
                         fine[y * width + chunk * LANES + i, c] = sums[(1 + c) * LANES + i] / sums[i]

@@ -12,11 +12,7 @@ def sky_radiance(sky, y):
     """Radiance (3) of the sky in a direction of height y = sin(elevation): linear in y to zenith or ground."""
     at = 0 if y >= 0.0 else 6
     w = abs(y)
-    return (
-        sky[3] + w * (sky[at] - sky[3]),
-        sky[4] + w * (sky[at + 1] - sky[4]),
-        sky[5] + w * (sky[at + 2] - sky[5]),
-    )
+    return sky[3] + w * (sky[at] - sky[3]), sky[4] + w * (sky[at + 1] - sky[4]), sky[5] + w * (sky[at + 2] - sky[5])
 
 
 @part

@@ -27,11 +27,7 @@ def reflectance_at_normal(reals, record):
     s = int(record[SURFACE])
     metallic = reals[s + layout.METALLIC]
     plain = reals[s + layout.SPECULAR] * (1.0 - metallic)
-    return (
-        plain + metallic * record[TINT],
-        plain + metallic * record[TINT + 1],
-        plain + metallic * record[TINT + 2],
-    )
+    return plain + metallic * record[TINT], plain + metallic * record[TINT + 1], plain + metallic * record[TINT + 2]
 
 
 @part

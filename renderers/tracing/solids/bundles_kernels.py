@@ -8,8 +8,8 @@ from renderers.tracing import layout
 from renderers.tracing.scene_kernels import ASKED, part
 from renderers.tracing.solids.solids_kernels import box_span, inverse
 from sceneql.compiled.kernels import lean
+from sceneql.field.packets import ray_rows
 from sceneql.field.packets.packet_roots_kernels import ARGUMENTS, GROUP, first_roots
-from sceneql.field.packets.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS
 from sceneql.field.tape.tape_ops import HIT, MISS
 
 _rows = types.float64[:, ::1]
@@ -98,14 +98,14 @@ def place(rays, asked, chosen, spans, matrix, n):
 @part
 def answer(rays, found, j, anywhere):
     """The crossing of ray j, inf for a miss; NaN where the certified routine of single rays must decide."""
-    if found[FOUND_STATUS, j] == MISS:
+    if found[ray_rows.FOUND_STATUS, j] == MISS:
         return np.inf
-    if found[FOUND_STATUS, j] != HIT:
+    if found[ray_rows.FOUND_STATUS, j] != HIT:
         return np.nan
-    t, t0, t1 = found[FOUND_ROOT, j], rays[6, j], rays[7, j]
+    t, t0, t1 = found[ray_rows.FOUND_ROOT, j], rays[6, j], rays[7, j]
     if anywhere:  # the blocker is proved to be between these
-        low = t0 + found[FOUND_LOW, j]
-        return min(max(t, low), max(t0 + found[FOUND_HIGH, j], low))
+        low = t0 + found[ray_rows.FOUND_LOW, j]
+        return min(max(t, low), max(t0 + found[ray_rows.FOUND_HIGH, j], low))
     # A ray that begins inside must leave first.
     return t if t0 > 0.0 or t > t0 + FINE * (t1 - t0) else np.nan
 

@@ -41,15 +41,3 @@ def boundary(tetrahedra: Ints) -> Ints:
     _, first, count = np.unique((low * size + middle) * size + high, return_index=True, return_counts=True)
     found: Ints = faces[np.sort(first[count == 1])].astype(np.int32)
     return found
-
-
-def dihedral_angles(points: Floats, tetrahedra: Ints) -> Floats:
-    """(t, 6) angles [rad] between the two faces at each edge of ENDS."""
-    corners = points[tetrahedra]
-    normals = [np.cross(corners[:, b] - corners[:, a], corners[:, c] - corners[:, a]) for a, b, c in FACES]
-    normals = [n / np.linalg.norm(n, axis=1, keepdims=True) for n in normals]
-    # The faces at an edge are those across from the two other corners.
-    others = [[k for k in range(4) if k not in ends] for ends in ENDS]
-    cosines = np.stack([-np.einsum("ij,ij->i", normals[a], normals[b]) for a, b in others], axis=1)
-    angles: Floats = np.arccos(np.clip(cosines, -1.0, 1.0))
-    return angles

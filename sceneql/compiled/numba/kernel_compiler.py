@@ -16,19 +16,8 @@ from numba.core import cgutils
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase
 from numba.core.compiler_machinery import PassManager, _pass_registry, register_pass
-from numba.core.typed_passes import (
-    NativeLowering,
-    NoPythonBackend,
-    NopythonTypeInference,
-    PreLowerStripPhis,
-)
-from numba.core.untyped_passes import (
-    FixupArgs,
-    GenericRewrites,
-    InlineInlinables,
-    ReconstructSSA,
-    TranslateByteCode,
-)
+from numba.core.typed_passes import NativeLowering, NoPythonBackend, NopythonTypeInference, PreLowerStripPhis
+from numba.core.untyped_passes import FixupArgs, GenericRewrites, InlineInlinables, ReconstructSSA, TranslateByteCode
 
 from sceneql.compiled.numba.builtin_calls import take_builtin_calls
 from sceneql.compiled.numba.elements import take_elements

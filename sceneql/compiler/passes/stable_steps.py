@@ -27,11 +27,7 @@ NOTABLE = 10.0
 
 
 def warn_of_steps(
-    script: Script,
-    tasks: Mapping[str, Task],
-    groups: Iterable[Island],
-    end: float,
-    found: Diagnostics,
+    script: Script, tasks: Mapping[str, Task], groups: Iterable[Island], end: float, found: Diagnostics
 ) -> None:
     """Warn of an island's step beyond the bound that its parts' fields give; refuse more than MOST_STEPS steps.
 

@@ -12,23 +12,11 @@ from numba import types
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import inlined, kernel
 from sceneql.compiled.numba.lazy_kernels import lazy
-from sceneql.contacts.mutual.sphere_pair_kernels import (
-    COUNT,
-    INVERSE,
-    MASS,
-    MEET,
-    POINTS,
-    RADIUS,
-    X,
-    neighbors,
-    of,
-    radii,
-    sort_cells,
-    tied,
-)
+from sceneql.contacts.mutual import sphere_pair_kernels as spheres
+from sceneql.contacts.mutual.sphere_pair_kernels import neighbors, of, radii, sort_cells, tied
 from sceneql.system.signatures_kernels import BACK_OFF, A, F, I
 
-meet_all = lazy("sceneql.contacts.mutual.sphere_meet_kernels:meet_all", MEET)
+meet_all = lazy("sceneql.contacts.mutual.sphere_meet_kernels:meet_all", spheres.MEET)
 
 
 @inlined
@@ -46,24 +34,24 @@ def candidates(h, y0, y1, floats, ints):
 
     Includes pairs that would meet if either moved as far as the fastest mass, for impacts hand on velocities.
     """
-    n = ints[COUNT]
+    n = ints[spheres.COUNT]
     first = np.zeros(n + 1, dtype=np.int64)
     longest, widest = 0.0, 0.0
     for k in range(n):
-        at = of(ints, k, X)
+        at = of(ints, k, spheres.X)
         way = 0.0
         for c in range(3):
-            floats[ints[POINTS] + c * n + k] = 0.5 * (y0[at + c] + y1[at + c])
+            floats[ints[spheres.POINTS] + c * n + k] = 0.5 * (y0[at + c] + y1[at + c])
             way += (y1[at + c] - y0[at + c]) ** 2
         longest = max(longest, way)
-        widest = max(widest, floats[of(ints, k, RADIUS)])
+        widest = max(widest, floats[of(ints, k, spheres.RADIUS)])
     edge = 2.0 * (widest + math.sqrt(longest))
     if not edge > 0.0 or widest == 0.0 or not math.isfinite(edge):
         return first, np.zeros(0, dtype=np.int64)
     sort_cells(edge, floats, ints)
     found = np.empty(n, dtype=np.int64)
     others = np.empty(8 * n + 64, dtype=np.int64)
-    points = ints[POINTS]
+    points = ints[spheres.POINTS]
     for k in range(n):
         total = first[k]
         for one in range(neighbors(k, edge, found, floats, ints)):
@@ -71,9 +59,9 @@ def candidates(h, y0, y1, floats, ints):
             square = 0.0
             for c in range(3):
                 square += (floats[points + c * n + k] - floats[points + c * n + j]) ** 2
-            fixed = floats[of(ints, k, INVERSE)] + floats[of(ints, j, INVERSE)] == 0.0
+            fixed = floats[of(ints, k, spheres.INVERSE)] + floats[of(ints, j, spheres.INVERSE)] == 0.0
             # Zero mass: a slot for a particle that is absent now.
-            absent = floats[of(ints, k, MASS)] == 0.0 or floats[of(ints, j, MASS)] == 0.0
+            absent = floats[of(ints, k, spheres.MASS)] == 0.0 or floats[of(ints, j, spheres.MASS)] == 0.0
             if fixed or absent or square > (radii(k, j, floats, ints) + 2.0 * math.sqrt(longest)) ** 2:
                 continue
             if tied(k, j, ints):
@@ -92,5 +80,5 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
     if floats[channels.STEP_END] > 0.0:
         return
     first, others = candidates(t1 - t0, y0, y1, floats, ints)
-    if first[ints[COUNT]] > 0:
+    if first[ints[spheres.COUNT]] > 0:
         meet_all(t1, t1 - t0, first, others, y0, rate0, y1, floats, ints)

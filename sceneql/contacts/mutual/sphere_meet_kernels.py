@@ -13,35 +13,21 @@ import numpy as np
 from sceneql.compiled.kernels import inlined, kernel
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.impulse_kernels import count_hit
-from sceneql.contacts.mutual.sphere_pair_kernels import (
-    COUNT,
-    INVERSE,
-    MASS,
-    MEET,
-    REST,
-    ROWS,
-    TALLY,
-    WORK,
-    V,
-    X,
-    impulse,
-    of,
-    radii,
-    rests_below,
-)
+from sceneql.contacts.mutual import sphere_pair_kernels as spheres
+from sceneql.contacts.mutual.sphere_pair_kernels import ROWS, impulse, of, radii, rests_below
 from sceneql.system.signatures_kernels import A, F, I, N
 
 MOST_PASSES = 100
 
-rest = lazy("sceneql.contacts.mutual.sphere_rest_kernels:rest", REST)
+rest = lazy("sceneql.contacts.mutual.sphere_rest_kernels:rest", spheres.REST)
 
 
 @inlined
 def relative(i, j, left, y1, mean, pull, r, v, ints):
     """Place r and velocity v of mass i relative to j, ``left`` [s] before the step's end."""
     for c in range(3):
-        r[c] = y1[of(ints, i, X) + c] - y1[of(ints, j, X) + c] - left * (mean[i, c] - mean[j, c])
-        v[c] = y1[of(ints, i, V) + c] - y1[of(ints, j, V) + c] - left * (pull[i, c] - pull[j, c])
+        r[c] = y1[of(ints, i, spheres.X) + c] - y1[of(ints, j, spheres.X) + c] - left * (mean[i, c] - mean[j, c])
+        v[c] = y1[of(ints, i, spheres.V) + c] - y1[of(ints, j, spheres.V) + c] - left * (pull[i, c] - pull[j, c])
 
 
 @kernel(F(N, N, F, A, ROWS, ROWS, A, A, A, A, I), inner=True)
@@ -75,35 +61,35 @@ def collide(i, j, left, t1, h, since, mean, pull, y1, r, v, floats, ints):
     """The impact of two masses ``left`` [s] before the step's end; each is booked half of the energy lost."""
     relative(i, j, left, y1, mean, pull, r, v, ints)
     px, py, pz, speed = impulse(i, j, r, v, floats, ints)
-    count_hit(floats, ints[TALLY], t1 - left, speed)
+    count_hit(floats, ints[spheres.TALLY], t1 - left, speed)
     lost = 0.0
     for one in range(2):
         k = i if one == 0 else j
-        inverse = floats[of(ints, k, INVERSE)] * (1.0 if one == 0 else -1.0)
+        inverse = floats[of(ints, k, spheres.INVERSE)] * (1.0 if one == 0 else -1.0)
         if inverse == 0.0:
             continue
-        mass = floats[of(ints, k, MASS)]
+        mass = floats[of(ints, k, spheres.MASS)]
         for c in range(3):
             add = inverse * (px if c == 0 else (py if c == 1 else pz))
-            lost -= mass * add * (y1[of(ints, k, V) + c] + 0.5 * add - pull[k, c] * left)
-            y1[of(ints, k, V) + c] += add
-            y1[of(ints, k, X) + c] += left * add
+            lost -= mass * add * (y1[of(ints, k, spheres.V) + c] + 0.5 * add - pull[k, c] * left)
+            y1[of(ints, k, spheres.V) + c] += add
+            y1[of(ints, k, spheres.X) + c] += left * add
             mean[k, c] += add
         since[k] = h - left
-    y1[of(ints, i, WORK)] += 0.5 * lost
-    y1[of(ints, j, WORK)] += 0.5 * lost
+    y1[of(ints, i, spheres.WORK)] += 0.5 * lost
+    y1[of(ints, j, spheres.WORK)] += 0.5 * lost
 
 
-@kernel(MEET, inner=True)
+@kernel(spheres.MEET, inner=True)
 def meet_all(t1, h, first, others, y0, rate0, y1, floats, ints):
     """Resolve in y1 the impacts of the pairs found in the step of length h up to t1."""
-    n = ints[COUNT]
+    n = ints[spheres.COUNT]
     mean, pull = np.empty((n, 3)), np.empty((n, 3))
     for k in range(n):
         for c in range(3):
-            mean[k, c] = (y1[of(ints, k, X) + c] - y0[of(ints, k, X) + c]) / h
+            mean[k, c] = (y1[of(ints, k, spheres.X) + c] - y0[of(ints, k, spheres.X) + c]) / h
             # Not the mean acceleration of the step, which may contain impulses by objects.
-            pull[k, c] = rate0[of(ints, k, V) + c]
+            pull[k, c] = rate0[of(ints, k, spheres.V) + c]
     since, next_left = np.zeros(n), np.empty(n)
     partner = np.empty(n, dtype=np.int64)
     r, v = np.empty(3), np.empty(3)

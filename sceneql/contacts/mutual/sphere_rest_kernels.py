@@ -13,26 +13,8 @@ from numba import types
 
 from sceneql.compiled.kernels import inlined, kernel
 from sceneql.contacts import layout
-from sceneql.contacts.mutual.sphere_pair_kernels import (
-    BODY,
-    COUNT,
-    FRICTION,
-    HEAD,
-    INVERSE,
-    MASS,
-    OBJECTS,
-    RADIUS,
-    REST,
-    ROWS,
-    TOUCHING,
-    WORK,
-    V,
-    X,
-    approach,
-    of,
-    radii,
-    rests_below,
-)
+from sceneql.contacts.mutual import sphere_pair_kernels as spheres
+from sceneql.contacts.mutual.sphere_pair_kernels import ROWS, approach, of, radii, rests_below
 from sceneql.contacts.shape_kernels import clear, surface, velocity
 from sceneql.system.signatures_kernels import A, F, I
 
@@ -44,11 +26,11 @@ NONE = -1
 def in_touch(k, y1, floats, ints, near, u):
     """Write normals (.., 3) and velocities (.., 3) of the objects that mass k touches to near and u; their number."""
     count = 0
-    reach = floats[of(ints, k, RADIUS)]
-    slack = TOUCHING * max(reach, 1e-3)
-    x = of(ints, k, X)
-    for one in range(ints[OBJECTS]):
-        at = HEAD + BODY * ints[COUNT] + layout.OBJECT * one
+    reach = floats[of(ints, k, spheres.RADIUS)]
+    slack = spheres.TOUCHING * max(reach, 1e-3)
+    x = of(ints, k, spheres.X)
+    for one in range(ints[spheres.OBJECTS]):
+        at = spheres.HEAD + spheres.BODY * ints[spheres.COUNT] + layout.OBJECT * one
         if count == near.shape[0] or clear(floats, ints, at, y1[x], y1[x + 1], y1[x + 2], reach + slack):
             continue
         d, a, b, c = surface(floats, ints, at, y1[x], y1[x + 1], y1[x + 2])
@@ -63,8 +45,8 @@ def in_touch(k, y1, floats, ints, near, u):
 @kernel(types.Tuple((types.int64[:, ::1], ROWS))(F, I, I, ROWS, A, A, I), inner=True)
 def contacts(h, first, others, pull, y1, floats, ints):
     """Resting pairs (c, 2), the second -1 for an object, and (c, 9): normal, velocity of the object, impulse."""
-    n = ints[COUNT]
-    pairs = np.empty((first[n] + n * min(3, ints[OBJECTS]), 2), dtype=np.int64)
+    n = ints[spheres.COUNT]
+    pairs = np.empty((first[n] + n * min(3, ints[spheres.OBJECTS]), 2), dtype=np.int64)
     rows = np.zeros((pairs.shape[0], 9))
     touched = np.zeros(n, dtype=np.int64)
     count = 0
@@ -74,16 +56,16 @@ def contacts(h, first, others, pull, y1, floats, ints):
             reach = radii(i, j, floats, ints)
             square = 0.0
             for c in range(3):
-                square += (y1[of(ints, i, X) + c] - y1[of(ints, j, X) + c]) ** 2
+                square += (y1[of(ints, i, spheres.X) + c] - y1[of(ints, j, spheres.X) + c]) ** 2
             if (
-                square > (reach * (1.0 + TOUCHING)) ** 2
+                square > (reach * (1.0 + spheres.TOUCHING)) ** 2
                 or square == 0.0
                 or approach(i, j, y1, ints) > rests_below(i, j, h, pull, floats, ints)
             ):
                 continue
             pairs[count, 0], pairs[count, 1] = i, j
             for c in range(3):
-                rows[count, c] = (y1[of(ints, i, X) + c] - y1[of(ints, j, X) + c]) / math.sqrt(square)
+                rows[count, c] = (y1[of(ints, i, spheres.X) + c] - y1[of(ints, j, spheres.X) + c]) / math.sqrt(square)
             touched[i] = touched[j] = 1
             count += 1
     if count > 0:
@@ -101,12 +83,12 @@ def contacts(h, first, others, pull, y1, floats, ints):
 @inlined
 def push(i, j, px, py, pz, v, floats, ints):
     """Change velocities v (n, 3) by an impulse on i, and its negative on j."""
-    a = floats[of(ints, i, INVERSE)]
+    a = floats[of(ints, i, spheres.INVERSE)]
     v[i, 0] += a * px
     v[i, 1] += a * py
     v[i, 2] += a * pz
     if j != NONE:
-        b = floats[of(ints, j, INVERSE)]
+        b = floats[of(ints, j, spheres.INVERSE)]
         v[j, 0] -= b * px
         v[j, 1] -= b * py
         v[j, 2] -= b * pz
@@ -118,7 +100,7 @@ def sweep(pairs, rows, v, floats, ints):
     change = 0.0
     for one in range(pairs.shape[0]):
         i, j = pairs[one, 0], pairs[one, 1]
-        inverse = floats[of(ints, i, INVERSE)] + (0.0 if j == NONE else floats[of(ints, j, INVERSE)])
+        inverse = floats[of(ints, i, spheres.INVERSE)] + (0.0 if j == NONE else floats[of(ints, j, spheres.INVERSE)])
         if inverse == 0.0:
             continue
         nx, ny, nz = rows[one, 0], rows[one, 1], rows[one, 2]
@@ -131,7 +113,7 @@ def sweep(pairs, rows, v, floats, ints):
         tangent = px * nx + py * ny + pz * nz
         tx, ty, tz = px - tangent * nx, py - tangent * ny, pz - tangent * nz
         size = math.sqrt(tx * tx + ty * ty + tz * tz)
-        part = min(1.0, floats[ints[FRICTION]] * normal / size) if size > 0.0 else 0.0
+        part = min(1.0, floats[ints[spheres.FRICTION]] * normal / size) if size > 0.0 else 0.0
         px, py, pz = normal * nx + part * tx, normal * ny + part * ty, normal * nz + part * tz
         dx, dy, dz = px - rows[one, 6], py - rows[one, 7], pz - rows[one, 8]
         rows[one, 6], rows[one, 7], rows[one, 8] = px, py, pz
@@ -154,45 +136,47 @@ def part_them(pairs, rows, moved, y1, floats, ints):
             continue
         square = 0.0
         for c in range(3):
-            square += (y1[of(ints, i, X) + c] + moved[i, c] - y1[of(ints, j, X) + c] - moved[j, c]) ** 2
+            square += (y1[of(ints, i, spheres.X) + c] + moved[i, c] - y1[of(ints, j, spheres.X) + c] - moved[j, c]) ** 2
         length = math.sqrt(square)
         overlap = radii(i, j, floats, ints) - length
-        a, b = floats[of(ints, i, INVERSE)], floats[of(ints, j, INVERSE)]
+        a, b = floats[of(ints, i, spheres.INVERSE)], floats[of(ints, j, spheres.INVERSE)]
         if overlap <= 0.0 or a + b == 0.0 or length == 0.0:
             continue
         worst = max(worst, overlap)
         for c in range(3):
-            d = y1[of(ints, i, X) + c] + moved[i, c] - y1[of(ints, j, X) + c] - moved[j, c]
+            d = y1[of(ints, i, spheres.X) + c] + moved[i, c] - y1[of(ints, j, spheres.X) + c] - moved[j, c]
             d *= overlap / (length * (a + b))
             moved[i, c] += a * d
             moved[j, c] -= b * d
     return worst
 
 
-@kernel(REST, inner=True)
+@kernel(spheres.REST, inner=True)
 def rest(h, first, others, pull, y1, floats, ints):
     """End the approach of masses that touch at the end of a step of length h; ``pull`` (n, 3): mean accelerations."""
     pairs, rows = contacts(h, first, others, pull, y1, floats, ints)
     if pairs.shape[0] == 0:
         return
-    n = ints[COUNT]
+    n = ints[spheres.COUNT]
     v, moved = np.empty((n, 3)), np.zeros((n, 3))
     for k in range(n):
         for c in range(3):
-            v[k, c] = y1[of(ints, k, V) + c]
+            v[k, c] = y1[of(ints, k, spheres.V) + c]
     for _ in range(SWEEPS):
         if sweep(pairs, rows, v, floats, ints) < 1e-13:
             break
     for k in range(n):
         for c in range(3):
-            moved[k, c] = 0.5 * h * (v[k, c] - y1[of(ints, k, V) + c])
+            moved[k, c] = 0.5 * h * (v[k, c] - y1[of(ints, k, spheres.V) + c])
     for _ in range(SWEEPS):
         if part_them(pairs, rows, moved, y1, floats, ints) < 1e-13:
             break
     for k in range(n):
-        mass = floats[of(ints, k, MASS)] if floats[of(ints, k, INVERSE)] > 0.0 else 0.0
+        mass = floats[of(ints, k, spheres.MASS)] if floats[of(ints, k, spheres.INVERSE)] > 0.0 else 0.0
         for c in range(3):
-            before = y1[of(ints, k, V) + c]
-            y1[of(ints, k, WORK)] += mass * (0.5 * (before * before - v[k, c] * v[k, c]) + pull[k, c] * moved[k, c])
-            y1[of(ints, k, V) + c] = v[k, c]
-            y1[of(ints, k, X) + c] += moved[k, c]
+            before = y1[of(ints, k, spheres.V) + c]
+            y1[of(ints, k, spheres.WORK)] += mass * (
+                0.5 * (before * before - v[k, c] * v[k, c]) + pull[k, c] * moved[k, c]
+            )
+            y1[of(ints, k, spheres.V) + c] = v[k, c]
+            y1[of(ints, k, spheres.X) + c] += moved[k, c]

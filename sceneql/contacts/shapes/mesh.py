@@ -36,10 +36,5 @@ def collider(vertices: Floats, triangles: Ints, position_at: int, rotation_at: i
     data = (assembly.floats(mesh.boxes), assembly.floats(mesh.rows), len(mesh.boxes), *mesh.tree.ravel().tolist())
     size_at = assembly.floats([size])
     return Collider(
-        "sceneql.contacts.shapes.mesh_kernels",
-        position_at,
-        rotation_at,
-        size_at,
-        assembly.floats([depth]),
-        data,
+        "sceneql.contacts.shapes.mesh_kernels", position_at, rotation_at, size_at, assembly.floats([depth]), data
     )

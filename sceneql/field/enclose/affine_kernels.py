@@ -8,18 +8,8 @@ propagated: an operation that would lose those of its arguments does not.
 
 import numpy as np
 
-from sceneql.field.tape.single_kernels import (
-    EXP_ERROR,
-    FARTHEST,
-    LOG_ERROR,
-    WAVE_ERROR,
-    WHOLE_NUMBERS,
-    angle,
-    below,
-    exponential,
-    lane,
-    logarithm,
-)
+from sceneql.field.tape import single_kernels as single
+from sceneql.field.tape.single_kernels import LOG_ERROR, lane
 
 F = np.float32
 PAD = F(5.0e-7)
@@ -182,13 +172,13 @@ def curve(f, slope, least, most, a1, ea):
 def wave(s, c, a0, a1, ea):
     """Enclosure of the sine about a0, given its sine s and cosine c; [-1, 1] where that is narrower."""
     reach = (abs(a1) + ea) * GROW
-    least = -s - reach - WAVE_ERROR
-    most = reach - s + WAVE_ERROR
+    least = -s - reach - single.WAVE_ERROR
+    most = reach - s + single.WAVE_ERROR
     least = least if least > -ONE else -ONE
     most = most if most < ONE else ONE
     c0, c1, e = curve(s, c, least, most, a1, ea)
-    e += WAVE_ERROR * (TWO + reach)
-    fine = reach < WAVES and e < ONE and abs(a0) < FARTHEST
+    e += single.WAVE_ERROR * (TWO + reach)
+    fine = reach < WAVES and e < ONE and abs(a0) < single.FARTHEST
     unknown = ZERO * (a0 + reach)  # 0, or NaN where that is not finite
     return c0 if fine else unknown, c1 if fine else ZERO, e if fine else ONE + PAD
 
@@ -198,12 +188,12 @@ def grown(a0, a1, ea):
     """Enclosure of exp(a); nothing is claimed where float32 overflows."""
     reach = (abs(a1) + ea) * GROW + PAD * abs(a0)
     reach = reach if reach >= ZERO else INFINITE
-    f = exponential(a0)
-    most = exponential(a0 + reach) * (ONE + EXP_ERROR)
-    least = exponential(a0 - reach) * (ONE - EXP_ERROR)
+    f = single.exponential(a0)
+    most = single.exponential(a0 + reach) * (ONE + single.EXP_ERROR)
+    least = single.exponential(a0 - reach) * (ONE - single.EXP_ERROR)
     least = least if a0 - reach > F(-86.0) else ZERO
     c0, c1, e = curve(f, f, least, most, a1, ea)
-    e += EXP_ERROR * f * (TWO + reach) + TINY
+    e += single.EXP_ERROR * f * (TWO + reach) + TINY
     flat = not (reach < ONE and a0 > F(-80.0))
     e = HALF * (most - least) * GROW + PAD * most + TINY if flat else e
     return HALF * (most + least) if flat else c0, ZERO if flat else c1, e if a0 + reach < F(87.0) else INFINITE
@@ -217,15 +207,15 @@ def logged(a0, a1, ea):
     high = a0 + reach
     safe = low if low > LEAST else LEAST
     top = high if high > LEAST else LEAST
-    f = logarithm(a0 if a0 > LEAST else LEAST)
+    f = single.logarithm(a0 if a0 > LEAST else LEAST)
     slope = ONE / a0
     ratio = reach / safe  # divided before squared, since 1/a^2 may underflow
     sag = QUARTER * ratio * ratio
     c0 = f - sag
     c1 = slope * a1
     e = (sag + abs(slope) * ea) * GROW + LOG_ERROR * (ONE + abs(f)) + PAD * (abs(f) + sag + (abs(a1) + ea) / safe)
-    bottom = logarithm(safe)
-    top = logarithm(top)
+    bottom = single.logarithm(safe)
+    top = single.logarithm(top)
     flat_e = HALF * (top - bottom) * GROW + (LOG_ERROR + PAD) * (ONE + abs(top) + abs(bottom))
     flat = not (e < flat_e)
     e = flat_e if flat else e
@@ -240,7 +230,7 @@ def logged(a0, a1, ea):
 def fraction(b0, b1, eb):
     """Whether an exponent is proved to be a constant that is no integer."""
     low, high = b0 - GROW * eb, b0 + GROW * eb
-    return b1 == ZERO and below(low) == below(high) and low != below(low)
+    return b1 == ZERO and single.below(low) == single.below(high) and low != single.below(low)
 
 
 @lane
@@ -279,11 +269,11 @@ def turned(y0, y1, ey, x0, x1, ex):
     to_x = -y0 / r2
     remainder = HALF * (reach_x * reach_x + reach_y * reach_y) / (near2 if near2 > LEAST else LEAST)
     e = (abs(to_y) * ey + abs(to_x) * ex + remainder) * GROW
-    e += WAVE_ERROR + PAD * (F(4.0) + abs(to_y * y1) + abs(to_x * x1))
+    e += single.WAVE_ERROR + PAD * (F(4.0) + abs(to_y * y1) + abs(to_x * x1))
     fine = (near_y > ZERO or x0 - reach_x > ZERO) and near2 > LEAST and e < PI
     unknown = ZERO * (reach_x + reach_y + abs(x0) + abs(y0))
     return (
-        angle(y0, x0) if fine else unknown,
+        single.angle(y0, x0) if fine else unknown,
         to_y * y1 + to_x * x1 if fine else ZERO,
         e if fine else PI + F(4.0) * PAD,
     )
@@ -294,9 +284,9 @@ def floored(a0, a1, ea):
     """Enclosure of floor(a), its hull."""
     reach = (abs(a1) + ea) * GROW
     reach = reach + PAD * abs(a0) if reach > ZERO else reach
-    low = below(a0 - reach)
-    high = below(a0 + reach)
-    fine = abs(low) < WHOLE_NUMBERS and abs(high) < WHOLE_NUMBERS
+    low = single.below(a0 - reach)
+    high = single.below(a0 + reach)
+    fine = abs(low) < single.WHOLE_NUMBERS and abs(high) < single.WHOLE_NUMBERS
     return HALF * (low + high) + ZERO * (a0 + reach), ZERO, HALF * (high - low) * GROW if fine else INFINITE
 
 

@@ -10,17 +10,7 @@ by some units in the last place of all magnitudes added, and by some of its own.
 import numpy as np
 
 from sceneql.compiled.kernels import inlined, kernel
-from sceneql.field.enclose.forms_kernels import (
-    LARGE,
-    PAD,
-    TINY,
-    WIDER,
-    hull,
-    larger_of,
-    never_negative,
-    product,
-    spread,
-)
+from sceneql.field.enclose import forms_kernels as forms
 from sceneql.field.enclose.sine_kernels import sine_cosine
 from sceneql.field.skeleton.density_enclosure_kernels import density_segment
 from sceneql.field.skeleton.skeleton_enclosure_kernels import skeleton_segment
@@ -34,7 +24,7 @@ NEAR = 1.0e-300
 @inlined
 def reciprocal(a0, a1, ea):
     """Enclosure of 1/a where a keeps one sign: midway between the chord and the tangent parallel to it."""
-    reach = spread(a0, a1, ea)
+    reach = forms.spread(a0, a1, ea)
     near = abs(a0) - reach
     far = abs(a0) + reach
     if not (near > 0.0 and far < FAR):
@@ -46,13 +36,13 @@ def reciprocal(a0, a1, ea):
     if a0 < 0.0:
         c0 = -c0
     e = 0.5 * (p - q) * (p - q) - slope * ea
-    return c0 + slope * a0, slope * a1, e + PAD * (abs(c0) + p * p)
+    return c0 + slope * a0, slope * a1, e + forms.PAD * (abs(c0) + p * p)
 
 
 @inlined
 def square_root(a0, a1, ea):
     """Enclosure of sqrt(a) where a >= 0: midway between the chord and the tangent parallel to it."""
-    reach = spread(a0, a1, ea)
+    reach = forms.spread(a0, a1, ea)
     high = a0 + reach
     if not high > 0.0:
         return 0.0, 0.0, 0.0
@@ -62,8 +52,8 @@ def square_root(a0, a1, ea):
     slope = 1.0 / (p + q)
     half_gap = 0.125 * (q - p) * (q - p) * slope
     if a0 - reach < 0.0:
-        return hull(0.0, q)
-    return p * q * slope + half_gap + slope * a0, slope * a1, slope * ea + half_gap + PAD * q * 2.0
+        return forms.hull(0.0, q)
+    return p * q * slope + half_gap + slope * a0, slope * a1, slope * ea + half_gap + forms.PAD * q * 2.0
 
 
 @inlined
@@ -73,7 +63,7 @@ def curve(f, slope, least, most, a1, ea):
     low = 0.25 * min(least, 0.0) * reach * reach
     high = 0.25 * max(most, 0.0) * reach * reach
     e = high - low + abs(slope) * ea
-    return f + low + high, slope * a1, e + PAD * (abs(f) + abs(slope * a1))
+    return f + low + high, slope * a1, e + forms.PAD * (abs(f) + abs(slope * a1))
 
 
 @inlined
@@ -83,18 +73,18 @@ def sine(s, c, a1, ea):
     if reach < 1.5:
         c0, c1, e = curve(s, c, max(-s - reach, -1.0), min(reach - s, 1.0), a1, ea)
         if e < 1.0:
-            return c0, c1, e + PAD
-    return 0.0, 0.0, 1.0 + PAD
+            return c0, c1, e + forms.PAD
+    return 0.0, 0.0, 1.0 + forms.PAD
 
 
 @inlined
 def exponential(a0, a1, ea):
     """Enclosure of exp(a)."""
-    reach = spread(a0, a1, ea)
+    reach = forms.spread(a0, a1, ea)
     low = np.exp(a0 - reach)
     high = np.exp(a0 + reach)
     if reach > 1.0:
-        return hull(low, high)
+        return forms.hull(low, high)
     f = np.exp(a0)
     return curve(f, f, low, high, a1, ea)
 
@@ -102,29 +92,29 @@ def exponential(a0, a1, ea):
 @inlined
 def logarithm(a0, a1, ea):
     """Enclosure of log(a) where a > 0; infinite where a may reach 0."""
-    reach = spread(a0, a1, ea)
+    reach = forms.spread(a0, a1, ea)
     low = a0 - reach
     if not low > 0.0:
         return 0.0, 0.0, np.inf
     if reach > low:
-        return hull(np.log(low), np.log(a0 + reach))
+        return forms.hull(np.log(low), np.log(a0 + reach))
     f = np.log(a0)
     slope = 1.0 / a0
     # The second derivative is -1/a^2; a^2 alone may overflow.
     gap = 0.25 * (reach / low) * (reach / low)
-    return f - gap, slope * a1, gap + slope * ea + PAD * (abs(f) + abs(slope * a1))
+    return f - gap, slope * a1, gap + slope * ea + forms.PAD * (abs(f) + abs(slope * a1))
 
 
 @inlined
 def power(a0, a1, ea, b0, b1, eb):
     """Enclosure of a^b: exp(b log a) where a > 0; elsewhere a hull for a constant exponent > 0 that is no integer."""
-    reach = spread(a0, a1, ea)
+    reach = forms.spread(a0, a1, ea)
     if a0 > reach:
         l0, l1, el = logarithm(a0, a1, ea)
-        p0, p1, ep = product(b0, b1, eb, l0, l1, el)
+        p0, p1, ep = forms.product(b0, b1, eb, l0, l1, el)
         return exponential(p0, p1, ep)
     if b1 == 0.0 and eb == 0.0 and b0 > 0.0 and b0 != np.floor(b0):
-        return hull(0.0, (a0 + reach) ** b0)
+        return forms.hull(0.0, (a0 + reach) ** b0)
     return 0.0, 0.0, np.inf
 
 
@@ -134,22 +124,22 @@ def angle(y0, y1, ey, x0, x1, ex):
 
     Where the rectangle of arguments meets the cut x <= 0, y = 0 it is [-pi, pi].
     """
-    reach_x = spread(x0, x1, ex)
-    reach_y = spread(y0, y1, ey)
+    reach_x = forms.spread(x0, x1, ex)
+    reach_y = forms.spread(y0, y1, ey)
     near_x = max(abs(x0) - reach_x, 0.0)
     near_y = max(abs(y0) - reach_y, 0.0)
     if near_y == 0.0 and x0 - reach_x <= 0.0:
-        return 0.0, 0.0, np.pi + PAD * 4.0
+        return 0.0, 0.0, np.pi + forms.PAD * 4.0
     r2 = x0 * x0 + y0 * y0
-    if not NEAR < r2 < LARGE:
-        return 0.0, 0.0, np.pi + PAD * 4.0
+    if not NEAR < r2 < forms.LARGE:
+        return 0.0, 0.0, np.pi + forms.PAD * 4.0
     to_y = x0 / r2
     to_x = -y0 / r2
     remainder = 0.5 * (reach_x * reach_x + reach_y * reach_y) / (near_x * near_x + near_y * near_y)
     if remainder > np.pi:
-        return 0.0, 0.0, np.pi + PAD * 4.0
+        return 0.0, 0.0, np.pi + forms.PAD * 4.0
     e = abs(to_y) * ey + abs(to_x) * ex + remainder
-    return np.arctan2(y0, x0), to_y * y1 + to_x * x1, e + PAD * (4.0 + abs(to_y * y1) + abs(to_x * x1))
+    return np.arctan2(y0, x0), to_y * y1 + to_x * x1, e + forms.PAD * (4.0 + abs(to_y * y1) + abs(to_x * x1))
 
 
 @inlined
@@ -157,11 +147,11 @@ def binary(op, a0, a1, ea, b0, b1, eb):
     """Enclosure of the rarer or longer operations of two arguments."""
     if op == ops.DIV:
         r0, r1, er = reciprocal(b0, b1, eb)
-        return product(a0, a1, ea, r0, r1, er)
+        return forms.product(a0, a1, ea, r0, r1, er)
     if op == ops.MAX:
-        return larger_of(a0, a1, ea, b0, b1, eb)
+        return forms.larger_of(a0, a1, ea, b0, b1, eb)
     if op == ops.MIN:
-        m0, m1, em = larger_of(-a0, -a1, ea, -b0, -b1, eb)
+        m0, m1, em = forms.larger_of(-a0, -a1, ea, -b0, -b1, eb)
         return -m0, -m1, em
     if op == ops.POW:
         return power(a0, a1, ea, b0, b1, eb)
@@ -177,7 +167,7 @@ def unary(op, a0, a1, ea):
         return exponential(a0, a1, ea)
     if op == ops.LOG:
         return logarithm(a0, a1, ea)
-    reach = spread(a0, a1, ea)
+    reach = forms.spread(a0, a1, ea)
     low = a0 - reach
     high = a0 + reach
     if op == ops.ABS:
@@ -187,10 +177,10 @@ def unary(op, a0, a1, ea):
             return -a0, -a1, ea
         slope = a0 / reach
         half_gap = -0.5 * low * (high / reach)
-        return slope * a0 + half_gap, slope * a1, abs(slope) * ea + half_gap + PAD * reach
+        return slope * a0 + half_gap, slope * a1, abs(slope) * ea + half_gap + forms.PAD * reach
     if op == ops.FLOOR:
-        return hull(np.floor(low), np.floor(high))
-    return hull(
+        return forms.hull(np.floor(low), np.floor(high))
+    return forms.hull(
         -1.0 if low < 0.0 else (1.0 if low > 0.0 else 0.0), 1.0 if high > 0.0 else (-1.0 if high < 0.0 else 0.0)
     )
 
@@ -242,21 +232,21 @@ def segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, sur
         b1 = scratch[right, 1]
         eb = scratch[right, 2]
         if op == ops.MUL:
-            c0, c1, e = product(a0, a1, ea, b0, b1, eb)
+            c0, c1, e = forms.product(a0, a1, ea, b0, b1, eb)
         elif op == ops.ADD:
             c0 = a0 + b0
             c1 = a1 + b1
-            e = ea + eb + PAD * (abs(c0) + abs(c1))
+            e = ea + eb + forms.PAD * (abs(c0) + abs(c1))
         elif op == ops.SUB:
             c0 = a0 - b0
             c1 = a1 - b1
-            e = ea + eb + PAD * (abs(c0) + abs(c1))
+            e = ea + eb + forms.PAD * (abs(c0) + abs(c1))
         elif op == ops.SQUARE:
             second = 0.5 * a1 * a1
             size = abs(a0) + abs(a1)
             c0 = a0 * a0 + second
             c1 = 2.0 * a0 * a1
-            e = second + ea * (2.0 * size + ea) + (PAD * size * size + TINY)
+            e = second + ea * (2.0 * size + ea) + (forms.PAD * size * size + forms.TINY)
         elif op == ops.CONSTANT:
             c0 = constants[left]
             c1 = e = 0.0
@@ -265,7 +255,7 @@ def segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, sur
             d = dx if op == ops.X else (dy if op == ops.Y else dz)
             c0 = o + middle * d
             c1 = half * d
-            e = PAD * (abs(o) + abs(middle * d) + abs(c1))
+            e = forms.PAD * (abs(o) + abs(middle * d) + abs(c1))
         elif op == ops.COPY:
             c0 = a0
             c1 = a1
@@ -291,22 +281,22 @@ def segment(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, sur
                 s, c = c, -s
             c0, c1, e = sine(s, c, a1, ea)
         elif op <= ops.ATAN2:
-            positive = never_negative(code[left, 0])
+            positive = forms.never_negative(code[left, 0])
             found = domain(op, positive, a0, abs(a1) + ea, b0, abs(b1) + eb, b1 == 0.0 and eb == 0.0)
             if found == ops.NOWHERE:
                 return 0.0, 0.0, np.inf, ops.NOWHERE
             status = max(status, found)
             c0, c1, e = binary(op, a0, a1, ea, b0, b1, eb)
-            e += TINY
+            e += forms.TINY
         else:
-            found = domain(op, never_negative(code[left, 0]), a0, abs(a1) + ea, 0.0, 0.0, False)
+            found = domain(op, forms.never_negative(code[left, 0]), a0, abs(a1) + ea, 0.0, 0.0, False)
             if found == ops.NOWHERE:
                 return 0.0, 0.0, np.inf, ops.NOWHERE
             status = max(status, found)
             c0, c1, e = unary(op, a0, a1, ea)
-            e += TINY
-        e *= WIDER
-        if not e + abs(c0) + abs(c1) < LARGE:
+            e += forms.TINY
+        e *= forms.WIDER
+        if not e + abs(c0) + abs(c1) < forms.LARGE:
             return 0.0, 0.0, np.inf, ops.PARTIAL
         scratch[k, 0] = c0
         scratch[k, 1] = c1

@@ -6,9 +6,7 @@ from sceneql.field.enclose.affine_kernels import F
 from sceneql.field.packets.packet_kernels import LANES, PACKET, enclose, load_constants, place
 
 
-@lean(
-    f"void({PACKET}, float32[::1], float64[:, ::1], float64[:, ::1], float64[::1], float64[::1], float64[:, ::1])",
-)
+@lean(f"void({PACKET}, float32[::1], float64[:, ::1], float64[:, ::1], float64[::1], float64[::1], float64[:, ::1])")
 def enclose_rays(code, constants, parts, registers, point, status, origins, directions, t0, t1, out):
     """(c0, c1, e, status) of f on segments o + t d, t in [t0, t1], into ``out`` (4, n); rays are (n, 3)."""
     load_constants(code, constants, registers)

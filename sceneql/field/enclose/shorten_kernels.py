@@ -8,7 +8,7 @@ from sceneql.compiled.kernels import inlined
 from sceneql.field.enclose.affine_kernels import GROW, PAD
 from sceneql.field.packets.packet_density_kernels import keep_near
 from sceneql.field.packets.packet_kernels import C1, LANES, SINE, E, keep_skeleton
-from sceneql.field.skeleton.skeleton_parts_kernels import STRIDE
+from sceneql.field.skeleton import skeleton_parts_kernels as part
 from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.short_rows_kernels import ALIAS, LIVE, write_row
 
@@ -139,7 +139,7 @@ def shorten(code, registers, status, first, final, clips, singles, parts, scratc
                 final + 1, singles, parts, kept, near_singles, near_parts,
             )  # fmt: skip
             short[k, 1], short[k, 2] = begin, kept
-            parted = parted or kept - begin > STRIDE * (MANY * own + FEW)
+            parted = parted or kept - begin > part.STRIDE * (MANY * own + FEW)
         if scratch[k, LIVE] != 0.0:
             write_row(code, k, scratch, short[length:], rows - length)
             if code[k, 0] == ops.DENSITY or code[k, 0] == ops.SKELETON:

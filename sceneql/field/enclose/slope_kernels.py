@@ -10,7 +10,7 @@ import numpy as np
 from sceneql.compiled.kernels import inlined, lean
 from sceneql.field.enclose.interval_kernels import TINY, TURN, box, hull4, outward, over_cut, unary_box, wave
 from sceneql.field.skeleton.density_kernels import offset
-from sceneql.field.skeleton.skeleton_bounds_kernels import skeleton_steepness
+from sceneql.field.skeleton.skeleton_bounds_kernels import box_of, skeleton_steepness
 from sceneql.field.tape import tape_ops as ops
 
 BLUR = 5.0e-16
@@ -121,12 +121,7 @@ def chained(gx, ex, gy, ey, gz, ez, scratch, k, p, columns):
 @inlined
 def density_slopes(parts, start, stop, scratch, k, p, columns):
     """Bounds of the gradient of a density field times the slopes of its point's rows p..p+2, into row k of scratch."""
-    hx = 0.5 * (scratch[p, 1] - scratch[p, 0])
-    hy = 0.5 * (scratch[p + 1, 1] - scratch[p + 1, 0])
-    hz = 0.5 * (scratch[p + 2, 1] - scratch[p + 2, 0])
-    x = scratch[p, 0] + hx
-    y = scratch[p + 1, 0] + hy
-    z = scratch[p + 2, 0] + hz
+    x, y, z, hx, hy, hz = box_of(scratch, p)
     diagonal = np.sqrt(hx * hx + hy * hy + hz * hz) * (1.0 + 1.0e-12) + 1.0e-14 * (abs(x) + abs(y) + abs(z))
     gx = gy = gz = ex = ey = ez = 0.0
     for i in range(start, stop):

@@ -6,24 +6,13 @@ import numpy as np
 from sceneql.compiled.kernels import lean
 from sceneql.field.enclose.affine_kernels import ZERO, F
 from sceneql.field.enclose.forms_kernels import row_never_negative
+from sceneql.field.packets import packet_kernels as packet
 from sceneql.field.packets.packet_density_kernels import density_lanes
-from sceneql.field.packets.packet_kernels import (
-    C1,
-    ENCLOSE,
-    LANES,
-    E,
-    binary_lanes,
-    common_lanes,
-    scale_lanes,
-    skeleton_lanes,
-    turn_lanes,
-    unary_lanes,
-    wave_lanes,
-)
+from sceneql.field.packets.packet_kernels import C1, LANES, E
 from sceneql.field.tape import tape_ops as ops
 
 
-@lean(ENCLOSE, inner=True)
+@lean(packet.ENCLOSE, inner=True)
 def enclose(code, constants, parts, registers, point, status, n):
     """Enclose f in n lanes, into the last operation's register; ``status`` (LANES,) gets WHOLE, PARTIAL or NOWHERE.
 
@@ -49,19 +38,19 @@ def enclose(code, constants, parts, registers, point, status, n):
             continue
         if op == ops.SKELETON:
             p = code[k, 3]
-            skeleton_lanes(parts, left, right, registers[p], registers[p + 1], registers[p + 2], out, n)
+            packet.skeleton_lanes(parts, left, right, registers[p], registers[p + 1], registers[p + 2], out, n)
             continue
         a = registers[left]
         b = registers[right]
         if op == ops.MUL:
             if code[left, 0] == ops.CONSTANT:
-                scale_lanes(b, a, out, n)
+                packet.scale_lanes(b, a, out, n)
             elif code[right, 0] == ops.CONSTANT:
-                scale_lanes(a, b, out, n)
+                packet.scale_lanes(a, b, out, n)
             else:
-                common_lanes(op, a, b, out, n)
+                packet.common_lanes(op, a, b, out, n)
         elif op == ops.ADD or op == ops.SUB or op == ops.SQUARE:
-            common_lanes(op, a, b, out, n)
+            packet.common_lanes(op, a, b, out, n)
         elif op == ops.NEG:
             for i in range(n):
                 out[i] = -a[i]
@@ -73,12 +62,12 @@ def enclose(code, constants, parts, registers, point, status, n):
         elif op == ops.SIN or op == ops.COS:
             twin = registers[code[k, 3] if code[k, 3] else k]
             if code[k, 3] == 0:
-                turn_lanes(a, out, n)
-            wave_lanes(op, a, out, twin, n)
+                packet.turn_lanes(a, out, n)
+            packet.wave_lanes(op, a, out, twin, n)
         elif op <= ops.ATAN2:
-            binary_lanes(op, a, b, out, n, status, row_never_negative(code, left))
+            packet.binary_lanes(op, a, b, out, n, status, row_never_negative(code, left))
         elif op <= ops.SIGN:
-            unary_lanes(op, a, out, n, status, row_never_negative(code, left))
+            packet.unary_lanes(op, a, out, n, status, row_never_negative(code, left))
         else:  # operations without a lane version get no bound
             for i in range(n):
                 out[i] = F(np.nan)

@@ -4,8 +4,8 @@
 import numpy as np
 
 from sceneql.compiled.kernels import lean
+from sceneql.field.packets import ray_rows
 from sceneql.field.packets.packet_kernels import CHECK_INSIDE
-from sceneql.field.packets.ray_rows import FOUND_STATUS
 from sceneql.field.tape.batch_kernels import evaluate
 from sceneql.field.tape.tape_ops import HIT, UNDECIDED
 
@@ -25,5 +25,5 @@ def check_inside(code, constants, parts, registers, points, rays, queue, count, 
         last = registers[code.shape[0] - 1]
         for i in range(n):
             j = np.uint64(queue[start + i])
-            if found[FOUND_STATUS, j] == HIT and not last[i] < 0.0:
-                found[FOUND_STATUS, j] = UNDECIDED
+            if found[ray_rows.FOUND_STATUS, j] == HIT and not last[i] < 0.0:
+                found[ray_rows.FOUND_STATUS, j] = UNDECIDED

@@ -8,28 +8,8 @@ known only approximately, the excess of s is bounded by the slope along the part
 
 from sceneql.compiled.kernels import inlined
 from sceneql.compiled.lanes_kernels import below, bits_below, spread
+from sceneql.field.packets import packet_rows as rows
 from sceneql.field.packets.packet_density_kernels import HALF, INFINITE, ONE, PAD, THREE, TINY, TWO, ZERO, F
-from sceneql.field.packets.packet_rows import (
-    AX,
-    AY,
-    AZ,
-    BLUR,
-    CUBE,
-    CX,
-    CY,
-    CZ,
-    INVERSE,
-    RADIUS,
-    RADIUS_A,
-    RADIUS_B,
-    RADIUS_C,
-    SX,
-    SY,
-    SZ,
-    VX,
-    VY,
-    VZ,
-)
 
 FOUR, SIX, EIGHT = F(4.0), F(6.0), F(8.0)
 MORE, LESS = F(1.0 + 4.0e-6), F(1.0 - 4.0e-6)
@@ -67,9 +47,9 @@ def larger_of(a, b):
 @inlined
 def cone_place(parts, k, wx, wy, wz):
     """(vector from the best point of cone k to a + w, 1/R^2 there, bound of the error of s)."""
-    sx, sy, sz = parts[SX, k], parts[SY, k], parts[SZ, k]
-    ra = parts[RADIUS_A, k + 1]
-    r = parts[RADIUS_B, k + 1] - ra
+    sx, sy, sz = parts[rows.SX, k], parts[rows.SY, k], parts[rows.SZ, k]
+    ra = parts[rows.RADIUS_A, k + 1]
+    r = parts[rows.RADIUS_B, k + 1] - ra
     length2 = sx * sx + sy * sy + sz * sz
     along = wx * sx + wy * sy + wz * sz
     d2 = wx * wx + wy * wy + wz * wz
@@ -77,12 +57,12 @@ def cone_place(parts, k, wx, wy, wz):
     den = length2 * ra + along * r
     num = along * ra + r * d2
     blur = FOUR * PAD * (length2 * ra + abs(along) * (ra + abs(r)) + abs(r) * d2) + TINY
-    ratio = ra / parts[RADIUS_B, k + 1]
+    ratio = ra / parts[rows.RADIUS_B, k + 1]
     end = below((d2 - TWO * along + length2) * (ratio * ratio), d2, ONE, ZERO)
     q = below(blur, den, held(num / den), end)
     radius = ra + q * r
     # NaN at the best point must make the error NaN too.
-    lost = EIGHT * parts[CUBE, k + 1] * blur * below(blur, den, blur / den, ONE) + ZERO * (den + num)
+    lost = EIGHT * parts[rows.CUBE, k + 1] * blur * below(blur, den, blur / den, ONE) + ZERO * (den + num)
     return wx - q * sx, wy - q * sy, wz - q * sz, ONE / (radius * radius), lost
 
 
@@ -124,11 +104,11 @@ def root_on(g0, g1, g2, g3, g4, blur):
 @inlined
 def control(parts, k):
     """(u, v, r0, r1, r2) of curve k: p(q) = a + q u + q^2 v, R(q) = r0 + q r1 + q^2 r2."""
-    r0, rc = parts[RADIUS_A, k + 1], parts[RADIUS_C, k + 1]
+    r0, rc = parts[rows.RADIUS_A, k + 1], parts[rows.RADIUS_C, k + 1]
     return (
-        TWO * parts[CX, k + 1], TWO * parts[CY, k + 1], TWO * parts[CZ, k + 1],
-        parts[VX, k + 1], parts[VY, k + 1], parts[VZ, k + 1],
-        r0, TWO * (rc - r0), r0 - TWO * rc + parts[RADIUS_B, k + 1],
+        TWO * parts[rows.CX, k + 1], TWO * parts[rows.CY, k + 1], TWO * parts[rows.CZ, k + 1],
+        parts[rows.VX, k + 1], parts[rows.VY, k + 1], parts[rows.VZ, k + 1],
+        r0, TWO * (rc - r0), r0 - TWO * rc + parts[rows.RADIUS_B, k + 1]
     )  # fmt: skip
 
 
@@ -189,7 +169,7 @@ def on_curve(parts, k, wx, wy, wz, ux, uy, uz):
 
     The curve is subdivided where the bounds need it. The three points are independent, for instruction parallelism.
     """
-    curve, small = control(parts, k), parts[RADIUS, k] * LESS
+    curve, small = control(parts, k), parts[rows.RADIUS, k] * LESS
     ax, ay, az, bx, by, bz = wx - ux, wy - uy, wz - uz, wx + ux, wy + uy, wz + uz
     one, two, three = stationary(curve, ax, ay, az), stationary(curve, bx, by, bz), stationary(curve, wx, wy, wz)
     none = spread(ZERO), spread(INFINITE), spread(INFINITE)
@@ -226,17 +206,17 @@ def on_cone(parts, k, wx, wy, wz, ux, uy, uz):
 @inlined
 def by_three(parts, k, straight, px, py, pz, ux, uy, uz, speed, way, loose):
     """1 - s at p + u tau +- loose, tau in [-1, 1], for cone or curve k: a0 + a1 tau - a2 tau^2 +- the last one."""
-    wx, wy, wz = px - parts[AX, k], py - parts[AY, k], pz - parts[AZ, k]
+    wx, wy, wz = px - parts[rows.AX, k], py - parts[rows.AY, k], pz - parts[rows.AZ, k]
     if straight:
         low, high, middle, tangent, lost = on_cone(parts, k, wx, wy, wz, ux, uy, uz)
     else:
         low, high, middle, tangent, lost = on_curve(parts, k, wx, wy, wz, ux, uy, uz)
-    steep = speed * (MORE * parts[INVERSE, k])
+    steep = speed * (MORE * parts[rows.INVERSE, k])
     slope = HALF * (high - low)
     bottom = HALF * (low + high) - steep - lost
     gap = positive(middle - bottom)
-    per = parts[RADIUS, k] * parts[INVERSE, k]
-    off = (loose + parts[BLUR, k]) * (MORE * per)
+    per = parts[rows.RADIUS, k] * parts[rows.INVERSE, k]
+    off = (loose + parts[rows.BLUR, k]) * (MORE * per)
     # sqrt(s) has the Lipschitz constant 1/(least R); near a place with s < 1 it is at most 1 + 2 way/R.
     error = HALF * (gap + abs(tangent - slope)) + off * (TWO + FOUR * per * way + THREE * off)
     error = error * MORE + PAD * (low + high + TWO * middle + steep + ONE)

@@ -10,24 +10,7 @@ import numpy as np
 
 from sceneql.compiled.kernels import inlined
 from sceneql.compiled.lanes_kernels import below, bits_below, first_bit, fma, least, load, most, spread, store
-from sceneql.field.packets.packet_rows import (
-    AX,
-    AY,
-    AZ,
-    BLUR,
-    INVERSE,
-    LOW_X,
-    LOW_Y,
-    LOW_Z,
-    PART,
-    RADIUS,
-    REACH,
-    SHRINK,
-    SX,
-    SY,
-    SZ,
-    WEIGHT,
-)
+from sceneql.field.packets import packet_rows as rows
 
 F = np.float32
 LANES, VECTOR = 64, 16
@@ -71,10 +54,10 @@ def gap(parts, row, k, low, high):
 @inlined
 def near_box(parts, k, stop, box):
     """Bit mask of those of VECTOR parts from the kth on, up to ``stop``, that may have a density in a box."""
-    gx = gap(parts, LOW_X, k, box[0], box[1])
-    gy = gap(parts, LOW_Y, k, box[2], box[3])
-    gz = gap(parts, LOW_Z, k, box[4], box[5])
-    bits = bits_below(gx * gx + gy * gy + gz * gz, load(parts[REACH], k))
+    gx = gap(parts, rows.LOW_X, k, box[0], box[1])
+    gy = gap(parts, rows.LOW_Y, k, box[2], box[3])
+    gz = gap(parts, rows.LOW_Z, k, box[4], box[5])
+    bits = bits_below(gx * gx + gy * gy + gz * gz, load(parts[rows.REACH], k))
     return bits & ((1 << min(stop - k, VECTOR)) - 1)
 
 
@@ -84,7 +67,7 @@ def beside(parts, k, wx, wy, wz, ux, uy, uz, speed):
 
     The second derivative of d^2 to a convex set along a line lies between those of the set's features.
     """
-    sx, sy, sz, shrink = parts[SX, k], parts[SY, k], parts[SZ, k], parts[SHRINK, k]
+    sx, sy, sz, shrink = parts[rows.SX, k], parts[rows.SY, k], parts[rows.SZ, k], parts[rows.SHRINK, k]
     q0 = (wx * sx + wy * sy + wz * sz) * shrink
     q1 = (ux * sx + uy * sy + uz * sz) * shrink
     reach = abs(q1) * GROW + PAD * (abs(q0) + ONE)
@@ -101,17 +84,17 @@ def beside(parts, k, wx, wy, wz, ux, uy, uz, speed):
 @inlined
 def around(parts, k, px, py, pz, ux, uy, uz, speed, way, loose):
     """1 - d^2/R^2 at p + u tau +- loose, tau in [-1, 1], for part k: a0 + a1 tau - a2 tau^2 +- the last of the four."""
-    inverse = parts[INVERSE, k]
-    wx, wy, wz = px - parts[AX, k], py - parts[AY, k], pz - parts[AZ, k]
+    inverse = parts[rows.INVERSE, k]
+    wx, wy, wz = px - parts[rows.AX, k], py - parts[rows.AY, k], pz - parts[rows.AZ, k]
     curl, bent = speed, spread(ZERO)
-    if parts[SHRINK, k] > ZERO:
+    if parts[rows.SHRINK, k] > ZERO:
         wx, wy, wz, curl, bent = beside(parts, k, wx, wy, wz, ux, uy, uz, speed)
     a0 = fma(fma(wz, wz, fma(wy, wy, wx * wx)), -inverse, ONE)
     a1 = fma(wz, uz, fma(wy, uy, wx * ux)) * (-TWO * inverse)
     a2 = curl * inverse
-    off = loose + parts[BLUR, k]
+    off = loose + parts[rows.BLUR, k]
     # |d^2 - D| <= off (2 d + off) wherever one of the two is within reach, where |a0| <= 1 + |a1|, too.
-    error = fma(off, fma(TWO, parts[RADIUS, k] + way, THREE * off), bent) * inverse
+    error = fma(off, fma(TWO, parts[rows.RADIUS, k] + way, THREE * off), bent) * inverse
     return a0, a1, a2, fma(PAD, abs(a1) + a2 + ONE, error)
 
 
@@ -193,7 +176,7 @@ def density_lanes(parts, start, stop, x, y, z, out, n):
                 k = first + first_bit(bits)
                 bits &= bits - 1
                 a0, a1, a2, error = around(parts, k, px, py, pz, ux, uy, uz, speed, way, loose)
-                sums = weighed(parts[WEIGHT, k], cubed(a0, a1, a2, error), sums)
+                sums = weighed(parts[rows.WEIGHT, k], cubed(a0, a1, a2, error), sums)
                 added += ONE
         summed(out, i, sums, added, loose)
 
@@ -211,12 +194,12 @@ def sizes(x, y, z, spare):
 @inlined
 def within_reach(parts, k, x, y, z, spare, first, stop):
     """Whether part k may have a density in one of the lanes first..stop-1, whose ``sizes`` are in ``spare``."""
-    ax, ay, az, shrink = parts[AX, k], parts[AY, k], parts[AZ, k], parts[SHRINK, k]
-    reach = parts[RADIUS, k] * GROW + parts[BLUR, k]
+    ax, ay, az, shrink = parts[rows.AX, k], parts[rows.AY, k], parts[rows.AZ, k], parts[rows.SHRINK, k]
+    reach = parts[rows.RADIUS, k] * GROW + parts[rows.BLUR, k]
     for i in range(first // VECTOR * VECTOR, stop, VECTOR):
         wx, wy, wz = load(x, i) - ax, load(y, i) - ay, load(z, i) - az
         if shrink > ZERO:
-            sx, sy, sz = parts[SX, k], parts[SY, k], parts[SZ, k]
+            sx, sy, sz = parts[rows.SX, k], parts[rows.SY, k], parts[rows.SZ, k]
             q = (wx * sx + wy * sy + wz * sz) * shrink
             q = below(q, ZERO, ZERO, below(ONE, q, ONE, q))
             wx, wy, wz = wx - q * sx, wy - q * sy, wz - q * sz
@@ -237,7 +220,7 @@ def keep_near(code, k, registers, first, stop, singles, parts, kept, near_single
     sizes(x, y, z, spare)
     for part in range(code[k, 1], code[k, 2]):
         if within_reach(singles, part, x, y, z, spare, first, stop):
-            for j in range(PART):
+            for j in range(rows.PART):
                 near_singles[j, kept] = singles[j, part]
             for j in range(8):
                 near_parts[kept, j] = parts[part, j]

@@ -13,30 +13,8 @@ from numba.core.sigutils import normalize_signature
 from sceneql.compiled.kernels import inlined
 from sceneql.compiled.lanes_kernels import load, store
 from sceneql.compiled.numba.lazy_kernels import lazy
-from sceneql.field.enclose.affine_kernels import (
-    GROW,
-    PAD,
-    TINY,
-    ZERO,
-    F,
-    absolute,
-    difference,
-    floored,
-    fraction,
-    grown,
-    larger_of,
-    logged,
-    power,
-    product,
-    reciprocal,
-    scaled,
-    signed,
-    square_root,
-    squared,
-    total,
-    turned,
-    wave,
-)
+from sceneql.field.enclose import affine_kernels as affine
+from sceneql.field.enclose.affine_kernels import GROW, PAD, TINY, ZERO, F
 from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.single_kernels import lane, sine_cosine
 
@@ -123,13 +101,13 @@ def common_lanes(op, a, b, out, n):
         a0, a1, ea = taken(a, i)
         b0, b1, eb = taken(b, i)
         if op == ops.MUL:
-            c0, c1, e = product(a0, a1, ea, b0, b1, eb)
+            c0, c1, e = affine.product(a0, a1, ea, b0, b1, eb)
         elif op == ops.ADD:
-            c0, c1, e = total(a0, a1, ea, b0, b1, eb)
+            c0, c1, e = affine.total(a0, a1, ea, b0, b1, eb)
         elif op == ops.SUB:
-            c0, c1, e = difference(a0, a1, ea, b0, b1, eb)
+            c0, c1, e = affine.difference(a0, a1, ea, b0, b1, eb)
         else:
-            c0, c1, e = squared(a0, a1, ea)
+            c0, c1, e = affine.squared(a0, a1, ea)
         put(out, i, c0, c1, e)
 
 
@@ -140,7 +118,7 @@ def scale_lanes(a, b, out, n):
     es = b[E]
     for i in range(0, n, VECTOR):
         a0, a1, ea = taken(a, i)
-        c0, c1, e = scaled(a0, a1, ea, s, es)
+        c0, c1, e = affine.scaled(a0, a1, ea, s, es)
         put(out, i, c0, c1, e)
 
 
@@ -149,28 +127,28 @@ def unary_lanes(op, a, out, n, status, positive):
     """The rarer operations of one argument; ``positive``: the argument is never below 0."""
     if op == ops.ABS:
         for i in range(n):
-            out[i], out[C1 + i], out[E + i] = absolute(a[i], a[C1 + i], a[E + i])
+            out[i], out[C1 + i], out[E + i] = affine.absolute(a[i], a[C1 + i], a[E + i])
     elif op == ops.SQRT:
         for i in range(n):
             c0, c1, e = a[i], a[C1 + i], a[E + i]
-            out[i], out[C1 + i], out[E + i] = square_root(c0, c1, e)
+            out[i], out[C1 + i], out[E + i] = affine.square_root(c0, c1, e)
             reach = (abs(c1) + e) * GROW + PAD * abs(c0)
             worse(status, i, positive or c0 >= reach, c0 + reach < ZERO and not positive)
     elif op == ops.EXP:
         for i in range(n):
-            out[i], out[C1 + i], out[E + i] = grown(a[i], a[C1 + i], a[E + i])
+            out[i], out[C1 + i], out[E + i] = affine.grown(a[i], a[C1 + i], a[E + i])
     elif op == ops.LOG:
         for i in range(n):
             c0, c1, e = a[i], a[C1 + i], a[E + i]
-            out[i], out[C1 + i], out[E + i] = logged(c0, c1, e)
+            out[i], out[C1 + i], out[E + i] = affine.logged(c0, c1, e)
             reach = (abs(c1) + e) * GROW + PAD * abs(c0)
             worse(status, i, c0 > reach, c0 + reach < ZERO)
     elif op == ops.FLOOR:
         for i in range(n):
-            out[i], out[C1 + i], out[E + i] = floored(a[i], a[C1 + i], a[E + i])
+            out[i], out[C1 + i], out[E + i] = affine.floored(a[i], a[C1 + i], a[E + i])
     else:
         for i in range(n):
-            out[i], out[C1 + i], out[E + i] = signed(a[i], a[C1 + i], a[E + i])
+            out[i], out[C1 + i], out[E + i] = affine.signed(a[i], a[C1 + i], a[E + i])
 
 
 @inlined
@@ -179,15 +157,15 @@ def binary_lanes(op, a, b, out, n, status, positive):
     if op == ops.DIV:
         for i in range(n):
             b0, b1, eb = b[i], b[C1 + i], b[E + i]
-            r0, r1, er = reciprocal(b0, b1, eb)
-            out[i], out[C1 + i], out[E + i] = product(a[i], a[C1 + i], a[E + i], r0, r1, er)
+            r0, r1, er = affine.reciprocal(b0, b1, eb)
+            out[i], out[C1 + i], out[E + i] = affine.product(a[i], a[C1 + i], a[E + i], r0, r1, er)
             worse(status, i, er < F(np.inf), False)
     elif op == ops.MAX:
         for i in range(n):
-            out[i], out[C1 + i], out[E + i] = larger_of(a[i], a[C1 + i], a[E + i], b[i], b[C1 + i], b[E + i])
+            out[i], out[C1 + i], out[E + i] = affine.larger_of(a[i], a[C1 + i], a[E + i], b[i], b[C1 + i], b[E + i])
     elif op == ops.MIN:
         for i in range(n):
-            c0, c1, e = larger_of(-a[i], -a[C1 + i], a[E + i], -b[i], -b[C1 + i], b[E + i])
+            c0, c1, e = affine.larger_of(-a[i], -a[C1 + i], a[E + i], -b[i], -b[C1 + i], b[E + i])
             out[i] = -c0
             out[C1 + i] = -c1
             out[E + i] = e
@@ -195,14 +173,14 @@ def binary_lanes(op, a, b, out, n, status, positive):
         for i in range(n):
             a0, a1, ea = a[i], a[C1 + i], a[E + i]
             b0, b1, eb = b[i], b[C1 + i], b[E + i]
-            out[i], out[C1 + i], out[E + i] = power(a0, a1, ea, b0, b1, eb)
+            out[i], out[C1 + i], out[E + i] = affine.power(a0, a1, ea, b0, b1, eb)
             reach = (abs(a1) + ea) * GROW + PAD * abs(a0)
-            plain = fraction(b0, b1, eb)
+            plain = affine.fraction(b0, b1, eb)
             safe = a0 > reach or (positive and plain and b0 > ZERO)
             worse(status, i, safe, a0 + reach < ZERO and plain and not positive)
     else:
         for i in range(n):
-            out[i], out[C1 + i], out[E + i] = turned(a[i], a[C1 + i], a[E + i], b[i], b[C1 + i], b[E + i])
+            out[i], out[C1 + i], out[E + i] = affine.turned(a[i], a[C1 + i], a[E + i], b[i], b[C1 + i], b[E + i])
 
 
 @inlined
@@ -219,10 +197,10 @@ def wave_lanes(op, a, out, twin, n):
     """Sine or cosine; ``twin`` is the register that stores both."""
     if op == ops.SIN:
         for i in range(n):
-            out[i], out[C1 + i], out[E + i] = wave(twin[SINE + i], twin[COSINE + i], a[i], a[C1 + i], a[E + i])
+            out[i], out[C1 + i], out[E + i] = affine.wave(twin[SINE + i], twin[COSINE + i], a[i], a[C1 + i], a[E + i])
     else:
         for i in range(n):
-            out[i], out[C1 + i], out[E + i] = wave(twin[COSINE + i], -twin[SINE + i], a[i], a[C1 + i], a[E + i])
+            out[i], out[C1 + i], out[E + i] = affine.wave(twin[COSINE + i], -twin[SINE + i], a[i], a[C1 + i], a[E + i])
 
 
 @lane

@@ -3,28 +3,19 @@
 
 from sceneql.compiled.kernels import inlined, lean
 from sceneql.compiled.lanes_kernels import bits_below, load
-from sceneql.field.packets.packet_density_kernels import (
-    C1,
-    GROW,
-    INFINITE,
-    TINY,
-    VECTOR,
-    apart,
-    looked_at,
-    near_box,
-    sizes,
-)
+from sceneql.field.packets import packet_density_kernels as density
+from sceneql.field.packets import packet_rows as rows
+from sceneql.field.packets.packet_density_kernels import C1, GROW, INFINITE, TINY, VECTOR
 from sceneql.field.packets.packet_kernels import KEEP_SKELETON
-from sceneql.field.packets.packet_rows import FAR, LOW_X, LOW_Y, LOW_Z, PART
-from sceneql.field.skeleton.skeleton_parts_kernels import NODE, SHAPE, STRIDE
+from sceneql.field.skeleton import skeleton_parts_kernels as part
 
 
 @inlined
 def off_box(parts, k, x, y, z):
     """Squared distance of points from the box around part k."""
-    gx = apart(x, x, parts[LOW_X, k], parts[LOW_X + 1, k])
-    gy = apart(y, y, parts[LOW_Y, k], parts[LOW_Y + 1, k])
-    gz = apart(z, z, parts[LOW_Z, k], parts[LOW_Z + 1, k])
+    gx = density.apart(x, x, parts[rows.LOW_X, k], parts[rows.LOW_X + 1, k])
+    gy = density.apart(y, y, parts[rows.LOW_Y, k], parts[rows.LOW_Y + 1, k])
+    gz = density.apart(z, z, parts[rows.LOW_Z, k], parts[rows.LOW_Z + 1, k])
     return gx * gx + gy * gy + gz * gz
 
 
@@ -40,7 +31,7 @@ def within_reach(parts, k, x, y, z, spare, first, stop):
     it may on the segments through the middles of these lanes)."""
     found, middle = False, False
     for i in range(first // VECTOR * VECTOR, stop, VECTOR):
-        off, far = off_box(parts, k, load(x, i), load(y, i), load(z, i)), parts[FAR, k + 1]
+        off, far = off_box(parts, k, load(x, i), load(y, i), load(z, i)), parts[rows.FAR, k + 1]
         chosen = (1 << min(stop - i, VECTOR)) - (1 << max(first - i, 0))
         if lanes_within(off, far + load(spare, i)) & chosen != 0:
             found = True
@@ -55,7 +46,7 @@ def box_around(x, y, z, first, stop):
     ax, bx, ay, by, az, bz = INFINITE, -INFINITE, INFINITE, -INFINITE, INFINITE, -INFINITE
     known = True
     for i in range(first // VECTOR * VECTOR, stop, VECTOR):
-        seen = looked_at(x, y, z, i)
+        seen = density.looked_at(x, y, z, i)
         box, loose = seen[6], seen[8]
         known = known and bits_below(loose, INFINITE) == (1 << VECTOR) - 1
         ax, bx, ay, by = min(ax, box[0]), max(bx, box[1]), min(ay, box[2]), max(by, box[3])
@@ -70,21 +61,21 @@ def keep_skeleton(start, end, x, y, z, spare, first, stop, singles, parts, kept,
     ``own`` is the number of parts near the middle segments of the lanes.
     """
     own = 0
-    sizes(x, y, z, spare)
+    density.sizes(x, y, z, spare)
     box, known = box_around(x, y, z, first, stop)
     for begin in range(start, end, VECTOR):
-        bits = near_box(singles, begin, end, box)
-        for k in range(begin, min(begin + VECTOR, end), STRIDE):
-            if parts[k + 1, SHAPE] == NODE or (known and (bits >> (k - begin)) & 1 == 0):
+        bits = density.near_box(singles, begin, end, box)
+        for k in range(begin, min(begin + VECTOR, end), part.STRIDE):
+            if parts[k + 1, part.SHAPE] == part.NODE or (known and (bits >> (k - begin)) & 1 == 0):
                 continue
             found, middle = within_reach(singles, k, x, y, z, spare, first, stop)
             own += 1 if middle else 0
             if found:
-                for j in range(PART):
+                for j in range(rows.PART):
                     near_singles[j, kept] = singles[j, k]
                     near_singles[j, kept + 1] = singles[j, k + 1]
                 for j in range(8):
                     near_parts[kept, j] = parts[k, j]
                     near_parts[kept + 1, j] = parts[k + 1, j]
-                kept += STRIDE
+                kept += part.STRIDE
     return kept, own

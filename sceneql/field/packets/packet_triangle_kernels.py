@@ -7,31 +7,9 @@ features: for a triangle between that of the face and that of a vertex.
 
 from sceneql.compiled.kernels import inlined
 from sceneql.compiled.lanes_kernels import below
+from sceneql.field.packets import packet_rows as rows
 from sceneql.field.packets.packet_curve_kernels import held, least_of
 from sceneql.field.packets.packet_density_kernels import HALF, ONE, PAD, THREE, TWO, ZERO
-from sceneql.field.packets.packet_rows import (
-    AX,
-    AY,
-    AZ,
-    BLUR,
-    CX,
-    CY,
-    CZ,
-    GX,
-    GY,
-    GZ,
-    HX,
-    HY,
-    HZ,
-    INVERSE,
-    NX,
-    NY,
-    NZ,
-    RADIUS,
-    SX,
-    SY,
-    SZ,
-)
 
 
 @inlined
@@ -53,12 +31,12 @@ def nearer(a, b):
 @inlined
 def triangle(parts, k, px, py, pz, ux, uy, uz, speed, way, loose):
     """1 - d^2/R^2 at p + u tau +- loose, tau in [-1, 1], for triangle k: a0 + a1 tau - a2 tau^2 +- the last one."""
-    wx, wy, wz = px - parts[AX, k], py - parts[AY, k], pz - parts[AZ, k]
-    sx, sy, sz = parts[SX, k], parts[SY, k], parts[SZ, k]
-    cx, cy, cz = parts[CX, k + 1], parts[CY, k + 1], parts[CZ, k + 1]
-    gx, gy, gz = parts[GX, k + 1], parts[GY, k + 1], parts[GZ, k + 1]
-    hx, hy, hz = parts[HX, k + 1], parts[HY, k + 1], parts[HZ, k + 1]
-    nx, ny, nz = parts[NX, k + 1], parts[NY, k + 1], parts[NZ, k + 1]
+    wx, wy, wz = px - parts[rows.AX, k], py - parts[rows.AY, k], pz - parts[rows.AZ, k]
+    sx, sy, sz = parts[rows.SX, k], parts[rows.SY, k], parts[rows.SZ, k]
+    cx, cy, cz = parts[rows.CX, k + 1], parts[rows.CY, k + 1], parts[rows.CZ, k + 1]
+    gx, gy, gz = parts[rows.GX, k + 1], parts[rows.GY, k + 1], parts[rows.GZ, k + 1]
+    hx, hy, hz = parts[rows.HX, k + 1], parts[rows.HY, k + 1], parts[rows.HZ, k + 1]
+    nx, ny, nz = parts[rows.NX, k + 1], parts[rows.NY, k + 1], parts[rows.NZ, k + 1]
     b0, b1 = wx * gx + wy * gy + wz * gz, ux * gx + uy * gy + uz * gz
     c0, c1 = wx * hx + wy * hy + wz * hz, ux * hx + uy * hy + uz * hz
     height, climb = wx * nx + wy * ny + wz * nz, ux * nx + uy * ny + uz * nz
@@ -70,13 +48,13 @@ def triangle(parts, k, px, py, pz, ux, uy, uz, speed, way, loose):
     vx = below(within, ZERO, vx, height * nx)
     vy = below(within, ZERO, vy, height * ny)
     vz = below(within, ZERO, vz, height * nz)
-    inverse = parts[INVERSE, k]
+    inverse = parts[rows.INVERSE, k]
     slow = climb * climb
     fast = below(ahead, ZERO, speed, slow)
     a0 = ONE - (vx * vx + vy * vy + vz * vz) * inverse
     a1 = (vx * ux + vy * uy + vz * uz) * (-TWO * inverse)
     bent = HALF * (fast - slow)
-    off = loose + parts[BLUR, k]
+    off = loose + parts[rows.BLUR, k]
     # As in packet_density_kernels.around.
-    error = (bent + off * (TWO * (parts[RADIUS, k] + way) + THREE * off)) * inverse
+    error = (bent + off * (TWO * (parts[rows.RADIUS, k] + way) + THREE * off)) * inverse
     return a0, a1, HALF * (slow + fast) * inverse, error + PAD * (abs(a1) + ONE + speed * inverse)

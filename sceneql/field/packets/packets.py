@@ -9,17 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sceneql.field.packets import packet_roots_kernels
+from sceneql.field.packets import packet_roots_kernels, ray_rows
 from sceneql.field.packets.packet_kernels import LANES, VECTOR, WIDTH
 from sceneql.field.packets.packet_parts import density_columns, skeleton_columns
 from sceneql.field.packets.packet_roots_kernels import GROUP
 from sceneql.field.packets.packet_rows import PART
-from sceneql.field.packets.ray_rows import ASK, FOUND_ROOT, FOUND_STATUS, LANE_ROWS, RAY
 from sceneql.field.packets.slab_kernels import BEAM, OCTET
 from sceneql.field.roots import density_march_kernels, density_roots_kernels, density_slice_kernels
 from sceneql.field.roots.polynomial_kernels import ABREAST, DEGREES, POLYNOMIAL
 from sceneql.field.roots.polynomial_steps_kernels import ROWS, C
-from sceneql.field.tape.own_coordinates import in_own_coordinates
 from sceneql.field.tape.plans import degrees_of, density_of, places_of, tape_of_rows, without_factor
 from sceneql.field.tape.tape_ops import DENSITY, MAX, OF_PARTS
 from sceneql.field.tape.tape_solid import scratch
@@ -128,17 +126,17 @@ class Memory:
         count = -(-count // whole) * whole  # lanes beyond the rays are computed too
         rows = len(tape.code)
         self.tape = tape
-        self.rays = lined((RAY, count))
+        self.rays = lined((ray_rows.RAY, count))
         self.found = lined((5, count))
         single = np.float32
         self.packet = (
             lined((rows, WIDTH), single),
             lined((3, WIDTH), single),
             lined(LANES, single),
-            lined(max(LANE_ROWS * LANES, density_march_kernels.ROWS), single),
+            lined(max(ray_rows.LANE_ROWS * LANES, density_march_kernels.ROWS), single),
             lined(2 * LANES, np.int64),
         )
-        self.asked, self.queue = lined((ASK, count), single), lined(count, np.int64)
+        self.asked, self.queue = lined((ray_rows.ASK, count), single), lined(count, np.int64)
         plan = plan_of(tape)
         enclosed = plan[density_roots_kernels.ROW_OF] < 0 and plan[POLYNOMIAL] < 0
         # A tape of an exact form needs no enclosures.
@@ -170,35 +168,3 @@ class Memory:
             *self.bundle, count, anywhere, self.found, *self.rest
         )
         return counts
-
-
-def cast_together(
-    tape: Tape,
-    origins: Floats,
-    directions: Floats,
-    t0: Floats,
-    t1: Floats,
-    anywhere: bool = False,
-    cut: Sequence[int] = (),
-) -> tuple[NDArray[np.int64], Floats]:
-    """(status, t), each (n,): as ``tape_solid.cast``, of neighboring rays, in bundles of 256.
-
-    Rays are clipped by the rows ``cut`` of the tape before: see Memory.
-    """
-    size = min(256, len(t0))
-    tape, matrix = (tape, np.eye(3, 4)) if len(cut) > 0 else in_own_coordinates(tape)
-    origins, directions = origins @ matrix[:, :3].T + matrix[:, 3], directions @ matrix[:, :3].T
-    memory = Memory(tape, size, cut)
-    status, t = np.empty(len(t0), dtype=np.int64), np.empty(len(t0))
-    for start in range(0, len(t0), size):
-        stop = min(start + size, len(t0))
-        n = stop - start
-        # Neighbors go into columns of GROUP rows.
-        columns = -(-n // GROUP)
-        ray = start + np.argsort(np.arange(n) // GROUP + columns * (np.arange(n) % GROUP), kind="stable")
-        memory.rays[:3, :n], memory.rays[3:6, :n] = origins[ray].T, directions[ray].T
-        memory.rays[6, :n], memory.rays[7, :n] = t0[ray], t1[ray]
-        memory.settle(n, anywhere)
-        status[ray] = memory.found[FOUND_STATUS, :n]
-        t[ray] = memory.found[FOUND_ROOT, :n]
-    return status, t

@@ -11,20 +11,8 @@ from sceneql.compiled.arithmetic_kernels import bits, from_bits
 from sceneql.compiled.kernels import inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.field.packets.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS, SETTLED
+from sceneql.field.roots import polynomial_steps_kernels as steps
 from sceneql.field.roots.polynomial_kernels import ABREAST
-from sceneql.field.roots.polynomial_steps_kernels import (
-    CHANGE,
-    END,
-    HALF_WAY,
-    LIVE,
-    MIDDLE,
-    RAY,
-    ROOT,
-    STATE,
-    A,
-    B,
-    polish,
-)
 from sceneql.field.tape.tape_ops import HIT, MISS, UNDECIDED
 
 T0, T1 = 6, 7
@@ -81,13 +69,13 @@ def take(wide, first, width, n, lanes):
     t0, t1 = wide[T0, first:], wide[T1, first:]
     for i in range(n):
         some = i < width
-        lanes[MIDDLE + i] = 0.5 * (t0[i] + t1[i])
-        lanes[HALF_WAY + i] = 0.5 * (t1[i] - t0[i]) if some else 1.0
-        lanes[RAY + i] = float(first + i)
-        lanes[A + i] = -1.0
-        lanes[B + i] = 1.0
-        lanes[END + i] = 1.0
-        lanes[STATE + i] = LIVE if some else float(MISS)
+        lanes[steps.MIDDLE + i] = 0.5 * (t0[i] + t1[i])
+        lanes[steps.HALF_WAY + i] = 0.5 * (t1[i] - t0[i]) if some else 1.0
+        lanes[steps.RAY + i] = float(first + i)
+        lanes[steps.A + i] = -1.0
+        lanes[steps.B + i] = 1.0
+        lanes[steps.END + i] = 1.0
+        lanes[steps.STATE + i] = steps.LIVE if some else float(MISS)
 
 
 @inlined
@@ -95,7 +83,7 @@ def count_lanes(lanes, n, outcome):
     """Number of lanes, of the first n, with an outcome."""
     number = 0
     for i in range(n):
-        number += 1 if lanes[STATE + i] == outcome else 0
+        number += 1 if lanes[steps.STATE + i] == outcome else 0
     return number
 
 
@@ -106,17 +94,17 @@ def note(lanes, ids, ended, count, rays, anywhere, found, queue, queued):
     outcomes, lows, highs, roots = found[FOUND_STATUS], found[FOUND_LOW], found[FOUND_HIGH], found[FOUND_ROOT]
     for k in range(count):
         i = np.uint64(ended[np.uint64(k)])
-        ray = ids[np.uint64(lanes[RAY + i])]
+        ray = ids[np.uint64(lanes[steps.RAY + i])]
         j = np.uint64(ray)
         t0, t1 = begins[j], ends[j]
-        outcome = lanes[STATE + i]
-        middle, half = lanes[MIDDLE + i] - t0, lanes[HALF_WAY + i]
-        root = middle + half * lanes[ROOT + i]
-        safe = (half * lanes[CHANGE + i] <= SETTLED * (t1 - t0)) & (t0 + root < t1)
+        outcome = lanes[steps.STATE + i]
+        middle, half = lanes[steps.MIDDLE + i] - t0, lanes[steps.HALF_WAY + i]
+        root = middle + half * lanes[steps.ROOT + i]
+        safe = (half * lanes[steps.CHANGE + i] <= SETTLED * (t1 - t0)) & (t0 + root < t1)
         lost = (outcome == HIT) & (not anywhere) & (not safe)
         outcomes[j] = float(UNDECIDED) if lost else outcome
-        lows[j] = middle + half * lanes[A + i]
-        highs[j] = middle + half * lanes[B + i]
+        lows[j] = middle + half * lanes[steps.A + i]
+        highs[j] = middle + half * lanes[steps.B + i]
         roots[j] = root
         queue[np.uint64(queued + k)] = ray
     return queued + count
@@ -130,22 +118,22 @@ def settle_lanes(lanes, rows, degree, ids, kept, width, live, rays, anywhere, fo
     """
     if live + count_lanes(lanes, width, MISS) < width:
         if not anywhere:
-            polish(lanes, degree, (width + 15) // 16 * 16)
+            steps.polish(lanes, degree, (width + 15) // 16 * 16)
         settled = 0
         for i in range(width):
-            outcome = lanes[STATE + i]
+            outcome = lanes[steps.STATE + i]
             kept[np.uint64(settled)] = i
-            settled += 1 if (outcome != LIVE) & (outcome != MISS) else 0
+            settled += 1 if (outcome != steps.LIVE) & (outcome != MISS) else 0
         queued = note(lanes, ids, kept, settled, rays, anywhere, found, queue, queued)
     if 0 < live < width:
         n = 0
         for i in range(width):
             kept[np.uint64(n)] = i
-            n += 1 if lanes[STATE + i] == LIVE else 0
-        for start in range(A, rows, ABREAST):
+            n += 1 if lanes[steps.STATE + i] == steps.LIVE else 0
+        for start in range(steps.A, rows, ABREAST):
             row = lanes[start:]
             for i in range(live):
                 row[i] = row[np.uint64(kept[i])]
         for i in range(live, width):
-            lanes[STATE + i] = float(MISS)
+            lanes[steps.STATE + i] = float(MISS)
     return queued

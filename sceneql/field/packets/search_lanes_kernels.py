@@ -11,21 +11,8 @@ import numpy as np
 from sceneql.compiled.kernels import inlined, lean
 from sceneql.compiled.lanes_kernels import load
 from sceneql.field.enclose.affine_kernels import GROW, HALF, ONE, PAD, TINY, TWO, ZERO, F
+from sceneql.field.packets import ray_rows
 from sceneql.field.packets.packet_kernels import C1, LANES, PACKET, VECTOR, E, enclose, placed, put
-from sceneql.field.packets.ray_rows import (
-    FAR,
-    FOUND_HIGH,
-    FOUND_LOW,
-    FOUND_ROOT,
-    FOUND_SLOPE,
-    FOUND_STATUS,
-    LONG,
-    NEAR,
-    RUN,
-    START,
-    SURE,
-    WAY_OF,
-)
 from sceneql.field.tape import tape_ops as ops
 
 OX, OY, OZ, DX, DY, DZ, A, B, END, CUT_FROM, CUT_TO, HELD, TRIES, LENGTH, STATE, ROOT, CHANGE, HALF_WAY = range(18)
@@ -53,28 +40,28 @@ def place_of(row, i):
 def enter(lanes, i, asked, j):
     """Load ray j into lane i."""
     for axis in range(3):
-        lanes[place_of(OX + axis, i)] = asked[START + axis, j]
-        lanes[place_of(DX + axis, i)] = asked[WAY_OF + axis, j]
-    far = asked[FAR, j]
-    lanes[place_of(A, i)] = asked[NEAR, j]
-    lanes[place_of(B, i)] = asked[RUN, j]
+        lanes[place_of(OX + axis, i)] = asked[ray_rows.START + axis, j]
+        lanes[place_of(DX + axis, i)] = asked[ray_rows.WAY_OF + axis, j]
+    far = asked[ray_rows.FAR, j]
+    lanes[place_of(A, i)] = asked[ray_rows.NEAR, j]
+    lanes[place_of(B, i)] = asked[ray_rows.RUN, j]
     lanes[place_of(END, i)] = far
     lanes[place_of(CUT_FROM, i)] = far
     lanes[place_of(CUT_TO, i)] = far
-    lanes[place_of(HELD, i)] = asked[SURE, j]
+    lanes[place_of(HELD, i)] = asked[ray_rows.SURE, j]
     lanes[place_of(TRIES, i)] = ZERO
-    lanes[place_of(LENGTH, i)] = asked[LONG, j]
+    lanes[place_of(LENGTH, i)] = asked[ray_rows.LONG, j]
     lanes[place_of(STATE, i)] = LIVE
 
 
 @inlined
 def note(lanes, i, j, found):
     """Write the outcome of ray j, in lane i."""
-    found[FOUND_STATUS, j] = lanes[place_of(STATE, i)]
-    found[FOUND_LOW, j] = lanes[place_of(A, i)]
-    found[FOUND_HIGH, j] = lanes[place_of(B, i)]
-    found[FOUND_ROOT, j] = lanes[place_of(ROOT, i)]
-    found[FOUND_SLOPE, j] = lanes[place_of(CHANGE, i)] / lanes[place_of(HALF_WAY, i)]
+    found[ray_rows.FOUND_STATUS, j] = lanes[place_of(STATE, i)]
+    found[ray_rows.FOUND_LOW, j] = lanes[place_of(A, i)]
+    found[ray_rows.FOUND_HIGH, j] = lanes[place_of(B, i)]
+    found[ray_rows.FOUND_ROOT, j] = lanes[place_of(ROOT, i)]
+    found[ray_rows.FOUND_SLOPE, j] = lanes[place_of(CHANGE, i)] / lanes[place_of(HALF_WAY, i)]
 
 
 @inlined

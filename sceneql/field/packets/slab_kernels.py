@@ -6,8 +6,8 @@ import numpy as np
 from sceneql.compiled.kernels import inlined
 from sceneql.compiled.lanes_kernels import below, load, spread, store
 from sceneql.field.enclose.affine_kernels import GROW, HALF, ONE, PAD, ZERO, F
+from sceneql.field.packets import ray_rows
 from sceneql.field.packets.packet_kernels import C1, LANES, VECTOR, E, place, placed, put, taken
-from sceneql.field.packets.ray_rows import FAR, LONG, NEAR, RUN, START, SURE, WAY_OF
 from sceneql.field.tape.tape_ops import NOWHERE, WHOLE
 
 PLACE, WAY, PLACE_OFF, WAY_OFF, BEGIN, STOP = 0, 3, 6, 9, 12, 13
@@ -182,7 +182,7 @@ def ask(rays, count, groups, beams, anywhere, safe, unsafe, asked):
     The search ends where the beam is inside, if the ray passes there.
     """
     t0, t1 = rays[6], rays[7]
-    nears, fars, runs, states = asked[NEAR], asked[FAR], asked[RUN], asked[SURE]
+    nears, fars, runs, states = asked[ray_rows.NEAR], asked[ray_rows.FAR], asked[ray_rows.RUN], asked[ray_rows.SURE]
     for g in range(0, groups, OCTET):
         begin, end = load(beams[FROM], g), load(beams[TO], g)
         run, inside = load(beams[RUN_TO], g), load(beams[INSIDE], g)
@@ -211,11 +211,11 @@ def ask(rays, count, groups, beams, anywhere, safe, unsafe, asked):
 def ask_places(rays, count, asked):
     """Write begins, directions and lengths of rays to ``asked``."""
     t0, t1 = rays[6], rays[7]
-    lengths = asked[LONG]
+    lengths = asked[ray_rows.LONG]
     for j in range(count):
         lengths[j] = t1[j] - t0[j]
     for axis in range(3):
-        o, d, places, ways = rays[axis], rays[3 + axis], asked[START + axis], asked[WAY_OF + axis]
+        o, d, places, ways = rays[axis], rays[3 + axis], asked[ray_rows.START + axis], asked[ray_rows.WAY_OF + axis]
         for j in range(count):
             places[j] = o[j] + t0[j] * d[j]
         for j in range(count):

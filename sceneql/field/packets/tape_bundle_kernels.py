@@ -7,36 +7,11 @@ from sceneql.compiled.kernels import inlined, lean
 from sceneql.compiled.lanes_kernels import spread
 from sceneql.field.enclose.affine_kernels import GROW, ONE, PAD, ZERO, F
 from sceneql.field.enclose.shorten_kernels import shorten
+from sceneql.field.packets import ray_rows
+from sceneql.field.packets import slab_kernels as slab
 from sceneql.field.packets.packet_kernels import C1, LANES, TAPE_ROOTS, VECTOR, E, enclose, has, load_constants
-from sceneql.field.packets.ray_rows import (
-    FAR,
-    FOUND_HIGH,
-    FOUND_LOW,
-    FOUND_ROOT,
-    FOUND_SLOPE,
-    FOUND_STATUS,
-    NEAR,
-    RUN,
-    SETTLED,
-    SURE,
-)
+from sceneql.field.packets.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_SLOPE, FOUND_STATUS
 from sceneql.field.packets.search_lanes_kernels import search_lanes
-from sceneql.field.packets.slab_kernels import SETTLED as SETTLED_INSIDE
-from sceneql.field.packets.slab_kernels import (
-    STOP,
-    ask,
-    ask_places,
-    bundle,
-    cut_beams,
-    first_inside,
-    join,
-    left_of_beams,
-    left_of_slabs,
-    note_beams,
-    place_beams,
-    place_slabs,
-    single_beams,
-)
 from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.batch_kernels import evaluate
 
@@ -50,13 +25,13 @@ FEW = 8
 def enqueue(rays, count, groups, asked, found, queue):
     """Queue the rays that are to be searched, beam by beam, and write outcomes of decided ones; how many are queued."""
     queued = 0
-    states = asked[SURE]
+    states = asked[ray_rows.SURE]
     for g in range(groups):
         for ray in range(g, count, groups):
             j = np.uint64(ray)
             queue[np.uint64(queued)] = ray
-            if states[j] == SETTLED_INSIDE:
-                far = asked[FAR, j]
+            if states[j] == slab.SETTLED:
+                far = asked[ray_rows.FAR, j]
                 found[FOUND_STATUS, j] = ops.HIT
                 found[FOUND_LOW, j] = found[FOUND_HIGH, j] = far
                 found[FOUND_ROOT, j] = rays[6, j] + far
@@ -97,7 +72,9 @@ def polish(code, constants, parts, registers, points, rays, queue, count, found,
                 root = min(max(found[FOUND_ROOT, j] - step, found[FOUND_LOW, j]), found[FOUND_HIGH, j])
                 values[j], ways[j] = last[i], root - found[FOUND_ROOT, j]
                 left = min(abs(step), found[FOUND_HIGH, j] - found[FOUND_LOW, j])
-                if turn == 1 and not (left <= SETTLED * (rays[7, j] - rays[6, j]) and rays[6, j] + root < rays[7, j]):
+                if turn == 1 and not (
+                    left <= ray_rows.SETTLED * (rays[7, j] - rays[6, j]) and rays[6, j] + root < rays[7, j]
+                ):
                     found[FOUND_STATUS, j] = ops.UNDECIDED
                 found[FOUND_ROOT, j] = root
 
@@ -155,20 +132,20 @@ def tape_roots(
     spent = 0
     rows = 0
     safe, unsafe = -np.inf, np.inf
-    base = bundle(rays, count, groups, beams)
+    base = slab.bundle(rays, count, groups, beams)
     if base == np.inf:
         return 0, 0, 0, np.inf, np.inf, np.inf
-    join(beams, groups, groups)
-    begin, end = base, beams[STOP, groups]
+    slab.join(beams, groups, groups)
+    begin, end = base, beams[slab.STOP, groups]
     if groups > FEW:
-        place_slabs(beams, groups, base, begin, end, point)
+        slab.place_slabs(beams, groups, base, begin, end, point)
         enclose(code, constants, singles, registers, point, status, LANES)
         spent += LANES
-        first, final, _ = left_of_slabs(last, status, 0, LANES)
+        first, final, _ = slab.left_of_slabs(last, status, 0, LANES)
         if first == LANES:
             return spent, 0, 0, np.inf, np.inf, np.inf
         depth = (end - begin) / LANES
-        deep = first_inside(last, status, 0, LANES)
+        deep = slab.first_inside(last, status, 0, LANES)
         if deep >= 0 and all_through(rays, count, base + deep * depth, base + (deep + 1) * depth):
             final = deep
         begin, end = base + (first - 1e-6) * depth, base + (final + 1 + 1e-6) * depth
@@ -187,19 +164,19 @@ def tape_roots(
                 singles = near_singles
             last = registers[rows - 1]
             load_constants(code, constants, registers)
-    cut_beams(beams, groups, begin, end)
+    slab.cut_beams(beams, groups, begin, end)
     for at in range(0, groups, VECTOR):
         # The memory of the lanes is free until the search.
-        single_beams(beams, at, base, SLABS, lanes)
+        slab.single_beams(beams, at, base, SLABS, lanes)
         left, final_slab, deep_slab = spread(F(SLABS)), spread(-ONE), spread(-ONE)
         for begun in range(0, SLABS, LANES // VECTOR):
-            place_beams(lanes, begun, point)
+            slab.place_beams(lanes, begun, point)
             enclose(code, constants, singles, registers, point, status, LANES)
-            left, final_slab, deep_slab = left_of_beams(last, status, begun, left, final_slab, deep_slab)
+            left, final_slab, deep_slab = slab.left_of_beams(last, status, begun, left, final_slab, deep_slab)
         spent += SLABS * min(VECTOR, groups - at)
-        note_beams(beams, at, SLABS, left, final_slab, deep_slab, lanes)
-    ask(rays, count, groups, beams, anywhere, safe, unsafe, asked)
-    ask_places(rays, count, asked)
+        slab.note_beams(beams, at, SLABS, left, final_slab, deep_slab, lanes)
+    slab.ask(rays, count, groups, beams, anywhere, safe, unsafe, asked)
+    slab.ask_places(rays, count, asked)
     queued = enqueue(rays, count, groups, asked, found, queue)
     spent += search_lanes(
         code, constants, singles, registers, point, status, lanes, ids, asked, queue, queued, anywhere, found
@@ -210,17 +187,7 @@ def tape_roots(
             if found[FOUND_STATUS, queue[k]] == ops.HIT:
                 queue[hits], queue[k] = queue[k], queue[hits]
                 hits += 1
-        polish(
-            code,
-            constants,
-            near_parts if rows > 0 else parts,
-            doubles,
-            points,
-            rays,
-            queue,
-            hits,
-            found,
-            asked[NEAR],
-            asked[RUN],
-        )
+        near, run = asked[ray_rows.NEAR], asked[ray_rows.RUN]
+        own_parts = near_parts if rows > 0 else parts
+        polish(code, constants, own_parts, doubles, points, rays, queue, hits, found, near, run)
     return spent, queued, rows, end, safe, unsafe

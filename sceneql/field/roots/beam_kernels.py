@@ -9,7 +9,7 @@ import numpy as np
 
 from sceneql.compiled.kernels import inlined
 from sceneql.field.enclose.extent_kernels import extent
-from sceneql.field.skeleton.skeleton_kernels import NODE, RADIUS, SHAPE, STRIDE
+from sceneql.field.skeleton import skeleton_parts_kernels as part
 
 PX, PY, PZ, DX, DY, DZ, FAR, INVERSE_SPEED, BEHIND, STRETCH, OFF = range(11)
 """Rows of rays; BEHIND: place of the ray's start along the axis of its beam; STRETCH: length of the ray per unit along
@@ -209,7 +209,7 @@ def keep_reaching(parts, start, stop, beam, near):
     """Copy the points of density rows start..stop-1 that reach into a beam to ``near`` (p, 8); returns their number."""
     kept = 0
     for i in range(start, stop):
-        enter, leave, _ = reached(beam, parts[i, 0], parts[i, 1], parts[i, 2], parts[i, RADIUS])
+        enter, leave, _ = reached(beam, parts[i, 0], parts[i, 1], parts[i, 2], parts[i, part.RADIUS])
         if enter <= leave:
             for j in range(8):
                 near[kept, j] = parts[i, j]
@@ -223,19 +223,19 @@ def keep_reaching_skeleton(parts, start, stop, beam, near):
     kept = 0
     i = start
     while i < stop:
-        if parts[i + 1, SHAPE] == NODE:
+        if parts[i + 1, part.SHAPE] == part.NODE:
             hx, hy, hz = parts[i, 3] - parts[i, 0], parts[i, 4] - parts[i, 1], parts[i, 5] - parts[i, 2]
             half = 0.5 * np.sqrt(hx * hx + hy * hy + hz * hz) * (1.0 + HAIR)
             x, y, z = parts[i, 0] + 0.5 * hx, parts[i, 1] + 0.5 * hy, parts[i, 2] + 0.5 * hz
             enter, leave, _ = reached(beam, x, y, z, half)
-            i += STRIDE + (int(parts[i, RADIUS]) if enter > leave else 0)
+            i += part.STRIDE + (int(parts[i, part.RADIUS]) if enter > leave else 0)
             continue
-        enter, leave, _ = reached(beam, parts[i, 0], parts[i, 1], parts[i, 2], parts[i, RADIUS])
+        enter, leave, _ = reached(beam, parts[i, 0], parts[i, 1], parts[i, 2], parts[i, part.RADIUS])
         if enter <= leave:
             for j in range(8):
                 near[kept, j] = parts[i, j]
             kept += 1
-        i += STRIDE
+        i += part.STRIDE
     return kept
 
 

@@ -30,7 +30,7 @@ ROWS = 13 * LANES
 LIVE, MOST = F(-1.0), F(40.0)
 ZERO, HALF, ONE, TWO, FOUR, SIX, TENTH = F(0.0), F(0.5), F(1.0), F(2.0), F(4.0), F(6.0), F(0.1)
 LESS, MORE = F(1.0 - 1.0e-5), F(1.0 + 1.0e-5)
-TINY, HUGE = F(1.0e-30), F(1.0e30)
+TINY = F(1.0e-30)
 
 
 @lane

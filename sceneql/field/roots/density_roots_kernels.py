@@ -12,48 +12,14 @@ from numba import types
 from sceneql.compiled.kernels import inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.field.packets.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS
-from sceneql.field.roots.beam_kernels import (
-    BEAM,
-    HIGH,
-    INVERSE_SPEED,
-    LOW,
-    RADIUS_OF,
-    beam_within,
-    list_parts,
-    next_slice,
-)
-from sceneql.field.roots.density_march_kernels import (
-    AT_A,
-    LANES,
-    LIVE,
-    ROOT,
-    STATE,
-    VECTOR,
-    WEIGHT,
-    A,
-    B,
-    F,
-    advance,
-    refine,
-    sum_up,
-)
-from sceneql.field.roots.density_slice_kernels import (
-    BASE,
-    CLEARLY,
-    INFINITE,
-    OWN_ROW,
-    SPANS,
-    SPARE,
-    SPOT,
-    place_lanes,
-    reach_threshold,
-    set_part,
-    start_lanes,
-    tighten,
-)
+from sceneql.field.roots import beam_kernels as beams
+from sceneql.field.roots import density_march_kernels as march
+from sceneql.field.roots import density_slice_kernels as slices
+from sceneql.field.roots.density_march_kernels import F
+from sceneql.field.roots.density_slice_kernels import CLEARLY, INFINITE
 from sceneql.field.tape.tape_ops import HIT, MISS, UNDECIDED
 
-LOST, KEPT, ENDED = LANES, 2 * LANES, 3 * LANES
+LOST, KEPT, ENDED = march.LANES, 2 * march.LANES, 3 * march.LANES
 """Offsets in ``live`` (4 LANES,), after the lanes' rays, of the rays left for the next slice, and of the lanes that go
 on or have an outcome."""
 MOST_PARTS = 512
@@ -104,7 +70,7 @@ def rounding(rows, bulk, bend, stiff, stiffer, negative, reach, threshold):
 def note(room, state, count, live, rays, found, queue, met, doubted):
     """Write the outcomes of the lanes in ``live`` from ENDED on, and queue their rays: hits at the front of the queue,
     undecided rays at its end. Returns the numbers of both."""
-    bases, inverse = room[SPOT + BASE], room[INVERSE_SPEED]
+    bases, inverse = room[slices.SPOT + slices.BASE], room[beams.INVERSE_SPEED]
     outcomes, lows, highs, roots = found[FOUND_STATUS], found[FOUND_LOW], found[FOUND_HIGH], found[FOUND_ROOT]
     last = len(queue) - 1
     for k in range(count):
@@ -112,12 +78,12 @@ def note(room, state, count, live, rays, found, queue, met, doubted):
         j = np.uint64(live[i])
         ray = np.uint64(rays[j])
         base, unit = bases[i], inverse[j]
-        low, root = state[A + i], state[ROOT + i]
+        low, root = state[march.A + i], state[march.ROOT + i]
         root = root if root > low else low
-        outcome = state[STATE + i]
+        outcome = state[march.STATE + i]
         outcomes[ray] = outcome
         lows[ray] = (base + low) * unit
-        highs[ray] = (base + state[B + i]) * unit
+        highs[ray] = (base + state[march.B + i]) * unit
         roots[ray] = (base + root) * unit
         hit = outcome == F(HIT)
         queue[met if hit else last - doubted] = rays[j]
@@ -139,28 +105,28 @@ def settle_lanes(table, rows, state, room, live, width, looking, left, later, ra
     undecided). Unless there is a ``later`` slice no ray is left for it."""
     settled = 0
     for i in range(width):
-        outcome = state[STATE + i]
+        outcome = state[march.STATE + i]
         live[np.uint64(ENDED + settled)] = i
-        settled += 0 if (outcome == LIVE) | (outcome == F(MISS)) else 1
+        settled += 0 if (outcome == march.LIVE) | (outcome == F(MISS)) else 1
     met, doubted = note(room, state, settled, live, rays, found, queue, met, doubted)
     if later:
         for i in range(width):
             live[np.uint64(LOST + left)] = live[i]
-            left += 1 if state[STATE + i] == F(MISS) else 0
+            left += 1 if state[march.STATE + i] == F(MISS) else 0
     if 0 < looking < width:
         n = 0
         for i in range(width):
             live[np.uint64(KEPT + n)] = i
-            n += 1 if state[STATE + i] == LIVE else 0
+            n += 1 if state[march.STATE + i] == march.LIVE else 0
         for k in range(rows):
-            for part in range(0, WEIGHT, LANES):
+            for part in range(0, march.WEIGHT, march.LANES):
                 move_lanes(table[k], part, live, n)
-        for row in range(A, AT_A, LANES):
+        for row in range(march.A, march.AT_A, march.LANES):
             move_lanes(state, row, live, n)
-        move_lanes(room[SPOT + BASE], 0, live, n)
+        move_lanes(room[slices.SPOT + slices.BASE], 0, live, n)
         move_lanes(live, 0, live, n)
         for i in range(width):
-            state[STATE + i] = LIVE if i < n else F(MISS)
+            state[march.STATE + i] = march.LIVE if i < n else F(MISS)
     return left, met, doubted
 
 
@@ -175,15 +141,15 @@ def search_slice(
     left = 0
     width = n
     while width > 0:
-        whole = (width + VECTOR - 1) // VECTOR * VECTOR
+        whole = (width + march.VECTOR - 1) // march.VECTOR * march.VECTOR
         # Fewer lanes than a vector holds cost as much as a whole vector.
-        enough = width // 4 if width > VECTOR else 0
+        enough = width // 4 if width > march.VECTOR else 0
         while looking > enough:
-            sum_up(table, kept, state, whole, blur)
+            march.sum_up(table, kept, state, whole, blur)
             spent += looking
-            looking = advance(state, whole, threshold, off, drift, off_slope, bend, anywhere)
+            looking = march.advance(state, whole, threshold, off, drift, off_slope, bend, anywhere)
         if not anywhere and looking < width:
-            refine(table, kept, state, whole, threshold)
+            march.refine(table, kept, state, whole, threshold)
         left, met, doubted = settle_lanes(
             table, kept, state, room, live, width, looking, left, later, rays, found, queue, met, doubted
         )
@@ -200,7 +166,7 @@ def leave_undecided(room, live, n, rays, found, queue, doubted):
     for i in range(n):
         j = live[i]
         found[FOUND_STATUS, rays[j]] = UNDECIDED
-        found[FOUND_LOW, rays[j]] = room[SPOT + BASE, i] * room[INVERSE_SPEED, j]
+        found[FOUND_LOW, rays[j]] = room[slices.SPOT + slices.BASE, i] * room[beams.INVERSE_SPEED, j]
         queue[last - i] = rays[j]
     return doubted + n
 
@@ -220,19 +186,19 @@ def search_packet(
     met, doubted,
 ):  # fmt: skip
     """First roots of rays first..stop-1 of a gathered bundle: (segments examined, hits, undecided), see ``note``."""
-    own = room[OWN_ROW, :BEAM]
-    beam_within(room, first, stop, beam, room[SPARE:], own)
-    spans = room[SPANS:]
-    m = list_parts(near, kept, own, spans, order)
+    own = room[slices.OWN_ROW, : beams.BEAM]
+    beams.beam_within(room, first, stop, beam, room[slices.SPARE :], own)
+    spans = room[slices.SPANS :]
+    m = beams.list_parts(near, kept, own, spans, order)
     n = stop - first
     for i in range(n):
         live[i] = first + i
     spent = 0
     fresh = True
-    begin = beam[LOW]
+    begin = beam[beams.LOW]
     leveled, level = 0.0, INFINITE
     while n > 0:
-        start, end = next_slice(spans, m, begin)
+        start, end = beams.next_slice(spans, m, begin)
         if start == np.inf:
             return spent, met, doubted
         if lowest <= 0.5:
@@ -242,8 +208,8 @@ def search_packet(
                 return spent, met, doubted
             begin = end
             continue
-        whole = (n + VECTOR - 1) // VECTOR * VECTOR
-        place_lanes(room, live, state, n, whole, fresh, start, end, lowest)
+        whole = (n + march.VECTOR - 1) // march.VECTOR * march.VECTOR
+        slices.place_lanes(room, live, state, n, whole, fresh, start, end, lowest)
         fresh = False
         rows = 0
         bulk = bend = stiff = stiffer = 0.0
@@ -254,7 +220,7 @@ def search_packet(
                 if part[7] != leveled:
                     leveled = part[7]
                     level = F((CLEARLY * threshold / leveled) ** (1.0 / 3.0)) if leveled > threshold > 0.0 else INFINITE
-                if set_part(part, room, table[rows], state, whole, level) == 0:
+                if slices.set_part(part, room, table[rows], state, whole, level) == 0:
                     continue
                 rows += 1
                 weight, steep = abs(part[7]), 1.0 / part[6]
@@ -265,11 +231,11 @@ def search_packet(
                 stiffer += weight * steep * steep
                 if rows == table.shape[0]:
                     return spent, met, leave_undecided(room, live, n, rays, found, queue, doubted)
-        reach = min(end, beam[HIGH]) - start + 2.0 * own[RADIUS_OF]
+        reach = min(end, beam[beams.HIGH]) - start + 2.0 * own[beams.RADIUS_OF]
         off, drift, off_slope, blur = rounding(rows, bulk, bend, stiff, stiffer, negative, reach, threshold)
-        if reach_threshold(state, whole, F(threshold), off, drift):
-            tighten(table, rows, state, whole, F(threshold), off, drift)
-        looking = start_lanes(state, whole, F(threshold), off, drift, negative, anywhere)
+        if slices.reach_threshold(state, whole, F(threshold), off, drift):
+            slices.tighten(table, rows, state, whole, F(threshold), off, drift)
+        looking = slices.start_lanes(state, whole, F(threshold), off, drift, negative, anywhere)
         n, more, met, doubted = search_slice(
             table, rows, state, room, live, n, looking, end < np.inf, F(threshold), off, drift,
             off_slope, blur, F(BENT * stiffer), anywhere, rays, found, queue, met, doubted,

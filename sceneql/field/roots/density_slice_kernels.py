@@ -4,32 +4,10 @@
 import numpy as np
 
 from sceneql.compiled.kernels import inlined
-from sceneql.field.roots.beam_kernels import BEHIND, DX, FAR, PX, STRETCH, WIDE
-from sceneql.field.roots.density_march_kernels import (
-    AT_A,
-    AT_B,
-    DEEP,
-    END,
-    FINE,
-    HALF,
-    INVERSE,
-    LANES,
-    LESS,
-    LIVE,
-    MORE,
-    ONE,
-    ROOT,
-    STATE,
-    TOP,
-    TRIES,
-    WEIGHT,
-    ZERO,
-    A,
-    B,
-    F,
-    Q,
-    T,
-)
+from sceneql.field.roots import beam_kernels as beams
+from sceneql.field.roots import density_march_kernels as march
+from sceneql.field.roots.beam_kernels import WIDE
+from sceneql.field.roots.density_march_kernels import HALF, LESS, MORE, ONE, ZERO, F
 from sceneql.field.tape.single_kernels import lane
 from sceneql.field.tape.tape_ops import HIT, MISS
 
@@ -63,9 +41,9 @@ def place_lanes(room, live, state, given, n, fresh, begin, end, lowest):
     far, behind, stretch = room[SPARE], room[SPARE + 1], room[SPARE + 2]
     if fresh:
         own = slice(live[0], live[0] + n)
-        far, behind, stretch = room[FAR, own], room[BEHIND, own], room[STRETCH, own]
+        far, behind, stretch = room[beams.FAR, own], room[beams.BEHIND, own], room[beams.STRETCH, own]
     else:
-        for row, target in ((FAR, far), (BEHIND, behind), (STRETCH, stretch)):
+        for row, target in ((beams.FAR, far), (beams.BEHIND, behind), (beams.STRETCH, stretch)):
             pick(room[row], live, n, target)
     sliced = lowest > 0.5
     for i in range(n):
@@ -77,25 +55,25 @@ def place_lanes(room, live, state, given, n, fresh, begin, end, lowest):
         last = last if last < stop else stop
         base = base if sliced else 0.0
         bases[i] = base
-        state[END + i] = F((last if sliced else stop) - base)
-        state[FINE + i] = F(stop)
-        state[AT_A + i] = INFINITE
-        state[AT_B + i] = -INFINITE
-        state[TOP + i] = ZERO
-        state[DEEP + i] = INFINITE
+        state[march.END + i] = F((last if sliced else stop) - base)
+        state[march.FINE + i] = F(stop)
+        state[march.AT_A + i] = INFINITE
+        state[march.AT_B + i] = -INFINITE
+        state[march.TOP + i] = ZERO
+        state[march.DEEP + i] = INFINITE
     for i in range(given, n):
-        state[END + i] = -INFINITE
+        state[march.END + i] = -INFINITE
     for axis in range(3):
         spot, way = room[SPOT + axis], room[SPOT + 3 + axis]
         if fresh:
-            place, along = room[PX + axis, own], room[DX + axis, own]
+            place, along = room[beams.PX + axis, own], room[beams.DX + axis, own]
             for i in range(n):
                 d = along[i]
                 way[i] = d
                 spot[i] = place[i] + bases[i] * d
         else:
-            pick(room[PX + axis], live, n, spot)
-            pick(room[DX + axis], live, n, way)
+            pick(room[beams.PX + axis], live, n, spot)
+            pick(room[beams.DX + axis], live, n, way)
             for i in range(n):
                 spot[i] += bases[i] * way[i]
 
@@ -123,32 +101,32 @@ def set_part(part, room, row, state, n, level):
         wx, wy, wz = cx - x[i], cy - y[i], cz - z[i]
         t = wx * dx[i] + wy * dy[i] + wz * dz[i]
         row[i] = F(1.0 - inverse * (wx * wx + wy * wy + wz * wz - t * t))
-        row[T + i] = F(t)
+        row[march.T + i] = F(t)
     reach = F(radius)
     weight = F(part[7])
     most = weight if weight > ZERO else ZERO
     inverse_single = F(inverse)
     lanes = np.int32(0)
     for i in range(n):
-        p, t = row[i], row[T + i]
+        p, t = row[i], row[march.T + i]
         half = reach * np.sqrt(p if p > ZERO else ZERO)
-        row[Q + i] = t - GOLDEN * half
-        near = (p > ZERO) & (t + half > ZERO) & (t - half < state[END + i])
-        entry, exit = state[AT_A + i], state[AT_B + i]
+        row[march.Q + i] = t - GOLDEN * half
+        near = (p > ZERO) & (t + half > ZERO) & (t - half < state[march.END + i])
+        entry, exit = state[march.AT_A + i], state[march.AT_B + i]
         first = entry if entry < t - half else t - half
         last = exit if exit > t + half else t + half
-        state[AT_A + i] = first if near else entry
-        state[AT_B + i] = last if near else exit
+        state[march.AT_A + i] = first if near else entry
+        state[march.AT_B + i] = last if near else exit
         lanes = np.int32(lanes + (np.int32(1) if near else np.int32(0)))
-        top = densest(p, t, inverse_single, state[END + i])
-        state[TOP + i] += most * (top * top * top) if near else ZERO
+        top = densest(p, t, inverse_single, state[march.END + i])
+        state[march.TOP + i] += most * (top * top * top) if near else ZERO
         lift = p - level
         inner = t - reach * np.sqrt(lift if lift > ZERO else ZERO)
-        deep = state[DEEP + i]
-        inside = (lift > ZERO) & (inner > ZERO) & (inner < state[END + i]) & (inner < deep)
-        state[DEEP + i] = inner if inside else deep
-    row[WEIGHT] = weight
-    row[INVERSE] = inverse_single
+        deep = state[march.DEEP + i]
+        inside = (lift > ZERO) & (inner > ZERO) & (inner < state[march.END + i]) & (inner < deep)
+        state[march.DEEP + i] = inner if inside else deep
+    row[march.WEIGHT] = weight
+    row[march.INVERSE] = inverse_single
     return lanes
 
 
@@ -157,8 +135,8 @@ def reach_threshold(state, n, threshold, close, drift):
     """Whether in some lane all parts together may reach the threshold."""
     lanes = np.int32(0)
     for i in range(n):
-        off = close + drift * state[END + i]
-        lanes = np.int32(lanes + (np.int32(1) if state[TOP + i] > threshold - off else np.int32(0)))
+        off = close + drift * state[march.END + i]
+        lanes = np.int32(lanes + (np.int32(1) if state[march.TOP + i] > threshold - off else np.int32(0)))
     return lanes > 0
 
 
@@ -172,23 +150,23 @@ def tighten(table, rows, state, n, threshold, close, drift):
     scale = TWO / threshold if threshold > ZERO else ZERO
     for k in range(rows):
         row = table[k]
-        weight, inverse = row[WEIGHT], row[INVERSE]
+        weight, inverse = row[march.WEIGHT], row[march.INVERSE]
         if not weight > ZERO:
             continue
         share, reach = ONE / weight, ONE / np.sqrt(inverse)
         for i in range(n):
-            p, t, end = row[i], row[T + i], state[END + i]
+            p, t, end = row[i], row[march.T + i], state[march.END + i]
             top = densest(p, t, inverse, end)
-            excess = (state[TOP + i] * (MORE + scale * (close + drift * end)) - threshold) * share
+            excess = (state[march.TOP + i] * (MORE + scale * (close + drift * end)) - threshold) * share
             least = top * top * top - excess
             # A lower bound of the cube root: 1 + z + z >= 3 z^(2/3) for z = least/top^3.
             level = THREE * LESS * least * top / (top * top * top + TWO * least if least > ZERO else ONE)
             half = reach * np.sqrt(p - level if p > level else ZERO)
-            entry, exit = state[AT_A + i], state[AT_B + i]
+            entry, exit = state[march.AT_A + i], state[march.AT_B + i]
             first = entry if entry > t - half else t - half
             last = exit if exit < t + half else t + half
-            state[AT_A + i] = first if least > ZERO else entry
-            state[AT_B + i] = last if least > ZERO else exit
+            state[march.AT_A + i] = first if least > ZERO else entry
+            state[march.AT_B + i] = last if least > ZERO else exit
 
 
 @inlined
@@ -201,24 +179,24 @@ def start_lanes(state, n, threshold, close, drift, negative, anywhere):
     positive = not negative
     looking = np.int32(0)
     for i in range(n):
-        way = state[FINE + i]
-        low = state[AT_A + i] - HAIR * way
-        high = state[AT_B + i] + HAIR * way
+        way = state[march.FINE + i]
+        low = state[march.AT_A + i] - HAIR * way
+        high = state[march.AT_B + i] + HAIR * way
         low = low if low > ZERO else ZERO
-        high = high if high < state[END + i] else state[END + i]
-        deep = state[DEEP + i]
+        high = high if high < state[march.END + i] else state[march.END + i]
+        deep = state[march.DEEP + i]
         off = close + drift * high
         known = positive & (off < (CLEARLY - ONE) * threshold) & (deep < high) & (deep > low)
-        state[A + i] = low
-        state[B + i] = deep if known else (high if anywhere else HALF * (low + high))
-        state[END + i] = high
-        state[FINE + i] = NARROW * way
-        state[TRIES + i] = ZERO
-        state[ROOT + i] = low
-        live = (low < high) & (state[TOP + i] > threshold - off)
+        state[march.A + i] = low
+        state[march.B + i] = deep if known else (high if anywhere else HALF * (low + high))
+        state[march.END + i] = high
+        state[march.FINE + i] = NARROW * way
+        state[march.TRIES + i] = ZERO
+        state[march.ROOT + i] = low
+        live = (low < high) & (state[march.TOP + i] > threshold - off)
         met = known & anywhere
-        state[STATE + i] = F(HIT) if met else (LIVE if live else F(MISS))
+        state[march.STATE + i] = F(HIT) if met else (march.LIVE if live else F(MISS))
         looking = np.int32(looking + (np.int32(1) if live & (not met) else np.int32(0)))
-    for i in range(n, LANES):
-        state[STATE + i] = F(MISS)
+    for i in range(n, march.LANES):
+        state[march.STATE + i] = F(MISS)
     return looking

@@ -10,7 +10,7 @@ import numpy as np
 from numba import types
 
 from sceneql.compiled.kernels import inlined, lean
-from sceneql.field.skeleton.skeleton_parts_kernels import MIDDLE, RADIUS, RADIUS_B, largest_radius
+from sceneql.field.skeleton import skeleton_parts_kernels as part
 
 F = types.float64
 AT = (F[:, ::1], types.int64, F, F, F)
@@ -32,9 +32,9 @@ def control(parts, i, x, y, z):
     cx = parts[i + 1, 0]
     cy = parts[i + 1, 1]
     cz = parts[i + 1, 2]
-    ra = parts[i, RADIUS]
-    rb = parts[i + 1, RADIUS_B]
-    rc = parts[i + 1, MIDDLE]
+    ra = parts[i, part.RADIUS]
+    rb = parts[i + 1, part.RADIUS_B]
+    rc = parts[i + 1, part.MIDDLE]
     return (
         2.0 * (cx - ax), 2.0 * (cy - ay), 2.0 * (cz - az),
         ax - 2.0 * cx + parts[i, 3], ay - 2.0 * cy + parts[i, 4], az - 2.0 * cz + parts[i, 5],
@@ -179,7 +179,7 @@ def curve_way(parts, i, x, y, z, off):
     speed = max(first, last)
     change = max(abs(r1), abs(r1 + 2.0 * r2))
     away = np.sqrt(wx * wx + wy * wy + wz * wz) + speed
-    most = speed * largest_radius(parts, i) * off + change * (2.0 * away * off + off * off)
+    most = speed * part.largest_radius(parts, i) * off + change * (2.0 * away * off + off * off)
     size = abs(h0) + abs(h1) + abs(h2) + abs(h3) + abs(h4)
     rise = 4.0 * min(min(b1 - b0, b2 - b1), min(b3 - b2, b4 - b3)) - 1.0e-13 * size
     step = 1.0

@@ -57,13 +57,7 @@ def distance_squared(parts, i, p0, p1, scratch):
             second = vx * vx + vy * vy + vz * vz
             half_gap = 0.5 * p1
             return 0.5 * (first + second) - half_gap, 0.5 * (second - first), 0.0, half_gap, blur
-    return (
-        wx * wx + wy * wy + wz * wz,
-        2.0 * (wx * ux + wy * uy + wz * uz),
-        ux * ux + uy * uy + uz * uz,
-        0.0,
-        blur,
-    )
+    return wx * wx + wy * wy + wz * wz, 2.0 * (wx * ux + wy * uy + wz * uz), ux * ux + uy * uy + uz * uz, 0.0, blur
 
 
 @inlined

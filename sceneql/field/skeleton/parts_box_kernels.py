@@ -6,7 +6,7 @@ from numba import types
 
 from sceneql.compiled.kernels import lean
 from sceneql.field.skeleton.density_kernels import offset
-from sceneql.field.skeleton.skeleton_bounds_kernels import ULPS
+from sceneql.field.skeleton.skeleton_bounds_kernels import ULPS, box_of
 from sceneql.field.skeleton.skeleton_bounds_kernels import skeleton_box as bounds_of_skeleton
 
 ROWS = types.float64[:, ::1]
@@ -17,12 +17,7 @@ BOX = types.UniTuple(types.float64, 2)(ROWS, types.int64, types.int64, ROWS, typ
 def density_box(parts, start, stop, scratch, p):
     """Interval of a density field over the box whose sides are rows p..p+2 of scratch."""
     low = high = bulk = 0.0
-    hx = 0.5 * (scratch[p, 1] - scratch[p, 0])
-    hy = 0.5 * (scratch[p + 1, 1] - scratch[p + 1, 0])
-    hz = 0.5 * (scratch[p + 2, 1] - scratch[p + 2, 0])
-    x = scratch[p, 0] + hx
-    y = scratch[p + 1, 0] + hy
-    z = scratch[p + 2, 0] + hz
+    x, y, z, hx, hy, hz = box_of(scratch, p)
     diagonal = np.sqrt(hx * hx + hy * hy + hz * hz)
     for i in range(start, stop):
         wx, wy, wz = offset(parts, i, x, y, z)

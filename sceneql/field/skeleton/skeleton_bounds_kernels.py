@@ -9,21 +9,9 @@ from numba import types
 
 from sceneql.compiled.kernels import inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
+from sceneql.field.skeleton import skeleton_parts_kernels as part
 from sceneql.field.skeleton.falloff_kernels import falloff, falloff_slope
 from sceneql.field.skeleton.skeleton_kernels import outside_node, radius_at, to_part
-from sceneql.field.skeleton.skeleton_parts_kernels import (
-    CURVE,
-    GROUP,
-    KERNEL,
-    NODE,
-    RADIUS,
-    SHAPE,
-    STRIDE,
-    WEIGHT,
-    condition,
-    largest_radius,
-    least_radius,
-)
 
 ULPS = 1.2e-15
 F = types.float64
@@ -51,16 +39,16 @@ def range_of(parts, i, x, y, z, diagonal):
     for k in range(3):
         size += abs(parts[i, k]) + abs(parts[i, k + 3]) + abs(parts[i + 1, k])
         length2 += (parts[i, k + 3] - parts[i, k]) ** 2
-    off = diagonal * (1.0 + 1.0e-14) + 8.0 * ULPS * size * condition(parts, i)
-    one = parts[i, RADIUS]
+    off = diagonal * (1.0 + 1.0e-14) + 8.0 * ULPS * size * part.condition(parts, i)
+    one = parts[i, part.RADIUS]
     two = radius_at(parts, i, 1.0)
     radius = radius_at(parts, i, q)
-    small = least_radius(parts, i)
-    large = largest_radius(parts, i)
+    small = part.least_radius(parts, i)
+    large = part.largest_radius(parts, i)
     r = np.sqrt(wx * wx + wy * wy + wz * wz)
     nearest = max(r / radius * (1.0 - 8.0 * ULPS) - off / small, 0.0)
     farthest = (r + off) / radius * (1.0 + 8.0 * ULPS)
-    if parts[i + 1, SHAPE] == CURVE:
+    if parts[i + 1, part.SHAPE] == part.CURVE:
         move, change = curve_way(parts, i, x, y, z, off)
         off += move * (1.0 + 1.0e-12)
         small = max(small, radius - change * (1.0 + 1.0e-12))
@@ -97,15 +85,15 @@ def clear_of(parts, i, scratch, p):
 @inlined
 def rival(parts, i, stop, scratch, p, x, y, z, diagonal):
     """The least upper bound of s over the box in row i's group; parts whose s stays above it never count."""
-    group = parts[i + 1, GROUP]
+    group = parts[i + 1, part.GROUP]
     least = np.inf
-    while i < stop and (parts[i + 1, SHAPE] == NODE or parts[i + 1, GROUP] == group):
-        if parts[i + 1, SHAPE] == NODE:
-            i += STRIDE + (int(parts[i, RADIUS]) if clear_of(parts, i, scratch, p) else 0)
+    while i < stop and (parts[i + 1, part.SHAPE] == part.NODE or parts[i + 1, part.GROUP] == group):
+        if parts[i + 1, part.SHAPE] == part.NODE:
+            i += part.STRIDE + (int(parts[i, part.RADIUS]) if clear_of(parts, i, scratch, p) else 0)
             continue
         _, _, _, _, _, farthest, _, _ = range_of(parts, i, x, y, z, diagonal)
         least = min(least, farthest)
-        i += STRIDE
+        i += part.STRIDE
     return least * (1.0 + 1.0e-12)
 
 
@@ -119,22 +107,22 @@ def skeleton_box(parts, start, stop, scratch, p):
     group = -1.0
     i = start
     while i < stop:
-        if parts[i + 1, SHAPE] == NODE:
-            i += STRIDE + (int(parts[i, RADIUS]) if clear_of(parts, i, scratch, p) else 0)
+        if parts[i + 1, part.SHAPE] == part.NODE:
+            i += part.STRIDE + (int(parts[i, part.RADIUS]) if clear_of(parts, i, scratch, p) else 0)
             continue
         _, _, _, _, nearest, farthest, _, _ = range_of(parts, i, x, y, z, diagonal)
         if nearest < 1.0:
-            kernel = parts[i + 1, KERNEL]
-            if parts[i + 1, GROUP] != group:
-                group = parts[i + 1, GROUP]
+            kernel = parts[i + 1, part.KERNEL]
+            if parts[i + 1, part.GROUP] != group:
+                group = parts[i + 1, part.GROUP]
                 low += weight * (least if weight > 0.0 else most)
                 high += weight * (most if weight > 0.0 else least)
                 bulk += abs(weight) * most
                 least = most = 0.0
-                weight = parts[i, WEIGHT]
+                weight = parts[i, part.WEIGHT]
             least = max(least, falloff(kernel, farthest) - 8.0 * ULPS)
             most = max(most, falloff(kernel, nearest) + 8.0 * ULPS)
-        i += STRIDE
+        i += part.STRIDE
     low += weight * (least if weight > 0.0 else most)
     high += weight * (most if weight > 0.0 else least)
     bulk += abs(weight) * most
@@ -157,16 +145,16 @@ def skeleton_steepness(parts, start, stop, scratch, p):
     fresh = True
     i = start
     while i < stop:
-        if parts[i + 1, SHAPE] == NODE:
-            i += STRIDE + (int(parts[i, RADIUS]) if clear_of(parts, i, scratch, p) else 0)
+        if parts[i + 1, part.SHAPE] == part.NODE:
+            i += part.STRIDE + (int(parts[i, part.RADIUS]) if clear_of(parts, i, scratch, p) else 0)
             continue
         wx, wy, wz, off, nearest, farthest, small, large = range_of(parts, i, x, y, z, diagonal)
-        if parts[i + 1, GROUP] != limited:
-            limited = parts[i + 1, GROUP]
+        if parts[i + 1, part.GROUP] != limited:
+            limited = parts[i + 1, part.GROUP]
             limit = rival(parts, i, stop, scratch, p, x, y, z, diagonal)
         if nearest < 1.0 and nearest <= limit:
-            kernel = parts[i + 1, KERNEL]
-            weight = parts[i, WEIGHT]
+            kernel = parts[i + 1, part.KERNEL]
+            weight = parts[i, part.WEIGHT]
             steep = falloff_slope(kernel, nearest) * (1.0 + 1.0e-12) - 1.0e-14
             flat = min(falloff_slope(kernel, farthest) * (1.0 - 1.0e-12) + 1.0e-14, 0.0)
             scale = 2.0 * weight
@@ -175,8 +163,8 @@ def skeleton_steepness(parts, start, stop, scratch, p):
             d0, d1 = scaled(strong, weak, scale, wx - off, wx + off)
             e0, e1 = scaled(strong, weak, scale, wy - off, wy + off)
             f0, f1 = scaled(strong, weak, scale, wz - off, wz + off)
-            if parts[i + 1, GROUP] != group:
-                group = parts[i + 1, GROUP]
+            if parts[i + 1, part.GROUP] != group:
+                group = parts[i + 1, part.GROUP]
                 a0, a1, b0, b1, c0, c1 = a0 + x0, a1 + x1, b0 + y0, b1 + y1, c0 + z0, c1 + z1
                 fresh = True
             if fresh:
@@ -186,7 +174,7 @@ def skeleton_steepness(parts, start, stop, scratch, p):
                 x0, x1 = min(x0, d0), max(x1, d1)
                 y0, y1 = min(y0, e0), max(y1, e1)
                 z0, z1 = min(z0, f0), max(z1, f1)
-        i += STRIDE
+        i += part.STRIDE
     return a0 + x0, a1 + x1, b0 + y0, b1 + y1, c0 + z0, c1 + z1
 
 
@@ -215,17 +203,17 @@ def skeleton_near(parts, start, stop, scratch, p, near, found):
     limit = np.inf
     i = start
     while i < stop:
-        if parts[i + 1, SHAPE] == NODE:
-            i += STRIDE + (int(parts[i, RADIUS]) if clear_of(parts, i, scratch, p) else 0)
+        if parts[i + 1, part.SHAPE] == part.NODE:
+            i += part.STRIDE + (int(parts[i, part.RADIUS]) if clear_of(parts, i, scratch, p) else 0)
             continue
         _, _, _, _, nearest, _, _, _ = range_of(parts, i, x, y, z, diagonal)
-        if parts[i + 1, GROUP] != group:
-            group = parts[i + 1, GROUP]
+        if parts[i + 1, part.GROUP] != group:
+            group = parts[i + 1, part.GROUP]
             limit = rival(parts, i, stop, scratch, p, x, y, z, diagonal)
         if nearest < 1.0 and nearest <= limit:
             for j in range(8):
                 near[found, j] = parts[i, j]
                 near[found + 1, j] = parts[i + 1, j]
-            found += STRIDE
-        i += STRIDE
+            found += part.STRIDE
+        i += part.STRIDE
     return found

@@ -9,23 +9,9 @@ import numpy as np
 
 from sceneql.compiled.kernels import inlined
 from sceneql.field.enclose.forms_kernels import PAD, TINY, larger_of
+from sceneql.field.skeleton import skeleton_parts_kernels as part
 from sceneql.field.skeleton.falloff_kernels import falloff, falloff_slope
 from sceneql.field.skeleton.skeleton_kernels import radius_at, to_part
-from sceneql.field.skeleton.skeleton_parts_kernels import (
-    CURVE,
-    GROUP,
-    KERNEL,
-    NODE,
-    RADIUS,
-    SEGMENT,
-    SHAPE,
-    STRIDE,
-    WEIGHT,
-    condition,
-    convex,
-    largest_radius,
-    least_radius,
-)
 
 LISTED, LISTED_FROM, LISTED_TO = 4, 5, 6
 """Columns of a skeleton's row: how many rows are listed behind those of the surveyed parts, and for which interval
@@ -60,7 +46,7 @@ def rounding(table, i, cx, cy, cz, ux, uy, uz):
     size = abs(cx) + abs(cy) + abs(cz) + abs(ux) + abs(uy) + abs(uz)
     for k in range(3):
         size += abs(table[i, k]) + abs(table[i, k + 3]) + abs(table[i + 1, k])
-    return 8.0 * PAD * size * condition(table, i)
+    return 8.0 * PAD * size * part.condition(table, i)
 
 
 @inlined
@@ -70,7 +56,7 @@ def span_of(table, i, cx, cy, cz, half, blur):
     r = np.sqrt(wx * wx + wy * wy + wz * wz)
     radius = radius_at(table, i, q)
     way = (half + blur) * (1.0 + 8.0 * PAD)
-    least = r / radius * (1.0 - 8.0 * PAD) - way / least_radius(table, i)
+    least = r / radius * (1.0 - 8.0 * PAD) - way / part.least_radius(table, i)
     return least, (r + way) / radius * (1.0 + 8.0 * PAD)
 
 
@@ -88,7 +74,7 @@ def part_segment(table, i, cx, cy, cz, ux, uy, uz, speed2, point_blur):
     two = radius_at(table, i, second)
     low = (ax * ax + ay * ay + az * az) / (one * one)
     high = (bx * bx + by * by + bz * bz) / (two * two)
-    small = least_radius(table, i)
+    small = part.least_radius(table, i)
     steep = speed2 / (small * small) * (1.0 + 8.0 * PAD)
     mean = 0.5 * (low + high)
     slope = 0.5 * (high - low)
@@ -97,7 +83,7 @@ def part_segment(table, i, cx, cy, cz, ux, uy, uz, speed2, point_blur):
         least = mean - steep - slope * slope / (4.0 * steep)
     bottom = mean - steep
     top = mean
-    if not convex(table, i):
+    if not part.convex(table, i):
         wx, wy, wz, q = to_part(table, i, cx, cy, cz)
         radius = radius_at(table, i, q)
         inverse = 1.0 / (radius * radius)
@@ -139,12 +125,12 @@ def passes_by(parts, i, cx, cy, cz, ux, uy, uz, speed2, blur):
     square = wx * wx + wy * wy + wz * wz
     way = abs(wx * ux + wy * uy + wz * uz)
     half2 = 0.25 * (sx * sx + sy * sy + sz * sz)
-    if parts[i + 1, SHAPE] == CURVE:
+    if parts[i + 1, part.SHAPE] == part.CURVE:
         sx = parts[i + 1, 0] - 0.5 * (parts[i, 0] + parts[i, 3])
         sy = parts[i + 1, 1] - 0.5 * (parts[i, 1] + parts[i, 4])
         sz = parts[i + 1, 2] - 0.5 * (parts[i, 2] + parts[i, 5])
         half2 = max(half2, sx * sx + sy * sy + sz * sz)
-    reach = np.sqrt(half2) + largest_radius(parts, i) + 2.0 * blur
+    reach = np.sqrt(half2) + part.largest_radius(parts, i) + 2.0 * blur
     least = reach * reach * (1.0 + 1.0e-9) + 1.0e-12 * (square + speed2)
     if way < speed2:
         return square * speed2 - way * way > least * speed2
@@ -157,21 +143,21 @@ def within_reach(parts, start, stop, scratch, base, cx, cy, cz, ux, uy, uz, spee
     found = 0
     i = start
     while i < stop:
-        if parts[i + 1, SHAPE] == NODE:
+        if parts[i + 1, part.SHAPE] == part.NODE:
             clear = segment_outside(parts, i, cx, cy, cz, ux, uy, uz, point_blur)
-            i += STRIDE + (int(parts[i, RADIUS]) if clear else 0)
+            i += part.STRIDE + (int(parts[i, part.RADIUS]) if clear else 0)
             continue
-        thin = parts[i + 1, SHAPE] == SEGMENT or parts[i + 1, SHAPE] == CURVE
+        thin = parts[i + 1, part.SHAPE] == part.SEGMENT or parts[i + 1, part.SHAPE] == part.CURVE
         if thin and passes_by(parts, i, cx, cy, cz, ux, uy, uz, speed2, point_blur):
-            i += STRIDE
+            i += part.STRIDE
             continue
         least, _, _, _ = part_segment(parts, i, cx, cy, cz, ux, uy, uz, speed2, point_blur)
         if least < 1.0:
             for j in range(8):
                 scratch[base + found, j] = parts[i, j]
                 scratch[base + found + 1, j] = parts[i + 1, j]
-            found += STRIDE
-        i += STRIDE
+            found += part.STRIDE
+        i += part.STRIDE
     return found
 
 
@@ -205,16 +191,16 @@ def skeleton_segment(parts, start, stop, scratch, k, base, p, survey):
     found = 0
     c0 = c1 = e = 0.0
     while i < last:
-        group = scratch[i + 1, GROUP]
-        weight = scratch[i, WEIGHT]
+        group = scratch[i + 1, part.GROUP]
+        weight = scratch[i, part.WEIGHT]
         end = i
         rival = np.inf  # least upper bound of r in the group: parts that stay farther never have the largest density
-        while end < last and scratch[end + 1, GROUP] == group:
-            if end > i or (end + STRIDE < last and scratch[end + STRIDE + 1, GROUP] == group):
+        while end < last and scratch[end + 1, part.GROUP] == group:
+            if end > i or (end + part.STRIDE < last and scratch[end + part.STRIDE + 1, part.GROUP] == group):
                 blur = point_blur + rounding(scratch, end, cx, cy, cz, ux, uy, uz)
                 _, most = span_of(scratch, end, cx, cy, cz, half, blur)
                 rival = min(rival, most)
-            end += STRIDE
+            end += part.STRIDE
         m0 = m1 = em = 0.0
         alone = True
         while i < end:
@@ -229,15 +215,15 @@ def skeleton_segment(parts, start, stop, scratch, k, base, p, survey):
                     for j in range(8):
                         scratch[place + found, j] = scratch[i, j]
                         scratch[place + found + 1, j] = scratch[i + 1, j]
-                    found += STRIDE
+                    found += part.STRIDE
                 if least < 1.0:
-                    f0, f1, ef = fallen(scratch[i + 1, KERNEL], least, s0, s1, es)
+                    f0, f1, ef = fallen(scratch[i + 1, part.KERNEL], least, s0, s1, es)
                     if alone:
                         m0, m1, em = f0, f1, ef
                     else:
                         m0, m1, em = larger_of(m0, m1, em, f0, f1, ef)
                     alone = False
-            i += STRIDE
+            i += part.STRIDE
         c0 += weight * m0
         c1 += weight * m1
         e += abs(weight) * em + PAD * (abs(c0) + abs(c1))

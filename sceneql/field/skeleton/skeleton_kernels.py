@@ -12,21 +12,8 @@ from numba import types
 
 from sceneql.compiled.kernels import inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
+from sceneql.field.skeleton import skeleton_parts_kernels as part
 from sceneql.field.skeleton.falloff_kernels import falloff, falloff_slope
-from sceneql.field.skeleton.skeleton_parts_kernels import (
-    CURVE,
-    GROUP,
-    KERNEL,
-    MIDDLE,
-    NODE,
-    RADIUS,
-    RADIUS_B,
-    SHAPE,
-    STRIDE,
-    TRIANGLE,
-    WEIGHT,
-    largest_radius,
-)
 
 F = types.float64
 to_curve = lazy("sceneql.field.skeleton.curve_kernels:to_curve", types.UniTuple(F, 4)(F[:, ::1], types.int64, F, F, F))
@@ -105,24 +92,24 @@ def to_part(parts, i, x, y, z):
     bx = parts[i, 3]
     by = parts[i, 4]
     bz = parts[i, 5]
-    if parts[i + 1, SHAPE] == TRIANGLE:
+    if parts[i + 1, part.SHAPE] == part.TRIANGLE:
         wx, wy, wz = to_triangle(
             ax, ay, az, bx, by, bz, parts[i + 1, 0], parts[i + 1, 1], parts[i + 1, 2], x, y, z
         )  # fmt: skip
         return wx, wy, wz, 0.0
-    if parts[i + 1, SHAPE] == CURVE:
+    if parts[i + 1, part.SHAPE] == part.CURVE:
         return to_curve(parts, i, x, y, z)
-    return to_segment(ax, ay, az, bx, by, bz, parts[i, RADIUS], parts[i + 1, RADIUS_B], x, y, z)
+    return to_segment(ax, ay, az, bx, by, bz, parts[i, part.RADIUS], parts[i + 1, part.RADIUS_B], x, y, z)
 
 
 @inlined
 def radius_at(parts, i, q):
     """Radius of the part at row i at a parameter along it."""
-    if parts[i + 1, SHAPE] == CURVE:
-        ra = parts[i, RADIUS]
-        rc = parts[i + 1, MIDDLE]
-        return ra + q * (2.0 * (rc - ra) + q * (ra - 2.0 * rc + parts[i + 1, RADIUS_B]))
-    return parts[i, RADIUS] + q * (parts[i + 1, RADIUS_B] - parts[i, RADIUS])
+    if parts[i + 1, part.SHAPE] == part.CURVE:
+        ra = parts[i, part.RADIUS]
+        rc = parts[i + 1, part.MIDDLE]
+        return ra + q * (2.0 * (rc - ra) + q * (ra - 2.0 * rc + parts[i + 1, part.RADIUS_B]))
+    return parts[i, part.RADIUS] + q * (parts[i + 1, part.RADIUS_B] - parts[i, part.RADIUS])
 
 
 @inlined
@@ -137,7 +124,7 @@ def outside_node(parts, i, x0, x1, y0, y1, z0, z1):
 @inlined
 def passed_by(parts, i, x, y, z):
     """Whether a point is out of reach of the curve at row i, by the bounding box of its control points."""
-    if parts[i + 1, SHAPE] != CURVE:
+    if parts[i + 1, part.SHAPE] != part.CURVE:
         return False
     away2 = 0.0
     p = (x, y, z)
@@ -145,7 +132,7 @@ def passed_by(parts, i, x, y, z):
         a, b, c = parts[i, k], parts[i, k + 3], parts[i + 1, k]
         off = max(max(min(min(a, b), c) - p[k], p[k] - max(max(a, b), c)), 0.0)
         away2 += off * off
-    reach = largest_radius(parts, i)
+    reach = part.largest_radius(parts, i)
     return away2 > reach * reach * (1.0 + 1.0e-9)
 
 
@@ -158,22 +145,22 @@ def skeleton_value(parts, start, stop, x, y, z):
     group = -1.0
     i = start
     while i < stop:
-        if parts[i + 1, SHAPE] == NODE:
-            i += STRIDE + (int(parts[i, RADIUS]) if outside_node(parts, i, x, x, y, y, z, z) else 0)
+        if parts[i + 1, part.SHAPE] == part.NODE:
+            i += part.STRIDE + (int(parts[i, part.RADIUS]) if outside_node(parts, i, x, x, y, y, z, z) else 0)
             continue
         if passed_by(parts, i, x, y, z):
-            i += STRIDE
+            i += part.STRIDE
             continue
         wx, wy, wz, q = to_part(parts, i, x, y, z)
         radius = radius_at(parts, i, q)
-        density = falloff(parts[i + 1, KERNEL], (wx * wx + wy * wy + wz * wz) / (radius * radius))
-        if parts[i + 1, GROUP] != group:
-            group = parts[i + 1, GROUP]
+        density = falloff(parts[i + 1, part.KERNEL], (wx * wx + wy * wy + wz * wz) / (radius * radius))
+        if parts[i + 1, part.GROUP] != group:
+            group = parts[i + 1, part.GROUP]
             total += best
             best = 0.0
-        if density > 0.0 and density * abs(parts[i, WEIGHT]) > abs(best):
-            best = density * parts[i, WEIGHT]
-        i += STRIDE
+        if density > 0.0 and density * abs(parts[i, part.WEIGHT]) > abs(best):
+            best = density * parts[i, part.WEIGHT]
+        i += part.STRIDE
     return total + best
 
 
@@ -185,9 +172,9 @@ def part_gradient(parts, i, x, y, z):
     inverse = 1.0 / (radius * radius)
     d2 = wx * wx + wy * wy + wz * wz
     s = d2 / (radius * radius)
-    weight = parts[i, WEIGHT]
-    density = weight * falloff(parts[i + 1, KERNEL], s)
-    slope = weight * falloff_slope(parts[i + 1, KERNEL], s)
+    weight = parts[i, part.WEIGHT]
+    density = weight * falloff(parts[i + 1, part.KERNEL], s)
+    slope = weight * falloff_slope(parts[i + 1, part.KERNEL], s)
     # p minimizes s, so the motion of p itself does not change s to first order.
     return density, 2.0 * slope * inverse * wx, 2.0 * slope * inverse * wy, 2.0 * slope * inverse * wz
 
@@ -200,20 +187,20 @@ def skeleton_gradient(parts, start, stop, x, y, z):
     group = -1.0
     i = start
     while i < stop:
-        if parts[i + 1, SHAPE] == NODE:
-            i += STRIDE + (int(parts[i, RADIUS]) if outside_node(parts, i, x, x, y, y, z, z) else 0)
+        if parts[i + 1, part.SHAPE] == part.NODE:
+            i += part.STRIDE + (int(parts[i, part.RADIUS]) if outside_node(parts, i, x, x, y, y, z, z) else 0)
             continue
         if passed_by(parts, i, x, y, z):
-            i += STRIDE
+            i += part.STRIDE
             continue
         density, ux, uy, uz = part_gradient(parts, i, x, y, z)
-        if parts[i + 1, GROUP] != group:
-            group = parts[i + 1, GROUP]
+        if parts[i + 1, part.GROUP] != group:
+            group = parts[i + 1, part.GROUP]
             gx += bx
             gy += by
             gz += bz
             best = bx = by = bz = 0.0
         if abs(density) > abs(best):
             best, bx, by, bz = density, ux, uy, uz
-        i += STRIDE
+        i += part.STRIDE
     return gx + bx, gy + by, gz + bz

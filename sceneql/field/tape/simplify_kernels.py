@@ -7,10 +7,10 @@ In the box the short tape gives the same bits as the whole one, so that neighbor
 import numpy as np
 
 from sceneql.compiled.kernels import inlined, lean
+from sceneql.field.skeleton import skeleton_parts_kernels as part
 from sceneql.field.skeleton.density_kernels import offset
 from sceneql.field.skeleton.falloff_kernels import WYVILL
-from sceneql.field.skeleton.skeleton_bounds_kernels import skeleton_near
-from sceneql.field.skeleton.skeleton_parts_kernels import GROUP, KERNEL, RADIUS, RADIUS_B, SEGMENT, SHAPE, STRIDE
+from sceneql.field.skeleton.skeleton_bounds_kernels import box_of, skeleton_near
 from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.short_rows_kernels import ALIAS, LIVE, mark, write_row
 
@@ -18,12 +18,7 @@ from sceneql.field.tape.short_rows_kernels import ALIAS, LIVE, mark, write_row
 @inlined
 def within_reach(parts, i, scratch, p):
     """Whether the box in rows p..p+2 of scratch may be within reach of part i."""
-    hx = 0.5 * (scratch[p, 1] - scratch[p, 0])
-    hy = 0.5 * (scratch[p + 1, 1] - scratch[p + 1, 0])
-    hz = 0.5 * (scratch[p + 2, 1] - scratch[p + 2, 0])
-    x = scratch[p, 0] + hx
-    y = scratch[p + 1, 0] + hy
-    z = scratch[p + 2, 0] + hz
+    x, y, z, hx, hy, hz = box_of(scratch, p)
     wx, wy, wz = offset(parts, i, x, y, z)
     blur = 1.0e-12 * (abs(x) + abs(y) + abs(z) + abs(parts[i, 0]) + abs(parts[i, 1]) + abs(parts[i, 2]) + parts[i, 6])
     blur += 1.0e-12 * (abs(parts[i, 3]) + abs(parts[i, 4]) + abs(parts[i, 5]))
@@ -53,22 +48,20 @@ def plain_parts(near, first, found):
     0, and nothing done, unless all are points or segments of one radius, alone in their groups, with Wyvill's kernel.
     """
     group = -1.0
-    for i in range(first, found, STRIDE):
-        flat = near[i + 1, SHAPE] == SEGMENT and near[i + 1, KERNEL] == WYVILL
-        if not flat or near[i + 1, RADIUS_B] != near[i, RADIUS] or near[i + 1, GROUP] == group:
+    for i in range(first, found, part.STRIDE):
+        flat = near[i + 1, part.SHAPE] == part.SEGMENT and near[i + 1, part.KERNEL] == WYVILL
+        if not flat or near[i + 1, part.RADIUS_B] != near[i, part.RADIUS] or near[i + 1, part.GROUP] == group:
             return 0
-        group = near[i + 1, GROUP]
+        group = near[i + 1, part.GROUP]
     rows = first
-    for i in range(first, found, STRIDE):
+    for i in range(first, found, part.STRIDE):
         for j in range(8):
             near[rows, j] = near[i, j]
         rows += 1
     return rows
 
 
-@lean(
-    "UniTuple(int64, 2)(int32[:, ::1], float64[:, ::1], float64[:, ::1], boolean, int32[:, ::1], float64[:, ::1])",
-)
+@lean("UniTuple(int64, 2)(int32[:, ::1], float64[:, ::1], float64[:, ::1], boolean, int32[:, ::1], float64[:, ::1])")
 def simplify(code, parts, scratch, whole, short, near):
     """Write the tape shortened for a box into ``short`` and ``near``, as large as code and parts; (rows, parts) used.
 

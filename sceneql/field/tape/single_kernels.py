@@ -64,10 +64,7 @@ def sine_cosine(x):
     odd = (quadrant & 1) != 0
     first = c if odd else s
     second = s if odd else c
-    return (
-        -first if (quadrant & 2) != 0 else first,
-        -second if ((quadrant + 1) & 2) != 0 else second,
-    )
+    return -first if (quadrant & 2) != 0 else first, -second if ((quadrant + 1) & 2) != 0 else second
 
 
 @lane

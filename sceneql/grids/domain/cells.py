@@ -114,11 +114,7 @@ def box(sides: tuple[float, ...], corner: tuple[float, ...], cell: float, depth:
     outward = np.zeros((len(owner), 3))
     outward[np.arange(len(owner)), piece // 2] = np.where(piece % 2, 0.5, -0.5)
     boundary = BoundaryFaces(
-        owner,
-        (volume / spacing)[piece // 2],
-        0.5 * spacing[piece // 2],
-        centers + outward * spacing,
-        piece,
+        owner, (volume / spacing)[piece // 2], 0.5 * spacing[piece // 2], centers + outward * spacing, piece
     )
     names = SIDES[: 2 * len(sides)]
     return Cells(

@@ -62,11 +62,7 @@ def split_nonmanifold(
         center = fresh + len(added)
         added.append(crossings[crossing])
         triangles += [(a, b, center) for a, b in pairwise([*around, around[0]])]
-    return (
-        sound,
-        np.array(added, dtype=np.float64).reshape(-1, 3),
-        np.array(triangles, dtype=np.int32).reshape(-1, 3),
-    )
+    return sound, np.array(added, dtype=np.float64).reshape(-1, 3), np.array(triangles, dtype=np.int32).reshape(-1, 3)
 
 
 def _beside(ring: Ints, edge: int, among: set[int]) -> int:

@@ -7,16 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from sceneql.contacts import layout
-from sceneql.kinds import (
-    Contact,
-    DrawnRef,
-    FixedLength,
-    Gives,
-    Ref,
-    Scalar,
-    field,
-    quantity_type,
-)
+from sceneql.kinds import Contact, DrawnRef, FixedLength, Gives, Ref, Scalar, field, quantity_type
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Type
 

@@ -7,20 +7,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated
 
+from sceneql import kinds
 from sceneql.bodies.nets import CORNERS, EDGES, Net, stiffest, turned
 from sceneql.bodies.nets import Cloth as Sheet
 from sceneql.bodies.springs import SpringModel, pin_problems
-from sceneql.kinds import (
-    Axis,
-    FixedLength,
-    FixedPosition,
-    FixedScalar,
-    FixedStiffness,
-    Problem,
-    Quantity,
-    Rotation,
-    field,
-)
+from sceneql.kinds import Problem, Quantity, field
 from sceneql.kinds.stable_step import Oscillation, StaticMass
 from sceneql.quantities import dimension as dim
 
@@ -44,17 +35,17 @@ class Cloth(SpringModel):
 
     size: Annotated[tuple[float, float], Quantity(dim.LENGTH, (2,))] = field("Width and height.", "2 2 m", above=0)
     cells: tuple[int, int] = field("Cells across the width and the height.", (20, 20), at_least=1)
-    center: FixedPosition = field("Where its middle starts.", "0 2 0 m")
-    facing: Axis = field("Where its front faces: y lies flat, z hangs with its top up.", "0 1 0")
-    rotation: Rotation | None = field("How it is turned besides, at the start.", None)
+    center: kinds.FixedPosition = field("Where its middle starts.", "0 2 0 m")
+    facing: kinds.Axis = field("Where its front faces: y lies flat, z hangs with its top up.", "0 1 0")
+    rotation: kinds.Rotation | None = field("How it is turned besides, at the start.", None)
     mass: Annotated[float, Quantity(dim.MASS / dim.LENGTH / dim.LENGTH)] = field(
         "Mass of a square meter.", "0.2 kg/m^2", above=0
     )
-    stretch: FixedStiffness = field("Tension, over a width, for a relative stretch.", "400 N/m", above=0)
-    shear: FixedStiffness = field("Shear force, over a width, for a shear angle.", "40 N/m", at_least=0)
-    bend: FixedStiffness = field("Stiffness over two cells, as that of `stretch`.", "4 N/m", at_least=0)
-    damping: FixedScalar = field("Damping as a part of the critical one.", "0.02", at_least=0)
-    thickness: FixedLength = field("Its thickness, in contacts and in the picture.", "5 mm", above=0)
+    stretch: kinds.FixedStiffness = field("Tension, over a width, for a relative stretch.", "400 N/m", above=0)
+    shear: kinds.FixedStiffness = field("Shear force, over a width, for a shear angle.", "40 N/m", at_least=0)
+    bend: kinds.FixedStiffness = field("Stiffness over two cells, as that of `stretch`.", "4 N/m", at_least=0)
+    damping: kinds.FixedScalar = field("Damping as a part of the critical one.", "0.02", at_least=0)
+    thickness: kinds.FixedLength = field("Its thickness, in contacts and in the picture.", "5 mm", above=0)
 
     def problems(self) -> Iterator[Problem]:
         """What is wrong with the sheet, and pins that are no mass of it."""

@@ -5,23 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
+from sceneql import kinds
 from sceneql.bodies import bodies as masses
-from sceneql.kinds import (
-    Color,
-    Direction,
-    FixedLength,
-    FixedMass,
-    FixedPosition,
-    FixedScalar,
-    FixedVelocity,
-    Gives,
-    MaterialRef,
-    Model,
-    Moment,
-    Quantity,
-    field,
-    quantity_type,
-)
+from sceneql.kinds import Gives, Model, Moment, Quantity, field, quantity_type
 from sceneql.kinds.stable_step import StaticMass
 from sceneql.quantities import dimension as dim
 
@@ -52,24 +38,24 @@ class Galaxy(Model):
     }
 
     stars: int = field("Number of stars.", 1000, at_least=1, at_most=5_000_000)
-    radius: FixedLength = field("Radius of the disk.", "1 m", above=0)
-    scale: FixedLength | None = field(
+    radius: kinds.FixedLength = field("Radius of the disk.", "1 m", above=0)
+    scale: kinds.FixedLength | None = field(
         "Length over which it thins out; by default a third of the radius.", None, above=0
     )
-    thickness: FixedLength = field("Standard deviation across the disk.", "0 m", at_least=0)
-    heart: FixedMass = field("Mass of the center.", "1 kg", above=0)
-    disk: FixedMass = field("Mass of all stars together.", "0.1 kg", above=0)
-    position: FixedPosition = field("Where the center starts.", "0 0 0 m")
-    velocity: FixedVelocity = field("How fast its center of mass moves.", "0 0 0 m/s")
-    axis: Direction = field("Axis that the stars run round; its length does not matter.", "0 1 0")
+    thickness: kinds.FixedLength = field("Standard deviation across the disk.", "0 m", at_least=0)
+    heart: kinds.FixedMass = field("Mass of the center.", "1 kg", above=0)
+    disk: kinds.FixedMass = field("Mass of all stars together.", "0.1 kg", above=0)
+    position: kinds.FixedPosition = field("Where the center starts.", "0 0 0 m")
+    velocity: kinds.FixedVelocity = field("How fast its center of mass moves.", "0 0 0 m/s")
+    axis: kinds.Direction = field("Axis that the stars run round; its length does not matter.", "0 1 0")
     constant: FixedGravitation = field("The constant of gravitation, as that of the force.", "6.6743e-11 m^3/kg/s^2")
-    softening: FixedLength = field("That of the force.", "0 m", at_least=0)
-    dispersion: FixedScalar = field("Random part of the velocities.", "0", at_least=0, at_most=1)
+    softening: kinds.FixedLength = field("That of the force.", "0 m", at_least=0)
+    dispersion: kinds.FixedScalar = field("Random part of the velocities.", "0", at_least=0, at_most=1)
     seed: int = field("Seed of the stars.", 0, at_least=0, at_most=WORDS - 1)
-    size: FixedLength = field("Radius of a star in the picture.", "5 mm", above=0)
-    core: FixedLength = field("Radius of the center in the picture.", "30 mm", above=0)
-    material: MaterialRef | None = field("How the stars look.", None)
-    color: Color | None = field("Color in place of the material's.", None)
+    size: kinds.FixedLength = field("Radius of a star in the picture.", "5 mm", above=0)
+    core: kinds.FixedLength = field("Radius of the center in the picture.", "30 mm", above=0)
+    material: kinds.MaterialRef | None = field("How the stars look.", None)
+    color: kinds.Color | None = field("Color in place of the material's.", None)
 
     def static_masses(self) -> Mapping[str, StaticMass]:
         """A star."""

@@ -8,19 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from sceneql.bodies import bodies as point_masses
-from sceneql.bodies.nets import (
-    CORNERS,
-    EDGES,
-    SIDES,
-    Cloth,
-    Lattice,
-    MassPoint,
-    Net,
-    Rope,
-    Spring,
-    alike,
-    turned,
-)
+from sceneql.bodies.nets import CORNERS, EDGES, SIDES, Cloth, Lattice, MassPoint, Net, Rope, Spring, alike, turned
 from sceneql.bodies.solid_lattice import Filling
 from sceneql.bodies.springs import SpringModel, pin_problems
 from sceneql.kinds import Damping, FixedMass, Gives, Problem, Ref, Stiffness, field, quantity_type

@@ -8,19 +8,9 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import ClassVar
 
+from sceneql import kinds
 from sceneql.bodies.time_shift import rate_of_change
-from sceneql.kinds import (
-    FixedLength,
-    FixedPosition,
-    Gives,
-    Model,
-    Position,
-    Problem,
-    Rotation,
-    Scalar,
-    field,
-    quantity_type,
-)
+from sceneql.kinds import Gives, Model, Problem, field, quantity_type
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Call, Expr, Key, Keys, Number, Type, Vector
@@ -50,14 +40,16 @@ class Motion(Model):
         "velocity": Gives(quantity_type(dim.VELOCITY, (3,)), "How fast it moves."),
     }
 
-    position: Position | None = field("Where it is; by default at the origin.", None)
-    along: tuple[FixedPosition, ...] | None = field("In place of `position`: the points of a path.", None)
-    progress: Scalar = field("With `along`: the share of the path gone, 0 at its first point, 1 at its last.", "0")
+    position: kinds.Position | None = field("Where it is; by default at the origin.", None)
+    along: tuple[kinds.FixedPosition, ...] | None = field("In place of `position`: the points of a path.", None)
+    progress: kinds.Scalar = field(
+        "With `along`: the share of the path gone, 0 at its first point, 1 at its last.", "0"
+    )
     even: bool = field("With `along`: equal shares of the path are equally long.", False)
-    heading: FixedLength | None = field(
+    heading: kinds.FixedLength | None = field(
         "With `along`: it points along the path, as what rests on it this far before and behind does.", None, above=0
     )
-    rotation: Rotation = field("How it is turned.", "1 0 0 0")
+    rotation: kinds.Rotation = field("How it is turned.", "1 0 0 0")
 
     def problems(self) -> Iterator[Problem]:
         """Two ways to move, or a path that leads nowhere."""

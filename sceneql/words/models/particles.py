@@ -7,29 +7,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import field_validator
 
+from sceneql import kinds
 from sceneql.bodies import bodies as masses
 from sceneql.bodies.emitter import Aging, Emit
 from sceneql.bodies.filling.fill import Fill, filled
 from sceneql.island.memory import bounded
-from sceneql.kinds import (
-    Color,
-    FixedLength,
-    FixedMass,
-    FixedPosition,
-    FixedVelocity,
-    Gives,
-    MaterialRef,
-    Model,
-    Moment,
-    ObjectRef,
-    Points,
-    Problem,
-    Record,
-    Ref,
-    Value,
-    field,
-    quantity_type,
-)
+from sceneql.kinds import Gives, Model, Moment, Problem, Record, Ref, Value, field, quantity_type
 from sceneql.kinds.stable_step import StaticMass
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
@@ -48,10 +31,10 @@ SOURCES = ("list", "of", "positions", "fill", "emit")
 class Particle(Record):
     """One named particle."""
 
-    mass: FixedMass = field("Its mass.", "1 kg", above=0)
-    position: FixedPosition = field("Where it starts.", "0 0 0 m")
-    velocity: FixedVelocity = field("How fast it starts.", "0 0 0 m/s")
-    radius: FixedLength | None = field(
+    mass: kinds.FixedMass = field("Its mass.", "1 kg", above=0)
+    position: kinds.FixedPosition = field("Where it starts.", "0 0 0 m")
+    velocity: kinds.FixedVelocity = field("How fast it starts.", "0 0 0 m/s")
+    radius: kinds.FixedLength | None = field(
         "Its radius in contacts and in the picture; by default the model's.", None, at_least=0
     )
     fixed: bool = field("It never moves.", False)
@@ -77,20 +60,20 @@ class Particles(Model):
     }
 
     list: dict[str, Particle] | None = field("Particles by name.", None)
-    of: ObjectRef | None = field("The object that is the particle, and that it drives.", None)
-    positions: Points | None = field("Where particles start, when they need no names.", None)
+    of: kinds.ObjectRef | None = field("The object that is the particle, and that it drives.", None)
+    positions: kinds.Points | None = field("Where particles start, when they need no names.", None)
     fill: Fill | None = field("An object that they fill at the start.", None)
     emit: Emit | None = field("A source from which they come.", None)
-    mass: FixedMass = field("Mass of each that is not listed.", "1 kg", above=0)
-    velocity: FixedVelocity = field("Velocity at the start, but for listed and emitted ones.", "0 0 0 m/s")
-    radius: FixedLength | None = field(
+    mass: kinds.FixedMass = field("Mass of each that is not listed.", "1 kg", above=0)
+    velocity: kinds.FixedVelocity = field("Velocity at the start, but for listed and emitted ones.", "0 0 0 m/s")
+    radius: kinds.FixedLength | None = field(
         "Radius in contacts and in the picture; by default the object's (a box: half its least side), else 0.05 m.",
         None,
         at_least=0,
     )
     aging: Aging | None = field("How emitted ones change with their age.", None)
-    material: MaterialRef | None = field("How they look where no object draws them.", None)
-    color: Color | None = field("Color in place of the material's.", None)
+    material: kinds.MaterialRef | None = field("How they look where no object draws them.", None)
+    color: kinds.Color | None = field("Color in place of the material's.", None)
 
     @field_validator("fill")
     @classmethod

@@ -7,16 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
 from sceneql.kinds import FieldBuilder, FixedScalar, Gives, Moment, Object, Points, Problem, Value, field
 from sceneql.shapes.placement import balls_box
-from sceneql.shapes.skeleton_parts import (
-    MOST,
-    LengthOrLengths,
-    NumberOrNumbers,
-    Part,
-    Shape,
-    each,
-    failure,
-    numbers,
-)
+from sceneql.shapes.skeleton_parts import MOST, LengthOrLengths, NumberOrNumbers, Part, Shape, each, failure, numbers
 from sceneql.shapes.solid import MEASURES, measure, traced
 
 if TYPE_CHECKING:

@@ -5,22 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Annotated
 
+from sceneql import kinds
 from sceneql.grids.maps.map_names import ColorMap
 from sceneql.grids.maps.seen import Bounds, Field, Levels, seen, unfit
-from sceneql.kinds import (
-    Color,
-    FixedLength,
-    FixedPosition,
-    Moment,
-    Object,
-    ObjectRef,
-    Problem,
-    Quantity,
-    Record,
-    Ref,
-    Value,
-    field,
-)
+from sceneql.kinds import Moment, Object, Problem, Quantity, Record, Ref, Value, field
 from sceneql.kinds.types import Axis
 from sceneql.quantities.dimension import LENGTH, PLAIN
 from sceneql.shapes.color import linear
@@ -40,7 +28,7 @@ THIN = 1.5e-3
 class Section(Record):
     """A plane."""
 
-    through: FixedPosition = field("A point of the plane.", "0 0 0 m")
+    through: kinds.FixedPosition = field("A point of the plane.", "0 0 0 m")
     normal: Axis = field("The direction that it faces, of any length.", "0 0 1")
 
     def problems(self) -> Iterator[Problem]:
@@ -67,10 +55,12 @@ class FieldMap(Object):
     )
     cut: tuple[Section, ...] = field("A deep domain is cut open: what lies before all these planes is away.", ())
     surface: bool = field("Of a deep domain; without it the field is seen on the planes of `cut` alone, whole.", True)
-    on: ObjectRef | None = field("An object in a deep domain, drawn by this one, on whose surface it is seen.", None)
+    on: kinds.ObjectRef | None = field(
+        "An object in a deep domain, drawn by this one, on whose surface it is seen.", None
+    )
     contours: Levels | None = field("Values whose lines are drawn, one or several.", None)
-    contour_color: Color = field("Color of these lines.", "0.05 0.05 0.06")
-    contour_radius: FixedLength | None = field("Radius of these lines; by default a thin one.", None, above=0)
+    contour_color: kinds.Color = field("Color of these lines.", "0.05 0.05 0.06")
+    contour_radius: kinds.FixedLength | None = field("Radius of these lines; by default a thin one.", None, above=0)
 
     def problems(self) -> Iterator[Problem]:
         """Fields of no part or of several; bounds, contours and heights of other dimensions."""

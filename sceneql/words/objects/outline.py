@@ -6,18 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from sceneql.grids.domain.polygon import Corners, crossing
-from sceneql.kinds import (
-    File,
-    FixedLength,
-    FixedScalar,
-    Length,
-    Moment,
-    Object,
-    Problem,
-    Quantity,
-    Record,
-    field,
-)
+from sceneql.kinds import File, FixedLength, FixedScalar, Length, Moment, Object, Problem, Quantity, Record, field
 from sceneql.quantities import dimension as dim
 
 if TYPE_CHECKING:

@@ -7,30 +7,18 @@ from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from typing import Any, ClassVar
 
-from sceneql.kinds import (
-    CameraRef,
-    Clock,
-    FixedAngle,
-    FixedScalar,
-    FixedTime,
-    Moment,
-    Picture,
-    Problem,
-    Record,
-    Ref,
-    Sink,
-    Tools,
-    bounded_moments,
-    field,
-)
+from sceneql import kinds
+from sceneql.kinds import Clock, Moment, Picture, Problem, Record, Ref, Sink, Tools, bounded_moments, field
 
 
 class Shot(Record):
     """A piece of a film."""
 
-    camera: CameraRef | None = field("Seen from; by default the film's own camera.", None)
-    until: FixedTime | None = field("Where it ends in the simulation; by default the clock's end.", None, above=0)
-    speed: FixedScalar | None = field("Seconds of simulation in one of film; by default the clock's.", None, above=0)
+    camera: kinds.CameraRef | None = field("Seen from; by default the film's own camera.", None)
+    until: kinds.FixedTime | None = field("Where it ends in the simulation; by default the clock's end.", None, above=0)
+    speed: kinds.FixedScalar | None = field(
+        "Seconds of simulation in one of film; by default the clock's.", None, above=0
+    )
 
 
 class Video(Picture):
@@ -42,9 +30,11 @@ class Video(Picture):
 
     imports: ClassVar[tuple[str, ...]] = ("av", "imageio")
 
-    fps: FixedScalar | None = field("Frames a second; by default the clock's.", None, above=0, at_most=1000)
-    quality: FixedScalar = field("Constant rate factor of x264: 0 is lossless, 51 worst.", "17", at_least=0, at_most=51)
-    shutter: FixedAngle = field(
+    fps: kinds.FixedScalar | None = field("Frames a second; by default the clock's.", None, above=0, at_most=1000)
+    quality: kinds.FixedScalar = field(
+        "Constant rate factor of x264: 0 is lossless, 51 worst.", "17", at_least=0, at_most=51
+    )
+    shutter: kinds.FixedAngle = field(
         "How long the light of a frame is gathered, 360 deg being the time to the next: what moves is blurred, and "
         "drawing takes `exposures` times as long.",
         "0 deg",

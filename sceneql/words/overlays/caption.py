@@ -33,11 +33,7 @@ class Caption(Overlay):
         return self.text.courses
 
     def draw(
-        self,
-        pixels: NDArray[uint8],
-        view: View,
-        moment: Moment,
-        develop: Callable[[Any], NDArray[uint8]],
+        self, pixels: NDArray[uint8], view: View, moment: Moment, develop: Callable[[Any], NDArray[uint8]]
     ) -> None:
         """Draw the line; nothing where its point lies behind the camera."""
         from sceneql.pictures.lettering import DARK, LIGHT, Letterer

@@ -29,11 +29,7 @@ class Formula(Overlay):
     panel: FixedScalar = field("Opacity of the panel that it stands on.", "0.7", at_least=0, at_most=1)
 
     def draw(
-        self,
-        pixels: NDArray[uint8],
-        view: View,
-        moment: Moment,
-        develop: Callable[[Any], NDArray[uint8]],
+        self, pixels: NDArray[uint8], view: View, moment: Moment, develop: Callable[[Any], NDArray[uint8]]
     ) -> None:
         """Draw it. Raises ValueError for what mathtext cannot read."""
         from PIL import Image

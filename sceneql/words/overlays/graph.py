@@ -89,11 +89,7 @@ class Graph(Overlay):
         return self.each is not None
 
     def draw(
-        self,
-        pixels: NDArray[uint8],
-        view: View,
-        moment: Moment,
-        develop: Callable[[Any], NDArray[uint8]],
+        self, pixels: NDArray[uint8], view: View, moment: Moment, develop: Callable[[Any], NDArray[uint8]]
     ) -> None:
         """Draw the panel at its place."""
         height, width = pixels.shape[:2]

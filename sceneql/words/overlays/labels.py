@@ -33,11 +33,7 @@ class Labels(Overlay):
         return [value for text in self.of.values() for value in text.courses]
 
     def draw(
-        self,
-        pixels: NDArray[uint8],
-        view: View,
-        moment: Moment,
-        develop: Callable[[Any], NDArray[uint8]],
+        self, pixels: NDArray[uint8], view: View, moment: Moment, develop: Callable[[Any], NDArray[uint8]]
     ) -> None:
         """Draw those that are before the camera."""
         from sceneql.pictures.lettering import DARK, LIGHT, Letterer

@@ -40,11 +40,7 @@ class Legend(Overlay):
                 yield Problem(error.diagnostics[0].message, ("unit",), code=error.diagnostics[0].code)
 
     def draw(
-        self,
-        pixels: NDArray[uint8],
-        view: View,
-        moment: Moment,
-        develop: Callable[[Any], NDArray[uint8]],
+        self, pixels: NDArray[uint8], view: View, moment: Moment, develop: Callable[[Any], NDArray[uint8]]
     ) -> None:
         """Draw the bar. Raises ValueError for what shows no field, and for a unit of another dimension."""
         from sceneql.kinds.texts import shown_unit

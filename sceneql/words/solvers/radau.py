@@ -63,11 +63,7 @@ class Radau(Solver):
                 largest_step=self.largest_step or float("inf"),
                 self_controlled=True,
             ),
-            Needs(
-                jacobian=True,
-                prepare=f"{__name__}:prepare",
-                likely="sceneql.stepping.radau_systems:likely_kernels",
-            ),
+            Needs(jacobian=True, prepare=f"{__name__}:prepare", likely="sceneql.stepping.radau_systems:likely_kernels"),
         )
 
     def measure(self) -> str:
