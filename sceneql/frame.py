@@ -27,7 +27,10 @@ RGB = tuple[float, float, float]
 
 
 def held(array: Any) -> Any:
-    """The array, read-only from now on, as those are that it is a view of: a promise that its numbers never change."""
+    """The array, read-only from now on, as those are that it is a view of: a promise that its numbers never change.
+
+    A view of it that was made before may still be written to, and must not be.
+    """
     one = array
     while hasattr(one, "flags"):
         one.flags.writeable = False

@@ -209,6 +209,7 @@ class Tools:
         self.graph, self.name, self.report, self.target, self.named = graph, name, report, target, named
         self.panels: dict[str, Panel] = {}
         self._frames = 0
+        self._framed: float | None = None
         self._light: Any = None
 
     @property
@@ -319,10 +320,11 @@ class Tools:
         if self.name not in self.graph.drawn:
             raise Unsuitable(f"'{self.name}' gets no shapes: its word does not say that it `draws`")
         names = self.graph.drawn[self.name]
+        if moment.time != self._framed:  # else the same frame is asked for once more
+            self._frames, self._framed = self._frames + (self._framed is not None), moment.time
+            self.report.frames += 1
         frame = shapes_of(names, moment, self._frames, fields=fields)
         look(frame.shapes, solids(names, self.graph.tasks), self.graph.tasks, self.report.present)
-        self._frames += 1
-        self.report.frames += 1
         return frame
 
     def encoder(self, word: str, **settings: Any) -> Any:

@@ -63,6 +63,8 @@ print(moment.read("ball", "a.position")[0])
         ("import sceneql_words.forces.shared_law as law", "law"),
         ("import math; from sceneql_words.forces import shared_law", "shared_law"),
         ("from sceneql_words.forces import (\n    shared_law as law,\n)", "law"),
+        ("from sceneql_words.forces import (  # the law (shared)\n    shared_law,\n)", "shared_law"),
+        ("from sceneql_words.forces.laws import *", "shared_law"),
     ],
 )
 def test_a_kernel_of_a_words_folder_follows_the_modules_that_it_imports(tmp_path, statement, name):
@@ -73,7 +75,11 @@ def test_a_kernel_of_a_words_folder_follows_the_modules_that_it_imports(tmp_path
     scene = tmp_path / "scene.yaml"
     scene.write_text(SCRIPT)
     environment = {**os.environ, "SCENEQL_CACHE": str(tmp_path / "cache"), "PYTHONDONTWRITEBYTECODE": "1"}
+    laws = forces / "laws"
+    laws.mkdir()
+    (laws / "__init__.py").write_text('__all__ = ["shared_law"]\n')
     for factor in (1.0, 2.0):
+        (laws / "shared_law.py").write_text(f"FACTOR = {factor}\n")
         (forces / "shared_law.py").write_text(f"FACTOR = {factor}\n")
         run = [sys.executable, "-c", RUN, str(scene), str(tmp_path)]
         said = subprocess.run(run, env=environment, capture_output=True, text=True, check=True).stdout
@@ -81,7 +87,7 @@ def test_a_kernel_of_a_words_folder_follows_the_modules_that_it_imports(tmp_path
 
 
 def test_a_kernel_is_made_of_its_file_and_of_all_that_this_imports():
-    files = {path.name for path in _sources("sceneql.words.forces.gravity_kernels")}
+    files = {path.name for path in _sources("sceneql.words.forces.gravity_kernels").values()}
     assert files >= {"gravity_kernels.py", "kernels.py", "signatures_kernels.py", "shortcuts.py"}
     assert not files & {"gravity.py", "drag_kernels.py", "cli.py"}
-    assert all(Path(path).is_file() for path in _sources("sceneql.march.march_kernels"))
+    assert all(Path(path).is_file() for path in _sources("sceneql.march.march_kernels").values())

@@ -144,8 +144,9 @@ class Rows:
         return begin
 
     def _mesh(self, index: int, mesh: seen.Mesh) -> None:
-        if len(mesh.triangles) >= LARGE and seen.is_held(mesh.vertices) and seen.is_held(mesh.triangles):
-            packed = still_mesh(mesh)
+        still = len(mesh.triangles) >= LARGE and seen.is_held(mesh.vertices) and seen.is_held(mesh.triangles)
+        packed = still_mesh(mesh) if still else None
+        if packed is not None and np.isfinite(packed.tree.bounds).all():
             self.still.append((packed, self._rows(index, layout.TRIANGLE, packed.rows)))
         else:
             corners = corners_of(mesh)

@@ -21,6 +21,7 @@ from importlib import import_module
 from importlib.util import find_spec, resolve_name
 from itertools import accumulate
 from pathlib import Path
+from pkgutil import iter_modules
 from typing import Any
 
 import numba
@@ -105,8 +106,8 @@ def _imported(path: Path, package: str, changed: int) -> frozenset[str]:
     for part in parts:
         try:
             tree = ast.parse(part)
-        except SyntaxError:  # prose that looks like an import
-            continue
+        except SyntaxError:  # prose that looks like an import, or one that the pattern cuts
+            tree = ast.parse(text)
         for node in ast.walk(tree):
             if isinstance(node, ast.Import):
                 for alias in node.names:
@@ -115,11 +116,17 @@ def _imported(path: Path, package: str, changed: int) -> frozenset[str]:
                 name = f"{'.' * node.level}{node.module or ''}"
                 source = resolve_name(name, package) if node.level else name
                 found |= {source, *(f"{source}.{alias.name}" for alias in node.names)}
+                if node.names[0].name == "*" and _has_modules(source):
+                    places = _spec(source).submodule_search_locations
+                    found |= {f"{source}.{one.name}" for one in iter_modules(places)}
     return frozenset(found)
 
 
-def _sources(module: str) -> frozenset[Path]:
-    """The files that a module's compiled code depends on: its own, and those of ours that it imports, transitively."""
+def _sources(module: str) -> dict[str, Path]:
+    """By module the files that its compiled code depends on: its own, and those of ours that it imports, transitively.
+
+    In the order of their names.
+    """
     found: dict[str, Path | None] = {}
     tops = {*OURS, module.partition(".")[0]}
     todo = [module]
@@ -135,7 +142,7 @@ def _sources(module: str) -> frozenset[Path]:
         if spec is not None and spec.has_location:
             path = found[name] = Path(spec.origin)
             todo += _imported(path, spec.parent, path.stat().st_mtime_ns)
-    return frozenset(path for path in found.values() if path is not None)
+    return {name: path for name, path in sorted(found.items()) if path is not None}
 
 
 def cache_folder(module: str) -> Path:
@@ -154,8 +161,8 @@ def _folder_of_ours(module: str) -> Path:
 
 def _folder(module: str) -> Path:
     digest = hashlib.sha256()
-    for text in sorted(path.read_bytes() for path in _sources(module)):
-        digest.update(text)
+    for name, path in _sources(module).items():
+        digest.update(f"{name} {hashlib.sha256(path.read_bytes()).hexdigest()}\n".encode())
     return CACHE / f"{module.rpartition('.')[2]}-{digest.hexdigest()[:16]}"
 
 

@@ -44,7 +44,10 @@ class Object(Kind):
         return ""
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Drawn]:
-        """Closed-set shapes of this instant; ``place`` (3, 4) maps the parent's coordinates to the world."""
+        """Closed-set shapes of this instant; ``place`` (3, 4) maps the parent's coordinates to the world.
+
+        A field's value now is ``moment.at(self.radius)``, its look ``moment.surface(name, self.material, self.color)``.
+        """
         raise TypeError(f"`{self._word()}` cannot be drawn")
 
     def implicit(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:

@@ -72,7 +72,7 @@ class Output(Kind):
         return None
 
     def times(self, clock: Clock) -> list[float]:
-        """The instants [s] of the simulation that it wants, increasing, from 0 to ``clock.end``."""
+        """The instants [s] of the simulation that it wants, increasing, from 0 to ``clock.end``; see `Clock.frames`."""
         raise NotImplementedError
 
     def open(self, tools: Tools) -> Sink:

@@ -223,9 +223,11 @@ class Solver(Kind):
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """Largest growth factor of a step of the linear system y' = jacobian y (its spectral radius).
 
-        ``partner`` (n,) int: for a position entry of y the index of its velocity, else -1.
+        ``partner`` (n,) int: for a position entry of y the index of its velocity, else -1. Raises Unsuitable for a
+        word that does not tell it.
         """
-        raise NotImplementedError
+        word = type(self).__module__.rpartition(".")[2]
+        raise Unsuitable(f"`{word}` does not tell its growth, so nothing is known of its stable step")
 
     def oscillation(self, frequency: float, decay: float, step: float, turn: float = 0.0) -> float | None:
         """Growth factor of a fixed step on x'' = -frequency^2 x - (decay - i turn) x', in plain Python for `check`.

@@ -6,15 +6,14 @@ Its text depends on the `Structure` alone, so that it is written and compiled on
 
 from __future__ import annotations
 
-import hashlib
 from functools import cache
 from importlib import import_module
 from itertools import chain
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import sceneql.system.channels as channels
 from sceneql.compiled.generated import load, write
+from sceneql.compiled.kernels import cache_folder
 from sceneql.island import layout
 from sceneql.island.system import Structure, System
 
@@ -32,11 +31,15 @@ class Driver(NamedTuple):
     after_step: Any
 
 
-@cache
 def driver(structure: Structure) -> Driver:
     """The driver of a structure, from the cache where it has been compiled before."""
+    return _driver(structure, text(structure))
+
+
+@cache
+def _driver(structure: Structure, code: str) -> Driver:
     module = import_module("sceneql.march.march_kernels")
-    source = load(write("driver", text(structure)))
+    source = load(write("driver", code))
     if structure.exact:
         gap, impact = source.gap, source.impact
     else:
@@ -50,13 +53,13 @@ def jacobian(system: System) -> Any:
     if system.pattern is None:
         return None
     if system.pattern.exact:
-        return _exact_jacobian(system.structure)
+        return _exact_jacobian(jacobian_text(system.structure))
     return load("sceneql.march.differences_kernels").differences
 
 
 @cache
-def _exact_jacobian(structure: Structure) -> Any:
-    return load(write("jacobian", jacobian_text(structure))).jacobian
+def _exact_jacobian(code: str) -> Any:
+    return load(write("jacobian", code)).jacobian
 
 
 def jacobian_text(structure: Structure) -> str:
@@ -136,7 +139,7 @@ def text(structure: Structure) -> str:
 def _imports(names: dict[str, str]) -> list[str]:
     """The kernels' hashes (as comments: a changed kernel makes another module) and imports."""
     modules = dict.fromkeys(name.partition(":")[0] for name in names)
-    lines = [f"# {module} {_digest(module)}" for module in modules]
+    lines = [f"# {module} {cache_folder(load(module).__name__).name}" for module in modules]
     for name, short in names.items():
         module, _, attribute = name.partition(":")
         lines.append(f"from {module} import {attribute} as {short}")
@@ -159,9 +162,3 @@ def _contacts(structure: Structure, names: dict[str, str], first: int, refresh: 
         call = f"{names[impact]}(t, y, pair if pair < 0 else pair - p, floats, ints[ints[b] : ints[b + 1]])"
         lines += _blocks(group, *pair_range, "if pair < 0 or p <= pair < q:", f"    {call}")
     return lines
-
-
-def _digest(module: str) -> str:
-    """Hash of a module's text: numba's cache would not notice a changed function of another file."""
-    path = load(module).__file__
-    return "" if path is None else hashlib.sha256(Path(path).read_bytes()).hexdigest()[:16]

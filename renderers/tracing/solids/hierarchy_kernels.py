@@ -64,7 +64,7 @@ def best_split(boxes, order, start, stop, bins, right):
         if not high > low:
             continue
         scale = BINS / (high - low)
-        if scale == np.inf:  # middles so near to each other that bins cannot separate them
+        if not 0.0 < scale < np.inf:  # middles too near to each other, or too far apart, for bins
             continue
         clear_bins(bins, BINS + 1)
         for i in range(start, stop):
