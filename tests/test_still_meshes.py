@@ -170,6 +170,35 @@ def test_a_held_mesh_looks_as_any_other():
         np.testing.assert_allclose(one, other, atol=1e-6)
 
 
+def test_a_held_mesh_is_drawn_in_the_colors_and_normals_that_it_has_now():
+    mesh = round_mesh(WHITE)
+    mesh = replace(mesh, vertices=held(mesh.vertices.copy()), triangles=held(mesh.triangles.copy()))
+    shades = np.random.default_rng(1).random((3, len(mesh.vertices), 3))
+    made = [
+        replace(mesh, colors=held(shades[0])),
+        replace(mesh, colors=held(shades[1])),
+        replace(mesh, colors=shades[2]),
+    ]
+    made += [replace(made[0], normals=held(-mesh.normals)), made[0]]
+    scene = {"lights": (sun((1, 2, 3)),), "seen": view((1.3, 0.9, 5.0), (0.1, 0.0, 0.0))}
+    pictures = [draw(frame(one, **scene), samples=1).linear for one in made]
+    for picture, one in zip(pictures, made, strict=True):
+        free = replace(one, vertices=one.vertices.copy(), triangles=one.triangles.copy())
+        np.testing.assert_allclose(picture, draw(frame(free, **scene), samples=1).linear, atol=1e-6)
+    assert not np.allclose(pictures[0], pictures[1])
+
+
+@pytest.mark.parametrize("far", [np.inf, -np.inf, np.nan, 1.7e308])
+def test_a_held_mesh_with_a_vertex_beyond_numbers_is_drawn_as_any_other(far):
+    mesh = round_mesh(WHITE)
+    vertices = np.array(mesh.vertices)
+    vertices[7, 0] = far
+    free = replace(mesh, vertices=vertices)
+    still = replace(mesh, vertices=held(vertices.copy()), triangles=held(mesh.triangles.copy()))
+    one, other = (draw(frame(shape, seen=view((1.3, 0.9, 5.0))), samples=1).linear for shape in (free, still))
+    np.testing.assert_array_equal(one, other)
+
+
 def test_a_view_of_what_may_be_written_to_is_not_held():
     array = np.zeros((5, 3))
     part = array[1:]

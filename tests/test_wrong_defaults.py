@@ -23,6 +23,7 @@ class Pull(Force):
     often: FixedTime = field("How often.", OFTEN, above=0)
     pulse: Pulse = field("Each of them.", Pulse())
     share: float = field("How much of it.", default=SHARE, at_most=1)
+    until: FixedTime | None = field("When it ends.", UNTIL)
 """
 SCENE = """\
 models: {ball: {particles: {list: {a: {mass: 1 kg, position: 0 0 0 m}}}}}
@@ -84,11 +85,23 @@ error[out-of-range]: share must be at most 1, not 1.5
 2 errors
 """,
         ),
+        (
+            {"UNTIL": '"3 m"'},
+            """\
+error[dimension-mismatch]: until is a time (s), but this is a length (m)
+  --> FILE:18:55
+   |
+18 |     until: FixedTime | None = field("When it ends.", "3 m")
+   |                                                       ^^^
+
+1 error
+""",
+        ),
     ],
 )
 def test_a_wrong_default_is_told_in_the_file_of_its_word(tmp_path, command, given, told):
     text = FORCE
-    for name, default in ({"OFTEN": '"1 s"', "LENGTH": '"1 s"', "SHARE": "0.5"} | given).items():
+    for name, default in ({"OFTEN": '"1 s"', "LENGTH": '"1 s"', "SHARE": "0.5", "UNTIL": '"2 s"'} | given).items():
         text = text.replace(name, default)
     path = tmp_path / "forces" / "pull.py"
     path.parent.mkdir()

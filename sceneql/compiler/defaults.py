@@ -16,7 +16,7 @@ from pydantic import BaseModel
 
 from sceneql.compiler.limits import check_limits
 from sceneql.compiler.values import fits
-from sceneql.kinds import GRAMMAR, Paint, Quantity, Turn, Value, literal, written_name
+from sceneql.kinds import GRAMMAR, Paint, Turn, Value, grammar_of, literal, written_name
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.span import Source, Span
 
@@ -35,11 +35,11 @@ def check_defaults(cls: type[BaseModel]) -> None:
 def _mistakes(name: str, info: Any, place: Span | None) -> tuple[Any, ...]:
     """The errors of a field's default, at a place of a file, or in the default's text alone where ``place`` is None."""
     default, what, found = info.default, written_name(name), Diagnostics()
-    mark = next((mark for mark in info.metadata if isinstance(mark, Quantity | Paint | Turn)), None)
+    mark, kind = grammar_of(info)
     span = place or Span(Source("default", str(default)), 0, len(str(default)))
     if isinstance(default, str):
         if mark is None:
-            return ()  # a text or a choice, or read by what the field holds besides quantities
+            return ()  # a text or a choice
         quantity = GRAMMAR[type(mark)] if isinstance(mark, Paint | Turn) else mark
         try:
             value = literal(default, span)
@@ -47,7 +47,7 @@ def _mistakes(name: str, info: Any, place: Span | None) -> tuple[Any, ...]:
             return error.diagnostics
         if not fits(value.expr, quantity, what, span, found):
             return found.errors
-        default = value if info.annotation is Value else value.number()
+        default = value if kind is Value else value.number()
     limits = (info.json_schema_extra or {}).get("limits", {})
     annotation = Annotated[(info.annotation, *info.metadata)] if info.metadata else info.annotation
     check_limits(default, limits, what, annotation, span, found)

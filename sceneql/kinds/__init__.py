@@ -66,6 +66,7 @@ from sceneql.kinds.word import (
     Problem,
     Record,
     field,
+    grammar_of,
     literal,
     quantity_type,
     written_name,

@@ -6,6 +6,7 @@ import dataclasses
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from sceneql.failure import Unsuitable
 from sceneql.kinds.stable_step import Oscillation, StaticMass
 from sceneql.kinds.types import ModelRef
 from sceneql.kinds.values import Ref, Value

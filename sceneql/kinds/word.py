@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Literal, Self, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, ValidationInfo, model_validator
 from pydantic_core import InitErrorDetails, PydanticCustomError
@@ -87,6 +87,20 @@ class Problem:
     code: str = "invalid"
 
 
+def grammar_of(info: Any) -> tuple[Quantity | Paint | Turn | None, Any]:
+    """What a field's text default is read by, and as which type: of a union the member that has a grammar.
+
+    None where the default is a text or a choice itself.
+    """
+    members = get_args(info.annotation)
+    if str in members or any(info.default in get_args(one) for one in members if get_origin(one) is Literal):
+        return None, info.annotation
+    marked = [(info.annotation, info.metadata)]
+    marked += [(get_args(one)[0], one.__metadata__) for one in members if get_origin(one) is Annotated]
+    found = ((mark, kind) for kind, marks in marked for mark in marks if isinstance(mark, Quantity | Paint | Turn))
+    return next(found, (None, info.annotation))
+
+
 class Record(BaseModel):
     """A group of fields inside a word (a mass, a spring, a clock): the same types, no methods of a family."""
 
@@ -102,10 +116,10 @@ class Record(BaseModel):
         for name, info in cls.model_fields.items():
             if name in filled or not isinstance(info.default, str):
                 continue
-            for mark in info.metadata:
-                if isinstance(mark, Quantity | Paint | Turn):
-                    value = literal(info.default)
-                    filled[name] = value if info.annotation is Value else value.number()
+            mark, annotation = grammar_of(info)
+            if mark is not None:
+                value = literal(info.default)
+                filled[name] = value if annotation is Value else value.number()
         return filled
 
     def problems(self) -> Iterable[Problem]:
