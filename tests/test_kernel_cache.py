@@ -3,7 +3,6 @@
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
@@ -87,7 +86,7 @@ def test_a_kernel_of_a_words_folder_follows_the_modules_that_it_imports(tmp_path
 
 
 def test_a_kernel_is_made_of_its_file_and_of_all_that_this_imports():
-    files = {path.name for path in _sources("sceneql.words.forces.gravity_kernels").values()}
+    files = {source.path.name for source in _sources("sceneql.words.forces.gravity_kernels").values()}
     assert files >= {"gravity_kernels.py", "kernels.py", "signatures_kernels.py", "shortcuts.py"}
     assert not files & {"gravity.py", "drag_kernels.py", "cli.py"}
-    assert all(Path(path).is_file() for path in _sources("sceneql.march.march_kernels").values())
+    assert all(source.path.is_file() for source in _sources("sceneql.march.march_kernels").values())

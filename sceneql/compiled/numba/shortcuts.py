@@ -153,44 +153,6 @@ def describe_rarely():
     typeinfer.new_error_context = lowering.new_error_context = Context
 
 
-def list_quickly():
-    """The variables of a statement are found by the exact types of its parts, in one step instead of up to six."""
-    slowly = ir.Inst._rec_list_vars
-
-    def listed(self, value):
-        kind = type(value)
-        if kind is ir.Var:
-            return [value]
-        if kind in WITHOUT_VARIABLES:
-            return ()
-        if kind is dict or kind is list or kind is tuple:
-            return [one for part in (value.values() if kind is dict else value) for one in listed(self, part)]
-        return slowly(self, value)
-
-    ir.Inst._rec_list_vars = listed
-
-
-def remember_misses():
-    """A lookup that found no implementation for some types is not repeated until one is added."""
-    find, append = base.OverloadSelector._find, base.OverloadSelector.append
-
-    def finding(self, signature):
-        missed = self.__dict__.setdefault("missed", set())
-        if signature in missed:
-            raise errors.NumbaNotImplementedError(signature)
-        try:
-            return find(self, signature)
-        except errors.NumbaNotImplementedError:
-            missed.add(signature)
-            raise
-
-    def appending(self, value, signature):
-        self.__dict__.pop("missed", None)
-        append(self, value, signature)
-
-    base.OverloadSelector._find, base.OverloadSelector.append = finding, appending
-
-
 def refresh_rarely():
     """numba's registries are imported once; later they are only checked for new entries."""
     load = cpu.CPUContext.load_additional_registries
@@ -333,8 +295,6 @@ SHORTCUTS = (
     resolve_once,
     propagate_quickly,
     describe_rarely,
-    list_quickly,
-    remember_misses,
     refresh_rarely,
     look_once,
     name_quickly,
