@@ -23,7 +23,7 @@ class Tools(Protocol):
         """Film time and simulation time."""
 
     def path(self, extension: str) -> Any:
-        """Path of the output's file."""
+        """Path of the output's file, which ends in ``.extension``; write it by `sceneql.files.whole`."""
 
     def pixels(self, output: Picture, moment: Moment, part: int = 0, parts: int = 1) -> Any:
         """The developed picture (h, w, 3) uint8 of this output's camera, renderer and size.
@@ -32,7 +32,7 @@ class Tools(Protocol):
         """
 
     def frame(self, moment: Moment, *, fields: bool = False) -> Frame:
-        """The shapes (the closed set of sceneql.frame, in the world) that an output draws now, of one that ``draws``.
+        """A frame whose ``shapes`` (the closed set of sceneql.frame, in the world) are what an output now ``draws``.
 
         With ``fields`` objects that have an inside come as their field in a box (frame.Implicit), whatever they are
         drawn as: what is to be polygonised. Arrays of shapes that are held (frame.is_held) are the same objects in the
