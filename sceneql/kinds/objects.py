@@ -44,10 +44,11 @@ class Object(Kind):
         return ""
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Drawn]:
-        """Shapes of `sceneql.frame` now, as ``Mesh(name, surface, vertices, triangles)``, counterclockwise from outside.
+        """Shapes of `sceneql.frame` now, as ``Mesh(name, surface, vertices, triangles)``, counterclockwise outside.
 
         ``place`` (3, 4) maps the parent's coordinates to the world; an object with a position and rotation of its own
-        is a `sceneql.shapes.placement.Placed`, whose ``local(moment)`` is composed with it. A field's value now is ``moment.at(self.radius)``, its look ``moment.surface(name, self.material, self.color)``.
+        is a `sceneql.shapes.placement.Placed`, whose ``local(moment)`` is composed with it. A field's value now is
+        ``moment.at(self.radius)``, its look ``moment.surface(name, self.material, self.color)``.
         """
         raise TypeError(f"`{self._word()}` cannot be drawn")
 
