@@ -1,4 +1,4 @@
-"""Point masses in an island: reserving their state, and what every model of masses gives."""
+"""Point masses in an island: reserving their state, and the outputs of every model of masses."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ MASS_OUTPUTS: Mapping[str, Gives] = {
     "velocity": Gives(quantity_type(dim.VELOCITY, (3,)), "How fast it moves."),
     "acceleration": Gives(quantity_type(dim.ACCELERATION, (3,)), "How fast that changes."),
 }
-"""What a single mass gives, under its own name: ``bob.position``."""
+"""Outputs of a single mass, under its own name: ``bob.position``."""
 
 
 def named_outputs(written: Any) -> dict[str, Gives]:

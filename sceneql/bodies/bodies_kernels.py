@@ -14,7 +14,7 @@ def close(t, y, rate, floats, ints):
     A fixed mass (inverse 0) has rate 0.
     """
     position_at, velocity_at, count, inverse_at = ints[POSITION_AT], ints[VELOCITY_AT], ints[COUNT], ints[INVERSE_AT]
-    # Slices, since the compiler makes vectors of indices that surely are not negative.
+    # Slices, since the compiler vectorizes loops whose indices are known not to be negative.
     change, moves = rate[velocity_at : velocity_at + 3 * count], rate[position_at : position_at + 3 * count]
     velocity, inverse = y[velocity_at : velocity_at + 3 * count], floats[inverse_at : inverse_at + count]
     for k in range(count):

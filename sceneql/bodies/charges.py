@@ -19,9 +19,9 @@ MagneticField = Annotated[Value, Quantity(VOLTAGE * dim.TIME / dim.AREA, (3,))]
 
 
 def each(assembly: Assembly, value: Value, count: int, what: str) -> tuple[int, int]:
-    """Store one number for all masses or one for each: the offset of the first, and 1 where there are many, else 0.
+    """Store one number for all masses or one for each; return the first one's offset and the stride, 0 or 1.
 
-    Raises ScriptError when there are neither one nor ``count``.
+    Raises ScriptError for a list whose length is neither 1 nor ``count``.
     """
     import numpy as np
 
@@ -34,7 +34,7 @@ def each(assembly: Assembly, value: Value, count: int, what: str) -> tuple[int, 
 
 
 def of_moving(bodies: Bodies, state: ModelState, at: int, step: int) -> Floats:
-    """(n,) the numbers that `each` stored, 0 for a fixed mass."""
+    """(n,) numbers of the masses, stored by `each`; 0 for a fixed mass."""
     import numpy as np
 
     inverse = state.floats[bodies.inverse_at : bodies.inverse_at + bodies.count]

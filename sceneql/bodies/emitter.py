@@ -22,10 +22,10 @@ SAMPLES, COLORS = 257, 32
 """Ages at which radii are evaluated, and classes of age with a color each."""
 
 STEPS = 50
-"""Least number of steps in a life, where the solver chooses them: a birth within a step is of third order in it."""
+"""Least number of adaptive steps in a particle's life: a birth within a step has an error of third order in it."""
 
 POOL = 4096
-"""Places of an object that births are drawn from."""
+"""Number of random points in an object from which places of birth are drawn."""
 
 
 def _aged(value: Value, age: float) -> Any:
@@ -40,7 +40,7 @@ class Aging(Record):
     radius: kinds.Length | None = field("Its radius in the picture, in place of the model's.", None)
 
     def problems(self) -> Iterator[Problem]:
-        """Values that are none of an age alone."""
+        """Values that depend on more than the age."""
         for name in ("color", "radius"):
             value = getattr(self, name)
             if value is not None and any(isinstance(node, Link) for node in walk(value.expr)):
@@ -107,24 +107,24 @@ class Emit(Record):
             yield Problem(str(error), code="limit-refused")
 
     def total(self) -> float:
-        """How many are born in all; may be infinite."""
+        """Number of births in all; may be infinite."""
         births = math.inf if self.until is None else math.floor((self.until - self.start) * self.rate * (1 + 1e-12)) + 1
         return min(births, math.inf if self.count is None else self.count)
 
     def capacity(self) -> float:
-        """How many live at once, at most."""
+        """Largest number of particles that live at once."""
         alive = math.ceil(self.rate * self.lifetime * (1 + self.variation)) + 1
         return min(alive, self.total(), math.inf if self.most is None else self.most)
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies, mass: float, radius: float) -> None:
-        """Add births and deaths to the bodies, which are the room for them."""
+        """Add births and deaths; the bodies are the slots of the particles."""
         import numpy as np
 
         pool = np.zeros((1, 3))
         if self.within is not None:
             pool = filled(Fill(object=self.within, count=POOL, seed=self.seed), name, assembly)
         spec = [self.rate, self.start, self.total(), self.lifetime, self.variation, 1 - math.cos(self.spread)]
-        # Of a source that is solved itself, the place at time 0 is not known here: its first step starts from its end.
+        # The place at time 0 of a source with a state is unknown here: in the first step its place at the end serves.
         solved = [
             link for value in (self.from_, self.velocity) for link in value.links if assembly.formula(link) is None
         ]
@@ -132,7 +132,7 @@ class Emit(Record):
         self._act(name, assembly, bodies, [*spec, mass, radius], pool, before, 0, bodies.count)
 
     def assemble_part(self, name: str, assembly: Assembly, bodies: Bodies, start: ModelState, first: int) -> None:
-        """The same for a block, whose bodies are the room for those from ``first`` on of all: ``start``."""
+        """The same for a block of an island, whose bodies are the slots from ``first`` on of all: ``start``."""
         from sceneql.bodies.emitter_kernels import BEFORE, MEMORY, MEMORY_AT, POOL, POOL_AT, SPEC, SPEC_AT
 
         assert start.bodies is not None
@@ -196,7 +196,7 @@ class Emit(Record):
         slots = births % n
         x, v = (state.y[at : at + 3 * n].reshape(-1, 3)[slots] for at in (bodies.position_at, bodies.velocity_at))
         a = state.rate[bodies.velocity_at : bodies.velocity_at + 3 * n].reshape(-1, 3)[slots]
-        # Births of the last step still owe the acceleration of their first moments (emitter_kernels.emit).
+        # Particles born in the last step still lack the acceleration since their births (emitter_kernels.emit).
         owed = np.where(births >= first, ages, 0.0)[:, None]
         x, v = x + 0.5 * a * owed**2, v + a * owed
         m = len(births)

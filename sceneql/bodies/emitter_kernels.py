@@ -10,8 +10,8 @@ from sceneql.compiled.kernels import inlined, kernel
 from sceneql.system.signatures_kernels import AFTER_STEP
 
 RATE, START, TOTAL, LIFETIME, VARIATION, NARROW, MASS, RADIUS, SPEC = range(9)
-"""What an emitter is: births a second; the first one's time; how many; mean lifetime, largest relative deviation of it
-and of the speed; 1 - cos of the cone's half angle; mass and radius of a particle."""
+"""Numbers of an emitter: births a second; the first one's time; their number; mean lifetime, largest relative deviation
+of it and of the speed; 1 - cos of the cone's half angle; mass and radius of a particle."""
 
 FIRST, BORN, BEFORE, MEMORY = 0, 1, 2, 9
 """Memory: births before the last step, births so far; time of the last step (below 0: none
@@ -41,13 +41,13 @@ def draw(birth, number, key):
 
 @inlined
 def birth_time(floats, spec, birth):
-    """When a birth happens."""
+    """Time of a birth [s]."""
     return floats[spec + START] + birth / floats[spec + RATE]
 
 
 @inlined
 def born_until(floats, spec, t):
-    """How many are born up to t."""
+    """Number of births up to time t."""
     birth = max(0, int(min((t - floats[spec + START]) * floats[spec + RATE], floats[spec + TOTAL])))
     while birth > 0 and birth_time(floats, spec, birth - 1) > t:
         birth -= 1
@@ -58,7 +58,7 @@ def born_until(floats, spec, t):
 
 @inlined
 def own_from(birth, ints):
-    """The first birth from that one on whose slot is one of this block's."""
+    """The first birth, from ``birth`` on, whose slot belongs to this block."""
     slot, first = birth % ints[SLOTS], ints[FIRST_SLOT]
     if slot < first:
         return birth + first - slot
@@ -67,13 +67,13 @@ def own_from(birth, ints):
 
 @inlined
 def lifetime(floats, spec, birth, key):
-    """How long a particle lives."""
+    """Lifetime of a particle [s]."""
     return floats[spec + LIFETIME] * (1.0 + floats[spec + VARIATION] * (2.0 * draw(birth, AGE, key) - 1.0))
 
 
 @inlined
 def thrown(floats, spec, birth, key, vx, vy, vz):
-    """The mean velocity, turned by chance within the cone, evenly over its solid angle, and lengthened by chance."""
+    """The mean velocity in a random direction, uniform over the cone's solid angle, with a random speed."""
     speed = math.sqrt(vx * vx + vy * vy + vz * vz)
     if speed == 0.0:
         return vx, vy, vz
@@ -96,7 +96,7 @@ def thrown(floats, spec, birth, key, vx, vy, vz):
 
 @inlined
 def catch_up(t0, t1, y0, rate0, y1, floats, ints):
-    """What the last step's births owe: the acceleration, known only now, acts from their birth on. Whether any do."""
+    """Add the acceleration since birth, known only now, to particles born in the last step; whether there are any."""
     position_at, velocity_at, spec, memory = ints[POSITION_AT], ints[VELOCITY_AT], ints[SPEC_AT], ints[MEMORY_AT]
     born = int(floats[memory + BORN])
     birth = own_from(max(int(floats[memory + FIRST]), born - ints[SLOTS]), ints)
@@ -117,11 +117,11 @@ def catch_up(t0, t1, y0, rate0, y1, floats, ints):
 
 @kernel(AFTER_STEP, inner=True)
 def emit(t0, t1, y0, rate0, y1, floats, ints):
-    """Births and deaths of a step; whether there were any, or births of the step before owed something.
+    """Births and deaths of a step; whether there were any, or corrections of births in the step before.
 
-    Birth j takes slot j mod SLOTS, and is the matter of the block that has it. A particle that is born inside the step
-    has flown straight since, and gets the acceleration that it finds at the step's end in the next step, for the whole
-    time: exact under a uniform force, else of third order. One that died in the step before is taken out.
+    Birth j takes slot j mod SLOTS and is handled by the block that owns the slot. A particle born inside the step moves
+    straight to its end; the next step adds the acceleration at that end for the whole time since birth: exact under a
+    uniform force, else with an error of third order. Particles that died in the step before are removed.
     """
     position_at, velocity_at, count = ints[POSITION_AT], ints[VELOCITY_AT], ints[COUNT]
     mass_at, inverse_at, radius_at = ints[MASS_AT], ints[INVERSE_AT], ints[RADIUS_AT]

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""The energy of springs: of a module of its own, since most runs ask for none."""
+"""The energy of springs, in a module of its own, since most runs need not compile it."""
 
 import math
 

@@ -10,7 +10,7 @@ from sceneql.compiled.threads_kernels import TILE, over_threads
 from sceneql.system.signatures_kernels import TERM
 
 ENTRIES = 9
-"""Of a spring: a block of 3x3."""
+"""Entries of a spring's 3x3 block."""
 POSITION_AT, VELOCITY_AT, INVERSE_AT, COUNT, DAMPED, TILES, ENTRY, THREADS, TILE_AT = range(9)
 BLOCKS_AT, STIFFNESS_AT, DAMPING_AT, PAIRS_AT = range(9, 13)
 """From PAIRS_AT on the two masses of each spring."""
@@ -18,7 +18,7 @@ BLOCKS_AT, STIFFNESS_AT, DAMPING_AT, PAIRS_AT = range(9, 13)
 
 @lean(TILE)
 def tile(number, t, y, entries, floats, ints):
-    """The springs of a tile, see `springs`."""
+    """Derivatives of the springs of one tile, see `springs`."""
     position_at, velocity_at, inverse_at = ints[POSITION_AT], ints[VELOCITY_AT], ints[INVERSE_AT]
     model_stiffness, model_damping = floats[ints[STIFFNESS_AT]], floats[ints[DAMPING_AT]]
     count, tiles, damped = ints[COUNT], ints[TILES], ints[DAMPED] == 1
@@ -71,15 +71,15 @@ def tile(number, t, y, entries, floats, ints):
 
 @lean(TERM, inner=True)
 def springs(t, y, entries, floats, ints):
-    """Of the force that pulls each spring's first mass towards its second, by the second's position, then velocity.
+    """Derivatives of the force on each spring's first mass by the position, then the velocity, of its second mass.
 
-    For spring s the 3x3 entries by position from 9 s on, if damped by velocity from 9 (count + s) on; those by the
-    first mass, and of the other force, are the negatives.
+    For spring s the 3x3 entries by position from 9 s on, if damped by velocity from 9 (count + s) on. Derivatives by
+    the first mass, and of the force on the second mass, are their negatives.
     With u along the spring, w the relative velocity and p = w . u: d(force)/dx = k u u + (k (L - L0) + c p)/L (1 - u u)
     + c u (w - p u)/L, d(force)/dv = c u u.
-    For Newton's method without the third part (Choi & Ko 2002), and with the force by the length and speed that the
-    latest change foresaw, along the spring as it lay before. Definite ones: of what pushes across a pressed spring only
-    so much as the lighter mass holds (channels.DEFINITE): springs that buckle slowly keep their true slopes.
+    For Newton's method without the third term (Choi & Ko 2002), and with the force of the length and speed predicted by
+    the latest iteration, along the spring's direction before it. The negative transverse stiffness of a compressed
+    spring is bounded by the lighter mass (channels.DEFINITE): springs that buckle slowly keep exact derivatives.
     """
     if ints[TILES] == 1:
         tile(0, t, y, entries, floats, ints)

@@ -1,4 +1,4 @@
-"""Cell lists: numbers for a table of cells in which the 27 cells around any one have places of their own."""
+"""Cell lists: a hash table in which the 27 cells around any cell have distinct entries."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ LEAST = 256
 def table(count: int) -> tuple[int, int, int]:
     """Size M (a power of two) and factors P, Q: cell (i, j, k) stands at (i + P j + Q k) mod M.
 
-    Cells that are at most two apart along each axis never share a place, so no pair of neighbors is met twice.
+    Cells at most two apart along each axis never share an entry, so no pair of neighbors is counted twice.
     """
     size = LEAST
     while size < 2 * count:

@@ -16,7 +16,7 @@ def cell_of(x, edge):
 
 @inlined
 def sort_by_cell(floats, n, points, edge, size, p, q, sorted_at, order_at, start_at):
-    """Sort points by cell, those whose x is finite. All are offsets into floats.
+    """Sort the points with a finite x by cell. All arguments of places are offsets into floats.
 
     ``points``: all x, y, z (3 n); written are ``sorted_at`` (3 n) the same in order of cells, ``order_at`` (n) the
     number of each, ``start_at`` (size + 1) the first of each place of the table (neighbors.table) and their number.

@@ -1,4 +1,4 @@
-"""Nets of springs: what a script may say of a lattice, a cloth, a rope or single masses, and the graph it makes."""
+"""Nets of springs: the fields of a lattice, a cloth, a rope or single masses, and the graph made from them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 SIDES = ("left", "right", "bottom", "top", "back", "front")
 EDGES = ("left", "right", "bottom", "top")
 STEPS = tuple(step for step in product((-1, 0, 1), repeat=3) if step > (0, 0, 0))
-"""To the neighbors of a place of a grid, each pair once."""
+"""Offsets from a grid point to its neighbors, each pair once."""
 CORNERS = ("bottom_left", "bottom_right", "top_left", "top_right")
 
 
@@ -319,7 +319,7 @@ def stiffest(offsets: Iterable[tuple[Sequence[float], float]]) -> float:
 
 
 def _sides(count: int, reach: int = 1) -> tuple[int, ...]:
-    """Where a mass in a row of so many has neighbors at a distance, itself included."""
+    """Offsets, 0 included, of the neighbors within ``reach`` of a mass in a row of ``count``."""
     if count <= reach:
         return (0,)
     return (0, reach) if count <= 2 * reach else (-reach, 0, reach)

@@ -32,7 +32,7 @@ class Pin(Record):
 
 
 def start_velocity(pin: Pin, assembly: Assembly) -> Floats:
-    """(3,) [m/s] of what a pin leads at the start."""
+    """(3,) [m/s] velocity of a pin's masses at the start."""
     import numpy as np
 
     ends = [np.asarray(assembly.initial(Value(_at(pin.shift, by, assembly)))) for by in (-APART, APART)]
@@ -41,7 +41,7 @@ def start_velocity(pin: Pin, assembly: Assembly) -> Floats:
 
 
 def pinned(name: str, net: Net, pin: Pin | None = None) -> Any:
-    """(k,) indices of the masses that a pin means. Raises ScriptError where its formula holds for none."""
+    """(k,) indices of a pin's masses. Raises ScriptError where its formula holds for none."""
     import numpy as np
 
     if pin is not None and pin.where is not None:
@@ -55,7 +55,7 @@ def pinned(name: str, net: Net, pin: Pin | None = None) -> Any:
 
 
 def guide(pins: Mapping[str, Pin], net: Net, assembly: Assembly, bodies: Bodies) -> None:
-    """Add the motion of pins. What moves them does work, which is counted (negative) among the dissipated energy.
+    """Add the motion of pins. The work done on them is counted, with negative sign, among the dissipated energy.
 
     Velocity and acceleration are central differences. Raises ScriptError for a shift that is no function of time.
     """

@@ -1,7 +1,7 @@
 # mypy: ignore-errors
 """Pins that move.
 
-One that has been let go has an inverse mass above 0.
+A pin that has been released has an inverse mass above 0.
 """
 
 from sceneql.compiled.kernels import inlined, kernel
@@ -12,7 +12,7 @@ EARLIER, NOW, LATER, APART, STARTS, UNTIL, COUNT, MASSES = range(5, 13)
 """Floats' places of the shift a little earlier, now and a little later (3 each), of that little time, of the masses'
 starts (3 each) and of the time at which they are let go; the number of masses, and from MASSES on the masses."""
 EPSILON, SAFE = 2.0**-52, 100.0
-"""Relative rounding of a number, and how many of it steps may have gathered before a pin is put in place again."""
+"""Relative rounding error of a number, and the accumulated multiple of it beyond which a pin is moved into place."""
 
 
 @inlined
@@ -31,7 +31,7 @@ def acceleration(floats, ints, c):
 
 @kernel(TERM, inner=True)
 def toil(t, y, rate, floats, ints):
-    """The power that leads the pins against their springs, taken off the work; after the springs, before all else."""
+    """Subtract the power that moves the pins against their springs from the work; runs right after the springs."""
     for k in range(ints[COUNT]):
         mass = ints[MASSES + k]
         if floats[ints[INVERSE_AT] + mass] > 0.0:
@@ -55,9 +55,9 @@ def lead(t, y, rate, floats, ints):
 
 @inlined
 def rounding(floats, ints, place, order, h):
-    """How far rounding of the differences leads a place [m] (order 0) or velocity [m/s] (1) off in a step of length h.
+    """Rounding error of a place [m] (order 0) or velocity [m/s] (1) after a step of length h, from the differences.
 
-    That of the acceleration is some EPSILON |place| / APART^2.
+    The error of the acceleration is some EPSILON |place| / APART^2.
     """
     apart = floats[ints[APART]]
     return SAFE * EPSILON * place * (1.0 + h / apart) ** (2 - order) / apart**order
@@ -65,10 +65,10 @@ def rounding(floats, ints, place, order, h):
 
 @kernel(AFTER_STEP, inner=True)
 def put(t0, t1, y0, rate0, y1, floats, ints):
-    """Put the pins where they must be at the end of a step (keyframes may have kinks), and let go of them in time.
+    """Move the pins to their prescribed places at the end of a step (keyframes may have kinks); release those due.
 
-    One that is elsewhere by no more than rounding stays: multistep methods and dense output go on from the solver's own
-    state. Returns whether any was moved or let go.
+    A pin that is off by rounding alone is left as it is, so that multistep methods and dense output keep the solver's
+    own state. Returns whether any pin was moved or released.
     """
     changed = False
     for k in range(ints[COUNT]):

@@ -53,7 +53,7 @@ def scaled(rows: Sequence[Expr], factor: Expr) -> tuple[Expr, ...]:
 def add_force(
     assembly: Assembly, bodies: Bodies, rows: Sequence[Expr], charge: tuple[int, int] = (0, 0), *, counted: bool
 ) -> None:
-    """Add the force [N] of three scalar rows to every mass; ``counted``: what it gives is counted in the work."""
+    """Add the force [N] of three scalar rows to every mass; ``counted``: its power is added to the work."""
     from sceneql.system import Slopes
 
     for row in rows:
@@ -71,7 +71,7 @@ def add_force(
         inputs = [assembly.value(Value(expr)) for expr in constants.inputs]
         return (assembly.floats(constants.values), *head, *charge, *inputs)
 
-    # The numbers of the derivatives are stored with those of the force: when a solver asks for them it is too late.
+    # Constants of the derivatives are stored with the force's: no floats can be added once a solver asks for them.
     entries, kernel, more = _slopes(rows)
     ints = store(more)
 

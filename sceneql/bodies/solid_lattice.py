@@ -1,4 +1,4 @@
-"""Solids of masses and springs: what a script may say of one that fills an object, and the net that it makes."""
+"""Solids of masses and springs: the fields of a solid that fills an object, and the net made from them."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 SHORT, LONG = 0.9, 1.2
 """Weights of the two kinds of edges, by which the lattice is isotropic."""
 SPRINGS_A_MASS = 7
-"""Short ones to 8 neighbors, long ones to 6, each of two masses."""
+"""Springs per mass: short ones to 8 neighbors and long ones to 6, each shared by two masses."""
 
 
 class Filling(Record):
@@ -84,7 +84,7 @@ class Filling(Record):
         return square, factor * damping if self.retardation is None else self.retardation * square
 
     def bounded(self, low: Floats, high: Floats) -> None:
-        """Raise Exceeds where places in a box cannot be looked at."""
+        """Raise Exceeds where a box has too many places to test."""
         import numpy as np
 
         from sceneql.bodies.filling.fill import grid_counts

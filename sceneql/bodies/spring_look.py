@@ -1,4 +1,4 @@
-"""How masses and springs look when nothing else draws them."""
+"""Default shapes of masses and springs in pictures."""
 
 from __future__ import annotations
 

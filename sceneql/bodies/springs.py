@@ -1,4 +1,4 @@
-"""What every model of masses and springs has in common: pins, tears, forces, outputs, looks."""
+"""The base of all models of masses and springs: pins, tears, forces, outputs, shapes in pictures."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies, ModelState, Slopes
 
 SPRINGS_A_TILE = 10_000
-"""Springs whose slopes a thread finds at a time."""
+"""Springs in a tile: a thread evaluates the derivatives of one tile at a time."""
 MOST_COILS = 40
 
 
@@ -96,7 +96,7 @@ class SpringModel(Model):
         raise NotImplementedError
 
     def mass_count(self) -> int | None:
-        """Number of masses, where the fields tell."""
+        """Number of masses, where the fields determine it."""
         return None
 
     def items(self, output: str) -> int | None:
@@ -224,7 +224,7 @@ class SpringModel(Model):
         raise KeyError(output)
 
     def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
-        """Of the masses, and of the ends of springs where none tears."""
+        """Indices in y of outputs of the masses, and of the ends of springs where no spring tears."""
         assert state.bodies is not None
         if output != "springs":
             return point_masses.places(output, state.bodies)
@@ -282,9 +282,9 @@ class SpringModel(Model):
 
 
 def _shortest_period(pairs: Any, stiffnesses: Floats, weights: Floats) -> float:
-    """A bound [s] from below: no squared frequency is above the largest of 2 (sum of stiffnesses) / mass (Gershgorin).
+    """Lower bound [s] of all periods: no squared frequency exceeds the largest 2 (sum of stiffnesses) / mass.
 
-    It is that of K v = w^2 M v, whose row of a mass has the sum on and once more beside its diagonal block.
+    Gershgorin's theorem for K v = w^2 M v: a mass's row has that sum in its diagonal block and once more beside it.
     """
     import numpy as np
 
@@ -294,7 +294,7 @@ def _shortest_period(pairs: Any, stiffnesses: Floats, weights: Floats) -> float:
 
 
 def _slopes(net: Net, bodies: Bodies, damped: bool, floats_at: Sequence[int]) -> Slopes:
-    """Of each spring a block of 3x3 by positions, in four places; if damped, as much by velocities."""
+    """Slopes with each spring's 3x3 block by positions, at four pairs of masses; if damped, also by velocities."""
     import numpy as np
 
     from sceneql.bodies.mass_spring_slopes_kernels import tile

@@ -13,10 +13,10 @@ POSITION_AT, WORK_AT, BLOCKS_AT, STIFFNESS_AT, LIMITS_AT, TORN_AT, COUNT, PAIRS_
 
 @kernel(AFTER_STEP, inner=True)
 def tear(t0, t1, y0, rate0, y1, floats, ints):
-    """Springs longer than they bear lose stiffness and damping; their energy is counted as dissipated.
+    """Springs beyond their limit of strain lose stiffness and damping; their energy is counted as dissipated.
 
-    Returns whether any did. The energy is added at both ends of the step, as frames inside it see the spring torn
-    already.
+    Returns whether any spring broke. The energy is added at both ends of the step, as frames inside it already show
+    the broken spring.
     """
     torn = False
     position_at, work_at, blocks_at, limits_at = ints[POSITION_AT], ints[WORK_AT], ints[BLOCKS_AT], ints[LIMITS_AT]

@@ -1,4 +1,4 @@
-"""Expressions of time, a little earlier or later: what rates of change of any motion are found from."""
+"""Expressions of time, shifted a little, for rates of change of any motion by differences."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ def later(expr: Expr, by: float, follow: Callable[[Link], Expr | None] = lambda 
 
 
 def goes_evenly(expr: Expr, follow: Callable[[Link], Expr | None]) -> bool:
-    """Whether it is known to change by as much in every second, at all times; ``follow`` as in `later`."""
+    """Whether an expression is known to be linear in time; ``follow`` as in `later`."""
 
     def degree(node: Expr) -> float:
-        """As a polynomial of the time; infinite for what is not known as one."""
+        """Degree of a node as a polynomial of the time; infinite where it is not known to be one."""
         match node:
             case Number():
                 return 0.0

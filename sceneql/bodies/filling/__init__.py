@@ -1,1 +1,1 @@
-"""Masses, tetrahedra in objects."""
+"""Filling objects with masses and tetrahedra."""

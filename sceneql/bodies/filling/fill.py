@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 CHUNK = 1 << 18
 HALVINGS = 40
-"""Of a way, to find where it leaves."""
+"""Bisections of a segment to find where it leaves the object."""
 EMPTIEST = 2000
-"""An object that holds less than one in so many places of its box counts as holding none."""
+"""An object that holds fewer than one in so many random points of its box counts as empty."""
 
 
 class Fill(Record):
@@ -76,7 +76,7 @@ class Inside:
             raise self.refusal(str(error)) from None
 
     def crossing(self, inner: Floats, outer: Floats) -> Floats:
-        """(n,) where (0..1) the ways from places inside to places outside, each (n, 3), leave the object."""
+        """(n,) fractions (0..1) at which segments from inside to outside, ends (n, 3), leave the object."""
         import numpy as np
 
         found = np.full(len(inner), np.nan) if self._exits is None else self._exits(inner, outer)
@@ -91,7 +91,7 @@ class Inside:
         return found
 
     def refusal(self, why: str) -> ScriptError:
-        """That it cannot be filled."""
+        """The error that says why the object cannot be filled."""
         return ScriptError([Diagnostic("not-filled", f"'{self.name}' cannot be filled: {why}", self.span)])
 
     def bounded(self, bound: Callable[..., object], *arguments: Any) -> None:
@@ -102,7 +102,7 @@ class Inside:
             raise LimitRefused(str(error), self.span, "use a larger spacing") from None
 
     def random(self, first: int, count: int, key: int) -> Floats:
-        """Those of the places number first to first + count of its box, by chance, that lie in it: (m, 3)."""
+        """(m, 3) the random points of its box, numbers first to first + count - 1, that lie in the object."""
         import numpy as np
 
         index = np.arange(first, first + count, dtype=np.uint64)
@@ -128,7 +128,7 @@ def chance_key(name: str, seed: int) -> int:
 
 
 def _test(kind: Object, start: Any) -> tuple[Callable[[Floats], Any], Callable[[Floats, Floats], Floats] | None]:
-    """places (n, 3) -> (n,) bool, whether they lie in the object; of meshes where ways leave it, too (winding.exits).
+    """places (n, 3) -> (n,) bool, whether they lie in the object; for meshes also their exits (winding.exits).
 
     Raises TypeError where it has no inside.
     """
@@ -180,7 +180,7 @@ def filled(fill: Fill, name: str, assembly: Assembly) -> Floats:
 
 
 def _even(inside: Inside, trial: Floats, wanted: int, apart: float, key: int, spread: Any) -> Floats:
-    """Darts that keep a distance, which shrinks while no more fit (McCool & Fiume 1992, section 3)."""
+    """Poisson disk samples; their distance shrinks when no more fit (McCool & Fiume 1992, section 3)."""
     import numpy as np
 
     room = np.ascontiguousarray(inside.high - inside.low)

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Places that keep their distance from each other."""
+"""Poisson disk samples: points with a minimum distance from each other."""
 
 import numpy as np
 from numba import types
@@ -17,9 +17,9 @@ def cell_of(place, low, side):
 
 @kernel(types.int64(PLACES, PLACES, types.int64, types.float64[::1], types.float64[::1], types.float64))
 def spread(darts, places, kept, low, room, apart):
-    """Put darts (n, 3) behind the ``kept`` first of ``places`` that are ``apart`` from all there; how many there are.
+    """Append darts (n, 3) at least ``apart`` from all the ``kept`` first of ``places``; return the new number.
 
-    Places are found by cells of side ``apart``, each a chained list; ``places`` is never overfilled.
+    Neighbors are found by cells of side ``apart``, each a linked list; ``places`` is never overfilled.
     """
     side = max(apart, 1e-9 + np.cbrt(room[0] * room[1] * room[2] / 2e7))
     nx, ny, nz = int(room[0] / side) + 1, int(room[1] / side) + 1, int(room[2] / side) + 1

@@ -2,7 +2,7 @@
 
 Labelle & Shewchuk, Isosurface stuffing: fast tetrahedral meshes with good dihedral angles (2007). Corners and middles
 of cubes are masses; two middles across a face and an edge of the face make a tetrahedron (Fuchs 1998). Where an edge
-leaves the object near one of its ends, the end moves there; what is still cut is cut. Imports numpy.
+leaves the object near one of its ends, the end moves there; tetrahedra still crossed are cut. Imports numpy.
 """
 
 from __future__ import annotations
@@ -54,8 +54,8 @@ def stuffed(
 ) -> Stuffing:
     """Tetrahedra inside an object in a box, of cubes of side ``spacing`` [m]; none where no corner or middle is inside.
 
-    ``holds`` says which of places (n, 3) lie inside; ``crossing`` where (0..1) the ways from places inside to places
-    outside, each (n, 3), leave.
+    ``holds`` says which of places (n, 3) lie inside; ``crossing`` at which fraction (0..1) segments from places
+    inside to places outside, each (n, 3), leave.
     """
     counts = lattice_counts(low, high, spacing).astype(np.int64)
     start = 0.5 * (low + high) - 0.5 * spacing * (counts - 1)
@@ -102,7 +102,7 @@ def _lattice(counts: NDArray[int64], inside: NDArray[bool_]) -> Ints:
 
 
 def _compact(tetrahedra: Any) -> tuple[NDArray[int64], Any]:
-    """The points that are used, and the tetrahedra by the numbers among them."""
+    """Indices of the points in use, and the tetrahedra renumbered by them."""
     used, which = np.unique(tetrahedra, return_inverse=True)
     return used.astype(np.int64), which.reshape(-1, 4)
 
@@ -110,14 +110,14 @@ def _compact(tetrahedra: Any) -> tuple[NDArray[int64], Any]:
 def _moved(
     points: Floats, state: Ints, ends: NDArray[int64], share: Floats, surface: Floats, near: Floats
 ) -> tuple[Floats, Ints]:
-    """Points moved to the nearest cut that is too near to them, and so ON the surface."""
+    """Snap points to the nearest cut within reach (NEAR), which puts them ON the surface."""
     vertex = np.concatenate([ends[:, 0], ends[:, 1]])
     away = np.concatenate([share, 1.0 - share])
     close = np.flatnonzero(away < np.concatenate([near, near]))
     length = np.linalg.norm(points[ends[:, 0]] - points[ends[:, 1]], axis=1)
     order = close[np.argsort(-(away * np.concatenate([length, length]))[close], kind="stable")]
     points, state = points.copy(), state.copy()
-    points[vertex[order]] = surface[order % len(ends)]  # of several the last, the nearest
+    points[vertex[order]] = surface[order % len(ends)]  # of several cuts the last assignment stays: the nearest
     state[vertex[order]] = ON
     return points, state
 
@@ -125,7 +125,7 @@ def _moved(
 def _cut(
     points: Floats, state: Ints, tetrahedra: Ints, ends: NDArray[int64], surface: Floats, kind: NDArray[int64]
 ) -> Stuffing:
-    """What of tetrahedra lies inside. ``kind`` (n,): 2 of middles, and 1 where the sum of the coordinates is odd."""
+    """The tetrahedra's parts inside. ``kind`` (n,): 2 of middles, and 1 where the sum of the coordinates is odd."""
     size = len(points)
     keys = ends @ (size, 1)
     order = np.argsort(keys)
@@ -133,11 +133,11 @@ def _cut(
     points = np.concatenate([points, surface[order]])
 
     def meet(inner: Ints, outer: Ints) -> Ints:
-        """Where edges from points inside to others leave: at the others themselves where they are ON."""
+        """Points where edges leave the object: the outer ends themselves where they are ON."""
         found: Ints = np.where(state[outer] == ON, outer, size + np.searchsorted(keys, inner * size + outer))
         return found
 
-    # Corners inside first, then those on the surface, then those outside; an odd order swaps two that count alike.
+    # Corners inside first, then those on the surface, then those outside; an odd order swaps two of the same kind.
     states = state[tetrahedra]
     by = np.argsort(-states, axis=1, kind="stable")
     inner, outer = (states == IN).sum(axis=1), (states == OUT).sum(axis=1)
@@ -157,7 +157,7 @@ def _cut(
     a, b, o, p = fours[(inner == 2) & (outer == 2)].T
     top, bottom = np.stack([a, meet(a, o), meet(a, p)], axis=1), np.stack([b, meet(b, o), meet(b, p)], axis=1)
     first, second = _first(kind, a, b, o), _first(kind, a, b, p)
-    # On the surface the shorter diagonal, where the two others leave the choice.
+    # On the surface the shorter diagonal, where the other two diagonals leave both possible.
     shorter = _apart(points, top[:, 1], bottom[:, 2]) < _apart(points, top[:, 2], bottom[:, 1])
     pieces += _prism(top, bottom, np.stack([first, second, np.where(first == second, shorter, ~first)], axis=1))
     used, tetrahedra = _compact(np.concatenate(pieces))

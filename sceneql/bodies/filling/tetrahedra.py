@@ -1,4 +1,4 @@
-"""Tetrahedra of masses: what they hold, their edges, their angles, and the triangles around them. Imports numpy."""
+"""Tetrahedra of masses: volumes, edges, angles and boundary triangles. Imports numpy."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
 ENDS = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))
-"""The edges of a tetrahedron by its corners; the k-th lies across from the one before the k-th last."""
+"""The edges of a tetrahedron by its corners; edges k and 5 - k are opposite."""
 FACES = ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))
 """Its faces, counterclockwise from outside, each across from the corner of its number."""
 

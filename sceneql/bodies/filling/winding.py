@@ -1,4 +1,4 @@
-"""Whether places lie inside a closed mesh, and where ways leave it."""
+"""Whether points lie inside a closed mesh, and where segments leave it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 PAIRS_AT_ONCE = 4_000_000
 EDGE = 1e-9
-"""Share of a triangle by which ways may miss it, so that none slips through between two."""
+"""Tolerance in barycentric coordinates, so that no segment passes between two triangles."""
 
 
 def winding(places: Floats, corners: Floats) -> Floats:
@@ -34,7 +34,7 @@ def winding(places: Floats, corners: Floats) -> Floats:
 
 
 def exits(inner: Floats, outer: Floats, corners: Floats) -> Floats:
-    """(n,) where (0..1) the ways from places ``inner`` to ``outer``, each (n, 3), first meet triangles (m, 3, 3).
+    """(n,) fractions (0..1) at which segments from ``inner`` to ``outer``, each (n, 3), first hit triangles (m, 3, 3).
 
     NaN where none is met (Moeller & Trumbore 1997).
     """
