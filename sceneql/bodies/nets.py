@@ -319,7 +319,7 @@ def stiffest(offsets: Iterable[tuple[Sequence[float], float]]) -> float:
 
 
 def _sides(count: int, reach: int = 1) -> tuple[int, ...]:
-    """Offsets, 0 included, of the neighbors within ``reach`` of a mass in a row of ``count``."""
+    """Offsets of the neighbors at distance ``reach`` of a mass in a row of ``count``, and 0."""
     if count <= reach:
         return (0,)
     return (0, reach) if count <= 2 * reach else (-reach, 0, reach)

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""What masses give into a field."""
+"""The sources that masses are to a field."""
 
 import numpy as np
 
@@ -14,7 +14,7 @@ POSITION_AT, COUNT, INVERSE_AT, GIVEN_AT, FIELD = range(5)
 
 @kernel(TERM, inner=True)
 def emission(t, y, rate, floats, ints):
-    """Adds what every mass gives to the cells around it, by their weights in the interpolant, and to the inflow."""
+    """Adds every mass's source to the cells around it, by their interpolation weights, and to the total inflow."""
     cells, weights = np.empty(CORNERS, dtype=np.int64), np.empty(CORNERS)
     field, volumes = ints[FIELD], ints[FIELD + cells_of.VOLUMES_AT]
     n = ints[FIELD + cells_of.NX] * ints[FIELD + cells_of.NY] * ints[FIELD + cells_of.NZ]

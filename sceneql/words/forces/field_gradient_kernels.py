@@ -14,7 +14,7 @@ POSITION_AT, VELOCITY_AT, COUNT, WORK_AT, INVERSE_AT, FACTOR_AT, FIELD = range(7
 
 @kernel(TERM, inner=True)
 def field_gradient(t, y, rate, floats, ints):
-    """Adds factor grad c of the place of every mass, and takes its power from the work."""
+    """Adds factor grad c at the place of every mass, and subtracts its power from the work."""
     cells, weights, slope = np.empty(CORNERS, dtype=np.int64), np.empty(CORNERS), np.empty(3)
     field, box = ints[FIELD], ints[FIELD + cells_of.BOX_AT]
     factor = floats[ints[FACTOR_AT]]

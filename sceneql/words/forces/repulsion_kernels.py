@@ -16,7 +16,7 @@ PART = 1024
 
 @kernel(TILE, inner=True)
 def repulsion_tile(tile, t, y, rate, floats, ints):
-    """The masses PART tile, ... in order of cells: all forces on each, and its half of the energies."""
+    """All forces on the masses of a tile, from PART tile on in order of cells, and their halves of the energies."""
     n, alive = ints[BODIES], int(floats[ints[START] + ints[SIZE]])
     strength, reach = floats[ints[STRENGTH]], floats[ints[NUMBERS]]
     exponent = floats[ints[NUMBERS] + 1]

@@ -7,14 +7,14 @@ from sceneql.compiled.kernels import kernel
 from sceneql.system.signatures_kernels import TERM
 
 POSITION_AT, VELOCITY_AT, WORK_AT, END = range(4)
-"""Of an end, those of the second from END on; of a place that is no mass -1, where it is in the floats, -1."""
+"""Integers of an end; the second end's start at END. Of an end that is no mass: -1, offset of its place, -1."""
 STIFFNESS_AT, DAMPING_AT, REST_AT, SPEEDS_AT = range(2 * END, 2 * END + 4)
-"""From SPEEDS_AT on of each end where the velocity of a place is in the floats, or -1."""
+"""From SPEEDS_AT on, for each end, the offset of a place's velocity in the floats, or -1."""
 
 
 @kernel(TERM, inner=True)
 def spring(t, y, rate, floats, ints):
-    """Adds the pull to both ends, and to the work what the damping takes (half to each) and what holds a place."""
+    """Adds the force on both ends, and to the work the damping's power (half for each) and that of a prescribed end."""
     a, b = ints[POSITION_AT], ints[END + POSITION_AT]
     va, vb = ints[VELOCITY_AT], ints[END + VELOCITY_AT]
     dx = (y[b] if b >= 0 else floats[vb]) - (y[a] if a >= 0 else floats[va])

@@ -16,7 +16,7 @@ INVERSES_AT = force.SPEEDS_AT + 2
 
 @lean_inlined
 def between(y, floats, ints, d, v):
-    """From the first end to the second: the place [m] into d, the velocity [m/s] into v."""
+    """Write the second end's place [m] and velocity [m/s] relative to the first to d and v."""
     for c in range(3):
         d[c] = v[c] = 0.0
         for end in range(2):
@@ -30,7 +30,7 @@ def between(y, floats, ints, d, v):
 def spring(t, y, entries, floats, ints):
     """Blocks of 3x3: for each end that is a mass, its force by the places of both masses, then by their velocities.
 
-    For Newton's method as mass_spring_slopes_kernels: without what turns the damping, and with the force foreseen.
+    For Newton's method as mass_spring_slopes_kernels: without the damping's rotation, with the predicted force.
     """
     n, v = np.zeros(3), np.zeros(3)
     between(y, floats, ints, n, v)

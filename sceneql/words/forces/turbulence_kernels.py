@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Curl noise, and the drag of air that moves by it.
+"""Curl noise, and the drag of air that moves with its velocity.
 
 The velocity is the curl of a smooth vector potential, so its divergence is exactly zero (Bridson, Hourihan & Nordenstam
 2007, Curl-noise for procedural fluid flow). In a cell of the lattice psi = sum over corners of w(f) (g x d + a h), with
@@ -7,7 +7,7 @@ quintic weights w (Perlin 2002), d from the corner, and random vectors g and h o
 
     u = curl psi = sum of 2 w g + grad w x (g x d + a h)
 
-At a corner u = 2 g; a makes its square nearly as large everywhere. In time g and h turn into one another.
+At a corner u = 2 g; the constant a makes u^2 nearly as large everywhere. In time g and h rotate into one another.
 """
 
 import math
@@ -24,19 +24,19 @@ POWER_AT, OCTAVES, SEED, ENTRY, THREADS, TILE_AT = range(9, 15)
 """At NUMBERS_AT: size [m], angular frequency [1/s]."""
 
 LANES = 256
-"""Particles that are worked on together, in single precision; the cell and the place in it are found in double."""
+"""Particles in a vector loop, in single precision; their cells and places in the cells are computed in double."""
 PART = 8 * LANES
 """Particles of a tile."""
 MANY = 8
-"""Tiles that are worth threads; a block of an island (march_blocks.py) has fewer, and threads of its own."""
+"""Least number of tiles for threads; a block of an island (march_blocks.py) has fewer, and its own threads."""
 FASTER = 2.0 ** (2.0 / 3.0)
-"""How much sooner they change."""
+"""Ratio of the rates of change of eddies of half the size (Kolmogorov 1941)."""
 ROUGHNESS = 2.0 ** (-1.0 / 3.0)
 """Speed of eddies of half the size (Kolmogorov 1941)."""
 EVEN = np.float32(0.75)
-"""a."""
+"""The constant a above."""
 WHOLE = 1.5 * 2.0**52
-"""Numbers of this size are integers."""
+"""Adding and subtracting this number rounds to an integer."""
 SPREAD = 1.8538
 """Root mean square of the curl of one octave, measured."""
 FX, FY, FZ, UX, UY, UZ, ROWS = range(7)
@@ -45,7 +45,7 @@ FX, FY, FZ, UX, UY, UZ, ROWS = range(7)
 
 @inlined
 def mixed(h):
-    """32 bits stirred (Wellons 2018, hash prospector, "lowbias32")."""
+    """Hash of 32 bits (Wellons 2018, hash prospector, "lowbias32")."""
     h = np.uint32(h ^ (h >> np.uint32(16)))
     h = np.uint32(h * np.uint32(0x7FEB352D))
     h = np.uint32(h ^ (h >> np.uint32(15)))
@@ -61,7 +61,7 @@ def number(h, shift):
 
 @inlined
 def next_word(h):
-    """Another word of bits."""
+    """The next pseudorandom word."""
     h = np.uint32(h * np.uint32(0x9E3779B1))
     return np.uint32(h ^ (h >> np.uint32(15)))
 
@@ -81,7 +81,7 @@ def corner(h, dx, dy, dz, cosine, sine, along, against):
 
 @inlined
 def edge(x, right, yz, fx, dy, dz, sx, cosine, sine, along, against):
-    """Between two corners along x: psi (3), its change from one to the other (y, z), g (3)."""
+    """Interpolate between two corners along x: psi (3), its difference (y, z) between them, g (3)."""
     always_inlined()
     px, py, pz, gx, gy, gz = corner(np.uint32(x ^ yz), fx, dy, dz, cosine, sine, along, against)
     back = fx - np.float32(1.0)
@@ -93,7 +93,7 @@ def edge(x, right, yz, fx, dy, dz, sx, cosine, sine, along, against):
 
 @inlined
 def face(x, right, y, up, z, fx, fy, dz, sx, sy, cosine, sine, along, against):
-    """Between two edges along y: psi (x, y), its change along x (y, z) and along y (x, z), g (3)."""
+    """Interpolate between two edges along y: psi (x, y), its slopes along x (y, z) and along y (x, z), g (3)."""
     always_inlined()
     low, high = np.uint32(y ^ z), np.uint32(up ^ z)
     px, py, pz, ay, az, gx, gy, gz = edge(x, right, low, fx, fy, dz, sx, cosine, sine, along, against)
@@ -117,7 +117,7 @@ def weight(f):
 
 @inlined
 def cell(seed, cosine, sine, work, cells):
-    """Write the curl of one octave to rows UX, UY, UZ, for all lanes: corners to edges to faces, like psi itself."""
+    """Write the curl of one octave to rows UX, UY, UZ, for all lanes, interpolated along x, then y, then z."""
     widest()
     nx, ny, nz = np.uint32(0x8DA6B343), np.uint32(0xD8163841), np.uint32(0xCB1AB31F)
     one, two, along, against = np.float32(1.0), np.float32(2.0), EVEN * cosine, -EVEN * sine
@@ -146,7 +146,7 @@ def locate(axis, scale, shift, places, work, cells):
     prime = np.uint32(0x8DA6B343 if axis == 0 else (0xD8163841 if axis == 1 else 0xCB1AB31F))
     for k in range(LANES):
         place = fma(scale, places[axis * LANES + k], shift)
-        # Rounding by a large number leaves the integer in the last bits.
+        # After adding a large number the integer is in the last bits.
         rounded = (place - 0.5) + WHOLE
         work[(FX + axis) * LANES + k] = np.float32(place - (rounded - WHOLE))
         cells[axis * LANES + k] = np.uint32(np.uint32(bits(rounded) & 0xFFFFFFFF) * prime)
@@ -184,7 +184,7 @@ def split(x, scale, ax, ay, az, places):
 
 @inlined
 def push(v, inverse, linear, factor, ax, ay, az, total, force, powers):
-    """Add the drag of some masses to ``force`` and write the power of each that it takes."""
+    """Add the drag of some masses to ``force`` and write the power it takes from each."""
     for k in range(inverse.size):
         c = linear if inverse[k] > 0.0 else 0.0
         vx, vy, vz = v[3 * k], v[3 * k + 1], v[3 * k + 2]
@@ -199,7 +199,7 @@ def push(v, inverse, linear, factor, ax, ay, az, total, force, powers):
 
 @inlined
 def summed(powers):
-    """Their sum, in an order of its own that vectors can follow."""
+    """Sum of the powers, in a fixed order that can be vectorized."""
     size = LANES
     while size > 1:
         size //= 2
@@ -210,7 +210,7 @@ def summed(powers):
 
 @kernel(TILE, inner=True)
 def turbulence_tile(tile, t, y, rate, floats, ints):
-    """The masses from PART tile on; their power goes to floats[power_at + tile]."""
+    """Drag on the masses of a tile, from PART tile on; its power goes to floats[power_at + tile]."""
     position_at, velocity_at, inverse_at = ints[POSITION_AT], ints[VELOCITY_AT], ints[INVERSE_AT]
     speed, linear = floats[ints[SPEED_AT]], floats[ints[LINEAR_AT]]
     air_at, numbers_at = ints[AIR_AT], ints[NUMBERS_AT]

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""The force of air that runs round an axis."""
+"""The force of air that rotates about an axis."""
 
 import math
 

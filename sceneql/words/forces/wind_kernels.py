@@ -12,7 +12,7 @@ VELOCITY_AT, COUNT, WORK_AT, INVERSE_AT, LINEAR_AT, QUADRATIC_AT, AIR_AT, GUSTS_
 
 @inlined
 def air(t, floats, ints):
-    """The velocity of the air at a time, gusts and all."""
+    """The velocity of the air at a time, gusts included."""
     ux, uy, uz = floats[ints[AIR_AT]], floats[ints[AIR_AT] + 1], floats[ints[AIR_AT] + 2]
     strength = floats[ints[GUSTS_AT]] * math.sqrt(ux * ux + uy * uy + uz * uz)
     if strength > 0.0:

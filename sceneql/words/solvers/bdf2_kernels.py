@@ -36,7 +36,7 @@ def same(x, y):
 
 @lean_inlined
 def remember(t, y0, before, start, end, settings, numbers):
-    """Find out whether this step goes on from the latest (then that one's start is the state before) or repeats it."""
+    """Find out whether this step continues the latest (whose start is then the previous state) or repeats it."""
     if t == settings[END] and same(y0, end):
         for k in range(y0.size):
             before[k] = start[k]
@@ -63,8 +63,8 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     w = h / settings[LENGTH] if numbers[HAS_BEFORE] == 1 else 0.0
     back = w * w / (1.0 + 2.0 * w)
     a = h * (1.0 + w) / (1.0 + 2.0 * w)
-    # The parabola through both states with the slope at the second (Euler's line at the start) is the guess that the
-    # error is measured by; else the line, which repeats less of what Newton's method has left in them.
+    # For the error estimate the guess is the parabola through both states with the slope at the second (Euler's line
+    # at the start); without one it is the line, which amplifies residual errors of Newton's method less.
     for k in range(n):
         change = y0[k] - before[k]
         base[k] = y0[k] + back * change
@@ -76,7 +76,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     ):  # fmt: skip
         work[0] = 0.25 * h
         return math.inf
-    # The formula's part of what separates it from the guess, by the third (at the start: second) derivative.
+    # The formula's share of its difference from the guess, both errors by the third (at the start: second) derivative.
     part = (1.0 + w) / (2.0 + 3.0 * w)
     for k in range(n):
         wrong[k] = part * (y1[k] - end[k])

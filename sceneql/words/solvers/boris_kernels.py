@@ -1,7 +1,7 @@
 # mypy: ignore-errors
 """One step of Boris' method: half a drift, half a kick, the turn about the magnetic field, half a kick, half a drift.
 
-``work``: the state that the forces see; the rate with all bodies at rest, later that of the kick; the rates with all at
+``work``: the state of the forces; the rate with all bodies at rest, later the kick's; the rates with all at
 1 m/s along x, later the angular velocities of the turn; and along y.
 """
 
@@ -29,7 +29,7 @@ def turned(time, wx, wy, wz, x, y, z):
     square = x * x + y * y + z * z
     if square == 0.0:
         return x, y, z
-    # The rounding of sine and axis is the same in every step: left alone, it would change the length steadily.
+    # Rounding errors of sine and axis are the same in every step: uncorrected, the length would drift.
     longer = -(dx * (x + 0.5 * dx) + dy * (y + 0.5 * dy) + dz * (z + 0.5 * dz)) / square
     return x + (dx + longer * x), y + (dy + longer * y), z + (dz + longer * z)
 

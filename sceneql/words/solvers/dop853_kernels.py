@@ -34,7 +34,7 @@ def stage(i, rate, t, h, y0, rate0, state, work, settings, floats, ints):
 
 @lean(STEP)
 def extend(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
-    """The three stages more that dense output needs, and from them its coefficients."""
+    """The three further stages of dense output, and its coefficients from them."""
     rate = rate_at(functions[AT_RATE])
     n = y0.size
     for i in range(STAGES + 1, LAST):

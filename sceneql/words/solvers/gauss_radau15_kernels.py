@@ -6,8 +6,8 @@ first p are the velocities of the positions, indices of the p, ends of the group
 a time scale; what follows the last group sets no step. ``settings`` = (tolerance, gauss_radau.settings()). ``work``:
 eight scalars, then vectors of y's size; each of the polynomial's coefficients is a vector of m entries.
 
-The method remembers the step before (its polynomial, and what rounding left out of y), by which a new one starts; a
-start that is not its end has no memory.
+The method keeps the previous step's polynomial and the rounding error of y (compensated summation) for the next one; a
+step that does not start at the previous one's end starts without them.
 """
 
 import math
@@ -23,10 +23,10 @@ NEXT, BEGAN, TRIED, BEFORE = range(4)
 HEAD = 8
 
 B, GUESS, LAST, LAST_GUESS, NEWTON = 0, 7, 14, 21, 28
-"""Vectors of work: the polynomial of the last try, what was predicted for it, both of the step before; Newton form of
-the first, which is what the passes over the nodes make."""
+"""Vectors of work: the polynomial of the last try and its prediction, both of the step before; Newton form of the first
+polynomial, which the passes over the nodes compute."""
 SLOPE, SEEN, START, END, LOW, LOW_END, VECTORS = 35, 36, 37, 38, 39, 40, 41
-"""Rate and state at a node; ends of the last try and what rounding left out of each."""
+"""Rate and state at a node; ends of the last try and the rounding error of each."""
 
 DEGREE = 7
 FOR_VELOCITIES = 1 + 8
@@ -38,10 +38,10 @@ BINOMIALS = TO_NEWTON + DEGREE * DEGREE
 
 MOST_SWEEPS = 12
 CONVERGED = 1e-14
-"""Change of the last coefficient against the rate that the next pass would make, foreseen by the last two: an eighth of
-it comes into the velocity's change in the step, whose own rounding is larger."""
+"""Change of the last coefficient, relative to the rate, expected of the next pass by the last two: an eighth of it
+enters the velocity's change in the step, below its rounding error."""
 LONGEST_RATIO = 20.0
-"""Of a step to the one before, for a prediction that helps."""
+"""Largest ratio of a step to the one before for which the prediction helps."""
 NEGLIGIBLE = 1e-12
 """Rate of a group against the largest of all, below which it may be rounding."""
 SHRINKAGE = 0.25
@@ -59,7 +59,7 @@ def same(a, b):
 
 @lean_inlined
 def remember(t, y0, work, vectors):
-    """Make the memory that of the step that ended at (t, y0), and put down this start."""
+    """Keep the last try as the previous step if it ended at (t, y0); clear the memory at any other new start."""
     n = y0.size
     if t > work[BEGAN] and same(y0, vectors[END * n : (END + 1) * n]):
         for k in range(14 * n):
@@ -78,7 +78,7 @@ def remember(t, y0, work, vectors):
 
 @lean_inlined
 def predict(ratio, n, m, vectors, settings):
-    """The polynomial of the step before, continued, plus what was wrong with the last prediction."""
+    """The polynomial of the step before, extrapolated, plus the error of the last prediction."""
     power = 1.0
     for i in range(DEGREE):
         power *= ratio
@@ -96,7 +96,7 @@ def predict(ratio, n, m, vectors, settings):
 
 @lean_inlined
 def convert(matrix, source, target, n, m, vectors, settings):
-    """Between the polynomial's powers and its Newton form."""
+    """Convert between the polynomial's powers and its Newton form."""
     for i in range(DEGREE):
         for j in range(m):
             total = vectors[(source + i) * n + j]
@@ -107,7 +107,7 @@ def convert(matrix, source, target, n, m, vectors, settings):
 
 @lean_inlined
 def inside(end, h, y0, rate0, vectors, settings, numbers, out, m, p):
-    """out = the state at one of the eight ends of integration; LOW_END = what rounding left out (Kahan 1965)."""
+    """out = the state at one of the eight ends of integration; LOW_END = its rounding error (Kahan 1965)."""
     n = y0.size
     s = h * settings[1 + end]
     newton, low, left = vectors[NEWTON * n :], vectors[LOW * n :], vectors[LOW_END * n :]
@@ -131,7 +131,7 @@ def inside(end, h, y0, rate0, vectors, settings, numbers, out, m, p):
 
 @lean_inlined
 def correct(i, m, watched, rate0, vectors, settings, numbers, n):
-    """Put the rate at node i into the Newton form; the largest change of its coefficient where it is looked at."""
+    """Put the rate at node i into the Newton form; the largest change of its coefficient over the watched entries."""
     slope, newton = vectors[SLOPE * n :], vectors[NEWTON * n :]
     inverse = settings[DIFFERENCES + i * DEGREE :]
     most = 0.0

@@ -62,7 +62,7 @@ def time_slope(rate, t, y0, rate0, out, floats, ints):
 
 @lean_inlined
 def tally(plan, base, weight, rate, y):
-    """y = base + weight * rate on the tallies: what depends on the rest by slopes that nobody knows."""
+    """y = base + weight * rate on the tallies: entries whose derivatives by the others are unknown."""
     at = plan[TALLIES_AT]
     for k in range(at, at + plan[TALLIES]):
         y[plan[k]] = base[plan[k]] + weight * rate[plan[k]]
