@@ -1,9 +1,9 @@
 # mypy: ignore-errors
 """Forces of 1/r^2 between all pairs: F_i = c w_i sum_j w_j d_ij / (r^2 + softening^2)^(3/2), d_ij from i to j.
 
-Few bodies go pair by pair. Many go by pairs of tiles, one of which lies in the lanes of vectors: each pair is computed
-once, for both of its bodies, so that momentum is kept to rounding. The rows of tiles are dealt to parts with sums of
-their own, which are added in one order: the bytes do not depend on the number of threads.
+Few bodies are summed pair by pair, many by pairs of tiles, one of them in vector lanes: each pair is computed once, for
+both of its bodies, so that momentum is conserved to rounding. The rows of tiles are divided among parts with sums of
+their own, which are added in a fixed order: results do not depend on the number of threads.
 """
 
 import math
@@ -27,16 +27,16 @@ LANES = 128
 """Bodies of a tile; ROOM is a multiple of it."""
 MOST_PARTS = 16
 WIDTH = 8
-"""Bodies that are worked on together."""
+"""Bodies of a tile that pull another tile in one vector loop."""
 ALONE = 1024
-"""Up to so many bodies one thread is quicker."""
+"""Largest number of bodies for which one thread is faster."""
 X, Y, Z, W, FX, FY, FZ, ROWS = range(8)
 """Rows of a tile: places, weights, forces."""
 
 
 @inlined
 def spread_out(floats, ints):
-    """Move y and z of the gathered places to where the padded lanes have them; the padding weighs nothing."""
+    """Move y and z of the gathered places to their rows of padded length; padding has weight 0."""
     n, room, at = ints[BODIES], ints[layout.ROOM], ints[layout.POINTS]
     for c in range(2, -1, -1):
         for k in range(n - 1, -1, -1):
@@ -49,7 +49,7 @@ def spread_out(floats, ints):
 
 @inlined
 def few(y, rate, floats, ints, c):
-    """Pair by pair."""
+    """Add the forces between all bodies, pair by pair."""
     n, at, weight = ints[BODIES], ints[layout.POINTS], ints[layout.WEIGHTS]
     soft = floats[ints[layout.SOFTENING]] * floats[ints[layout.SOFTENING]]
     for i in range(n):
@@ -87,7 +87,7 @@ def inverse_cube(s, w):
 
 @lean_inlined
 def pull(one, k, other, j, soft):
-    """The forces of body j of a tile on those from k on of another: their sizes by distance, and the ways (3)."""
+    """Pull of body j of a tile on a vector of bodies from k on of another: size by distance, separation (3)."""
     dx = other[X * LANES + j] - load(one, X * LANES + k)
     dy = other[Y * LANES + j] - load(one, Y * LANES + k)
     dz = other[Z * LANES + j] - load(one, Z * LANES + k)
@@ -142,7 +142,7 @@ def leave(tile, floats, at, room):
 
 @kernel(TILE, inner=True)
 def direct_tile(part, t, y, rate, floats, ints):
-    """The sums of one part: of its rows of tiles, dealt to and fro so that all have as much to do."""
+    """The sums of one part: of its rows of tiles, dealt back and forth for equal work."""
     room, parts = ints[layout.ROOM], ints[PARTS]
     sums = ints[FORCES] + 3 * room * part
     for k in range(3 * room):
@@ -189,7 +189,7 @@ def direct(t, y, rate, floats, ints):
 
 
 def parts_of(room: int) -> int:
-    """How many parts the tiles of so many bodies are dealt to."""
+    """Number of parts among which the tiles of ``room`` bodies are divided."""
     return max(1, min(MOST_PARTS, room // LANES // 4))
 
 

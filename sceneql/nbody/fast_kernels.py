@@ -19,7 +19,7 @@ from sceneql.system.signatures_kernels import A, I, N
 
 S = types.float32[::1]
 XL, YL, ZL, ROWS = range(7, 11)
-"""Rows of a tile after those of direct_kernels: what the places lack."""
+"""Rows of a tile after those of direct_kernels: the places' low parts."""
 WIDTH = 16
 """Bodies that are worked on together."""
 FLOOR = 1e-20
@@ -40,7 +40,7 @@ def inverse_cube(s, w):
 
 @lean_inlined
 def pull(one, k, other, j, soft):
-    """As in direct_kernels, of places in two parts."""
+    """As in direct_kernels, for places in two parts, high and low."""
     dx = other[X * LANES + j] - load(one, X * LANES + k) + (other[XL * LANES + j] - load(one, XL * LANES + k))
     dy = other[Y * LANES + j] - load(one, Y * LANES + k) + (other[YL * LANES + j] - load(one, YL * LANES + k))
     dz = other[Z * LANES + j] - load(one, Z * LANES + k) + (other[ZL * LANES + j] - load(one, ZL * LANES + k))
@@ -91,7 +91,7 @@ def take(floats, ints, unit, tile, first):
 
 @lean(types.void(S, A, N, N), inner=True)
 def leave(tile, floats, at, room):
-    """Add the forces of a tile to the sums at floats[at:], and begin anew."""
+    """Add the forces of a tile to the sums at floats[at:], and reset them to 0."""
     for c in range(3):
         for k in range(LANES):
             floats[at + c * room + k] += np.float64(tile[(FX + c) * LANES + k])

@@ -86,7 +86,7 @@ def first_above(keys, low, high, bound):
 
 @kernel(types.int64(A, N, K, N, N))
 def build(floats, n, keys, at, most):
-    """Nodes over n sorted bodies at floats[at:], at most ``most``: their number. Where room ends, leaves are larger."""
+    """Build up to ``most`` nodes over n sorted bodies at floats[at:]; their number. Without room leaves grow."""
     levels = np.empty(most, dtype=np.int64)
     floats[at + BEGIN], floats[at + END] = 0.0, n
     levels[0] = DEEPEST
@@ -97,7 +97,7 @@ def build(floats, n, keys, at, most):
         begin, end = int(floats[here + BEGIN]), int(floats[here + END])
         floats[here + CHILDREN] = 0.0
         level = levels[node]
-        # Down to the first cell that is divided: keys[begin] and keys[end - 1] differ there.
+        # Descend to the first cell with several children: keys[begin] and keys[end - 1] differ there.
         while level > 0 and (keys[begin] >> (3 * level - 3)) == (keys[end - 1] >> (3 * level - 3)):
             level -= 1
         if end - begin > LEAF and level > 0 and count + 8 <= most:
@@ -153,7 +153,7 @@ def moments(floats, count, at, places, room, masses):
                 for c in range(3):
                     floats[here + c] += m * floats[child + c]
         for c in range(3):
-            # Massless bodies: any center will do.
+            # Any point serves as the center of massless bodies.
             mean = floats[here + c] / floats[here + M] if floats[here + M] > 0.0 else floats[places + c * room + begin]
             floats[here + c] = mean
         x, y, z = floats[here], floats[here + 1], floats[here + 2]
@@ -180,7 +180,7 @@ def moments(floats, count, at, places, room, masses):
 def groups(floats, count, at, out):
     """First body of each group of at most GROUP neighbors in the tree, and the end, to floats[out:]; their number.
 
-    Siblings that are small are taken together. A leaf for which there was no room to be divided is cut.
+    Small siblings form one group. A leaf that stayed large for lack of nodes is split into several.
     """
     stack = np.empty(8 * (DEEPEST + 2) + count, dtype=np.int64)
     stack[0] = 0

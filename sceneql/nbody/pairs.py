@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 
 SAMPLES = 64
-"""Bodies that tell the error of a tree."""
+"""Number of bodies at which the error of a tree is sampled."""
 MOST_SLOPES = 400
-"""Up to so many bodies the derivatives are known: all of them depend on all."""
+"""Largest number of bodies with derivatives, whose matrix is dense."""
 MOST_DIRECT = 4000
-"""Up to so many bodies the sum over all pairs is quicker than a tree."""
+"""Largest number of bodies for which the sum over all pairs is faster than a tree."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ class Pairs:
         return "sceneql.nbody.tree_kernels:tree", ints
 
     def _numbers(self, assembly: Assembly, room: int) -> tuple[int, ...]:
-        """What both kernels have first."""
+        """The first integers of both kernels (layout)."""
         softening = assembly.floats([self.softening])
         return self.constant_at, self.sign, softening, _scratch(assembly, 3 * room), _scratch(assembly, room), room
 
@@ -109,7 +109,7 @@ def blocks(everyone: Sequence[Bodies]) -> Slopes:
 
 
 def _scratch(assembly: Assembly, count: int) -> int:
-    """Room for numbers of a kernel's own."""
+    """Offset of scratch floats for a kernel."""
     import numpy as np
 
     return assembly.floats(np.zeros(count))

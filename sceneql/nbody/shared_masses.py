@@ -1,4 +1,4 @@
-"""The masses of several models as one: what forces between all of them lay out."""
+"""The masses of several models as one list: its integers for forces between all masses."""
 
 from __future__ import annotations
 

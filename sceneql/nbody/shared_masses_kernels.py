@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""The masses of several models as one: their places gathered, forces handed back."""
+"""The masses of several models as one list: gathering their places, and indices for their forces."""
 
 import math
 
@@ -21,7 +21,7 @@ def gather(y, floats, ints, at, out):
 
 @inlined
 def leave_out_massless(floats, ints, at, out):
-    """Put what has no mass (not yet born, or dead) nowhere: its x becomes NaN."""
+    """Set x of bodies without mass (not yet born, or dead) to NaN, which takes them out of the forces."""
     for model in range(ints[at + layout.MODELS]):
         row = at + layout.ROWS + layout.MODEL * model
         for k in range(ints[row + layout.COUNT]):

@@ -13,7 +13,7 @@ from sceneql.system.signatures_kernels import TERM
 
 @kernel(TERM)
 def direct(t, y, entries, floats, ints):
-    """A block of 3x3 for every two bodies (i, j), row by row: c w_i w_j (1/q^3 - 3 d d/q^5), and less of it at (i, i).
+    """A block of 3x3 for every two bodies (i, j), row by row: c w_i w_j (1/q^3 - 3 d d/q^5), subtracted at (i, i).
 
     q^2 = d^2 + softening^2.
     """

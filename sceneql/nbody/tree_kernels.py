@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Gravity between very many bodies by a tree: groups of bodies take far nodes by their moments, near ones body by body.
+"""Gravity between very many bodies by a tree: far nodes act on groups by their moments, near ones body by body.
 
 A node is far when its radius, over the distance from its center of mass to the box of the group, is below the opening
 angle. Moments up to the second are those of the softened potential itself. Each group's lists have one order, so the
@@ -73,7 +73,7 @@ def near(floats, ints, first, last, lanes, count):
             dx, dy, dz = x - lanes[PX * GROUP + k], y - lanes[PY * GROUP + k], z - lanes[PZ * GROUP + k]
             square = fma(dx, dx, fma(dy, dy, dz * dz))
             u = inverse_root(square + soft)
-            # A body is no part of its own potential; one at the same place neither.
+            # The potential leaves out the body itself and bodies at the same place.
             pull = m * u if square > 0.0 else 0.0
             cube = pull * (u * u)
             lanes[FX * GROUP + k] = fma(cube, dx, lanes[FX * GROUP + k])

@@ -1,16 +1,16 @@
 # mypy: ignore-errors
-"""What direct sums and the tree have in common: the weights of the bodies."""
+"""The weights of the bodies, for direct sums and the tree."""
 
 from sceneql.compiled.kernels import inlined
 from sceneql.nbody import layout
 
 FLOOR = 1e-160
-"""[m^2] added to squared distances, so that a body does not meet itself at infinity."""
+"""[m^2] added to squared distances, so that a body's force on itself is finite."""
 
 
 @inlined
 def weights(floats, ints, at, out):
-    """Write the weights of all bodies to floats[out:]; 0 for what has no mass (not yet born, or dead)."""
+    """Write the weights of all bodies to floats[out:]; 0 for bodies without mass (not yet born, or dead)."""
     after = at + layout.ROWS + layout.MODEL * ints[at + layout.MODELS]
     for model in range(ints[at + layout.MODELS]):
         row = at + layout.ROWS + layout.MODEL * model
