@@ -1,11 +1,11 @@
 # mypy: ignore-errors
 """Large symmetric systems by factors in single precision, which take half the time and half the memory.
 
-Solutions are refined by their residuals in double precision until nothing changes (Wilkinson 1963; Higham, Accuracy
-and Stability of Numerical Algorithms, 2002, ch. 12). Where the caller is an iteration that repairs what is left, only
-the first one with new factors is, and once: that tells how good they are. Where they are weak all are refined once;
-where they are poor they are given up, and those in double precision made (multifrontal_kernels, which also says how
-plans lie). ``work``: x and a residual (n,), then scratch in single precision.
+Solutions are refined by their residuals in double precision until they converge (Wilkinson 1963; Higham, Accuracy and
+Stability of Numerical Algorithms, 2002, ch. 12). For a caller whose iteration corrects small errors, only the first
+solution with new factors is refined, once, to measure their quality. Solutions with weak factors are all refined once;
+poor factors are replaced by ones in double precision (multifrontal_kernels, which also has the layout of plans).
+``work``: x and a residual (n,), then scratch in single precision.
 """
 
 import math
@@ -24,13 +24,13 @@ from sceneql.linear.multifrontal_symmetric_kernels import FACTOR_FRONTS, fronts_
 from sceneql.system.signatures_kernels import A, I
 
 USABLE, GOOD = 0.1, 2e-3
-"""Parts of a solution that its first refinement may change: of factors that are used, that need no refinement."""
+"""Largest relative change in the first refinement: for factors that are usable, and that need no refinement."""
 MOST = 12
-"""Refinements of a solution."""
+"""Largest number of refinements of a solution."""
 REFINED = 1e-14
-"""Relative change of a solution that is the last one."""
+"""Relative change of a solution at which its refinement ends."""
 STALLED = 0.25
-"""Part of the change before that is rounding alone."""
+"""Ratio of successive changes from which on they are rounding errors."""
 SUBTRACT = types.void(I, A, A, A)
 
 
@@ -43,40 +43,40 @@ def factor_fronts(plan, values, factors, work, begin, end):
 
 @lean(PASS, inner=True)
 def forward(plan, factors, x, carried, begin, end):
-    """The first pass of a solution."""
+    """The forward substitution of a solution."""
     forward_of(plan, factors.view(np.float32), x.view(np.float32), carried.view(np.float32), begin, end)
 
 
 @lean(PASS, inner=True)
 def backward(plan, factors, x, carried, begin, end):
-    """The second."""
+    """The backward substitution."""
     backward_of(plan, factors.view(np.float32), x.view(np.float32), carried.view(np.float32), begin, end)
 
 
 @kernel(TILE)
 def single_piece(number, t, values, factors, work, plan):
-    """The fronts of a piece; its third integer says that all pivots were regular."""
+    """Factor the fronts of a piece; its third integer becomes 1 where all pivots were regular."""
     at = plan[layout.PIECES_AT] + 3 * number
     plan[at + 2] = 1 if factor_fronts(plan, values, factors, work, plan[at], plan[at + 1]) else 0
 
 
 @kernel(TILE)
 def single_forward_piece(number, t, factors, x, carried, plan):
-    """The first pass over a piece."""
+    """The forward substitution of a piece."""
     at = plan[layout.PIECES_AT] + 3 * number
     forward(plan, factors, x, carried, plan[at], plan[at + 1])
 
 
 @kernel(TILE)
 def single_backward_piece(number, t, factors, x, carried, plan):
-    """The second."""
+    """The backward substitution of a piece."""
     at = plan[layout.PIECES_AT] + 3 * number
     backward(plan, factors, x, carried, plan[at], plan[at + 1])
 
 
 @lean_inlined
 def solve_roughly(plan, factors, r, room):
-    """Put the solution for a right side in its place; its size, which may be beyond single precision, is kept apart."""
+    """Replace a right side by its solution; its size, which may exceed single precision's range, is factored out."""
     n, order, fronts, pieces = plan[0], plan[2], plan[1], plan[layout.PIECES]
     half = (n + 1) // 2
     x, carried = room[:half], room[half:]
@@ -148,7 +148,7 @@ def factor_single(plan, values, factors, work):
 
 @lean(SOLVE_SINGLE, inner=True)
 def solve_single(plan, values, factors, b, work):
-    """Solve by the factors of ``factor_single``, x in the place of b; False where they are poor, and b as it was."""
+    """Solve by the factors of ``factor_single``, x in b's place; False, b unchanged, where the factors are poor."""
     n = plan[0]
     x, r, room = work[:n], work[n : 2 * n], work[2 * n :]
     for k in range(n):

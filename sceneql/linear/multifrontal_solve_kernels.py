@@ -1,9 +1,9 @@
 # mypy: ignore-errors
 """Solutions with the factors of symmetric matrices, front by front, on several threads.
 
-For the plan see multifrontal_kernels; A = U^T D^-1 U, with the reciprocals of D on U's diagonal. What a front takes
-from the unknowns above it is carried up from child to parent, as updates of factorizations are, so that subtrees need
-nothing of each other and the bytes do not depend on the threads. Four rows of U at a time are read once, as fast as
+For the plan see multifrontal_kernels; A = U^T D^-1 U, with the reciprocals of D on U's diagonal. The updates
+of a front to the unknowns above it pass from child to parent, as in the factorization, so that subtrees are
+independent and results do not depend on the threads. Four rows of U at a time are read once, as fast as
 memory gives them.
 """
 

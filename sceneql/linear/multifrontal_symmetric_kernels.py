@@ -2,9 +2,9 @@
 """The multifrontal factorization of symmetric matrices: U alone, in its place, on several threads.
 
 For the plan see multifrontal_kernels; helpers are for arrays of either precision. A front's eliminated rows (width x
-rows) are computed where they stay, among the factors, with the reciprocals of the pivots D^-1 on the diagonal; A = U^T
+rows) are computed in place, among the factors, with the reciprocals of the pivots D^-1 on the diagonal; A = U^T
 D^-1 U. Its update is the upper half of the square of its other rows. L = U^T D^-1 is never stored: its entries are
-products. Large subtrees of fronts are pieces that threads share; the bytes do not depend on how many there are.
+products. Large subtrees of fronts are pieces that threads share; results do not depend on the number of threads.
 """
 
 import math
@@ -22,12 +22,12 @@ from sceneql.system.signatures_kernels import A, I, N
 FEW = 4
 """Rows of U that are eliminated in registers."""
 TINY = 1e-18
-"""In single precision and a matrix whose largest number is about 1: what is less is made 0."""
+"""Entries below this are set to 0 in single precision, where the matrix's largest entry is about 1."""
 TILE = 384
-"""Columns that are updated at a time: what of U belongs to them stays in the cache."""
+"""Columns that are updated at a time: their part of U stays in the cache."""
 
 NOWHERE = np.int64(0)
-"""Shifted by nothing, in the type of all shifts: numba would compile `update` once more for a plain 0."""
+"""A zero in the type of all shifts: numba would compile `update` once more for a plain 0."""
 
 FACTOR_SYMMETRIC = types.boolean(I, A, A, A)
 FACTOR_FRONTS = types.boolean(I, A, A, A, N, N)
@@ -99,7 +99,7 @@ def eliminate_few(panel, height, begin, end):
 
 @lean_inlined
 def spread(panel, height, k, low, high, start):
-    """Rows low..high of U less what row k takes from them, from column ``start`` on."""
+    """Subtract the multiples of row k from rows low..high of U, from column ``start`` on."""
     widest()
     row = panel[k * height + start : (k + 1) * height]
     for i in range(low, high):
@@ -128,7 +128,7 @@ def eliminate(panel, height, begin, end):
 
 @lean_inlined
 def flush(panel, begin, end):
-    """Make 0 of numbers so small that products of two would be subnormal, with which processors take long."""
+    """Set to 0 numbers so small that products of two would be subnormal, which processors multiply slowly."""
     widest()
     tiny, zero = panel.dtype.type(TINY), panel.dtype.type(0.0)
     for k in range(begin, end):

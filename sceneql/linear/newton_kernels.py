@@ -1,17 +1,17 @@
 # mypy: ignore-errors
 """Newton's method for one implicit stage: y = base + a f(t, y), by the linear systems of stage_kernels.
 
-Slopes are those at the forces that the change before foresaw (system.Slopes). Those found at the new state itself would
-not do: a stiff spring that turns stretches by the square of its move, and the force of that, gone after the next
-change, hides all that is left across it (Magisano, Leonetti & Garcea 2017).
+Slopes are evaluated with the forces predicted by the previous update (system.Slopes), not with those at the new state:
+a stiff spring that turns stretches by the square of its displacement, and that force, which vanishes with the next
+update, would hide the residual across the spring (Magisano, Leonetti & Garcea 2017).
 
 The Jacobian and its factors are kept from stage to stage and step to step as long as the iteration contracts well
-(Hairer & Wanner 1996, IV.8). Where the plain iteration fails it begins again with care: slopes are definite, and
-evaluated anew for every change. Where that slows down, the plain iteration is tried again from there.
+(Hairer & Wanner 1996, IV.8). Where the plain iteration fails, a careful one starts: slopes are definite, and
+evaluated anew for every update. Where its convergence is slow, the plain iteration is tried again from there.
 
-``memory`` (MEMORY,): the a that is factored (0: none), the contraction of last time; the relative and absolute
-tolerance of the norm, and the part of it that the iteration's own error may take; 1 while stages begin with care (the
-last one ended with it), and 1 if definite slopes are factored.
+``memory`` (MEMORY,): the factored matrix's a (0: none), the previous stage's contraction; the relative and absolute
+tolerance of the norm, and the share of it for the iteration's error; 1 while stages begin with the careful iteration
+(the last one ended with it), and 1 if definite slopes are factored.
 """
 
 import math
@@ -27,24 +27,24 @@ from sceneql.system.signatures_kernels import A, F, I
 FACTORED, CONTRACTION, RELATIVE, ABSOLUTE, SHARE, CAREFUL, DEFINITE, MEMORY = range(8)
 
 MOST = 25
-"""Iterations of a plain stage."""
+"""Largest number of plain iterations in a stage."""
 MOST_CAREFUL = 100
-"""Those of one with definite slopes."""
+"""Largest number of iterations with definite slopes."""
 SLOWED = 0.5
 """Contraction from which on the careful iteration is slow."""
 PLAIN_AFTER = 16
 """Careful iterations after which the plain one is tried again if they are slow; twice as many if it failed there."""
 HELPS = 0.7
-"""Contraction that the plain iteration needs there."""
+"""Largest contraction with which that plain iteration continues."""
 SLOW = 0.2
 """Contraction from which on the Jacobian is evaluated anew."""
 UNSEEN = 0.05
-"""Contraction that is believed before there are two changes to tell it by."""
+"""Least contraction that is assumed before two updates measure it."""
 TINY = 0.01
-"""Change, in units of the tolerance, that is believed to be the last one by itself."""
+"""Update, in units of the tolerance, below which a single one may end the iteration."""
 HOLDS = 0.02
-"""Part of what inertia holds in a stage that definite slopes may push away, by each spring: two dozen springs of a mass
-push no more than it holds. Without it buckled cloth converges but linearly; with more, changes grow without bound."""
+"""Negative stiffness that definite slopes keep for each spring, relative to the inertia's 1/a^2: two dozen springs of a
+mass stay within it. Without it buckled cloth converges only linearly; with more, updates grow without bound."""
 
 NEWTON = types.boolean(I, F, F, A, A, A, A, A, A, A, A, I, A, I)
 
@@ -61,7 +61,7 @@ def norm(change, y0, y1, memory):
 
 @lean_inlined
 def largest(change, y0, y1, memory):
-    """The largest entry of a change in the same units: where many masses rest, a mean would hide one that runs off."""
+    """The largest entry of a change in the same units: with many masses at rest a mean would hide one that diverges."""
     most = 0.0
     for k in range(y0.size):
         part = abs(change[k]) / (memory[ABSOLUTE] + memory[RELATIVE] * max(abs(y0[k]), abs(y1[k])))
@@ -83,7 +83,7 @@ def fail(change, y):
 
 @lean_inlined
 def follow(plan, a, base, y):
-    """Positions as their velocities have it: their rows are linear, and solved from then on."""
+    """Compute positions from their velocities: their rows are linear, and remain solved from then on."""
     at = plan[POSITIONS_AT]
     for k in range(at, at + 3 * plan[POSITIONS], 3):
         y[plan[k]] = base[plan[k]] + a * y[plan[k + 1]]
@@ -91,7 +91,7 @@ def follow(plan, a, base, y):
 
 @lean_inlined
 def foresee(old, new, floats):
-    """Tell definite slopes which change the next one follows on (system.Slopes)."""
+    """Store the latest update, by which slopes predict forces (system.Slopes)."""
     before, after = floats.size - channels.BEFORE * old.size, floats.size - channels.AFTER * old.size
     for k in range(old.size):
         floats[before + k] = old[k]
@@ -100,7 +100,7 @@ def foresee(old, new, floats):
 
 @lean_inlined
 def tell_stage(a, base, floats):
-    """Tell the terms what a stage is about."""
+    """Store a stage's coefficient and base for the terms."""
     if floats[channels.STAGE] != channels.NO_SLOPES:
         floats[channels.STAGE] = a
         floats[channels.STAGES] += 1.0
@@ -111,14 +111,14 @@ def tell_stage(a, base, floats):
 
 @lean_inlined
 def end_stage(floats):
-    """Tell the terms that the stage is over."""
+    """Mark the end of the stage for the terms."""
     if floats[channels.STAGE] != channels.NO_SLOPES:
         floats[channels.STAGE] = channels.OUTSIDE
 
 
 @lean_inlined
 def leave(rate, t, a, base, y, residual, plan, floats, ints):
-    """What is left of the stage's equations at y; positions, which `follow`, leave nothing but rounding."""
+    """Residual of the stage's equations at y; that of positions, which `follow` solves, is rounding alone."""
     follow(plan, a, base, y)
     rate(t, y, residual, floats, ints)
     for k in range(y.size):
@@ -176,9 +176,9 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             contraction = size / before if before > 0.0 else 0.0
             memory[CONTRACTION] = max(contraction, 1e-3)
         done = size == 0.0 or (contraction < 1.0 and size * contraction <= memory[SHARE] * (1.0 - contraction))
-        # Steps of a given length have no estimate of their error beside this one: there, two changes have to tell it.
+        # Steps of a given length have no other error estimate: there, the contraction must come from two updates.
         done = done and (since > 0 or memory[SHARE] < 1.0 or size < TINY)
-        # Where a few masses still buckle, by less than the tolerance, the largest change says nothing of the next one.
+        # Where a few masses still buckle, by less than the tolerance, the largest update does not predict the next.
         if careful and since > 0 and size <= memory[SHARE]:
             done = done or mean * mean <= memory[SHARE] * (before_mean - mean)
         if done:
@@ -189,7 +189,7 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         iteration += 1
         since += 1
         if not size < math.inf or (not definite and since > 1 and contraction >= limit):
-            # The plain iteration fails: once more from the guess, with care.
+            # The plain iteration fails: restart from the guess with the careful one.
             memory[FACTORED] = 0.0
             if definite:
                 break
@@ -201,7 +201,7 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             leave(rate, t, a, base, y, residual, plan, floats, ints)
             since = 0
             continue
-        # A stretched spring hides what is left across it: slopes from before a change say little of the next one.
+        # A stretched spring hides the residual across it: slopes of an earlier state do not predict the next update.
         stale = definite or (since > 1 and contraction > SLOW)
         if stale and since > 1:
             memory[CONTRACTION] = 1.0

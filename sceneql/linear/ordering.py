@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Groups:
-    """Unknowns that are tied to the same others, so that one order and one structure serve for all of a group."""
+    """Unknowns coupled to the same others, so that one order and one structure serve for all of a group."""
 
     members: list[NDArray[int64]]
     graph: Any
@@ -46,7 +46,7 @@ def minimum_degree(graph: Any) -> NDArray[int64]:
     from scipy.sparse import csc_array, diags_array
     from scipy.sparse.linalg import splu
 
-    # Dominant diagonal: the factors, which are not wanted, come out without a pivot.
+    # Dominant diagonal: the factors, of which only the order is used, need no pivoting.
     degrees = np.diff(graph.indptr)
     matrix = csc_array(diags_array(2.0 * degrees.astype(np.float64)) - graph)
     factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
@@ -74,7 +74,7 @@ def elimination_tree(graph: Any) -> list[int]:
 
 
 def postorder(parent: list[int]) -> list[int]:
-    """The vertices of a forest, children before parents, every subtree in a run."""
+    """The vertices of a forest, children before parents, every subtree contiguous."""
     n = len(parent)
     first, following, roots = [-1] * n, [-1] * n, []
     for k in range(n - 1, -1, -1):
@@ -84,7 +84,7 @@ def postorder(parent: list[int]) -> list[int]:
             following[k] = first[parent[k]]
             first[parent[k]] = k
     order: list[int] = []
-    # A stack of unfinished vertices; ``first`` loses each child as it is entered.
+    # A stack of unfinished vertices; each child is removed from ``first`` when it is entered.
     for root in reversed(roots):
         stack = [root]
         while stack:

@@ -4,8 +4,8 @@
     target[at + r stride + j] += sum over k < count of coefficients[k rows + r] source[start + k height + j]
 
 for r < rows and j < columns, products and sums fused and added in the order of k: the bits do not depend on how wide
-the vectors are. What LLVM makes of plain loops loads and stores every sum again for each four k, which halves the speed
-(Goto & van de Geijn 2008, ACM TOMS 34, 12: what is to stay in registers, and what in the caches).
+the vectors are. LLVM's code for plain loops loads and stores every sum again for each four k, which halves the speed
+(Goto & van de Geijn 2008, ACM TOMS 34, 12: which data stay in registers, and which in the caches).
 
 All arrays are of float64, or all of float32, of which a vector has twice as many.
 """
@@ -24,7 +24,7 @@ from sceneql.system.signatures_kernels import N
 
 UNCOMPILED = numba.config.DISABLE_JIT
 MOST = 64
-"""Terms of a sum at a time: what of the source belongs to them stays in the caches."""
+"""Terms of a sum at a time: their part of the source stays in the caches."""
 WIDE = bool(binding.get_host_cpu_features().get("avx512f"))
 BYTES, ROWS = (64, 8) if WIDE else (32, 4)
 """Bytes of a vector, and rows that are updated at once: the sums of three vectors of each fill 3/4 of the registers."""
@@ -44,14 +44,14 @@ def _spread(builder, value, lanes):
 
 
 def _called(builder, name, result, arguments):
-    """A call of an intrinsic of LLVM's that llvmlite has no word for."""
+    """A call of an LLVM intrinsic for which llvmlite has no function."""
     kind = ir.FunctionType(result, [argument.type for argument in arguments])
     declared = builder.module.globals.get(name) or ir.Function(builder.module, kind, name)
     return builder.call(declared, arguments)
 
 
 def _panel_update(rows, vectors, whole):
-    """The intrinsic for so many rows and vectors; not ``whole``: of the last one so many columns as are left."""
+    """The intrinsic for so many rows and vectors; not ``whole``: the last vector has only the remaining columns."""
 
     def code(context, builder, signature, given):
         bits = signature.args[0].dtype.bitwidth
@@ -155,7 +155,7 @@ def _coefficients(typing, like):
 
 
 coefficients = (lambda like: np.empty(ROWS * MOST, like.dtype)) if UNCOMPILED else _coefficients
-"""Room for the coefficients of MOST terms, of an array's kind of numbers, on the stack of the calling kernel."""
+"""Room for the coefficients of MOST terms, of an array's dtype, on the stack of the calling kernel."""
 
 made = _in_python if UNCOMPILED else _panel_update
 strip, strip_of_three, strip_of_two, strip_of_one = made(ROWS, 3, True), *(made(ROWS, k, False) for k in (3, 2, 1))

@@ -16,6 +16,6 @@ FACTOR_SYSTEM = types.boolean(I, A, A, A, types.boolean)
 SOLVE_SYSTEM = types.boolean(I, A, A, A, A, types.boolean)
 
 PRECONDITION = types.void(I, A, A, A)
-"""Of an iteration, (plan, factors, b, x): x is near what solves A x = b."""
+"""Preconditioner of an iteration, (plan, factors, b, x): x approximates the solution of A x = b."""
 
 factor_at, solve_at, precondition_at = map(kernel_at, (FACTOR_SYSTEM, SOLVE_SYSTEM, PRECONDITION))

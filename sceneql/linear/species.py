@@ -1,4 +1,4 @@
-"""The plan of species_kernels: which systems a multigrid over cells of several species takes, and how they lie."""
+"""The plan of species_kernels: which systems a multigrid over cells of several species solves, and their layout."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     from sceneql.system import Grid
 
 FEWEST = {2: 30_000, 3: 2_000}
-"""Cells of a flat or deep grid from which on cycles are quicker than factors."""
+"""Number of cells, in 2 or 3 dimensions, from which on multigrid cycles are faster than a factorization."""
 
 
 def one_grid(system: System, core: NDArray[int64]) -> bool:
-    """Whether unknowns are species on one grid that do not drift, and enough of them."""
+    """Whether the unknowns are species without drift on one grid of enough cells."""
     grids = system.grids
     if not grids or any(grid.carried or grid.cells.shape != grids[0].cells.shape for grid in grids):
         return False
@@ -27,7 +27,7 @@ def one_grid(system: System, core: NDArray[int64]) -> bool:
 
 
 def plan(system: System, core: NDArray[int64], pattern: Any) -> tuple[NDArray[int64], int, str]:
-    """The integers behind the preconditioner's number, floats of the levels, and how it is told.
+    """The integers behind the preconditioner's number, floats of the levels, and its text for users.
 
     ``core``: (unknowns,) entries of y; ``pattern``: their (unknowns, unknowns) scipy CSR.
     """
@@ -37,7 +37,7 @@ def plan(system: System, core: NDArray[int64], pattern: Any) -> tuple[NDArray[in
     s, first = len(grids), grids[0]
     n, sides = prod(first.cells.shape), (3 if first.cells.shape[2] > 1 else 2)
     shapes = [first.cells.shape]
-    while any(count > 1 for count in shapes[-1]):  # what is even over the whole grid is solved by the last cell
+    while any(count > 1 for count in shapes[-1]):  # the last cell solves for the mean over the whole grid
         nx, ny, nz = ((count + 1) // 2 for count in shapes[-1])
         shapes.append((nx, ny, nz))
     sizes = [(2 * sides * s + s * s + 3 * s) * prod(shape) for shape in shapes]
@@ -62,7 +62,7 @@ def plan(system: System, core: NDArray[int64], pattern: Any) -> tuple[NDArray[in
 
 
 def _places(grids: tuple[Grid, ...], size: int) -> NDArray[int64]:
-    """(size,) where an entry of y stands among the species and cells; -1: it is no cell."""
+    """(size,) index of each entry of y among the species' cells; -1: it is no cell."""
     import numpy as np
 
     found = np.full(size, -1, dtype=np.int64)

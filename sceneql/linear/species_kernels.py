@@ -2,9 +2,9 @@
 """A multigrid cycle for the systems of implicit stages of several species on one grid: blocks of a cell's species.
 
 What preconditions the iterations of linear/krylov_kernels: a symmetric V(2,2)-cycle, red-black Gauss-Seidel by whole
-cells (all species of a cell at once), sums of residuals down, constants up, as a multigrid of one field does. A
-coarse cell's block has the sums of what its cells are by themselves, and half the sum of their ties where the spacing
-doubles (Braess 1995, Computing 55, 379-393). A drift is in the residuals alone.
+cells (all species of a cell at once), residuals restricted by sums, corrections prolonged as constants. A
+coarse cell's block sums the reactions and storage of its cells; its couplings are half the sums of theirs where the
+spacing doubles (Braess 1995, Computing 55, 379-393). A drift is in the residuals alone.
 
 Behind the preconditioner's number the plan has: levels, species s, directions d (low and high along each axis), where s
 rows of scratch are, then of each level nx, ny, nz, where its floats start; the place of each unknown, species by
@@ -26,7 +26,7 @@ LEVELS, SPECIES, DIRECTIONS, SCRATCH, TABLE = range(1, 6)
 __all__ = ["factor_system", "precondition", "solve_system"]
 LEVEL = 4
 SWEEPS = 2
-"""Before and after the coarser levels."""
+"""Number of sweeps before and after the coarser levels."""
 
 
 @lean_inlined
@@ -73,7 +73,7 @@ def coarsen(s, d, nx, ny, nz, fine, mx, my, mz, coarse):
                     across = coarser > 1 and (not halved or (index & 1) == high or (index == count - 1 and high == 1))
                     for one in range(s):
                         tie = fine[(direction * s + one) * n + c]
-                        # What is tied within a coarse cell is no tie of it; of the rest it has half where it is long.
+                        # Couplings within a coarse cell are dropped, others halved where the spacing doubles.
                         kept = (0.5 * tie if halved else tie) if across else 0.0
                         coarse[(direction * s + one) * m + target] += kept
                         coarse[d * s * m + (one * s + one) * m + target] += kept - tie
@@ -101,9 +101,9 @@ def factor_system(plan, values, factors, work, symmetric):
 
 @lean_inlined
 def pull_row(n, d, nx, ny, nz, j, k, ties, x, out):
-    """Add to out (nx,) what the ties (d, stride) of one species pull its row (j, k) by; ``n``: stride of ``ties``.
+    """Add the couplings (d, stride) of one species to its row (j, k), out (nx,); ``n``: stride of ``ties``.
 
-    All of the row, also where cells of one color are asked for: in order it fills the processor's lanes.
+    The whole row is computed, also for cells of one color: contiguous cells fill the vector lanes.
     """
     plane = nx * ny
     row = nx * j + plane * k
@@ -125,7 +125,7 @@ def pull_row(n, d, nx, ny, nz, j, k, ties, x, out):
 
 @lean(types.void(N, N, N, N, N, A, A, A, A, N, A), inner=True)
 def sweep(s, d, nx, ny, nz, ties, inverse, x, b, color, lines):
-    """Make the equations of the cells of one color of the checkerboard true; ``lines`` (s, nx) is scratch."""
+    """Solve the equations of the cells of one color of the checkerboard; ``lines`` (s, nx) is scratch."""
     n = nx * ny * nz
     for k in range(nz):
         for j in range(ny):
@@ -147,9 +147,9 @@ def sweep(s, d, nx, ny, nz, ties, inverse, x, b, color, lines):
 
 @lean(types.void(N, N, N, N, N, A, A, A, N, N, N, A, A), inner=True)
 def restrict_residual(s, d, nx, ny, nz, ties, x, before, mx, my, mz, coarse, line):
-    """Sum the residuals over the coarse cells: after a sweep they are what ties have changed since (``before``: x).
+    """Sum the residuals over the coarse cells: after a sweep they are the couplings' changes since (``before``: x).
 
-    Cells of the color that was swept last have none. ``line`` (nx,) is scratch.
+    Residuals of the color that was swept last are 0. ``line`` (nx,) is scratch.
     """
     n, count = nx * ny * nz, mx * my * mz
     half = 1 if mx < nx else 0
@@ -184,7 +184,7 @@ def add_coarse(s, nx, ny, nz, x, mx, my, mz, coarse):
 def cycle(plan, table, levels, s, d, factors, lines):
     """One V-cycle on the finest level: its x from its b; ``lines`` (s, nx) is scratch."""
     for stage in range(2 * levels):
-        # Down and up again in one loop: what stands here once is compiled once.
+        # Down and up again in one loop, so that inlined functions are compiled once.
         down = stage < levels
         level = stage if down else 2 * levels - 1 - stage
         t = table + LEVEL * level
@@ -216,7 +216,7 @@ def cycle(plan, table, levels, s, d, factors, lines):
 
 @lean(PRECONDITION)
 def precondition(plan, factors, b, x):
-    """x near what solves A x = b, by one cycle."""
+    """Approximate the solution x of A x = b by one cycle."""
     at = own_at(plan)
     levels, s, d = plan[at + LEVELS], plan[at + SPECIES], plan[at + DIRECTIONS]
     t = at + TABLE

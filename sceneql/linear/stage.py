@@ -1,8 +1,8 @@
 """The linear systems of implicit stages, (1 - a J) d = r, analyzed once for an island.
 
-Positions are eliminated: their rows say dx/dt = v, so d_x = r_x + a d_v, and what is left is a system in the velocities
+Positions are eliminated: their rows say dx/dt = v, so d_x = r_x + a d_v, which leaves a system in the velocities
 (and other entries), 1 - a D - a^2 K for damping D and stiffness K: half the size, and symmetric when its rows are
-multiplied by the masses. Entries that nothing depends on and fixed masses are left out too.
+multiplied by the masses. Entries on which no rate depends and fixed masses are left out too.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from sceneql.linear.elimination import Kinds, Left
 
 SMALL = 96
-"""Up to so many unknowns a dense factorization is as quick as a sparse one."""
+"""Largest number of unknowns for which a dense factorization is as fast as a sparse one."""
 MOST_GROUPS = 100_000
 MOST_OPERATIONS = 2e10
 """Multiplications of a factorization; above, iterations are quicker."""
@@ -37,10 +37,10 @@ TILE = 40_000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StagePlan:
-    """What the kernels of stage_kernels.py need of an island."""
+    """The arrays of an island for the kernels of stage_kernels.py."""
 
     numbers: NDArray[int64]
-    """See stage_kernels for how they lie; changed by the kernels (pivots, symmetry)."""
+    """Laid out as stage_kernels says; changed by the kernels (pivots, symmetry)."""
     scales: Floats
     """(unknowns,) factor of each row."""
     store: int
@@ -50,7 +50,7 @@ class StagePlan:
 
 
 def stage_plan(system: System, exact: bool = False) -> StagePlan:
-    """Analyze an island whose Jacobian was asked for. Raises LimitRefused where it could not be had.
+    """Analyze an island whose Jacobian was requested. Raises LimitRefused where it is unavailable.
 
     Not ``exact``: solutions may have errors of some percent, which Newton's method repairs.
     """
@@ -100,7 +100,7 @@ class _Solver:
 
 
 def _chosen(system: System, kinds: Kinds, exact: bool) -> tuple[Left, Any, _Solver]:
-    """What is left, its pattern and how it is solved: by masses where their factors do not fill up too much."""
+    """The reduced system, its pattern and solver: in units of masses unless their factors fill in too much."""
     from sceneql.linear.elimination import left_by_entries, left_by_masses
 
     by_masses = left_by_masses(system, kinds) if kinds.core.sum() > SMALL else None
@@ -118,7 +118,7 @@ def _chosen(system: System, kinds: Kinds, exact: bool) -> tuple[Left, Any, _Solv
 
 
 def _parts(left: Left, pattern: Any) -> tuple[NDArray[int64], NDArray[int64]]:
-    """Of each block of the matrix what it is made of (stage_kernels.py), and which blocks are the diagonal."""
+    """The parts of each block of the matrix (stage_kernels.py), and the indices of the diagonal blocks."""
     import numpy as np
 
     units = pattern.shape[0]
@@ -133,7 +133,7 @@ def _parts(left: Left, pattern: Any) -> tuple[NDArray[int64], NDArray[int64]]:
 
 
 def _inverse_masses(system: System) -> Floats:
-    """(n,) what multiplies the rows of the Jacobian: the inverse mass of a velocity, 1 for all else."""
+    """(n,) factors of the rows of the Jacobian: the inverse mass of a velocity, 1 for other entries."""
     import numpy as np
 
     assert system.pattern is not None
@@ -155,7 +155,7 @@ def _masses(system: System) -> list[list[int]]:
 
 
 class _Full:
-    """What scipy CSR tells of a pattern, for one without gaps: scipy.sparse takes a tenth of a second to import."""
+    """A full pattern with scipy CSR's attributes, without scipy.sparse, which takes 0.1 s to import."""
 
     def __init__(self, units: int) -> None:
         import numpy as np
@@ -192,7 +192,7 @@ def _twins(pattern: Any) -> NDArray[int64]:
 
 
 def _points(system: System, left: Left) -> Floats | None:
-    """(units, 3) where the masses whose velocities they are lie at the start; None where one is no velocity."""
+    """(units, 3) start positions of the units' masses; None where a unit is no velocity."""
     import numpy as np
 
     points = np.full((len(system.y), 3), np.nan)
@@ -223,7 +223,7 @@ def likely_kernels(system: System) -> tuple[str, ...]:
 
 
 def _factored(pattern: Any, unit: int, points: Floats | None, exact: bool) -> _Solver | None:
-    """A factorization on a pattern of units; None where it would fill up too much."""
+    """A factorization on a pattern of units; None where it would fill in too much."""
     import numpy as np
 
     size = pattern.shape[0]

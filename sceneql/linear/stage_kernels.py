@@ -23,7 +23,7 @@ FACTORS, SYMMETRIC, FACTOR, SOLVE, UNIT = range(12, 17)
 TILES, ENTRY, THREADS, ASSEMBLE, COMPARE, HEAD = range(17, 23)
 
 ROUNDING = 1e-13
-"""Of the largest value: a difference of two twins that is none."""
+"""Differences of transposed values up to this part of the largest value count as rounding."""
 
 FACTOR_STAGE = types.boolean(I, F, A, A, A)
 SOLVE_STAGE = types.boolean(I, F, A, A, A, A)
@@ -31,7 +31,7 @@ SOLVE_STAGE = types.boolean(I, F, A, A, A, A)
 
 @lean(TILE)
 def assemble_tile(number, a, jacobian, values, scales, plan):
-    """A tile of the matrix that is left, its rows scaled."""
+    """Assemble a tile of the reduced matrix, its rows scaled."""
     unit = plan[UNIT]
     square = unit * unit
     blocks, tiles = plan[VALUES] // square, plan[TILES]
@@ -52,7 +52,7 @@ def assemble_tile(number, a, jacobian, values, scales, plan):
 
 @lean_inlined
 def assemble(plan, a, jacobian, scales, values):
-    """The matrix that is left, its rows scaled."""
+    """Assemble the reduced matrix, its rows scaled."""
     if plan[TILES] == 1:
         assemble_tile(0, a, jacobian, values, scales, plan)
     else:
@@ -65,7 +65,7 @@ def assemble(plan, a, jacobian, scales, values):
 
 @lean(TILE)
 def compare_tile(number, t, values, found, scales, plan):
-    """The largest value of a tile, and how far one is from its twin."""
+    """The largest value of a tile, and the largest difference of a value from its transposed one."""
     unit = plan[UNIT]
     square = unit * unit
     blocks, tiles = plan[VALUES] // square, plan[TILES]
@@ -82,7 +82,7 @@ def compare_tile(number, t, values, found, scales, plan):
 
 @lean_inlined
 def is_symmetric(plan, values, found):
-    """Whether every value is that of its twin, but for rounding."""
+    """Whether the matrix is symmetric, but for rounding."""
     tiles = plan[TILES]
     if tiles == 1:
         compare_tile(0, 0.0, values, found, values, plan)
@@ -107,7 +107,7 @@ def factor_stage(plan, a, jacobian, scales, store):
 
 @lean_inlined
 def through_positions(plan, a, jacobian, r, b):
-    """What is left in the positions' rows, as it comes into the others'."""
+    """Add the residuals of the eliminated positions' rows to the other rows."""
     unit, positions = plan[UNIT], plan[POSITIONS_AT]
     moved = False
     for k in range(plan[POSITIONS]):
