@@ -189,7 +189,8 @@ def test_a_rate_may_read_another_part():
 
 LEAVES = st.sampled_from(["p", "q", "r", "w", "u", "0.7", "2", "t"])
 PLAIN = ["({} + {})", "({} - {})", "({} * {})", "({} / (3 + {}^2))", "(sin({}) * cos({}))"]
-OTHERS = ["atan2({}, 2 + {}^2)", "exp(-({})^2 - ({})^2)", "hypot({}, 1 + {}^4)", "mix({}, {}, 0.3)"]
+# Fourth powers are of what is bounded: seven of them in one another would be infinite at the start.
+OTHERS = ["atan2({}, 2 + {}^2)", "exp(-({})^2 - ({})^2)", "hypot({}, 1 + sin({})^4)", "mix({}, {}, 0.3)"]
 SMOOTH = st.sampled_from([*PLAIN, *OTHERS])
 FORMULAS = st.recursive(LEAVES, lambda inner: st.builds(str.format, SMOOTH, inner, inner), max_leaves=8)
 
