@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from runs import complaint
@@ -154,6 +154,8 @@ def test_ticks_lie_on_the_axis_and_say_their_values(low, span, log, count):
 
 
 @given(st.lists(st.floats(-1e9, 1e9), min_size=1, max_size=9), st.booleans())
+@example([1e9, 999999999.9999999], False)
+@example([5.0, 5.000000000000001], False)
 @settings(max_examples=150)
 def test_an_axis_shows_all_that_it_can(values, log):
     scale = scale_for([np.array(values)], log, None)

@@ -80,6 +80,7 @@ def scale_for(values: Sequence[Any], log: bool, limits: tuple[float, float] | No
         room = 10 ** max(0.06 * math.log10(high / low), 0.05)
         return Scale(low / room, high * room, log)
     room = 0.07 * (high - low) or 0.07 * abs(high) or 1.0
+    room = max(room, 2.0 * math.ulp(max(abs(low), abs(high))))  # which is not rounded away
     return Scale(low - room, high + room)
 
 
