@@ -1,1 +1,1 @@
-"""Filling objects with masses and tetrahedra."""
+"""Masses, tetrahedra in objects."""
