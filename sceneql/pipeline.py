@@ -105,8 +105,7 @@ def render(
         raise Unsuitable(f"one file is named, but the script has {len(outputs)} outputs: {', '.join(outputs)}")
     if output is not None and not output.parent.is_dir():
         raise FileNotFoundError(f"there is no folder {output.parent}")
-    clock = graph.settings.clock
-    times = {name: kind.times(clock) for name, kind in outputs.items()}
+    times = {name: kind.times(graph.settings.clock) for name, kind in outputs.items()}
     instants = sorted(set().union(*times.values()))
     tools = {
         name: Tools(
@@ -208,9 +207,8 @@ class Tools:
         """``named``: the user gave the target, else it is a path without extension."""
         self.graph, self.name, self.report, self.target, self.named = graph, name, report, target, named
         self.panels: dict[str, Panel] = {}
-        self._frames = 0
+        self._frames, self._light = 0, cast(Any, None)
         self._framed: float | None = None
-        self._light: Any = None
 
     @property
     def clock(self) -> Clock:
