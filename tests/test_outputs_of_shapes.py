@@ -1,6 +1,9 @@
-"""Outputs that get shapes: a word that writes a PLY file a frame is one file in a folder of words."""
+"""Outputs that get shapes, and the object and the output that ARCHITECTURE.md shows to newcomers (tests/words)."""
 
 from __future__ import annotations
+
+import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,56 +15,7 @@ from sceneql.failure import RunFailure, Unsuitable
 from sceneql.report.explain import explain
 from sceneql.run.run import Run
 
-PLY = '''
-"""ply: shapes as PLY files."""
-
-from collections.abc import Iterable
-from typing import Any, ClassVar
-
-from sceneql.kinds import Clock, DrawnRef, FixedLength, Moment, Output, Ref, Sink, Tools, field
-
-
-class Ply(Output):
-    """The objects of a frame that have an inside, as triangles in a PLY file for each frame."""
-
-    draws: ClassVar[bool] = True
-
-    show: tuple[DrawnRef, ...] | None = field("Writes only these parts.", None)
-    cell: FixedLength = field("Side of the cubes that triangles are made by.", "0.05 m", above=0)
-
-    def shown(self) -> tuple[Ref, ...] | None:
-        return self.show
-
-    def times(self, clock: Clock) -> list[float]:
-        return clock.frames(clock.fps)
-
-    def open(self, tools: Tools) -> Sink:
-        return Files(self, tools)
-
-
-class Files:
-    def __init__(self, ply: Ply, tools: Tools) -> None:
-        self.ply, self.tools, self.made = ply, tools, []
-
-    def take(self, moment: Moment) -> None:
-        import trimesh
-
-        from sceneql.frame import Implicit
-        from sceneql.mesh.facets import faceted
-
-        frame = self.tools.frame(moment, fields=True)
-        meshes = [faceted(shape, self.ply.cell, True) for shape in frame.shapes if isinstance(shape, Implicit)]
-        whole = trimesh.util.concatenate([trimesh.Trimesh(m.vertices, m.triangles) for m in meshes])
-        path = self.tools.path(f"{frame.index:04d}.ply")
-        path.write_bytes(whole.export(file_type="ply"))
-        self.made.append(path)
-
-    def close(self) -> Iterable[Any]:
-        return self.made
-
-    def abort(self) -> Iterable[Any]:
-        return self.made
-'''
+WORDS = Path(__file__).parent / "words"
 COUNT = '''
 from typing import ClassVar
 
@@ -97,8 +51,7 @@ objects:
 @pytest.fixture
 def load(tmp_path, monkeypatch):
     """The scene with the rest given; a folder of words has the output `ply`; files go to the folder of the scene."""
-    (tmp_path / "words" / "outputs").mkdir(parents=True)
-    (tmp_path / "words" / "outputs" / "ply.py").write_text(PLY)
+    shutil.copytree(WORDS, tmp_path / "words")
     (tmp_path / "words" / "outputs" / "count.py").write_text(COUNT)
     monkeypatch.chdir(tmp_path)
 
@@ -166,3 +119,17 @@ def test_a_word_that_does_not_draw_gets_no_shapes(load, tmp_path):
     tools = pipeline.Tools(graph, "files", pipeline.Report(), tmp_path / "file")
     with pytest.raises(Unsuitable, match="`draws`"):
         tools.frame(moment)
+
+
+def test_the_object_to_start_from_is_drawn_where_it_is_placed_with_its_outside_out(load, tmp_path):
+    placed = "position: 1 0 2 m, rotation: {about: x, angle: 90 deg}"
+    graph = load(
+        f"  tip: {{pyramid: {{width: 2 m, height: 1 m + time*2 m/s, {placed}}}}}\n"
+        "outputs: {still: {image: {show: [tip], time: 1 s}}}"
+    )
+    (moment,) = pipeline.simulate(graph, [1.0])
+    (mesh,) = pipeline.Tools(graph, "still", pipeline.Report(), tmp_path / "file").frame(moment).shapes
+    solid = trimesh.Trimesh(mesh.vertices, mesh.triangles)
+    assert solid.is_watertight
+    assert solid.volume == pytest.approx(2 * 2 * 3 / 3, rel=1e-12)
+    assert mesh.vertices[4] == pytest.approx([1, 0, 5], abs=1e-12)

@@ -6,6 +6,7 @@ import ast
 import importlib
 import math
 import re
+import shutil
 from functools import partial
 from pathlib import Path
 
@@ -97,12 +98,15 @@ def added():
 
 
 WORDS = [tuple(path.removesuffix(".py").split("/")) for path in added() if not path.endswith("_kernels.py")]
+SHOWN = ROOT / "tests" / "words"
+"""The object and the output to start from, which the page names; tests/test_outputs_of_shapes.py runs them."""
 
 
 @pytest.fixture
 def words(tmp_path_factory, monkeypatch):
     """The folder of these words, which scripts of this test may use."""
     folder = tmp_path_factory.mktemp("words")
+    shutil.copytree(SHOWN, folder, dirs_exist_ok=True)
     for path, text in added().items():
         (folder / path).parent.mkdir(exist_ok=True)
         (folder / path).write_text(text)
@@ -122,7 +126,7 @@ def test_a_solver_a_force_and_a_model_are_added():
     assert sorted(family for family, _ in WORDS) == ["forces", "models", "solvers"]
 
 
-@pytest.mark.parametrize(("family", "name"), WORDS)
+@pytest.mark.parametrize(("family", "name"), [*WORDS, ("objects", "pyramid"), ("outputs", "ply")])
 def test_an_added_word_conforms(words, tmp_path, family, name):
     conformance.test_the_class_is_of_its_family_and_named_as_its_file(family, name)
     conformance.test_it_is_documented_and_so_is_every_field_and_output(family, name)
