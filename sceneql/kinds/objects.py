@@ -48,7 +48,8 @@ class Object(Kind):
 
         ``place`` (3, 4) maps the parent's coordinates to the world; an object with a position and rotation of its own
         is a `sceneql.shapes.placement.Placed`, whose ``local(moment)`` is composed with it. A field's value now is
-        ``moment.at(self.radius)``, its look ``moment.surface(name, self.material, self.color)``.
+        ``moment.at(self.radius)``, its look ``moment.surface(name, self.material, self.color)``;
+        what is the same in every frame is made once by ``moment.kept``.
         """
         raise TypeError(f"`{self._word()}` cannot be drawn")
 

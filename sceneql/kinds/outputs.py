@@ -23,7 +23,10 @@ class Tools(Protocol):
         """Film time and simulation time."""
 
     def path(self, extension: str) -> Any:
-        """Path of the output's file, which ends in ``.extension``; write it by `sceneql.files.whole`."""
+        """Path of a file of the output, as ``scene.extension`` (also ``0001.ply``: many files are as good as one).
+
+        Write it by `sceneql.files.whole`, which gives a binary stream.
+        """
 
     def pixels(self, output: Picture, moment: Moment, part: int = 0, parts: int = 1) -> Any:
         """The developed picture (h, w, 3) uint8 of this output's camera, renderer and size.
@@ -35,8 +38,9 @@ class Tools(Protocol):
         """A frame whose ``shapes`` (the closed set of sceneql.frame, in the world) are what an output now ``draws``.
 
         With ``fields`` objects that have an inside come as their field in a box (frame.Implicit), whatever they are
-        drawn as: what is to be polygonised. Arrays of shapes that are held (frame.is_held) are the same objects in the
-        next frame where they are the same. Raises RunFailure, with ``fields`` also for what is unbounded.
+        drawn as: what is to be polygonised; others as they are drawn. Arrays of shapes that are held (frame.is_held)
+        are the same objects in the next frame where they are the same. Raises RunFailure, with ``fields`` also for what
+        is unbounded: let the script name parts by `show`.
         """
 
     def encoder(self, word: str, **settings: Any) -> Any:
@@ -72,7 +76,10 @@ class Output(Kind):
         return None
 
     def times(self, clock: Clock) -> list[float]:
-        """The instants [s] of the simulation that it wants, increasing, from 0 to ``clock.end``; see `Clock.frames`."""
+        """The instants [s] of the simulation that it wants, increasing, from 0 to ``clock.end``; see `Clock.frames`.
+
+        ``Frame.index`` counts these.
+        """
         raise NotImplementedError
 
     def open(self, tools: Tools) -> Sink:

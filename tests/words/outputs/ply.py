@@ -44,7 +44,7 @@ class Files:
         from sceneql.mesh.facets import faceted
 
         frame = self.tools.frame(moment, fields=True)
-        meshes = [faceted(shape, self.ply.cell, True) for shape in frame.shapes if isinstance(shape, Implicit)]
+        meshes = [faceted(shape, self.ply.cell, smooth=False) for shape in frame.shapes if isinstance(shape, Implicit)]
         joined = trimesh.util.concatenate([trimesh.Trimesh(m.vertices, m.triangles) for m in meshes])
         with whole(self.tools.path(f"{frame.index:04d}.ply")) as stream:
             stream.write(joined.export(file_type="ply"))
