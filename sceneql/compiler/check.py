@@ -230,7 +230,9 @@ class _Checker:
                 needs.append(ref.name)
             return ref
 
-        reader = Reader(names, self.found, refer, name, self.folder)
+        reader = Reader(
+            names, self.found, refer, name, self.folder, copies=lambda node, mark: self.copies(node, mark, entry)
+        )
         try:
             kind = reader.record(entry.fields, cls, entry.word_span, entry.word)
         except Unreadable:
@@ -272,6 +274,12 @@ class _Checker:
         message = f"a name, or one entry `{{word: {{fields}}}}`, stands here for a part of {mark}"
         self.found.error("entry-shape", message, node.span)
         return None
+
+    def copies(self, node: Scalar, mark: Refers, entry: Entry) -> list[str]:
+        """The parts of these families that a name of many stands for."""
+        name = entry.scope.resolve(node.text) if entry.scope is not None else node.text
+        several = self.script.groups.get(name, ())
+        return [part for part in several if self.family(part) in (mark.family, mark.also)]
 
     def _in_place(self, entry: Entry, family: str) -> Ref | None:
         if entry.name not in self.entries:

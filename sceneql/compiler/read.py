@@ -47,6 +47,8 @@ class Reader:
     """The scene's folder."""
     symbols: tuple[str, ...] = ()
     """Symbols that the formulas of this word may use besides defines."""
+    copies: Callable[[Scalar, kinds.Refers], list[str]] = lambda node, mark: []
+    """The parts that a name of many stands for (a repeated part, an instance of a template); none for other names."""
 
     def record(self, node: Node | None, cls: type[BaseModel], span: Span, title: str) -> Any:
         """An instance of a record or kind from a mapping (None: no fields are written). Raises Unreadable."""
@@ -222,6 +224,8 @@ class Reader:
         if fixed and isinstance(node, Scalar):
             return tuple(self._spread(node, arms, what))
         items = node.items if isinstance(node, Sequence) else [node]
+        if not fixed:
+            items = [one for item in items for one in self._copies(item, arms[0])]
         if fixed and len(items) != len(arms):
             raise self._fail("wrong-count", f"{what} takes {len(arms)} values, not {len(items)}", node.span)
         result, ok = [], True
@@ -236,6 +240,14 @@ class Reader:
         if not ok:
             raise Unreadable
         return tuple(result) if origin is tuple else result
+
+    def _copies(self, node: Node, annotation: Any) -> list[Node]:
+        """In a list of parts the name of a repeated part, or of an instance, means each part that it stands for."""
+        marks = [mark for mark in _unwrap(annotation)[1] if isinstance(mark, kinds.Refers)]
+        if not marks or not isinstance(node, Scalar):
+            return [node]
+        copies = self.copies(node, marks[0])
+        return [Scalar(name, "text", False, node.source, node.start, node.end) for name in copies] or [node]
 
     def _spread(self, node: Scalar, arms: tuple[Any, ...], what: str) -> list[Any]:
         """Values of a tuple that are written in one text: ``960 540`` for a pair of whole numbers."""

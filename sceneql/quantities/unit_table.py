@@ -114,7 +114,7 @@ QUANTITIES = (
     ("Pa", "a pressure"), ("Pa*s", "a viscosity"), ("kg/m^3", "a density"), ("kg/m^2", "an areal density"),
     ("kg/m", "a linear density"), ("kg*m/s", "a momentum"), ("kg*m^2", "a moment of inertia"),
     ("J*s", "an angular momentum"), ("m^2/s", "a diffusivity"), ("C", "a charge"), ("V", "a voltage"),
-    ("ohm", "a resistance"), ("F", "a capacitance"), ("H", "an inductance"), ("Wb", "a magnetic flux"),
-    ("T", "a magnetic flux density"), ("lx", "an illuminance"),
+    ("ohm", "a resistance"), ("S", "a conductance"), ("F", "a capacitance"), ("H", "an inductance"),
+    ("Wb", "a magnetic flux"), ("T", "a magnetic flux density"), ("lx", "an illuminance"),
 )  # fmt: skip
 """Coherent SI units (ratio 1) in which messages show a quantity of their dimension, and the quantity's name."""

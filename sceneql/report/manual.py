@@ -1,4 +1,4 @@
-"""The manual of words, from their classes: there is no second list."""
+"""The manual of words, from their classes (there is no second list), and of topics, from their pages."""
 
 from __future__ import annotations
 
@@ -14,28 +14,33 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.failure import Unsuitable
 from sceneql.quantities.diagnostic import suggestion
 from sceneql.quantities.units import unit_of
+from sceneql.report.topics import page, topics
 
 
 def listing(catalogue: Catalogue) -> str:
-    """All words by family, each with the first line of its manual."""
+    """All words by family, and the topics of the language, each with the first line of its manual."""
     lines = []
     for family in catalogue.families:
         lines.append(f"{family}:")
         for word in catalogue.words(family):
             cls = catalogue.load(family, word)
             lines.append(f"  {word:<22}{_summary(cls)}")
+    lines += ["topics:", *(f"  {topic:<22}{title}" for topic, title in topics().items())]
     return "\n".join(lines)
 
 
 def manual(catalogue: Catalogue, word: str) -> str:
-    """The manual of a word (of every family that has it). Raises Unsuitable if there is none."""
+    """The manual of a word (of every family that has it), or of a topic. Raises Unsuitable if there is none."""
     families = [family for family in catalogue.families if word in catalogue.words(family)]
     classes = [(family, cls) for family in families if (cls := catalogue.load(family, word)) is not None]
-    if not classes:
+    pages = [_page(family, word, cls) for family, cls in classes]
+    if word in topics():
+        pages.append(page(word, clock=_fields(kinds.Clock, "  ")))
+    if not pages:
         every = [w for family in catalogue.families for w in catalogue.words(family)]
-        hint = suggestion(word, every)
+        hint = suggestion(word, [*every, *topics()])
         raise Unsuitable(f"there is no word '{word}'" + (f"; {hint}" if hint else ""))
-    return "\n\n".join(_page(family, word, cls) for family, cls in classes)
+    return "\n\n".join(pages)
 
 
 def _page(family: str, word: str, cls: type[kinds.Kind]) -> str:
