@@ -19,6 +19,7 @@ from sceneql.grids.maps.sheets import Sheet, contour, kept, lattice
 from sceneql.grids.medium import FieldLayout
 from sceneql.mesh.measures import area, pieces, volume
 from sceneql.pipeline import frame_of, load
+from sceneql.report.explain import explain
 from sceneql.run.run import Run
 from sceneql.shapes.color import linear
 
@@ -376,3 +377,33 @@ def test_species_of_a_reaction_are_fields_as_well_and_so_is_their_difference(tmp
     (mesh,) = moment.lower(["map"])
     x, y, _ = mesh.vertices.T
     np.testing.assert_allclose(mesh.colors, colored(2 * y - x, (-1.0, 2.0), "viridis"), atol=1e-9)
+
+
+HEAT = """
+clock: {end: 1 s, fps: 5}
+models: {rod: {diffusion: {size: 1 0.2 m, cell: 5 cm, coefficient: 0.05 m^2/s, INITIAL, boundary: {left: {value: 1}}}}}
+objects: {map: {field_map: {of: rod.concentration}}}
+outputs: {film: {video: {size: 64 36}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("initial", "low", "high"),
+    [("initial: 0", 0.0, 0.936), ("initial: x", 0.025, 0.975), ("initial: 1", 1.0, 2.0)],
+)
+def test_colors_mean_the_same_in_every_frame(tmp_path, initial, low, high):
+    """The range is the start's; of a field that is even then, that of the whole run (0.936 at the wall's cell)."""
+    (tmp_path / "scene.yaml").write_text(HEAT.replace("INITIAL", initial))
+    graph = load(tmp_path / "scene.yaml")
+    shown = graph.tasks["map"].kind
+    scales = [shown.scale(moment) for moment in Run(graph).moments([0.0, 0.4, 0.8])]
+    assert scales == [scales[0]] * 3
+    assert scales[0] == pytest.approx((low, high), abs=1e-3)
+
+
+def test_a_range_that_takes_a_run_ahead_is_told(tmp_path):
+    told = {}
+    for initial in ("initial: 0", "initial: x"):
+        (tmp_path / "scene.yaml").write_text(HEAT.replace("INITIAL", initial))
+        told[initial] = explain(load(tmp_path / "scene.yaml"))["ranges"]
+    assert told == {"initial: 0": ["map"], "initial: x": []}

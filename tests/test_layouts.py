@@ -116,3 +116,28 @@ def test_cameras_stand_side_by_side(tmp_path):
         panel = whole[top : top + high, left : left + wide]
         same = (panel == own).all(axis=2)
         assert same[: high // 3].all()
+
+
+@pytest.mark.parametrize(
+    ("section", "part", "camera"),
+    [
+        ("objects", "way: {trail: {of: drop.one.position, keep: 1 s, radius: 5 cm}}", "front"),
+        ("objects", "ways: {trail: {of: drop.positions, keep: 0.3 s, radius: 5 cm}}", "front"),
+        ("cameras", "eye: {perspective: {follow: ball, lag: 0.2 s}}", "eye"),
+    ],
+)
+def test_a_panel_remembers_its_own_variants_past(tmp_path, section, part, camera):
+    """The script itself is not run there, so nothing may be asked of it."""
+    script = SCENE.format(layout="[{each: variant}]", may="", first=0).replace("{define.first: 1}", "{define.push: 1}")
+    script = script.replace("size: 160 120", f"size: 160 120, camera: {camera}")
+    if section == "objects":
+        script = script.replace("objects: {", f"objects: {{{part}, ")
+    else:
+        script = script.replace("cameras:\n", f"cameras:\n  {part}\n")
+    (tmp_path / "scene.yaml").write_text(script, encoding="utf-8")
+    (*_, panels), _ = pictures(load(tmp_path / "scene.yaml"), tmp_path, [0.0, 0.5, 1.0])
+    sets = ["film.layout=[]", "film.size=79 120"]
+    (*_, single), _ = pictures(load(tmp_path / "scene.yaml", variant="slow", sets=sets), tmp_path, [0.0, 0.5, 1.0])
+    below = slice(30, 90)  # the panel's name, and above the graph
+    np.testing.assert_array_equal(panels[below, :79], single[below])
+    assert np.ptp(single[below]) > 100

@@ -102,6 +102,10 @@ class Object(Kind):
         """Past values that it needs (`Moment.past`): how far back [s], and at which interval [s]."""
         return ()
 
+    def courses(self, start: Moment) -> Iterable[Value]:
+        """Values that it needs over the whole run (`Moment.course`), by the start: then the physics runs once ahead."""
+        return ()
+
     def _word(self) -> str:
         """Its name in scripts, which is its file's."""
         return type(self).__module__.rpartition(".")[2]

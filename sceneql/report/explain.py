@@ -41,7 +41,7 @@ def explain(graph: SimulationGraph) -> dict[str, Any]:
             for name, task in graph.tasks.items()
         ],
         "ahead": [name for name in dict.fromkeys(graph.cameras.values()) if _looks_ahead(graph, name)],
-        "islands": _islands(graph),
+        **_solved(graph),
         "left_out": [{"name": part.name, "word": part.word, "why": part.reason} for part in graph.left_out],
         "avoided": {
             "words": len(words - used),
@@ -64,12 +64,18 @@ def _kernels(words: set[tuple[str, str]]) -> set[str]:
     return own & {path.stem.removesuffix("_kernels") for path in files}
 
 
-def _islands(graph: SimulationGraph) -> list[dict[str, Any]]:
+def _solved(graph: SimulationGraph) -> dict[str, Any]:
+    """The islands, and the objects for which these are marched ahead of the film: their ranges are the whole run's."""
     if not graph.islands:
-        return []
+        return {"islands": [], "ranges": []}
+    from sceneql.run.dry_run import asked_by_objects
     from sceneql.run.run import Run
 
-    return [_island(graph, run) for run in Run(graph).islands]
+    run = Run(graph)
+    islands, ranges = [_island(graph, one) for one in run.islands], []
+    with suppress(RunFailure):
+        ranges = list(asked_by_objects(run.at(0.0)))
+    return {"islands": islands, "ranges": ranges}
 
 
 def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
@@ -169,6 +175,8 @@ def text(plan: dict[str, Any]) -> str:
         lines.append(f"  stability: {island['bound_text']}")
     if plan["ahead"]:
         lines += ["", f"the physics runs once ahead of the film: {', '.join(plan['ahead'])} frames all of it"]
+    if plan["ranges"]:
+        lines += ["", f"the physics runs once ahead of the film: the range of {', '.join(plan['ranges'])} is all of it"]
     if plan["left_out"]:
         lines += ["", "left out:"]
         lines += [f"  {part['name']} ({part['word']}): {part['why']}" for part in plan["left_out"]]

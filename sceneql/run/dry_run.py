@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sceneql.failure import RunFailure
 from sceneql.graph import SimulationGraph
-from sceneql.kinds import Camera, Overlay, Value
+from sceneql.kinds import Camera, Clock, Object, Overlay, Value
 from sceneql.quantities.expression import Call, Expr, Link, Symbol, Vector, children, each_once
 from sceneql.quantities.operations import OPERATIONS
 from sceneql.run.series import course
@@ -73,6 +75,12 @@ def asked(graph: SimulationGraph) -> dict[tuple[str, int], Value]:
     return {(name, k): value for name, kind in overlays for k, value in enumerate(kind.courses())}
 
 
+def asked_by_objects(start: Instant) -> dict[str, list[Value]]:
+    """Likewise what objects ask for as a run's start tells, by their names."""
+    objects = {name: task.kind for name, task in start.run.graph.tasks.items() if isinstance(task.kind, Object)}
+    return {name: values for name, kind in objects.items() if (values := list(kind.courses(start)))}
+
+
 def dry_run(ahead: Running, *, bounded: bool = True) -> DryRun:
     """March a fresh run to its end for what cameras and overlays need of the whole run.
 
@@ -80,17 +88,29 @@ def dry_run(ahead: Running, *, bounded: bool = True) -> DryRun:
     that reads nothing at the start that can vary is looked at there alone.
     """
     graph = ahead.graph
-    asked_for = {id(piece): Value(piece) for value in asked(graph).values() for piece in pieces(value.expr)}
-    rows: dict[int, list[Any]] = {key: [] for key in asked_for}
-    every = BOUNDS_EVERY if asked(graph) else 1
-    steps, end = BOUNDS_STEPS * every, graph.settings.clock.end
+    wanted = over_time = list(asked(graph).values())
     bounded = bounded or any(isinstance(t.kind, Camera) and t.kind.looks_ahead() for t in graph.tasks.values())
     start: Bounds = {}
     now: Bounds = {}
     changing: list[str] = []
     times: list[float] = []
+    asked_for: dict[int, Value] = {}
+    rows: dict[int, list[Any]] = {}
+    every = 1
+
+    def instants() -> Iterator[float]:
+        """The start, then as many as what is asked for takes, which the start tells."""
+        yield 0.0
+        steps = BOUNDS_STEPS * every
+        yield from (graph.settings.clock.end * k / steps for k in range(1, steps + 1))
+
     try:
-        for k, moment in enumerate(ahead.moments(end * k / steps for k in range(steps + 1))):
+        for k, moment in enumerate(ahead.moments(instants())):
+            if k == 0:
+                wanted = [*over_time, *chain.from_iterable(asked_by_objects(moment).values())]
+                asked_for = {id(piece): Value(piece) for value in wanted for piece in pieces(value.expr)}
+                rows = {key: [] for key in asked_for}
+                every = BOUNDS_EVERY if over_time else _often(graph.settings.clock) if wanted else 1
             if bounded and k == 0:
                 for name in ahead.orders:
                     moment.asked = False
@@ -111,6 +131,11 @@ def dry_run(ahead: Running, *, bounded: bool = True) -> DryRun:
         now = start
     count = len(times)
     return DryRun(now if bounded else None, times, {key: np.array(row[:count]) for key, row in rows.items()})
+
+
+def _often(clock: Clock) -> int:
+    """How many instants there are for one at which bounds are taken, so that there are about as many as frames."""
+    return min(BOUNDS_EVERY, math.ceil(len(clock.frames(clock.fps)) / BOUNDS_STEPS))
 
 
 def _widened(bounds: Bounds, moment: Instant, names: Iterable[str]) -> Bounds:

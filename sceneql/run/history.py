@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from sceneql.kinds import Camera, Object, Value
 
 if TYPE_CHECKING:
-    from sceneql.graph import SimulationGraph
+    from sceneql.graph import Task
     from sceneql.kinds import Moment
     from sceneql.kinds.moment import Remembered
 
@@ -18,10 +18,10 @@ SLACK = 1e-9
 
 
 class History:
-    """The values that objects and cameras ask to be remembered (`remembers`), as far back as they ask."""
+    """The values that objects and cameras among some parts ask to be remembered (`remembers`), as far back as asked."""
 
-    def __init__(self, graph: SimulationGraph) -> None:
-        kinds = [task.kind for task in graph.tasks.values() if isinstance(task.kind, Object | Camera)]
+    def __init__(self, tasks: Iterable[Task]) -> None:
+        kinds = [task.kind for task in tasks if isinstance(task.kind, Object | Camera)]
         asked = [one for kind in kinds for one in kind.remembers()]
         self._kept: dict[int, tuple[Remembered, float, float, deque[tuple[float, Any]]]] = {
             id(value): (value, keep, every, deque()) for value, keep, every in asked
@@ -33,7 +33,7 @@ class History:
         wanted: dict[float, list[int]] = {}
         for key, (_, keep, every, _) in self._kept.items():
             first = max(self._seen[key] + 1, math.ceil((time - keep) / every - SLACK))
-            last = math.floor(time / every - SLACK)
+            last = max(math.floor(time / every - SLACK), 0 if time > 0.0 else -1)  # the start, however long it is kept
             for k in range(first, last + 1):
                 wanted.setdefault(k * every, []).append(key)
             self._seen[key] = max(last, self._seen[key])

@@ -33,6 +33,8 @@ class Running(Protocol):
     """What instants need of their run, and a run ahead of it (run.Run)."""
 
     graph: SimulationGraph
+    ahead: bool
+    """Whether it is the run ahead."""
     orders: dict[str, int]
     """All that any picture draws, in order."""
     palette: dict[str, int]
@@ -109,7 +111,9 @@ class Instant:
         return self.run.history.past(value, self.time)
 
     def course(self, value: Value, variant: str | None = None, until: float = math.inf) -> tuple[Floats, Floats]:
-        """Times (n,) [s] and a value that an overlay asked for at each of them (n, ...)."""
+        """Times (n,) [s] and a value that was asked for at each of them (n, ...)."""
+        if self.run.ahead:
+            return np.array([self.time]), np.array([self.measure(value)])
         return self.run.course(value, variant, until)
 
     def read(self, task: str, output: str) -> Any:

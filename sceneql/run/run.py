@@ -28,11 +28,12 @@ if TYPE_CHECKING:
 class Run:
     """One run of a graph. ``moments`` may be called once; its moments are valid until the next one is asked for.
 
-    Raises ScriptError with all that keeps its islands from being built. Without ``marching`` there are none.
+    Raises ScriptError with all that keeps its islands from being built. Without ``marching`` there are none. One
+    ``ahead`` of the film knows of the whole run no more than what is now.
     """
 
-    def __init__(self, graph: SimulationGraph, *, marching: bool = True) -> None:
-        self.graph = graph
+    def __init__(self, graph: SimulationGraph, *, marching: bool = True, ahead: bool = False) -> None:
+        self.graph, self.ahead = graph, ahead
         found = Diagnostics()
         islands = graph.islands if marching else ()
         self.islands = [run for island in islands if (run := _built(graph, island, found)) is not None]
@@ -41,7 +42,7 @@ class Run:
         self.orders = _orders(graph)
         self.palette = _palette(graph)
         self.holders = _holders(graph)
-        self.history = History(graph)
+        self.history = History(graph.tasks.values() if marching else ())
         self._ranged = ranged(graph, islands)
         self._dry_runs: dict[str | None, DryRun] = {}
         self.kept: dict[str, tuple[Hashable, Any]] = {}
@@ -72,7 +73,7 @@ class Run:
     def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
         """Low and high corner (3,) of what the parts draw over the whole run, found by a run ahead of its own."""
         if None not in self._dry_runs or self._dry_runs[None].bounds is None:
-            self._dry_runs[None] = dry_run(Run(self.graph))
+            self._dry_runs[None] = dry_run(Run(self.graph, ahead=True))
         known = self._dry_runs[None].bounds or {}
         corners = [known[name] for name in names if name in known]
         if not corners:
@@ -92,7 +93,7 @@ class Run:
         """What a run ahead of the script, or of a variant of it, sees."""
         if variant not in self._dry_runs:
             graph = self.graph if variant is None else self.graph.variant(variant)
-            self._dry_runs[variant] = dry_run(Run(graph), bounded=False)
+            self._dry_runs[variant] = dry_run(Run(graph, ahead=True), bounded=False)
         return self._dry_runs[variant]
 
 

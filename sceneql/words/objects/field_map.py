@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from functools import cached_property
 from typing import TYPE_CHECKING, Annotated
 
 from sceneql import kinds
@@ -11,6 +12,7 @@ from sceneql.grids.maps.seen import Bounds, Field, Levels, seen, unfit
 from sceneql.kinds import Moment, Object, Problem, Quantity, Record, Ref, Value, field
 from sceneql.kinds.types import Axis
 from sceneql.quantities.dimension import LENGTH, PLAIN
+from sceneql.quantities.expression import Call, Type
 from sceneql.shapes.color import linear
 from sceneql.shapes.placement import apply, uniform_scale
 
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
     from sceneql.grids.maps.sheets import Sheet
 
 FOREVER = 1e30
+ROUNDING = 1e-12
+"""Differences below this part of what they are differences of are none."""
 THIN = 1.5e-3
 """Radius of a line of one value, in parts of the grid's longest side, where the script does not say."""
 
@@ -48,7 +52,9 @@ class FieldMap(Object):
     of: Field = field("The field: `lake.concentration`.")
     colors: ColorMap = field("The map of colors, from the low to the high end; coolwarm has a middle.", "viridis")
     range: Bounds | None = field(
-        "The values at the ends of the map; by default the least and the largest at the start.", None
+        "The values at the ends of the map; by default the least and the largest at the start, where all is even then "
+        "those of the whole run.",
+        None,
     )
     height: Annotated[Value, Quantity(None)] | None = field(
         "How far a unit of a flat field lifts it along z: `30 m*L/mg`.", None
@@ -93,10 +99,24 @@ class FieldMap(Object):
         past = moment.past(self.of)
         values = past[0][1] if past else moment.at(self.of)
         low, high = float(values.min()), float(values.max())
-        if high == low:  # even at the start: as far as it has come
-            values = moment.at(self.of)
-            low, high = min(low, float(values.min())), max(high, float(values.max()))
-        return (low, high) if high > low else (low, low + 1.0)
+        if high == low:
+            low, high = (float(pick(moment.course(end)[1])) for end, pick in zip(self._ends, (min, max), strict=True))
+            low, high = (0.0 if abs(end) < ROUNDING * (high - low) else end for end in (low, high))
+        return (low, high) if high - low > ROUNDING * max(abs(low), abs(high)) else (low, low + 1.0)
+
+    @cached_property
+    def _ends(self) -> tuple[Value, Value]:
+        """The least and the largest value at an instant."""
+        of = Type((), self.of.expr.type.dimension)
+        least, largest = (Value(Call(name, (self.of.expr,), of), self.of.span) for name in ("min", "max"))
+        return least, largest
+
+    def courses(self, start: Moment) -> Iterable[Value]:
+        """The extremes of a field that is even at the start."""
+        if self.range is None:
+            values = start.at(self.of)
+            if values.min() == values.max():
+                yield from self._ends
 
     def color_key(self, moment: Moment) -> ColorKey:
         """What its colors mean, for a legend."""
