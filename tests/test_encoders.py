@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from renderers.develop import develop
 from renderers.encoders import mp4, png
+from renderers.encoders.mp4 import planes_of
 
 COMMENT = "sceneql 0 script 0123abcd"
 
@@ -124,3 +126,61 @@ def test_writing_pictures_imports_no_video_library(tmp_path):
         "print([m for m in ('av', 'imageio') if m in sys.modules])"
     )
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"
+
+
+def decoded(path):
+    """The planes of each frame of a film."""
+    with av.open(str(path)) as container:
+        for frame in container.decode(video=0):
+            rows = [np.frombuffer(plane, np.uint8).reshape(plane.height, plane.line_size) for plane in frame.planes]
+            yield [row[:, : plane.width].astype(float) for row, plane in zip(rows, frame.planes, strict=True)]
+
+
+def linear(code):
+    c = np.asarray(code) / 255
+    return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
+
+
+def video_levels(codes):
+    """Exact levels of luma and both chroma of sRGB codes (..., 3), by ITU-R BT.709-6."""
+    luma = codes @ [0.2126, 0.7152, 0.0722]
+    chroma = [(codes[..., k] - luma) / (1 - share) for k, share in ((2, 0.0722), (0, 0.2126))]
+    return [16 + 219 / 255 * luma, *(128 + 112 / 255 * one for one in chroma)]
+
+
+def test_flat_tones_of_a_film_are_true_to_a_tenth_of_a_level_in_the_mean(tmp_path):
+    """What develop's dither says between two levels goes through the conversion to a film's planes and its coding."""
+    side, tones = 32, np.random.default_rng(1).uniform(5, 200, (9, 16))
+    codes = np.repeat(np.repeat(tones, side, 0), side, 1)[..., None] * [1.0, 0.9, 0.8]
+    writer = mp4.Writer(tmp_path / "film.mp4", size=(512, 288), rate=30, quality=17, comment="")
+    for _ in range(4):
+        writer.write(develop(linear(codes).astype(np.float32)))
+    writer.close()
+    *_, last = decoded(tmp_path / "film.mp4")
+    for plane, wanted in zip(last, video_levels(codes), strict=True):
+        size = plane.shape[0] // 9
+        off = (plane - wanted[:: codes.shape[0] // plane.shape[0], :: codes.shape[1] // plane.shape[1]]).reshape(
+            9, size, 16, size
+        )
+        assert np.sqrt((off.mean((1, 3)) ** 2).mean()) < 0.1
+
+
+def test_planes_are_those_of_bt709_and_whole_levels_stay_as_they_are():
+    codes = np.random.default_rng(2).integers(0, 256, (6, 8, 3)).astype(np.uint8)
+    blocks = np.repeat(np.repeat(codes, 8, 0), 16, 1)
+    for plane, wanted in zip(planes_of(blocks), video_levels(codes.astype(float)), strict=True):
+        size = plane.shape[0] // 6
+        inner = plane.reshape(6, size, 8, plane.shape[1] // 8)[:, :, :, 1:-1].astype(float)  # chroma reads neighbors
+        assert np.abs(inner - wanted[:, None, :, None]).max() < 1
+    for gray in (0, 255):
+        luma, *chroma = planes_of(np.full((16, 16, 3), gray, np.uint8))
+        assert (luma == 16 + 219 * gray // 255).all()
+        assert all((one == 128).all() for one in chroma)
+
+
+@pytest.mark.parametrize("rate", [24.0, 30.0, 60.0, 1.0])
+def test_a_player_can_go_to_every_half_second(tmp_path, rate):
+    film(tmp_path / "film.mp4", 70, rate)
+    with av.open(str(tmp_path / "film.mp4")) as container:
+        keys = [frame.time for frame in container.decode(video=0) if frame.key_frame]
+    assert max(np.diff([*keys, 70 / rate])) <= max(0.5, 1 / rate) + 1e-9

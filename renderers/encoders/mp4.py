@@ -16,6 +16,30 @@ if TYPE_CHECKING:
 OPTIONS = {"movflags": "+faststart", "fflags": "+bitexact"}
 
 
+SEEK = 0.5
+"""Seconds of film from key frame to key frame: where a player can go at once."""
+
+
+class _Planes(list[Any]):
+    """Planes as imageio takes them: by index, with a shape of their number and that of the first."""
+
+    shape = (0, 0, 0)
+
+
+def planes_of(picture: NDArray[uint8]) -> list[NDArray[uint8]]:
+    """Luma (h, w) and both chroma (h/2, w/2) of a picture (h, w, 3), in BT.709's video range, dithered."""
+    import numpy as np
+
+    from renderers.encoders.planes_kernels import planes
+
+    height, width = picture.shape[:2]
+    halves = height // 2, width // 2
+    found = _Planes(np.empty(size, dtype=np.uint8) for size in ((height, width), halves, halves))
+    planes(np.ascontiguousarray(picture), *found)
+    found.shape = (3, height, width)
+    return found
+
+
 class Writer:
     """Writes frames of one size at one rate; yuv420p, BT.709, playable everywhere."""
 
@@ -38,10 +62,12 @@ class Writer:
         file.init_video_stream("libx264", fps=float(rate), pixel_format="yuv420p")
         stream: Any = file._video_stream
         stream.width, stream.height = width, height
+        # aq-mode=3 spends more on dark, even blocks, where bands would show.
         # Without mbtree=0 x264 was seen to give other bytes from run to run for the same frames, even on one thread.
-        stream.options = {"crf": f"{quality:g}", "preset": "medium", "x264-params": "mbtree=0"}
+        stream.options = {"crf": f"{quality:g}", "preset": "medium", "x264-params": "mbtree=0:aq-mode=3"}
         context = stream.codec_context
         context.thread_count, context.thread_type = 4, "FRAME"
+        context.gop_size = max(1, round(rate * SEEK))
         context.color_primaries = context.color_trc = context.colorspace = 1  # BT.709
         context.color_range = 1
         file._container.options.update(OPTIONS)
@@ -52,12 +78,7 @@ class Writer:
         """Add a frame (h, w, 3)."""
         if self._file is None:
             self._file = self._open()
-        from av import VideoFrame
-
-        # The default conversion is that of BT.601, whose colors players would then show wrong.
-        frame = VideoFrame.from_ndarray(picture, format="rgb24")
-        planes = frame.reformat(format="yuv444p", dst_colorspace="ITU709", dst_color_range="MPEG").to_ndarray()
-        self._file.write_frame(planes, pixel_format="yuv444p")
+        self._file.write_frame(planes_of(picture), pixel_format="yuv420p")
         self.frames += 1
 
     def close(self) -> list[Path]:
