@@ -30,7 +30,7 @@ def planes_of(picture: NDArray[uint8]) -> list[NDArray[uint8]]:
     """Luma (h, w) and both chroma (h/2, w/2) of a picture (h, w, 3), in BT.709's video range, dithered."""
     import numpy as np
 
-    from renderers.encoders.planes_kernels import planes
+    from renderers.encoders.video_planes_kernels import planes
 
     height, width = picture.shape[:2]
     halves = height // 2, width // 2
