@@ -13,6 +13,8 @@ from hypothesis import strategies as st
 
 from moment import IDENTITY, FakeMoment, const
 from sceneql.frame import PointLight, Sky, Sun
+from sceneql.pipeline import load, simulate
+from sceneql.quantities.diagnostic import ScriptError
 from sceneql.shapes.color import PALETTE, default_color, linear
 from sceneql.words.objects.plane import Plane
 
@@ -123,3 +125,19 @@ def test_studio_has_its_key_light_upper_left_in_front_and_a_gray_background():
     dark, dome = lights("studio", key=const(0.0), fill=const(2.0))
     assert dark.irradiance == (0, 0, 0)
     assert dome.zenith == pytest.approx([2 * c for c in sky.zenith])
+
+
+def test_named_metals_reflect_as_they_do_and_other_names_are_colors(tmp_path):
+    """Gold by its index of refraction is warm (a red of 1, a blue of 0.3), where CSS's is a lemon without blue."""
+    (tmp_path / "scene.yaml").write_text(
+        "objects: {a: {sphere: {material: gold}}, b: {sphere: {material: {metal: {color: tomato}}}}}\n"
+        "materials: {gold: {metal: {color: gold}}}\n"
+    )
+    graph = load(tmp_path / "scene.yaml")
+    (moment,) = simulate(graph, [0.0])
+    gold, tomato = (shape.surface.color for shape in moment.lower(["a", "b"]))
+    assert gold == pytest.approx((1.0, 0.71, 0.29), abs=0.01)
+    assert tomato == pytest.approx(linear([1, 99 / 255, 71 / 255]))
+    (tmp_path / "scene.yaml").write_text("materials: {odd: {metal: {color: gould}}}\nobjects: {a: sphere}\n")
+    with pytest.raises(ScriptError, match="did you mean 'gold'"):
+        load(tmp_path / "scene.yaml")

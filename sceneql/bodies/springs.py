@@ -79,8 +79,8 @@ class SpringModel(Model):
         at_least=0,
     )
     look: Literal["auto", "coil", "line", "masses"] = field(
-        "How it draws itself: springs as coils or lines, or not at all; auto: coils when few, a cloth as a sheet, a "
-        "solid as its surface.",
+        "How it draws itself: springs as coils or lines, or not at all; `auto`: coils when few, a cloth as a sheet, a "
+        "solid as its surface, where no object shows them.",
         "auto",
     )
     material: kinds.MaterialRef | None = field("How it looks where no object draws it.", None)
@@ -259,6 +259,10 @@ class SpringModel(Model):
         if self.tear is None:
             return net.tetrahedra
         return net.tetrahedra[self.holding(state)[edges(net.tetrahedra)[1]].all(axis=1)]
+
+    def asked_to_draw(self) -> bool:
+        """Where its look is written."""
+        return self.look != "auto"
 
     def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Shape]:
         """A cloth as a sheet, a solid as its skin, else masses as spheres and springs as coils or lines."""

@@ -77,7 +77,8 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
 def _drawn(tasks: Mapping[str, Task]) -> dict[str, tuple[str, ...]]:
     """What each output draws: objects that are not hidden and no child of another, and models that no object shows.
 
-    An object that decorates (a trail, an arrow) does not show the model that it reads.
+    An object that decorates (a trail, an arrow) does not show the model that it reads. Models are drawn in any case
+    where the script says how they look.
     """
     inner = {ref.name for t in tasks.values() if isinstance(t.kind, Object) for ref in t.kind.members()}
     objects = [
@@ -94,7 +95,8 @@ def _drawn(tasks: Mapping[str, Task]) -> dict[str, tuple[str, ...]]:
     models = [
         t.name
         for t in tasks.values()
-        if isinstance(t.kind, Model) and type(t.kind).lower is not Model.lower and t.name not in shown
+        if isinstance(t.kind, Model) and type(t.kind).lower is not Model.lower
+        if t.name not in shown or t.kind.asked_to_draw()
     ]
     result = {}
     for task in tasks.values():

@@ -97,8 +97,12 @@ class Model(Kind):
         return {}
 
     def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Drawn]:
-        """How it draws itself where no object of the script does."""
+        """How it draws itself where no object of the script does, or it is asked to."""
         return ()
+
+    def asked_to_draw(self) -> bool:
+        """Whether the script says how it draws itself: then it does, whatever shows it besides."""
+        return False
 
     def shows(self, name: str) -> Value | None:
         """The field that a `field_map` draws where no object of the script shows any of it."""

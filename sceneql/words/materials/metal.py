@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, get_args
 
 from sceneql.kinds import Color, Material, Moment, Scalar, field
 from sceneql.shapes.color import linear
@@ -11,10 +11,21 @@ if TYPE_CHECKING:
     from sceneql.frame import RGB, Surface
 
 
-class Metal(Material):
-    """Reflection alone, in its own color (Burley 2012, metallic 1): gold, copper, steel."""
+Named = Literal[
+    "aluminum", "brass", "bronze", "chromium", "copper", "gold", "iron", "nickel", "platinum", "silver", "titanium"
+]
+REFLECTED = (
+    (0.912, 0.914, 0.920), (0.910, 0.778, 0.423), (0.714, 0.428, 0.181), (0.550, 0.556, 0.554), (0.955, 0.638, 0.538),
+    (1.000, 0.710, 0.291), (0.562, 0.565, 0.578), (0.660, 0.609, 0.526), (0.673, 0.637, 0.585), (0.972, 0.960, 0.915),
+    (0.542, 0.497, 0.449),
+)  # fmt: skip
+"""Linear RGB of light that each reflects straight back, from their indices of refraction in the visible spectrum."""
 
-    color: Color = field("Color of its reflection; gold is 1 0.85 0.57.", "0.86 0.86 0.87")
+
+class Metal(Material):
+    """Reflection alone, in its own color (Burley 2012, metallic 1)."""
+
+    color: Named | Color = field("The metal by its name, or the color of its reflection.", "0.86 0.86 0.87")
     roughness: Scalar = field("0 is polished, 1 is dull.", "0.25", at_least=0, at_most=1)
 
     def surface(self, moment: Moment, color: RGB | None) -> Surface:
@@ -22,4 +33,8 @@ class Metal(Material):
         from sceneql.frame import Surface
 
         roughness = min(max(float(moment.at(self.roughness)), 0.0), 1.0)
-        return Surface(color=color or linear(moment.at(self.color)), roughness=roughness, metallic=1.0)
+        if isinstance(self.color, str):
+            own = REFLECTED[get_args(Named).index(self.color)]
+        else:
+            own = linear(moment.at(self.color))
+        return Surface(color=color or own, roughness=roughness, metallic=1.0)

@@ -16,6 +16,7 @@ from sceneql.kinds import Gives, Model, Moment, Problem, Record, Ref, Value, fie
 from sceneql.kinds.stable_step import StaticMass
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.shapes.color import linear
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -38,6 +39,7 @@ class Particle(Record):
         "Its radius in contacts and in the picture; by default the model's.", None, at_least=0
     )
     fixed: bool = field("It never moves.", False)
+    color: kinds.Color | None = field("Its color; by default the model's.", None)
 
     def problems(self) -> Iterator[Problem]:
         """A particle that is held and moves."""
@@ -223,12 +225,17 @@ class Particles(Model):
 
     def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Spheres]:
         """Spheres of the particles' radii, those that age in classes of age."""
+        import numpy as np
+
         from sceneql.frame import Points as Spheres
 
         bodies, state, ages = self._seen(state)
         places, radii = masses.positions(bodies, state).copy(), masses.radii(bodies, state).copy()
         if self.aging is None:
-            yield Spheres(name, moment.surface(name, self.material, self.color), places, radii)
+            surface = moment.surface(name, self.material, self.color)
+            listed = [one.color for one in (self.list or {}).values()]
+            colors = [surface.color if color is None else linear(moment.at(color)) for color in listed]
+            yield Spheres(name, surface, places, radii, np.array(colors) if any(listed) else None)
             return
         for color, some, sizes in self.aging.classes(ages, radii):
             surface = moment.surface(name, self.material, self.color if color is None else color)

@@ -1,0 +1,40 @@
+"""How models draw themselves: what the script says of their look holds, whatever else shows them."""
+
+from __future__ import annotations
+
+import pytest
+
+from sceneql.frame import Points
+from sceneql.pipeline import load, simulate
+from sceneql.shapes.color import default_color, linear
+
+NET = """
+models:
+  net:
+    mass_spring:
+      LOOK
+      masses: {hook: {position: 0 1 0 m, fixed: yes}, bob: {position: 1 1 0 m}}
+      springs: [{between: [hook, bob], stiffness: 20 N/m}]
+objects: {ball: {sphere: {position: net.bob.position}}}
+outputs: {still: {image: {time: 0 s}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("look", "drawn"),
+    [("", ("ball",)), ("look: auto", ("ball",)), ("look: coil", ("ball", "net")), ("look: line", ("ball", "net"))],
+)
+def test_a_written_look_is_drawn_beside_an_object_that_shows_the_model(tmp_path, look, drawn):
+    (tmp_path / "scene.yaml").write_text(NET.replace("LOOK", look))
+    assert load(tmp_path / "scene.yaml").drawn["still"] == drawn
+
+
+def test_listed_particles_have_colors_of_their_own(tmp_path):
+    (tmp_path / "scene.yaml").write_text(
+        "models: {them: {particles: {list: {a: {color: red, position: 1 0 0 m}, b: {position: 2 0 0 m}, "
+        "c: {color: lime, position: 3 0 0 m}, d: {position: 4 0 0 m}}}}}\n"
+    )
+    (moment,) = simulate(load(tmp_path / "scene.yaml"), [0.0])
+    (points,) = (shape for shape in moment.lower(["them"]) if isinstance(shape, Points))
+    colors = {float(x): tuple(color) for x, color in zip(points.centers[:, 0], points.colors, strict=True)}
+    assert colors == {1: linear([1, 0, 0]), 2: default_color(0), 3: linear([0, 1, 0]), 4: default_color(0)}
