@@ -26,6 +26,9 @@ OK, RUN_FAILED, USAGE, SCRIPT_INVALID, GALLERY_DIFFERS, LIMIT_REFUSED, INTERRUPT
 @click.version_option(__version__, prog_name="sceneql")
 def cli() -> None:
     """A compiler from scene scripts to films."""
+    from sceneql.compiled import variables
+
+    variables.check()
 
 
 def main() -> None:

@@ -56,7 +56,8 @@ def test_numba_is_taken_as_it_is_where_that_is_asked_for(tmp_path, asked, told):
         import numba.core.typeinfer as numba, sys
         own = numba.ConstraintNetwork.propagate
         from sceneql.compiled.kernels import CACHE
-        print(own is numba.ConstraintNetwork.propagate, "sceneql.compiled.numba.shortcuts" in sys.modules, CACHE.name)
+        own = own is numba.ConstraintNetwork.propagate
+        print(own, "sceneql.compiled.numba.shortcuts" in sys.modules, CACHE.folder.name)
     """
     environment = {**os.environ, "SCENEQL_NUMBA": asked, "SCENEQL_CACHE": str(tmp_path), "NUMBA_DISABLE_JIT": "0"}
     run = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True)

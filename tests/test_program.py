@@ -148,7 +148,7 @@ def test_an_interrupt_while_all_is_compiled_is_quiet_and_leaves_no_process(tmp_p
         [sys.executable, "-m", "sceneql", "render", "f.yaml"], cwd=tmp_path, stderr=subprocess.PIPE, text=True,
         env={**os.environ, "SCENEQL_CACHE": str(tmp_path / "cache")}, start_new_session=True,
     )  # fmt: skip
-    while not list(tmp_path.glob("cache/**/*.nbi")) and process.poll() is None:
+    while not list(tmp_path.glob("cache/**/*.nbc")) and process.poll() is None:
         time.sleep(0.05)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all of them
     said = process.communicate(timeout=60)[1]

@@ -16,11 +16,11 @@ from collections.abc import Callable, Iterable
 from contextlib import suppress
 from functools import cache
 from importlib import import_module
-from pathlib import Path
 from traceback import print_exc
 from typing import IO, NoReturn, cast
 
-from sceneql.compiled.kernels import OURS, cache_folder, compiled, compiles, thread_count
+from sceneql.compiled.kernels import CACHE, OURS, cache_folder, compiled, compiles, thread_count
+from sceneql.compiled.store import CacheTrouble
 
 
 def compile_beside(modules: Iterable[str]) -> Callable[..., None]:
@@ -30,12 +30,11 @@ def compile_beside(modules: Iterable[str]) -> Callable[..., None]:
     compilation time. Generated modules are left out.
     """
     ours = [module for module in modules if module.partition(".")[0] in OURS[:2]]
-    marks = {module: cache_folder(module) / "all.compiled" for module in ours}
-    due = [module for module, mark in marks.items() if not mark.exists()]
+    marks = {module: f"{cache_folder(module)}/all.compiled" for module in ours}
+    due = [module for module, mark in marks.items() if not CACHE.has(mark)]
     if not due or not compiles():
         return lambda *but: None
-    for module in due:
-        marks[module].parent.mkdir(parents=True, exist_ok=True)
+    CACHE.prove()
     if thread_count() > 1:
         with suppress(BrokenPipeError):  # the import here will report why it ended
             names = _beside()
@@ -48,21 +47,24 @@ def compile_beside(modules: Iterable[str]) -> Callable[..., None]:
             for module in reversed(wanted):
                 import_module(module)
         for module in wanted:
-            marks[module].touch()
+            CACHE.mark(marks[module])
 
     return cache(wait)
 
 
 def compile_named(names: Iterable[str]) -> None:
-    """The second process's work: import the module that each line names, and touch the file named behind it.
+    """The second process's work: import the module that each line names, and leave the mark named behind it.
 
-    Ctrl-C is for the first process, which reports what it has kept and then ends this one.
+    Ctrl-C is for the first process, which reports what it has kept and then ends this one. So is trouble with the
+    cache, at which this one ends: what it leaves undone meets the first one, too.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    for line in names:
-        module, mark = line.rstrip("\n").split(" ", 1)
-        import_module(module)
-        Path(mark).touch()
+    CACHE.second = True
+    with suppress(CacheTrouble):
+        for line in names:
+            module, mark = line.split()
+            import_module(module)
+            CACHE.mark(mark)
 
 
 @cache

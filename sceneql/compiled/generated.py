@@ -1,43 +1,42 @@
-"""Generated kernel modules: written to the kernel cache under the hash of their text, and imported from there.
+"""Generated kernel modules: imported from memory, and written to the kernel cache under the hash of their text.
 
 They form the package ``sceneql_generated``, so that kernels in them have names of the usual form
-(``"sceneql_generated.rate_0123456789abcdef:rate"``) and other generated modules import them by an ordinary line.
+(``"sceneql_generated.rate_0123456789abcdef:rate"``) and other generated modules import them by an ordinary line. The
+files are for people and debuggers: whatever becomes of them, the text in memory is what runs.
 """
 
 from __future__ import annotations
 
 import hashlib
 import importlib
-import os
 import sys
-import tempfile
-from pathlib import Path
+from importlib.machinery import ModuleSpec, SourceFileLoader
+from importlib.util import spec_from_file_location
 from types import ModuleType
-from typing import Any
+from typing import Any, NoReturn
 
 PACKAGE = "sceneql_generated"
+_texts: dict[str, bytes] = {}
+"""By the full name of a module."""
 
 
 def write(prefix: str, source: str) -> str:
     """Keep a module's text; returns its full name, ``sceneql_generated.<prefix>_<hash of the text>``.
 
-    The same text is written once, so its compiled code stays cached; the file appears whole or not at all.
+    The same text has the same name, so its compiled code stays cached.
     """
-    folder = _package_folder()
-    name = f"{prefix}_{hashlib.sha256(source.encode()).hexdigest()[:16]}"
-    path = folder / f"{name}.py"
-    if not path.exists():
-        handle, partial = tempfile.mkstemp(dir=folder, suffix=".partial")
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(source)
-        os.replace(partial, path)
-        importlib.invalidate_caches()
-    return f"{PACKAGE}.{name}"
+    text = source.encode()
+    name = f"{PACKAGE}.{prefix}_{hashlib.sha256(text).hexdigest()[:16]}"
+    if name not in _texts:
+        from sceneql.compiled.kernels import CACHE
+
+        CACHE.write_text(_file(name), text)
+        _texts[name] = text
+    return name
 
 
 def load(name: str) -> ModuleType:
     """Import a module of the package, or any other, by its full name."""
-    _package_folder()
     return importlib.import_module(name)
 
 
@@ -47,13 +46,38 @@ def function(name: str) -> Any:
     return getattr(load(module), attribute)
 
 
-def _package_folder() -> Path:
-    from sceneql.compiled.kernels import CACHE
+def _file(name: str) -> str:
+    """Where the cache has the text of a module."""
+    return f"generated/{name.rpartition('.')[2]}.py"
 
-    folder = CACHE / "generated"
-    if PACKAGE not in sys.modules:
-        folder.mkdir(parents=True, exist_ok=True)
-        package = ModuleType(PACKAGE)
-        package.__path__ = [str(folder)]
-        sys.modules[PACKAGE] = package
-    return folder
+
+class _Loader(SourceFileLoader):
+    """Loads a module's text from memory, without a file of bytecode, which Python would load unchecked."""
+
+    def get_data(self, path: Any) -> bytes:
+        """The text."""
+        return _texts[self.name]
+
+    def path_stats(self, path: Any) -> NoReturn:
+        """Raises OSError: as if there were no file, which is how Python comes to keep no bytecode."""
+        raise FileNotFoundError(path)
+
+
+class _Finder:
+    """Finds the modules of the package."""
+
+    @staticmethod
+    def find_spec(name: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
+        """The spec of a module whose text was written; None for all others."""
+        if name not in _texts:
+            return None
+        from sceneql.compiled.kernels import CACHE
+
+        at = str(CACHE.path(_file(name)))
+        return spec_from_file_location(name, at, loader=_Loader(name, at))
+
+
+package = ModuleType(PACKAGE)
+package.__path__ = []
+sys.modules[PACKAGE] = package
+sys.meta_path.append(_Finder)

@@ -6,6 +6,7 @@ Imports numba; only ``*_kernels.py`` files and those that run them import this m
 from __future__ import annotations
 
 import ast
+import gc
 import hashlib
 import os
 import re
@@ -15,7 +16,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec, resolve_name
@@ -29,20 +30,18 @@ from numba import types
 from numba.core.event import Listener
 from numba.extending import intrinsic
 
+from sceneql.compiled import variables
 from sceneql.compiled.numba.collecting import collecting_later
-from sceneql.failure import Unsuitable
+from sceneql.compiled.numba.kernel_cache import cached
+from sceneql.compiled.store import Store
 
 config: Any = numba.config
 
 
 def _mode() -> str:
     """How kernels run: by numba with our shortcuts, by numba as it is, or as Python functions (NUMBA_DISABLE_JIT)."""
-    asked = os.environ.get("SCENEQL_NUMBA")
-    if asked and asked != "plain":
-        raise Unsuitable(f"SCENEQL_NUMBA is {asked!r}: it may be 'plain', for numba without our shortcuts, or unset")
-    if config.DISABLE_JIT:
-        return "uncompiled"
-    return asked or "shortcuts"
+    asked = "plain" if variables.plain() else "shortcuts"
+    return "uncompiled" if config.DISABLE_JIT else asked
 
 
 MODE = _mode()
@@ -55,27 +54,23 @@ if MODE == "shortcuts":
 else:
     PIPELINE = HELPER_PIPELINE = {}
 
-fcntl: Any = import_module("fcntl") if find_spec("fcntl") else None  # not on Windows
 njit: Any = numba.njit
 cgutils: Any = import_module("numba.core.cgutils")
 numba_event: Any = import_module("numba.core.event")
+register_dispatcher: Any = import_module("numba.core.typeinfer").register_dispatcher
 
 OURS = ("sceneql", "renderers", "sceneql_generated")
 _IMPORTS = re.compile(r"^[ \t]*((?:from\b[^\n(]*\bimport|import)\b[^\n(]*(?:\([^)]*\))?)", re.MULTILINE)
 """Import statements, and lines of text that look like them."""
-_HIDDEN_IMPORTS = re.compile(r"[;:][ \t]*(?:from|import)\b|\\\n")
+_HIDDEN_IMPORTS = re.compile(r"[;:][ \t]*(?:from\b[^\n]*\bimport|import)\b|\\\n")
 """Imports that the pattern above would miss: in the middle of a line, or over lines without brackets."""
 
 
-def _cache_home() -> Path:
-    """Folder of all compiled code of this version of numba and of this mode; SCENEQL_CACHE moves it."""
-    home = os.environ.get("SCENEQL_CACHE") or os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    folder = Path(home) / "sceneql" / f"numba-{numba.__version__}-{MODE}"
-    folder.mkdir(parents=True, exist_ok=True)
-    return folder
+gc.freeze()  # what numba has made at its import lives on, and is not looked over in every collection
 
-
-CACHE = _cache_home()
+_home = variables.cache_home()
+CACHE = Store(_home / "sceneql" / f"numba-{numba.__version__}-{MODE}" if _home else None)
+"""All compiled code of this version of numba and of this mode."""
 
 
 def _spec(module: str) -> Any:
@@ -128,7 +123,7 @@ def _source(name: str) -> _Source | None:
     spec = None if package and not _has_modules(package) else _spec(name)
     if spec is None or not spec.has_location:
         return None
-    data = Path(spec.origin).read_bytes()
+    data = spec.loader.get_data(spec.origin)
     return _Source(Path(spec.origin), hashlib.sha256(data).hexdigest(), _imported(data.decode(), spec.parent))
 
 
@@ -153,8 +148,8 @@ def _sources(module: str) -> dict[str, _Source]:
     return {name: source for name, source in sorted(found.items()) if source is not None}
 
 
-def cache_folder(module: str) -> Path:
-    """Folder of a module's compiled code, named by a hash of all the source that the code depends on.
+def cache_folder(module: str) -> str:
+    """Name of the folder of a module's compiled code in the cache, by a hash of all the source that it depends on.
 
     numba's own cache does not notice a change in a function imported from another file; the hash does.
     """
@@ -162,15 +157,15 @@ def cache_folder(module: str) -> Path:
 
 
 @cache
-def _folder_of_ours(module: str) -> Path:
+def _folder_of_ours(module: str) -> str:
     return _folder(module)
 
 
-def _folder(module: str) -> Path:
+def _folder(module: str) -> str:
     digest = hashlib.sha256()
     for name, source in _sources(module).items():
         digest.update(f"{name} {source.digest}\n".encode())
-    return CACHE / f"{module.rpartition('.')[2]}-{digest.hexdigest()[:16]}"
+    return f"{module.rpartition('.')[2]}-{digest.hexdigest()[:16]}"
 
 
 class CompileAccount(Listener):
@@ -217,18 +212,6 @@ compiled = CompileAccount()
 numba_event.register("numba:compile", compiled)
 
 
-@contextmanager
-def alone(path: Path) -> Iterator[None]:
-    """Let one process at a time compile, where the system has file locks: the next one loads the result."""
-    if fcntl is None or config.DISABLE_JIT:
-        yield
-        return
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.with_suffix(".lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        yield
-
-
 def kernel(signature: Any, *, inner: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     """Compile a function for one explicit signature, cached on disk, without the GIL, NaN and inf as in numpy.
 
@@ -238,19 +221,29 @@ def kernel(signature: Any, *, inner: bool = False, **options: Any) -> Callable[[
     options |= COMMON | UNWRAPPED
 
     def compile(function: Callable[..., Any]) -> Any:
-        folder = cache_folder(function.__module__)
+        def made(part: str, pipeline: dict[str, Any]) -> Any:
+            dispatcher = njit(**pipeline, **options)(function)
+            with kept(dispatcher, function, part), register_dispatcher(dispatcher), collecting_later():
+                dispatcher.compile(signature)
+            dispatcher.disable_compile()
+            return dispatcher
 
-        def made(folder: Path, pipeline: dict[str, Any]) -> Any:
-            with alone(folder / function.__name__), collecting_later():
-                config.CACHE_DIR = str(folder)
-                return njit(signature, cache=True, **pipeline, **options)(function)
-
-        whole = made(folder, PIPELINE)
+        if MODE == "uncompiled":
+            return function
+        whole = made("", PIPELINE)
         if MODE == "shortcuts":
-            call_by_name(whole, None if inner else lambda: made(folder / "from_python", ENTRY_PIPELINE))
+            call_by_name(whole, None if inner else lambda: made(".from_python", ENTRY_PIPELINE))
         return whole
 
     return compile
+
+
+def kept(made: Any, function: Callable[..., Any], part: str = "") -> AbstractContextManager[None]:
+    """Inside the block numba's dispatcher of a function loads its code from the cache, or keeps it there.
+
+    ``part``: which of several codes of one function.
+    """
+    return cached(made, function, f"{cache_folder(function.__module__)}/{function.__qualname__}{part}", CACHE)
 
 
 COMMON = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
@@ -314,8 +307,7 @@ def compiles() -> bool:
 
 def thread_count() -> int:
     """Threads to use: SCENEQL_THREADS, else the processors this process may run on."""
-    wanted = os.environ.get("SCENEQL_THREADS")
-    return max(1, int(wanted)) if wanted else max(1, len(os.sched_getaffinity(0)))
+    return variables.threads() or max(1, len(os.sched_getaffinity(0)))
 
 
 @cache

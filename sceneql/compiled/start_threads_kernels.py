@@ -6,10 +6,11 @@ import numpy as np
 from llvmlite import binding, ir
 from numba import carray, types
 from numba.core import cgutils
+from numba.core.ccallback import CFunc
 from numba.extending import intrinsic
 
 from sceneql.compiled.arithmetic_kernels import bits, from_bits
-from sceneql.compiled.kernels import PIPELINE, cache_folder, function_at, kernel
+from sceneql.compiled.kernels import PIPELINE, function_at, kept, kernel
 from sceneql.compiled.threads_kernels import OVER_THREADS, TILE_FUNCTION, uncompiled
 from sceneql.system.signatures_kernels import N
 
@@ -58,8 +59,9 @@ def _entry(told):
 
 
 if not numba.config.DISABLE_JIT:
-    numba.config.CACHE_DIR = str(cache_folder(__name__))
-    ENTRY = numba.cfunc(N(types.CPointer(N)), cache=True, **PIPELINE)(_entry)
+    ENTRY = CFunc(_entry, ((types.CPointer(N),), N), {}, {}, **PIPELINE)
+    with kept(ENTRY, _entry):
+        ENTRY.compile()
     binding.add_symbol(f"{__name__}.entry", ENTRY.address)
 
 

@@ -139,7 +139,7 @@ def text(structure: Structure) -> str:
 def _imports(names: dict[str, str]) -> list[str]:
     """The kernels' hashes (as comments: a changed kernel makes another module) and imports."""
     modules = dict.fromkeys(name.partition(":")[0] for name in names)
-    lines = [f"# {module} {cache_folder(load(module).__name__).name}" for module in modules]
+    lines = [f"# {module} {cache_folder(load(module).__name__)}" for module in modules]
     for name, short in names.items():
         module, _, attribute = name.partition(":")
         lines.append(f"from {module} import {attribute} as {short}")
