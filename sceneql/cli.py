@@ -1,17 +1,18 @@
 """The command line. Nothing but click is imported before a command runs.
 
-Exit codes: 0 ok, 1 run failed, 2 usage, 3 script invalid, 4 gallery differs, 5 limit refused, 130 interrupted.
+Exit codes: 0 ok, 1 run failed, 2 usage, 3 script invalid, 4 gallery differs, 5 limit refused or out of memory,
+130 interrupted (Ctrl-C), 143 ended by SIGTERM, 129 by the end of its terminal (SIGHUP).
 """
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from sceneql import __version__
+from sceneql import __version__, interrupts
 from sceneql.options import ABOVE_ZERO, SCENE, as_length, as_path, options
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
     from sceneql.graph import SimulationGraph
 
-OK, RUN_FAILED, USAGE, SCRIPT_INVALID, GALLERY_DIFFERS, LIMIT_REFUSED, INTERRUPTED = 0, 1, 2, 3, 4, 5, 130
+OK, RUN_FAILED, USAGE, SCRIPT_INVALID, GALLERY_DIFFERS, LIMIT_REFUSED = 0, 1, 2, 3, 4, 5
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -33,19 +34,38 @@ def cli() -> None:
 
 def main() -> None:
     """The entry point of the program: exceptions become messages and exit codes."""
+    interrupts.end_at_once()
     _without_plugins()
     try:
+        with interrupts.raised() as interrupted:
+            code = _run(interrupted)
+    except KeyboardInterrupt as error:
+        code = _interrupted(error)
+    interrupts.end_at_once(code)  # there is nothing more to keep
+    sys.exit(code)
+
+
+def _run(interrupted: Callable[[], bool]) -> int:
+    try:
         code = cli.main(prog_name="sceneql", standalone_mode=False)
-    except click.exceptions.Abort as error:  # click's for KeyboardInterrupt
-        _say_kept(error.__cause__)
-        click.echo("interrupted", err=True)
-        code = INTERRUPTED
+    except click.exceptions.Abort as abort:
+        if isinstance(abort.__cause__, EOFError):  # click takes it for the end of what is typed
+            return _failure(abort.__cause__)
+        return _interrupted(abort.__cause__)
     except click.ClickException as error:
         error.show()
-        code = error.exit_code
+        return error.exit_code
     except Exception as error:
-        code = _failure(error)
-    sys.exit(code if isinstance(code, int) else OK)
+        return _interrupted(error) if interrupted() else _failure(error)
+    return code if isinstance(code, int) else OK
+
+
+def _interrupted(error: BaseException | None) -> int:
+    code = interrupts.exit_code()
+    interrupts.end_at_once(code)
+    _say_kept(error)
+    click.echo("interrupted", err=True)
+    return code
 
 
 def _without_plugins() -> None:
@@ -59,7 +79,7 @@ def _without_plugins() -> None:
 
 def _failure(error: Exception) -> int:
     """Print an error; returns the exit code. An exception without a message for users is a bug, and is raised."""
-    from sceneql.failure import LimitRefused, RunFailure, Unsuitable
+    from sceneql.failure import LimitRefused, OutOfMemory, RunFailure, Unsuitable, starved, want_of_memory
     from sceneql.quantities.diagnostic import LIMITS, ScriptError
 
     if isinstance(error, ScriptError):
@@ -74,8 +94,13 @@ def _failure(error: Exception) -> int:
     if isinstance(error, Unsuitable):
         click.echo(f"error: {error}", err=True)
         return USAGE
-    if isinstance(error, RunFailure | OSError):
-        click.echo(str(error) if isinstance(error, RunFailure) else f"error: {error}", err=True)
+    if starved(error):
+        click.echo(str(error) if isinstance(error, OutOfMemory) else f"error: {want_of_memory(error)}", err=True)
+        _say_kept(error)
+        return LIMIT_REFUSED
+    if isinstance(error, RunFailure | OSError | EOFError):
+        told = f"a file ends too soon: {error}" if isinstance(error, EOFError) else str(error)
+        click.echo(told if isinstance(error, RunFailure) else f"error: {told}", err=True)
         _say_kept(error)
         return RUN_FAILED
     raise error

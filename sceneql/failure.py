@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -12,10 +13,23 @@ from sceneql.quantities.span import Span
 class RunFailure(Exception):
     """A run that cannot go on. ``part``: the part or field that failed; ``time`` [s] of the simulation."""
 
+    code = "run-failed"
+
     def __init__(self, message: str, *, part: str, time: float, span: Span | None, help: str | None = None) -> None:
         self.message, self.part, self.time, self.span, self.help = message, part, time, span, help
-        self.diagnostic = Diagnostic("run-failed", f"at {time:.6g} s, {part}: {message}", span, help)
+        self.diagnostic = Diagnostic(self.code, f"at {time:.6g} s, {part}: {message}", span, help)
         super().__init__(str(self.diagnostic))
+
+    def within(self, name: str, span: Span | None) -> RunFailure:
+        """The same failure as one of a part that holds the one that failed."""
+        part = f"{name}.{self.part}" if self.part else name
+        return type(self)(self.message, part=part, time=self.time, span=self.span or span, help=self.help)
+
+
+class OutOfMemory(RunFailure):
+    """A run that cannot go on for want of memory."""
+
+    code = "out-of-memory"
 
 
 @contextmanager
@@ -24,10 +38,39 @@ def failing_as(name: str, time: float, span: Span | None) -> Iterator[None]:
     try:
         yield
     except RunFailure as error:
-        part = f"{name}.{error.part}" if error.part else name
-        raise RunFailure(error.message, part=part, time=time, span=error.span or span, help=error.help) from error
+        raise error.within(name, span) from error
+    except MemoryError as error:
+        raise OutOfMemory(want_of_memory(error), part=name, time=time, span=span) from error
+    except EOFError as error:
+        raise RunFailure(f"a file ends too soon: {error}", part=name, time=time, span=span) from error
     except (TypeError, ValueError) as error:
         raise RunFailure(str(error), part=name, time=time, span=span) from error
+
+
+_SIGNS = ("annot allocate memory", "failed to map segment", "can't start new thread")
+"""What the loader of libraries says, and Python of threads, where there is no memory for them."""
+
+
+def starved(error: BaseException | None) -> BaseException | None:
+    """The want of memory that an error is, or comes from, whatever a library has made of it; else None."""
+    seen: set[int] = set()
+    while error is not None and id(error) not in seen:
+        if isinstance(error, MemoryError | OutOfMemory) or getattr(error, "errno", None) == errno.ENOMEM:
+            return error
+        if isinstance(error, ImportError | OSError | RuntimeError) and any(sign in str(error) for sign in _SIGNS):
+            return error
+        seen.add(id(error))
+        error = error.__cause__ or error.__context__
+    return None
+
+
+def want_of_memory(error: BaseException) -> str:
+    """``out of memory``, with how much was asked for, and by whom, where the error or what it comes from tells."""
+    told = str(starved(error) or error)
+    asked = told.removeprefix("Unable to allocate ")
+    if not asked:
+        return "out of memory"
+    return f"out of memory for {asked}" if asked != told else f"out of memory: {asked.splitlines()[0]}"
 
 
 class LimitRefused(Exception):

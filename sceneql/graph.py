@@ -68,6 +68,16 @@ class Variants:
 
 
 @dataclass(frozen=True, slots=True)
+class Origin:
+    """What a graph was made of."""
+
+    hash: str = ""
+    """SHA-256 of the script's texts and patches."""
+    files: tuple[str, ...] = ()
+    """Paths: scripts, meshes, pictures."""
+
+
+@dataclass(frozen=True, slots=True)
 class SimulationGraph:
     """Everything the run needs, and an account of the rest."""
 
@@ -87,8 +97,13 @@ class SimulationGraph:
     """Objects and models in the order that gives them their default colors."""
     left_out: tuple[LeftOut, ...] = ()
     warnings: tuple[Diagnostic, ...] = ()
-    script_hash: str = ""
+    origin: Origin = Origin()
     variants: Variants = Variants()
+
+    @property
+    def script_hash(self) -> str:
+        """SHA-256 of the script's texts and patches."""
+        return self.origin.hash
 
     def variant(self, name: str) -> SimulationGraph:
         """The graph of a variant of the script. Raises ScriptError."""

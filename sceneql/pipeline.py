@@ -10,25 +10,30 @@ from __future__ import annotations
 import gc
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
-from functools import cache, partial
+from contextlib import suppress
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from sceneql import __version__
+from pydantic import BaseModel
+
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.compile import compile_script
-from sceneql.failure import Unsuitable, failing_as
+from sceneql.failure import OutOfMemory, RunFailure, Unsuitable, starved, want_of_memory
+from sceneql.files import NUMBERS, refuse_unwritable, try_folder
 from sceneql.graph import SimulationGraph
-from sceneql.kinds import FAMILIES, Camera, Clock, Light, Object, Output, Overlay, Picture, Renderer, Settings
+from sceneql.interrupts import held
+from sceneql.kinds import FAMILIES, Camera, Kind, Model, Output, Picture, Settings
 from sceneql.language.patch import Patch
 from sceneql.language.script import read_script
-from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
+from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.tools import Report, Tools, frame_of, shapes_of
 
 if TYPE_CHECKING:
-    from sceneql.frame import Frame, LightSource, SeenFrame, View
-    from sceneql.pictures.layout import Panel
     from sceneql.run.instant import Instant
+
+__all__ = ["Report", "Tools", "frame_of", "load", "render", "shapes_of", "simulate"]
 
 
 def load(
@@ -52,26 +57,6 @@ def load(
     graph = compile_script(script, Catalogue(words), found, pruned=pruned)
     of_name = cache(lambda name: load(path, variant=name, sets=sets, words=words, pruned=pruned))
     return replace(graph, variants=replace(graph.variants, load=of_name))
-
-
-@dataclass
-class Report:
-    """What a render made and what it took."""
-
-    files: list[Path] = field(default_factory=list)
-    frames: int = 0
-    undecided: dict[str, dict[int, int]] = field(default_factory=dict)
-    """By output and frame: pixels whose ray could be proved neither hit nor miss; only frames that have some."""
-    compile_seconds: float = 0.0
-    compilations: int = 0
-    run_seconds: float = 0.0
-    """Wall time, compilation left out."""
-    steps: int = 0
-    present: dict[str, str] = field(default_factory=dict)
-    """Implicit objects that were drawn, and what none of their values was in any frame; nothing where some may be."""
-    warnings: tuple[Diagnostic, ...] = ()
-    conserved: list[str] = field(default_factory=list)
-    """For each island that tells an energy, how far it drifted; momentum where it is conserved."""
 
 
 def simulate(
@@ -103,8 +88,10 @@ def render(
     outputs = {name: task.kind for name, task in graph.tasks.items() if isinstance(task.kind, Output)}
     if output is not None and len(outputs) > 1:
         raise Unsuitable(f"one file is named, but the script has {len(outputs)} outputs: {', '.join(outputs)}")
-    if output is not None and not output.parent.is_dir():
-        raise FileNotFoundError(f"there is no folder {output.parent}")
+    if output is not None:
+        refuse_unwritable(output, marks=NUMBERS)
+        if not output.parent.is_dir():
+            raise FileNotFoundError(f"there is no folder {output.parent}")
     times = {name: kind.times(graph.settings.clock) for name, kind in outputs.items()}
     instants = sorted(set().union(*times.values()))
     tools = {
@@ -114,8 +101,10 @@ def render(
         for name in outputs
     }
     for tool in tools.values():
-        _try_folder(tool.target.parent)
+        try_folder(tool.target.parent)
     sinks: dict[str, Any] = {}
+    models = [name for name, task in graph.tasks.items() if isinstance(task.kind, Model)]
+    now, busy = 0.0, _Busy("starting the run", models)
     try:
         for name, kind in outputs.items():
             if isinstance(kind, Picture):
@@ -131,22 +120,32 @@ def render(
         watch = Watch(run, always=account)
         if run.islands and instants and instants[0] > 0.0:
             watch.look(run.at(0.0))  # what is gained is gained over the start
+        solving = _Busy("solving", models)
         for done, moment in enumerate(run.moments(instants)):
             progress(done, len(instants))
             if done == 1:
                 gc.freeze()  # what lives by now lives on, and is not looked over in every collection
             watch.look(moment, last=done == len(instants) - 1)
+            now = moment.time
             for name, sink in sinks.items():
                 if moment.time in wanted[name]:
+                    busy = _Busy("making the frame", [name])
                     sink.take(moment)
+            busy = solving
         progress(len(instants), len(instants))
         runs = [run, *(panel.run for tool in tools.values() for panel in tool.panels.values())]
         report.steps = sum(island.march.statistics.steps for one in runs for island in one.islands)
         for name in outputs:
-            report.files += sinks[name].close()
-            del sinks[name]
+            busy = _Busy("finishing the file", [name])
+            with held():
+                report.files += sinks[name].close()
+                del sinks[name]
     except BaseException as error:
-        error.kept = [*report.files, *_kept(sinks, error)]  # type: ignore[attr-defined]
+        told = _out_of_memory(error, graph, now, busy) if starved(error) else error
+        with suppress(KeyboardInterrupt), held():
+            told.kept = [*report.files, *_kept(sinks, told)]  # type: ignore[attr-defined]
+        if told is not error:
+            raise told from error
         raise
     finally:
         gc.unfreeze()
@@ -158,20 +157,46 @@ def render(
     return report
 
 
+class _Busy(NamedTuple):
+    """What a run is at, and with which parts."""
+
+    doing: str
+    parts: Sequence[str]
+
+
+LESS = {"size": "smaller", "count": "smaller", "samples": "smaller", "cell": "larger", "spacing": "larger"}
+"""Fields that say how much memory a part takes, and which way less."""
+
+
+def _out_of_memory(error: BaseException, graph: SimulationGraph, now: float, busy: _Busy) -> OutOfMemory:
+    """A want of memory as one of what the run was busy with, and which fields would take less."""
+    part, span, message = ", ".join(busy.parts) or graph.name, None, want_of_memory(error)
+    if isinstance(error, RunFailure):
+        part, span, now, message = error.part, error.span, error.time, error.message
+    message = f"{message}, when {busy.doing}"
+    names = dict.fromkeys((*busy.parts, part.partition(".")[0]))
+    tasks = [graph.tasks[name] for name in names if name in graph.tasks]
+    large = [(task.name, field, LESS[field.rpartition(".")[2]]) for task in tasks for field in _large(task.kind)]
+    less = " or ".join(f"a {size} `{field}` of '{name}'" for name, field, size in large)
+    help = f"{less} takes less" if less else None
+    return OutOfMemory(message, part=part, time=now, span=span or (tasks[0].span if tasks else None), help=help)
+
+
+def _large(record: BaseModel) -> Iterator[str]:
+    """The fields of a word, or of a record in it, that say how much memory it takes."""
+    for name in type(record).model_fields:
+        value = getattr(record, name)
+        if name in LESS and value is not None:
+            yield name
+        elif isinstance(value, BaseModel) and not isinstance(value, Kind):
+            yield from (f"{name}.{inner}" for inner in _large(value))
+
+
 def _shows_script(graph: SimulationGraph, output: Output) -> bool:
     """Whether an output shows the script as it stands, and not its variants alone."""
     if not isinstance(output, Picture) or not output.layout:
         return True
     return any(isinstance(graph.tasks[ref.name].kind, Camera) for ref in output.laid_out)
-
-
-def _try_folder(folder: Path) -> None:
-    """Raise OSError where no file can be made: before the run, not after it."""
-    import tempfile
-
-    folder.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryFile(dir=folder):
-        pass
 
 
 def _kept(sinks: dict[str, Any], error: BaseException) -> list[Path]:
@@ -181,7 +206,8 @@ def _kept(sinks: dict[str, Any], error: BaseException) -> list[Path]:
         try:
             kept += sink.abort()
         except Exception as second:
-            error.add_note(f"nothing of '{name}' could be kept: {second}")
+            same = second in (error, error.__cause__)
+            error.add_note(f"nothing of '{name}' could be kept" + ("" if same else f": {second}"))
     return kept
 
 
@@ -198,203 +224,3 @@ def _target(graph: SimulationGraph, name: str, count: int, output: Path | None, 
     if output is not None:
         return output
     return folder / (graph.name if count == 1 else f"{graph.name}.{name}")
-
-
-class Tools:
-    """What the pipeline lends to an output (kinds.Tools)."""
-
-    def __init__(self, graph: SimulationGraph, name: str, report: Report, target: Path, named: bool = False) -> None:
-        """``named``: the user gave the target, else it is a path without extension."""
-        self.graph, self.name, self.report, self.target, self.named = graph, name, report, target, named
-        self.panels: dict[str, Panel] = {}
-        self._frames, self._light = 0, cast(Any, None)
-        self._framed: float | None = None
-
-    @property
-    def clock(self) -> Clock:
-        """Film time and simulation time."""
-        return self.graph.settings.clock
-
-    def path(self, extension: str) -> Path:
-        """Path of the output's file. Raises Unsuitable where the user's name ends in something else."""
-        target = self.target
-        if target.suffix == f".{extension}":
-            return target
-        if self.named and target.suffix:
-            raise Unsuitable(f"'{self.name}' is written as .{extension}, which {target.name} does not end in")
-        return target.with_name(f"{target.name}.{extension}")
-
-    def pixels(self, output: Picture, moment: Any, part: int = 0, parts: int = 1) -> Any:
-        """The developed picture (h, w, 3) uint8; of several parts of an exposure after the last, else None."""
-        if output.layout:
-            picture = self._composed(output, moment)
-        else:
-            picture = self._seen(output, moment, None, part, parts)
-        self._frames += 1
-        self.report.frames += part == parts - 1
-        return picture
-
-    def _seen(self, output: Picture, moment: Any, camera: str | None = None, part: int = 0, parts: int = 1) -> Any:
-        """The scene from a camera, by default the output's own; None before the last part of an exposure."""
-        from renderers.develop import develop
-        from sceneql.run.never_drawn import look, solids
-
-        shot = output.seen_from(moment.time)
-        eye = camera if camera is not None or shot is None else shot.name
-        frame = frame_of(self.graph, self.name, output.pixels, moment, self._frames, eye)
-        renderer = self._renderer(output)
-        self.prepare(output)()
-        drawn_by = self.graph.tasks[self.name if output.renderer is None else output.renderer.name]
-        with failing_as(drawn_by.name, moment.time, drawn_by.span):
-            picture = renderer.draw(frame)
-        asked = solids(self.graph.drawn[self.name], self.graph.tasks)
-        look(frame.shapes, asked, self.graph.tasks, self.report.present)
-        if picture.undecided:
-            counts = self.report.undecided.setdefault(self.name, {})
-            counts[frame.index] = counts.get(frame.index, 0) + picture.undecided
-        linear = picture.linear
-        if parts > 1:
-            self._light = linear / parts if part == 0 else self._light + linear / parts
-            linear = self._light
-        if part < parts - 1:
-            return None
-        pixels = develop(linear, exposure=output.exposure, data=renderer.data)
-        if not renderer.data:
-            without = {ref.name for ref in output.laid_out}
-            self._draw_over(pixels, frame.view, moment, partial(develop, exposure=output.exposure), without)
-        return pixels
-
-    def _composed(self, output: Picture, moment: Any) -> Any:
-        """The panels of a layout."""
-        from sceneql.pictures.layout import boxes, page
-
-        pixels = page(output.pixels)
-        for item, (left, top, wide, high) in boxes(output.layout, self.graph.variants.names, output.pixels):
-            block, scale = pixels[top : top + high, left : left + wide], len(pixels) / high
-            if isinstance(item, str):
-                block[:] = self._variant(item, (wide, high), moment.time, scale)
-                continue
-            task = self.graph.tasks[item.name]
-            with failing_as(task.name, moment.time, task.span):
-                if isinstance(task.kind, Overlay):
-                    task.kind.fill(block, moment, scale)
-                else:
-                    block[:] = self._seen(output.model_copy(update={"size": (wide, high)}), moment, item.name)
-        return pixels
-
-    def _variant(self, name: str, size: tuple[int, int], time: float, scale: float) -> Any:
-        """The panel (h, w, 3) of a variant; one whose run has failed stays as it was, under the message."""
-        from sceneql.pictures.layout import Panel, label
-
-        if name not in self.panels:
-            panel = self.panels[name] = Panel(self.graph.variant(name))
-            panel.tools = Tools(panel.graph, self.name, self.report, self.target)
-        panel = self.panels[name]
-        if panel.failure is None or panel.picture is None:
-            moment = panel.at(time)
-            kind = cast(Picture, panel.graph.tasks[self.name].kind).model_copy(update={"size": size})
-            panel.picture = panel.tools._seen(kind, moment)
-            panel.tools._frames += 1
-            label(panel.picture, name, panel.failure, scale)
-        return panel.picture
-
-    def _draw_over(
-        self, pixels: Any, view: View, moment: Any, develop: Callable[[Any], Any], without: set[str]
-    ) -> None:
-        """What is drawn on a developed picture: labels of objects, and overlays but those of the layout."""
-        from sceneql.words.overlays.labels import draw_labels
-
-        draw_labels(pixels, view, self.graph.tasks, self.graph.drawn[self.name], moment)
-        for task in self.graph.tasks.values():
-            if isinstance(task.kind, Overlay) and task.name not in without:
-                with failing_as(task.name, moment.time, task.span):
-                    if task.kind.show is None or moment.at(task.kind.show) != 0:
-                        task.kind.draw(pixels, view, moment, develop)
-
-    def frame(self, moment: Any, *, fields: bool = False) -> Frame:
-        """The shapes that the output draws now. Raises Unsuitable for one that does not draw, and RunFailure."""
-        from sceneql.run.never_drawn import look, solids
-
-        if self.name not in self.graph.drawn:
-            raise Unsuitable(f"'{self.name}' gets no shapes: its word does not say that it `draws`")
-        names = self.graph.drawn[self.name]
-        if moment.time != self._framed:  # else the same frame is asked for once more
-            self._frames, self._framed = self._frames + (self._framed is not None), moment.time
-            self.report.frames += 1
-        frame = shapes_of(names, moment, self._frames, fields=fields)
-        look(frame.shapes, solids(names, self.graph.tasks), self.graph.tasks, self.report.present)
-        return frame
-
-    def encoder(self, word: str, **settings: Any) -> Any:
-        """A writer of the encoders' folder."""
-        from importlib import import_module
-
-        comment = f"sceneql {__version__} script {self.graph.script_hash}"
-        module = import_module(f"renderers.encoders.{word}")
-        return module.Writer(self.path(word), comment=comment, **settings)
-
-    def prepare(self, output: Picture) -> Callable[[], None]:
-        """Start compiling what the output is drawn with, beside the physics; call the result to wait for it."""
-        modules = self._renderer(output).kernels(self._traced(self.graph.drawn[self.name]))
-        return _compile_beside(modules) if modules else lambda: None
-
-    def _traced(self, names: Iterable[str]) -> set[str]:
-        """By which fields parts, or what these draw, are drawn."""
-        kinds = [kind for name in names if isinstance(kind := self.graph.tasks[name].kind, Object)]
-        within = (self._traced(ref.name for ref in kind.members()) for kind in kinds if not kind.traced)
-        return {kind.traced for kind in kinds if kind.traced}.union(*within)
-
-    def _renderer(self, output: Picture) -> Renderer:
-        if output.renderer is not None:
-            return cast(Renderer, self.graph.tasks[output.renderer.name].kind)
-        cls = Catalogue().load("renderers", "trace")
-        if cls is None:
-            raise LookupError("the default renderer is missing")
-        return cast(Renderer, cls())
-
-
-@cache
-def _compile_beside(modules: tuple[str, ...]) -> Callable[[], None]:
-    """Start compiling a renderer's kernels, once for all outputs that it draws."""
-    from sceneql.compiled.compile_beside import compile_beside
-
-    return compile_beside(modules)
-
-
-def shapes_of(names: Iterable[str], moment: Instant, index: int = 0, *, fields: bool = False) -> Frame:
-    """The Frame of some parts at a moment (kinds.Tools.frame). Raises RunFailure."""
-    from sceneql.frame import Frame
-
-    return Frame(index, moment.now, tuple(moment.lower(names, fields=fields)))
-
-
-def frame_of(
-    graph: SimulationGraph, output: str, size: tuple[int, int], moment: Instant, index: int, camera: str | None = None
-) -> SeenFrame:
-    """The frame that a renderer gets for an output at a moment; by default of the output's own camera."""
-    from sceneql.frame import SeenFrame, Sky
-    from sceneql.shapes.color import linear
-
-    drawn = shapes_of(graph.drawn[output], moment, index)  # first: what cannot be drawn is no failure of the camera's
-    eye = graph.tasks[camera or graph.cameras[output]]
-    with failing_as(eye.name, moment.time, eye.span):
-        view = cast(Camera, eye.kind).view(size, moment)
-    lights: list[LightSource] = []
-    for task in graph.tasks.values():
-        if isinstance(task.kind, Light):
-            with failing_as(task.name, moment.time, task.span):
-                lights += task.kind.lower(moment)
-    if graph.settings.background is not None:
-        with failing_as("background", moment.time, graph.settings.background.span):
-            seen = linear(moment.at(graph.settings.background))
-        skies = [light for light in lights if isinstance(light, Sky)] or [Sky((0, 0, 0), (0, 0, 0), (0, 0, 0))]
-        lights = [light for light in lights if not isinstance(light, Sky)]
-        lights += [replace(sky, visible=seen) for sky in skies]
-    return SeenFrame(
-        index=drawn.index,
-        time=drawn.time,
-        shapes=drawn.shapes,
-        lights=tuple(lights),
-        view=view,
-        seed=graph.settings.clock.seed,
-    )

@@ -25,7 +25,7 @@ def test_no_name_is_put_together_from_what_is_known_in_a_run_alone():
     """But those of words, renderers and encoders, which are files of a folder; generated modules have their own."""
     allowed = {
         "sceneql/compiler/catalogue.py": ("sceneql.words.",),
-        "sceneql/pipeline.py": ("renderers.encoders.",),
+        "sceneql/tools.py": ("renderers.encoders.",),
         "sceneql/report/explain.py": ("_kernels.py",),  # of a word
     }
     wrong = []

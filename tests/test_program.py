@@ -131,7 +131,7 @@ def test_an_interrupted_film_keeps_its_frames(tmp_path):
     process = subprocess.Popen(
         [sys.executable, "-m", "sceneql", "render", "f.yaml"], cwd=tmp_path, stderr=subprocess.PIPE, text=True
     )
-    while not (tmp_path / ".f.part.mp4").exists() and process.poll() is None:
+    while not list(tmp_path.glob(".f.part-*.mp4")) and process.poll() is None:
         time.sleep(0.05)
     time.sleep(1.0)
     os.kill(process.pid, signal.SIGINT)

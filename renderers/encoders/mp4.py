@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import errno
+import io
 import os
+import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sceneql.files import beside
+from sceneql.files import beside, discard, finish, hidden
+from sceneql.interrupts import held
 
 if TYPE_CHECKING:
     from numpy import uint8
@@ -14,6 +18,8 @@ if TYPE_CHECKING:
 
 # x264's bytes depend on the number of its threads, so that is fixed; faststart lets a browser play while it loads.
 OPTIONS = {"movflags": "+faststart", "fflags": "+bitexact"}
+AT_ONCE = 64
+"""Frames, at most, that the encoder holds back."""
 
 
 SEEK = 0.5
@@ -49,16 +55,21 @@ class Writer:
             raise ValueError(f"a film's width and height must be even, not {size[0]} {size[1]}")
         self.path = path
         self.frames = 0
-        self._temporary = path.with_name(f".{path.stem}.part.mp4")
+        self._made = hidden(path)
         self._settings = (size, rate, quality, comment)
         self._file: Any = None
+        self._disk: Any = None
 
     def _open(self) -> Any:
+        from importlib import import_module
+
+        import_module("av")  # imageio would call any error of its import a missing plug-in
         import imageio.v3 as iio
 
         (width, height), rate, quality, comment = self._settings
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        file: Any = iio.imopen(self._temporary, "w", plugin="pyav", extension=".mp4")
+        self._disk = _Disk(self._made, "xb")
+        file: Any = iio.imopen(self._disk, "w", plugin="pyav", extension=".mp4")
         file.init_video_stream("libx264", fps=float(rate), pixel_format="yuv420p")
         stream: Any = file._video_stream
         stream.width, stream.height = width, height
@@ -75,32 +86,78 @@ class Writer:
         return file
 
     def write(self, picture: NDArray[uint8]) -> None:
-        """Add a frame (h, w, 3)."""
-        if self._file is None:
-            self._file = self._open()
-        self._file.write_frame(planes_of(picture), pixel_format="yuv420p")
-        self.frames += 1
+        """Add a frame (h, w, 3). Raises OSError while the disk still has room to finish the film, and MemoryError."""
+        planes = planes_of(picture)
+        with held():  # a signal in the encoder's callbacks would break it
+            if self._file is None:
+                self._file = self._open()
+            self._leave_room()
+            from av import ExternalError
+
+            try:
+                self._file.write_frame(planes, pixel_format="yuv420p")
+            except ExternalError:
+                bytearray(AT_ONCE * picture.size // 2 + 2**28)  # MemoryError, where that is what x264 does not tell
+                raise
+            self._disk.raise_error()
+            self.frames += 1
+
+    def _leave_room(self) -> None:
+        """Raise OSError where what the encoder holds back and the index of frames would not fit on the disk."""
+        if self.frames > 2 * AT_ONCE:
+            each = self._made.stat().st_size // (self.frames - AT_ONCE)
+            if shutil.disk_usage(self._made.parent).free < 2 * AT_ONCE * each + 64 * self.frames + 2**16:
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     def close(self) -> list[Path]:
         """Finish; the film appears under its name."""
         return self._finish(self.path)
 
     def abort(self) -> list[Path]:
-        """Keep the frames so far, playable, beside the final name."""
-        if self.frames == 0:
-            self._temporary.unlink(missing_ok=True)
-            return []
-        try:
-            return self._finish(beside(self.path, "partial"))
-        except OSError:
-            self._temporary.unlink(missing_ok=True)
-            raise
+        """Keep the frames so far, playable, beside the final name. Raises the OSError of what was not written."""
+        return self._finish(beside(self.path, "partial"))
 
     def _finish(self, path: Path) -> list[Path]:
-        if self._file is None:
-            return []
-        self._file.close()
-        with self._temporary.open("rb") as stream:
-            os.fsync(stream.fileno())
-        self._temporary.replace(path)
+        file, self._file = self._file, None
+        try:
+            if file is not None:
+                self._end(file)
+            if self._disk is not None:
+                self._disk.close()
+                self._disk.raise_error()
+            if not self.frames:
+                return []
+            finish(self._made, path)
+        finally:
+            discard(self._made)
         return [path]
+
+    def _end(self, file: Any) -> None:
+        """Close the encoder; where it has failed, it is not asked again for what it holds back when it is collected."""
+        try:
+            if not self.frames:
+                file._video_stream = None
+            file.close()
+        finally:
+            file._video_stream = file._video_filter = None
+
+
+class _Disk(io.FileIO):
+    """A file that keeps its first error for later: an encoder would print it, many times, and be of no use after it."""
+
+    error: OSError | None = None
+
+    def write(self, data: Any) -> int:
+        """Write all of it, while there has been no error; says that it did in any case."""
+        rest = memoryview(data)
+        try:
+            while len(rest) and self.error is None:
+                rest = rest[super().write(rest) :]
+        except OSError as error:
+            self.error = error
+        return len(data)
+
+    def raise_error(self) -> None:
+        """Raise what was kept."""
+        if self.error is not None:
+            raise self.error

@@ -12,15 +12,15 @@ import subprocess
 import sys
 import threading
 import warnings
-from collections.abc import Callable, Iterable
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
 from functools import cache
 from importlib import import_module
-from traceback import print_exc
+from queue import SimpleQueue
 from typing import IO, NoReturn, cast
 
 from sceneql.compiled.kernels import CACHE, OURS, cache_folder, compiled, compiles, thread_count
-from sceneql.compiled.store import CacheTrouble
+from sceneql.interrupts import SIGNALS
 
 
 def compile_beside(modules: Iterable[str]) -> Callable[..., None]:
@@ -52,19 +52,30 @@ def compile_beside(modules: Iterable[str]) -> Callable[..., None]:
     return cache(wait)
 
 
-def compile_named(names: Iterable[str]) -> None:
+def compile_named(names: Iterable[str]) -> NoReturn:
     """The second process's work: import the module that each line names, and leave the mark named behind it.
 
-    Ctrl-C is for the first process, which reports what it has kept and then ends this one. So is trouble with the
-    cache, at which this one ends: what it leaves undone meets the first one, too.
+    It ends, in the middle of a module too, when the lines do: with the first process, however that has ended. Ctrl-C is
+    for the first one, which reports what it has kept and then ends this one. So are errors, as trouble with the cache,
+    at which this one ends: what it leaves undone meets the first one, too.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     CACHE.second = True
-    with suppress(CacheTrouble):
+    lines: SimpleQueue[str] = SimpleQueue()
+
+    def read() -> None:
         for line in names:
-            module, mark = line.split()
+            lines.put(line)
+        os._exit(0)
+
+    try:
+        threading.Thread(target=read, daemon=True).start()
+        while True:
+            module, mark = lines.get().split()
             import_module(module)
             CACHE.mark(mark)
+    except BaseException:
+        os._exit(1)
 
 
 @cache
@@ -73,28 +84,40 @@ def _beside() -> IO[str]:
 
     A fork need not import numba once more, but is only safe with one thread: locks of others would never be released.
     """
-    if sys.platform == "linux" and threading.active_count() == 1:
-        return _copied()
-    command = "import sys; from sceneql.compiled.compile_beside import compile_named; compile_named(sys.stdin)"
-    process = subprocess.Popen([sys.executable, "-c", command], stdin=subprocess.PIPE, text=True)
-    atexit.register(process.terminate)
+    with _no_signals():
+        if sys.platform == "linux" and threading.active_count() == 1:
+            return _copied()
+        command = "import sys; from sceneql.compiled.compile_beside import compile_named; compile_named(sys.stdin)"
+        process = subprocess.Popen([sys.executable, "-c", command], stdin=subprocess.PIPE, text=True)
+    atexit.register(process.kill)
     return cast("IO[str]", process.stdin)
+
+
+@contextmanager
+def _no_signals() -> Iterator[None]:
+    """A process that is started inside the block does not see signals that end this one, where the system has masks."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _copied() -> IO[str]:
     reading, writing = os.pipe()
-    blocked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # about threads that are not Python's: BLAS ends its own
         process = os.fork()
     if process == 0:
         _work_and_end(reading)
-    signal.pthread_sigmask(signal.SIG_SETMASK, blocked)
     os.close(reading)
 
     def end() -> None:
         with suppress(ProcessLookupError, ChildProcessError):
-            os.kill(process, signal.SIGTERM)
+            os.kill(process, signal.SIGKILL)
             os.waitpid(process, 0)
 
     atexit.register(end)
@@ -102,14 +125,10 @@ def _copied() -> IO[str]:
 
 
 def _work_and_end(reading: int) -> NoReturn:
-    """End by os._exit without the first process's exit handlers; its open files are closed at once."""
+    """Compile what a pipe names without the first process's exit handlers; its open files are closed at once."""
     try:
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)
         os.closerange(3, reading)
         os.closerange(reading + 1, os.sysconf("SC_OPEN_MAX"))
-        with os.fdopen(reading) as names:
-            compile_named(names)
-    except BaseException:
-        print_exc()
+        compile_named(os.fdopen(reading))
+    finally:
         os._exit(1)
-    os._exit(0)

@@ -40,6 +40,8 @@ class Checked:
     """In the order of the script; parts written in place stand before the part that holds them."""
     timed: bool
     """Whether its clock can be read."""
+    files: tuple[str, ...]
+    """Paths of the files that its parts name, used or not."""
 
 
 def check(script: Script, catalogue: Catalogue, found: Diagnostics) -> Checked:
@@ -56,7 +58,8 @@ def check(script: Script, catalogue: Catalogue, found: Diagnostics) -> Checked:
     checker.gives()
     checker.defaults()
     settings = checker.settings()
-    return Checked(script, settings, checker.whole_tasks() if found.errors else checker.tasks, checker.timed)
+    tasks = checker.whole_tasks() if found.errors else checker.tasks
+    return Checked(script, settings, tasks, checker.timed, tuple(checker.files))
 
 
 class _Checker:
@@ -67,6 +70,7 @@ class _Checker:
         self.entries: dict[str, Entry] = {}
         self._done: set[str] = set()
         self.timed = True
+        self.files: list[str] = []
         self.folder = Path(script.sources[0].name).parent
         for family, entries in (*script.sections.items(), *script.unmade.items()):
             for name, entry in entries.items():
@@ -140,6 +144,7 @@ class _Checker:
                 lambda node, mark, name: self.refer(node, mark, name, part),
                 part.name,
                 self.folder,
+                self.files,
                 symbols,
             )
             for name, info in cls.model_fields.items():
@@ -155,7 +160,7 @@ class _Checker:
         for name, node in self.names.defines.items():
             self.names.define(name, node.span)
         given = {key: self.script.settings[key] for key in SETTINGS if key in self.script.settings}
-        reader = Reader(self.names, self.found, lambda node, mark, name: None, "", self.folder)
+        reader = Reader(self.names, self.found, lambda node, mark, name: None, "", self.folder, self.files)
         result: dict[str, Any] = {}
         for key, node in given.items():
             info = Settings.model_fields[key]
@@ -231,7 +236,13 @@ class _Checker:
             return ref
 
         reader = Reader(
-            names, self.found, refer, name, self.folder, copies=lambda node, mark: self.copies(node, mark, entry)
+            names,
+            self.found,
+            refer,
+            name,
+            self.folder,
+            self.files,
+            copies=lambda node, mark: self.copies(node, mark, entry),
         )
         try:
             kind = reader.record(entry.fields, cls, entry.word_span, entry.word)

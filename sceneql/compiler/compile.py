@@ -19,7 +19,7 @@ from sceneql.compiler.passes.sizes import check_sizes
 from sceneql.compiler.passes.slopes import warn_of_values
 from sceneql.compiler.passes.stable_steps import warn_of_steps
 from sceneql.compiler.studies import check_studies
-from sceneql.graph import SimulationGraph, Task, Variants
+from sceneql.graph import Origin, SimulationGraph, Task, Variants
 from sceneql.kinds import Camera, Clock, Exceeds, Model, Object, Output, Picture
 from sceneql.language.script import Script
 from sceneql.language.tree import unsure
@@ -69,7 +69,7 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
             replace(part, reason="only `expect` measures it") if part.name in expected else part for part in left_out
         ),
         warnings=found.warnings,
-        script_hash=script.hash,
+        origin=Origin(script.hash, (*(source.name for source in script.sources), *checked.files)),
         variants=Variants(script.variants, script.may_fail),
     )
 

@@ -45,6 +45,8 @@ class Reader:
     """Name of the part whose fields these are."""
     folder: Path
     """The scene's folder."""
+    files: list[str]
+    """Paths of the files that fields have named so far; it grows."""
     symbols: tuple[str, ...] = ()
     """Symbols that the formulas of this word may use besides defines."""
     copies: Callable[[Scalar, kinds.Refers], list[str]] = lambda node, mark: []
@@ -138,7 +140,9 @@ class Reader:
             if isinstance(mark, kinds.Interpolated):
                 return self._some(read_text(node, mark, what, self.names, self.found))
             if isinstance(mark, kinds.SceneFile):
-                return self._some(read_path(node, self.folder, what, self.found))
+                path = self._some(read_path(node, self.folder, what, self.found))
+                self.files.append(path)
+                return path
             if isinstance(mark, kinds.Symbols):
                 return self._formula(node, mark, what)
         origin, arms = get_origin(base), get_args(base)

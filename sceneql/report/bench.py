@@ -58,6 +58,7 @@ def bench(
         raise Unsuitable(
             f"nothing in {graph.name} is solved in time or drawn as an implicit surface, so there is nothing to measure"
         )
+    stem = file_names(graph, "bench", output)
     catalogue = Catalogue(words)
     rows: list[Measurement] = []
     drifts: list[Drift] = []
@@ -91,7 +92,6 @@ def bench(
     if graph.islands:
         lines.append(f"compiled in {compile_seconds:.1f} s, which is in none of the times")
         summary.append(lines[-1])
-    stem = file_names(graph.name, "bench", output)
     section = surface_section(frames, graph.name, stem) if frames else None
     if section is not None:
         lines += section.lines

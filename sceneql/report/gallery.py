@@ -7,7 +7,7 @@ from typing import Any, cast
 
 from sceneql import pipeline
 from sceneql.failure import Unsuitable
-from sceneql.files import whole
+from sceneql.files import refuse_unwritable, try_folder, whole
 from sceneql.graph import SimulationGraph
 from sceneql.kinds import Picture
 from sceneql.report.expect import Outcome, outcomes
@@ -88,9 +88,11 @@ def update(scenes: tuple[Path, ...], folder: Path) -> list[str]:
     from PIL import Image
 
     page = folder / "README.md"
+    try_folder(folder)
     lines, sections = [], _sections(page) if scenes else {}
     for scene in scenes_of(scenes):
         graph = pipeline.load(scene)
+        refuse_unwritable(folder / f"{scene.stem}.png", graph.origin.files)
         data = BytesIO()
         Image.fromarray(poster(graph)).save(data, "png")
         with whole(folder / f"{scene.stem}.png") as stream:

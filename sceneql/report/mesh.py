@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from sceneql import pipeline
 from sceneql.failure import Unsuitable, failing_as
+from sceneql.files import refuse_unwritable, try_folder
 from sceneql.frame import Grid, Implicit
 from sceneql.kinds import Object
 from sceneql.quantities.diagnostic import suggestion
@@ -95,6 +96,8 @@ def mesh(
     from sceneql.mesh.write_mesh import format_of, write
 
     format_of(output)
+    refuse_unwritable(output, graph.origin.files)
+    try_folder(output.parent)
     if not 0.0 <= time <= graph.settings.clock.end:
         raise Unsuitable(f"the scene ends at {graph.settings.clock.end:g} s, so there is nothing at {time:g} s")
     task = _object(graph, name)

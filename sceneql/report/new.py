@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from sceneql.files import whole
+from sceneql.files import refuse_unwritable, try_folder, whole
 
 SCRIPT = """\
 # yaml-language-server: $schema=./{schema}
@@ -48,13 +48,15 @@ expect:                      # numbers that must hold, and where they are known 
 
 
 def write(name: str) -> list[Path]:
-    """Write NAME.yaml and the schema beside it; refuses to overwrite the script. Raises FileExistsError."""
+    """Write NAME.yaml and the schema beside it; refuses to overwrite the script. Raises OSError, Unsuitable."""
     from sceneql.compiler.catalogue import Catalogue
     from sceneql.report.schema import schema
 
     path = Path(name if name.endswith(".yaml") else f"{name}.yaml")
+    refuse_unwritable(path)
     if path.exists():
         raise FileExistsError(f"{path} is there already")
+    try_folder(path.parent)
     beside = path.with_name("sceneql.schema.json")
     with whole(beside) as stream:
         stream.write(json.dumps(schema(Catalogue()), indent=1).encode())

@@ -7,7 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from sceneql.files import whole
+from sceneql.files import refuse_unwritable, try_folder, whole
+from sceneql.graph import SimulationGraph
+
+EXTENSIONS = ("csv", "html", "json", "svg")
+"""Formats of all files of reports."""
 
 TEMPLATE = """\
 <!doctype html>
@@ -68,13 +72,19 @@ def write_page(
         stream.write(text.encode())
 
 
-def file_names(name: str, kind: str, output: Path | None) -> Path:
-    """The files' path without extension: ``<scene>.<kind>`` in a folder, or what the user named."""
-    if output is None or output.is_dir():
-        return (output or Path()) / f"{name}.{kind}"
-    return output
+def file_names(graph: SimulationGraph, kind: str, output: Path | None) -> Path:
+    """The files' path without extension: ``<scene>.<kind>`` in a folder, or what the user named.
+
+    To be asked for before anything is run: raises OSError where none can be written, and Unsuitable where names are too
+    long or those of files that the script reads.
+    """
+    stem = (output or Path()) / f"{graph.name}.{kind}" if output is None or output.is_dir() else output
+    try_folder(stem.parent)
+    for extension in EXTENSIONS:
+        refuse_unwritable(beside(stem, extension), graph.origin.files, marks=r"(\.\w+)?")
+    return stem
 
 
 def beside(stem: Path, extension: str) -> Path:
-    """A file of the report: ``scene.bench`` and ``csv`` make ``scene.bench.csv``."""
+    """A file of the report: ``scene.bench`` and ``csv`` make ``scene.bench.csv``; it ends in one of `EXTENSIONS`."""
     return stem.with_name(f"{stem.name}.{extension}")

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+
+from sceneql.interrupts import raised
 
 
 @contextmanager
 def bar(title: str) -> Iterator[Callable[[int, int], None]]:
     """A function of (done, total) that draws a bar on standard error while the block runs.
 
-    It raises KeyboardInterrupt for a Ctrl-C that was lost: an exception in a callback of a C library (the compiler,
-    say) is dropped there. An error for want of that callback's result becomes the interrupt, too.
+    It raises KeyboardInterrupt for a signal that was lost in a callback of a C library (`interrupts.raised`). An error
+    for want of that callback's result becomes the interrupt, too.
     """
-    with _remembered() as lost, _drawn(title) as draw:
+    with raised() as lost, _drawn(title) as draw:
 
         def step(done: int, total: int) -> None:
             if lost():
@@ -29,30 +29,6 @@ def bar(title: str) -> Iterator[Callable[[int, int], None]]:
             if lost():
                 raise KeyboardInterrupt from error
             raise
-
-
-@contextmanager
-def _remembered() -> Iterator[Callable[[], bool]]:
-    """A function that says whether Ctrl-C was pressed inside the block; no message of a dropped one is printed."""
-    pressed = False
-    tell = sys.unraisablehook
-
-    def press(number: int, frame: Any) -> None:
-        nonlocal pressed
-        pressed = True
-        raise KeyboardInterrupt
-
-    def forgotten(what: sys.UnraisableHookArgs) -> None:
-        if what.exc_type is not KeyboardInterrupt:
-            tell(what)
-
-    before = signal.signal(signal.SIGINT, press)
-    sys.unraisablehook = forgotten
-    try:
-        yield lambda: pressed
-    finally:
-        sys.unraisablehook = tell
-        signal.signal(signal.SIGINT, before)
 
 
 @contextmanager

@@ -40,12 +40,12 @@ def stability(
     graph = load(())
     if not graph.islands:
         raise Unsuitable(f"nothing in {graph.name} is solved in time, so nothing can be unstable")
+    stem = file_names(graph, "stability", output)
     chosen = default_sweep(graph) if sweep is None else parse_sweep(sweep, points or POINTS)
     found = list(cells(load, chosen, Catalogue(words), largest_error, progress))
     if not found:
         raise Unsuitable(f"no solver that applies has a {chosen.path}")
     lines = _lines(chosen, found, largest_error)
-    stem = file_names(graph.name, "stability", output)
     table, data, picture, page = (beside(stem, extension) for extension in ("csv", "json", "svg", "html"))
     _write_csv(table, found)
     write_json(data, {"scene": graph.name, "sweep": asdict(chosen), "cells": [asdict(cell) for cell in found]})

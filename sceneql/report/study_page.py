@@ -39,10 +39,10 @@ def study(
             raise Unsuitable(f"{graph.name} has no `studies`")
         hint = suggestion(name or "", known) or f"there are {', '.join(known)}"
         raise Unsuitable(f"which study? {hint}" if name is None else f"there is no study '{name}': {hint}")
+    stem = file_names(graph, name, output)
     found = list(trials(load, name, progress))
     paths = list(known[name].sweep)
     numbered = next((k for k, value in enumerate(found[0].values) if math.isfinite(value.number)), None)
-    stem = file_names(graph.name, name, output)
     table, data, page, errors, picture = (
         beside(stem, extension) for extension in ("csv", "json", "html", "svg", "map.svg")
     )

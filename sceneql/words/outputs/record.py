@@ -38,7 +38,7 @@ class Record(Output):
 
 class _Table:
     def __init__(self, record: Record, tools: Tools) -> None:
-        self.record, self.tools = record, tools
+        self.record, self.path = record, tools.path(record.format)
         self.titles = [
             " ".join(v.span.text.split()) if v.span is not None else f"value {k}" for k, v in enumerate(record.of)
         ]
@@ -48,10 +48,10 @@ class _Table:
         self.rows.append([moment.time, *(moment.measure(value) for value in self.record.of)])
 
     def close(self) -> Iterable[Any]:
-        return [self._write(self.tools.path(self.record.format))]
+        return [self._write(self.path)]
 
     def abort(self) -> Iterable[Any]:
-        return [self._write(beside(self.tools.path(self.record.format), "partial"))] if self.rows else []
+        return [self._write(beside(self.path, "partial"))] if self.rows else []
 
     def _write(self, path: Any) -> Any:
         with whole(path) as stream:

@@ -1,0 +1,100 @@
+"""Ctrl-C, SIGTERM and SIGHUP: one way out of the program, at any instant without a traceback.
+
+While a command runs they raise KeyboardInterrupt, which keeps what was made; before and after there is nothing to keep,
+and they end the process at once. A signal that the caller has switched off (nohup) stays off.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import Any
+
+SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+
+
+class _Received:
+    first = 0
+    """The number of the first signal; 0 before one has come."""
+    count = 0
+    held = 0
+    """How many blocks are open that no signal may break off."""
+    raising = 0
+
+
+def _handle(handler: Callable[[int, FrameType | None], Any]) -> dict[int, Any]:
+    """Set a handler where the caller has not switched the signal off; returns those before."""
+    before = {number: signal.getsignal(number) for number in SIGNALS}
+    before = {number: known for number, known in before.items() if known not in (signal.SIG_IGN, None)}
+    for number in before:
+        signal.signal(number, handler)
+    return before
+
+
+def end_at_once(code: int | None = None) -> None:
+    """From here on a signal ends the process at once, with this exit code; by default with 128 and its number."""
+
+    def end(number: int, frame: FrameType | None) -> None:
+        os._exit(128 + number if code is None else code)
+
+    _handle(end)
+
+
+@contextmanager
+def raised() -> Iterator[Callable[[], bool]]:
+    """Signals raise KeyboardInterrupt inside the block; gives a function that says whether one has come.
+
+    An exception in a callback of a C library (the compiler, say) is dropped there: then that function alone tells of
+    the signal, and no message is printed of the exception.
+    """
+    if _Received.raising:
+        yield lambda: _Received.first != 0
+        return
+    tell = sys.unraisablehook
+
+    def forgotten(what: sys.UnraisableHookArgs) -> None:
+        if what.exc_type is not KeyboardInterrupt:
+            tell(what)
+
+    _Received.first = _Received.count = 0
+    before = _handle(_press)
+    sys.unraisablehook = forgotten
+    _Received.raising += 1
+    try:
+        yield lambda: _Received.first != 0
+    finally:
+        _Received.raising -= 1
+        sys.unraisablehook = tell
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _press(number: int, frame: FrameType | None) -> None:
+    _Received.first = _Received.first or number
+    _Received.count += 1
+    if not _Received.held:
+        raise KeyboardInterrupt
+    if _Received.count > 2:  # somebody will not wait
+        os._exit(exit_code())
+
+
+@contextmanager
+def held() -> Iterator[None]:
+    """A block that no signal breaks off, as of finishing a file; one that has come is raised at its end."""
+    before = _Received.count
+    _Received.held += 1
+    try:
+        yield
+    finally:
+        _Received.held -= 1
+    if _Received.count > before and not _Received.held:
+        raise KeyboardInterrupt
+
+
+def exit_code() -> int:
+    """128 and the number of the signal that has come first."""
+    return 128 + (_Received.first or int(signal.SIGINT))

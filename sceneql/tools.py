@@ -1,0 +1,250 @@
+"""What the pipeline lends to outputs: paths, frames, developed pictures, encoders; and the account that it keeps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
+from functools import cache, partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from sceneql import __version__
+from sceneql.compiler.catalogue import Catalogue
+from sceneql.failure import Unsuitable, failing_as
+from sceneql.files import NUMBERS, refuse_unwritable
+from sceneql.graph import SimulationGraph
+from sceneql.kinds import Camera, Clock, Light, Object, Overlay, Picture, Renderer
+
+if TYPE_CHECKING:
+    from sceneql.frame import Frame, LightSource, SeenFrame, View
+    from sceneql.pictures.layout import Panel
+    from sceneql.quantities.diagnostic import Diagnostic
+    from sceneql.run.instant import Instant
+
+
+@dataclass
+class Report:
+    """What a render made and what it took."""
+
+    files: list[Path] = field(default_factory=list)
+    frames: int = 0
+    undecided: dict[str, dict[int, int]] = field(default_factory=dict)
+    """By output and frame: pixels whose ray could be proved neither hit nor miss; only frames that have some."""
+    compile_seconds: float = 0.0
+    compilations: int = 0
+    run_seconds: float = 0.0
+    """Wall time, compilation left out."""
+    steps: int = 0
+    present: dict[str, str] = field(default_factory=dict)
+    """Implicit objects that were drawn, and what none of their values was in any frame; nothing where some may be."""
+    warnings: tuple[Diagnostic, ...] = ()
+    conserved: list[str] = field(default_factory=list)
+    """For each island that tells an energy, how far it drifted; momentum where it is conserved."""
+
+
+class Tools:
+    """What the pipeline lends to an output (kinds.Tools)."""
+
+    def __init__(self, graph: SimulationGraph, name: str, report: Report, target: Path, named: bool = False) -> None:
+        """``named``: the user gave the target, else it is a path without extension."""
+        self.graph, self.name, self.report, self.target, self.named = graph, name, report, target, named
+        self.panels: dict[str, Panel] = {}
+        self._frames, self._light = 0, cast(Any, None)
+        self._framed: float | None = None
+        self._fit: set[Path] = set()
+
+    @property
+    def clock(self) -> Clock:
+        """Film time and simulation time."""
+        return self.graph.settings.clock
+
+    def path(self, extension: str, *, numbered: bool = False) -> Path:
+        """Path of the output's file; numbers of a row of files go before the extension.
+
+        Raises Unsuitable where the user's name ends in something else, is too long, or is that of a file read.
+        """
+        target = self.target
+        if target.suffix != f".{extension}":
+            if self.named and target.suffix:
+                raise Unsuitable(f"'{self.name}' is written as .{extension}, which {target.name} does not end in")
+            target = target.with_name(f"{target.name}.{extension}")
+        if target not in self._fit:
+            refuse_unwritable(target, self.graph.origin.files, marks=NUMBERS if numbered else "")
+            self._fit.add(target)
+        return target
+
+    def pixels(self, output: Picture, moment: Any, part: int = 0, parts: int = 1) -> Any:
+        """The developed picture (h, w, 3) uint8; of several parts of an exposure after the last, else None."""
+        if output.layout:
+            picture = self._composed(output, moment)
+        else:
+            picture = self._seen(output, moment, None, part, parts)
+        self._frames += 1
+        self.report.frames += part == parts - 1
+        return picture
+
+    def _seen(self, output: Picture, moment: Any, camera: str | None = None, part: int = 0, parts: int = 1) -> Any:
+        """The scene from a camera, by default the output's own; None before the last part of an exposure."""
+        from renderers.develop import develop
+        from sceneql.run.never_drawn import look, solids
+
+        shot = output.seen_from(moment.time)
+        eye = camera if camera is not None or shot is None else shot.name
+        frame = frame_of(self.graph, self.name, output.pixels, moment, self._frames, eye)
+        renderer = self._renderer(output)
+        self.prepare(output)()
+        drawn_by = self.graph.tasks[self.name if output.renderer is None else output.renderer.name]
+        with failing_as(drawn_by.name, moment.time, drawn_by.span):
+            picture = renderer.draw(frame)
+        asked = solids(self.graph.drawn[self.name], self.graph.tasks)
+        look(frame.shapes, asked, self.graph.tasks, self.report.present)
+        if picture.undecided:
+            counts = self.report.undecided.setdefault(self.name, {})
+            counts[frame.index] = counts.get(frame.index, 0) + picture.undecided
+        linear = picture.linear
+        if parts > 1:
+            self._light = linear / parts if part == 0 else self._light + linear / parts
+            linear = self._light
+        if part < parts - 1:
+            return None
+        pixels = develop(linear, exposure=output.exposure, data=renderer.data)
+        if not renderer.data:
+            without = {ref.name for ref in output.laid_out}
+            self._draw_over(pixels, frame.view, moment, partial(develop, exposure=output.exposure), without)
+        return pixels
+
+    def _composed(self, output: Picture, moment: Any) -> Any:
+        """The panels of a layout."""
+        from sceneql.pictures.layout import boxes, page
+
+        pixels = page(output.pixels)
+        for item, (left, top, wide, high) in boxes(output.layout, self.graph.variants.names, output.pixels):
+            block, scale = pixels[top : top + high, left : left + wide], len(pixels) / high
+            if isinstance(item, str):
+                block[:] = self._variant(item, (wide, high), moment.time, scale)
+                continue
+            task = self.graph.tasks[item.name]
+            with failing_as(task.name, moment.time, task.span):
+                if isinstance(task.kind, Overlay):
+                    task.kind.fill(block, moment, scale)
+                else:
+                    block[:] = self._seen(output.model_copy(update={"size": (wide, high)}), moment, item.name)
+        return pixels
+
+    def _variant(self, name: str, size: tuple[int, int], time: float, scale: float) -> Any:
+        """The panel (h, w, 3) of a variant; one whose run has failed stays as it was, under the message."""
+        from sceneql.pictures.layout import Panel, label
+
+        if name not in self.panels:
+            panel = self.panels[name] = Panel(self.graph.variant(name))
+            panel.tools = Tools(panel.graph, self.name, self.report, self.target)
+        panel = self.panels[name]
+        if panel.failure is None or panel.picture is None:
+            moment = panel.at(time)
+            kind = cast(Picture, panel.graph.tasks[self.name].kind).model_copy(update={"size": size})
+            panel.picture = panel.tools._seen(kind, moment)
+            panel.tools._frames += 1
+            label(panel.picture, name, panel.failure, scale)
+        return panel.picture
+
+    def _draw_over(
+        self, pixels: Any, view: View, moment: Any, develop: Callable[[Any], Any], without: set[str]
+    ) -> None:
+        """What is drawn on a developed picture: labels of objects, and overlays but those of the layout."""
+        from sceneql.words.overlays.labels import draw_labels
+
+        draw_labels(pixels, view, self.graph.tasks, self.graph.drawn[self.name], moment)
+        for task in self.graph.tasks.values():
+            if isinstance(task.kind, Overlay) and task.name not in without:
+                with failing_as(task.name, moment.time, task.span):
+                    if task.kind.show is None or moment.at(task.kind.show) != 0:
+                        task.kind.draw(pixels, view, moment, develop)
+
+    def frame(self, moment: Any, *, fields: bool = False) -> Frame:
+        """The shapes that the output draws now. Raises Unsuitable for one that does not draw, and RunFailure."""
+        from sceneql.run.never_drawn import look, solids
+
+        if self.name not in self.graph.drawn:
+            raise Unsuitable(f"'{self.name}' gets no shapes: its word does not say that it `draws`")
+        names = self.graph.drawn[self.name]
+        if moment.time != self._framed:  # else the same frame is asked for once more
+            self._frames, self._framed = self._frames + (self._framed is not None), moment.time
+            self.report.frames += 1
+        frame = shapes_of(names, moment, self._frames, fields=fields)
+        look(frame.shapes, solids(names, self.graph.tasks), self.graph.tasks, self.report.present)
+        return frame
+
+    def encoder(self, word: str, **settings: Any) -> Any:
+        """A writer of the encoders' folder."""
+        from importlib import import_module
+
+        comment = f"sceneql {__version__} script {self.graph.script_hash}"
+        module = import_module(f"renderers.encoders.{word}")
+        path = self.path(word, numbered=settings.get("numbered", False))
+        return module.Writer(path, comment=comment, **settings)
+
+    def prepare(self, output: Picture) -> Callable[[], None]:
+        """Start compiling what the output is drawn with, beside the physics; call the result to wait for it."""
+        modules = self._renderer(output).kernels(self._traced(self.graph.drawn[self.name]))
+        return _compile_beside(modules) if modules else lambda: None
+
+    def _traced(self, names: Iterable[str]) -> set[str]:
+        """By which fields parts, or what these draw, are drawn."""
+        kinds = [kind for name in names if isinstance(kind := self.graph.tasks[name].kind, Object)]
+        within = (self._traced(ref.name for ref in kind.members()) for kind in kinds if not kind.traced)
+        return {kind.traced for kind in kinds if kind.traced}.union(*within)
+
+    def _renderer(self, output: Picture) -> Renderer:
+        if output.renderer is not None:
+            return cast(Renderer, self.graph.tasks[output.renderer.name].kind)
+        cls = Catalogue().load("renderers", "trace")
+        if cls is None:
+            raise LookupError("the default renderer is missing")
+        return cast(Renderer, cls())
+
+
+@cache
+def _compile_beside(modules: tuple[str, ...]) -> Callable[[], None]:
+    """Start compiling a renderer's kernels, once for all outputs that it draws."""
+    from sceneql.compiled.compile_beside import compile_beside
+
+    return compile_beside(modules)
+
+
+def shapes_of(names: Iterable[str], moment: Instant, index: int = 0, *, fields: bool = False) -> Frame:
+    """The Frame of some parts at a moment (kinds.Tools.frame). Raises RunFailure."""
+    from sceneql.frame import Frame
+
+    return Frame(index, moment.now, tuple(moment.lower(names, fields=fields)))
+
+
+def frame_of(
+    graph: SimulationGraph, output: str, size: tuple[int, int], moment: Instant, index: int, camera: str | None = None
+) -> SeenFrame:
+    """The frame that a renderer gets for an output at a moment; by default of the output's own camera."""
+    from sceneql.frame import SeenFrame, Sky
+    from sceneql.shapes.color import linear
+
+    drawn = shapes_of(graph.drawn[output], moment, index)  # first: what cannot be drawn is no failure of the camera's
+    eye = graph.tasks[camera or graph.cameras[output]]
+    with failing_as(eye.name, moment.time, eye.span):
+        view = cast(Camera, eye.kind).view(size, moment)
+    lights: list[LightSource] = []
+    for task in graph.tasks.values():
+        if isinstance(task.kind, Light):
+            with failing_as(task.name, moment.time, task.span):
+                lights += task.kind.lower(moment)
+    if graph.settings.background is not None:
+        with failing_as("background", moment.time, graph.settings.background.span):
+            seen = linear(moment.at(graph.settings.background))
+        skies = [light for light in lights if isinstance(light, Sky)] or [Sky((0, 0, 0), (0, 0, 0), (0, 0, 0))]
+        lights = [light for light in lights if not isinstance(light, Sky)]
+        lights += [replace(sky, visible=seen) for sky in skies]
+    return SeenFrame(
+        index=drawn.index,
+        time=drawn.time,
+        shapes=drawn.shapes,
+        lights=tuple(lights),
+        view=view,
+        seed=graph.settings.clock.seed,
+    )
