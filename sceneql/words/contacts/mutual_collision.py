@@ -14,11 +14,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats
-    from sceneql.system import Assembly, Bodies, ModelState
+    from sceneql.system import Assembly, Bodies, ModelState, Slopes
 
 MOST_EXACT = 8
 EXACT = "sceneql.contacts.mutual.sphere_events_kernels"
 LOCAL = "sceneql.contacts.mutual.sphere_back_off_kernels"
+MOST_DIFFERENCES = 30
+"""Masses up to which implicit solvers take differences for the forces between resting masses, in `exact` mode."""
 SPRINGS, OVERLAPS = 5, 6
 """Floats after the tally: how many pairs are left out that springs tie, and how many that overlap at the start."""
 FEW = 300
@@ -65,7 +67,7 @@ class MutualCollision(Contact):
 
         from sceneql.bodies.neighbors import table
         from sceneql.contacts.colliders import OFTEN, surfaces
-        from sceneql.contacts.mutual.sphere_pair_kernels import BODY, HEAD
+        from sceneql.contacts.mutual.sphere_pair_kernels import BODY, HEAD, INSTANT, PAIR
 
         rows = [
             (
@@ -88,14 +90,13 @@ class MutualCollision(Contact):
         tied, by_springs = _tied(assembly, everyone, exact)
         size, first, second = table(n)
         tally = assembly.floats([0.0, np.nan, np.nan, 0.0, np.nan, by_springs, len(tied) - by_springs])
-        objects = (
-            () if exact else surfaces([Ref(ref.name, assembly.line()) for ref in others], assembly, HEAD + BODY * n)
-        )
-        scratch = (3 * n, 3 * n, n, size + 1) if not exact else (7 * n, 0, 0, 0)
+        objects = surfaces([Ref(ref.name, assembly.line()) for ref in others], assembly, HEAD + BODY * n)
+        pairs = n * (n - 1) // 2
+        scratch = (3 * n, 3 * n, n, size + 1) if not exact else (INSTANT * n, PAIR * pairs, 0, 0)
         ints = (
             *(n, assembly.value(self.restitution), assembly.value(self.friction), tally),
-            *(assembly.floats(np.zeros(count)) for count in scratch),
-            *(size, first, second, 0 if exact else len(others)),
+            *(assembly.floats(np.full(count, np.nan if exact and not k else 0.0)) for k, count in enumerate(scratch)),
+            *(size, first, second, len(others)),
             HEAD + BODY * n + len(objects) if len(tied) else 0,
             *(number for row in rows for number in row),
             *objects,
@@ -103,7 +104,8 @@ class MutualCollision(Contact):
         ints = (*ints, *_partners(tied, n, len(ints)))
         if exact:
             kernels = (f"{EXACT}:gap", f"{EXACT}:impact")
-            assembly.contact("exact", kernels, ints, n * (n - 1) // 2)
+            assembly.contact("exact", kernels, ints, pairs)
+            assembly.term("constrain", f"{EXACT}:constrain", ints, None if n <= MOST_DIFFERENCES else _no_slopes)
         else:
             assembly.step_at_most(OFTEN)
             assembly.contact("local", (f"{LOCAL}:back_off",), ints, 0)
@@ -156,6 +158,16 @@ def _tied(assembly: Assembly, everyone: Sequence[Bodies], exact: bool) -> tuple[
     springs = [np.sort(everyone[k].tied, axis=1) + np.searchsorted(model, k) for k in nets]
     by_springs = np.unique(np.concatenate([none, *springs]), axis=0)
     return np.unique(np.concatenate([pairs[own & (depth > rounding)], by_springs]), axis=0), len(by_springs)
+
+
+def _no_slopes() -> Slopes:
+    """The slopes of what hardly ever acts."""
+    import numpy as np
+
+    from sceneql.system import Slopes
+
+    none = np.empty(0, dtype=np.int64)
+    return Slopes(f"{EXACT}:constrain", none, none)
 
 
 def _partners(tied: NDArray[int64], count: int, start: int) -> tuple[int, ...]:
