@@ -14,7 +14,7 @@ from sceneql.compiled.kernels import inlined, kernel
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.mutual import sphere_pair_kernels as spheres
 from sceneql.contacts.mutual.sphere_pair_kernels import neighbors, of, radii, sort_cells, tied
-from sceneql.system.signatures_kernels import BACK_OFF, A, F, I
+from sceneql.system.signatures_kernels import BACK_OFF, TERM, A, F, I
 
 meet_all = lazy("sceneql.contacts.mutual.sphere_meet_kernels:meet_all", spheres.MEET)
 
@@ -82,3 +82,11 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
     first, others = candidates(t1 - t0, y0, y1, floats, ints)
     if first[ints[spheres.COUNT]] > 0:
         meet_all(t1, t1 - t0, first, others, y0, rate0, y1, floats, ints)
+
+
+@kernel(TERM, inner=True)
+def store_free(t, y, rate, floats, ints):
+    """Store the accelerations [m/s^2] that the masses have without contacts."""
+    for k in range(ints[spheres.COUNT]):
+        for c in range(3):
+            floats[ints[spheres.FREE] + 3 * k + c] = rate[of(ints, k, spheres.V) + c]

@@ -3,7 +3,7 @@
 
 ints: number of masses; offsets in the floats of restitution, friction and tally, of the places, the sorted places,
 numbers and starts of the cell lists, table of cells (neighbors.table); number of objects; offset in the ints of the
-tied pairs (0: none); BODY integers for each mass: offsets in y of position, velocity and work, in the floats of mass,
+tied pairs (0: none); offset in the floats of the masses' free accelerations (local mode); BODY integers for each mass: offsets in y of position, velocity and work, in the floats of mass,
 inverse mass and radius; the objects (shape_kernels). Tied pairs, which do not collide, are n + 1 starts, one for each
 mass and the end, and then for each mass its partners of larger number.
 """
@@ -17,7 +17,7 @@ from sceneql.compiled.kernels import inlined, kernel
 from sceneql.contacts.impulse_kernels import scale_of
 from sceneql.system.signatures_kernels import A, F, I, N
 
-COUNT, RESTITUTION, FRICTION, TALLY, POINTS, SORTED, ORDER, START, SIZE, P, Q, OBJECTS, TIED, HEAD = range(14)
+COUNT, RESTITUTION, FRICTION, TALLY, POINTS, SORTED, ORDER, START, SIZE, P, Q, OBJECTS, TIED, FREE, HEAD = range(15)
 X, V, WORK, MASS, INVERSE, RADIUS, BODY = range(7)
 
 FOUR = types.UniTuple(F, 4)

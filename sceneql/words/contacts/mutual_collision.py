@@ -98,6 +98,7 @@ class MutualCollision(Contact):
             *(assembly.floats(np.full(count, np.nan if exact and not k else 0.0)) for k, count in enumerate(scratch)),
             *(size, first, second, len(others)),
             HEAD + BODY * n + len(objects) if len(tied) else 0,
+            0 if exact else assembly.floats(np.zeros(3 * n)),
             *(number for row in rows for number in row),
             *objects,
         )
@@ -109,6 +110,7 @@ class MutualCollision(Contact):
         else:
             assembly.step_at_most(OFTEN)
             assembly.contact("local", (f"{LOCAL}:back_off",), ints, 0)
+            assembly.term("close", f"{LOCAL}:store_free", ints, _no_slopes)
         assembly.remember(tally)
 
     def read(self, output: str, state: ModelState) -> Any:
@@ -161,7 +163,7 @@ def _tied(assembly: Assembly, everyone: Sequence[Bodies], exact: bool) -> tuple[
 
 
 def _no_slopes() -> Slopes:
-    """The slopes of what hardly ever acts."""
+    """The slopes of what adds nothing, or hardly ever."""
     import numpy as np
 
     from sceneql.system import Slopes
