@@ -79,6 +79,7 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
     """Change y1 so that no mass went through another in the step from t0 to t1."""
     if floats[channels.STEP_END] > 0.0:
         return
+    floats[ints[spheres.FREE]] = t1
     first, others = candidates(t1 - t0, y0, y1, floats, ints)
     if first[ints[spheres.COUNT]] > 0:
         meet_all(t1, t1 - t0, first, others, y0, rate0, y1, floats, ints)
@@ -86,7 +87,9 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
 
 @kernel(TERM, inner=True)
 def store_free(t, y, rate, floats, ints):
-    """Store the accelerations [m/s^2] that the masses have without contacts."""
-    for k in range(ints[spheres.COUNT]):
-        for c in range(3):
-            floats[ints[spheres.FREE] + 3 * k + c] = rate[of(ints, k, spheres.V) + c]
+    """At the start of a step, store the accelerations [m/s^2] that the masses have without contacts."""
+    at = ints[spheres.FREE]
+    if t == floats[at]:
+        for k in range(ints[spheres.COUNT]):
+            for c in range(3):
+                floats[at + 1 + 3 * k + c] = rate[of(ints, k, spheres.V) + c]

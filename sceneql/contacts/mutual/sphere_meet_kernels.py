@@ -74,7 +74,7 @@ def collide(i, j, left, t1, h, since, mean, pull, y1, r, v, floats, ints):
         mass = floats[of(ints, k, spheres.MASS)]
         for c in range(3):
             add = inverse * (px if c == 0 else (py if c == 1 else pz))
-            free = floats[ints[spheres.FREE] + 3 * k + c]
+            free = floats[ints[spheres.FREE] + 1 + 3 * k + c]
             lost -= mass * add * (y1[of(ints, k, spheres.V) + c] + 0.5 * add - free * left)
             y1[of(ints, k, spheres.V) + c] += add
             y1[of(ints, k, spheres.X) + c] += left * add

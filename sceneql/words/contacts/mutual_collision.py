@@ -98,7 +98,7 @@ class MutualCollision(Contact):
             *(assembly.floats(np.full(count, np.nan if exact and not k else 0.0)) for k, count in enumerate(scratch)),
             *(size, first, second, len(others)),
             HEAD + BODY * n + len(objects) if len(tied) else 0,
-            0 if exact else assembly.floats(np.zeros(3 * n)),
+            0 if exact else assembly.floats(np.zeros(1 + 3 * n)),
             *(number for row in rows for number in row),
             *objects,
         )
