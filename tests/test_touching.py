@@ -43,8 +43,7 @@ def cradle(count, mode, pulled=1):
     return script
 
 
-@pytest.mark.parametrize("mode", ["exact", "local"])
-@pytest.mark.parametrize(("count", "pulled"), [(5, 1), (5, 2)])
+@pytest.mark.parametrize(("count", "pulled", "mode"), [(5, 1, "exact"), (5, 2, "exact"), (5, 1, "local")])
 def test_a_hanging_cradle_gives_out_as_many_balls_as_come_in(tmp_path, count, pulled, mode):
     outputs = ("c.positions", "c.velocities", "c.energy", "hit.hits.count")
     start, one, end = watch(tmp_path, cradle(count, mode, pulled), [0, 0.6, 0.7], *outputs)
@@ -91,7 +90,8 @@ contacts: {hit: {mutual_collision: {restitution: 1, mode: exact}}}
 def test_a_row_of_touching_balls_keeps_momentum_and_energy(tmp_path, count, gap, ratio):
     places = [-1.0, *((0.2 + gap) * k for k in range(count - 1))]
     rows = ", ".join(
-        f"p{k}: {{position: {x!r} 0 0 m, velocity: {float(k == 0)} 0 0 m/s, mass: {ratio**(k % 3)!r} kg, radius: 0.1 m}}"
+        f"p{k}: {{position: {x!r} 0 0 m, velocity: {float(k == 0)} 0 0 m/s, mass: {ratio ** (k % 3)!r} kg, "
+        f"radius: 0.1 m}}"
         for k, x in enumerate(places)
     )
     script = f"""

@@ -85,7 +85,9 @@ def hold(t, y, pair, floats, ints):
             else:
                 slip = slip_of(i, j, speed, y, ints) if friction > 0.0 else 0.0
                 slow = 0.0 < slip < CREEP and floats[memory + spheres.PULL] < friction * load
-                if not (slow or (load > 0.0 and abs(gap) > small) or (abs(speed) > small and (load > 0.0 or speed < 0.0))):
+                if not (
+                    slow or (load > 0.0 and abs(gap) > small) or (abs(speed) > small and (load > 0.0 or speed < 0.0))
+                ):
                     continue
                 put_right(i, j, gap, speed, load, slow, y, floats, ints)
             floats[channels.CHANGED] = 1.0

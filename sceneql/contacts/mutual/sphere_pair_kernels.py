@@ -3,8 +3,8 @@
 
 ints: number of masses; offsets in the floats of restitution, friction and tally, of the places, the sorted places,
 numbers and starts of the cell lists, table of cells (neighbors.table); number of objects; offset in the ints of the
-tied pairs (0: none); offset in the floats of the end of the last step and
-the masses' accelerations without contacts then (local mode); BODY integers for each mass: offsets in y of position, velocity and work, in the floats of mass,
+tied pairs (0: none); offset in the floats of the end of the last step and the masses' accelerations without contacts
+then (local mode); BODY integers for each mass: offsets in y of position, velocity and work, in the floats of mass,
 inverse mass and radius; the objects (shape_kernels). Tied pairs, which do not collide, are n + 1 starts, one for each
 mass and the end, and then for each mass its partners of larger number.
 """

@@ -8,7 +8,6 @@ sweeps over the contacts (Moreau 1988). Objects that these masses touch take par
 import math
 
 import numpy as np
-from numba import types
 
 from sceneql.compiled.kernels import inlined, kernel
 from sceneql.contacts import layout
@@ -104,8 +103,16 @@ def settle(one, friction, pairs, rows, rate, floats, ints):
         else:
             across = normal - rows[one, BEND]
             tx = rows[one, FORCE] - along * rows[one, 0] - (rate[at] - rate[to] - across * rows[one, 0]) / (a + b)
-            ty = rows[one, FORCE + 1] - along * rows[one, 1] - (rate[at + 1] - rate[to + 1] - across * rows[one, 1]) / (a + b)
-            tz = rows[one, FORCE + 2] - along * rows[one, 2] - (rate[at + 2] - rate[to + 2] - across * rows[one, 2]) / (a + b)
+            ty = (
+                rows[one, FORCE + 1]
+                - along * rows[one, 1]
+                - (rate[at + 1] - rate[to + 1] - across * rows[one, 1]) / (a + b)
+            )
+            tz = (
+                rows[one, FORCE + 2]
+                - along * rows[one, 2]
+                - (rate[at + 2] - rate[to + 2] - across * rows[one, 2]) / (a + b)
+            )
             size = math.sqrt(tx * tx + ty * ty + tz * tz)
             part = most / size if size > most else 1.0
             tx, ty, tz = part * tx, part * ty, part * tz
