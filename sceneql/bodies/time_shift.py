@@ -6,11 +6,27 @@ from collections.abc import Callable
 from dataclasses import replace
 from math import inf
 
+from sceneql.quantities.derivative import differentiate
 from sceneql.quantities.dimension import PLAIN, TIME
-from sceneql.quantities.expression import TIME_SYMBOL, Call, Expr, Key, Keys, Link, Number, Symbol, Type, Vector
+from sceneql.quantities.expression import (
+    TIME_SYMBOL,
+    Call,
+    Expr,
+    Key,
+    Keys,
+    Link,
+    Number,
+    Symbol,
+    Type,
+    Vector,
+    each_once,
+)
 
 APART = 1e-4
 """Seconds to either side for a central difference: its error is APART^2/6 times the third derivative."""
+
+MOST_KEYS = 64
+"""Keys of a value above which its derivative would be too large a formula."""
 
 
 def later(expr: Expr, by: float, follow: Callable[[Link], Expr | None] = lambda link: None) -> Expr:
@@ -22,7 +38,7 @@ def later(expr: Expr, by: float, follow: Callable[[Link], Expr | None] = lambda 
     def shifted(node: Expr) -> Expr:
         match node:
             case Symbol(name=name) if name == TIME_SYMBOL:
-                return Call("add", (node, Number(by, Type((), TIME), False)), node.type, node.span)
+                return Call("add", (node, Number(by, Type((), TIME), False)), node.type, node.span) if by else node
             case Link(task=task, output=output):
                 meaning = follow(node)
                 if meaning is None:
@@ -69,6 +85,24 @@ def goes_evenly(expr: Expr, follow: Callable[[Link], Expr | None]) -> bool:
         return inf
 
     return degree(expr) <= 1.0
+
+
+def exact_rate(expr: Expr, follow: Callable[[Link], Expr | None] = lambda link: None) -> Expr | None:
+    """d expr / d time by the rules of derivatives, with plain types; ``follow`` as in `later`.
+
+    None where an operation has no derivative, and for keyframes of rotations or of more than MOST_KEYS keys.
+
+    Raises ValueError for a link to something that is not a function of time.
+    """
+    found = later(expr, 0.0, follow)
+    nodes = each_once(found)
+    if any(isinstance(node, Keys) and (node.type.shape == (4,) or len(node.keys) > MOST_KEYS) for node in nodes):
+        return None
+    times = [node for node in nodes if isinstance(node, Symbol) and node.name == TIME_SYMBOL]
+    try:
+        return differentiate(found, times[0] if times else Symbol(TIME_SYMBOL))
+    except TypeError:
+        return None
 
 
 def rate_of_change(expr: Expr, follow: Callable[[Link], Expr | None] = lambda link: None) -> Expr:

@@ -15,7 +15,7 @@ from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts import layout
 from sceneql.contacts.back_off_kernels import find_near
-from sceneql.contacts.body_path_kernels import NEVER, set_out
+from sceneql.contacts.body_path_kernels import MEAN, NEVER, set_out
 from sceneql.contacts.impulse_kernels import bounce, count_hit, scale_of
 from sceneql.contacts.meet_kernels import earliest
 from sceneql.contacts.pair_kernels import ANSWER, BACK_OFF_IN_STAGES, body_of
@@ -150,7 +150,7 @@ def back_off_in_stages(t0, t1, y0, y1, floats, ints):
     """Resolve in y1 the impacts of the step from t0 to t1, and list the masses that may touch in the next one."""
     h = t1 - t0
     found, listed = np.zeros(ints[layout.BODIES]), np.zeros(ints[layout.BODIES])
-    path, mean = np.empty(layout.PATH), np.empty(3)
+    path, mean = np.empty(layout.PATH), np.empty(MEAN)
     for i in range(int(floats[ints[layout.LAST] + layout.RESTING])):
         listed[int(floats[ints[layout.LAST] + layout.LIST + i])] = 1.0
     find_missed(h, y0, y1, found, listed, path, mean, floats, ints)

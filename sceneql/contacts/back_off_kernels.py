@@ -12,6 +12,7 @@ import sceneql.system.channels as channels
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts import layout
+from sceneql.contacts.body_path_kernels import MEAN
 from sceneql.contacts.impulse_kernels import MOST_CUTS
 from sceneql.contacts.pair_kernels import ANSWER, BACK_OFF_IN_STAGES, HOLD, SUPPORT
 from sceneql.contacts.shape_kernels import near_at
@@ -89,7 +90,7 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
     find_near(t1 - t0, y0, y1, found, floats, ints)
     if some(found):
         path = np.empty(layout.PATH)
-        mean = np.empty(3)
+        mean = np.empty(MEAN)
         if asked:
             cut(t0, t1, y0, y1, found, path, mean, floats, ints)
         else:

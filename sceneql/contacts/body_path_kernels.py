@@ -15,6 +15,8 @@ from sceneql.contacts.shape_kernels import clear, facing
 from sceneql.system.signatures_kernels import A, F, I, N
 
 NEVER = 2.0
+MEAN, MOVED = 9, 3
+"""Room for a path's mean acceleration, and where in it the correction of its ends stands: place and velocity."""
 SEARCH = types.float64(A, F, A, I, N, F)
 
 search = lazy("sceneql.contacts.search_kernels:search", SEARCH)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from importlib import import_module
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
-from sceneql.bodies.time_shift import APART, goes_evenly, later
+from sceneql.bodies.time_shift import APART, exact_rate, goes_evenly, later
 from sceneql.contacts import layout
 from sceneql.contacts.shapes import implicit
 from sceneql.kinds import Collider, Object, Ref, Value
@@ -60,16 +60,21 @@ def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, 
 
     kind = cast(Object, assembly.object(ref))
     try:
-        here = _collider(kind, assembly)
+        noted = _Noted(assembly)
+        here = _collider(kind, cast("Assembly", noted))
         if not is_moving(kind):
             poses = (0, here.position_at, here.rotation_at, here.position_at, here.rotation_at)
         else:
             even = _moves_evenly(kind, assembly)
             if not even:
                 assembly.step_at_most(OFTEN)
-            apart = FAR_APART if even else APART
-            before, after = _shifted(kind, -apart, assembly), _shifted(kind, apart, assembly)
-            poses = (assembly.floats([apart]), *before, *after)
+            exact = None if even else noted.motion(here)
+            if exact is not None:
+                poses = (assembly.floats([0.0]), *exact)
+            else:
+                apart = FAR_APART if even else APART
+                before, after = _shifted(kind, -apart, assembly), _shifted(kind, apart, assembly)
+                poses = (assembly.floats([apart]), *before, *after)
     except (TypeError, ValueError) as error:
         help = f"name under `between` what may touch, without '{ref.name}'"
         place = ref.span or assembly.line()
@@ -83,6 +88,45 @@ def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, 
     places = (here.position_at, here.rotation_at, here.size_at, here.depth_at)
     flat = int(here.flat and not is_moving(kind))
     return (*numbers, *places, *poses, flat), here.data
+
+
+class _Noted:
+    """An assembly that notes by its offset what each value is, so that its derivatives can be found."""
+
+    def __init__(self, assembly: Assembly) -> None:
+        self._assembly = assembly
+        self._values: dict[int, Value] = {}
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._assembly, name)
+
+    def value(self, value: Value) -> int:
+        """As the assembly's."""
+        at = self._assembly.value(value)
+        self._values[at] = value
+        return at
+
+    def motion(self, here: Collider) -> tuple[int, int, int, int] | None:
+        """Offsets of the first derivatives of position and rotation, and of the second; None where one is not known."""
+        found = []
+        for at, size in ((here.position_at, 3), (here.rotation_at, 4)):
+            value, rates = self._values.get(at), []
+            for _ in range(2):
+                value = None if value is None or value.constant else self._rate(value)
+                if value is None and at in self._values and not self._values[at].constant:
+                    return None
+                rates.append(self._assembly.floats([0.0] * size) if value is None else self._assembly.value(value))
+            found.append(rates)
+        (velocity, acceleration), (turn, twist) = found
+        return velocity, turn, acceleration, twist
+
+    def _rate(self, value: Value) -> Value | None:
+        """The derivative of a value; None where it is not known, or has no finite value at the start."""
+        import numpy as np
+
+        expr = exact_rate(value.expr, self._assembly.formula)
+        rate = None if expr is None else Value(expr, value.span)
+        return rate if rate is not None and np.isfinite(self._assembly.initial(rate)).all() else None
 
 
 def _has_own(kind: Object) -> bool:

@@ -1,5 +1,8 @@
 # mypy: ignore-errors
-"""Velocities and accelerations of an object's points, by central differences of its poses, and paths in its frame."""
+"""Velocities and accelerations of an object's points, and paths in its frame.
+
+They follow from the derivatives of its position and rotation, else from central differences of its poses.
+"""
 
 import math
 
@@ -17,10 +20,33 @@ def carried(floats, ints, at, pose, x, y, z):
     return a + floats[p], b + floats[p + 1], c + floats[p + 2]
 
 
+@lean_inlined
+def spin(floats, at, rotation):
+    """2 q' q* without its scalar part [1/s]: of the derivative q' at floats[rotation:] of the quaternion at floats[at:]
+    the angular velocity, of the second derivative the angular acceleration."""
+    w, a, b, c = floats[at], floats[at + 1], floats[at + 2], floats[at + 3]
+    s, x, y, z = floats[rotation], floats[rotation + 1], floats[rotation + 2], floats[rotation + 3]
+    p = w * x - s * a - (y * c - z * b)
+    q = w * y - s * b - (z * a - x * c)
+    r = w * z - s * c - (x * b - y * a)
+    return 2.0 * p, 2.0 * q, 2.0 * r
+
+
+@lean_inlined
+def about(wx, wy, wz, x, y, z):
+    """The cross product w x r."""
+    return wy * z - wz * y, wz * x - wx * z, wx * y - wy * x
+
+
 @lean(MOTION_TYPE, inner=True)
 def moving_velocity(floats, ints, at, x, y, z):
     """Velocity [m/s] of the point at (x, y, z) of a moving object."""
     apart = floats[ints[at + layout.MOVING]]
+    if apart == 0.0:
+        p, v = ints[at + layout.PLACE], ints[at + layout.BEFORE]
+        wx, wy, wz = spin(floats, ints[at + layout.ROTATION], ints[at + layout.BEFORE + 1])
+        a, b, c = about(wx, wy, wz, x - floats[p], y - floats[p + 1], z - floats[p + 2])
+        return floats[v] + a, floats[v + 1] + b, floats[v + 2] + c
     a, b, c = carried(floats, ints, at, layout.BEFORE, x, y, z)
     p, q, r = carried(floats, ints, at, layout.AFTER, x, y, z)
     return (p - a) / (2.0 * apart), (q - b) / (2.0 * apart), (r - c) / (2.0 * apart)
@@ -30,6 +56,15 @@ def moving_velocity(floats, ints, at, x, y, z):
 def moving_acceleration(floats, ints, at, x, y, z):
     """Acceleration [m/s^2] of the point at (x, y, z) of a moving object."""
     apart = floats[ints[at + layout.MOVING]]
+    if apart == 0.0:
+        p, v = ints[at + layout.PLACE], ints[at + layout.AFTER]
+        x, y, z = x - floats[p], y - floats[p + 1], z - floats[p + 2]
+        wx, wy, wz = spin(floats, ints[at + layout.ROTATION], ints[at + layout.BEFORE + 1])
+        a, b, c = about(wx, wy, wz, x, y, z)
+        a, b, c = about(wx, wy, wz, a, b, c)
+        wx, wy, wz = spin(floats, ints[at + layout.ROTATION], ints[at + layout.AFTER + 1])
+        d, e, f = about(wx, wy, wz, x, y, z)
+        return floats[v] + a + d, floats[v + 1] + b + e, floats[v + 2] + c + f
     a, b, c = carried(floats, ints, at, layout.BEFORE, x, y, z)
     p, q, r = carried(floats, ints, at, layout.AFTER, x, y, z)
     square = apart * apart

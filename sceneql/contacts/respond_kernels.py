@@ -16,8 +16,8 @@ import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts import layout
-from sceneql.contacts.body_path_kernels import NEVER, moving, place, set_out
-from sceneql.contacts.impulse_kernels import bounce, count_hit
+from sceneql.contacts.body_path_kernels import MOVED, NEVER, moving, place, set_out
+from sceneql.contacts.impulse_kernels import bounce, count_hit, scale_of
 from sceneql.contacts.meet_kernels import earliest, seen
 from sceneql.contacts.pair_kernels import ANSWER, BRAKE, is_flat
 from sceneql.contacts.resting_kernels import come_to_rest, keep, lies
@@ -31,6 +31,8 @@ MOST_IMPACTS = 8
 """Most impacts of a body in one step; after these it is only kept outside."""
 FEW = 8
 """Bodies with an impact in a step above which the step is not cut."""
+TOUCHING = 1e-9
+"""Depth, relative to the coordinates (or to a meter), up to which a body touches a surface."""
 AFTER_IMPACT = 1e-4
 """Where a cut step ends, in parts of the step after the impact."""
 
@@ -72,6 +74,8 @@ def fly(k, t1, whole, reach, path, mean, floats, ints):
         path[12] *= 1.0 - s
         path[0], path[1], path[2] = px - d * nx, py - d * ny, pz - d * nz
         path[3], path[4], path[5] = vx, vy, vz
+        if -d > TOUCHING * scale_of(px, py, pz):  # another mass has pushed it in: the acceleration does work on that
+            lost -= d * (mean[0] * nx + mean[1] * ny + mean[2] * nz)
         if impact:
             rx, ry, rz = bounce(rx, ry, rz, nx, ny, nz, floats[ints[layout.RESTITUTION]], floats[ints[layout.FRICTION]])
             lost += start_with(path, rx + ux, ry + uy, rz + uz)
@@ -116,6 +120,33 @@ def push_out(reach, path, mean, floats, ints):
         if apart:
             break
     return work + 0.5 * (before - path[9] ** 2 - path[10] ** 2 - path[11] ** 2)
+
+
+@lean_inlined
+def keep_all(t, k, h, y0, y, path, mean, floats, ints):
+    """Friction of creeping pairs and `keep` for all pairs of body k; then path and mean acceleration as `set_out`.
+
+    What `keep` corrects, at the end of a step that may be short, is no speed of the flight and no acceleration: it
+    moves both ends of the path.
+    """
+    at, to = ints[layout.POSITION] + 3 * k, ints[layout.VELOCITY] + 3 * k
+    for c in range(6):
+        mean[MOVED + c] = 0.0
+    for j in range(ints[layout.OBJECTS]):
+        if floats[ints[layout.FRICTION]] > 0.0:
+            brake(t, k, j, h, y0, y, floats, ints)
+        for c in range(3):
+            mean[MOVED + c] -= y[at + c]
+            mean[MOVED + 3 + c] -= y[to + c]
+        keep(t, k, j, y, floats, ints)
+        for c in range(3):
+            mean[MOVED + c] += y[at + c]
+            mean[MOVED + 3 + c] += y[to + c]
+    set_out(k, h, y0, y, path, mean, ints)
+    for c in range(3):
+        path[c] += mean[MOVED + c]
+        path[3 + c] += mean[MOVED + 3 + c]
+        mean[c] -= mean[MOVED + 3 + c] / h
 
 
 @lean_inlined
@@ -212,17 +243,13 @@ def back_off_found(t0, t1, y0, y1, found, path, mean, floats, ints):
         reach = floats[ints[layout.RADIUS] + k] + floats[ints[layout.THICKNESS]]
         if ties:
             let_go(k, floats, ints)
-        for j in range(ints[layout.OBJECTS]):
-            if floats[ints[layout.FRICTION]] > 0.0:
-                brake(t1, k, j, h, y0, y1, floats, ints)
-            keep(t1, k, j, y1, floats, ints)
+        keep_all(t1, k, h, y0, y1, path, mean, floats, ints)
         pair = ints[layout.PAIRS] + layout.PAIR * k
         if ints[layout.OBJECTS] == 1 and floats[pair] != layout.FREE and floats[pair + layout.PRESS] < 0.0:
             # It rests on the only object.
             floats[ints[layout.LAST] + layout.LIST + resting] = k
             resting += 1
             continue
-        set_out(k, h, y0, y1, path, mean, ints)
         at, to = ints[layout.POSITION] + 3 * k, ints[layout.VELOCITY] + 3 * k
         lost = fly(k, t1, max(h, floats[ints[layout.LAST] + layout.WHOLE]), reach, path, mean, floats, ints)
         lost += push_out(reach, path, mean, floats, ints)

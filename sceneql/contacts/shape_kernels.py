@@ -16,9 +16,10 @@ A shape's file has
 
 An object is OBJECT integers at ints[at:]: the four addresses; offsets into the floats of position (3), rotation (4,
 unit quaternion [w, x, y, z]), size (the shape's own) and depth (how deep a point can be inside, or less); of the
-seconds between its poses, 0 if it never moves; of position and rotation so much earlier and so much later; 1 if it is
-a plane that never moves, which costs no call; and the place in ints of further integers of the shape. Velocities and
-accelerations are central differences of the poses.
+seconds between its poses (offset 0 if it never moves), and of position and rotation so much earlier and so much later,
+whose central differences are velocities and accelerations, or where these seconds are 0, of the first and second
+derivatives of position and rotation; 1 if it is a plane that never moves, which costs no call; and the place in ints of
+further integers of the shape.
 """
 
 import math

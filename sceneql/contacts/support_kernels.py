@@ -5,9 +5,10 @@ import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts import layout
-from sceneql.contacts.pair_kernels import OF_BODY, OF_PAIR, SUPPORT, away, is_flat
+from sceneql.contacts.impulse_kernels import STILL
+from sceneql.contacts.pair_kernels import OF_BODY, OF_PAIR, SUPPORT, away, body_of, is_flat
 from sceneql.contacts.pressing_kernels import pressing
-from sceneql.contacts.shape_kernels import facing
+from sceneql.contacts.shape_kernels import facing, surface, velocity
 
 rub = lazy("sceneql.contacts.friction_kernels:rub", OF_BODY)
 carry = lazy("sceneql.contacts.carry_kernels:carry", OF_BODY)
@@ -49,6 +50,28 @@ def bear(k, memory, nx, ny, nz, rate, floats, ints):
 
 
 @lean_inlined
+def book(k, memory, nx, ny, nz, y, rate, floats, ints):
+    """Book the power of a pair's load where its body moves along the normal: other masses may push it in a step."""
+    j = (memory - ints[layout.PAIRS]) // layout.PAIR - k * ints[layout.OBJECTS]
+    px, py, pz, vx, vy, vz = body_of(ints, k, y)
+    ux, uy, uz = velocity(floats, ints, layout.HEAD + layout.OBJECT * j, px, py, pz)
+    speed = (vx - ux) * nx + (vy - uy) * ny + (vz - uz) * nz
+    if abs(speed) > STILL:
+        rate[ints[layout.WORK]] -= floats[ints[layout.MASS] + k] * floats[memory + layout.LOAD] * speed
+
+
+@lean_inlined
+def book_all(k, y, rate, floats, ints):
+    """`book` for a body that rests on several objects."""
+    px, py, pz, _, _, _ = body_of(ints, k, y)
+    for j in range(ints[layout.OBJECTS]):
+        memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
+        if floats[memory] != layout.FREE and floats[memory + layout.LOAD] > 0.0:
+            _, nx, ny, nz = surface(floats, ints, layout.HEAD + layout.OBJECT * j, px, py, pz)
+            book(k, memory, nx, ny, nz, y, rate, floats, ints)
+
+
+@lean_inlined
 def bear_lying(y, rate, floats, ints):
     """As `support`, on a single plane that never moves."""
     _, nx, ny, nz = facing(floats, ints, layout.HEAD, 0.0, 0.0, 0.0)
@@ -60,6 +83,7 @@ def bear_lying(y, rate, floats, ints):
             continue
         floats[memory + layout.PRESS] = rate[to] * nx + rate[to + 1] * ny + rate[to + 2] * nz
         bear(k, memory, nx, ny, nz, rate, floats, ints)
+        book(k, memory, nx, ny, nz, y, rate, floats, ints)
         if floats[ints[layout.FRICTION]] > 0.0:
             rub(k, y, rate, floats, ints)
 
@@ -88,7 +112,9 @@ def support(first, y, rate, floats, ints):
             tie_one(k, memory, nx, ny, nz, y, rate, floats, ints)
         elif resting > 1:
             carry(k, y, rate, floats, ints)
+            book_all(k, y, rate, floats, ints)
         elif resting == 1:
             bear(k, memory, nx, ny, nz, rate, floats, ints)
+            book(k, memory, nx, ny, nz, y, rate, floats, ints)
         if resting > 0 and floats[ints[layout.FRICTION]] > 0.0:
             rub(k, y, rate, floats, ints)

@@ -181,6 +181,10 @@ class Contact(Kind):
         """An output at a state."""
         raise TypeError(f"{type(self).__name__} gives no {output}")
 
+    def remark(self, state: ModelState) -> str:
+        """What `explain` says of it at the start of the run, as what it leaves out."""
+        return ""
+
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Methods:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 from sceneql.compiler.catalogue import ROOT, Catalogue
 from sceneql.failure import RunFailure
 from sceneql.graph import SimulationGraph
-from sceneql.kinds import Camera, Force, Output
+from sceneql.kinds import Camera, Contact, Force, Output
 
 if TYPE_CHECKING:
     from sceneql.run.run import IslandRun
@@ -91,6 +91,7 @@ def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
         "contacts": sorted({contact for contact, _, _ in island.contacts}),
         "contact_mode": run.assembly.contact_mode,
         "contact_why": _contact_why(graph, run),
+        "contact_remarks": _contact_remarks(graph, run),
         "states": len(run.march.system.y),
         "solver": graph.tasks[island.solver].word,
         "solver_name": island.solver,
@@ -136,6 +137,17 @@ def _remarks(graph: SimulationGraph, run: IslandRun) -> dict[str, str]:
     return {force: remark for force, remark in found.items() if remark}
 
 
+def _contact_remarks(graph: SimulationGraph, run: IslandRun) -> dict[str, str]:
+    """Remarks of contacts at the start."""
+    from sceneql.system import ModelState
+
+    march, found = run.march, {}
+    for contact in dict.fromkeys(contact for contact, _, _ in run.island.contacts):
+        state = ModelState(0.0, march.system.y, march.system.y, march.floats, None, run.assembly.remembered(contact))
+        found[contact] = cast(Contact, graph.tasks[contact].kind).remark(state)
+    return {contact: remark for contact, remark in found.items() if remark}
+
+
 def _contact_why(graph: SimulationGraph, run: IslandRun) -> str:
     """Why an island's contacts work in their mode."""
     kinds = [graph.tasks[contact].kind for contact, _, _ in run.island.contacts]
@@ -171,6 +183,7 @@ def text(plan: dict[str, Any]) -> str:
             lines.append(
                 f"  contacts: {', '.join(island['contacts'])}, {island['contact_mode']}: {island['contact_why']}"
             )
+        lines += [f"    {contact}: {remark}" for contact, remark in island["contact_remarks"].items()]
         lines.append(f"  solver: {island['solver']}{_control(island)}; {island['why']}")
         lines.append(f"  stability: {island['bound_text']}")
     if plan["ahead"]:

@@ -14,7 +14,7 @@ from sceneql.compiled.kernels import inlined, kernel
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.mutual import sphere_pair_kernels as spheres
 from sceneql.contacts.mutual.sphere_pair_kernels import neighbors, of, radii, sort_cells, tied
-from sceneql.system.signatures_kernels import BACK_OFF, A, F, I
+from sceneql.system.signatures_kernels import BACK_OFF, TERM, A, F, I
 
 meet_all = lazy("sceneql.contacts.mutual.sphere_meet_kernels:meet_all", spheres.MEET)
 
@@ -79,6 +79,17 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
     """Change y1 so that no mass went through another in the step from t0 to t1."""
     if floats[channels.STEP_END] > 0.0:
         return
+    floats[ints[spheres.FREE]] = t1
     first, others = candidates(t1 - t0, y0, y1, floats, ints)
     if first[ints[spheres.COUNT]] > 0:
         meet_all(t1, t1 - t0, first, others, y0, rate0, y1, floats, ints)
+
+
+@kernel(TERM, inner=True)
+def store_free(t, y, rate, floats, ints):
+    """At the start of a step, store the accelerations [m/s^2] that the masses have without contacts."""
+    at = ints[spheres.FREE]
+    if t == floats[at]:
+        for k in range(ints[spheres.COUNT]):
+            for c in range(3):
+                floats[at + 1 + 3 * k + c] = rate[of(ints, k, spheres.V) + c]

@@ -58,7 +58,10 @@ def meet(i, j, h, since, mean, pull, y1, r, v, floats, ints):
 
 @inlined
 def collide(i, j, left, t1, h, since, mean, pull, y1, r, v, floats, ints):
-    """The impact of two masses ``left`` [s] before the step's end; each is booked half of the energy lost."""
+    """The impact of two masses ``left`` [s] before the step's end; each is booked half of the energy lost.
+
+    That is kinetic energy, less the work of the free accelerations on what the impact changes of the path.
+    """
     relative(i, j, left, y1, mean, pull, r, v, ints)
     px, py, pz, speed = impulse(i, j, r, v, floats, ints)
     count_hit(floats, ints[spheres.TALLY], t1 - left, speed)
@@ -71,7 +74,8 @@ def collide(i, j, left, t1, h, since, mean, pull, y1, r, v, floats, ints):
         mass = floats[of(ints, k, spheres.MASS)]
         for c in range(3):
             add = inverse * (px if c == 0 else (py if c == 1 else pz))
-            lost -= mass * add * (y1[of(ints, k, spheres.V) + c] + 0.5 * add - pull[k, c] * left)
+            free = floats[ints[spheres.FREE] + 1 + 3 * k + c]
+            lost -= mass * add * (y1[of(ints, k, spheres.V) + c] + 0.5 * add - free * left)
             y1[of(ints, k, spheres.V) + c] += add
             y1[of(ints, k, spheres.X) + c] += left * add
             mean[k, c] += add

@@ -3,7 +3,8 @@
 
 ints: number of masses; offsets in the floats of restitution, friction and tally, of the places, the sorted places,
 numbers and starts of the cell lists, table of cells (neighbors.table); number of objects; offset in the ints of the
-tied pairs (0: none); BODY integers for each mass: offsets in y of position, velocity and work, in the floats of mass,
+tied pairs (0: none); offset in the floats of the end of the last step and the masses' accelerations without contacts
+then (local mode); BODY integers for each mass: offsets in y of position, velocity and work, in the floats of mass,
 inverse mass and radius; the objects (shape_kernels). Tied pairs, which do not collide, are n + 1 starts, one for each
 mass and the end, and then for each mass its partners of larger number.
 """
@@ -14,9 +15,10 @@ from numba import types
 
 from sceneql.bodies.neighbors_kernels import cell_of, sort_by_cell
 from sceneql.compiled.kernels import inlined, kernel
+from sceneql.contacts.impulse_kernels import scale_of
 from sceneql.system.signatures_kernels import A, F, I, N
 
-COUNT, RESTITUTION, FRICTION, TALLY, POINTS, SORTED, ORDER, START, SIZE, P, Q, OBJECTS, TIED, HEAD = range(14)
+COUNT, RESTITUTION, FRICTION, TALLY, POINTS, SORTED, ORDER, START, SIZE, P, Q, OBJECTS, TIED, FREE, HEAD = range(15)
 X, V, WORK, MASS, INVERSE, RADIUS, BODY = range(7)
 
 FOUR = types.UniTuple(F, 4)
@@ -28,6 +30,13 @@ REST = types.void(F, I, I, ROWS, A, A, I)
 """(length of the step, the pairs, mean accelerations (n, 3), state at the end, floats, ints)."""
 TOUCHING = 1e-9
 """Distance, relative to the radii, below which two masses touch."""
+
+PAIRS, INSTANT, PAIR = SORTED, 7, 4
+"""In `exact` mode floats[ints[POINTS] + INSTANT k:] has the last accepted instant of mass k (NaN before the first), its
+place and velocity then; floats[ints[PAIRS] + PAIR p:] the memory of pair p, in the order of `pair_of`."""
+RESTS, LOAD, PRESS, PULL = range(PAIR)
+"""Memory of a pair: 1 where it rests, the force [N] that keeps it apart and that of friction across it, and where it is
+close to touching the acceleration [m/s^2] of its distance."""
 
 
 @inlined
@@ -50,6 +59,32 @@ def tied(i, j, ints):
         for at in range(ints[ints[TIED] + i], ints[ints[TIED] + i + 1]):
             found = found or ints[at] == j
     return found
+
+
+@inlined
+def pair_of(pair, ints):
+    """The masses of a pair: (0, 1), (0, 2), ... (1, 2), ..."""
+    i = 0
+    while pair >= ints[COUNT] - 1 - i:
+        pair -= ints[COUNT] - 1 - i
+        i += 1
+    return i, i + 1 + pair
+
+
+@inlined
+def distance(i, j, y, ints):
+    """Distance [m] between the centers of two masses."""
+    square = 0.0
+    for c in range(3):
+        square += (y[of(ints, i, X) + c] - y[of(ints, j, X) + c]) ** 2
+    return math.sqrt(square)
+
+
+@inlined
+def extent(i, y, ints):
+    """Size of a mass's coordinates [m], at least 1."""
+    at = of(ints, i, X)
+    return scale_of(y[at], y[at + 1], y[at + 2])
 
 
 @kernel(FOUR(N, N, A, A, A, I), inner=True)

@@ -176,7 +176,7 @@ def rest(h, first, others, pull, y1, floats, ints):
         for c in range(3):
             before = y1[of(ints, k, spheres.V) + c]
             y1[of(ints, k, spheres.WORK)] += mass * (
-                0.5 * (before * before - v[k, c] * v[k, c]) + pull[k, c] * moved[k, c]
+                0.5 * (before * before - v[k, c] * v[k, c]) + floats[ints[spheres.FREE] + 1 + 3 * k + c] * moved[k, c]
             )
             y1[of(ints, k, spheres.V) + c] = v[k, c]
             y1[of(ints, k, spheres.X) + c] += moved[k, c]

@@ -14,11 +14,15 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats
-    from sceneql.system import Assembly, Bodies, ModelState
+    from sceneql.system import Assembly, Bodies, ModelState, Slopes
 
 MOST_EXACT = 8
 EXACT = "sceneql.contacts.mutual.sphere_events_kernels"
 LOCAL = "sceneql.contacts.mutual.sphere_back_off_kernels"
+MOST_DIFFERENCES = 30
+"""Masses up to which implicit solvers take differences for the forces between resting masses, in `exact` mode."""
+SPRINGS, OVERLAPS = 5, 6
+"""Floats after the tally: how many pairs are left out that springs tie, and how many that overlap at the start."""
 FEW = 300
 """Of so few masses all pairs are looked at, which takes less time than the import of scipy's trees."""
 
@@ -32,10 +36,11 @@ class MutualCollision(Contact):
     1981), first ones first, and lets masses that approach no faster than they are pressed rest on each other and on the
     objects, by impulses at the end of the step (Moreau 1988); `auto` is exact for up to 8 elastic masses.
 
-    In mode `local` masses that a spring ties, and masses of one net that overlap at the start, do not collide: so a
-    cloth or a rope lies on itself, each mass a sphere as wide as the cloth is thick. Its layers cannot pass through
-    each other where the thickness is no less than the side of a cell. Steps that a tolerance chooses are at most
-    1/240 s there; masses that are not elastic rest where they approach slower than what presses them gives in two.
+    In mode `local` masses that a spring ties, and masses of one net that overlap at the start by more than rounding,
+    do not collide: so a cloth or a rope lies on itself, each mass a sphere as wide as the cloth is thick. `explain`
+    counts these pairs. Its layers cannot pass through each other where the thickness is no less than the side of a
+    cell. Steps that a tolerance chooses are at most 1/240 s there; masses that are not elastic rest where they approach
+    slower than what presses them gives in two.
     """
 
     mutual: ClassVar[bool] = True
@@ -62,7 +67,7 @@ class MutualCollision(Contact):
 
         from sceneql.bodies.neighbors import table
         from sceneql.contacts.colliders import OFTEN, surfaces
-        from sceneql.contacts.mutual.sphere_pair_kernels import BODY, HEAD
+        from sceneql.contacts.mutual.sphere_pair_kernels import BODY, HEAD, INSTANT, PAIR
 
         rows = [
             (
@@ -82,42 +87,55 @@ class MutualCollision(Contact):
             text = "exact collisions between masses are elastic: those that lose speed come to rest on each other"
             raise ScriptError([Diagnostic("not-elastic", text, assembly.line(), "set restitution: 1 or mode: local")])
         exact = self.mode == "exact" or (self.mode == "auto" and elastic and n <= MOST_EXACT)
-        tied = _tied(assembly, everyone, exact)
+        tied, by_springs = _tied(assembly, everyone, exact)
         size, first, second = table(n)
-        tally = assembly.floats([0.0, np.nan, np.nan, 0.0, np.nan])
-        objects = (
-            () if exact else surfaces([Ref(ref.name, assembly.line()) for ref in others], assembly, HEAD + BODY * n)
-        )
-        scratch = (3 * n, 3 * n, n, size + 1) if not exact else (7 * n, 0, 0, 0)
+        tally = assembly.floats([0.0, np.nan, np.nan, 0.0, np.nan, by_springs, len(tied) - by_springs])
+        objects = surfaces([Ref(ref.name, assembly.line()) for ref in others], assembly, HEAD + BODY * n)
+        pairs = n * (n - 1) // 2
+        scratch = (3 * n, 3 * n, n, size + 1) if not exact else (INSTANT * n, PAIR * pairs, 0, 0)
         ints = (
             *(n, assembly.value(self.restitution), assembly.value(self.friction), tally),
-            *(assembly.floats(np.zeros(count)) for count in scratch),
-            *(size, first, second, 0 if exact else len(others)),
+            *(assembly.floats(np.full(count, np.nan if exact and not k else 0.0)) for k, count in enumerate(scratch)),
+            *(size, first, second, len(others)),
             HEAD + BODY * n + len(objects) if len(tied) else 0,
+            0 if exact else assembly.floats(np.zeros(1 + 3 * n)),
             *(number for row in rows for number in row),
             *objects,
         )
         ints = (*ints, *_partners(tied, n, len(ints)))
         if exact:
             kernels = (f"{EXACT}:gap", f"{EXACT}:impact")
-            assembly.contact("exact", kernels, ints, n * (n - 1) // 2)
+            assembly.contact("exact", kernels, ints, pairs)
+            assembly.term("constrain", f"{EXACT}:constrain", ints, None if n <= MOST_DIFFERENCES else _no_slopes)
         else:
             assembly.step_at_most(OFTEN)
             assembly.contact("local", (f"{LOCAL}:back_off",), ints, 0)
+            assembly.term("close", f"{LOCAL}:store_free", ints, _no_slopes)
         assembly.remember(tally)
 
     def read(self, output: str, state: ModelState) -> Any:
         """The number of impacts."""
         return float(sum(state.floats[at] for at in state.ints))
 
+    def remark(self, state: ModelState) -> str:
+        """How many pairs do not collide, and why."""
+        springs, overlaps = (int(sum(state.floats[at + k] for at in state.ints)) for k in (SPRINGS, OVERLAPS))
+        if not springs + overlaps:
+            return ""
+        why = (f"{springs} that springs tie" if springs else "", f"{overlaps} that overlap at the start")
+        return f"left out: pairs of one net, {' and '.join(filter(None, why if overlaps else why[:1]))}"
 
-def _tied(assembly: Assembly, everyone: Sequence[Bodies], exact: bool) -> NDArray[int64]:
-    """(m, 2) the pairs that do not meet: those that springs tie, and those that overlap within a net at the start.
+
+def _tied(assembly: Assembly, everyone: Sequence[Bodies], exact: bool) -> tuple[NDArray[int64], int]:
+    """(m, 2) the pairs that do not meet, those that springs tie or that overlap within a net at the start; how many
+    springs tie.
 
     The lower number stands first. In `exact` mode all meet. Raises ScriptError where two moving masses overlap
     otherwise.
     """
     import numpy as np
+
+    from sceneql.contacts.mutual.sphere_pair_kernels import TOUCHING
 
     y, floats = assembly.start(), assembly.numbers()
     nets = () if exact else tuple(k for k, at in enumerate(everyone) if at.tied is not None)
@@ -129,7 +147,8 @@ def _tied(assembly: Assembly, everyone: Sequence[Bodies], exact: bool) -> NDArra
     depth = radii[pairs].sum(axis=1) - np.linalg.norm(places[pairs[:, 0]] - places[pairs[:, 1]], axis=1)
     own = (model[pairs[:, 0]] == model[pairs[:, 1]]) & np.isin(model[pairs[:, 0]], nets)
     wrong = np.where(moving[pairs].all(axis=1) & ~own, depth, 0.0)
-    if len(pairs) and wrong.max() > 1e-9 * radii.max():
+    rounding = TOUCHING * radii.max(initial=0.0)
+    if len(pairs) and wrong.max() > rounding:
         worst = int(np.argmax(wrong))
         names = [f"mass {k} of '{bodies.model}'" for bodies in everyone for k in range(bodies.count)]
         one, other = (names[k] for k in pairs[worst])
@@ -137,8 +156,20 @@ def _tied(assembly: Assembly, everyone: Sequence[Bodies], exact: bool) -> NDArra
         raise ScriptError(
             [Diagnostic("masses-overlap", text, assembly.line(), "move them apart, or make them smaller")]
         )
+    none = np.empty((0, 2), dtype=np.int64)
     springs = [np.sort(everyone[k].tied, axis=1) + np.searchsorted(model, k) for k in nets]
-    return np.unique(np.concatenate([pairs[own & (depth > 0.0)], *springs]), axis=0)
+    by_springs = np.unique(np.concatenate([none, *springs]), axis=0)
+    return np.unique(np.concatenate([pairs[own & (depth > rounding)], by_springs]), axis=0), len(by_springs)
+
+
+def _no_slopes() -> Slopes:
+    """The slopes of what adds nothing, or hardly ever."""
+    import numpy as np
+
+    from sceneql.system import Slopes
+
+    none = np.empty(0, dtype=np.int64)
+    return Slopes(f"{EXACT}:constrain", none, none)
 
 
 def _partners(tied: NDArray[int64], count: int, start: int) -> tuple[int, ...]:
