@@ -17,10 +17,11 @@ from typing import TYPE_CHECKING, Any, cast
 
 from sceneql import __version__
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.check import KEYS
 from sceneql.compiler.compile import compile_script
 from sceneql.failure import Unsuitable, failing_as
 from sceneql.graph import SimulationGraph
-from sceneql.kinds import FAMILIES, Camera, Clock, Light, Object, Output, Overlay, Picture, Renderer, Settings
+from sceneql.kinds import FAMILIES, Camera, Clock, Light, Object, Output, Overlay, Picture, Renderer
 from sceneql.language.patch import Patch
 from sceneql.language.script import read_script
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
@@ -41,14 +42,8 @@ def load(
 ) -> SimulationGraph:
     """Read, check and compile a script; ``sets`` are patches or ``path=value``. Raises ScriptError with all errors."""
     found = Diagnostics()
-    script = read_script(
-        Path(path),
-        variant,
-        sets,
-        families=tuple(kind.family for kind in FAMILIES),
-        settings=(*Settings.model_fields, "sceneql", "define", "variants"),
-        found=found,
-    )
+    families = tuple(kind.family for kind in FAMILIES)
+    script = read_script(Path(path), variant, sets, families=families, settings=KEYS, found=found)
     graph = compile_script(script, Catalogue(words), found, pruned=pruned)
     of_name = cache(lambda name: load(path, variant=name, sets=sets, words=words, pruned=pruned))
     return replace(graph, variants=replace(graph.variants, load=of_name))

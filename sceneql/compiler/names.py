@@ -9,18 +9,37 @@ from dataclasses import dataclass, field, replace
 from sceneql.kinds import Gives
 from sceneql.language.scope import Broken, Given, Scope
 from sceneql.language.tree import Node, Scalar, Sequence
-from sceneql.quantities.bind import component
+from sceneql.quantities.bind import Lookup, bind, component
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, nearest, suggestion
 from sceneql.quantities.dimension import PLAIN, TIME
-from sceneql.quantities.expression import Expr, Link, Symbol, Type, rebuilt
+from sceneql.quantities.expression import Expr, Link, Name, Symbol, Type, each_once, rebuilt
 from sceneql.quantities.literal import WORD
 from sceneql.quantities.operations import CONSTANTS
+from sceneql.quantities.parser import parse_value
 from sceneql.quantities.span import Span
 from sceneql.quantities.units import continues_unit, unit_hint
 
 WORDS = re.compile(WORD)
 DEEPEST = 40
 """Defines that may be read within one another; what a define needs is read before it."""
+
+
+class Parsed:
+    """The trees of texts, by their nodes: the variants of a script share the nodes that none of them replaces."""
+
+    def __init__(self) -> None:
+        self._trees: dict[int, tuple[Node, Expr, Expr | None]] = {}
+
+    def tree(self, node: Scalar, text: str, lookup: Lookup, found: Diagnostics) -> Expr | None:
+        """The bound tree of a text, or None after reporting what is wrong with it. Raises ScriptError."""
+        known = self._trees.get(id(node))
+        expr = parse_value(text, node.content) if known is None else known[1]
+        if known is not None and known[2] is not None:
+            return known[2]
+        bound = bind(expr, lookup, found)
+        alone = bound is not None and not any(isinstance(part, Name) for part in each_once(expr))
+        self._trees[id(node)] = node, expr, bound if alone else None
+        return bound
 
 
 @dataclass
@@ -38,6 +57,7 @@ class Names:
     """Names whose definitions were reported as unreadable, about which no further error is reported."""
     unsure: Callable[[str], bool] = lambda name: False
     """Whether a part may have more outputs than are known, since its fields have errors."""
+    parsed: Parsed = field(default_factory=lambda: Parsed())
     scope: Scope | None = None
     _bound: dict[str, Expr | None] = field(default_factory=dict)
     _open: list[str] = field(default_factory=list)
