@@ -155,18 +155,12 @@ def render(
 def check(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None) -> None:
     """Find all errors of a script, and of each of its variants and studies, without running it."""
     from sceneql import pipeline
-    from sceneql.compiler.studies import alone
-    from sceneql.quantities.diagnostic import Diagnostics, ScriptError
+    from sceneql.compiler.variants import check_variants
+    from sceneql.quantities.diagnostic import Diagnostics
 
     graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
     found = Diagnostics()
-    patched: list[tuple[str | None, Sequence[Any]]] = [(name, sets) for name in graph.variants.names if variant is None]
-    patched += [(variant, (*sets, *more)) for study in graph.settings.studies.values() for more in alone(study)]
-    for name, patches in patched:
-        try:
-            pipeline.load(scene, variant=name, sets=patches, words=words)
-        except ScriptError as error:
-            found.extend(error.diagnostics)
+    found.extend(check_variants(graph, scene, variant, sets, words))
     found.raise_errors()
     _warn(graph)
     click.echo(

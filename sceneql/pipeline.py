@@ -19,12 +19,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from pydantic import BaseModel
 
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.check import KEYS
 from sceneql.compiler.compile import compile_script
 from sceneql.failure import OutOfMemory, RunFailure, Unsuitable, starved, want_of_memory
 from sceneql.files import NUMBERS, refuse_unwritable, try_folder
 from sceneql.graph import SimulationGraph
 from sceneql.interrupts import held
-from sceneql.kinds import FAMILIES, Camera, Kind, Model, Output, Picture, Settings
+from sceneql.kinds import FAMILIES, Camera, Kind, Model, Output, Picture
 from sceneql.language.patch import Patch
 from sceneql.language.script import read_script
 from sceneql.quantities.diagnostic import Diagnostics
@@ -46,14 +47,8 @@ def load(
 ) -> SimulationGraph:
     """Read, check and compile a script; ``sets`` are patches or ``path=value``. Raises ScriptError with all errors."""
     found = Diagnostics()
-    script = read_script(
-        Path(path),
-        variant,
-        sets,
-        families=tuple(kind.family for kind in FAMILIES),
-        settings=(*Settings.model_fields, "sceneql", "define", "variants"),
-        found=found,
-    )
+    families = tuple(kind.family for kind in FAMILIES)
+    script = read_script(Path(path), variant, sets, families=families, settings=KEYS, found=found)
     graph = compile_script(script, Catalogue(words), found, pruned=pruned)
     of_name = cache(lambda name: load(path, variant=name, sets=sets, words=words, pruned=pruned))
     return replace(graph, variants=replace(graph.variants, load=of_name))

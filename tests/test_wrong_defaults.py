@@ -2,8 +2,13 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
+
+from runs import complaint
+from sceneql.compiler.catalogue import Catalogue
+from sceneql.report.manual import listing
 
 FORCE = """\
 '''A force whose defaults are wrong.'''
@@ -110,3 +115,26 @@ def test_a_wrong_default_is_told_in_the_file_of_its_word(tmp_path, command, give
     run = [sys.executable, "-m", "sceneql", command, "scene.yaml", "--words", "."]
     said = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True, encoding="utf-8")
     assert (said.returncode, said.stdout, said.stderr) == (3, "", told.replace("FILE", str(path.resolve())))
+
+
+def test_the_words_of_a_folder_are_listed_beside_one_with_a_wrong_default(tmp_path: Path) -> None:
+    (tmp_path / "models").mkdir()
+    for name, default in (("good", "1 m"), ("bad", "1 kg")):
+        text = f"from sceneql.kinds import FixedLength, Model, field\nclass {name.title()}(Model):\n"
+        text += f'    """A {name} one."""\n    size: FixedLength = field("Size.", "{default}")\n'
+        (tmp_path / "models" / f"{name}.py").write_text(text)
+    said = listing(Catalogue(tmp_path))
+    assert "good                  A good one" in said
+    assert "bad                   cannot be used, as told below" in said
+    assert "size is a length (m), but this is a mass (kg)" in said
+
+
+def test_a_film_of_almost_no_frames_a_second_is_refused(tmp_path: Path) -> None:
+    said = complaint(tmp_path, "clock: {fps: 1e-9}\noutputs: {film: {video: {fps: 1e-4}}}\n")
+    assert "fps must be at least 0.001, not 1e-09" in said
+    assert "fps must be at least 0.001, not 0.0001" in said
+
+
+def test_a_graph_too_small_to_draw_is_refused(tmp_path: Path) -> None:
+    text = "overlays: {g: {graph: {y: time, size: 0.5 28 %}}}\noutputs: {film: {image: {}}}\n"
+    assert "size must be at least 0.05, not 0.005" in complaint(tmp_path, text)

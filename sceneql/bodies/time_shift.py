@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from math import inf
 
 from sceneql.quantities.derivative import differentiate
@@ -12,14 +11,15 @@ from sceneql.quantities.expression import (
     TIME_SYMBOL,
     Call,
     Expr,
-    Key,
     Keys,
     Link,
     Number,
     Symbol,
     Type,
     Vector,
+    children,
     each_once,
+    rebuilt,
 )
 
 APART = 1e-4
@@ -35,52 +35,54 @@ def later(expr: Expr, by: float, follow: Callable[[Link], Expr | None] = lambda 
     Raises ValueError for a link to something that is not a function of time.
     """
 
-    def shifted(node: Expr) -> Expr:
+    meanings: dict[Link, Expr] = {}
+
+    def shifted(old: Expr, node: Expr) -> Expr:
         match node:
             case Symbol(name=name) if name == TIME_SYMBOL:
                 return Call("add", (node, Number(by, Type((), TIME), False)), node.type, node.span) if by else node
             case Link(task=task, output=output):
-                meaning = follow(node)
-                if meaning is None:
-                    raise ValueError(f"{task}.{output} is not known as a function of time")
-                return shifted(meaning)
-            case Call(args=args):
-                return replace(node, args=tuple(shifted(arg) for arg in args))
-            case Vector(items=items):
-                return replace(node, items=tuple(shifted(item) for item in items))
-            case Keys(argument=argument, keys=keys):
-                return replace(node, argument=shifted(argument), keys=tuple(shifted_key(key) for key in keys))
+                if node not in meanings:
+                    meaning = follow(node)
+                    if meaning is None:
+                        raise ValueError(f"{task}.{output} is not known as a function of time")
+                    meanings[node] = rebuilt(meaning, shifted)
+                return meanings[node]
         return node
 
-    def shifted_key(key: Key) -> Key:
-        slopes = [None if slope is None else shifted(slope) for slope in (key.slope_in, key.slope_out)]
-        return Key(key.time, shifted(key.value), *slopes)
-
-    return shifted(expr)
+    return rebuilt(expr, shifted)
 
 
 def goes_evenly(expr: Expr, follow: Callable[[Link], Expr | None]) -> bool:
     """Whether an expression is known to be linear in time; ``follow`` as in `later`."""
 
-    def degree(node: Expr) -> float:
-        """Degree of a node as a polynomial of the time; infinite where it is not known to be one."""
+    meanings: dict[Link, float] = {}
+
+    def degree(expr: Expr) -> float:
+        """Degree as a polynomial of the time; infinite where it is not known to be one."""
+        known: dict[int, float] = {}
+        for node in each_once(expr):
+            known[id(node)] = of_node(node, [known[id(child)] for child in children(node)])
+        return known[id(expr)]
+
+    def of_node(node: Expr, below: list[float]) -> float:
         match node:
             case Number():
                 return 0.0
             case Symbol(name=name) if name == TIME_SYMBOL:
                 return 1.0
             case Link():
-                meaning = follow(node)
-                return inf if meaning is None else degree(meaning)
-            case Vector(items=items):
-                return max(map(degree, items))
-            case Call(op="add" | "sub" | "neg" | "component", args=args):
-                return max(map(degree, args))
-            case Call(op="mul", args=args):
-                return sum(map(degree, args))
-            case Call(op="div", args=(above, below)) if degree(below) == 0.0:
-                return degree(above)
-            case Call(args=args) if not any(map(degree, args)):
+                if node not in meanings:
+                    meaning = follow(node)
+                    meanings[node] = inf if meaning is None else degree(meaning)
+                return meanings[node]
+            case Vector() | Call(op="add" | "sub" | "neg" | "component"):
+                return max(below)
+            case Call(op="mul"):
+                return sum(below)
+            case Call(op="div") if below[1] == 0.0:
+                return below[0]
+            case Call() if not any(below):
                 return 0.0
         return inf
 

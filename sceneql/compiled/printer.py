@@ -7,12 +7,25 @@ general power costs some twenty multiplications.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import reduce
 
 from sceneql.compiled import generated
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import Call, Expr, Link, Number, Symbol, walk
+from sceneql.quantities.expression import (
+    Call,
+    Expr,
+    Link,
+    Number,
+    Symbol,
+    children,
+    each_once,
+    holders,
+    rebuilt,
+    recursive,
+    walk,
+)
 
 PRODUCTS = {2.0: "{0} * {0}", 3.0: "{0} * {0} * {0}", 4.0: "({0} * {0}) * ({0} * {0})"}
 """A power by its exponent."""
@@ -77,19 +90,29 @@ class Constants:
 
         Two constants never share a symbol, even where their values are equal: then a new value would change the form.
         """
-        if not free(expr):
-            if any(isinstance(node, Link) for node in walk(expr)):
-                self.inputs.append(expr)
-                return Symbol(f"@{len(self.inputs) - 1}")
-            return self.number(float(evaluate(expr, {})))
-        if not isinstance(expr, Call):
-            return expr
-        first, *others = expr.args
-        if exponent(expr) in PRODUCTS:
-            return Call(expr.op, (self.lift(first), *others))
-        if expr.op in ("min", "max") and len(others) > 1:
-            first, others = Call(expr.op, (first, *others[:-1])), others[-1:]
-        return Call(expr.op, (self.lift(first), *(self.lift(other) for other in others)))
+        expr = rebuilt(expr, lambda node, new: _in_pairs(new))
+        varying = holders(lambda node: isinstance(node, Symbol), expr)
+
+        def lifted(node: Expr) -> Generator[Expr, Expr, Expr]:
+            if id(node) not in varying:
+                return self._constant(node)
+            if not isinstance(node, Call):
+                return node
+            kept = node.args[1:] if exponent(node) in PRODUCTS else ()
+            args = []
+            for arg in node.args[: len(node.args) - len(kept)]:
+                args.append((yield arg) if id(arg) in varying else self._constant(arg))
+            return Call(node.op, (*args, *kept))
+
+        found: Expr = recursive(lifted, expr)
+        return found
+
+    def _constant(self, expr: Expr) -> Symbol:
+        """A new symbol for a subexpression without a free symbol."""
+        if any(isinstance(node, Link) for node in walk(expr)):
+            self.inputs.append(expr)
+            return Symbol(f"@{len(self.inputs) - 1}")
+        return self.number(float(evaluate(expr, {})))
 
     def number(self, value: float) -> Symbol:
         """The symbol of a new constant."""
@@ -114,23 +137,28 @@ class Printer:
 
     def name(self, expr: Expr) -> str:
         """The name that holds the expression's value, after the lines that compute it."""
+        name: str = recursive(self._named, expr)
+        return name
+
+    def _named(self, expr: Expr) -> Generator[Expr, str, str]:
         if expr not in self._names_of:
-            self._names_of[expr] = self._print(expr)
+            self._names_of[expr] = yield from self._print(expr)
         return self._names_of[expr]
 
-    def _print(self, expr: Expr) -> str:
+    def _print(self, expr: Expr) -> Generator[Expr, str, str]:
         match expr:
             case Number(value=value):
                 # Numbers that are left come from differentiation: part of the form, but floats like the others.
-                return self.name(self.constants.number(value))
+                return (yield self.constants.number(value))
             case Symbol(name=name) if name in self.meanings:
-                return self.name(self.meanings[name])
+                return (yield self.meanings[name])
             case Symbol(name=name):
                 return self.names[name] if name in self.names else name.replace("#", "c").replace("@", "u")
-            case Call(op=op, args=args) if exponent(expr) in PRODUCTS:
-                return self._assign(PRODUCTS[exponent(expr)].format(self.name(args[0])))
             case Call(op=op, args=args):
-                return self._assign(TEXTS[op].format(*(self.name(arg) for arg in args)))
+                text, operands = PRODUCTS.get(exponent(expr)), []
+                for arg in args if text is None else args[:1]:
+                    operands.append((yield arg))
+                return self._assign((text or TEXTS[op]).format(*operands))
         raise TypeError(f"a {type(expr).__name__.lower()} has no place in a scalar formula")
 
     def _assign(self, text: str) -> str:
@@ -140,18 +168,22 @@ class Printer:
         return self._names_of_texts[text]
 
 
-def free(expr: Expr) -> bool:
-    """Whether an expression has a free symbol."""
-    return any(isinstance(node, Symbol) for node in walk(expr))
-
-
 def printable(expr: Expr) -> bool:
     """Whether a kernel can compute an expression: constants and links apart, scalars and operations of TEXTS alone."""
-    if not free(expr):
-        return True
-    if not isinstance(expr, Call):
-        return isinstance(expr, Symbol)
-    return expr.op in TEXTS and all(printable(arg) for arg in expr.args)
+    varying = holders(lambda node: isinstance(node, Symbol), expr)
+
+    def operands(node: Expr) -> tuple[Expr, ...]:
+        return tuple(part for part in children(node) if id(part) in varying)
+
+    known = (node for node in each_once(expr, below=operands) if id(node) in varying)
+    return all(isinstance(node, Symbol) or (isinstance(node, Call) and node.op in TEXTS) for node in known)
+
+
+def _in_pairs(expr: Expr) -> Expr:
+    """`min` and `max` of many as such of two, from the left: as kernels compute them."""
+    if isinstance(expr, Call) and expr.op in ("min", "max") and len(expr.args) > 2:
+        return reduce(lambda before, arg: Call(expr.op, (before, arg)), expr.args)
+    return expr
 
 
 def exponent(expr: Expr) -> float:

@@ -14,7 +14,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from sceneql.compiler.catalogue import Catalogue
-from sceneql.compiler.names import Names
+from sceneql.compiler.names import Names, Parsed
 from sceneql.compiler.over_time import check_instants
 from sceneql.compiler.read import Reader, Unreadable, report_unknown
 from sceneql.compiler.values import read_expr
@@ -28,6 +28,8 @@ from sceneql.quantities.diagnostic import Diagnostics, nearest, suggestion
 from sceneql.quantities.expression import Link, Type, walk
 
 SETTINGS = tuple(Settings.model_fields)
+KEYS = (*SETTINGS, "sceneql", "define", "variants")
+"""Top-level keys beside the families."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,9 +46,9 @@ class Checked:
     """Paths of the files that its parts name, used or not."""
 
 
-def check(script: Script, catalogue: Catalogue, found: Diagnostics) -> Checked:
-    """Read every entry of a script; wrong ones are recorded and left out."""
-    checker = _Checker(script, catalogue, found)
+def check(script: Script, catalogue: Catalogue, found: Diagnostics, parsed: Parsed | None = None) -> Checked:
+    """Read every entry of a script; wrong ones are recorded and left out. ``parsed``: known from other variants."""
+    checker = _Checker(script, catalogue, found, parsed or Parsed())
     for family, entries in script.sections.items():
         for name in entries:
             checker.task(family, name)
@@ -63,12 +65,13 @@ def check(script: Script, catalogue: Catalogue, found: Diagnostics) -> Checked:
 
 
 class _Checker:
-    def __init__(self, script: Script, catalogue: Catalogue, found: Diagnostics) -> None:
+    def __init__(self, script: Script, catalogue: Catalogue, found: Diagnostics, parsed: Parsed) -> None:
         self.script, self.catalogue, self.found = script, catalogue, found
         self.tasks: dict[str, Task] = {}
         self.family_of: dict[str, str] = {}
         self.entries: dict[str, Entry] = {}
         self._done: set[str] = set()
+        self._outputs: dict[int, tuple[Entry, Mapping[str, Gives] | None]] = {}
         self.timed = True
         self.files: list[str] = []
         self.folder = Path(script.sources[0].name).parent
@@ -88,6 +91,7 @@ class _Checker:
             given=script.gives,
             broken=script.broken,
             unsure=self.unsure,
+            parsed=parsed,
         )
 
     def unsure(self, name: str) -> bool:
@@ -205,7 +209,13 @@ class _Checker:
         """The outputs of a part, without reading its fields; None if nothing is called so, or they cannot be known."""
         if name not in self.entries:
             return None
-        cls, fields = self.catalogue.load(self.family_of[name], self.entries[name].word), self.entries[name].fields
+        entry = self.entries[name]
+        if id(entry) not in self._outputs:
+            self._outputs[id(entry)] = entry, self._outputs_of(name, entry)
+        return self._outputs[id(entry)][1]
+
+    def _outputs_of(self, name: str, entry: Entry) -> Mapping[str, Gives] | None:
+        cls, fields = self.catalogue.load(self.family_of[name], entry.word), entry.fields
         if cls is None or (fields is not None and unsure(fields)):
             return None
         outputs = dict(cls.outputs(written(fields) if isinstance(fields, MappingNode) else {}))

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from sceneql.compiler.catalogue import Catalogue
-from sceneql.compiler.check import check, values_of
+from sceneql.compiler.check import KEYS, check, values_of
+from sceneql.compiler.names import Parsed
 from sceneql.compiler.passes.bounds import warn_of_bounds
 from sceneql.compiler.passes.circles import report_circles
 from sceneql.compiler.passes.expand import expand
@@ -27,13 +28,17 @@ from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.span import Span
 
 
-def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, pruned: bool = True) -> SimulationGraph:
+def compile_script(
+    script: Script, catalogue: Catalogue, found: Diagnostics, *, pruned: bool = True, parsed: Parsed | None = None
+) -> SimulationGraph:
     """The graph of a script. ``pruned=False`` keeps every part (its pictures must be the same).
+
+    ``parsed``: what of the script's texts is known from other variants.
 
     Raises ScriptError with all errors, those that are in ``found`` already included.
     """
-    checked = check(script, catalogue, found)
-    check_studies(checked.settings.studies, script.root, catalogue, found)
+    checked = check(script, catalogue, found, parsed)
+    check_studies(checked.settings.studies, script.root, catalogue, KEYS, found)
     report_circles(checked.tasks, found)
     tasks = expand(checked.tasks, catalogue)
     report_hollow(tasks, found)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from sceneql.compiler.names import Names, plain
+from sceneql.compiler.names import Names
 from sceneql.compiler.over_time import momentary
 from sceneql.compiler.values import parsed_text
 from sceneql.language.tree import Node, Scalar, Sequence, unsure
@@ -44,7 +44,7 @@ def read_formula(node: Node, symbols: Iterable[str], what: str, names: Names, fo
             )
             return None
         expr = names.lookup(parts, span)
-        return None if expr is None else plain(expr)
+        return None if expr is None else names.plain(expr)
 
     try:
         expr = bind(parse_expression(parsed_text(node), node.content), lookup, found)

@@ -2,20 +2,44 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field, fields, replace
-from typing import Any
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 
 from sceneql.kinds import Gives
 from sceneql.language.scope import Broken, Given, Scope
-from sceneql.language.tree import Node
-from sceneql.quantities.bind import component
+from sceneql.language.tree import Node, Scalar, Sequence
+from sceneql.quantities.bind import Lookup, bind, component
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, nearest, suggestion
 from sceneql.quantities.dimension import PLAIN, TIME
-from sceneql.quantities.expression import Call, Expr, Key, Keys, Link, Number, Symbol, Type, Vector
+from sceneql.quantities.expression import Expr, Link, Name, Symbol, Type, each_once, rebuilt
+from sceneql.quantities.literal import WORD
 from sceneql.quantities.operations import CONSTANTS
+from sceneql.quantities.parser import parse_value
 from sceneql.quantities.span import Span
 from sceneql.quantities.units import continues_unit, unit_hint
+
+WORDS = re.compile(WORD)
+DEEPEST = 40
+"""Defines that may be read within one another; what a define needs is read before it."""
+
+
+class Parsed:
+    """The trees of texts, by their nodes: the variants of a script share the nodes that none of them replaces."""
+
+    def __init__(self) -> None:
+        self._trees: dict[int, tuple[Node, Expr, Expr | None]] = {}
+
+    def tree(self, node: Scalar, text: str, lookup: Lookup, found: Diagnostics) -> Expr | None:
+        """The bound tree of a text, or None after reporting what is wrong with it. Raises ScriptError."""
+        known = self._trees.get(id(node))
+        expr = parse_value(text, node.content) if known is None else known[1]
+        if known is not None and known[2] is not None:
+            return known[2]
+        bound = bind(expr, lookup, found)
+        alone = bound is not None and not any(isinstance(part, Name) for part in each_once(expr))
+        self._trees[id(node)] = node, expr, bound if alone else None
+        return bound
 
 
 @dataclass
@@ -33,9 +57,13 @@ class Names:
     """Names whose definitions were reported as unreadable, about which no further error is reported."""
     unsure: Callable[[str], bool] = lambda name: False
     """Whether a part may have more outputs than are known, since its fields have errors."""
+    parsed: Parsed = field(default_factory=lambda: Parsed())
     scope: Scope | None = None
     _bound: dict[str, Expr | None] = field(default_factory=dict)
     _open: list[str] = field(default_factory=list)
+    _named: dict[str, list[str]] = field(default_factory=dict)
+    _read: dict[tuple[int, int], tuple[Node, Scope | None, Expr | None]] = field(default_factory=dict)
+    _plain: dict[int, tuple[Expr, Expr]] = field(default_factory=dict)
 
     def define(self, name: str, span: Span) -> Expr | None:
         """The value of a define; a define that needs itself is an error."""
@@ -43,11 +71,30 @@ class Names:
             circle = " -> ".join([*self._open[self._open.index(name) :], name])
             self.found.error("circular-define", f"'{name}' is defined by itself: {circle}", span)
             return None
-        if name not in self._bound:
-            self._open.append(name)
-            self._bound[name] = self.read(self.defines[name], replace(self, scope=None))
+        # All that a define needs is bound before it, but for what needs itself.
+        if name not in self._bound and len(self._open) > DEEPEST:
+            self.found.error("circular-define", f"'{name}' is defined by itself, over more than {DEEPEST} others", span)
+            self._bound[name] = None
+        for each in self._needed(name):
+            self._open.append(each)
+            self._bound[each] = self.read(self.defines[each], replace(self, scope=None))
             self._open.pop()
         return self._bound[name]
+
+    def _needed(self, name: str) -> Iterator[str]:
+        """The defines to bind before one and the define itself, each behind what it needs; none of a circle."""
+        stack, known = [(name, False)], set[str]()
+        while stack:
+            each, ready = stack.pop()
+            if ready:
+                if each == name or all(word in self._bound for word in self._named[each]):
+                    yield each
+            elif each not in known and each not in self._bound:
+                known.add(each)
+                if each not in self._named:
+                    self._named[each] = [word for word in _words(self.defines[each]) if word in self.defines]
+                stack.append((each, True))
+                stack.extend((word, False) for word in reversed(self._named[each]))
 
     def field(self, name: str) -> tuple[Node, Names] | None:
         """The node that a template's instance was given for a field, and the names that hold at that node."""
@@ -65,8 +112,7 @@ class Names:
             return Symbol("time", Type((), TIME), span)
         field = self.field(head)
         if field is not None:
-            node, outer = field
-            expr = self.read(node, outer)
+            expr = self._once(*field)
             return None if expr is None else self._component(expr, parts, 1, span)
         if head in self.defines:
             expr = self.define(head, span)
@@ -76,7 +122,7 @@ class Names:
             task = task if self.scope is None else self.scope.resolve(task)
             given = self.given.get(f"{task}.{parts[size]}")
             if given is not None:
-                expr = self.read(given.node, replace(self, scope=given.scope))
+                expr = self._once(given.node, replace(self, scope=given.scope))
                 return None if expr is None else self._component(expr, parts, size + 1, span)
             outputs = self.outputs_of(task)
             if outputs is not None:
@@ -88,6 +134,22 @@ class Names:
         if head not in CONSTANTS or len(parts) > 1:
             self._unknown(parts, span)
         return None
+
+    def _once(self, node: Node, names: Names) -> Expr | None:
+        """The tree of a node in a scope, read where it is first asked for: all that use it share one tree."""
+        place = id(node), id(names.scope)
+        if place not in self._read:
+            self._read[place] = node, names.scope, self.read(node, names)
+        return self._read[place][2]
+
+    def plain(self, expr: Expr) -> Expr:
+        """The same tree over plain numbers in SI: textbook formulas are not homogeneous, so dimensions are dropped."""
+        if id(expr) not in self._plain:
+            self._plain[id(expr)] = (
+                expr,
+                rebuilt(expr, lambda node, new: replace(new, type=Type(node.type.shape, PLAIN))),
+            )
+        return self._plain[id(expr)][1]
 
     def _is_reported(self, parts: tuple[str, ...]) -> bool:
         """Whether the definition of the name, or of the part that would have it, was reported as unreadable."""
@@ -158,17 +220,11 @@ class Names:
         return f"{task}.{'position' if 'position' in outputs else next(iter(outputs), 'position')}"
 
 
-def plain(expr: Any) -> Any:
-    """The same tree over plain numbers in SI: textbook formulas are not homogeneous, so dimensions are dropped."""
-    parts = {f.name: _plain(getattr(expr, f.name)) for f in fields(expr)}
-    return replace(expr, **parts)
-
-
-def _plain(part: Any) -> Any:
-    if isinstance(part, Type):
-        return Type(part.shape, PLAIN)
-    if isinstance(part, tuple):
-        return tuple(_plain(item) for item in part)
-    if isinstance(part, Number | Symbol | Link | Call | Vector | Keys | Key):
-        return plain(part)
-    return part
+def _words(node: Node) -> list[str]:
+    """The first pieces of all that may be names in a value, in the order of the text."""
+    match node:
+        case Scalar(text=text):
+            return [word.partition(".")[0] for word in WORDS.findall(text)]
+        case Sequence(items=items):
+            return [word for item in items for word in _words(item)]
+    return [word for item in (*node.keys.values(), *node.entries.values()) for word in _words(item)]

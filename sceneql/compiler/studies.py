@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Collection
 from collections.abc import Mapping as Naming
 from dataclasses import dataclass
 
 from sceneql.compiler.catalogue import Catalogue
-from sceneql.kinds import Settings, Study
+from sceneql.kinds import Study
 from sceneql.language.patch import Patch, apply_patch
 from sceneql.language.plain import kind_of
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence, unsure
@@ -82,9 +83,10 @@ def instead(study: Study) -> list[Patch]:
     return [(path, node, node.span) for path, node in (study.reference or {}).items()]
 
 
-def check_studies(studies: Naming[str, Study], root: Mapping, catalogue: Catalogue, found: Diagnostics) -> None:
-    """Report sweeps that are neither ranges nor lists, and paths that lead nowhere."""
-    settings = (*Settings.model_fields, "sceneql", "define", "variants")
+def check_studies(
+    studies: Naming[str, Study], root: Mapping, catalogue: Catalogue, keys: Collection[str], found: Diagnostics
+) -> None:
+    """Report sweeps that are neither ranges nor lists, and paths that lead nowhere; ``keys``: all but the families."""
     for name, study in studies.items():
         patches = instead(study)
         for path, node in study.sweep.items():
@@ -95,7 +97,7 @@ def check_studies(studies: Naming[str, Study], root: Mapping, catalogue: Catalog
                     found.extend(error.diagnostics)
         written = _paths(root, name)
         placed = [(path, node, written.get(path, span)) for path, node, span in patches]
-        apply_patch(root, placed, tuple(catalogue.families), settings, found)
+        apply_patch(root, placed, tuple(catalogue.families), keys, found)
 
 
 def _paths(root: Mapping, name: str) -> dict[str, Span]:

@@ -9,12 +9,10 @@ from sceneql.compiler.over_time import momentary
 from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, unsure
-from sceneql.quantities.bind import bind
 from sceneql.quantities.diagnostic import Diagnostics, Note, ScriptError, suggestion
 from sceneql.quantities.dimension import PLAIN, TIME, Dimension
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Expr, Link, Number, Shape, Symbol, Type, Vector, walk
-from sceneql.quantities.parser import parse_value
 from sceneql.quantities.printing import describe
 from sceneql.quantities.span import Span
 
@@ -66,7 +64,7 @@ def scalar_expr(node: Scalar, names: Names, found: Diagnostics) -> Expr | None:
         found.error("missing-value", "a value is missing here", node.span)
         return None
     try:
-        return bind(parse_value(text, node.content), names.lookup, found)
+        return names.parsed.tree(node, text, names.lookup, found)
     except ScriptError as error:
         for diagnostic in error.diagnostics:
             found.add(diagnostic)

@@ -76,8 +76,14 @@ class Rows:
         def find(node: Symbol | Link) -> Any:
             if isinstance(node, Link):
                 return link(node)
-            if node.name not in known:
-                known[node.name] = evaluate(self.where[node.name], find, arrays=arrays)
+            left = [node.name]
+            while left:  # what a helper quantity needs is computed before it, in however long a row
+                name = left[-1]
+                symbols = [] if name in known else [each for each in walk(self.where[name]) if isinstance(each, Symbol)]
+                needed = [each.name for each in symbols if each.name in self.where and each.name not in known]
+                if not needed and name not in known:
+                    known[name] = evaluate(self.where[name], find, arrays=arrays)
+                left = [*left, *needed] if needed else left[:-1]
             return known[node.name]
 
         return find

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from sceneql.kinds import Value
 from sceneql.quantities.derivative import components
-from sceneql.quantities.expression import Call, Expr, Number, Symbol, walk
+from sceneql.quantities.expression import Call, Expr, Number, Symbol, holders, rebuilt, walk
 
 if TYPE_CHECKING:
     from sceneql.kinds import Moment
@@ -18,7 +17,11 @@ COORDINATES = ("x", "y", "z")
 
 def depends_on_place(expr: Expr) -> bool:
     """Whether an expression has a coordinate in it."""
-    return any(isinstance(node, Symbol) and node.name in COORDINATES for node in walk(expr))
+    return any(map(_is_coordinate, walk(expr)))
+
+
+def _is_coordinate(node: Expr) -> bool:
+    return isinstance(node, Symbol) and node.name in COORDINATES
 
 
 def in_coordinates(expr: Expr) -> None:
@@ -43,14 +46,12 @@ def _scalars(expr: Expr, number: Callable[[Expr], Number]) -> Expr:
         raise ValueError(f"a formula cannot be computed: {error}") from error
     if len(whole) != 1:
         raise ValueError(f"a formula is one number at every point, not {len(whole)}")
-    return _replaced(whole[0], number)
+    placed = holders(_is_coordinate, whole[0])
 
+    def fixed(node: Expr) -> bool:
+        return node.type.shape == () and id(node) not in placed and not isinstance(node, Number)
 
-def _replaced(expr: Expr, number: Callable[[Expr], Number]) -> Expr:
-    if isinstance(expr, Number):
-        return expr
-    if expr.type.shape == () and not depends_on_place(expr):
-        return number(expr)
-    if isinstance(expr, Call):
-        return replace(expr, args=tuple(_replaced(arg, number) for arg in expr.args))
-    return expr
+    def operands(node: Expr) -> tuple[Expr, ...]:
+        return node.args if isinstance(node, Call) and not fixed(node) else ()
+
+    return rebuilt(whole[0], lambda node, new: number(node) if fixed(node) else new, operands)

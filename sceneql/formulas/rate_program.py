@@ -77,8 +77,11 @@ def derivatives(
     slopes: dict[tuple[str, str], Expr] = {}
     derived: dict[str, Expr] = {}
 
+    def symbols(expr: Expr) -> dict[str, None]:
+        return dict.fromkeys(node.name for node in walk(expr) if isinstance(node, Symbol))
+
     def total(expr: Expr, state: str) -> Expr:
-        names = dict.fromkeys(node.name for node in walk(expr) if isinstance(node, Symbol))
+        names = symbols(expr)
         result = differentiate(expr, Symbol(state)) if state in names else ZERO
         for name in names:
             if name in meanings:
@@ -87,12 +90,19 @@ def derivatives(
         return result
 
     def slope(name: str, state: str) -> Expr:
-        """A symbol for dw/dy, or zero."""
-        if (name, state) not in slopes:
-            expr = total(meanings[name], state)
-            symbol = Symbol(f"d {name} d {state}")
-            derived[symbol.name] = expr
-            slopes[name, state] = ZERO if expr == ZERO else symbol
+        """A symbol for dw/dy, or zero; those that it needs are derived before it, in however long a row."""
+        left = [name]
+        while left:
+            each = left[-1]
+            known = (each, state) in slopes
+            needed = [] if known else [other for other in symbols(meanings[each]) if other in meanings]
+            needed = [other for other in needed if (other, state) not in slopes]
+            if not needed and not known:
+                expr = total(meanings[each], state)
+                symbol = Symbol(f"d {each} d {state}")
+                derived[symbol.name] = expr
+                slopes[each, state] = ZERO if expr == ZERO else symbol
+            left = [*left, *needed] if needed else left[:-1]
         return slopes[name, state]
 
     return [total(row, state) for row in rows for state in states], derived

@@ -122,8 +122,14 @@ class Breakpoints:
     def _values(self, expr: Expr, times: Floats) -> Floats | None:
         """Values (n,) of a scalar at instants (n,) [s]; None where it has none."""
 
+        linked: dict[Link, Any] = {}
+
         def look_up(node: Symbol | Link) -> Any:
-            return times if isinstance(node, Symbol) else evaluate(self._below(node)[0], look_up, arrays=True)
+            if isinstance(node, Symbol):
+                return times
+            if node not in linked:
+                linked[node] = evaluate(self._below(node)[0], look_up, arrays=True)
+            return linked[node]
 
         try:
             found = np.asarray(evaluate(expr, look_up, arrays=True))

@@ -6,7 +6,7 @@ solved in the same island (entries of y).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial, reduce
 from typing import TYPE_CHECKING, Any
@@ -19,7 +19,20 @@ from sceneql.kinds.values import MOST_READ
 from sceneql.quantities.derivative import components, differentiate
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import TIME_SYMBOL, Call, Expr, Keys, Link, Number, Symbol, Vector, each_once, walk
+from sceneql.quantities.expression import (
+    TIME_SYMBOL,
+    Call,
+    Expr,
+    Keys,
+    Link,
+    Number,
+    Symbol,
+    Vector,
+    each_once,
+    holders,
+    recursive,
+    walk,
+)
 from sceneql.quantities.key_tables import keys_table
 from sceneql.quantities.simplify import ZERO
 
@@ -70,19 +83,27 @@ class Inputs:
     ) -> None:
         self._formula, self._places, self._start, self._store = formula, places, start, store
         self._known: dict[int, tuple[Expr, Lowered]] = {}
+        self._varying: set[int] = set()
+        """Ids of the nodes of what is lowered that read the time or other parts."""
+        self._at_start: dict[Link, Any] = {}
         self._rows: list[int] = []
 
     def at_start(self, value: Value) -> Any:
         """The value at time 0: float or float64 array. Raises ScriptError where it reads an output not stored in y."""
+        self._at_start = {}
         return evaluate(value.expr, self._look_up, arrays=True)
 
     def reads_state(self, expr: Expr) -> bool:
         """Whether an expression reads the state, directly or through formulas."""
-        for node in walk(expr):
-            if isinstance(node, Link):
-                formula = self._formula(node)
-                if formula is None or self.reads_state(formula):
+        stack, known = [expr], set[Link]()
+        while stack:
+            for link in dict.fromkeys(node for node in walk(stack.pop()) if isinstance(node, Link)):
+                formula = self._formula(link)
+                if formula is None:
                     return True
+                if link not in known:
+                    known.add(link)
+                    stack.append(formula)
         return False
 
     def program(self, value: Value, first: int) -> list[int]:
@@ -90,7 +111,7 @@ class Inputs:
         from sceneql.island.inputs_kernels import COPY
 
         self._rows = []
-        self._known = {}
+        self._known, self._varying = {}, set()
         for k, register in enumerate(_flat(self._lower(value.expr))):
             self._row(COPY, first + k, register)
         return self._rows
@@ -102,7 +123,7 @@ class Inputs:
     def slopes(self, value: Value) -> ValueSlopes:
         """The derivatives of a value that reads the state. Raises WithoutSlopes."""
         self._rows = []
-        self._known = {}
+        self._known, self._varying = {}, set()
         readings = []
         try:
             parts = components(value.expr, self._meaning)
@@ -126,10 +147,12 @@ class Inputs:
     def _look_up(self, node: Symbol | Link) -> Any:
         if isinstance(node, Symbol):
             return {TIME_SYMBOL: 0.0}[node.name]
-        formula = self._formula(node)
-        return (
-            evaluate(formula, self._look_up, arrays=True) if formula is not None else self._start()[self._found(node)]
-        )
+        if node not in self._at_start:
+            formula = self._formula(node)
+            self._at_start[node] = (
+                self._start()[self._found(node)] if formula is None else evaluate(formula, self._look_up, arrays=True)
+            )
+        return self._at_start[node]
 
     def _found(self, link: Link) -> NDArray[int64]:
         places = self._places(link)
@@ -140,14 +163,18 @@ class Inputs:
         return places
 
     def _lower(self, expr: Expr) -> Lowered:
+        self._varying |= holders(_varies, expr)
+        return recursive(self._known_one, expr)
+
+    def _known_one(self, expr: Expr) -> Generator[Expr, Lowered, Lowered]:
         if id(expr) not in self._known:
-            self._known[id(expr)] = expr, self._one(expr)
+            self._known[id(expr)] = expr, (yield from self._one(expr))
         return self._known[id(expr)][1]
 
-    def _one(self, expr: Expr) -> Lowered:
+    def _one(self, expr: Expr) -> Generator[Expr, Lowered, Lowered]:
         from sceneql.island.inputs_kernels import STATE, TIME
 
-        if not any(isinstance(node, Symbol | Link) for node in walk(expr)):
+        if id(expr) not in self._varying:
             return self._constant(evaluate(expr, {}, arrays=True))
         match expr:
             case Symbol():
@@ -155,23 +182,23 @@ class Inputs:
             case Link():
                 formula = self._formula(expr)
                 if formula is not None:
-                    return self._lower(formula)
+                    self._varying |= holders(_varies, formula)
+                    return (yield formula)
                 return _mapped(lambda place: self._emit(STATE, place), self._found(expr).tolist())
             case Vector(items=items):
-                return [self._lower(item) for item in items]
+                return (yield from _each(items))
             case Keys():
-                return self._keys(expr)
+                return self._keys(expr, (yield expr.argument))
             case Call():
-                return self._call(expr)
+                return (yield from self._call(expr))
         raise TypeError(f"an unbound name cannot be lowered: {expr!r}")
 
     def _constant(self, value: Any) -> Lowered:
         return _mapped(lambda number: self._store([number]), np.asarray(value).tolist())
 
-    def _keys(self, keys: Keys) -> Lowered:
+    def _keys(self, keys: Keys, argument: Register) -> Lowered:
         from sceneql.island.inputs_kernels import KEYS, ROTATION
 
-        argument = self._lower(keys.argument)
         try:
             table = keys_table(keys)
         except KeyError:
@@ -185,14 +212,14 @@ class Inputs:
         self._row(KEYS, out, argument, at, width, len(table.times), form)
         return [out + k for k in range(width)] if keys.type.shape else out
 
-    def _call(self, expr: Call) -> Lowered:
+    def _call(self, expr: Call) -> Generator[Expr, Lowered, Lowered]:
         from sceneql.island.inputs_kernels import CODES
 
         op, args = expr.op, expr.args
         if op == "component":
             assert isinstance(args[1], Number)
-            return _component(self._lower(args[0]), int(args[1].value))
-        operands = [self._lower(arg) for arg in args]
+            return _component((yield args[0]), int(args[1].value))
+        operands = yield from _each(args)
         if op in ("min", "max"):
             return reduce(partial(self._do, op), _flat(operands[0]) if len(operands) == 1 else operands)
         if op in CODES:
@@ -220,6 +247,18 @@ class Inputs:
 
     def _row(self, code: int, out: int, *rest: int) -> None:
         self._rows += [code, out, *rest, *(0,) * (5 - len(rest))]
+
+
+def _each(parts: Iterable[Expr]) -> Generator[Expr, Lowered, list[Lowered]]:
+    """What several expressions are lowered to."""
+    found = []
+    for part in parts:
+        found.append((yield part))
+    return found
+
+
+def _varies(node: Expr) -> bool:
+    return isinstance(node, Symbol | Link)
 
 
 def _place(symbol: Symbol) -> int:

@@ -27,7 +27,7 @@ class Clock(Record):
     """Film time and simulation time."""
 
     end: FixedTime = field("Length of the simulation.", "4 s", above=0)
-    fps: FixedScalar = field("Film frames a second.", "30", above=0, at_most=1000)
+    fps: FixedScalar = field("Film frames a second.", "30", at_least=0.001, at_most=1000)
     speed: FixedScalar = field("Seconds of simulation in a second of film.", "1", above=0)
     seed: int = field("Seed of all chance.", 0, at_least=0)
 

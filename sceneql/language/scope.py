@@ -64,6 +64,11 @@ class Broken:
         """Count a name among them."""
         self._names.add(name)
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names themselves."""
+        return tuple(self._names)
+
     def __contains__(self, name: str) -> bool:
         """Whether the name, or the part that would hold it, is among them: ``leg.knee`` where ``leg`` is."""
         if self.any or name in self._names:

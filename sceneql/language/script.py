@@ -17,7 +17,7 @@ from sceneql.language.scope import Broken, Entry, Expanded, Given, Scope
 from sceneql.language.sections import NAMED, join, with_known_keys
 from sceneql.language.templates import expand
 from sceneql.language.tree import Mapping, Node, Scalar, broken
-from sceneql.quantities.diagnostic import Diagnostics, ScriptError
+from sceneql.quantities.diagnostic import Diagnostics, ScriptError, told_once
 from sceneql.quantities.span import Source
 
 __all__ = ["FAMILIES", "SETTINGS", "VERSION", "Entry", "Given", "Scope", "Script", "read_script"]
@@ -81,40 +81,87 @@ def read_script(
     """
     raising = found is None
     found = Diagnostics() if found is None else found
+    composed = compose_script(script, families, settings, read, found)
+    composed.try_variants(variant, found)
+    made = composed.script(variant, sets, found)
+    if raising:
+        found.raise_errors()
+    return made
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Composed:
+    """The joined tree of a script and those it includes, from which the script of each variant is made."""
+
+    name: str
+    trees: tuple[Mapping, ...]
+    root: Mapping
+    families: Sequence[str]
+    settings: Sequence[str]
+    variants: tuple[str, ...]
+    lost: tuple[str, ...]
+    """Names of parts in sections that no script has."""
+
+    def try_variants(self, chosen: str | None, found: Diagnostics) -> None:
+        """Report what is wrong in the paths of all variants, chosen or not: an error in an unused part is an error."""
+        wrong: dict[str, Diagnostics] = {}
+        for name in self.variants:
+            if name != chosen:
+                wrong[name] = Diagnostics()
+                for patches in _each(self.root, name, wrong[name]):
+                    apply_patch(self.root, patches, self.families, self.settings, wrong[name])
+        found.extend(told_once([each.found for each in wrong.values()]))
+
+    def script(self, variant: str | None, sets: Iterable[str | Patch], found: Diagnostics) -> Script:
+        """The script of a variant; errors are recorded, and the wrong entries left out."""
+        root, lost = self.root, Broken()
+        for name in self.lost:
+            lost.add(name)
+        lost.any = root.partial
+        patches = [] if variant is None else [each for own in _each(root, variant, found) for each in own]
+        for one in sets:
+            try:
+                patches.append(parse_set(one) if isinstance(one, str) else one)
+            except ScriptError as error:
+                found.extend(error.diagnostics)
+        patched = apply_patch(root, patches, self.families, self.settings, found)
+        whole = reused(unnested(patched, self.families, found), (*self.families, "parts"), found)
+        expanded = expand(whole, self.families, lost, found)
+        defaults = patched.entries.get("defaults")
+        return Script(
+            name=self.name,
+            sources=tuple(tree.source for tree in self.trees),
+            root=patched,
+            sections=_in_order(expanded, patched),
+            settings={k: n for k, n in patched.entries.items() if k not in self.families and k not in _REWRITTEN},
+            defaults=dict(defaults.entries) if isinstance(defaults, Mapping) else {},
+            gives=expanded.gives,
+            groups=expanded.groups,
+            broken=expanded.broken,
+            unmade=expanded.unmade,
+            variants=self.variants,
+            variant=variant,
+            may_fail=_may_fail(root, variant),
+            hash=_hash(self.trees, patches),
+        )
+
+
+def compose_script(
+    script: Path | Source, families: Sequence[str], settings: Sequence[str], read: Read | None, found: Diagnostics
+) -> Composed:
+    """Read a script and all that it includes; ``families`` and ``settings`` are the sections that it may have."""
     source = script if isinstance(script, Source) else read_source(script)
     if read is None:
         read = _no_folder if isinstance(script, Source) else folder_reader(script.parent)
     known, lost = (*families, *settings, *NAMED, *_REWRITTEN), Broken()
     first = with_known_keys(compose(source, found), known, "a script", lost, found)
     _, *included = read_included(first, Path(source.name).name, read, found)
-    trees = [first, *(with_known_keys(tree, known, "a script", lost, found) for tree in included)]
+    trees = (first, *(with_known_keys(tree, known, "a script", lost, found) for tree in included))
     root = join(trees, families, found)
     for tree in trees:
         _check_version(tree, found)
-    lost.any = root.partial
-    patches = _patches(root, variant, sets, families, settings, found)
-    patched = apply_patch(root, patches, families, settings, found)
-    whole = reused(unnested(patched, families, found), (*families, "parts"), found)
-    expanded = expand(whole, families, lost, found)
-    if raising:
-        found.raise_errors()
-    defaults = patched.entries.get("defaults")
-    return Script(
-        name=Path(source.name).stem,
-        sources=tuple(tree.source for tree in trees),
-        root=patched,
-        sections=_in_order(expanded, patched),
-        settings={k: n for k, n in patched.entries.items() if k not in families and k not in _REWRITTEN},
-        defaults=dict(defaults.entries) if isinstance(defaults, Mapping) else {},
-        gives=expanded.gives,
-        groups=expanded.groups,
-        broken=expanded.broken,
-        unmade=expanded.unmade,
-        variants=variant_names(root),
-        variant=variant,
-        may_fail=_may_fail(root, variant),
-        hash=_hash(trees, patches),
-    )
+    name = Path(source.name).stem
+    return Composed(name, trees, root, families, settings, variant_names(root), lost.names)
 
 
 def _no_folder(name: str) -> Source:
@@ -131,32 +178,13 @@ def _check_version(tree: Mapping, found: Diagnostics) -> None:
         )
 
 
-def _patches(
-    root: Mapping,
-    name: str | None,
-    sets: Iterable[str | Patch],
-    families: Sequence[str],
-    settings: Sequence[str],
-    found: Diagnostics,
-) -> list[Patch]:
-    """The patches asked for. All variants are tried, since an error in an unused part is still an error."""
-    patches: list[Patch] = []
-    for each in dict.fromkeys([*variant_names(root), *([] if name is None else [name])]):
-        try:
-            inner = variant(root, each)
-        except ScriptError as error:
-            found.extend(error.diagnostics)
-            continue
-        if each == name:
-            patches += inner
-        else:
-            apply_patch(root, inner, families, settings, found)
-    for one in sets:
-        try:
-            patches.append(parse_set(one) if isinstance(one, str) else one)
-        except ScriptError as error:
-            found.extend(error.diagnostics)
-    return patches
+def _each(root: Mapping, name: str, found: Diagnostics) -> Iterable[list[Patch]]:
+    """The patches of a variant: one list, or none after reporting why there is none."""
+    try:
+        return [variant(root, name)]
+    except ScriptError as error:
+        found.extend(error.diagnostics)
+        return []
 
 
 def _may_fail(root: Mapping, name: str | None) -> bool:

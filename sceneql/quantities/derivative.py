@@ -50,15 +50,21 @@ def components(expr: Expr, meaning: Meaning | None = None) -> tuple[Expr, ...]:
     return value if isinstance(value, tuple) else (value,)
 
 
-def _taken_apart(expr: Expr, meaning: Meaning | None = None) -> Any:
-    """Nested tuples of scalar trees."""
+def _taken_apart(expr: Expr, meaning: Meaning | None = None, linked: dict[Link, Any] | None = None) -> Any:
+    """Nested tuples of scalar trees; ``linked``: those of links that are known."""
     values: dict[int, Any] = {}
+    linked = {} if linked is None else linked
     for node in each_once(expr):
+        if isinstance(node, Link) and node in linked:
+            values[id(node)] = linked[node]
+            continue
         found = meaning(node) if meaning is not None and isinstance(node, Link) else None
         if found is None:
             values[id(node)] = _node(node, values)
         else:
-            values[id(node)] = _tuples(found) if isinstance(found, list) else _taken_apart(found, meaning)
+            values[id(node)] = _tuples(found) if isinstance(found, list) else _taken_apart(found, meaning, linked)
+        if isinstance(node, Link):
+            linked[node] = values[id(node)]
     return values[id(expr)]
 
 

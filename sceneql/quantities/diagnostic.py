@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from sceneql.quantities.span import Span
@@ -42,14 +43,25 @@ class Diagnostic:
     severity: Literal["error", "warning"] = "error"
 
     def __str__(self) -> str:
-        lines = [f"{self.severity}[{self.code}]: {self.message}"]
+        lines = [f"{self.severity}[{self.code}]: {_cut(self.message)}"]
         if self.span is not None:
             lines += _excerpt(self.span)
         for note in self.notes:
-            lines += [f"note: {note.message}", *_excerpt(note.span)]
+            lines += [f"note: {_cut(note.message)}", *_excerpt(note.span)]
         if self.help is not None:
-            lines.append(f"help: {self.help}")
+            lines.append(f"help: {_cut(self.help)}")
         return _shown("\n".join(lines))
+
+
+LONGEST_WORD, LONGEST_TEXT = 80, 1000
+"""Most characters of a word, and of a whole line, of a message: a script's names may be megabytes long."""
+_LONG_WORD = re.compile(rf"\S{{{LONGEST_WORD + 1},}}")
+
+
+def _cut(text: str) -> str:
+    """A message whose echoes of the script are cut, with an ellipsis, to a length that one reads."""
+    text = _LONG_WORD.sub(lambda word: f"{word[0][: LONGEST_WORD // 2]}...{word[0][-LONGEST_WORD // 4 :]}", text)
+    return text if len(text) <= LONGEST_TEXT else f"{text[: LONGEST_TEXT - LONGEST_WORD]} ... {text[-LONGEST_WORD:]}"
 
 
 def _shown(text: str) -> str:
@@ -87,9 +99,7 @@ class Diagnostics:
 
     def add(self, diagnostic: Diagnostic) -> None:
         """Keep a diagnostic unless the same one was found before."""
-        span = diagnostic.span
-        place = None if span is None else (span.source.name, span.start, span.end)
-        key = (diagnostic.code, diagnostic.message, place)
+        key = (diagnostic.code, diagnostic.message, _where(diagnostic))
         if key not in self._seen:
             self._seen.add(key)
             self.found.append(diagnostic)
@@ -127,6 +137,38 @@ class Diagnostics:
             raise ScriptError(sorted(self.errors, key=_place))
 
 
+def told_once(tries: Sequence[Iterable[Diagnostic]]) -> list[Diagnostic]:
+    """The errors of many variants of one script: what several have at one place, or word for word, once with a count.
+
+    A value that a thousand variants set too low is one error at the field that it stands for, not a thousand.
+    """
+    firsts: dict[object, Diagnostic] = {}
+    counts: dict[int, int] = {}
+    for each in tries:
+        seen: set[int] = set()
+        here: dict[object, int] = {}
+        for diagnostic in each:
+            at = diagnostic.code, _where(diagnostic)
+            here[at] = here.get(at, 0) + 1
+            text, place = (diagnostic.code, diagnostic.message), (*at, here[at])
+            first = firsts.get(text) or firsts.get(place) or diagnostic
+            firsts[text] = firsts[place] = first
+            seen.add(id(first))
+        for one in seen:
+            counts[one] = counts.get(one, 0) + 1
+    result = []
+    for diagnostic in {id(each): each for each in firsts.values()}.values():
+        count = counts[id(diagnostic)]
+        more = f" (so or alike in {count} variants)" if count > 1 else ""
+        result.append(replace(diagnostic, message=diagnostic.message + more))
+    return result
+
+
+def _where(diagnostic: Diagnostic) -> object:
+    span = diagnostic.span
+    return None if span is None else (span.source.name, span.start, span.end)
+
+
 def _place(diagnostic: Diagnostic) -> tuple[str, int]:
     span = diagnostic.span
     return ("", -1) if span is None else (span.source.name, span.start)
@@ -136,6 +178,8 @@ def nearest(name: str, choices: Iterable[str]) -> str | None:
     """The choice that is most like the name, or that it abbreviates (``fov``); None where none is."""
     from difflib import get_close_matches
 
+    if len(name) > LONGEST_WORD:
+        return None
     choices = list(choices)
     initials = [choice for choice in choices if name == "".join(part[:1] for part in choice.split("_"))]
     close = get_close_matches(name, choices, n=1, cutoff=0.6) or (initials if len(name) > 1 else [])

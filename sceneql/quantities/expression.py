@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
-from typing import Literal
+from collections.abc import Callable, Generator, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal, cast
 
 from sceneql.quantities.dimension import PLAIN, Dimension
 from sceneql.quantities.span import Span
@@ -62,8 +62,27 @@ class Link:
     span: Span | None = field(default=None, compare=False)
 
 
-@dataclass(frozen=True, slots=True)
-class Call:
+class Shared:
+    """A node with nodes below it, of which one may stand at many places: a ``define`` that is used twice is one tree.
+
+    So a script of n lines has trees of some n nodes that written out would have 2^n. Two trees are compared, and the
+    hash of one is made, in time linear in their distinct nodes, without recursion.
+    """
+
+    __slots__ = ("_hash",)
+    _hash: int
+
+    def __hash__(self) -> int:
+        if not hasattr(self, "_hash"):
+            _hash_all(cast("Expr", self))
+        return self._hash
+
+    def __eq__(self, other: object) -> bool:
+        return _same(cast("Expr", self), cast("Expr", other)) if isinstance(other, Shared) else NotImplemented
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Call(Shared):
     """An operation of the one table (operations.py) on arguments; ``+`` is ``add``, ``a.x`` is ``component`` and 0."""
 
     op: str
@@ -72,8 +91,8 @@ class Call:
     span: Span | None = field(default=None, compare=False)
 
 
-@dataclass(frozen=True, slots=True)
-class Vector:
+@dataclass(frozen=True, slots=True, eq=False)
+class Vector(Shared):
     """Components written side by side: ``[a, b, c]`` or ``0 1.2 0 m``; items may be vectors for a list of points."""
 
     items: tuple[Expr, ...]
@@ -91,8 +110,8 @@ class Key:
     slope_out: Expr | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Keys:
+@dataclass(frozen=True, slots=True, eq=False)
+class Keys(Shared):
     """Keyframes over ``argument`` (the symbol time unless said). Times are constant expressions that increase.
 
     ``curve``: `step` holds, `linear`, `smooth` (cubic with zero slope at every key: ease in and out), `cubic`
@@ -131,12 +150,15 @@ def children(expr: Expr) -> tuple[Expr, ...]:
 
 
 def walk(expr: Expr) -> Iterator[Expr]:
-    """The expression and all nodes below it, a shared node once for every place where it occurs."""
-    stack = [expr]
+    """The distinct nodes of an expression (by identity), each before those below it: a shared subtree once."""
+    stack: list[Expr] = [expr]
+    known: set[int] = set()
     while stack:
         node = stack.pop()
-        yield node
-        stack.extend(reversed(children(node)))
+        if id(node) not in known:
+            known.add(id(node))
+            yield node
+            stack.extend(reversed(children(node)))
 
 
 def each_once(*roots: Expr, below: Callable[[Expr], tuple[Expr, ...]] = children) -> list[Expr]:
@@ -156,3 +178,101 @@ def each_once(*roots: Expr, below: Callable[[Expr], tuple[Expr, ...]] = children
             stack.append((node, True))
             stack.extend((child, False) for child in reversed(below(node)))
     return order
+
+
+def holders(test: Callable[[Expr], bool], *roots: Expr) -> set[int]:
+    """The ids of the nodes that pass a test, or that have one below them that does."""
+    found: set[int] = set()
+    for node in each_once(*roots):
+        if test(node) or any(id(child) in found for child in children(node)):
+            found.add(id(node))
+    return found
+
+
+def rebuilt(
+    expr: Expr, make: Callable[[Expr, Expr], Expr], below: Callable[[Expr], tuple[Expr, ...]] = children
+) -> Expr:
+    """The tree with each distinct node replaced once, from the leaves up, so that what is shared stays shared.
+
+    ``make`` gets a node, and the node with what has become of its children. ``below``: the children to descend to.
+    """
+    made: dict[int, Expr] = {}
+    for node in each_once(expr, below=below):
+        made[id(node)] = make(node, _with_children(node, made))
+    return made[id(expr)]
+
+
+def recursive(step: Callable[[Expr], Generator[Expr, Any, Any]], expr: Expr) -> Any:
+    """What a recursive function of trees gives, called once for each distinct node, to any depth.
+
+    The function is written as a generator: ``value = yield child`` is its call for a child, ``return`` its result.
+    """
+    known: dict[int, tuple[Expr, Any]] = {}  # with the nodes themselves, so that no other gets the id of one
+    stack = [(expr, step(expr))]
+    value: Any = None
+    while stack:
+        node, running = stack[-1]
+        try:
+            child = running.send(value)
+        except StopIteration as end:
+            value = end.value
+            known[id(node)] = node, value
+            stack.pop()
+            continue
+        if id(child) in known:
+            value = known[id(child)][1]
+        else:
+            stack.append((child, step(child)))
+            value = None
+    return value
+
+
+def _with_children(node: Expr, made: Mapping[int, Expr]) -> Expr:
+    """A node with the children that ``made`` has by the ids of its own; the node itself where none differs."""
+    if all(made.get(id(child), child) is child for child in children(node)):
+        return node
+
+    def new(child: Any) -> Any:
+        return None if child is None else made.get(id(child), child)
+
+    match node:
+        case Call(args=args):
+            return replace(node, args=tuple(map(new, args)))
+        case Vector(items=items):
+            return replace(node, items=tuple(map(new, items)))
+        case Keys(argument=argument, keys=keys, cycle=cycle):
+            parts = tuple(Key(new(k.time), new(k.value), new(k.slope_in), new(k.slope_out)) for k in keys)
+            return replace(node, argument=new(argument), keys=keys if parts == keys else parts, cycle=new(cycle))
+    return node
+
+
+def _own(node: Expr) -> Any:
+    """What a node says beside its children."""
+    match node:
+        case Call(op=op, args=args, type=of):
+            return Call, op, len(args), of
+        case Vector(items=items, type=of):
+            return Vector, len(items), of
+        case Keys(keys=keys, curve=curve, cycle=cycle, type=of):
+            given = tuple((key.slope_in is None, key.slope_out is None) for key in keys)
+            return Keys, given, curve, cycle is None, of
+    return node
+
+
+def _hash_all(expr: Expr) -> None:
+    for node in each_once(expr, below=lambda node: () if hasattr(node, "_hash") else children(node)):
+        if isinstance(node, Shared) and not hasattr(node, "_hash"):
+            object.__setattr__(node, "_hash", hash((_own(node), tuple(map(hash, children(node))))))
+
+
+def _same(one: Expr, other: Expr) -> bool:
+    stack, known = [(one, other)], set[tuple[int, int]]()
+    while stack:
+        a, b = stack.pop()
+        if a is b or (id(a), id(b)) in known:
+            continue
+        known.add((id(a), id(b)))
+        if hash(a) != hash(b) or _own(a) != _own(b):
+            return False
+        stack.extend(zip(children(a), children(b), strict=True))
+    return True

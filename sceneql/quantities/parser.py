@@ -219,9 +219,22 @@ class _Parser:
             return self._fail("syntax", f"'{self.token}' cannot stand here", help=comma if self.token == "," else None)
         if isinstance(expr, Number) and self.kind == "number":
             help = "a vector is numbers alone and one unit, `0 1.2 0 m`, or expressions in brackets, `[a, b, c]`"
+        elif (meant := self._unit_behind(expr)) is not None:
+            help = f"a unit stands directly after a number: write `{meant}`"
         else:
             help = f"write `{self.before[-40:]}*{self.token[:40]}` for a product"
         return self._fail("syntax", "two values stand side by side", help=help)
+
+    def _unit_behind(self, expr: Expr) -> str | None:
+        """The text meant by ``0.2*time m/s``: the unit behind the product is that of the number before it."""
+        number = expr.args[0] if isinstance(expr, Call) and expr.op in ("mul", "div") else None
+        if self.kind != "name" or self.token not in UNITS or not isinstance(number, Number) or not number.bare:
+            return None
+        _, end = read_unit(self.text, self.start, self.span)
+        if self.text[end:].strip() or number.span is None or expr.span is None:
+            return None
+        written, whole = number.span.text, expr.span.text
+        return f"{written} {self.text[self.start : end]}{whole[len(written) :]}" if whole.startswith(written) else None
 
     def _too_deep(self, start: int, end: int) -> ScriptError:
         help = f"give its parts names in `define`; a sum of more than {DEEPEST} terms is written `sum([a, b, ...])`"

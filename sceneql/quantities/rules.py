@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
+from math import prod
 
 from sceneql.quantities.dimension import PLAIN, TIME, Dimension
 from sceneql.quantities.expression import Expr, Number, Shape, Type
@@ -16,6 +17,8 @@ from sceneql.quantities.units import describe, format_quantity
 Args = tuple[Expr, ...]
 Rule = Callable[[Args], Type]
 LARGEST_POWER = 100
+MOST_AXES, MOST_NUMBERS = 6, 1_000_000
+"""Of lists in an expression: defines that hold one another twice would double them with each line."""
 
 
 class MismatchError(Exception):
@@ -264,4 +267,8 @@ def listed(args: Args) -> Type:
             message = f"{shape_text(shape)} and {shape_text(arg.type.shape)} cannot stand side by side"
             raise MismatchError("shape-mismatch", message, 0, index)
     dimension = common_dimension(args, tuple(range(len(args))), "{a} and {b} cannot be components of one vector")
-    return Type((len(args), *shape), dimension)
+    shape = (len(args), *shape)
+    if len(shape) > MOST_AXES or prod(size or 1 for size in shape) > MOST_NUMBERS:
+        message = f"a list has at most {MOST_AXES} axes and {MOST_NUMBERS} numbers, not {len(shape)} and "
+        raise MismatchError("shape-mismatch", f"{message}{prod(size or 1 for size in shape)}", 0)
+    return Type(shape, dimension)

@@ -12,21 +12,28 @@ from pydantic import BaseModel
 from sceneql import kinds
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.failure import Unsuitable
-from sceneql.quantities.diagnostic import suggestion
+from sceneql.quantities.diagnostic import ScriptError, suggestion
 from sceneql.quantities.units import unit_of
 from sceneql.report.topics import page, topics
 
 
 def listing(catalogue: Catalogue) -> str:
-    """All words by family, and the topics of the language, each with the first line of its manual."""
-    lines = []
+    """All words by family, and the topics of the language, each with the first line of its manual.
+
+    Behind them stands what is wrong with words of a folder that cannot be used.
+    """
+    lines: list[str] = []
+    wrong: list[str] = []
     for family in catalogue.families:
         lines.append(f"{family}:")
         for word in catalogue.words(family):
-            cls = catalogue.load(family, word)
-            lines.append(f"  {word:<22}{_summary(cls)}")
+            try:
+                lines.append(f"  {word:<22}{_summary(catalogue.load(family, word))}")
+            except ScriptError as error:
+                lines.append(f"  {word:<22}cannot be used, as told below")
+                wrong += [str(found) for found in error.diagnostics]
     lines += ["topics:", *(f"  {topic:<22}{title}" for topic, title in topics().items())]
-    return "\n".join(lines)
+    return "\n\n".join(["\n".join(lines), *wrong])
 
 
 def manual(catalogue: Catalogue, word: str) -> str:

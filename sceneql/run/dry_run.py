@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +13,7 @@ import numpy as np
 from sceneql.failure import RunFailure
 from sceneql.graph import SimulationGraph
 from sceneql.kinds import Camera, Clock, Object, Overlay, Value
-from sceneql.quantities.expression import Call, Expr, Link, Symbol, Vector, children, each_once
+from sceneql.quantities.expression import Call, Expr, Keys, Link, Symbol, children, holders, rebuilt
 from sceneql.quantities.operations import OPERATIONS
 from sceneql.run.series import course
 from sceneql.shapes.world_boxes import box_of
@@ -44,29 +44,34 @@ class DryRun:
         count = max(1, int(np.searchsorted(self.times, until, side="right")))
         series: dict[Symbol | Link, Any] = {}
 
-        def known(node: Expr) -> Expr:
-            if id(node) in self.rows:
-                symbol = Symbol(f"piece {id(node)}", node.type)
-                series[symbol] = self.rows[id(node)][:count]
-                return symbol
-            if isinstance(node, Call):
-                return replace(node, args=tuple(map(known, node.args)))
-            return replace(node, items=tuple(map(known, node.items))) if isinstance(node, Vector) else node
+        def known(old: Expr, node: Expr) -> Expr:
+            if id(old) not in self.rows:
+                return node
+            symbol = Symbol(f"piece {id(old)}", old.type)
+            series[symbol] = self.rows[id(old)][:count]
+            return symbol
 
-        values = course(known(expr), series, self.times[:count])
+        def below(node: Expr) -> tuple[Expr, ...]:
+            return () if id(node) in self.rows or isinstance(node, Keys) else children(node)
+
+        values = course(rebuilt(expr, known, below), series, self.times[:count])
         one = np.shape(values)[np.ndim(values) - len(expr.type.shape) :]
         return np.array(self.times[:count]), np.broadcast_to(values, (count, *one))
 
 
 def pieces(expr: Expr) -> Iterator[Expr]:
     """The largest subexpressions without operations on time, numbers left out."""
-    calls = [OPERATIONS[node.op] for node in each_once(expr) if isinstance(node, Call)]
-    if not any(operation.series for operation in calls):
-        if any(isinstance(node, Symbol | Link) for node in each_once(expr)):
-            yield expr
-        return
-    for child in children(expr):
-        yield from pieces(child)
+    over_time = holders(lambda node: isinstance(node, Call) and OPERATIONS[node.op].series, expr)
+    varying = holders(lambda node: isinstance(node, Symbol | Link), expr)
+    stack, known = [expr], set[int]()
+    while stack:
+        node = stack.pop()
+        if id(node) not in known:
+            known.add(id(node))
+            if id(node) in over_time:
+                stack.extend(reversed(children(node)))
+            elif id(node) in varying:
+                yield node
 
 
 def asked(graph: SimulationGraph) -> dict[tuple[str, int], Value]:

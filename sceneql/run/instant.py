@@ -68,6 +68,8 @@ class Instant:
     asked: bool = False
     """Whether it was asked for what may be otherwise at another instant."""
     _states: dict[str, ModelState] = field(default_factory=dict)
+    _values: dict[tuple[str, str], tuple[Any, bool]] = field(default_factory=dict)
+    """Formulas of other parts that values read, by part and output, and whether each varies: worked out once."""
 
     @property
     def time(self) -> float:
@@ -119,13 +121,18 @@ class Instant:
     def read(self, task: str, output: str) -> Any:
         """An output of a part now."""
         kind = self.run.graph.tasks[task].kind
-        if isinstance(kind, Model) and kind.kinematic:
-            return self._evaluate(kind.formula(output))
-        if isinstance(kind, Model | Contact):
+        if isinstance(kind, Model | Contact) and not (isinstance(kind, Model) and kind.kinematic):
             return kind.read(output, self.state(task))
         if isinstance(kind, Object) and output in kind.gives:
             return kind.read(output, self)
-        return self._evaluate(getattr(kind, output).expr)
+        if (task, output) not in self._values:
+            asked, self.asked = self.asked, False
+            expr = kind.formula(output) if isinstance(kind, Model) else getattr(kind, output).expr
+            self._values[task, output] = self._evaluate(expr), self.asked
+            self.asked = asked
+        value, varies = self._values[task, output]
+        self.asked = self.asked or varies
+        return value
 
     def state(self, name: str) -> ModelState:
         """The state of a dynamic model or contact now."""

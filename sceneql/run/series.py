@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import Call, Expr, Link, Symbol, Vector, children, walk
+from sceneql.quantities.expression import Call, Expr, Keys, Link, Symbol, children, rebuilt, walk
 from sceneql.quantities.operations import OPERATIONS
 
 Series = Mapping[Symbol | Link, Any]
@@ -24,12 +23,18 @@ def plain(expr: Expr) -> bool:
 
 def wanted(expr: Expr, when: Sequence[float], times: Sequence[float]) -> Iterator[tuple[Link, Sequence[float]]]:
     """The links of an expression, each with the times at which its value counts; ``when``: those of the expression."""
-    if isinstance(expr, Link):
-        yield expr, when
-    if isinstance(expr, Call) and OPERATIONS[expr.op].series:
-        when = _SERIES[expr.op].instants(times, expr)
-    for child in children(expr):
-        yield from wanted(child, when, times)
+    instants: dict[int, Sequence[float]] = {}
+    stack, known = [(expr, when)], set[tuple[int, int]]()
+    while stack:
+        node, when = stack.pop()
+        if (id(node), id(when)) in known:
+            continue
+        known.add((id(node), id(when)))
+        if isinstance(node, Link):
+            yield node, when
+        if isinstance(node, Call) and OPERATIONS[node.op].series:
+            when = instants.setdefault(id(node), _SERIES[node.op].instants(times, node))
+        stack.extend((child, when) for child in reversed(children(node)))
 
 
 def measure(expr: Expr, series: Series, times: list[float]) -> Any:
@@ -54,21 +59,20 @@ def course(expr: Expr, series: Series, times: list[float]) -> Any:
             return known[node]
         return _look_up(node, series)
 
-    def solve(node: Expr) -> Expr:
-        if isinstance(node, Vector):
-            return replace(node, items=tuple(solve(item) for item in node.items))
-        if not isinstance(node, Call):
+    def solved(old: Expr, node: Expr) -> Expr:
+        if not isinstance(node, Call) or not OPERATIONS[node.op].series:
             return node
-        args = tuple(solve(arg) for arg in node.args)
-        node = Call(node.op, args, node.type, node.span)
-        if not OPERATIONS[node.op].series:
-            return node
-        value = evaluate(args[0], look_up, arrays=True)
+        value = evaluate(node.args[0], look_up, arrays=True)
         symbol = Symbol(f"series {len(known)}", node.type)
         known[symbol] = _SERIES[node.op].of(value, times, node)
         return symbol
 
-    return evaluate(solve(expr), look_up, arrays=True)
+    return evaluate(rebuilt(expr, solved, _parts), look_up, arrays=True)
+
+
+def _parts(node: Expr) -> tuple[Expr, ...]:
+    """The children in which an operation on time may stand: keyframes have none."""
+    return () if isinstance(node, Keys) else children(node)
 
 
 def _look_up(node: Symbol | Link, series: Series) -> Any:

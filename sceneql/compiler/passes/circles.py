@@ -8,7 +8,6 @@ from sceneql.compiler.check import values_of
 from sceneql.graph import Task
 from sceneql.kinds import Model, Object
 from sceneql.quantities.diagnostic import Diagnostics
-from sceneql.quantities.expression import Link
 from sceneql.quantities.span import Span
 
 Place = tuple[str, str]
@@ -21,15 +20,16 @@ def report_circles(tasks: Mapping[str, Task], found: Diagnostics) -> None:
     The outputs of a solved model come from its state: no circle goes through one.
     """
     done: set[Place] = set()
+    needs = _Needs(tasks)
     for task in tasks.values():
         starts = [(task.name, "")]
         if isinstance(task.kind, Object):
             starts += [(task.name, field) for field in type(task.kind).model_fields]
         for start in starts:
-            _walk(start, tasks, done, found)
+            _walk(start, needs, done, found)
 
 
-def _walk(start: Place, tasks: Mapping[str, Task], done: set[Place], found: Diagnostics) -> None:
+def _walk(start: Place, needs: _Needs, done: set[Place], found: Diagnostics) -> None:
     """Depth first, without recursion: a chain of links may be long."""
     path: list[Place] = []
     stack: list[tuple[Place, Span | None, bool]] = [(start, None, False)]
@@ -44,18 +44,28 @@ def _walk(start: Place, tasks: Mapping[str, Task], done: set[Place], found: Diag
         elif place not in done:
             path.append(place)
             stack.append((place, span, True))
-            stack += [(other, where, False) for other, where in _needs(place, tasks)]
+            stack += [(other, where, False) for other, where in needs.of(place)]
 
 
-def _needs(place: Place, tasks: Mapping[str, Task]) -> Iterable[tuple[Place, Span | None]]:
-    task = tasks[place[0]]
-    kind = task.kind
-    if isinstance(kind, Model) and not kind.kinematic:
-        return []
-    if isinstance(kind, Object):
-        if not place[1]:
-            return [((ref.name, ""), ref.span) for ref in kind.members()]
-        links: list[Link] = [link for value in values_of(getattr(kind, place[1], None)) for link in value.links]
-    else:
-        links = [link for value in values_of(kind) for link in value.links]
-    return [((link.task, link.output), link.span) for link in links]
+class _Needs:
+    """What places read. A kinematic model's outputs all read what the model does, looked up once."""
+
+    def __init__(self, tasks: Mapping[str, Task]) -> None:
+        self.tasks = tasks
+        self.of_parts: dict[str, list[tuple[Place, Span | None]]] = {}
+
+    def of(self, place: Place) -> Iterable[tuple[Place, Span | None]]:
+        kind = self.tasks[place[0]].kind
+        if isinstance(kind, Model) and not kind.kinematic:
+            return []
+        if isinstance(kind, Object):
+            if not place[1]:
+                return [((ref.name, ""), ref.span) for ref in kind.members()]
+            return _read(getattr(kind, place[1], None))
+        if place[0] not in self.of_parts:
+            self.of_parts[place[0]] = _read(kind)
+        return self.of_parts[place[0]]
+
+
+def _read(part: object) -> list[tuple[Place, Span | None]]:
+    return [((link.task, link.output), link.span) for value in values_of(part) for link in value.links]

@@ -21,6 +21,7 @@ class Beginning:
 
     def __init__(self, tasks: Mapping[str, Task]) -> None:
         self._tasks = tasks
+        self._known: dict[Link, Any] = {}
 
     def at(self, value: Value) -> Any:
         """A value at the start. Raises TypeError where it depends on the state of a run."""
@@ -38,7 +39,9 @@ class Beginning:
         source = self._tasks[node.task].kind
         if not isinstance(source, Model) or not source.kinematic:
             raise TypeError("only a run knows it")
-        return evaluate(source.formula(node.output), self._look_up, arrays=True)
+        if node not in self._known:
+            self._known[node] = evaluate(source.formula(node.output), self._look_up, arrays=True)
+        return self._known[node]
 
 
 def check_fillings(tasks: Mapping[str, Task], found: Diagnostics) -> None:

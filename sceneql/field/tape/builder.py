@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.lowered_operations import FOLD, LOWERED
 from sceneql.field.tape.whole_turns import up_to_whole_turns
-from sceneql.quantities.expression import Call, Expr, Number, Symbol
+from sceneql.quantities.expression import Call, Expr, Number, Symbol, recursive
 
 if TYPE_CHECKING:
     from sceneql.field.skeleton.skeleton import Skeleton
@@ -160,14 +160,22 @@ class TapeBuilder:
 
         ValueError for an expression that is not scalar, KeyError for a symbol without a register.
         """
-        match expr:
-            case Number(value=value):
-                return self.constant(value)
-            case Symbol(name=name):
-                return symbols[name]
-            case Call(op=name, args=args):
-                return self.op(name, *[self.expression(arg, symbols) for arg in args])
-        raise ValueError(f"{type(expr).__name__} is no scalar of symbols and numbers")
+
+        def register(node: Expr) -> Generator[Expr, int, int]:
+            match node:
+                case Number(value=value):
+                    return self.constant(value)
+                case Symbol(name=name):
+                    return symbols[name]
+                case Call(op=name, args=args):
+                    operands = []
+                    for arg in args:
+                        operands.append((yield arg))
+                    return self.op(name, *operands)
+            raise ValueError(f"{type(node).__name__} is no scalar of symbols and numbers")
+
+        found: int = recursive(register, expr)
+        return found
 
     def affine(self, matrix: Floats, x: int, y: int, z: int) -> tuple[int, int, int]:
         """Registers of matrix (3, 4) applied to a point."""

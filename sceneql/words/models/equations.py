@@ -16,7 +16,7 @@ from sceneql.quantities import dimension as dim
 from sceneql.quantities.derivative import components
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import Call, Expr, Link, Symbol
+from sceneql.quantities.expression import Call, Expr, Link, Symbol, each_once
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -225,7 +225,7 @@ class Equations(Model):
     def size_of(self, output: str, state: ModelState) -> Any:
         """The sum of the magnitudes of the terms of an invariant's formula."""
         column = self._columns(state)
-        return sum(abs(column(term)) for term in _terms(self.rows.invariants[output]))
+        return sum(count * abs(column(term)) for term, count in _terms(self.rows.invariants[output]))
 
     def _columns(self, state: ModelState) -> Callable[[Expr], Floats]:
         """What evaluates a formula for every copy (count,)."""
@@ -249,13 +249,18 @@ class Equations(Model):
         return lambda expr: np.array(np.broadcast_to(evaluate(expr, look_up, arrays=True), self.count))
 
 
-def _terms(expr: Expr) -> Iterator[Expr]:
-    """What a formula is a sum or difference of."""
-    if isinstance(expr, Call) and expr.op in ("add", "sub", "neg"):
-        for arg in expr.args:
-            yield from _terms(arg)
-    else:
-        yield expr
+def _terms(expr: Expr) -> Iterator[tuple[Expr, float]]:
+    """What a formula is a sum or difference of, and how often it has each term."""
+
+    def added(node: Expr) -> tuple[Expr, ...]:
+        return node.args if isinstance(node, Call) and node.op in ("add", "sub", "neg") else ()
+
+    order = each_once(expr, below=added)
+    counts = {id(expr): 1.0}
+    for node in reversed(order):
+        for arg in added(node):
+            counts[id(arg)] = counts.get(id(arg), 0.0) + counts[id(node)]
+    yield from ((node, counts[id(node)]) for node in order if not added(node))
 
 
 def _slopes(system: RateSystem, at: int, count: int, assembly: Assembly) -> Slopes | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Generator, Iterable, Mapping
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -14,7 +14,7 @@ from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import Call, Expr, Link, Number, Symbol, Type, walk
+from sceneql.quantities.expression import Call, Expr, Link, Number, Symbol, Type, recursive, walk
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -212,11 +212,19 @@ class ReactionDiffusion(Medium):
 
 def _written_out(expr: Expr, meanings: Mapping[str, Expr]) -> Expr:
     """A formula with symbols replaced by what they stand for."""
-    if isinstance(expr, Symbol) and expr.name in meanings:
-        return _written_out(meanings[expr.name], meanings)
-    if isinstance(expr, Call):
-        return replace(expr, args=tuple(_written_out(arg, meanings) for arg in expr.args))
-    return expr
+
+    def step(node: Expr) -> Generator[Expr, Expr, Expr]:
+        if isinstance(node, Symbol) and node.name in meanings:
+            return (yield meanings[node.name])
+        if not isinstance(node, Call):
+            return node
+        args = []
+        for arg in node.args:
+            args.append((yield arg))
+        return replace(node, args=tuple(args))
+
+    found: Expr = recursive(step, expr)
+    return found
 
 
 def _names(written: Mapping[str, Any], field_name: str) -> tuple[str, ...]:

@@ -30,7 +30,9 @@ class Video(Picture):
 
     imports: ClassVar[tuple[str, ...]] = ("av", "imageio")
 
-    fps: kinds.FixedScalar | None = field("Frames a second; by default the clock's.", None, above=0, at_most=1000)
+    fps: kinds.FixedScalar | None = field(
+        "Frames a second; by default the clock's.", None, at_least=0.001, at_most=1000
+    )
     quality: kinds.FixedScalar = field(
         "Constant rate factor of x264: 0 is lossless, 51 worst.", "17", at_least=0, at_most=51
     )

@@ -49,7 +49,7 @@ class Graph(Overlay):
     title: str | None = field("What is said above; by default the expression.", None)
     colors: tuple[Color, ...] = field("Colors of the curves in their order; by default of a row of their own.", ())
     place: Place = field("Where it stands in the picture.", "bottom left")
-    size: Shares = field("Its width and height in parts of the picture's.", (0.36, 0.3), above=0, at_most=1)
+    size: Shares = field("Its width and height in parts of the picture's.", (0.36, 0.3), at_least=0.05, at_most=1)
     text: FixedScalar = field("Height of its letters in parts of the picture's.", "0.027", above=0, at_most=0.2)
     panel: FixedScalar = field("Opacity of the panel that it stands on.", "0.85", at_least=0, at_most=1)
 
