@@ -40,6 +40,8 @@ class Checked:
     """In the order of the script; parts written in place stand before the part that holds them."""
     timed: bool
     """Whether its clock can be read."""
+    without: frozenset[str] = frozenset()
+    """Names of defaults that it says it has none of: `floor: none`."""
 
 
 def check(script: Script, catalogue: Catalogue, found: Diagnostics) -> Checked:
@@ -56,7 +58,12 @@ def check(script: Script, catalogue: Catalogue, found: Diagnostics) -> Checked:
     checker.gives()
     checker.defaults()
     settings = checker.settings()
-    return Checked(script, settings, checker.whole_tasks() if found.errors else checker.tasks, checker.timed)
+    tasks = checker.whole_tasks() if found.errors else checker.tasks
+    return Checked(script, settings, tasks, checker.timed, frozenset(checker.without))
+
+
+NONE, OPTIONAL = "none", ("floor",)
+"""In place of a word: a default of this name that the script does without, and which these are."""
 
 
 class _Checker:
@@ -67,6 +74,7 @@ class _Checker:
         self.entries: dict[str, Entry] = {}
         self._done: set[str] = set()
         self.timed = True
+        self.without: set[str] = set()
         self.folder = Path(script.sources[0].name).parent
         for family, entries in (*script.sections.items(), *script.unmade.items()):
             for name, entry in entries.items():
@@ -217,6 +225,9 @@ class _Checker:
             return
         self._done.add(name)
         entry = self.entries[name]
+        if entry.word == NONE and entry.fields is None and name in OPTIONAL:
+            self.without.add(name)
+            return
         known = self.kind(family, entry)
         cls = known or self.meant(family, entry)
         if cls is None:

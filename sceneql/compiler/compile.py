@@ -35,7 +35,8 @@ def compile_script(script: Script, catalogue: Catalogue, found: Diagnostics, *, 
     checked = check(script, catalogue, found)
     check_studies(checked.settings.studies, script.root, catalogue, found)
     report_circles(checked.tasks, found)
-    tasks = expand(checked.tasks, catalogue)
+    background = checked.settings.background is not None
+    tasks = expand(checked.tasks, catalogue, without=checked.without, background=background)
     report_hollow(tasks, found)
     check_sizes(tasks, found)
     groups = islands(tasks, found)
