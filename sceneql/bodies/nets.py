@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from dataclasses import field as member
@@ -159,6 +160,14 @@ class Lattice(Record):
         "Stiffness of the diagonals as a part of the edges'; 0 leaves them out.", "1", at_least=0
     )
 
+    def lowest(self) -> float:
+        """Height [m] of its lowest masses at the start."""
+        sides = [(count - 1) * self.spacing / 2 for count in self.count]
+        w, x, y, z = (1.0, 0.0, 0.0, 0.0) if self.rotation is None else self.rotation.number()
+        upwards = (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x))  # of its own axes
+        reach: float = sum(abs(up) * side for up, side in zip(upwards, sides, strict=True))
+        return self.center[1] - reach
+
     def problems(self) -> Iterator[Problem]:
         """More masses than are possible."""
         yield from _too_many(self.mass_count(), self.spring_count(), "count")
@@ -205,6 +214,12 @@ class Cloth(Record):
     facing: kinds.Axis = field("Where its front faces: y lies flat, z hangs with its top up.", "0 1 0")
     shear: kinds.FixedScalar = field("Stiffness of the diagonals as a part of the sides'.", "0.5", at_least=0)
     bend: kinds.FixedScalar = field("Stiffness over two cells as a part of the sides'.", "0.1", at_least=0)
+
+    def lowest(self) -> float:
+        """Height [m] of its lowest masses at the start; of one that is tilted a bound of that."""
+        upright = math.sqrt(max(1 - self.facing[1] ** 2 / sum(c * c for c in self.facing), 0.0))
+        reach = self.size[1] if upright == 1 else math.hypot(*self.size)
+        return self.center[1] - 0.5 * reach * upright
 
     def problems(self) -> Iterator[Problem]:
         """More masses than are possible, or no side that faces anywhere."""
@@ -273,6 +288,10 @@ class Rope(Record):
     from_: kinds.FixedPosition = field("Where its first mass starts.", "0 2 0 m")
     to: kinds.FixedPosition = field("Where its last mass starts.", "2 2 0 m")
     count: int = field("Number of masses.", 20, at_least=2)
+
+    def lowest(self) -> float:
+        """Height [m] of its lower end at the start."""
+        return min(self.from_[1], self.to[1])
 
     def problems(self) -> Iterator[Problem]:
         """More masses than are possible, or no length."""

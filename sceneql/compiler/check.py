@@ -44,6 +44,8 @@ class Checked:
     """Whether its clock can be read."""
     files: tuple[str, ...]
     """Paths of the files that its parts name, used or not."""
+    without: frozenset[str] = frozenset()
+    """Names of defaults that it says it has none of: `floor: none`."""
 
 
 def check(script: Script, catalogue: Catalogue, found: Diagnostics, parsed: Parsed | None = None) -> Checked:
@@ -61,7 +63,11 @@ def check(script: Script, catalogue: Catalogue, found: Diagnostics, parsed: Pars
     checker.defaults()
     settings = checker.settings()
     tasks = checker.whole_tasks() if found.errors else checker.tasks
-    return Checked(script, settings, tasks, checker.timed, tuple(checker.files))
+    return Checked(script, settings, tasks, checker.timed, tuple(checker.files), frozenset(checker.without))
+
+
+NONE, OPTIONAL = "none", ("floor",)
+"""In place of a word: a default of this name that the script does without, and which these are."""
 
 
 class _Checker:
@@ -74,6 +80,7 @@ class _Checker:
         self._outputs: dict[int, tuple[Entry, Mapping[str, Gives] | None]] = {}
         self.timed = True
         self.files: list[str] = []
+        self.without: set[str] = set()
         self.folder = Path(script.sources[0].name).parent
         for family, entries in (*script.sections.items(), *script.unmade.items()):
             for name, entry in entries.items():
@@ -232,6 +239,9 @@ class _Checker:
             return
         self._done.add(name)
         entry = self.entries[name]
+        if entry.word == NONE and entry.fields is None and name in OPTIONAL:
+            self.without.add(name)
+            return
         known = self.kind(family, entry)
         cls = known or self.meant(family, entry)
         if cls is None:

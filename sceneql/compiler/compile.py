@@ -40,7 +40,8 @@ def compile_script(
     checked = check(script, catalogue, found, parsed)
     check_studies(checked.settings.studies, script.root, catalogue, KEYS, found)
     report_circles(checked.tasks, found)
-    tasks = expand(checked.tasks, catalogue)
+    background = checked.settings.background is not None
+    tasks = expand(checked.tasks, catalogue, without=checked.without, background=background)
     report_hollow(tasks, found)
     check_sizes(tasks, found)
     groups = islands(tasks, found)

@@ -28,6 +28,9 @@ class Object(Kind):
     unseen: ClassVar[str] = ""
     """For words that draw their members in another form: why nothing of it was seen where it drew nothing."""
 
+    grounds: ClassVar[bool] = False
+    """Whether all may stand on it: a scene that has one gets no other by default."""
+
     decorates: ClassVar[bool] = False
     """Whether a model that it reads still draws itself."""
 

@@ -96,6 +96,10 @@ class Model(Kind):
         """Masses by name as its fields alone tell them, for `check`; one without a name stands for the lightest."""
         return {}
 
+    def lowest(self) -> float | None:
+        """A height [m] below which none of its masses starts, as its fields alone tell it; None: they do not."""
+        return None
+
     def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Drawn]:
         """How it draws itself where no object of the script does, or it is asked to."""
         return ()
@@ -118,6 +122,8 @@ class Force(Kind):
 
     family: ClassVar[str] = "forces"
 
+    weighs: ClassVar[bool] = False
+    """Whether it is weight: what it acts on falls, and a picture shows a ground under it."""
     mutual: ClassVar[bool] = False
     """Whether the masses that it acts on act on one another: then their models are solved together."""
 

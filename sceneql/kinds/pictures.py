@@ -39,6 +39,8 @@ class Light(Kind):
     """A light; it lowers to frame.LightSource."""
 
     family: ClassVar[str] = "lights"
+    stages: ClassVar[bool] = False
+    """Whether it lights a stage: a scene with such light alone, and no ground of its own, may get one."""
 
     def lower(self, moment: Moment) -> Iterable[LightSource]:
         """Closed-set lights of this instant."""

@@ -16,7 +16,7 @@ from sceneql.kinds import Camera, Clock, Object, Overlay, Value
 from sceneql.quantities.expression import Call, Expr, Keys, Link, Symbol, children, holders, rebuilt
 from sceneql.quantities.operations import OPERATIONS
 from sceneql.run.series import course
-from sceneql.shapes.world_boxes import box_of
+from sceneql.shapes.world_boxes import surface_box
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -148,7 +148,7 @@ def _widened(bounds: Bounds, moment: Instant, names: Iterable[str]) -> Bounds:
     result = dict(bounds)
     for name in names:
         for shape in moment.lower([name]):
-            low, high = box_of(shape)
+            low, high = surface_box(shape)
             if np.isfinite(low).all() and np.isfinite(high).all():
                 for part in {name, *_around(shape.name, moment.run.holders)}:
                     old = result.get(part, (low, high))

@@ -157,6 +157,8 @@ class Instant:
 
     def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
         """Low and high corner (3,) of what the parts draw over the whole film; of all that is drawn for no names."""
+        if self.run.ahead:
+            return np.full(3, -1.0), np.full(3, 1.0)
         return self.run.bounds(list(names) or list(self.run.orders))
 
     def place(self, name: str) -> Floats:

@@ -33,6 +33,32 @@ def box_of(shape: Shape) -> tuple[Floats, Floats]:
             return _quadric(shape)
 
 
+FINE = 32
+"""Samples along a side of a field's box, between which a surface is not looked for."""
+
+
+def surface_box(shape: Shape) -> tuple[Floats, Floats]:
+    """Likewise, of a formula's solid as samples see it: the box that a script gives a field may be far larger."""
+    low, high = box_of(shape)
+    if (
+        not isinstance(shape, Implicit)
+        or shape.within is not None
+        or len(shape.tape.parts)
+        or not np.isfinite(low).all()
+    ):
+        return low, high
+    from sceneql.field.tape.tape_solid import field_values
+
+    step = (high - low) / FINE
+    axes = [low[k] + step[k] * np.arange(FINE + 1) for k in range(3)]
+    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+    inside = (field_values(shape.tape, points.reshape(-1, 3)) < 0).reshape(points.shape[:3])
+    if not inside.any():
+        return low, high
+    met = points[inside]
+    return np.maximum(low, met.min(axis=0) - step), np.minimum(high, met.max(axis=0) + step)
+
+
 def _around(points: Floats, radii: Floats | float) -> tuple[Floats, Floats]:
     if len(points) == 0:
         return np.full(3, np.inf), np.full(3, -np.inf)

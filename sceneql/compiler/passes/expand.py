@@ -2,30 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
+from typing import Any
 
 from sceneql.compiler.catalogue import Catalogue
-from sceneql.compiler.passes.touchable import touchable
 from sceneql.graph import Task
-from sceneql.kinds import Camera, Contact, Kind, Light, Model, Object, Output, Picture, Solver, Value
-from sceneql.quantities.expression import Link
+from sceneql.kinds import Camera, Contact, Force, Kind, Light, Model, Object, Output, Picture, Solver, Value
+from sceneql.quantities.dimension import LENGTH
+from sceneql.quantities.expression import Link, Number, Type
 
 
-def expand(tasks: Mapping[str, Task], catalogue: Catalogue) -> dict[str, Task]:
-    """The parts with those that the defaults add; objects that a model drives are linked to it."""
+def expand(
+    tasks: Mapping[str, Task], catalogue: Catalogue, *, without: Collection[str] = (), background: bool = False
+) -> dict[str, Task]:
+    """The parts with those that the defaults add; objects that a model drives are linked to it.
+
+    ``without``: names of defaults that the script does not want. ``background``: it has one of its own.
+    """
     result = dict(tasks)
 
     def has(family: type[Kind]) -> bool:
         return any(isinstance(task.kind, family) for task in result.values())
 
-    def add(name: str, family: str, word: str) -> None:
+    def add(name: str, family: str, word: str, **fields: Any) -> None:
         cls = catalogue.load(family, word)
         if cls is None:
             raise LookupError(f"the default {word} of {family} is missing")
         while name in result:
             name += "_"
-        result[name] = Task(name, word, cls(), None)
+        result[name] = Task(name, word, cls(**fields), None)
 
     if not has(Output):
         add("film", "outputs", "video")
@@ -33,8 +39,11 @@ def expand(tasks: Mapping[str, Task], catalogue: Catalogue) -> dict[str, Task]:
         add("camera", "cameras", "auto")
     if has(Picture) and not has(Light):
         add("light", "lights", "studio")
-    if any(isinstance(t.kind, Contact) and not t.kind.ties() for t in result.values()) and not touchable(result):
-        add("floor", "objects", "plane")
+    if "floor" not in without and not any(isinstance(t.kind, Object) and t.kind.grounds for t in result.values()):
+        if any(isinstance(t.kind, Contact) and not t.kind.ties() for t in result.values()):
+            add("floor", "objects", "plane", height=_level(result))
+        elif not background and _staged(result):
+            add("floor", "objects", "ground")
     if any(isinstance(t.kind, Model) and not t.kind.kinematic for t in result.values()) and (
         not any(isinstance(t.kind, Solver) and t.kind.on is None for t in result.values())
     ):
@@ -42,6 +51,22 @@ def expand(tasks: Mapping[str, Task], catalogue: Catalogue) -> dict[str, Task]:
     driven = _drive(result)
     draws = any(isinstance(task.kind, Output) and task.kind.draws for task in driven.values())
     return _show(driven, catalogue) if draws else driven
+
+
+def _level(tasks: Mapping[str, Task]) -> Value:
+    """The height of the ground that is hit: 0, or where the lowest model starts."""
+    lows = (task.kind.lowest() for task in tasks.values() if isinstance(task.kind, Model))
+    return Value(Number(min([0.0, *(low for low in lows if low is not None)]), Type((), LENGTH)))
+
+
+def _staged(tasks: Mapping[str, Task]) -> bool:
+    """Whether pictures show a ground that nothing hits: what is seen falls, or nothing is simulated."""
+    kinds = [task.kind for task in tasks.values()]
+    lights = [kind for kind in kinds if isinstance(kind, Light)]
+    if not any(isinstance(kind, Picture) for kind in kinds) or not all(light.stages for light in lights):
+        return False
+    solved = any(isinstance(kind, Model) and not kind.kinematic for kind in kinds)
+    return any(isinstance(kind, Force) and kind.weighs for kind in kinds) or not solved
 
 
 def _show(tasks: dict[str, Task], catalogue: Catalogue) -> dict[str, Task]:

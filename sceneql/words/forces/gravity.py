@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from pydantic import model_validator
 
@@ -18,6 +18,8 @@ class Gravity(Force):
 
     By default 9.81 m/s^2 downwards, along -y exactly. Source: Newton, Principia (1687), book I, law II.
     """
+
+    weighs: ClassVar[bool] = True
 
     strength: Annotated[Value, Quantity(dim.ACCELERATION)] = field("How strong it is.", "9.81 m/s^2")
     direction: Direction = field("Where it points; its length does not matter.", "0 -1 0")

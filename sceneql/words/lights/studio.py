@@ -4,25 +4,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from sceneql.kinds import Light, Moment, Scalar, field
 
 if TYPE_CHECKING:
     from sceneql import frame
 
-KEY_DIRECTION = (-0.50, 0.72, 0.48)
-KEY = 0.75
-"""Brightness of a white matte surface that faces the key light, without the dome."""
-KEY_ANGLE = math.radians(8.0)
-DOME = ((0.79, 0.80, 0.82), (0.45, 0.46, 0.47), (0.26, 0.26, 0.26))
-"""Radiance overhead, at the horizon and from below."""
-BACKGROUND = (0.665, 0.665, 0.665)
+KEY, KEY_FROM, KEY_ANGLE = 1.0, (-0.50, 0.72, 0.48), math.radians(10.0)
+"""Brightness of a white matte surface that faces the key light, without the dome; its direction; its apparent size."""
+RIM, RIM_FROM, RIM_ANGLE = 0.30, (0.62, 0.40, -0.68), math.radians(14.0)
+"""The same of the light from behind, which parts edges from the background."""
+DOME = ((0.44, 0.45, 0.47), (0.24, 0.245, 0.25), (0.15, 0.15, 0.15))
+"""Radiance overhead, at the horizon and from below: a white surface has a quarter of its light from it (4:1)."""
+BACKGROUND = (0.655, 0.655, 0.655)
 """As bright as the stage of a plane without material (words/objects/plane.py), so that its horizon does not show."""
 
 
 class Studio(Light):
     """A picture of a product: a soft key light from the upper left front, a bright dome, a light gray background."""
+
+    stages: ClassVar[bool] = True
 
     key: Scalar = field("Factor of the key light.", "1", at_least=0)
     fill: Scalar = field("Factor of the dome's light.", "1", at_least=0)
@@ -31,10 +33,9 @@ class Studio(Light):
         """The key light and the dome."""
         from sceneql import frame
 
-        x, y, z = KEY_DIRECTION
-        far = math.hypot(x, y, z)
-        power = math.pi * KEY * float(moment.at(self.key))
-        yield frame.Sun((x / far, y / far, z / far), (power, 0.99 * power, 0.97 * power), KEY_ANGLE)
+        for power, (x, y, z), angle in ((KEY, KEY_FROM, KEY_ANGLE), (RIM, RIM_FROM, RIM_ANGLE)):
+            far, given = math.hypot(x, y, z), math.pi * power * float(moment.at(self.key))
+            yield frame.Sun((x / far, y / far, z / far), (given, 0.99 * given, 0.97 * given), angle)
         fill = float(moment.at(self.fill))
         zenith, horizon, ground = ((fill * r, fill * g, fill * b) for r, g, b in DOME)
         yield frame.Sky(zenith, horizon, ground, visible=BACKGROUND)

@@ -60,6 +60,12 @@ class MassSpring(SpringModel):
     stiffness: Stiffness = field("Force for a stretch, of each spring that says nothing else.", "100 N/m", above=0)
     damping: Damping = field("Force for a speed of stretching, likewise.", "0 N*s/m", at_least=0)
 
+    def lowest(self) -> float | None:
+        """Of all nets but a solid."""
+        named = [one.position[1] for one in (self.masses or {}).values()]
+        lows = [*named, *(net.lowest() for net in (self.lattice, self.cloth, self.rope) if net is not None)]
+        return min(lows) - (self.radius or 0.0) if lows else None
+
     def problems(self) -> Iterator[Problem]:
         """Several nets or none, springs to masses that are not there, and pins of none."""
         known = self.masses or {}

@@ -241,6 +241,15 @@ class Particles(Model):
             surface = moment.surface(name, self.material, self.color if color is None else color)
             yield Spheres(name, surface, places[some], sizes)
 
+    def lowest(self) -> float | None:
+        """Of those that are listed, or given by constant points."""
+        radius = 0.05 if self.radius is None else self.radius
+        if self.list is not None:
+            return min(one.position[1] - (radius if one.radius is None else one.radius) for one in self.list.values())
+        if self.positions is not None and self.positions.constant:
+            return min((float(point[1]) for point in self.positions.number()), default=0.0) - radius
+        return None
+
     def drives(self) -> Mapping[str, tuple[str, str]]:
         """The position of the object that is the particle."""
         return {} if self.of is None else {self.of.name: ("position", "position")}

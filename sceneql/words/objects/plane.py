@@ -23,6 +23,7 @@ class Plane(Object):
     """
 
     collides: ClassVar[bool] = True
+    grounds: ClassVar[bool] = True
 
     height: Length = field("How far along its normal it lies from `position`.", "0 m")
     position: Position = field("A point that `height` counts from.", "0 0 0 m")
