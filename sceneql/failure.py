@@ -34,7 +34,10 @@ class OutOfMemory(RunFailure):
 
 @contextmanager
 def failing_as(name: str, time: float, span: Span | None) -> Iterator[None]:
-    """Report failures inside as those of a part at a time [s]; words refuse values by TypeError and ValueError."""
+    """Report failures inside as those of a part at a time [s]; words refuse values by TypeError and ValueError.
+
+    What is refused for its size gets the part's place in the script.
+    """
     try:
         yield
     except RunFailure as error:
@@ -45,6 +48,8 @@ def failing_as(name: str, time: float, span: Span | None) -> Iterator[None]:
         raise RunFailure(f"a file ends too soon: {error}", part=name, time=time, span=span) from error
     except (TypeError, ValueError) as error:
         raise RunFailure(str(error), part=name, time=time, span=span) from error
+    except LimitRefused as error:
+        raise error.at(span) from error.__cause__
 
 
 _SIGNS = ("annot allocate memory", "failed to map segment", "can't start new thread")

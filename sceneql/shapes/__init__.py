@@ -1,1 +1,1 @@
-"""Geometry of object words: placement, CSG, OBJ files."""
+"""Geometry of object words: placement, CSG, mesh files."""

@@ -1,4 +1,4 @@
-"""OBJ files to arrays, once for a run; size and numbers of a file are checked before it is used."""
+"""Mesh files to arrays, once for a file as it is; size and numbers of a file are checked before it is used."""
 
 from __future__ import annotations
 
@@ -8,12 +8,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sceneql.failure import LimitRefused
+from sceneql.kinds import Exceeds
+from sceneql.shapes.mesh_header import declared
+from sceneql.shapes.mesh_limits import unreadable
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
+    from sceneql.shapes.raw_mesh import RawMesh
 
-LARGEST_FILE = 64 * 2**20
-MOST_TRIANGLES = 4_000_000
+FARTHEST = 1e100
+"""[m]; products of longer edges would not be finite."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,64 +30,62 @@ class Loaded:
     """(m, 3), counterclockwise seen from the front."""
     normals: Floats
     """(n, 3) unit."""
+    colors: Floats | None
+    """(n, 3) linear RGB, of a file that has colors of all its vertices."""
 
 
-@lru_cache(maxsize=16)
 def load(file: str, crease: float) -> Loaded:
-    """The triangles of an OBJ file; edges that turn by more than ``crease`` [rad] are sharp. Reads no other file.
+    """The triangles of a mesh file; edges that turn by more than ``crease`` [rad] are sharp. Reads no other file.
+
+    A file that has been written since it was last read is read anew.
 
     Raises OSError for a file that cannot be read or is no mesh, LimitRefused for one that is too large.
     """
-    import io
+    now = Path(file).stat()
+    return _load(file, crease, (now.st_dev, now.st_ino, now.st_size, now.st_mtime_ns, now.st_ctime_ns))
 
-    import numpy as np
-    import trimesh
 
-    path = Path(file)
-    size = path.stat().st_size
-    if size > LARGEST_FILE:
-        raise LimitRefused(f"{path.name} has {size} bytes, more than the {LARGEST_FILE} that a mesh may have")
+@lru_cache(maxsize=16)
+def _load(file: str, crease: float, identity: tuple[int, ...]) -> Loaded:
+    """As ``load``, of a file that ``identity`` tells from others and from what it was before."""
+    from sceneql.shapes.creases import creased
+
+    raw = _read(Path(file))
+    _check(raw, Path(file).name)
+    loaded = Loaded(*creased(raw, crease))
+    if not len(loaded.triangles):
+        raise OSError(f"{Path(file).name} has no triangle of any area")
+    return loaded
+
+
+def _read(path: Path) -> RawMesh:
+    """What the file has. Raises OSError and LimitRefused."""
     try:
-        path.read_bytes().decode()  # an OBJ file is text; guessing another encoding needs one more library
-        # Without a resolver, material and texture files that it names are not opened.
-        whole = trimesh.load_mesh(io.BytesIO(path.read_bytes()), file_type="obj", skip_materials=True, process=False)
-        if len(whole.faces) > MOST_TRIANGLES:
-            raise LimitRefused(f"{path.name} has {len(whole.faces)} triangles, more than {MOST_TRIANGLES}")
-        vertices, faces = np.asarray(whole.vertices, dtype=float), np.asarray(whole.faces)
-    except (ValueError, IndexError, KeyError, TypeError, AttributeError) as error:
-        raise OSError(f"{path.name} is no OBJ mesh: {error}") from error
-    if not len(faces):
-        raise OSError(f"{path.name} has no triangles")
-    if faces.min() < 0 or faces.max() >= len(vertices):
-        raise OSError(f"{path.name} has a face with a vertex that is not there")
-    if not np.isfinite(vertices).all():
-        raise OSError(f"{path.name} has a vertex that is not finite")
-    return _creased(vertices, faces, crease)
+        found = declared(str(path))
+        if found.format == "obj":
+            from sceneql.shapes.read_obj import read_obj
+
+            raw = read_obj(path)
+        else:
+            from sceneql.shapes.read_foreign import read_foreign
+
+            raw = read_foreign(path, found)
+        if not len(raw.triangles):
+            raise ValueError("it has no triangles")
+        return raw
+    except Exceeds as error:
+        raise LimitRefused(str(error)) from error
+    except ValueError as error:
+        raise unreadable(path.name, error) from error
 
 
-def _creased(vertices: Floats, faces: Ints, crease: float) -> Loaded:
-    """Each corner's normal is the mean of the normals of its vertex's faces within the crease angle, by area."""
+def _check(raw: RawMesh, name: str) -> None:
+    """Raise OSError for triangles that cannot be."""
     import numpy as np
 
-    places, same = np.unique(vertices, axis=0, return_inverse=True)
-    corners = same.reshape(-1)[faces]
-    a, b, c = (places[corners[:, k]] for k in range(3))
-    areas = np.cross(b - a, c - a)
-    real = np.linalg.norm(areas, axis=1) > 0
-    corners, areas = corners[real], areas[real]
-    units = areas / np.linalg.norm(areas, axis=1, keepdims=True)
-    of_vertex = corners.reshape(-1)
-    order = np.argsort(of_vertex, kind="stable")
-    starts = np.searchsorted(of_vertex[order], np.arange(len(places) + 1))
-    normals = np.empty((len(of_vertex), 3))
-    least = np.cos(crease)
-    for k in range(len(places)):
-        mine = order[starts[k] : starts[k + 1]]
-        if len(mine):
-            face = mine // 3
-            near = units[face] @ units[face].T >= least - 1e-12
-            normals[mine] = near @ areas[face]
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
-    keys = np.column_stack([of_vertex, np.round(normals * 1e6)])
-    _, first, index = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-    return Loaded(places[of_vertex[first]], index.reshape(-1, 3).astype(np.int32), normals[first])
+    if raw.triangles.min() < 0 or raw.triangles.max() >= len(raw.vertices):
+        raise OSError(f"{name} has a face with a vertex that is not there")
+    if not np.isfinite(raw.vertices).all():
+        raise OSError(f"{name} has a vertex that is not finite")
+    if np.abs(raw.vertices).max() > FARTHEST:
+        raise OSError(f"{name} has a vertex that is farther away than {FARTHEST:g} m")

@@ -1,16 +1,17 @@
-"""mesh: triangles from an OBJ file."""
+"""mesh: triangles from a file."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from pathlib import Path
+from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
 from pydantic import field_validator
 
-from sceneql.kinds import Collider, Exceeds, File, FixedAngle, Moment, field
+from sceneql.kinds import Collider, File, FixedAngle, Moment, field
+from sceneql.shapes.mesh_header import declared
 from sceneql.shapes.placement import Placed, Scale, affine, apply, compose
-from sceneql.shapes.read_mesh import LARGEST_FILE, Loaded, load
+from sceneql.shapes.read_mesh import Loaded, load
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Shape
@@ -18,28 +19,34 @@ if TYPE_CHECKING:
 
 
 class Mesh(Placed):
-    """Triangles of an OBJ file. Edges that turn by less than `crease` are shaded smooth, others stay sharp.
+    """Triangles of a file: OBJ, PLY, STL, OFF, GLB or glTF with all its numbers inside (.gltf). Lengths are in meters.
 
-    It has no field, so it is no member of a union, intersection or difference; a closed one can be collided
-    with, filled, and be the domain of a field. A file of more than 64 MiB or 4 million triangles is refused.
+    Edges that turn by less than `crease` are shaded smooth, others stay sharp. Where neither `color` nor `material` is
+    given, it has the colors that the file has at its vertices. Nodes of a GLB stand where they are placed; textures,
+    points and lines are left out, and no other file is read. Faces of an OBJ may be concave, those of other files are
+    taken as convex, and all of a binary PLY have as many corners. It has no field, so it is no member of a union,
+    intersection or difference; a closed one can be collided with, filled, and be the domain of a field. A file may have
+    4 million triangles, and 1 GiB as OBJ, 512 MiB as binary PLY, STL or GLB, 64 MiB as other text, 16 MiB as .gltf.
     """
 
     imports: ClassVar[tuple[str, ...]] = ("trimesh",)
 
-    file: File = field("Path of the OBJ file, inside the scene's folder.")
+    file: File = field("Path of the file, inside the scene's folder; its ending names the format.")
     scale: Scale = field("Factor on the file's numbers, which are taken as meters, or three.", "1", above=0)
     crease: FixedAngle = field("Edges that turn by more stay sharp.", "40 deg", at_least=0)
 
     @field_validator("file")
     @classmethod
-    def _is_no_giant(cls, file: str) -> str:
-        size = Path(file).stat().st_size
-        if size > LARGEST_FILE:
-            raise Exceeds(f"{file} has {size} bytes; a mesh may have {LARGEST_FILE}")
+    def _can_be_read(cls, file: str) -> str:
+        try:
+            declared(file)
+        except OSError as error:
+            raise ValueError(str(error)) from error
         return file
 
-    def _load(self) -> Loaded:
-        """The file's triangles. Raises ValueError for a file that is no mesh."""
+    @cached_property
+    def _loaded(self) -> Loaded:
+        """The file's triangles, the same for all of a run. Raises ValueError for a file that is no mesh."""
         try:
             return load(self.file, self.crease)
         except OSError as error:
@@ -51,13 +58,13 @@ class Mesh(Placed):
 
     def triangles_at(self, moment: Moment) -> Floats:
         """(m, 3, 3) corners of its triangles in its parent's coordinates, for what fills it."""
-        loaded = self._load()
+        loaded = self._loaded
         corners: Floats = apply(self.local(moment), loaded.vertices)[loaded.triangles]
         return corners
 
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
         """The box around its vertices."""
-        vertices = apply(compose(place, self.local(moment)), self._load().vertices)
+        vertices = apply(compose(place, self.local(moment)), self._loaded.vertices)
         return vertices.min(axis=0), vertices.max(axis=0)
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
@@ -65,9 +72,10 @@ class Mesh(Placed):
         from sceneql.frame import Mesh as Triangles
         from sceneql.shapes.placed_triangles import still
 
-        made = still(self._load(), name, compose(place, self.local(moment)), moment)
+        made = still(self._loaded, name, compose(place, self.local(moment)), moment)
         surface = moment.surface(name, self.material, self.color)
-        yield Triangles(name, surface, made.vertices, made.triangles, made.normals)
+        colors = self._loaded.colors if self.color is None and self.material is None else None
+        yield Triangles(name, surface, made.vertices, made.triangles, made.normals, colors)
 
     def collider(self, assembly: Assembly) -> Collider:
         """Its triangles. Raises ValueError for a mesh that is open, or whose scale varies."""
@@ -75,7 +83,7 @@ class Mesh(Placed):
 
         if not self.scale.constant:
             raise ValueError("a mesh whose scale varies in time cannot be collided with")
-        loaded = self._load()
+        loaded = self._loaded
         vertices = loaded.vertices * assembly.initial(self.scale)
         place = assembly.value(self.position), assembly.value(self.rotation)
         return collider(vertices, loaded.triangles, *place, assembly)
