@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from pydantic import field_validator
 
+from sceneql.doing import doing
 from sceneql.kinds import Collider, Exceeds, File, FixedAngle, Moment, field
 from sceneql.shapes.placement import Placed, Scale, affine, apply, compose
 from sceneql.shapes.read_mesh import LARGEST_FILE, Loaded, load
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
 class Mesh(Placed):
     """Triangles of an OBJ file. Edges that turn by less than `crease` are shaded smooth, others stay sharp.
 
-    It has no field, so it is no member of a union, intersection or difference; a closed one can be collided
-    with, filled, and be the domain of a field. A file of more than 64 MiB or 4 million triangles is refused.
+    It has no field, so it is no member of a union, intersection or difference; it can be collided
+    with, filled, and be the domain of a field: holes are closed, and told. A file of more than 64 MiB or 4 million triangles is refused.
     """
 
     imports: ClassVar[tuple[str, ...]] = ("trimesh",)
@@ -41,7 +42,8 @@ class Mesh(Placed):
     def _load(self) -> Loaded:
         """The file's triangles. Raises ValueError for a file that is no mesh."""
         try:
-            return load(self.file, self.crease)
+            with doing(f"reading {Path(self.file).name}"):
+                return load(self.file, self.crease)
         except OSError as error:
             raise ValueError(str(error)) from error
 
@@ -59,6 +61,13 @@ class Mesh(Placed):
         """The box around its vertices."""
         vertices = apply(compose(place, self.local(moment)), self._load().vertices)
         return vertices.min(axis=0), vertices.max(axis=0)
+
+    def holes(self) -> str:
+        """Those of its triangles. Raises ValueError for a file that is no mesh."""
+        from sceneql.mesh.holes import described
+
+        loaded = self._load()
+        return described(loaded.vertices, loaded.triangles)
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """Its triangles in the world. Raises ValueError for a file that is no mesh, LimitRefused for too many."""
