@@ -22,7 +22,8 @@ class Mesh(Placed):
     """Triangles of an OBJ file. Edges that turn by less than `crease` are shaded smooth, others stay sharp.
 
     It has no field, so it is no member of a union, intersection or difference; it can be collided
-    with, filled, and be the domain of a field: holes are closed, and told. A file of more than 64 MiB or 4 million triangles is refused.
+    with, filled, and be the domain of a field: holes are closed, and told. A file of more than 64 MiB or 4 million
+    triangles is refused.
     """
 
     imports: ClassVar[tuple[str, ...]] = ("trimesh",)
