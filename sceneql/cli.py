@@ -162,8 +162,8 @@ def check(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path |
 
     with bar(scene.stem):
         graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
-    found = Diagnostics()
-    found.extend(check_variants(graph, scene, variant, sets, words))
+        found = Diagnostics()
+        found.extend(check_variants(graph, scene, variant, sets, words))
     found.raise_errors()
     _warn(graph)
     click.echo(
