@@ -125,7 +125,8 @@ def render(
     from sceneql import pipeline
     from sceneql.report.progress import bar
 
-    graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
+    with bar(scene.stem):
+        graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
     _warn(graph)
     with bar(graph.name) as progress:
         report = pipeline.render(graph, output=output, account=account, progress=progress)
@@ -157,10 +158,12 @@ def check(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path |
     from sceneql import pipeline
     from sceneql.compiler.variants import check_variants
     from sceneql.quantities.diagnostic import Diagnostics
+    from sceneql.report.progress import bar
 
-    graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
-    found = Diagnostics()
-    found.extend(check_variants(graph, scene, variant, sets, words))
+    with bar(scene.stem):
+        graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
+        found = Diagnostics()
+        found.extend(check_variants(graph, scene, variant, sets, words))
     found.raise_errors()
     _warn(graph)
     click.echo(
@@ -177,9 +180,11 @@ def explain(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path
     from sceneql import pipeline
     from sceneql.report.explain import explain as account
     from sceneql.report.explain import text
+    from sceneql.report.progress import bar
 
-    graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
-    found = account(graph)
+    with bar(scene.stem):
+        graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
+        found = account(graph)
     if as_json:
         import json
 

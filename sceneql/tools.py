@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from sceneql import __version__
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.doing import doing
 from sceneql.failure import Unsuitable, failing_as
 from sceneql.files import NUMBERS, refuse_unwritable
 from sceneql.graph import SimulationGraph
@@ -94,7 +95,7 @@ class Tools:
         renderer = self._renderer(output)
         self.prepare(output)()
         drawn_by = self.graph.tasks[self.name if output.renderer is None else output.renderer.name]
-        with failing_as(drawn_by.name, moment.time, drawn_by.span):
+        with failing_as(drawn_by.name, moment.time, drawn_by.span), doing("drawing"):
             picture = renderer.draw(frame)
         asked = solids(self.graph.drawn[self.name], self.graph.tasks)
         look(frame.shapes, asked, self.graph.tasks, self.report.present)

@@ -1,11 +1,14 @@
-"""An interrupt stops a run even where a library has swallowed it."""
+"""An interrupt stops a run even where a library has swallowed it; what takes long is shown."""
 
 import os
+import pty
+import select
 import signal
 from contextlib import suppress
 
 import pytest
 
+from sceneql.doing import doing, now
 from sceneql.report.progress import bar
 
 
@@ -34,3 +37,27 @@ def test_what_fails_after_a_swallowed_interrupt_is_the_interrupt():
 def test_what_fails_without_one_stays_what_it_is():
     with pytest.raises(RuntimeError), bar("film"):
         raise RuntimeError("a bug")
+
+
+def test_what_takes_long_is_shown_by_name(monkeypatch):
+    main, other = pty.openpty()
+    with os.fdopen(other, "w") as terminal:
+        monkeypatch.setattr("sys.stderr", terminal)
+        monkeypatch.setenv("TERM", "xterm")
+        seen = b""
+        with bar("film"), doing("running ahead"), doing("filling bone"):
+            while b"filling bone" not in seen:
+                ready, _, _ = select.select([main], [], [], 20)
+                assert ready, seen
+                seen += os.read(main, 4096)
+    os.close(main)
+    assert b"running ahead" not in seen
+
+
+def test_the_innermost_of_what_takes_long_is_told(monkeypatch):
+    monkeypatch.setattr("sceneql.doing.LONG", 0.0)
+    with doing("running ahead"):
+        with doing("filling bone"):
+            assert now() == "filling bone"
+        assert now() == "running ahead"
+    assert now() == ""

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from sceneql.bodies.nets import SIDES, Lattice, Net, neighbors, side_masks
+from sceneql.doing import doing
 from sceneql.island.memory import PLACE, bounded, bounded_net
 from sceneql.kinds import FixedLength, FixedScalar, FixedTime, ObjectRef, Problem, Quantity, Record, field
 from sceneql.quantities import dimension as dim
@@ -99,9 +100,10 @@ class Filling(Record):
         """Raises ScriptError for an object that holds no neighbors, LimitRefused for too many masses."""
         from sceneql.bodies.filling.fill import Inside
 
-        inside = Inside(self.object, assembly)
-        inside.bounded(self.bounded, inside.low, inside.high)
-        return self._cubes(inside) if self.cells == "cubes" else self._tetrahedra(inside)
+        with doing(f"filling {self.object.name}"):
+            inside = Inside(self.object, assembly)
+            inside.bounded(self.bounded, inside.low, inside.high)
+            return self._cubes(inside) if self.cells == "cubes" else self._tetrahedra(inside)
 
     def _lattice(self) -> Lattice:
         return Lattice(count=(3, 3, 3), shear=1.0 if self.shear is None else self.shear)

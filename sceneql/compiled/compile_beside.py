@@ -13,13 +13,16 @@ import sys
 import threading
 import warnings
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from functools import cache
 from importlib import import_module
 from queue import SimpleQueue
-from typing import IO, NoReturn, cast
+from typing import IO, Any, NoReturn, cast
 
-from sceneql.compiled.kernels import CACHE, OURS, cache_folder, compiled, compiles, thread_count
+from numba.core.event import Listener
+
+from sceneql.compiled.kernels import CACHE, OURS, cache_folder, compiled, compiles, numba_event, thread_count
+from sceneql.doing import doing
 from sceneql.interrupts import SIGNALS
 
 
@@ -43,7 +46,7 @@ def compile_beside(modules: Iterable[str]) -> Callable[..., None]:
 
     def wait(*but: str) -> None:
         wanted = [module for module in due if module not in but]
-        with compiled.whole_block():
+        with compiled.whole_block(), doing("compiling"):
             for module in reversed(wanted):
                 import_module(module)
         for module in wanted:
@@ -76,6 +79,25 @@ def compile_named(names: Iterable[str]) -> NoReturn:
             CACHE.mark(mark)
     except BaseException:
         os._exit(1)
+
+
+class _Told(Listener):
+    """Says while a function is compiled that it is."""
+
+    def __init__(self) -> None:
+        self._open: list[AbstractContextManager[None]] = []
+
+    def on_start(self, event: Any) -> None:
+        """A compilation begins, perhaps within another one."""
+        self._open.append(doing("compiling"))
+        self._open[-1].__enter__()
+
+    def on_end(self, event: Any) -> None:
+        """A compilation ends."""
+        self._open.pop().__exit__(None, None, None)
+
+
+numba_event.register("numba:compile", _Told())
 
 
 @cache

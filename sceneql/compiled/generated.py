@@ -15,6 +15,8 @@ from importlib.util import spec_from_file_location
 from types import ModuleType
 from typing import Any, NoReturn
 
+from sceneql.doing import doing
+
 PACKAGE = "sceneql_generated"
 _texts: dict[str, bytes] = {}
 """By the full name of a module."""
@@ -37,7 +39,8 @@ def write(prefix: str, source: str) -> str:
 
 def load(name: str) -> ModuleType:
     """Import a module of the package, or any other, by its full name."""
-    return importlib.import_module(name)
+    with doing("compiling"):
+        return importlib.import_module(name)
 
 
 def function(name: str) -> Any:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 from sceneql.bodies.time_shift import APART, exact_rate, goes_evenly, later
 from sceneql.contacts import layout
 from sceneql.contacts.shapes import implicit
+from sceneql.doing import doing
 from sceneql.kinds import Collider, Object, Ref, Value
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
@@ -61,7 +62,8 @@ def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, 
     kind = cast(Object, assembly.object(ref))
     try:
         noted = _Noted(assembly)
-        here = _collider(kind, cast("Assembly", noted))
+        with doing(f"looking at the surface of {ref.name}"):
+            here = _collider(kind, cast("Assembly", noted))
         if not is_moving(kind):
             poses = (0, here.position_at, here.rotation_at, here.position_at, here.rotation_at)
         else:

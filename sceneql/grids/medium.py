@@ -140,6 +140,10 @@ class Medium(Model):
         {},
     )
 
+    def insides(self) -> Iterable[kinds.Ref]:
+        """Its domain."""
+        return () if self.domain is None else (self.domain,)
+
     def boundaries(self) -> Iterable[Boundary]:
         """The boundary conditions of every field."""
         raise NotImplementedError

@@ -73,6 +73,10 @@ class Object(Kind):
         """Its inside as a flat domain of fields (grids.domain.cut.Level with bounds); None: it is none."""
         return None
 
+    def holes(self) -> str:
+        """The holes of what should be closed, as ``3 holes of 117 edges``; empty where there are none."""
+        return ""
+
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
         """Low and high corner (3,) of a world box around it; infinite where it is unbounded."""
         raise TypeError(f"`{self._word()}` has no extent")

@@ -72,6 +72,10 @@ class Model(Kind):
         """
         return ()
 
+    def insides(self) -> Iterable[Ref]:
+        """Objects whose insides it fills or spreads in."""
+        return ()
+
     def lasts(self) -> bool:
         """Whether its bodies are there all the time: births bring energy, and deaths take it."""
         return True

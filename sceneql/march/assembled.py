@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import cast
 
+from sceneql.doing import doing
 from sceneql.graph import Island, SimulationGraph, Task
 from sceneql.island.island import IslandAssembly
 from sceneql.island.system import System
@@ -106,7 +107,7 @@ def models_of(graph: SimulationGraph, island: Island) -> Assembled:
     """An island with its models, without forces and contacts yet."""
     made = Assembled(graph, island, IslandAssembly(Setting(graph.tasks, graph.settings.clock.end)))
     for name in island.models:
-        with made.word(name):
+        with made.word(name), doing(f"making {name}"):
             made.bodies[name] = cast(Model, graph.tasks[name].kind).assemble(name, made.assembly)
     return made
 

@@ -1,12 +1,21 @@
-"""A progress bar, on a terminal only, which also raises interrupts that a library lost."""
+"""A progress bar with what is being done, on a terminal only, which also raises interrupts that a library lost."""
 
 from __future__ import annotations
 
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
+from sceneql import doing
 from sceneql.interrupts import raised
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
+
+PATIENCE = 0.3
+"""Seconds before it is drawn: what is done by then needs none."""
 
 
 @contextmanager
@@ -36,10 +45,51 @@ def _drawn(title: str) -> Iterator[Callable[[int, int], None]]:
     if not sys.stderr.isatty():
         yield lambda done, total: None
         return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+    shown = _Shown(title)
+    waiting = threading.Timer(PATIENCE, shown.appear)
+    waiting.daemon = True
+    waiting.start()
+    try:
+        yield shown.step
+    finally:
+        waiting.cancel()
+        waiting.join()
+        shown.vanish()
 
-    columns = (TextColumn(title), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task(title, total=None)
-        yield lambda done, total: progress.update(task, completed=done, total=total)
+
+class _Shown:
+    """The bar itself, and what the program is doing beside it; the library's thread draws both, also between steps."""
+
+    def __init__(self, title: str) -> None:
+        self._title = title
+        self._progress: Progress | None = None
+        self._steps: tuple[int, int | None] = (0, None)
+
+    def appear(self) -> None:
+        """Draw it from now on."""
+        from rich.console import Console
+        from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, Task, TextColumn
+        from rich.progress import TimeRemainingColumn as Remaining
+        from rich.text import Text
+
+        class Doing(ProgressColumn):
+            def render(self, task: Task) -> Text:
+                return Text(doing.now())
+
+        columns = (TextColumn(self._title), BarColumn(), MofNCompleteColumn(), Remaining(), Doing())
+        progress = Progress(*columns, console=Console(stderr=True), transient=True)
+        done, total = self._steps
+        progress.add_task(self._title, total=total, completed=done)
+        progress.start()
+        self._progress = progress
+
+    def step(self, done: int, total: int) -> None:
+        """So many of all are done."""
+        self._steps = done, total
+        if self._progress is not None:
+            self._progress.update(self._progress.task_ids[0], completed=done, total=total)
+
+    def vanish(self) -> None:
+        """Leave the terminal as it was."""
+        if self._progress is not None:
+            self._progress.stop()

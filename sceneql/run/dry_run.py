@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sceneql.doing import doing
 from sceneql.failure import RunFailure
 from sceneql.graph import SimulationGraph
 from sceneql.kinds import Camera, Clock, Object, Overlay, Value
@@ -86,6 +87,7 @@ def asked_by_objects(start: Instant) -> dict[str, list[Value]]:
     return {name: values for name, kind in objects.items() if (values := list(kind.courses(start)))}
 
 
+@doing("running ahead of the film")
 def dry_run(ahead: Running, *, bounded: bool = True) -> DryRun:
     """March a fresh run to its end for what cameras and overlays need of the whole run.
 

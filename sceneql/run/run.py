@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from sceneql.doing import doing
 from sceneql.failure import LimitRefused
 from sceneql.graph import Island, SimulationGraph
 from sceneql.kinds import Force, Model, Object, Solver, Value
@@ -54,9 +55,10 @@ class Run:
 
     def at(self, time: float) -> Instant:
         """The next instant [s]; times do not decrease. Raises RunFailure."""
-        for before, keys in self.history.due(time):
-            self.history.see(self._moment(before), keys)
-        return self._moment(time)
+        with doing(f"running to {time:.4g} s"):
+            for before, keys in self.history.due(time):
+                self.history.see(self._moment(before), keys)
+            return self._moment(time)
 
     def _moment(self, time: float) -> Instant:
         for island in self.islands:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Literal
 
+from sceneql.doing import doing
 from sceneql.failure import LimitRefused
 from sceneql.island.memory import PLACE, bounded
 from sceneql.island.start import Start
@@ -79,15 +80,14 @@ class Inside:
         """(n,) fractions (0..1) at which segments from inside to outside, ends (n, 3), leave the object."""
         import numpy as np
 
-        found = np.full(len(inner), np.nan) if self._exits is None else self._exits(inner, outer)
-        left = np.isnan(found)
-        start, way = inner[left], (outer - inner)[left]
-        low, high = np.zeros(len(start)), np.ones(len(start))
+        if self._exits is not None:
+            return self._exits(inner, outer)
+        low, high = np.zeros(len(inner)), np.ones(len(inner))
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
-            held = self.holds(start + middle[:, None] * way)
+            held = self.holds(inner + middle[:, None] * (outer - inner))
             low, high = np.where(held, middle, low), np.where(held, high, middle)
-        found[left] = 0.5 * (low + high)
+        found: Floats = 0.5 * (low + high)
         return found
 
     def refusal(self, why: str) -> ScriptError:
@@ -128,7 +128,7 @@ def chance_key(name: str, seed: int) -> int:
 
 
 def _test(kind: Object, start: Any) -> tuple[Callable[[Floats], Any], Callable[[Floats, Floats], Floats] | None]:
-    """places (n, 3) -> (n,) bool, whether they lie in the object; for meshes also their exits (winding.exits).
+    """places (n, 3) -> (n,) bool, whether they lie in the object; for meshes also their exits (Winding.exits).
 
     Raises TypeError where it has no inside.
     """
@@ -139,10 +139,10 @@ def _test(kind: Object, start: Any) -> tuple[Callable[[Floats], Any], Callable[[
 
     triangles = getattr(kind, "triangles_at", None)
     if triangles is not None:
-        from sceneql.bodies.filling.winding import exits, winding
+        from sceneql.bodies.filling.winding import winding
 
-        corners = triangles(start)
-        return lambda places: winding(places, corners) > 0.5, lambda inner, outer: exits(inner, outer, corners)
+        mesh = winding(triangles(start))
+        return mesh.holds, mesh.exits
     build = TapeBuilder()
     tape = build.finish(kind.implicit(build, build.x, build.y, build.z, start))
     return lambda places: np.asarray(field_values(tape, places) < 0), None
@@ -150,6 +150,11 @@ def _test(kind: Object, start: Any) -> tuple[Callable[[Floats], Any], Callable[[
 
 def filled(fill: Fill, name: str, assembly: Assembly) -> Floats:
     """(n, 3) places [m]. Raises ScriptError where the object holds none, LimitRefused where too many."""
+    with doing(f"filling {fill.object.name}"):
+        return _filled(fill, name, assembly)
+
+
+def _filled(fill: Fill, name: str, assembly: Assembly) -> Floats:
     import numpy as np
 
     inside = Inside(fill.object, assembly)

@@ -1,56 +1,92 @@
-"""Whether points lie inside a closed mesh, and where segments leave it."""
+"""Whether points lie inside a mesh, closed or with holes, and where segments leave it."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sceneql.bodies.filling import winding_kernels
+from sceneql.compiled.kernels import over_tiles
+from sceneql.mesh.box_tree import box_tree
+from sceneql.shapes.of_contents import OfContents
+
 if TYPE_CHECKING:
+    from numpy import bool_
+    from numpy.typing import NDArray
+
     from sceneql.frame import Floats
 
-PAIRS_AT_ONCE = 4_000_000
-EDGE = 1e-9
-"""Tolerance in barycentric coordinates, so that no segment passes between two triangles."""
+LEAF = 8
+TILE = 512
+"""Points, segments or clusters of one task of a thread."""
+ROOM = 1e-8
+"""What is added around boxes, in parts of the mesh's size: more than the tolerance at triangles' edges."""
 
 
-def winding(places: Floats, corners: Floats) -> Floats:
-    """(n,) how often triangles (m, 3, 3), counterclockwise from outside, wind around places (n, 3): 1 inside, 0 out.
+class Winding:
+    """Triangles, and how often they wind around points: 1 inside a closed mesh, 0 outside, near holes between.
 
-    The sum of the signed solid angles by 4 pi (Van Oosterom & Strackee 1983, eq. 8); holes spoil it only near them
-    (Jacobson, Kavan & Sorkine-Hornung 2013).
+    Where they wind by more than half is inside: the surface that closes a flat hole is the plane of it.
     """
-    rows = max(1, PAIRS_AT_ONCE // max(1, len(corners)))
-    result = np.zeros(len(places))
-    for first in range(0, len(places), rows):
-        a, b, c = (corners[None, :, k] - places[first : first + rows, None] for k in range(3))
-        la, lb, lc = (np.linalg.norm(side, axis=2) for side in (a, b, c))
-        triple = np.sum(a * np.cross(b, c), axis=2)
-        rest = la * lb * lc
-        for p, q, length in ((a, b, lc), (b, c, la), (c, a, lb)):
-            rest += np.sum(p * q, axis=2) * length
-        result[first : first + rows] = np.arctan2(triple, rest).sum(axis=1) / (2 * np.pi)
-    return result
+
+    def __init__(self, corners: Floats) -> None:
+        """``corners`` (m, 3, 3), counterclockwise from one side: if that is the inside they are turned.
+
+        Raises ValueError where there are none.
+        """
+        tree = box_tree(corners, LEAF)
+        ordered = corners[tree.order]
+        if _volume(ordered) < 0.0:
+            ordered = ordered[:, ::-1]
+        self._corners = np.ascontiguousarray(ordered.reshape(-1, 9))
+        self._links = tree.links
+        room = ROOM * float((tree.boxes[0, 3:] - tree.boxes[0, :3]).max())
+        self._boxes = tree.boxes + room * np.repeat([-1.0, 1.0], 3)
+        self._moments = np.empty((len(tree.links), winding_kernels.MOMENTS))
+        _tiled(len(tree.links), lambda a, b: winding_kernels.gather(self._corners, self._links, self._moments, a, b))
+        self._held: OfContents[NDArray[bool_]] = OfContents(1)
+        self._left: OfContents[Floats] = OfContents(1)
+
+    def holds(self, places: Floats) -> NDArray[bool_]:
+        """(n,) whether places (n, 3) lie inside."""
+        places = np.ascontiguousarray(places)
+
+        def ask() -> NDArray[bool_]:
+            held = np.empty(len(places), dtype=np.bool_)
+            parts = self._corners, self._links, self._moments, places, held
+            _tiled(len(places), lambda first, last: winding_kernels.hold(*parts, first, last))
+            return held
+
+        return self._held.get((places,), ask)
+
+    def exits(self, inner: Floats, outer: Floats) -> Floats:
+        """(n,) fractions (0..1) at which segments from places inside to places outside, each (n, 3), leave."""
+        inner, outer = np.ascontiguousarray(inner), np.ascontiguousarray(outer)
+
+        def ask() -> Floats:
+            shares = np.empty(len(inner))
+            parts = self._corners, self._links, self._moments, self._boxes, inner, outer, shares
+            _tiled(len(inner), lambda first, last: winding_kernels.leave(*parts, first, last))
+            return shares
+
+        return self._left.get((inner, outer), ask)
 
 
-def exits(inner: Floats, outer: Floats, corners: Floats) -> Floats:
-    """(n,) fractions (0..1) at which segments from ``inner`` to ``outer``, each (n, 3), first hit triangles (m, 3, 3).
+def winding(corners: Floats) -> Winding:
+    """The winding numbers of triangles (m, 3, 3). Raises ValueError where there are none."""
+    return _KNOWN.get((corners,), lambda: Winding(corners))
 
-    NaN where none is met (Moeller & Trumbore 1997).
-    """
-    rows = max(1, PAIRS_AT_ONCE // max(1, len(corners)))
-    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    result = np.full(len(inner), np.nan)
-    for at in range(0, len(inner), rows):
-        start = inner[at : at + rows, None] - corners[None, :, 0]
-        way = (outer - inner)[at : at + rows, None]
-        across, turned = np.cross(way, second), np.cross(start, first)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            whole = np.sum(across * first, axis=2)
-            u = np.sum(across * start, axis=2) / whole
-            v = np.sum(turned * way, axis=2) / whole
-            t = np.sum(turned * second, axis=2) / whole
-            met = (u >= -EDGE) & (v >= -EDGE) & (u + v <= 1.0 + EDGE) & (t >= 0.0) & (t <= 1.0)
-        nearest = np.where(met, t, np.inf).min(axis=1, initial=np.inf)
-        result[at : at + rows] = np.where(np.isfinite(nearest), nearest, np.nan)
-    return result
+
+_KNOWN: OfContents[Winding] = OfContents()
+
+
+def _volume(corners: Floats) -> float:
+    """Six times what triangles (m, 3, 3) enclose, from the middle of their corners."""
+    a, b, c = (corners[:, k] - corners.mean(axis=(0, 1)) for k in range(3))
+    return float(np.einsum("ij,ij", a, np.cross(b, c)))
+
+
+def _tiled(count: int, work: Callable[[int, int], object]) -> None:
+    over_tiles(-(-count // TILE), lambda tile: work(tile * TILE, min(count, (tile + 1) * TILE)))

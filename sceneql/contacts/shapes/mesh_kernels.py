@@ -77,30 +77,50 @@ def on_triangle(floats, t, x, y, z):
     return wb / (wa + wb + wc), wc / (wa + wb + wc), FACE
 
 
+@lean_inlined
+def in_leaf(floats, ints, d, node, x, y, z, best, bx, by, bz, found, feature):
+    """What is nearest to a point so far, with the triangles of a leaf: as `nearest`."""
+    n = d + TREE + NODE * node
+    for k in range(ints[n + FIRST], ints[n + FIRST] + ints[n + HELD]):
+        t = ints[d + TRIANGLES] + TRIANGLE * k
+        v, w, what = on_triangle(floats, t, x, y, z)
+        ax, ay, az = corner(floats, t, 0, x, y, z)
+        px, py, pz = corner(floats, t, 1, x, y, z)
+        qx, qy, qz = corner(floats, t, 2, x, y, z)
+        u = 1.0 - v - w
+        ax, ay, az = u * ax + v * px + w * qx, u * ay + v * py + w * qy, u * az + v * pz + w * qz
+        square = ax * ax + ay * ay + az * az
+        if square <= best:
+            best, bx, by, bz, found, feature = square, ax, ay, az, t, what
+    return best, bx, by, bz, found, feature
+
+
+@lean_inlined
+def toward(floats, ints, d, x, y, z):
+    """The leaf that is reached by taking the nearer of two boxes each time."""
+    boxes = ints[d + BOXES]
+    node = 0
+    while ints[d + TREE + NODE * node + HELD] == 0:
+        other = ints[d + TREE + NODE * (node + 1) + SKIP]
+        first, second = outside2(floats, boxes + 6 * (node + 1), x, y, z), outside2(floats, boxes + 6 * other, x, y, z)
+        node = node + 1 if first <= second else other
+    return node
+
+
 @lean(types.Tuple((F, F, F, F, N, N))(A, I, N, F, F, F, F), inner=True)
 def nearest(floats, ints, at, x, y, z, within):
     """Vector from the nearest point of the surface to a point, its square, and offset and feature of the triangle;
     offset -1 where the surface is farther than ``within``."""
     d = ints[at + layout.DATA]
-    best, found, feature = within * within, -1, 0
-    bx, by, bz = 0.0, 0.0, 0.0
+    # What is found in a near leaf bounds the distance, so that the walk looks into few others.
+    begun = toward(floats, ints, d, x, y, z)
+    best, bx, by, bz, found, feature = in_leaf(floats, ints, d, begun, x, y, z, within * within, 0.0, 0.0, 0.0, -1, 0)
     node = 0
     while node < ints[d + COUNT]:
-        n = d + TREE + NODE * node
         if outside2(floats, ints[d + BOXES] + 6 * node, x, y, z) > best:
-            node = ints[n + SKIP]
+            node = ints[d + TREE + NODE * node + SKIP]
             continue
-        for k in range(ints[n + FIRST], ints[n + FIRST] + ints[n + HELD]):
-            t = ints[d + TRIANGLES] + TRIANGLE * k
-            v, w, what = on_triangle(floats, t, x, y, z)
-            ax, ay, az = corner(floats, t, 0, x, y, z)
-            px, py, pz = corner(floats, t, 1, x, y, z)
-            qx, qy, qz = corner(floats, t, 2, x, y, z)
-            u = 1.0 - v - w
-            ax, ay, az = u * ax + v * px + w * qx, u * ay + v * py + w * qy, u * az + v * pz + w * qz
-            square = ax * ax + ay * ay + az * az
-            if square <= best:
-                best, bx, by, bz, found, feature = square, ax, ay, az, t, what
+        best, bx, by, bz, found, feature = in_leaf(floats, ints, d, node, x, y, z, best, bx, by, bz, found, feature)
         node += 1
     return best, bx, by, bz, found, feature
 

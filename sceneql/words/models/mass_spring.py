@@ -93,6 +93,10 @@ class MassSpring(SpringModel):
         """The object of a solid."""
         return () if self.solid is None else ((self.solid.object, self.solid.bounded),)
 
+    def insides(self) -> Iterable[Ref]:
+        """The object of a solid."""
+        return () if self.solid is None else (self.solid.object,)
+
     @classmethod
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
         """Those of all masses; named masses and springs add theirs: ``bob.position``, ``tether.tension``."""

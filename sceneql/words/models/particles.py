@@ -118,6 +118,11 @@ class Particles(Model):
         """The object that they fill at a spacing."""
         return () if self.fill is None or self.fill.spacing is None else ((self.fill.object, self.fill.bounded),)
 
+    def insides(self) -> Iterable[Ref]:
+        """The object that they fill or are born in."""
+        within = None if self.emit is None else self.emit.within
+        return [ref for ref in (None if self.fill is None else self.fill.object, within) if ref is not None]
+
     def static_masses(self) -> Mapping[str, StaticMass]:
         """Listed ones; else one for all of them, whose place is not told."""
         if self.list is None:

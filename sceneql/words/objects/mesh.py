@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 from pydantic import field_validator
 
+from sceneql.doing import doing
 from sceneql.kinds import Collider, File, FixedAngle, Moment, field
 from sceneql.shapes.mesh_header import declared
 from sceneql.shapes.placement import Placed, Scale, affine, apply, compose
@@ -25,8 +27,9 @@ class Mesh(Placed):
     given, it has the colors that the file has at its vertices. Nodes of a GLB stand where they are placed; textures,
     points and lines are left out, and no other file is read. Faces of an OBJ may be concave, those of other files are
     taken as convex, and all of a binary PLY have as many corners. It has no field, so it is no member of a union,
-    intersection or difference; a closed one can be collided with, filled, and be the domain of a field. A file may have
-    4 million triangles, and 1 GiB as OBJ, 512 MiB as binary PLY, STL or GLB, 64 MiB as other text, 16 MiB as .gltf.
+    intersection or difference; it can be collided with, filled, and be the domain of a field: holes are closed, and
+    told. A file may have 4 million triangles, and 1 GiB as OBJ, 512 MiB as binary PLY, STL or GLB, 64 MiB as other
+    text, 16 MiB as .gltf.
     """
 
     imports: ClassVar[tuple[str, ...]] = ("trimesh",)
@@ -48,7 +51,8 @@ class Mesh(Placed):
     def _loaded(self) -> Loaded:
         """The file's triangles, the same for all of a run. Raises ValueError for a file that is no mesh."""
         try:
-            return load(self.file, self.crease)
+            with doing(f"reading {Path(self.file).name}"):
+                return load(self.file, self.crease)
         except OSError as error:
             raise ValueError(str(error)) from error
 
@@ -66,6 +70,13 @@ class Mesh(Placed):
         """The box around its vertices."""
         vertices = apply(compose(place, self.local(moment)), self._loaded.vertices)
         return vertices.min(axis=0), vertices.max(axis=0)
+
+    def holes(self) -> str:
+        """Those of its triangles. Raises ValueError for a file that is no mesh."""
+        from sceneql.mesh.holes import described
+
+        loaded = self._loaded
+        return described(loaded.vertices, loaded.triangles)
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """Its triangles in the world. Raises ValueError for a file that is no mesh, LimitRefused for too many."""
