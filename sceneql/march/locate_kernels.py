@@ -12,16 +12,13 @@ from sceneql.system.signatures_kernels import A, F, I, N
 
 ULP = 2.3e-16
 
-NOISE = 0.02
-"""Rounding of gaps, as a part of the gap that counts as touching."""
-
-LOCATE = types.float64(I, N, F, types.boolean, F, F, F, A, A, A, A, A, I, A, I, A, F)
+LOCATE = types.float64(I, N, F, types.boolean, F, F, F, A, A, A, A, A, I, A, I, A)
 
 
 @lean(LOCATE, inner=True)
 def locate(
     functions, pair, contact, deflate, t0, low, high,
-    y0, rate0, y1, work, settings, numbers, floats, ints, now, slop,
+    y0, rate0, y1, work, settings, numbers, floats, ints, now,
 ):  # fmt: skip
     """Length [s] of the step from t0 up to contact, rounded to where the pair is still apart; y1 is the state there.
 
@@ -44,8 +41,7 @@ def locate(
         gap(t0 + x1, y1, now, floats, ints)
         f1 = now[pair] - contact
         if deflate:
-            # So shortly after the start a pair that leaves slowly may seem closer by rounding.
-            f1 = 0.0 if abs(f1) <= NOISE * slop else f1 / x1
+            f1 /= x1
         if f1 >= 0.0:
             break
         x2 = x1
@@ -100,7 +96,7 @@ def first_of(
             return pair, 0.0
         length = locate(
             functions, pair, reference(start[pair], slop), touched, t0, 0.0 if touched else low, high,
-            y0, rate0, y1, work, settings, numbers, floats, ints, now, slop,
+            y0, rate0, y1, work, settings, numbers, floats, ints, now,
         )  # fmt: skip
         if length == 0.0:
             return pair, 0.0
