@@ -32,7 +32,7 @@ def test_a_script_of_many_variants_is_read_twice_and_its_own_texts_are_parsed_tw
     composed, parsed = [], []
     monkeypatch.setattr(script, "compose", lambda *args, of=script.compose: composed.append(1) or of(*args))
     monkeypatch.setattr(names, "parse_value", lambda *args, of=names.parse_value: parsed.append(args[0]) or of(*args))
-    assert "ok, 4 parts" in checked(tmp_path, "".join(f"  v{k}: {{define.r: {k + 1} m}}\n" for k in range(50)))
+    assert "ok, 5 parts" in checked(tmp_path, "".join(f"  v{k}: {{define.r: {k + 1} m}}\n" for k in range(50)))
     assert len(composed) == 2
     assert parsed.count("0 1 0 m") == 2
     assert len(parsed) < 70

@@ -111,18 +111,23 @@ def test_sky_of_one_color_is_the_same_all_around():
 
 
 def test_studio_has_its_key_light_upper_left_in_front_and_a_gray_background():
-    sun, sky = lights("studio")
-    assert isinstance(sun, Sun)
+    key, rim, sky = lights("studio")
+    assert isinstance(key, Sun)
+    assert isinstance(rim, Sun)
     assert isinstance(sky, Sky)
-    assert sun.direction[0] < 0 < min(sun.direction[1:])
-    assert math.hypot(*sun.direction) == pytest.approx(1)
+    assert key.direction[0] < 0 < min(key.direction[1:])
+    assert rim.direction[2] < 0 < min(rim.direction[:2])
+    assert [math.hypot(*sun.direction) for sun in (key, rim)] == pytest.approx([1, 1])
     assert max(sky.visible) - min(sky.visible) < 0.05
     (floor,) = Plane().lower("floor", IDENTITY, FakeMoment())
     # Irradiance on the open floor: a sky that is linear in the sine of the elevation counts 1/3 and 2/3.
     dome = (np.array(sky.horizon) + 2 * np.array(sky.zenith)) / 3
-    lit = np.array(floor.surface.color) * (np.array(sun.irradiance) * sun.direction[1] / math.pi + dome)
-    np.testing.assert_allclose(lit, sky.visible, rtol=0.02)
-    dark, dome = lights("studio", key=const(0.0), fill=const(2.0))
+    suns = sum(np.array(sun.irradiance) * sun.direction[1] / math.pi for sun in (key, rim))
+    np.testing.assert_allclose(np.array(floor.surface.color) * (suns + dome), sky.visible, rtol=0.02)
+    turned = (np.array(sky.zenith) + np.array(sky.ground)) / 6 + 2 * np.array(sky.horizon) / 3
+    lit = np.array(key.irradiance) / math.pi + turned  # a wall that faces the key light
+    np.testing.assert_allclose(lit / turned, 5, rtol=0.15)  # four parts of key to one of fill
+    dark, _, dome = lights("studio", key=const(0.0), fill=const(2.0))
     assert dark.irradiance == (0, 0, 0)
     assert dome.zenith == pytest.approx([2 * c for c in sky.zenith])
 

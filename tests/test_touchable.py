@@ -36,12 +36,13 @@ def test_a_ball_lands_on_an_object_that_is_not_named(tmp_path, ring, mode):
 @pytest.mark.parametrize(
     ("objects", "names"),
     [
-        (RING, ("ring",)),
+        (RING, ("ring", "floor")),
         ("{floor: plane, ring: torus}", ("floor", "ring")),
-        ("{whole: {union: {of: [a, b]}}, a: torus, b: box}", ("whole",)),
-        ("{dot: {sphere: {radius: 0.1 m + 0.01 m/s*time}}}", ("dot",)),
-        ("{slider: {torus: {position: {x: 1 m/s*time, y: 0 m, z: 0 m}}}}", ("slider",)),
-        ("{wall: {box: {hidden: yes}}}", ("wall",)),
+        ("{whole: {union: {of: [a, b]}}, a: torus, b: box}", ("whole", "floor")),
+        ("{dot: {sphere: {radius: 0.1 m + 0.01 m/s*time}}}", ("dot", "floor")),
+        ("{slider: {torus: {position: {x: 1 m/s*time, y: 0 m, z: 0 m}}}}", ("slider", "floor")),
+        ("{wall: {box: {hidden: yes}}}", ("wall", "floor")),
+        ("{floor: none, wall: box}", ("wall",)),
         ("{floor: plane, path: {trail: {of: ball.a.position}}}", ("floor",)),
         ("{floor: plane, drop: {blobby: {points: [ball.a.position], radius: 1 m}}}", ("floor",)),
     ],
