@@ -12,6 +12,7 @@ sceneql: 1
 define: {k: 0.5}
 clock: {end: 1 s}
 objects:
+  floor: none
   a: {implicit: {field: "FIELD", bounds: {ball: 1}, mode: MODE}}
 outputs: {still: {image: {size: 16 9, renderer: RENDERER, time: 1 s}}}
 """
