@@ -1,0 +1,100 @@
+"""The stage: what a script that says nothing of ground and light stands on, and what it takes to do without."""
+
+from __future__ import annotations
+
+import pytest
+
+from runs import watch
+from sceneql.frame import Quadric
+from sceneql.pipeline import Report, Tools, load, simulate
+from sceneql.quantities.diagnostic import ScriptError
+
+BALL = "ball: {sphere: {radius: 0.2 m, position: 0 2 0 m}}"
+FALL = "models: {fall: {particles: {of: ball, mass: 1 kg}}}"
+SPRING = """models:
+  net:
+    mass_spring:
+      masses: {a: {position: 0 1 0 m, fixed: yes}, b: {position: 1 1 0 m}}
+      springs: [{between: [a, b], stiffness: 9 N/m}]
+"""
+
+
+def graph_of(folder, text):
+    (folder / "scene.yaml").write_text(text + "\noutputs: {still: {image: {size: 64 36, time: 0 s}}}\n")
+    return load(folder / "scene.yaml")
+
+
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        (f"objects: {{{BALL}}}", "ground"),
+        (f"objects: {{{BALL}}}\n{FALL}\nforces: [gravity]", "ground"),
+        (f"objects: {{{BALL}}}\n{FALL}\nforces: [gravity, collision]", "plane"),
+        (f"objects: {{{BALL}, step: box}}\n{FALL}\nforces: [gravity, collision]", "plane"),
+        (f"objects: {{{BALL}}}\nlights: [studio]", "ground"),
+        (f"objects: {{{BALL}}}\n{FALL}", None),
+        (SPRING, None),
+        ("models: {heat: {diffusion: {size: 1 1 m, cell: 0.1 m, coefficient: 0.1 m^2/s, initial: x}}}", None),
+        (f"objects: {{{BALL}}}\nlights: [sun]", None),
+        (f"objects: {{{BALL}}}\nbackground: black", None),
+        (f"objects: {{{BALL}, floor: none}}", None),
+        (f"objects: {{{BALL}, floor: none}}\n{FALL}\nforces: [gravity, collision]", None),
+    ],
+)
+def test_there_is_a_ground_where_things_fall_or_nothing_is_simulated(tmp_path, text, word):
+    floor = graph_of(tmp_path, text).tasks.get("floor")
+    assert (None if floor is None else floor.word) == word
+
+
+def test_a_scene_with_a_ground_of_its_own_gets_no_other(tmp_path):
+    graph = graph_of(tmp_path, f"objects: {{{BALL}, meadow: {{plane: {{height: -1 m}}}}}}\n{FALL}\nforces: [collision]")
+    assert "floor" not in graph.tasks
+
+
+@pytest.mark.parametrize(
+    ("models", "height"),
+    [
+        ("{a: {particles: {list: {x: {position: 0 3 0 m}, y: {position: 0 1 0 m}}}}}", 0.0),
+        ("{a: {particles: {list: {x: {position: 0 -3 0 m, radius: 0.5 m}}, radius: 9 m}}}", -3.5),
+        ("{a: {particles: {positions: [0 1 0 m, 0 -2 0 m], radius: 0.25 m}}}", -2.25),
+        ("{a: {mass_spring: {lattice: {count: 2 3 4, spacing: 1 m, center: 0 -2 0 m}}}}", -3.0),
+        (
+            "{a: {mass_spring: {lattice: {count: 3 1 1, spacing: 1 m, rotation: {about: z, angle: 30 deg}}}}}",
+            -0.5,
+        ),
+        ("{a: {mass_spring: {rope: {from: 0 1 0 m, to: 2 -1.5 0 m}, radius: 0.1 m}}}", -1.6),
+        ("{a: {mass_spring: {cloth: {size: 2 3 m, center: 0 -1 0 m}}}}", -1.0),
+        ("{a: {mass_spring: {cloth: {size: 2 3 m, center: 0 -1 0 m, facing: 0 0 1}}}}", -2.5),
+    ],
+)
+def test_what_is_hit_lies_at_zero_or_under_what_starts_lower(tmp_path, models, height):
+    graph = graph_of(tmp_path, f"models: {models}\nforces: [gravity, collision]")
+    assert graph.tasks["floor"].kind.height.number() == pytest.approx(height, abs=1e-12)
+
+
+def test_a_ball_comes_to_rest_beside_a_step_on_the_ground(tmp_path):
+    """Not for ever downwards, as where another object took the ground's place."""
+    script = f"""
+clock: {{end: 3 s}}
+objects: {{{BALL}, step: {{box: {{position: 5 0.5 0 m}}}}}}
+{FALL}
+forces: [gravity, {{collision: {{restitution: 0}}}}]
+outputs: {{data: {{record: {{of: [fall.position]}}}}}}
+"""
+    ((place,),) = watch(tmp_path, script, [3], "fall.position")
+    assert place == pytest.approx([0, 0.2, 0], abs=1e-9)
+
+
+def test_a_ground_that_nothing_hits_lies_under_the_lowest_point_of_the_film(tmp_path):
+    text = f"clock: {{end: 1 s}}\nobjects: {{{BALL}}}\n{FALL}\nforces: [gravity]"
+    graph = graph_of(tmp_path, text)
+    (moment,) = simulate(graph, [0.0])
+    shapes = Tools(graph, "still", Report(), tmp_path / "it").frame(moment).shapes
+    (floor,) = (shape for shape in shapes if isinstance(shape, Quadric) and shape.name == "floor")
+    level = -floor.to_local[:, 3] @ floor.to_local[:, :3]  # of the point of the plane that is its own origin
+    assert abs(level[1]) == pytest.approx(9.81 / 2 - 2 + 0.2, abs=1e-6)
+
+
+def test_only_a_default_may_be_none(tmp_path):
+    with pytest.raises(ScriptError, match="'none' is no word of objects"):
+        graph_of(tmp_path, "objects: {ball: none}")
