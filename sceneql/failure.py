@@ -93,3 +93,15 @@ class LimitRefused(Exception):
 
 class Unsuitable(ValueError):
     """A request that does not suit the scene: one file for several outputs, a benchmark without physics."""
+
+
+@contextmanager
+def failing_itself(name: str, time: float, span: Span | None) -> Iterator[None]:
+    """As `failing_as`, of an output: the parts that fail in it tell so themselves, and a refused request is none."""
+    try:
+        yield
+    except (RunFailure, Unsuitable, MemoryError):
+        raise
+    except (EOFError, TypeError, ValueError):
+        with failing_as(name, time, span):
+            raise

@@ -21,7 +21,7 @@ from pydantic import BaseModel
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.check import KEYS
 from sceneql.compiler.compile import compile_script
-from sceneql.failure import OutOfMemory, RunFailure, Unsuitable, starved, want_of_memory
+from sceneql.failure import OutOfMemory, RunFailure, Unsuitable, failing_itself, starved, want_of_memory
 from sceneql.files import NUMBERS, refuse_unwritable, try_folder
 from sceneql.graph import SimulationGraph
 from sceneql.interrupts import held
@@ -105,7 +105,8 @@ def render(
             if isinstance(kind, Picture):
                 tools[name].prepare(kind)
         for name, kind in outputs.items():
-            sinks[name] = kind.open(tools[name])
+            with failing_itself(name, now, graph.tasks[name].span):
+                sinks[name] = kind.open(tools[name])
         wanted = {name: set(at) for name, at in times.items()}
         from sceneql.run.never_drawn import missing
         from sceneql.run.run import Run
@@ -125,14 +126,15 @@ def render(
             for name, sink in sinks.items():
                 if moment.time in wanted[name]:
                     busy = _Busy("making the frame", [name])
-                    sink.take(moment)
+                    with failing_itself(name, now, graph.tasks[name].span):
+                        sink.take(moment)
             busy = solving
         progress(len(instants), len(instants))
         runs = [run, *(panel.run for tool in tools.values() for panel in tool.panels.values())]
         report.steps = sum(island.march.statistics.steps for one in runs for island in one.islands)
         for name in outputs:
             busy = _Busy("finishing the file", [name])
-            with held():
+            with held(), failing_itself(name, now, graph.tasks[name].span):
                 report.files += sinks[name].close()
                 del sinks[name]
     except BaseException as error:

@@ -8,6 +8,7 @@ import pytest
 
 from runs import complaint
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.quantities.diagnostic import ScriptError
 from sceneql.report.manual import listing
 
 FORCE = """\
@@ -50,6 +51,7 @@ error[unknown-name]: nothing is called 's'
    |
 15 |     often: FixedTime = field("How often.", "300 /s^2", above=0)
    |                                                  ^
+help: write `300 1/s^2`
 
 1 error
 """,
@@ -115,6 +117,50 @@ def test_a_wrong_default_is_told_in_the_file_of_its_word(tmp_path, command, give
     run = [sys.executable, "-m", "sceneql", command, "scene.yaml", "--words", "."]
     said = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True, encoding="utf-8")
     assert (said.returncode, said.stdout, said.stderr) == (3, "", told.replace("FILE", str(path.resolve())))
+
+
+PAIR = """\
+'''A model whose defaults are tuples.'''
+
+from sceneql.kinds import FixedLength, FixedPosition, FixedTime, Model, field
+
+
+class Pair(Model):
+    '''Two of them.'''
+
+    both: tuple[FixedLength, FixedTime] = field("Length and time.", ("1 cm", SECOND))
+    some: tuple[FixedLength, ...] = field("Lengths.", ("1 cm", 0.5, "3 m"), above=0)
+    place: FixedPosition = field("A place.", ("1 cm", "0", "2 m"))
+    names: tuple[str, ...] = field("Names.", ("a", "1 cm"))
+"""
+
+
+def pair(folder, second):
+    path = folder / "models" / "pair.py"
+    path.parent.mkdir()
+    path.write_text(PAIR.replace("SECOND", second))
+    return Catalogue(folder).load("models", "pair"), path
+
+
+def test_texts_in_a_default_that_is_a_tuple_are_read_as_those_of_a_script(tmp_path):
+    cls, _ = pair(tmp_path, '"2 min"')
+    made = cls()
+    assert (made.both, made.some, made.place) == ((0.01, 120.0), (0.01, 0.5, 3.0), (0.01, 0.0, 2.0))
+    assert made.names == ("a", "1 cm")
+
+
+def test_a_wrong_text_in_a_default_that_is_a_tuple_is_told_where_it_stands(tmp_path):
+    with pytest.raises(ScriptError) as error:
+        pair(tmp_path, '"2 kg"')
+    assert (
+        str(error.value)
+        == f"""\
+error[dimension-mismatch]: both is a time (s), but this is a mass (kg)
+ --> {tmp_path}/models/pair.py:9:79
+  |
+9 |     both: tuple[FixedLength, FixedTime] = field("Length and time.", ("1 cm", "2 kg"))
+  |                                                                               ^^^^"""
+    )
 
 
 def test_the_words_of_a_folder_are_listed_beside_one_with_a_wrong_default(tmp_path: Path) -> None:

@@ -26,7 +26,7 @@ BODY_OUTPUTS: Mapping[str, Gives] = {
     "radii": Gives(quantity_type(dim.LENGTH, (None,)), "Their radii in contacts."),
     "kinetic": Gives(quantity_type(dim.ENERGY), "Kinetic energy."),
     "potential": Gives(quantity_type(dim.ENERGY), "Potential energy in the forces and springs."),
-    "dissipated": Gives(quantity_type(dim.ENERGY), "Energy that damping, drag and impacts have taken out."),
+    "dissipated": Gives(quantity_type(dim.ENERGY), "Energy that damping, drag and impacts have taken out.", tally=True),
     "energy": Gives(quantity_type(dim.ENERGY), "Kinetic, potential and dissipated energy: conserved if all is right."),
     "momentum": Gives(quantity_type(dim.MOMENTUM, (3,)), "Sum of mass times velocity."),
     "angular_momentum": Gives(quantity_type(ANGULAR_MOMENTUM, (3,)), "About the origin."),

@@ -148,7 +148,7 @@ class _Checker:
         before = dict(self.tasks), dict(self.family_of), dict(self.entries)
         part = Entry(f"defaults.{word}", word, None, fields.span, fields.span, None)
         for cls in kinds:
-            symbols = cls.formula_symbols(written(fields))
+            symbols, solved = cls.formula_symbols(written(fields)), cls.formula_dimension(written(fields))
             reader = Reader(
                 self.names,
                 self.found,
@@ -157,6 +157,7 @@ class _Checker:
                 self.folder,
                 self.files,
                 symbols,
+                solved,
             )
             for name, info in cls.model_fields.items():
                 if (node := fields.entries.get(written_name(name))) is not None:

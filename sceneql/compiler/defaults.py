@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import ast
 import sys
-from collections.abc import Iterator
-from functools import cache
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import cache, partial
 from pathlib import Path
 from typing import Annotated, Any, get_args
 
@@ -17,6 +18,7 @@ from pydantic import BaseModel
 from sceneql.compiler.limits import check_limits
 from sceneql.compiler.values import fits
 from sceneql.kinds import GRAMMAR, Paint, Turn, Value, grammar_of, literal, written_name
+from sceneql.kinds.word import Item, items_of, read_default, text_of
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.span import Source, Span
 
@@ -28,34 +30,45 @@ def check_defaults(cls: type[BaseModel]) -> None:
     for record in _with_records(cls):
         for name, info in record.model_fields.items():
             if _mistakes(name, info, None):
-                found.extend(_mistakes(name, info, _place(record, name)))
+                found.extend(_mistakes(name, info, partial(_place, record, name)))
     found.raise_errors()
 
 
-def _mistakes(name: str, info: Any, place: Span | None) -> tuple[Any, ...]:
-    """The errors of a field's default, at a place of a file, or in the default's text alone where ``place`` is None."""
+def _mistakes(
+    name: str, info: Any, place: Callable[[tuple[int, ...]], Span] | None, path: tuple[int, ...] = ()
+) -> tuple[Any, ...]:
+    """The errors of a field's default, or of an item of it, at its place in a file; ``place`` None: in its text."""
     default, what, found = info.default, written_name(name), Diagnostics()
     mark, kind = grammar_of(info)
-    span = place or Span(Source("default", str(default)), 0, len(str(default)))
-    if isinstance(default, str):
-        if mark is None:
+    span = Span(Source("default", str(default)), 0, len(str(default))) if place is None else place(path)
+    if (text := text_of(default)) is not None and mark is None:
+        if isinstance(default, str):
             return ()  # a text or a choice
+        for k, item in enumerate(items_of(info)):
+            found.extend(_mistakes(name, item, place, (*path, k)))
+        if found.errors:
+            return found.errors
+        default = read_default(info)
+    elif text is not None and mark is not None:
         quantity = GRAMMAR[type(mark)] if isinstance(mark, Paint | Turn) else mark
         try:
-            value = literal(default, span)
+            value = literal(text, span if isinstance(default, str) else None)
         except ScriptError as error:
-            return error.diagnostics
+            return tuple(one if isinstance(default, str) else replace(one, span=span) for one in error.diagnostics)
         if not fits(value.expr, quantity, what, span, found):
             return found.errors
         default = value if kind is Value else value.number()
+    if isinstance(info, Item):
+        return found.errors
     limits = (info.json_schema_extra or {}).get("limits", {})
     annotation = Annotated[(info.annotation, *info.metadata)] if info.metadata else info.annotation
     check_limits(default, limits, what, annotation, span, found)
     return found.errors
 
 
-def _place(record: type[BaseModel], name: str) -> Span:
-    """The default of a field in its class's file, quotes left out; the whole class where the file has no text there."""
+def _place(record: type[BaseModel], name: str, steps: tuple[int, ...]) -> Span:
+    """The default of a field, or the item at a path in it, in its class's file, quotes left out; the whole class where
+    the file has no text there."""
     owner = next(one for one in record.__mro__ if name in vars(one).get("__annotations__", {}))
     path = Path(sys.modules[owner.__module__].__file__ or "")
     text = path.read_text(encoding="utf-8")
@@ -65,16 +78,18 @@ def _place(record: type[BaseModel], name: str) -> Span:
     )
     for node in of_class.body:
         if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name) and node.target.id == name:
-            return _default_of(node, source)
+            return _default_of(node, source, steps)
     return _span(of_class, source)
 
 
-def _default_of(node: ast.AnnAssign, source: Source) -> Span:
-    """The second argument of ``field(...)``."""
+def _default_of(node: ast.AnnAssign, source: Source, steps: tuple[int, ...]) -> Span:
+    """The second argument of ``field(...)``, or the item at a path in it."""
     call = node.value
     if isinstance(call, ast.Call):
         named = [keyword.value for keyword in call.keywords if keyword.arg == "default"]
         for default in (*call.args[1:2], *named):
+            for k in steps:
+                default = default.elts[k] if isinstance(default, ast.Tuple) else default
             whole = _span(default, source)
             inside = whole.part(1, len(whole.text) - 1)
             return inside if isinstance(default, ast.Constant) and default.value == inside.text else whole

@@ -17,7 +17,7 @@ from sceneql.quantities.literal import WORD
 from sceneql.quantities.operations import CONSTANTS
 from sceneql.quantities.parser import parse_value
 from sceneql.quantities.span import Span
-from sceneql.quantities.units import continues_unit, unit_hint
+from sceneql.quantities.units import below_hint, continues_unit, in_words, unit_hint
 
 WORDS = re.compile(WORD)
 DEEPEST = 40
@@ -143,12 +143,16 @@ class Names:
         return self._read[place][2]
 
     def plain(self, expr: Expr) -> Expr:
-        """The same tree over plain numbers in SI: textbook formulas are not homogeneous, so dimensions are dropped."""
+        """The same tree over plain numbers in SI: textbook formulas are not homogeneous, so dimensions are dropped.
+
+        What the whole was in words stays at its root (Dimension.kind).
+        """
         if id(expr) not in self._plain:
-            self._plain[id(expr)] = (
-                expr,
-                rebuilt(expr, lambda node, new: replace(new, type=Type(node.type.shape, PLAIN))),
-            )
+            tree = rebuilt(expr, lambda node, new: replace(new, type=Type(node.type.shape, PLAIN)))
+            was = expr.type.dimension
+            if was is not None and (was.kind or not was.plain):
+                tree = replace(tree, type=Type(tree.type.shape, replace(PLAIN, kind=in_words(was))))
+            self._plain[id(expr)] = expr, tree
         return self._plain[id(expr)][1]
 
     def _is_reported(self, parts: tuple[str, ...]) -> bool:
@@ -204,6 +208,7 @@ class Names:
             hint = suggestion(wanted, [*self._inside(), *self.defines, *parts_known, "time"])
             if hint is None and len(parts) > 1 and (part := nearest(parts[0], parts_known)) is not None:
                 hint = f"did you mean '{'.'.join((part, *parts[1:]))}'?"
+        hint = below_hint(wanted, span.source.text, span.start) or hint
         self.found.error("unknown-name", message, span, help=hint)
 
     def _inside(self) -> list[str]:

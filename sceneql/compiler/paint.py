@@ -10,7 +10,7 @@ from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, unsure
 from sceneql.quantities.diagnostic import Diagnostics, suggestion
-from sceneql.quantities.dimension import PLAIN
+from sceneql.quantities.dimension import ANGLE, PLAIN
 from sceneql.quantities.expression import Call, Expr, Number, Type, Vector
 
 RGB = Type((3,), PLAIN)
@@ -58,13 +58,13 @@ def read_rotation(node: Node, names: Names, found: Diagnostics) -> Value | None:
             return None if turned is None else Value(turned, node.span)
         if given.keys() == {"about", "angle"}:
             axis = _axis(given["about"], names, found)
-            angle = read_value(given["angle"], Quantity(PLAIN, needs_unit=True), "angle", names, found)
+            angle = read_value(given["angle"], Quantity(ANGLE, needs_unit=True), "angle", names, found)
             if axis is None or angle is None:
                 return None
             return Value(Call("about", (axis, angle.expr), QUATERNION, node.span), node.span)
         order = next(iter(given), "")
         if len(given) == 1 and order in ORDERS:
-            angles = read_value(given[order], Quantity(PLAIN, (3,), needs_unit=True), order, names, found)
+            angles = read_value(given[order], Quantity(ANGLE, (3,), needs_unit=True), order, names, found)
             if angles is None:
                 return None
             return Value(Call(f"euler_{order}", (angles.expr,), QUATERNION, node.span), node.span)

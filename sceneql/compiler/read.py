@@ -16,7 +16,7 @@ from pydantic import BaseModel, ValidationError
 
 from sceneql import kinds
 from sceneql.compiler import limits, paint, values
-from sceneql.compiler.formulas import read_formula
+from sceneql.compiler.formulas import Wanted, read_formula
 from sceneql.compiler.names import Names
 from sceneql.compiler.paths import read_path
 from sceneql.compiler.texts import read_text
@@ -24,6 +24,7 @@ from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, broken, unsure, whole
 from sceneql.language.tree import written as plainly
 from sceneql.quantities.diagnostic import Diagnostics, nearest, suggestion
+from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.span import Span
 
 TRUE, FALSE = ("true", "yes", "on"), ("false", "no", "off")
@@ -49,6 +50,8 @@ class Reader:
     """Paths of the files that fields have named so far; it grows."""
     symbols: tuple[str, ...] = ()
     """Symbols that the formulas of this word may use besides defines."""
+    solved: Dimension | None = None
+    """Dimension of the field that this word solves (Kind.formula_dimension)."""
     copies: Callable[[Scalar, kinds.Refers], list[str]] = lambda node, mark: []
     """The parts that a name of many stands for (a repeated part, an instance of a template); none for other names."""
 
@@ -62,9 +65,9 @@ class Reader:
         elif node is not None and not (isinstance(node, Scalar) and node.kind == "null"):
             fields = ", ".join(map(kinds.written_name, cls.model_fields))
             raise self._fail("wrong-shape", f"{title} takes fields, `{{name: value}}`", node.span, f"it has {fields}")
-        symbols = self.symbols
+        symbols, solved = self.symbols, self.solved
         if isinstance(node, MappingNode) and issubclass(cls, kinds.Kind):
-            symbols = cls.formula_symbols(plainly(node))
+            symbols, solved = cls.formula_symbols(plainly(node)), cls.formula_dimension(plainly(node))
         ok = True
         got: dict[str, Any] = {}
         mistaken: set[str | None] = set()
@@ -82,7 +85,8 @@ class Reader:
                         "missing-field", f"{title} needs '{name}'", span, help=f"{name}: {info.description}"
                     )
                 continue
-            reader = replace(self, owner=f"{self.owner}.{name}" if self.owner else "", symbols=symbols)
+            owner = f"{self.owner}.{name}" if self.owner else ""
+            reader = replace(self, owner=owner, symbols=symbols, solved=solved)
             try:
                 got[python_name] = reader.field(written[name], info, name)
             except Unreadable:
@@ -184,10 +188,13 @@ class Reader:
         return number
 
     def _formula(self, node: Node, mark: kinds.Symbols, what: str) -> kinds.Formula:
-        expr = self._some(
-            read_formula(node, self.symbols if mark.names is None else mark.names, what, self.names, self.found)
-        )
-        return kinds.Formula(expr, node.span)
+        symbols, wanted = self.symbols if mark.names is None else mark.names, mark.dimension
+        if mark.of_field and wanted is not None:
+            wanted = None if self.solved is None else self.solved * wanted
+        # A plain field stands for anything, a number of rabbits or of moles: so do the defines in its formulas.
+        of_any = mark.of_field and self.solved is not None and self.solved.plain
+        of = Wanted(wanted, of_any, mark.at_start)
+        return kinds.Formula(self._some(read_formula(node, symbols, of, what, self.names, self.found)), node.span)
 
     def _union(self, node: Node, arms: tuple[Any, ...], what: str) -> Any:
         if type(None) in arms and isinstance(node, Scalar) and node.kind == "null":

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from sceneql.compiler.keyframes import ReadTime, read_keys
 from sceneql.compiler.limits import numbers
 from sceneql.compiler.names import Names
@@ -10,11 +12,11 @@ from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, unsure
 from sceneql.quantities.diagnostic import Diagnostics, Note, ScriptError, suggestion
-from sceneql.quantities.dimension import PLAIN, TIME, Dimension
+from sceneql.quantities.dimension import ANGLE, PERCENTAGE, PLAIN, TIME, Dimension, common, suits
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import Expr, Link, Number, Shape, Symbol, Type, Vector, walk
-from sceneql.quantities.printing import describe
+from sceneql.quantities.expression import Expr, Keys, Link, Number, Shape, Symbol, Type, Vector, walk
 from sceneql.quantities.span import Span
+from sceneql.quantities.units import describe, in_words, unit_of
 
 PLAIN_NUMBER = Quantity(PLAIN)
 COMPONENTS = ("x", "y", "z")
@@ -22,7 +24,12 @@ COMPONENTS = ("x", "y", "z")
 
 def read_value(node: Node, quantity: Quantity, what: str, names: Names, found: Diagnostics) -> Value | None:
     """A value of the quantity's type, or None after reporting what is wrong."""
-    expr = read_expr(node, quantity.shape, quantity.dimension, what, names, found)
+    return _checked(
+        read_expr(node, quantity.shape, quantity.dimension, what, names, found), node, quantity, what, found
+    )
+
+
+def _checked(expr: Expr | None, node: Node, quantity: Quantity, what: str, found: Diagnostics) -> Value | None:
     if expr is None or not fits(expr, quantity, what, node.span, found):
         return None
     if not quantity.over_time and not momentary(expr, node.span, found):
@@ -79,7 +86,7 @@ def parsed_text(node: Scalar) -> str:
 
 def _vector(items: list[Expr], what: str, span: Span, found: Diagnostics) -> Expr | None:
     inner = items[0].type.shape
-    dimension = next((i.type.dimension for i in items if i.type.dimension is not None and not _zero(i)), PLAIN)
+    dimension = common(i.type.dimension for i in items if not _zero(i)) or PLAIN
     for item in items:
         other = item.type.dimension
         if item.type.shape != inner:
@@ -128,14 +135,20 @@ def _keys(
     of_slope = Quantity((dimension or PLAIN) / TIME, shape)
 
     def value(item: Node) -> Expr | None:
-        read = read_value(item, quantity, what, names, found)
+        expr = read_expr(item, shape, dimension, what, names, found)
+        own = None if expr is None else expr.type.dimension
+        of_one = replace(quantity, dimension=own) if dimension is None and own is not None and own.plain else quantity
+        read = _checked(expr, item, of_one, what, found)
         return None if read is None else read.expr
 
     def slope(item: Node) -> Expr | None:
         read = read_value(item, of_slope, f"{what}'s slope", names, found)
         return None if read is None else read.expr
 
-    return read_keys(node, what, value, slope, time_reader(names, found), Type(shape, quantity.dimension), found)
+    keys = read_keys(node, what, value, slope, time_reader(names, found), Type(shape, quantity.dimension), found)
+    if dimension is None and isinstance(keys, Keys):
+        return replace(keys, type=Type(shape, common(key.value.type.dimension for key in keys.keys) or PLAIN))
+    return keys
 
 
 def time_reader(names: Names, found: Diagnostics) -> ReadTime:
@@ -150,17 +163,17 @@ def fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnosti
             "wrong-shape",
             f"{what} is {_shape_text(quantity.shape)}, not {_shape_text(expr.type.shape)}",
             span,
-            notes=_origin(expr, span),
+            notes=origin(expr, span),
         )
         return False
     has = expr.type.dimension
-    # A plain number stands for SI in any field.
-    if quantity.dimension is not None and has is not None and has != quantity.dimension and not has.plain:
+    if not suits(has, quantity.dimension):
         found.error(
             "dimension-mismatch",
-            f"{what} is {describe(quantity.dimension)}, but this is {describe(has)}",
+            f"{what} is {in_words(quantity.dimension)}, but this is {in_words(has)}",
             span,
-            notes=_origin(expr, span),
+            help=_counted(expr, quantity.dimension),
+            notes=origin(expr, span),
         )
         return False
     if quantity.direction and Value(expr).constant and not any(numbers(evaluate(expr, {}))):
@@ -172,7 +185,18 @@ def fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnosti
     return True
 
 
-def _origin(expr: Expr, span: Span) -> list[Note]:
+def _counted(expr: Expr, wanted: Dimension | None) -> str | None:
+    """The help where an angle or a percentage stands for another quantity."""
+    kind = "" if expr.type.dimension is None else expr.type.dimension.kind
+    if wanted is None or kind not in (ANGLE.kind, PERCENTAGE.kind):
+        return None
+    if kind == ANGLE.kind:
+        return "an angle counts as a number where it is divided by one: `x/(1 rad)`" if wanted.plain else None
+    share = expr.span.text if isinstance(expr, Number) and expr.span is not None else "5 %"
+    return None if wanted.plain else f"write what it is a part of, such as `{share}*(1 {unit_of(wanted)})`"
+
+
+def origin(expr: Expr, span: Span) -> list[Note]:
     """A note where a value is defined, if elsewhere than it is used; of a vector, by its first nonzero item."""
     one = expr
     if isinstance(expr, Vector):

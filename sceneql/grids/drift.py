@@ -7,11 +7,13 @@ from itertools import product
 from typing import Annotated, Literal
 
 from sceneql.kinds import Formula, Problem, Record, Scalar, Symbols, field
+from sceneql.quantities import dimension as dim
 from sceneql.quantities.derivative import components, differentiate
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Expr, Symbol
 
-PLACE = Annotated[Formula, Symbols(("x", "y", "z"))]
+VELOCITY = Annotated[Formula, Symbols(("x", "y", "z"), dim.VELOCITY, at_start=True)]
+STREAM = Annotated[Formula, Symbols(("x", "y", "z"), dim.AREA / dim.TIME, at_start=True)]
 SAMPLES = {2: 24, 3: 8}
 """Samples of a flow along each side before the run."""
 LIMITED = 4.0
@@ -27,8 +29,8 @@ class Drift(Record):
     where a `value` is given, as the formula says, and where it is `open`, as the rest of the flow needs it.
     """
 
-    velocity: PLACE | None = field("The velocity [m/s]: a vector with a component for each side.", None)
-    stream_function: PLACE | None = field("The stream function [m^2/s].", None)
+    velocity: VELOCITY | None = field("The velocity [m/s]: a vector with a component for each side.", None)
+    stream_function: STREAM | None = field("The stream function [m^2/s].", None)
     strength: Scalar = field("A factor of it, which may vary in time.", "1")
     incompressible: bool = field("Make it free of divergence; else what runs against a wall piles up there.", True)
     limiter: Literal["koren", "van_leer", "none"] = field(

@@ -25,8 +25,13 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.system import Assembly, ModelState
 
-PLACE = Annotated[Formula, Symbols(("x", "y", "z"))]
-ANYTHING = Annotated[Formula, Symbols(("x", "y", "z", "t", "c"))]
+PLACE = Annotated[Formula, Symbols(("x", "y", "z"), at_start=True)]
+ANY = ("x", "y", "z", "t", "c")
+COEFFICIENT = Annotated[Formula, Symbols(ANY, dim.AREA / dim.TIME)]
+VALUE = Annotated[Formula, Symbols(ANY, dim.PLAIN, of_field=True)]
+START = Annotated[Formula, Symbols(("x", "y", "z"), dim.PLAIN, of_field=True, at_start=True)]
+FLUX = Annotated[Formula, Symbols(ANY, dim.VELOCITY, of_field=True)]
+SOURCE = Annotated[Formula, Symbols(ANY, dim.FREQUENCY, of_field=True)]
 MEASURES = ("field", "concentration", "centers", "mass", "inflow", "max", "min", "mean")
 SIZES = Annotated[tuple[float, ...], Quantity(dim.LENGTH, (None,))]
 
@@ -65,7 +70,7 @@ class Exchange(Record):
     """What crosses a boundary in proportion to a difference: coefficient (outside - c) a second and square meter."""
 
     coefficient: Annotated[float, Quantity(dim.VELOCITY)] = field("How well it crosses.", at_least=0)
-    outside: ANYTHING | None = field("The value outside; by default 0.", None)
+    outside: VALUE | None = field("The value outside; by default 0.", None)
 
 
 class Picture(Record):
@@ -79,8 +84,8 @@ class Picture(Record):
 class Part(Record):
     """What holds on a part of the boundary: one of value, flux, robin, periodic, open."""
 
-    value: ANYTHING | None = field("The value there (Dirichlet).", None)
-    flux: ANYTHING | None = field("What comes in a second and square meter, D dc/dn outwards (Neumann).", None)
+    value: VALUE | None = field("The value there (Dirichlet).", None)
+    flux: FLUX | None = field("What comes in a second and square meter, D dc/dn outwards (Neumann).", None)
     robin: Exchange | None = field("Exchange with the outside (Robin).", None)
     periodic: bool = field("The sides of this direction are one: what leaves here comes in at the other.", False)
     open: bool = field("A drift goes through: out with what it carries, in with nothing.", False)
@@ -211,6 +216,10 @@ class Medium(Model):
         if not ways:
             return None
         return Oscillation(0.0, rate + carried, f"the {ways} over cells of {self.cell:g} m", ("cell",))
+
+    def sums_up(self, output: str) -> bool:
+        """What has come in, of any field."""
+        return output.rpartition(".")[2] == "inflow"
 
     def must_hold_probes(self, layout: FieldLayout, assembly: Assembly) -> None:
         """Raises ScriptError where a probe stands in no cell of the domain."""

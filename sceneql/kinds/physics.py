@@ -61,6 +61,10 @@ class Model(Kind):
         """
         return None
 
+    def sums_up(self, output: str) -> bool:
+        """Whether an output is a sum over the run that the state holds: values that read it have no slopes."""
+        return output in self.gives and self.gives[output].tally
+
     def items(self, output: str) -> int | None:
         """How many items an output has, where its fields tell."""
         return None

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Any
+from typing import Annotated, Any
 
 from sceneql.kinds.types import Color, Expected, FixedScalar, FixedTime
+from sceneql.kinds.values import Quantity, Value
 from sceneql.kinds.word import Problem, Record, field
+from sceneql.quantities.dimension import comparable
+from sceneql.quantities.units import describe, in_words
 
 MOST_MOMENTS = 1_000_000
 
@@ -49,7 +52,9 @@ class Expect(Record):
 
     of: Expected = field("What is measured: an expression of outputs, with final(), max(), at(x, 2 s), ...")
     value: Expected | None = field("What it must be.", None)
-    tolerance: FixedScalar = field("How far it may be off, as a number in SI.", "1e-6", at_least=0)
+    tolerance: Annotated[Value, Quantity(None)] = field(
+        "How far it may be off, as a number in SI or with a unit.", "1e-6", at_least=0
+    )
     below: Expected | None = field("In place of a value: what it must stay below.", None)
     because: str = field("Why: exact, independent source, conservation, ...")
     variant: str | None = field("The variant that it holds for; by default the script as it stands.", None)
@@ -58,6 +63,19 @@ class Expect(Record):
         """A number that is compared with nothing, or twice."""
         if (self.value is None) == (self.below is None):
             yield Problem("an expectation has either 'value' or 'below'")
+        if not self.tolerance.constant:
+            yield Problem("tolerance must be constant", ("tolerance",), code="not-constant")
+        yield from _unlike(self.of, {"value": self.value, "tolerance": self.tolerance, "below": self.below})
+
+
+def _unlike(of: Value, others: dict[str, Value | None]) -> Iterator[Problem]:
+    """Values that are compared with a measured one of another dimension."""
+    measured = of.expr.type.dimension
+    for name, value in others.items():
+        given = None if value is None else value.expr.type.dimension
+        if not comparable(given, measured):
+            text = f"{name} is {describe(measured)} as what is measured, but this is {in_words(given)}"
+            yield Problem(text, (name,), code="dimension-mismatch")
 
 
 class Study(Record):
@@ -83,6 +101,7 @@ class Study(Record):
             yield Problem("a study tries values by path, `{define.k: 1 .. 1e6 N/m}`", ("sweep",))
         if (self.exact is None) == (self.reference is None):
             yield Problem("a study compares with either `exact` or a `reference`")
+        yield from _unlike(self.of, {"exact": self.exact})
 
 
 class Settings(Record):

@@ -133,3 +133,9 @@ class Symbols:
     """Marks a ``Formula`` and names the free symbols that it may use besides defines; ``None``: the kind binds them."""
 
     names: tuple[str, ...] | None
+    dimension: Dimension | None = None
+    """Of its values, which are in SI where the formula is a plain number; None: any."""
+    of_field: bool = False
+    """Whether they are of this dimension times that of the field that the kind solves (Kind.formula_dimension)."""
+    at_start: bool = False
+    """Whether it is evaluated before the run, when no other part has a value."""

@@ -17,6 +17,7 @@ from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.expression import Shape, Type
 from sceneql.quantities.parser import parse_value
 from sceneql.quantities.span import Source, Span
+from sceneql.quantities.units import below_hint
 
 REQUIRED: Any = ...
 LIMITS: Mapping[str, tuple[Callable[[float, float], bool], str]] = {
@@ -53,7 +54,9 @@ def literal(text: str, place: Span | None = None) -> Value:
     """The Value of a text without names, as in a default, of any type. Raises ScriptError at ``place``."""
 
     def unknown(parts: tuple[str, ...], span: Span) -> Diagnostic:
-        return Diagnostic("unknown-name", f"nothing is called '{'.'.join(parts)}'", span)
+        name = ".".join(parts)
+        help = below_hint(name, span.source.text, span.start)
+        return Diagnostic("unknown-name", f"nothing is called '{name}'", span, help)
 
     found = Diagnostics()
     expr = bind(parse_value(text, place or Span(Source("default", text), 0, len(text))), unknown, found)
@@ -92,13 +95,53 @@ def grammar_of(info: Any) -> tuple[Quantity | Paint | Turn | None, Any]:
 
     None where the default is a text or a choice itself.
     """
-    members = get_args(info.annotation)
+    members = get_args(info.annotation) if get_origin(info.annotation) is not tuple else ()
     if str in members or any(info.default in get_args(one) for one in members if get_origin(one) is Literal):
         return None, info.annotation
     marked = [(info.annotation, info.metadata)]
     marked += [(get_args(one)[0], one.__metadata__) for one in members if get_origin(one) is Annotated]
     found = ((mark, kind) for kind, marks in marked for mark in marks if isinstance(mark, Quantity | Paint | Turn))
     return next(found, (None, info.annotation))
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """An item of a default that is a tuple, with what pydantic's information on a field says of it."""
+
+    annotation: Any
+    metadata: tuple[Any, ...]
+    default: Any
+
+
+def items_of(info: Any) -> list[Item]:
+    """The items of a field's default that is a tuple, each with its own type."""
+    types = [one for one in (info.annotation, *get_args(info.annotation)) if get_origin(one) is tuple]
+    each = get_args(types[0]) if types else (Any, ...)
+    each = (each[0],) * len(info.default) if each[1:] == (Ellipsis,) else each
+    apart = [(get_args(one)[0], one.__metadata__) if get_origin(one) is Annotated else (one, ()) for one in each]
+    return [Item(of, marks, default) for (of, marks), default in zip(apart, info.default, strict=False)]
+
+
+def text_of(default: Any) -> str | None:
+    """A default that is a text, or a tuple with texts in it, as a script would write it; None for any other."""
+    if not isinstance(default, tuple):
+        return default if isinstance(default, str) else None
+    texts = [text_of(item) for item in default]
+    if all(text is None for text in texts):
+        return None
+    return f"[{', '.join(str(d) if text is None else text for d, text in zip(default, texts, strict=True))}]"
+
+
+def read_default(info: Any) -> Any:
+    """A field's default, texts in it read by the grammar of the field or of their place in a tuple."""
+    text = text_of(info.default)
+    if text is None:
+        return info.default
+    mark, annotation = grammar_of(info)
+    if mark is not None:
+        value = literal(text)
+        return value if annotation is Value else value.number()
+    return tuple(map(read_default, items_of(info))) if isinstance(info.default, tuple) else info.default
 
 
 class Record(BaseModel):
@@ -114,12 +157,8 @@ class Record(BaseModel):
             return given
         filled = dict(given)
         for name, info in cls.model_fields.items():
-            if name in filled or not isinstance(info.default, str):
-                continue
-            mark, annotation = grammar_of(info)
-            if mark is not None:
-                value = literal(info.default)
-                filled[name] = value if annotation is Value else value.number()
+            if name not in filled and (value := read_default(info)) is not info.default:
+                filled[name] = value
         return filled
 
     def problems(self) -> Iterable[Problem]:
@@ -150,6 +189,8 @@ class Gives:
 
     type: Type
     doc: str
+    tally: bool = False
+    """Whether it is a sum over the run that the state holds, as of energy lost: values that read it have no slopes."""
 
 
 def quantity_type(dimension: Dimension, shape: Shape = ()) -> Type:
@@ -179,3 +220,8 @@ class Kind(Record):
     def formula_symbols(cls, written: Mapping[str, Any]) -> tuple[str, ...]:
         """The free symbols of its formulas that are marked ``Symbols(None)``; ``written`` as in `outputs`."""
         return ()
+
+    @classmethod
+    def formula_dimension(cls, written: Mapping[str, Any]) -> Dimension | None:
+        """The dimension of the field to which formulas marked ``of_field`` belong; None: it is not known."""
+        return None

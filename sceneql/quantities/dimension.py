@@ -1,8 +1,9 @@
-"""Physical dimensions as exponents of the SI base units; a plane angle is plain (1), as in SI."""
+"""Physical dimensions as exponents of the SI base units; a plane angle is plain (1), as in SI, and says what it is."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 
@@ -11,6 +12,9 @@ class Dimension:
     """Exponents of (m, kg, s, A, K, mol, cd)."""
 
     exponents: tuple[Fraction, ...]
+    kind: str = field(default="", compare=False)
+    """What a plain number is in words: `an angle`, `a percentage`, what a define was whose unit a textbook formula
+    drops; else empty. It stays in sums and choices; products, quotients, powers and functions drop it."""
 
     def __mul__(self, other: Dimension) -> Dimension:
         return Dimension(tuple(a + b for a, b in zip(self.exponents, other.exponents, strict=True)))
@@ -48,6 +52,7 @@ def _base(index: int) -> Dimension:
 
 
 PLAIN = _base(-1)
+ANGLE, PERCENTAGE = replace(PLAIN, kind="an angle"), replace(PLAIN, kind="a percentage")
 LENGTH, MASS, TIME, CURRENT, TEMPERATURE, AMOUNT, LUMINOUS_INTENSITY = (_base(k) for k in range(7))
 AREA, VOLUME = LENGTH**2, LENGTH**3
 VELOCITY = LENGTH / TIME
@@ -61,3 +66,35 @@ STIFFNESS = FORCE / LENGTH
 DAMPING = FORCE / VELOCITY
 DENSITY = MASS / VOLUME
 MOMENTUM = MASS * VELOCITY
+
+
+def common(dimensions: Iterable[Dimension | None]) -> Dimension | None:
+    """What a sum or a list of quantities is that all have one dimension (None: any, as the literal 0).
+
+    An angle or a percentage and a plain number are an angle or a percentage; other kinds are kept if all agree.
+    """
+    known = [dimension for dimension in dimensions if dimension is not None]
+    if not known:
+        return None
+    if len({dimension.kind for dimension in known}) == 1:
+        return known[0]
+    lasting = (ANGLE.kind, PERCENTAGE.kind)
+    return next((one for one in known if one.kind in lasting), replace(known[0], kind=""))
+
+
+def suits(given: Dimension | None, wanted: Dimension | None) -> bool:
+    """Whether a quantity may stand where one of another dimension is wanted; None goes with any.
+
+    A plain number stands for SI anywhere, but an angle for angles alone, and a percentage for plain numbers alone.
+    """
+    if given is None or wanted is None:
+        return True
+    if not given.plain:
+        return given == wanted
+    return not given.kind or (wanted.plain and given.kind == (wanted.kind or PERCENTAGE.kind))
+
+
+def comparable(given: Dimension | None, measured: Dimension | None) -> bool:
+    """Whether a quantity may be compared with a measured one; of plain numbers some are angles, and none says so."""
+    both_plain = given is not None and measured is not None and given.plain and measured.plain
+    return both_plain or suits(given, measured)

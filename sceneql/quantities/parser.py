@@ -28,7 +28,8 @@ TOKEN = re.compile(
     re.DOTALL,
 )
 MENDED = {"=": "write `==` to compare", "!": "write `where(a == b, 0, 1)` for a difference", "%": "write `mod(a, b)`",
-          "×": "write `*`", "·": "write `*`", "−": "write `-`", "²": "write `^2`", "³": "write `^3`"}  # fmt: skip
+          "×": "write `*`", "·": "write `*`", "−": "write `-`", "²": "write `^2`", "³": "write `^3`",
+          "°": "write `deg`", "°C": "write `degC`", "°F": "write `degF`"}  # fmt: skip
 
 
 def parse_value(text: str, span: Span) -> Expr:
@@ -181,7 +182,7 @@ class _Parser:
         self.token, (self.start, self.end) = found[self.kind], found.span(self.kind)
         if self.kind == "bad":
             message = f"'{self.token}' cannot stand in an expression"
-            help = MENDED.get(self.token)
+            help = MENDED.get(self.text[self.start : self.start + 2]) or MENDED.get(self.token)
             component = re.match(r"\.([xyz])\b", self.text[self.start :])
             if component is not None and self.before in (")", "]"):
                 help = f"a component of an expression is written `component(..., {'xyz'.index(component[1])})`"

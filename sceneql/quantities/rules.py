@@ -10,7 +10,7 @@ from collections.abc import Callable
 from fractions import Fraction
 from math import prod
 
-from sceneql.quantities.dimension import PLAIN, TIME, Dimension
+from sceneql.quantities.dimension import PLAIN, TIME, Dimension, common
 from sceneql.quantities.expression import Expr, Number, Shape, Type
 from sceneql.quantities.units import describe, format_quantity
 
@@ -63,7 +63,7 @@ def common_dimension(args: Args, indices: tuple[int, ...], sentence: str) -> Dim
             first = index
         elif dimension != args[first].type.dimension:
             raise _differ(args, first, index, sentence)
-    return None if first is None else args[first].type.dimension
+    return common(args[index].type.dimension for index in indices)
 
 
 def _differ(args: Args, first: int, second: int, sentence: str) -> MismatchError:
@@ -156,7 +156,7 @@ def raised(args: Args) -> Type:
     _plain(args, (1,), "an exponent")
     dimension = base.type.dimension
     if dimension is None or dimension.plain:
-        return Type(shape, dimension)
+        return Type(shape, None if dimension is None else PLAIN)
     if not isinstance(exponent, Number):
         message = f"{describe(dimension)} needs a constant exponent"
         raise MismatchError("dimension-mismatch", message, 1, 0, "divide the base by a quantity of its kind first")

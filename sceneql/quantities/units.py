@@ -17,7 +17,7 @@ from sceneql.quantities.span import Span
 from sceneql.quantities.unit_names import sign_of
 from sceneql.quantities.unit_table import KNOWN_UNITS, OFFSET_UNITS, QUANTITIES, UNITS
 
-__all__ = ["KNOWN_UNITS", "Unit", "describe", "format_quantity", "parse_unit", "scan_unit", "unit_of"]
+__all__ = ["KNOWN_UNITS", "Unit", "describe", "format_quantity", "in_words", "parse_unit", "scan_unit", "unit_of"]
 
 LARGEST_EXPONENT = LARGEST_UNIT = 20
 """Largest exponent of a factor, and most factors: beyond is a mistake, and could be slow to work out."""
@@ -54,6 +54,7 @@ _JOIN = re.compile(r"[/·]|\*(?!\*)")
 _SPACED_JOIN = re.compile(r"\s*(?:[/·]|\*(?!\*))\s*")
 _INVERSE = re.compile(r"1/(?=%|[^\W\d])")
 _UNIT_BEFORE = re.compile(r"\d\.?\s*((?:1/)?[^\W\d][^\s()\[\],]*)[*/]\Z")
+_BAR_BEFORE = re.compile(r"(?<![\w.])(\d+\.?\d*(?:[eE][+-]?\d+)?)\s*([^\W\d][^\s()\[\],*/]*)?\s*/\s*\Z")
 LONGEST_BEFORE = 80
 _SUPERSCRIPTS = str.maketrans({"²": "^2", "³": "^3"})
 
@@ -130,6 +131,15 @@ def unit_hint(name: str) -> str | None:
     """The help line of the error for a name that is no unit."""
     (found,) = _unknown(name, None, 0).diagnostics
     return found.help
+
+
+def below_hint(name: str, text: str, at: int) -> str | None:
+    """The help for a unit at ``text[at]`` below a bar that stands apart from its number, as s in ``1500 /s``."""
+    written = _BAR_BEFORE.search(text, max(0, at - LONGEST_BEFORE), at)
+    if written is None or name not in UNITS:
+        return None
+    number, over = written.groups()
+    return f"write `{number} {over or 1}/{text[at : scan_unit(text, at, None)[1]]}`"
 
 
 def _name(text: str, at: int) -> str | None:
@@ -221,3 +231,8 @@ def describe(dimension: Dimension | None) -> str:
         return "a plain number"
     name = _shown()[dimension][1] if dimension in _shown() else "a quantity"
     return f"{name} ({unit_of(dimension)})"
+
+
+def in_words(dimension: Dimension | None) -> str:
+    """The same, where a plain number may be an angle or a percentage."""
+    return describe(dimension) if dimension is None or not dimension.kind else dimension.kind

@@ -90,7 +90,7 @@ def _outcome(name: str, expect: Expect, series: Series, times: list[float]) -> O
     measured = float(np.max(measure(expect.of.expr, series, times)))
     if expect.value is not None:
         wanted = float(np.max(measure(expect.value.expr, series, times)))
-        return Outcome(name, expect, measured, wanted, abs(measured - wanted), expect.tolerance)
+        return Outcome(name, expect, measured, wanted, abs(measured - wanted), float(expect.tolerance.number()))
     assert expect.below is not None
     limit = float(np.max(measure(expect.below.expr, series, times)))
     return Outcome(name, expect, measured, limit, measured, limit)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from sceneql.compiler.passes.reads import reads
-from sceneql.compiler.passes.touchable import touchable
+from sceneql.compiler.passes.touchable import no_collider, touchable
 from sceneql.graph import Island, Task
 from sceneql.kinds import Contact, Force, Model, Object, Solver
 from sceneql.quantities.diagnostic import Diagnostics, Note
@@ -91,6 +91,11 @@ def _touching(
     assert isinstance(task.kind, Contact)
     ties = [ref.name for ref in task.kind.ties()]
     driver = {name: t.name for t in tasks.values() if isinstance(t.kind, Model) for name in t.kind.drives()}
+    for ref in task.kind.ties():
+        why = None if ref.name in driver else no_collider(tasks[ref.name], tasks)
+        if why is not None:
+            help = f"name under `between` what may touch, without '{ref.name}'"
+            found.error("no-collider", f"'{ref.name}': {why}", ref.span, help=help)
     ties = [driver.get(name, name) for name in ties]
     targets = [name for name in ties if name in models]
     surfaces = [name for name in ties if isinstance(tasks[name].kind, Object)]

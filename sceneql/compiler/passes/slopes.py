@@ -15,13 +15,21 @@ from sceneql.quantities.expression import Link, Symbol, each_once
 
 
 def warn_of_values(tasks: Mapping[str, Task], groups: Iterable[Island], found: Diagnostics) -> None:
-    """Warn of values that read more than MOST_READ numbers of the state, for which they have no derivatives."""
+    """Warn of values without derivatives: they read more than MOST_READ numbers of the state, or a sum over the run."""
     for island in groups:
         parts = dict.fromkeys((*island.models, *(force for force, _ in island.forces)))
         solver = tasks[island.solver]
         for value in (value for part in parts for value in values_of(tasks[part].kind)):
-            lists = [link for link in value.links if link.task in island.models and None in link.type.shape]
-            if not lists or not cast(Solver, solver.kind).stepper().needs.jacobian:
+            solved = [link for link in value.links if link.task in island.models]
+            lists = [link for link in solved if None in link.type.shape]
+            tallies = [link for link in solved if cast(Model, tasks[link.task].kind).sums_up(link.output)]
+            if not (lists or tallies) or not cast(Solver, solver.kind).stepper().needs.jacobian:
+                continue
+            if tallies:
+                text = f"this value reads '{tallies[0].output}', which sums up the run so far"
+                help = f"of such a sum a value gives no slopes, without which {solver.word} takes small scenes alone: "
+                help += "let auto march it"
+                found.warning("no-slopes", text, tallies[0].span or value.span, help=help)
                 continue
             read = _read(value, tasks, island.models)
             if read is None or read > MOST_READ:

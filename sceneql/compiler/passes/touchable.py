@@ -52,6 +52,16 @@ def touchable(tasks: Mapping[str, Task], found: Diagnostics | None = None) -> tu
     return tuple(result)
 
 
+def no_collider(task: Task, tasks: Mapping[str, Task]) -> str | None:
+    """Why an object that a contact names cannot be collided with, as far as the script tells; None where it can."""
+    if not isinstance(task.kind, Object) or type(task.kind).collider is not Object.collider:
+        return None
+    hollow = without_inside(task, tasks)
+    if hollow is not None:
+        return f"`{hollow.word}` has no inside"
+    return "a surface that changes its shape in time cannot be collided with" if _changes_shape(task, tasks) else None
+
+
 def _has_surface(kind: Object) -> bool:
     return type(kind).collider is not Object.collider or type(kind).implicit is not Object.implicit
 

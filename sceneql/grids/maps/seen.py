@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 
 from sceneql.grids.maps.kept import Kept
 from sceneql.kinds import Problem, Quantity, Ref, Value
+from sceneql.quantities.dimension import comparable
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Link, Symbol
-from sceneql.quantities.units import describe
+from sceneql.quantities.units import describe, in_words
 from sceneql.shapes.placement import compose, inverse
 from sceneql.shapes.solid import triple
 
@@ -139,6 +140,6 @@ def unfit(of: Value, others: dict[str, Value | None]) -> Iterator[Problem]:
     own = of.expr.type.dimension
     for name, value in others.items():
         has = None if value is None else value.expr.type.dimension
-        if own is not None and has is not None and has != own and not has.plain:
-            text = f"{name} is {describe(own)} as the field is, but this is {describe(has)}"
+        if not comparable(has, own):
+            text = f"{name} is {describe(own)} as the field is, but this is {in_words(has)}"
             yield Problem(text, (name,), code="dimension-mismatch")

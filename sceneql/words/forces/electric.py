@@ -9,6 +9,8 @@ from sceneql.bodies.charges import Charges, ElectricField, each, of_moving
 from sceneql.island.static_rates import On, by_formulas, number
 from sceneql.kinds import Force, Formula, Problem, Symbols, field
 from sceneql.kinds.stable_step import Oscillation
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.unit_table import VOLTAGE
 
 if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies, ModelState
@@ -24,8 +26,10 @@ class Electric(Force):
 
     charge: Charges = field("Charge of every mass, or a list with one for each.")
     field_: ElectricField | None = field("The same field everywhere; it may vary in time.", None)
-    formula: Annotated[Formula, Symbols(("x", "y", "z", "t"))] | None = field("Its components [V/m].", None)
-    potential_: Annotated[Formula, Symbols(("x", "y", "z", "t"))] | None = field("Its potential [V].", None)
+    formula: Annotated[Formula, Symbols(("x", "y", "z", "t"), VOLTAGE / dim.LENGTH)] | None = field(
+        "Its components [V/m].", None
+    )
+    potential_: Annotated[Formula, Symbols(("x", "y", "z", "t"), VOLTAGE)] | None = field("Its potential [V].", None)
 
     def problems(self) -> Iterator[Problem]:
         """Several fields or none, and formulas that are no field."""

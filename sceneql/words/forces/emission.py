@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 from sceneql.grids.into_field import dimension, numbers, unfit
 from sceneql.kinds import Force, Problem, Quantity, Value, field
 from sceneql.quantities import dimension as dim
-from sceneql.quantities.units import describe
+from sceneql.quantities.units import describe, in_words
 
 if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies
@@ -30,9 +30,9 @@ class Emission(Force):
         """A value that is no field, a rate of another dimension."""
         yield from unfit(self.into, "into")
         own, given = dimension(self.into), self.rate.expr.type.dimension
-        if own is not None and given is not None and given not in (own * dim.VOLUME / dim.TIME, dim.PLAIN):
+        if own is not None and not dim.suits(given, own * dim.VOLUME / dim.TIME):
             wanted = describe(own * dim.VOLUME / dim.TIME)
-            yield Problem(f"the rate is {wanted}, and this is {describe(given)}", ("rate",), code="dimension-mismatch")
+            yield Problem(f"the rate is {wanted}, and this is {in_words(given)}", ("rate",), code="dimension-mismatch")
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add what its masses give. Raises ScriptError where it is into no field."""

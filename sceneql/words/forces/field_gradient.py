@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 from sceneql.grids.into_field import dimension, numbers, unfit
 from sceneql.kinds import Force, Problem, Quantity, Value, field
 from sceneql.quantities import dimension as dim
-from sceneql.quantities.units import describe
+from sceneql.quantities.units import describe, in_words
 
 if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies
@@ -30,10 +30,10 @@ class FieldGradient(Force):
         """A value that is no field, a factor of another dimension."""
         yield from unfit(self.of, "of")
         own, given = dimension(self.of), self.factor.expr.type.dimension
-        if own is not None and given is not None and given not in (dim.ENERGY / own, dim.PLAIN):
+        if own is not None and not dim.suits(given, dim.ENERGY / own):
             wanted = describe(dim.ENERGY / own)
             yield Problem(
-                f"the factor is {wanted}, and this is {describe(given)}", ("factor",), code="dimension-mismatch"
+                f"the factor is {wanted}, and this is {in_words(given)}", ("factor",), code="dimension-mismatch"
             )
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:

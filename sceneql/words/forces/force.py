@@ -9,6 +9,7 @@ from sceneql.island.static_rates import On, by_formulas
 from sceneql.kinds import Force as Family
 from sceneql.kinds import Formula, Problem, Symbols, field
 from sceneql.kinds.stable_step import Oscillation
+from sceneql.quantities import dimension as dim
 
 if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies, ModelState
@@ -23,8 +24,10 @@ class Force(Family):
     a force by components does to the masses is counted in the work, so that the energy is conserved with both.
     """
 
-    components: Annotated[Formula, Symbols(SYMBOLS)] | None = field("`[fx, fy, fz]`: its components [N].", None)
-    potential_: Annotated[Formula, Symbols(("x", "y", "z", "t", "m"))] | None = field(
+    components: Annotated[Formula, Symbols(SYMBOLS, dim.FORCE)] | None = field(
+        "`[fx, fy, fz]`: its components [N].", None
+    )
+    potential_: Annotated[Formula, Symbols(("x", "y", "z", "t", "m"), dim.ENERGY)] | None = field(
         "The potential energy of one mass [J].", None
     )
 

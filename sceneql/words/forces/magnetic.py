@@ -11,7 +11,9 @@ from sceneql.island import static_rates
 from sceneql.island.static_rates import On, by_formulas, number
 from sceneql.kinds import Force, Formula, Problem, Symbols, field
 from sceneql.kinds.stable_step import Oscillation
+from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Call, Expr, Symbol
+from sceneql.quantities.unit_table import VOLTAGE
 
 if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies, ModelState
@@ -26,7 +28,9 @@ class Magnetic(Force):
 
     charge: Charges = field("Charge of every mass, or a list with one for each.")
     field_: MagneticField | None = field("The same field everywhere; it may vary in time.", None)
-    formula: Annotated[Formula, Symbols(("x", "y", "z", "t"))] | None = field("Its components [T].", None)
+    formula: Annotated[Formula, Symbols(("x", "y", "z", "t"), VOLTAGE * dim.TIME / dim.AREA)] | None = field(
+        "Its components [T].", None
+    )
 
     def problems(self) -> Iterator[Problem]:
         """Two fields or none, and a formula that is no field."""

@@ -5,10 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
-from sceneql.grids.medium import ANYTHING, PLACE, Boundary, FieldLayout, Medium, Picture, gives_of, layout_of
+from sceneql.grids.medium import (
+    COEFFICIENT,
+    SOURCE,
+    START,
+    Boundary,
+    FieldLayout,
+    Medium,
+    Picture,
+    gives_of,
+    layout_of,
+)
 from sceneql.kinds import Formula, Gives, Value, field
 from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
+from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.expression import Link, Type
 
 if TYPE_CHECKING:
@@ -35,9 +46,9 @@ class Diffusion(Medium):
     of: Literal["concentration", "temperature", "number"] = field(
         "What spreads, which gives its unit.", "concentration"
     )
-    coefficient: ANYTHING = field("The coefficient D [m^2/s].")
-    initial: PLACE | Picture | None = field("The field at the start, a formula or a picture; by default 0.", None)
-    source: ANYTHING | None = field("What comes in a second and cubic meter; below 0 it leaves.", None)
+    coefficient: COEFFICIENT = field("The coefficient D [m^2/s].")
+    initial: START | Picture | None = field("The field at the start, a formula or a picture; by default 0.", None)
+    source: SOURCE | None = field("What comes in a second and cubic meter; below 0 it leaves.", None)
     boundary: Boundary = field(
         "What holds on the sides `left`, `right` (x), `bottom`, `top` (y), `back`, `front` (z) of a box, on the pieces "
         "of an outline, on the boundary of another object by its name, on any part `where` a formula holds or `near` a "
@@ -51,6 +62,11 @@ class Diffusion(Medium):
         unit = UNITS.get(str(written.get("of", "concentration")), dim.PLAIN)
         found = dict(gives_of("The field in every cell of the domain.", unit, written))
         return {"concentration": found.pop("field"), **found}
+
+    @classmethod
+    def formula_dimension(cls, written: Mapping[str, Any]) -> Dimension | None:
+        """That of what spreads."""
+        return UNITS.get(str(written.get("of", "concentration")))
 
     def boundaries(self) -> Iterable[Boundary]:
         """That of its field."""

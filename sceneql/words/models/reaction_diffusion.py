@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Generator, Iterable, Mapping
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from sceneql.formulas.formula_rows import TIMES, Rows
-from sceneql.grids.medium import ANYTHING, Boundary, FieldLayout, Medium, gives_of, layout_of
-from sceneql.kinds import Formula, Gives, Problem, Record, Value, field
+from sceneql.grids.medium import COEFFICIENT, SOURCE, Boundary, FieldLayout, Medium, gives_of, layout_of
+from sceneql.kinds import Formula, Gives, Problem, Record, Symbols, Value, field
 from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Expr, Link, Number, Symbol, Type, recursive, walk
 
@@ -30,12 +31,16 @@ OWN = "c"
 class Species(Record):
     """One field: how it spreads, where it starts, how fast it is made."""
 
-    coefficient: ANYTHING | None = field(
+    coefficient: COEFFICIENT | None = field(
         "The coefficient D [m^2/s] of its spread; by default it stays in place, whatever drifts.", None
     )
-    initial: Formula | None = field("The field at the start, by place; by default 0.", None)
-    rate: Formula | None = field("What the reactions make of it a second, by place, time and all species.", None)
-    source: ANYTHING | None = field("What comes in besides, a second and cubic meter.", None)
+    initial: Annotated[Formula, Symbols(None, dim.PLAIN, of_field=True)] | None = field(
+        "The field at the start, by place; by default 0.", None
+    )
+    rate: Annotated[Formula, Symbols(None, dim.FREQUENCY, of_field=True)] | None = field(
+        "What the reactions make of it a second, by place, time and all species.", None
+    )
+    source: SOURCE | None = field("What comes in besides, a second and cubic meter.", None)
     boundary: Boundary | None = field("What holds on the boundary for it; by default the model's.", None)
 
     @property
@@ -71,6 +76,11 @@ class ReactionDiffusion(Medium):
     def formula_symbols(cls, written: Mapping[str, Any]) -> tuple[str, ...]:
         """Species, helper quantities, place and time."""
         return (*_names(written, "species"), *_names(written, "where"), *PLACES, *TIMES)
+
+    @classmethod
+    def formula_dimension(cls, written: Mapping[str, Any]) -> Dimension | None:
+        """Species are plain numbers."""
+        return dim.PLAIN
 
     @classmethod
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
@@ -180,8 +190,12 @@ class ReactionDiffusion(Medium):
         for name, one in self.species.items():
             if one.rate is None:
                 continue
-            with np.errstate(all="ignore"):
-                rate = np.broadcast_to(np.asarray(evaluate(one.rate.expr, look_up, arrays=True)), ground.inside.sum())
+            try:
+                with np.errstate(all="ignore"):
+                    rate = np.asarray(evaluate(one.rate.expr, look_up, arrays=True))
+            except ScriptError:
+                continue  # it reads what is solved, which has no place in the state yet
+            rate = np.broadcast_to(rate, ground.inside.sum())
             bad = np.flatnonzero(~np.isfinite(rate))
             if len(bad):
                 x, y, z = ground.centers[ground.inside][bad[0]]

@@ -12,6 +12,7 @@ from pydantic import field_validator
 from sceneql.formulas.point_formula import in_coordinates, written_out
 from sceneql.kinds import Axis, FieldBuilder, FixedLength, FixedScalar, Formula, Moment, Problem, Record, Symbols
 from sceneql.kinds import field as described
+from sceneql.quantities.dimension import PLAIN
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Expr, Symbol
 from sceneql.shapes.placement import inverse
@@ -68,7 +69,7 @@ class Implicit(Solid):
     the level and does not pass it, as (x^2 + y^2 - 1)^2 does 0; to contacts, meshes and other objects it is the solid.
     """
 
-    field: Annotated[Formula, Symbols(("x", "y", "z", "t"))] = described("The formula.")
+    field: Annotated[Formula, Symbols(("x", "y", "z", "t"), PLAIN)] = described("The formula.")
     level: FixedScalar = described("The value that the formula has on the surface.", "0")
     unit: FixedLength = described("The length that x = 1 stands for.", "1 m", above=0)
     bounds: Within = described(

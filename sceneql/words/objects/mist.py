@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from sceneql.grids.maps.seen import Field, level_of, seen, unfit
 from sceneql.kinds import Color, Moment, Object, Problem, Quantity, Value, field
-from sceneql.quantities.dimension import LENGTH, PLAIN
+from sceneql.quantities.dimension import LENGTH, PLAIN, suits
 from sceneql.shapes.color import linear
 from sceneql.shapes.placement import uniform_scale
 
@@ -33,7 +33,7 @@ class Mist(Object):
         """Fields of no part or of several; an absorption that is of something else."""
         yield from unfit(self.of, {})
         own, has = self.of.expr.type.dimension, self.absorption.expr.type.dimension
-        if own is not None and has is not None and has not in (PLAIN / own / LENGTH, PLAIN):
+        if own is not None and not suits(has, PLAIN / own / LENGTH):
             yield Problem("absorption is told for a meter of a unit of the field: `30 m^2/kg`", ("absorption",))
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
