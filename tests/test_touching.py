@@ -43,7 +43,10 @@ def cradle(count, mode, pulled=1):
     return script
 
 
-@pytest.mark.parametrize(("count", "pulled", "mode"), [(5, 1, "exact"), (5, 2, "exact"), (5, 1, "local")])
+ROWS = [(5, 1, "exact"), (5, 2, "exact"), *((5, pulled, "local") for pulled in (1, 2, 3, 4)), (9, 3, "local")]
+
+
+@pytest.mark.parametrize(("count", "pulled", "mode"), ROWS)
 def test_a_hanging_cradle_gives_out_as_many_balls_as_come_in(tmp_path, count, pulled, mode):
     outputs = ("c.positions", "c.velocities", "c.energy", "hit.hits.count")
     start, one, end = watch(tmp_path, cradle(count, mode, pulled), [0, 0.6, 0.7], *outputs)

@@ -24,7 +24,10 @@ NONE = -1
 
 @inlined
 def in_touch(k, y1, floats, ints, near, u):
-    """Write normals (.., 3) and velocities (.., 3) of the objects that mass k touches to near and u; their number."""
+    """Write normals (.., 3) and velocities (.., 3) of the objects that mass k touches to near and u; their number.
+
+    An object bears no mass that is inside it by more than the radius, as balls that hang below a floor.
+    """
     count = 0
     reach = floats[of(ints, k, spheres.RADIUS)]
     slack = spheres.TOUCHING * max(reach, 1e-3)
@@ -34,7 +37,7 @@ def in_touch(k, y1, floats, ints, near, u):
         if count == near.shape[0] or clear(floats, ints, at, y1[x], y1[x + 1], y1[x + 2], reach + slack):
             continue
         d, a, b, c = surface(floats, ints, at, y1[x], y1[x + 1], y1[x + 2])
-        if d > reach + slack:
+        if d > reach + slack or d < -reach:
             continue
         near[count, 0], near[count, 1], near[count, 2] = a, b, c
         u[count, 0], u[count, 1], u[count, 2] = velocity(floats, ints, at, y1[x], y1[x + 1], y1[x + 2])
