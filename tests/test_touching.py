@@ -43,7 +43,10 @@ def cradle(count, mode, pulled=1):
     return script
 
 
-@pytest.mark.parametrize(("count", "pulled", "mode"), [(5, 1, "exact"), (5, 2, "exact"), (5, 1, "local")])
+ROWS = [(5, 1, "exact"), (5, 2, "exact"), *((5, pulled, "local") for pulled in (1, 2, 3, 4)), (9, 3, "local")]
+
+
+@pytest.mark.parametrize(("count", "pulled", "mode"), ROWS)
 def test_a_hanging_cradle_gives_out_as_many_balls_as_come_in(tmp_path, count, pulled, mode):
     outputs = ("c.positions", "c.velocities", "c.energy", "hit.hits.count")
     start, one, end = watch(tmp_path, cradle(count, mode, pulled), [0, 0.6, 0.7], *outputs)
@@ -175,6 +178,7 @@ objects:
 contacts:
   ground: {collision: {between: [b, floor, left, right, back, front], restitution: 0}}
   each: {mutual_collision: {between: [b, floor, left, right, back, front], restitution: 0}}
+solvers: {main: {rk4: {step: 2 ms}}}
 """
 
 
@@ -186,6 +190,23 @@ def test_the_energy_of_a_confined_pile_is_accounted(tmp_path):
         assert kinetic + potential < rows[0][0] * (1 + 1e-9)
         assert np.abs(x[:, [0, 2]]).max() < 0.11 + 1e-2
     assert rows[-1][1] < 0.01
+
+
+@pytest.mark.parametrize("restitution", [0, 0.5])
+def test_masses_of_a_dense_pile_do_not_sink_into_each_other_and_come_to_rest(tmp_path, restitution):
+    places = np.stack(np.meshgrid([-0.09, 0, 0.09], 0.09 * np.arange(1, 9), [-0.09, 0, 0.09]), axis=-1).reshape(-1, 3)
+    places += np.random.default_rng(1).uniform(-0.004, 0.004, places.shape)
+    rows = ", ".join(f"p{k}: {{position: {x!r} {y!r} {z!r} m}}" for k, (x, y, z) in enumerate(places.tolist()))
+    script = COLUMN.replace("fill: {count: 11, object: crate}", f"list: {{{rows}}}")
+    script = script.replace("restitution: 0", f"restitution: {restitution}, friction: 0.2")
+    script = script.replace("1.2 s", "2 s").replace("2 ms", "4 ms")
+    start, *after = watch(tmp_path, script, [0, 0.5, 1, 2], "b.energy", "b.positions", "b.velocities")
+    i, j = np.triu_indices(len(places), 1)
+    for energy, x, _ in after:
+        assert energy == pytest.approx(start[0], rel=1e-3)
+        assert np.linalg.norm(x[i] - x[j], axis=1).min() > 0.08 - 4e-5
+        assert np.abs(x[:, [0, 2]]).max() < 0.11 + 4e-5
+    assert np.linalg.norm(after[-1][2], axis=1).max() < 1e-3
 
 
 PADDLE = """

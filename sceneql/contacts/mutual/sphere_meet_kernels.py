@@ -14,10 +14,12 @@ from sceneql.compiled.kernels import inlined, kernel
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.impulse_kernels import count_hit
 from sceneql.contacts.mutual import sphere_pair_kernels as spheres
-from sceneql.contacts.mutual.sphere_pair_kernels import ROWS, impulse, of, radii, rests_below
+from sceneql.contacts.mutual.sphere_pair_kernels import ROWS, distance, impulse, of, radii, rests_below
 from sceneql.system.signatures_kernels import A, F, I, N
 
 MOST_PASSES = 100
+MOST_HITS = 8
+"""Impacts of a pair in one step after which it is left to `rest`, where masses are not elastic."""
 
 rest = lazy("sceneql.contacts.mutual.sphere_rest_kernels:rest", spheres.REST)
 
@@ -95,7 +97,15 @@ def meet_all(t1, h, first, others, y0, rate0, y1, floats, ints):
             # Not the mean acceleration of the step, which may contain impulses by objects.
             pull[k, c] = rate0[of(ints, k, spheres.V) + c]
     since, next_left = np.zeros(n), np.empty(n)
-    partner = np.empty(n, dtype=np.int64)
+    partner, row = np.empty(n, dtype=np.int64), np.empty(n, dtype=np.int64)
+    hits = np.zeros(others.size, dtype=np.int64)
+    e = floats[ints[spheres.RESTITUTION]]
+    most = MOST_PASSES if e >= 1.0 else (MOST_HITS if e > 0.0 else 1)
+    for i in range(n if e == 0.0 else 0):
+        # Without restitution what touches parts or stays together, all at once.
+        for one in range(first[i], first[i + 1]):
+            reach = (1.0 + spheres.SLACK) * radii(i, others[one], floats, ints)
+            hits[one] = distance(i, others[one], y0, ints) <= reach
     r, v = np.empty(3), np.empty(3)
     for _ in range(MOST_PASSES):
         for k in range(n):
@@ -103,20 +113,23 @@ def meet_all(t1, h, first, others, y0, rate0, y1, floats, ints):
         for i in range(n):
             for one in range(first[i], first[i + 1]):
                 j = others[one]
+                if hits[one] >= most:
+                    continue
                 left = meet(i, j, h, since, mean, pull, y1, r, v, floats, ints)
                 if left < 0.0:
                     continue
                 # Of simultaneous pairs both masses take the first in the list.
                 if left > next_left[i]:
-                    next_left[i], partner[i] = left, j
+                    next_left[i], partner[i], row[i] = left, j, one
                 if left > next_left[j]:
                     next_left[j], partner[j] = left, i
         met = False
         for i in range(n):
             j = partner[i]
             if j > i and partner[j] == i:
+                hits[row[i]] += 1
                 collide(i, j, next_left[i], t1, h, since, mean, pull, y1, r, v, floats, ints)
                 met = True
         if not met:
             break
-    rest(h, first, others, pull, y1, floats, ints)
+    rest(h, first, others, pull, y0, y1, floats, ints)

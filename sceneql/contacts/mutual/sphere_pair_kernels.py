@@ -3,10 +3,11 @@
 
 ints: number of masses; offsets in the floats of restitution, friction and tally, of the places, the sorted places,
 numbers and starts of the cell lists, table of cells (neighbors.table); number of objects; offset in the ints of the
-tied pairs (0: none); offset in the floats of the end of the last step and the masses' accelerations without contacts
-then (local mode); BODY integers for each mass: offsets in y of position, velocity and work, in the floats of mass,
-inverse mass and radius; the objects (shape_kernels). Tied pairs, which do not collide, are n + 1 starts, one for each
-mass and the end, and then for each mass its partners of larger number.
+tied pairs (0: none); offset in the floats of the end of the last step, the masses' accelerations without contacts
+then, and the impulses of their contacts (sphere_warm_kernels; local mode); BODY integers for each mass: offsets in y
+of position, velocity and work, in the floats of mass, inverse mass and radius; the objects (shape_kernels). Tied
+pairs, which do not collide, are n + 1 starts, one for each mass and the end, and then for each mass its partners of
+larger number.
 """
 
 import math
@@ -23,13 +24,18 @@ X, V, WORK, MASS, INVERSE, RADIUS, BODY = range(7)
 
 FOUR = types.UniTuple(F, 4)
 ROWS = types.float64[:, ::1]
+PAIR_ROWS = types.int64[:, ::1]
 MEET = types.void(F, F, I, I, A, A, A, A, I)
 """(end of the step, its length, the pairs: starts and other masses, state and rate at the start, state at the end,
 floats, ints)."""
-REST = types.void(F, I, I, ROWS, A, A, I)
-"""(length of the step, the pairs, mean accelerations (n, 3), state at the end, floats, ints)."""
+REST = types.void(F, I, I, ROWS, A, A, A, I)
+"""(length of the step, the pairs, mean accelerations (n, 3), state at its start and end, floats, ints)."""
 TOUCHING = 1e-9
 """Distance, relative to the radii, below which two masses touch."""
+SLACK = 1e-4
+"""The same for masses that are not elastic, which rest: what corrections of places leave must not part them."""
+MOST_WARM = 4
+"""Contacts for each mass, on average, whose impulses are kept for the next step."""
 
 PAIRS, INSTANT, PAIR = SORTED, 7, 4
 """In `exact` mode floats[ints[POINTS] + INSTANT k:] has the last accepted instant of mass k (NaN before the first), its

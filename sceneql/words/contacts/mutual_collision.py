@@ -67,7 +67,7 @@ class MutualCollision(Contact):
 
         from sceneql.bodies.neighbors import table
         from sceneql.contacts.colliders import OFTEN, surfaces
-        from sceneql.contacts.mutual.sphere_pair_kernels import BODY, HEAD, INSTANT, PAIR
+        from sceneql.contacts.mutual.sphere_pair_kernels import BODY, HEAD, INSTANT, MOST_WARM, PAIR
 
         rows = [
             (
@@ -98,7 +98,7 @@ class MutualCollision(Contact):
             *(assembly.floats(np.full(count, np.nan if exact and not k else 0.0)) for k, count in enumerate(scratch)),
             *(size, first, second, len(others)),
             HEAD + BODY * n + len(objects) if len(tied) else 0,
-            0 if exact else assembly.floats(np.zeros(1 + 3 * n)),
+            0 if exact else assembly.floats(np.zeros(3 + (4 + 4 * MOST_WARM) * n)),
             *(number for row in rows for number in row),
             *objects,
         )
