@@ -14,7 +14,12 @@ from types import FrameType
 from sceneql.quantities.unit_table import KNOWN_UNITS
 
 ROOT = Path(__file__).parents[1]
-SCRIPTS = sorted([*ROOT.glob("scenes/*.yaml"), *ROOT.glob("tests/wishes/*.yaml")])
+SCRIPTS = sorted(
+    path
+    for path in [*ROOT.glob("scenes/*.yaml"), *ROOT.glob("tests/wishes/*.yaml")]
+    if "\ninclude:" not in path.read_text(encoding="utf-8")
+)
+"""Scenes of one file: that another is included would be their only news."""
 TOKEN = re.compile(r"[^\W\d]\w*|\d+(?:\.\d+)?(?:[eE][-+]?\d+)?|\n *|[ \t]+|.", re.DOTALL)
 NUMBERS = [
     *("0", "-0", "1", "-1", "2", "7", "0.5", "-3.5", "1e300", "-1e300", "1e-300", "1e308", "1e-320", "1e999", "nan"),

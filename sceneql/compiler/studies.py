@@ -74,7 +74,9 @@ def spaced(low: float, high: float, points: int, *, log: bool = True) -> tuple[f
     if log and _alike(low, high):
         middle = [math.copysign(abs(low) ** (1 - part) * abs(high) ** part, low) for part in parts[1:-1]]
         decades = math.log10(abs(high)) - math.log10(abs(low))
-        if abs(decades) < 300 and high / low == 10.0 ** round(decades):  # whole decades: round to the digits that are meant
+        if abs(decades) < 300 and high / low == 10.0 ** round(
+            decades
+        ):  # whole decades: round to the digits that are meant
             middle = [float(f"{value:.6g}") for value in middle]
     else:
         middle = [low + (high - low) * part for part in parts[1:-1]]
