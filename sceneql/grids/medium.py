@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 PLACE = Annotated[Formula, Symbols(("x", "y", "z"))]
 ANYTHING = Annotated[Formula, Symbols(("x", "y", "z", "t", "c"))]
 MEASURES = ("field", "concentration", "centers", "mass", "inflow", "max", "min", "mean")
+SHORTEST = 1e-100
+"""[m] Least side of a domain: rates of spreading over shorter ones overflow."""
 SIZES = Annotated[tuple[float, ...], Quantity(dim.LENGTH, (None,))]
 
 
@@ -171,6 +173,9 @@ class Medium(Model):
             yield from self._misled(self.drift, len(self.size))
         if len(self.size) not in (2, 3) or (self.corner is not None and len(self.corner) != len(self.size)):
             yield Problem("a domain has two or three sides, and its corner as many numbers")
+            return
+        if min(self.size) < SHORTEST:
+            yield Problem(f"a side is at least {SHORTEST:g} m", ("size",), code="out-of-range")
             return
         shape = counts(self.size, self.cell)
         cells = shape[0] * shape[1] * shape[2]
