@@ -208,7 +208,10 @@ def test_marks_and_controls_are_drawn_on_one_line(text):
         ("models: {a: {diffusion: {size: 1 1e308 m, cell: 1 mm, coefficient: '1'}}}", "limit-refused"),
         ("models: {a: {diffusion: {size: 1 1e-300 m, cell: 1 mm, coefficient: '1'}}}", "a side is at least 1e-100 m"),
         ("models: {a: {diffusion: {size: 1 1 m, cell: 1 m, coefficient: [1]}}}", "coefficient is one number"),
-        ("models: {a: {diffusion: {size: 1 1 m, cell: 1 m, coefficient: 1, initial: [1, 2]}}}", "initial is one number"),
+        (
+            "models: {a: {diffusion: {size: 1 1 m, cell: 1 m, coefficient: 1, initial: [1, 2]}}}",
+            "initial is one number",
+        ),
         ("models: {a: {particles: {emit: {rate: 1e300 1/s, lifetime: 1e300 s, from: 0 0 0 m}}}}", "limit-refused"),
         ("models: {a: {mass_spring: {cloth: {cells: 1e308 12, size: 1 1 m}}}}", "limit-refused"),
         ("define: {k: 1}\nstudies: {s: {of: k, sweep: {define.k: 1e-300 .. 1e300}}}", ""),
