@@ -108,12 +108,14 @@ class Emit(Record):
 
     def total(self) -> float:
         """Number of births in all; may be infinite."""
-        births = math.inf if self.until is None else math.floor((self.until - self.start) * self.rate * (1 + 1e-12)) + 1
+        births = math.inf if self.until is None else (self.until - self.start) * self.rate * (1 + 1e-12)
+        births = math.floor(births) + 1 if math.isfinite(births) else births
         return min(births, math.inf if self.count is None else self.count)
 
     def capacity(self) -> float:
         """Largest number of particles that live at once."""
-        alive = math.ceil(self.rate * self.lifetime * (1 + self.variation)) + 1
+        alive = self.rate * self.lifetime * (1 + self.variation)
+        alive = math.ceil(alive) + 1 if math.isfinite(alive) else alive
         return min(alive, self.total(), math.inf if self.most is None else self.most)
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies, mass: float, radius: float) -> None:

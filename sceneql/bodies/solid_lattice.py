@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 SHORT, LONG = 0.9, 1.2
 """Weights of the two kinds of edges, by which the lattice is isotropic."""
+LEAST_MASS = 1e-200
+"""[kg] Lighter masses are taken for mistakes: their inverses overflow."""
 SPRINGS_A_MASS = 7
 """Springs per mass: short ones to 8 neighbors and long ones to 6, each shared by two masses."""
 
@@ -63,6 +65,8 @@ class Filling(Record):
         for name in others:
             if getattr(self, name) is not None:
                 yield Problem(f"{self.cells} have no {name}", (name,), at_key=True)
+        if self.density is not None and self.density * self.spacing**3 < LEAST_MASS:
+            yield Problem(f"masses of less than {LEAST_MASS:g} kg are too light", ("density",), at_key=True)
         if self.cells == "tetrahedra" and self.retardation is not None and self.modulus is None:
             yield Problem("a retardation needs a `modulus`", ("retardation",), at_key=True)
 

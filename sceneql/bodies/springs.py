@@ -47,7 +47,7 @@ def pin_problems(pins: Iterable[str] | Mapping[str, Pin], known: Sequence[str], 
         if pin not in known and not pin.isdecimal():
             text = f"no mass is called '{pin}'; a pin is one of {', '.join(sorted(known))}, or a number"
             yield Problem(text, ("pins", pin), at_key=True)
-        elif pin not in known and count is not None and int(pin) >= count:
+        elif pin not in known and count is not None and float(pin) >= count:
             yield Problem(f"pin {pin}: the {count} masses are counted from 0", ("pins", pin), at_key=True)
 
 

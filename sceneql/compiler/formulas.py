@@ -47,9 +47,14 @@ def read_formula(
     """A textbook formula over plain numbers: the symbols are free, defines come in as plain numbers."""
     if isinstance(node, Sequence):
         items = [read_formula(item, symbols, wanted, what, names, found) for item in node.items]
-        if any(item is None for item in items):
+        known = [item for item in items if item is not None]
+        if len(known) < len(items):
             return None
-        return Vector(tuple(item for item in items if item is not None), Type((len(items),), PLAIN), node.span)
+        for item, place in zip(known, node.items, strict=True):
+            if item.type.shape:
+                found.error("wrong-shape", f"a component of {what} is one number, not several", place.span)
+                return None
+        return Vector(tuple(known), Type((len(known),), PLAIN), node.span)
     if unsure(node):
         return None
     if not isinstance(node, Scalar):

@@ -23,6 +23,7 @@ from sceneql.compiler.texts import read_text
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, broken, unsure, whole
 from sceneql.language.tree import written as plainly
+from sceneql.language.within import within
 from sceneql.quantities.diagnostic import Diagnostics, nearest, suggestion
 from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.span import Span
@@ -104,7 +105,7 @@ class Reader:
             raise Unreadable from None
         problems = [problem for one, problem in context if one is result]  # those inside were reported
         for told in problems:
-            self.found.error(told.code, told.text, _place(told.path, node, span, at_key=told.at_key))
+            self.found.error(told.code, told.text, _place(told.path, node, span, told.at_key, told.part))
         if problems and issubclass(cls, kinds.Kind):
             raise Unreadable
         return result  # the record or word around it may have problems of its own
@@ -364,8 +365,14 @@ def _text(problem: Any) -> str:
     return message.removeprefix("Value error, ").removeprefix("Assertion failed, ")
 
 
-def _place(path: tuple[int | str, ...], node: Node | None, span: Span, *, at_key: bool = False) -> Span:
-    """The span of the deepest node on a validation error's path, or of the last step's key."""
+def _place(
+    path: tuple[int | str, ...],
+    node: Node | None,
+    span: Span,
+    at_key: bool = False,
+    part: tuple[str, int, int] | None = None,
+) -> Span:
+    """The span of the deepest node on a validation error's path, of the last step's key, or of a part of its text."""
     for number, step in enumerate(path, 1):
         if isinstance(node, MappingNode) and isinstance(step, str) and kinds.written_name(step) in node.entries:
             if at_key and number == len(path):
@@ -375,4 +382,6 @@ def _place(path: tuple[int | str, ...], node: Node | None, span: Span, *, at_key
             node = node.items[step]
         else:
             break
+    if part is not None and isinstance(node, Scalar) and node.text == part[0]:
+        return within(node, part[1], part[2])
     return span if node is None else node.span

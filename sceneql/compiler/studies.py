@@ -42,17 +42,19 @@ def tried(path: str, node: Node) -> list[Tried]:
             labels = [" ".join(item.span.text.split()) for item in node.items]
         pairs = zip(labels, node.items, strict=True)
         return [Tried(label, math.nan, "", (path, item, item.span)) for label, item in pairs]
-    found = RANGE.fullmatch(node.text) if isinstance(node, Scalar) else None
+    found = RANGE.fullmatch(" ".join(node.text.split())) if isinstance(node, Scalar) else None
     if found is None:
         raise ScriptError([Diagnostic("sweep-shape", "this is neither a range nor a list", node.span, HELP)])
-    low, high, unit, count, way = float(found[1]), float(found[2]), found[3], int(found[4] or POINTS), found[5]
+    low, high, unit, count, way = float(found[1]), float(found[2]), found[3], float(found[4] or POINTS), found[5]
+    if not (math.isfinite(low) and math.isfinite(high)):
+        raise ScriptError([Diagnostic("sweep-shape", "a range has finite ends", node.span)])
     if not 2 <= count <= MOST_POINTS:
-        message = f"a range has 2 to {MOST_POINTS} points, not {count}"
+        message = f"a range has 2 to {MOST_POINTS} points, not {count:g}"
         raise ScriptError([Diagnostic("sweep-shape", message, node.span)])
-    if way == "log" and low * high <= 0:
+    if way == "log" and not _alike(low, high):
         raise ScriptError([Diagnostic("sweep-shape", "a logarithmic range has no 0 within", node.span)])
     result = []
-    for number in spaced(low, high, count, log=way != "linear"):
+    for number in spaced(low, high, int(count), log=way != "linear"):
         text = f"{number!r} {unit}".rstrip()
         value = Scalar(text, kind_of(text), False, Source(f"{path} of a study", text), 0, len(text))
         result.append(Tried(f"{number:.4g} {unit}".rstrip(), number, unit, (path, value, node.span)))
@@ -69,13 +71,21 @@ def _label(node: Node) -> str:
 def spaced(low: float, high: float, points: int, *, log: bool = True) -> tuple[float, ...]:
     """Values from ``low`` to ``high``, both exact, evenly spaced: with ``log`` and one sign, in the logarithm."""
     parts = [k / (points - 1) for k in range(points)]
-    if log and low * high > 0:
+    if log and _alike(low, high):
         middle = [math.copysign(abs(low) ** (1 - part) * abs(high) ** part, low) for part in parts[1:-1]]
-        if high / low == 10.0 ** round(math.log10(high / low)):  # whole decades: round to the digits that are meant
+        decades = math.log10(abs(high)) - math.log10(abs(low))
+        if abs(decades) < 300 and high / low == 10.0 ** round(
+            decades
+        ):  # whole decades: round to the digits that are meant
             middle = [float(f"{value:.6g}") for value in middle]
     else:
         middle = [low + (high - low) * part for part in parts[1:-1]]
     return (low, *middle, high)
+
+
+def _alike(low: float, high: float) -> bool:
+    """Whether both are of one sign."""
+    return (low > 0 and high > 0) or (low < 0 and high < 0)
 
 
 def instead(study: Study) -> list[Patch]:

@@ -8,7 +8,7 @@ from sceneql.compiler.names import Names
 from sceneql.compiler.over_time import momentary
 from sceneql.compiler.values import parsed_text, scalar_expr
 from sceneql.kinds import Interpolated, Text, TextValue, Value
-from sceneql.kinds.texts import FORM
+from sceneql.kinds.texts import FORM, overlong
 from sceneql.language.tree import Node, Scalar
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.span import Span
@@ -21,6 +21,9 @@ def read_text(node: Node, mark: Interpolated, what: str, names: Names, found: Di
     """The text of a scalar, or None after reporting what is wrong with it."""
     if not isinstance(node, Scalar):
         found.error("wrong-shape", f"{what} is a text", node.span)
+        return None
+    if said := overlong(node.text):
+        found.error("limit-refused", said, node.span)
         return None
     text, start = parsed_text(node), node.content.start
     same = text == node.content.text

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -33,6 +33,8 @@ START = Annotated[Formula, Symbols(("x", "y", "z"), dim.PLAIN, of_field=True, at
 FLUX = Annotated[Formula, Symbols(ANY, dim.VELOCITY, of_field=True)]
 SOURCE = Annotated[Formula, Symbols(ANY, dim.FREQUENCY, of_field=True)]
 MEASURES = ("field", "concentration", "centers", "mass", "inflow", "max", "min", "mean")
+SHORTEST = 1e-100
+"""[m] Least side of a domain: rates of spreading over shorter ones overflow."""
 SIZES = Annotated[tuple[float, ...], Quantity(dim.LENGTH, (None,))]
 
 
@@ -119,6 +121,20 @@ def number_in(formula: Formula | None) -> float | None:
     return float(evaluate(formula.expr, {}))
 
 
+def _vectors(part: object, path: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
+    """Paths of the formulas in a field, its records and its names that are not of one number."""
+    if isinstance(part, Formula) and part.expr.type.shape:
+        yield path
+    elif isinstance(part, dict | Record):
+        items = (
+            part.items()
+            if isinstance(part, dict)
+            else ((name, getattr(part, name)) for name in type(part).model_fields)
+        )
+        for name, item in items:
+            yield from _vectors(item, (*path, name))
+
+
 class Medium(Model):
     """A domain on a grid of cells."""
 
@@ -161,6 +177,16 @@ class Medium(Model):
         """Two places or none, coefficients below 0, sides that do not fit, too many cells, boundaries of no side."""
         if (self.size is None) == (self.domain is None):
             yield Problem("it spreads in one of `domain` and `size`")
+        vectors = [
+            path
+            for name in type(self).model_fields
+            if name != "drift"
+            for path in _vectors(getattr(self, name), (name,))
+        ]
+        for path in vectors:
+            yield Problem(f"{path[-1]} is one number at each place, not several", path, code="wrong-shape")
+        if vectors:
+            return
         for coefficient, path in self.coefficients():
             d = number_in(coefficient)
             if d is not None and d < 0.0:
@@ -176,6 +202,9 @@ class Medium(Model):
             yield from self._misled(self.drift, len(self.size))
         if len(self.size) not in (2, 3) or (self.corner is not None and len(self.corner) != len(self.size)):
             yield Problem("a domain has two or three sides, and its corner as many numbers")
+            return
+        if min(self.size) < SHORTEST:
+            yield Problem(f"a side is at least {SHORTEST:g} m", ("size",), code="out-of-range")
             return
         shape = counts(self.size, self.cell)
         cells = shape[0] * shape[1] * shape[2]

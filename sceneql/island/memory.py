@@ -9,16 +9,20 @@ LARGEST_MEMORY = 8 * 2**30
 BODY, SPRING, PLACE = 900, 350, 100
 """[bytes] of a mass with its parts of the state, of an explicit solver's stages and of the picture; of a spring; of a
 candidate place on a grid. Measured as the growth of the peak memory of runs by `rk4` with the count."""
+MOST = 1e300
+"""Items from which on all are as many: a whole number may be larger than the largest float."""
 
 
 def bounded(count: float, what: str = "particles", each: int = BODY) -> None:
     """Raise Exceeds where ``count`` items of ``each`` bytes take more than LARGEST_MEMORY."""
+    count = min(count, MOST)
     if count * each > LARGEST_MEMORY:
         raise Exceeds(f"{_needs(count, what, count * each)}, {LARGEST_MEMORY / each:.2g} {what}, are allowed")
 
 
 def bounded_net(masses: float, springs: float) -> None:
     """Raise Exceeds where masses and springs take more than LARGEST_MEMORY."""
+    masses, springs = min(masses, MOST), min(springs, MOST)
     memory = masses * BODY + springs * SPRING
     if memory > LARGEST_MEMORY:
         raise Exceeds(f"{_needs(masses, f'masses and {springs:.3g} springs', memory)} are allowed")

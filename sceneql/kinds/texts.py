@@ -17,8 +17,17 @@ if TYPE_CHECKING:
 
 FORM = re.compile(r"[+ ]?#?0?\d{0,2}(\.\d{1,2})?[eEfFgG%]?")
 """How a number may be written: as Python writes floats."""
+MOST_LETTERS = 2_000
+"""Most letters of a text that is drawn in pictures."""
 SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 POWER = re.compile(r"e([+-])0*(\d+)$")
+
+
+def overlong(text: str | None) -> str | None:
+    """What is wrong with a text that has too many letters to be drawn; None with another."""
+    if text is None or len(text) <= MOST_LETTERS:
+        return None
+    return f"a text of {len(text):,} letters is longer than the {MOST_LETTERS:,} that are drawn"
 
 
 @dataclass(frozen=True, slots=True)

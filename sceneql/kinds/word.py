@@ -88,6 +88,8 @@ class Problem:
     at_key: bool = False
     """The caret stands under the last step's name, not under its value."""
     code: str = "invalid"
+    part: tuple[str, int, int] | None = None
+    """A text and the first and last (exclusive) of its characters that are wrong, where it is the value of the path."""
 
 
 def grammar_of(info: Any) -> tuple[Quantity | Paint | Turn | None, Any]:

@@ -183,6 +183,8 @@ def lacking(root: Node | None, faults: list[Fault]) -> None:
                 if _empty(inner):
                     here.entries[before[-1]] = hole(inner.span)
             else:
+                if not here.items:
+                    break
                 at = _item(here, fault)
                 inner = here.items[at]
                 if _empty(inner):

@@ -317,7 +317,12 @@ class _Expander:
             if near is not None:  # a misspelled field is not missing as well
                 given.setdefault(nearest(key, template.fields) or "", hole(fields.keys[key].span))
         for key, node in template.fields.items():
-            if empty(node) and key not in given:
+            if key in given and empty(given[key]):
+                message = f"the field '{key}' of '{word.text}' has no value"
+                help = f"write `{key}: ...`" if empty(node) else "write one, or leave the field out to have its default"
+                self.found.error("missing-field", message, given[key].span, help=help)
+                given[key] = hole(given[key].span)
+            elif empty(node) and key not in given:
                 given[key] = hole(word.span)
                 if isinstance(fields, Mapping) and fields.partial:
                     continue

@@ -6,6 +6,9 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from unicodedata import category
+
+from sceneql.kinds.texts import MOST_LETTERS
 
 if TYPE_CHECKING:
     from numpy import uint8
@@ -49,7 +52,7 @@ class Letterer:
 
     def extent(self, text: str) -> tuple[int, int]:
         """Width and height of a text [pixels]; all texts of one line are of one height."""
-        return int(self.draw.textlength(text, font=self.font) + 0.5), sum(self.font.getmetrics())
+        return int(self.draw.textlength(drawable(text), font=self.font) + 0.5), sum(self.font.getmetrics())
 
     def panel(self, box: tuple[int, int, int, int], opacity: float) -> None:
         """A panel with round corners: left, top, right, bottom."""
@@ -57,12 +60,12 @@ class Letterer:
 
     def text(self, place: tuple[float, float], text: str, anchor: str = "lm", ink: Ink = None) -> None:
         """A text at a place [pixels], anchored as Pillow names it: ``lm`` is the middle of its left end."""
-        self.draw.text(place, text, ink or self.look.ink, font=self.font, anchor=anchor)
+        self.draw.text(place, drawable(text), ink or self.look.ink, font=self.font, anchor=anchor)
 
     def edged(self, seen: tuple[float, float], text: str) -> None:
         """A text centered on a point, without a panel: an outline in the paper's color keeps it legible."""
         ink, paper, edge = self.look.ink, self.look.paper, max(1, round(self.em / 10))
-        self.draw.text(seen, text, ink, font=self.font, anchor="mm", stroke_width=edge, stroke_fill=paper)
+        self.draw.text(seen, drawable(text), ink, font=self.font, anchor="mm", stroke_width=edge, stroke_fill=paper)
 
     def line(self, corner: tuple[int, int], text: str, opacity: float, ink: Ink = None) -> None:
         """A text on a panel of its own, its left and top at the corner [pixels] or as near as the picture holds it."""
@@ -97,6 +100,12 @@ class Letterer:
         import numpy as np
 
         self._pixels[:] = np.asarray(self._image)
+
+
+def drawable(text: str) -> str:
+    """A text as one line of signs: line breaks and controls are spaces, marks without a shape of their own left out."""
+    signs = "".join(" " if category(one) in ("Cc", "Cs", "Zl", "Zp") else one for one in text[:MOST_LETTERS])
+    return "".join(one for one in signs if category(one) != "Cf")
 
 
 @cache

@@ -81,9 +81,13 @@ def centers_of(shape: tuple[int, int, int], low: Sequence[float] | Floats, spaci
     return found.reshape(-1, 3)
 
 
+MOST_COUNTED = 1e18
+"""Cells along a side from which on all are as many: far too many."""
+
+
 def counts(sides: tuple[float, ...], cell: float) -> tuple[int, ...]:
     """Cells along each side, none longer than ``cell`` [m]; 1 along z where there are two sides."""
-    found = [max(1, math.ceil(side / cell * (1.0 - 1e-9))) for side in sides]
+    found = [max(1, math.ceil(min(side / cell * (1.0 - 1e-9), MOST_COUNTED))) for side in sides]
     return (*found, 1) if len(found) == 2 else tuple(found)
 
 

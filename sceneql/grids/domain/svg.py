@@ -9,21 +9,26 @@ from __future__ import annotations
 import cmath
 import math
 import re
+from collections import Counter
 from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
 from xml.etree import ElementTree
 
-from sceneql.grids.domain.svg_path import Curve, curves
+from sceneql.grids.domain.svg_path import LARGEST, MOST_CURVES, Curve, curves
 
 LARGEST_FILE = 4 * 2**20
 MOST_CORNERS = 20_000
+MOST_TRANSFORMS = 1_000
+"""Most steps of one transform."""
 CHORD = 5e-5
 """Largest distance of a chord from its curve, relative to the picture's size."""
 DEEPEST = 100
 """Deepest nesting of groups."""
+SHOWN = 40
+"""Characters of a file that a message quotes."""
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
-TRANSFORM = re.compile(r"\s*,?\s*(\w+)\s*\(([^()]*)\)")
+TRANSFORM = re.compile(r"\s*+,?\s*+(\w++)\s*+\(([^()]*+)\)\s*+")
 UNDRAWN = {"defs", "symbol", "clipPath", "mask", "pattern", "marker"}
 
 Corners = tuple[tuple[float, float], ...]
@@ -31,24 +36,34 @@ Matrix = tuple[complex, complex, complex]
 """z -> m[0] Re z + m[1] Im z + m[2]."""
 
 
-@lru_cache(maxsize=16)
 def rings(file: str) -> dict[str, Corners]:
     """Polygons by the id of their element, the largest first, in the file's units but y up.
 
     Raises ValueError for a file that is too large or no SVG, and where it has no closed path.
     """
+    try:
+        seen = Path(file).stat()
+        return _rings(file, (seen.st_mtime_ns, seen.st_size, seen.st_ino))
+    except OSError as error:
+        raise ValueError(f"{Path(file).name} cannot be read: {error.strerror}") from None
+
+
+@lru_cache(maxsize=16)
+def _rings(file: str, version: tuple[int, int, int]) -> dict[str, Corners]:
+    """Those of a file as it is in one version (time, size and inode). Raises OSError, and ValueError as `rings`."""
     path = Path(file)
-    if path.stat().st_size > LARGEST_FILE:
+    if version[1] > LARGEST_FILE:
         raise ValueError(f"{path.name} is larger than the {LARGEST_FILE} bytes that an SVG may have")
     text = path.read_bytes()
-    if b"<!ENTITY" in text:
+    declared = text.replace(b"\0", b"")  # UTF-16 has zeros between the letters
+    if b"<!ENTITY" in declared or b"<!ATTLIST" in declared:  # a few bytes of either stand for any number
         raise ValueError(f"{path.name} defines entities, which are not read")
     try:
         root = ElementTree.fromstring(text)
-    except ElementTree.ParseError as error:
-        raise ValueError(f"{path.name} is no SVG: {error}") from None
+    except (ElementTree.ParseError, LookupError, ValueError) as error:  # of ValueError and LookupError: encodings
+        raise ValueError(f"{path.name} is no SVG: {_cut(str(error), 2 * SHOWN)}") from None
     try:
-        drawn = [(name, row) for name, shape in _shapes(root, (1, 1j, 0), 0) for row in shape]
+        drawn = _drawn(root)
     except ValueError as error:
         raise ValueError(f"{path.name}: {error}") from None
     if not drawn:
@@ -56,6 +71,8 @@ def rings(file: str) -> dict[str, Corners]:
     points = [point for _, row in drawn for curve in row for point in curve]
     size = max(max(p.real for p in points) - min(p.real for p in points),
                max(p.imag for p in points) - min(p.imag for p in points))  # fmt: skip
+    if size > 0.0 and not 1.0 / LARGEST < size < LARGEST:
+        raise ValueError(f"{path.name} is {size:g} wide or high, which is not between {1 / LARGEST:g} and {LARGEST:g}")
     found = [(name, polygon) for name, row in drawn if len(polygon := _polygon(row, CHORD * size)) > 2]
     if not found:
         raise ValueError(f"{path.name} has no path with an inside")
@@ -64,9 +81,10 @@ def rings(file: str) -> dict[str, Corners]:
         raise ValueError(f"{path.name} has {corners} corners, more than the {MOST_CORNERS} that an outline may have")
     found.sort(key=lambda item: -abs(area(item[1])))
     named: dict[str, Corners] = {}
+    numbers: Counter[str] = Counter()
     for name, polygon in found:
-        number = sum(other.partition(" ")[0] == name for other in named) + 1
-        named[name if number == 1 else f"{name} {number}"] = polygon
+        numbers[name] += 1
+        named[name if numbers[name] == 1 else f"{name} {numbers[name]}"] = polygon
     return named
 
 
@@ -76,11 +94,32 @@ def area(polygon: Corners) -> float:
     return 0.5 * sum(a[0] * b[1] - a[1] * b[0] for a, b in zip(polygon, following, strict=True))
 
 
+def _drawn(root: ElementTree.Element) -> list[tuple[str, list[Curve]]]:
+    """Name and mapped curves of every path of the file. Raises ValueError."""
+    drawn, count = [], 0
+    for name, shape in _shapes(root, (1, 1j, 0), 0):
+        for row in shape:
+            count += len(row)
+            if count > MOST_CURVES:
+                raise ValueError(f"there are more than {MOST_CURVES} curves")
+            if not all(abs(p.real) <= LARGEST and abs(p.imag) <= LARGEST for curve in row for p in curve):
+                raise ValueError(f"'{_cut(name, SHOWN)}' has a point beyond {LARGEST:g}")
+            drawn.append((name, row))
+    return drawn
+
+
+def _cut(text: str, length: int) -> str:
+    """The beginning of a text that a message quotes."""
+    return text if len(text) <= length else f"{text[:length]}..."
+
+
 def _shapes(node: ElementTree.Element, matrix: Matrix, depth: int) -> Iterator[tuple[str, list[list[Curve]]]]:
     """Name and mapped curves, path by path, of an element and those inside. Raises ValueError."""
     tag = str(node.tag).rpartition("}")[2]
-    if tag in UNDRAWN or depth > DEEPEST:
+    if tag in UNDRAWN:
         return
+    if depth > DEEPEST:
+        raise ValueError(f"groups are nested more than {DEEPEST} deep")
     matrix = _joined(matrix, _transform(node.get("transform", "")))
     data = _data(tag, node)
     if data:
@@ -95,7 +134,10 @@ def _data(tag: str, node: ElementTree.Element) -> str:
 
     def number(name: str, default: float = 0.0) -> float:
         match = NUMBER.match(node.get(name, ""))
-        return float(match[0]) if match else default
+        found = float(match[0]) if match else default
+        if not abs(found) <= LARGEST:
+            raise ValueError(f"a {tag} has a {name} beyond {LARGEST:g}")
+        return found
 
     if tag == "path":
         return node.get("d", "")
@@ -123,9 +165,15 @@ def _joined(outer: Matrix, inner: Matrix) -> Matrix:
 def _transform(text: str) -> Matrix:
     """The matrix of a transform attribute. Raises ValueError for one that is not read."""
     matrix: Matrix = (1, 1j, 0)
-    while text.strip():
-        match = TRANSFORM.match(text)
+    text, at, steps = text.strip(), 0, 0
+    while at < len(text):
+        steps += 1
+        if steps > MOST_TRANSFORMS:
+            raise ValueError(f"a transform has more than {MOST_TRANSFORMS} steps")
+        match = TRANSFORM.match(text, at)
         numbers = [float(n) for n in NUMBER.findall(match[2])] if match else []
+        if not all(map(math.isfinite, numbers)):
+            raise ValueError(f"the transform '{_cut(text[at:].strip(), SHOWN)}' has a number that is not finite")
         match (match[1] if match else "", numbers):
             case "matrix", [a, b, c, d, e, f]:
                 step: Matrix = (complex(a, b), complex(c, d), complex(e, f))
@@ -141,10 +189,10 @@ def _transform(text: str) -> Matrix:
             case "skewY", [angle]:
                 step = (complex(1.0, math.tan(math.radians(angle))), 1j, 0)
             case _:
-                raise ValueError(f"the transform '{text.strip()}' is not read")
+                raise ValueError(f"the transform '{_cut(text[at:].strip(), SHOWN)}' is not read")
         assert match is not None
         matrix = _joined(matrix, step)
-        text = text[match.end() :]
+        at = match.end()
     return matrix
 
 

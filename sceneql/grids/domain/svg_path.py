@@ -14,16 +14,29 @@ COUNTS = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7
 NUMBER = re.compile(r"[\s,]*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)")
 FLAG = re.compile(r"[\s,]*([01])")
 COMMAND = re.compile(r"[\s,]*([MLHVCSQTAZmlhvcsqtaz])")
+BLANK = re.compile(r"\s*")
+MOST_CURVES = 100_000
+"""Most curves of a file: what has more is refused before they fill the memory."""
+LARGEST = 1e100
+"""Largest number: squares and products of two are finite."""
+FLATTEST = 1e-12
+"""Least ratio of the radii of an arc; one that is flatter is a line."""
 ARC = math.pi / 8
 """Largest arc of one curve, which is then within 1e-7 of its radius."""
+
+STRAIGHT = 1e-9
+"""Largest chord, by the radius, of an arc that is a line to nine digits."""
+VANISHING = 1e-100
 
 
 def curves(data: str) -> list[list[Curve]]:
     """The paths of a text, each a row of curves, those that are open closed by a line. Raises ValueError."""
     paths: list[list[Curve]] = []
     here = start = control = 0j
-    before, at = "", 0
-    while data[at:].strip():
+    before, count, at = "", 0, _after_blank(data, 0)
+    while at < len(data):
+        if count > MOST_CURVES:
+            raise ValueError(f"path data has more than {MOST_CURVES} commands, or pieces of arcs")
         match = COMMAND.match(data, at)
         if match:
             letter, at = match[1], match.end()
@@ -49,12 +62,14 @@ def curves(data: str) -> list[list[Curve]]:
             points = [start]
             paths.append([])
         elif kind == "A":
-            paths[-1] += _arc(here, numbers, points[0])
+            arc = _arc(here, numbers, points[0])
+            paths[-1] += arc
+            count += len(arc)
         else:
             curve = _curve(kind, here, points, control if before.upper() in _LIKE.get(kind, "") else here)
             paths[-1].append(curve)
             control = 2 * curve[3] - curve[2] if kind in "CS" else curve[3] + _LAST * (curve[3] - curve[2])
-        here, before = points[-1], letter
+        here, before, at, count = points[-1], letter, _after_blank(data, at), count + 1
     return [[*path, _line(path[-1][3], path[0][0])] for path in paths if path]
 
 
@@ -62,6 +77,11 @@ _LIKE = {"S": "CS", "T": "QT"}
 """What a smooth curve takes its first control from."""
 _LAST = 1.5
 """From a cubic's last control to that of the quadratic which it is."""
+
+
+def _after_blank(data: str, at: int) -> int:
+    match = BLANK.match(data, at)
+    return at if match is None else match.end()
 
 
 def _numbers(data: str, at: int, kind: str) -> tuple[list[float], int]:
@@ -72,8 +92,8 @@ def _numbers(data: str, at: int, kind: str) -> tuple[list[float], int]:
             raise ValueError(f"'{kind}' of path data takes {COUNTS[kind]} numbers; there is '{data[at : at + 12]}'")
         found.append(float(match[1]))
         at = match.end()
-    if not all(map(math.isfinite, found)):
-        raise ValueError("path data has a number that is not finite")
+    if not all(abs(number) <= LARGEST for number in found):
+        raise ValueError(f"path data has a number beyond {LARGEST:g}")
     return found, at
 
 
@@ -105,9 +125,12 @@ def _arc(a: complex, numbers: list[float], b: complex) -> list[Curve]:
     rx, ry, turned, large, sweep = abs(numbers[0]), abs(numbers[1]), numbers[2], numbers[3], numbers[4]
     if a == b:
         return []
-    if rx == 0.0 or ry == 0.0:
+    if min(rx, ry) <= FLATTEST * max(rx, ry):
         return [_line(a, b)]
     turn = cmath.rect(1.0, math.radians(turned))
+    far, least = max(rx, ry), FLATTEST * abs(b - a)
+    if far < least:  # radii that do not reach are made larger below; these would overflow there
+        rx, ry = rx / far * least, ry / far * least
 
     def unit(z: complex) -> complex:
         """In the frame where the ellipse is the unit circle."""
@@ -116,12 +139,16 @@ def _arc(a: complex, numbers: list[float], b: complex) -> list[Curve]:
 
     chord = unit(b - a)
     half = 0.5 * abs(chord)
+    if half < (VANISHING if large else STRAIGHT):
+        return [_line(a, b)]
     grown = max(1.0, half)  # radii that do not reach are made just large enough
     way = math.sqrt(max(0.0, grown * grown - half * half)) * (1 if large != sweep else -1)
     center = 0.5 * chord + 1j * way * chord / abs(chord)  # from a
     first = cmath.phase(-center)
     sweep_angle = cmath.phase((chord - center) / -center)
-    if sweep and sweep_angle < 0:
+    if large and abs(sweep_angle) < STRAIGHT:  # rounded away: all but the whole ellipse
+        sweep_angle = math.tau if sweep else -math.tau
+    elif sweep and sweep_angle < 0:
         sweep_angle += math.tau
     elif not sweep and sweep_angle > 0:
         sweep_angle -= math.tau

@@ -135,7 +135,7 @@ class MassSpring(SpringModel):
         if self.solid is not None:
             net = self.solid.net(assembly)
             for pin in self.pins:
-                if pin.isdecimal() and int(pin) >= len(net.points):
+                if pin.isdecimal() and float(pin) >= len(net.points):
                     message = f"pin {pin}: the {len(net.points)} masses are counted from 0"
                     raise ScriptError([Diagnostic("invalid", message, self.solid.object.span)])
             return net

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from math import isfinite
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from sceneql.grids.domain.polygon import Corners, crossing
@@ -113,10 +114,13 @@ class Outline(Object):
         if not high_x > low_x:
             raise ValueError("its largest path has no width")
         scale, (x0, y0) = (self.width or 1.0) / (high_x - low_x), self.corner
-        return {
+        scaled = {
             name: tuple((x0 + scale * (x - low_x), y0 + scale * (y - low_y)) for x, y in ring)
             for name, ring in rings.items()
         }
+        if not all(isfinite(x) and isfinite(y) for ring in scaled.values() for x, y in ring):
+            raise ValueError("its largest path is too narrow to be as wide as `width` says")
+        return scaled
 
     def rings(self) -> Mapping[str, Floats]:
         """The polygons by name, each (corners, 2) [m]; the outline itself is `shore`. Raises ValueError."""

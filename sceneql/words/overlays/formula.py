@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cache
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from sceneql.kinds import FixedScalar, Moment, Overlay, Position, field
+from sceneql.kinds import FixedScalar, Moment, Overlay, Position, Problem, field
+from sceneql.kinds.texts import overlong
 from sceneql.pictures.anchors import Place, corner, projected
 
 if TYPE_CHECKING:
@@ -28,13 +28,25 @@ class Formula(Overlay):
     size: FixedScalar = field("Height of its letters in parts of the picture's.", "0.05", above=0, at_most=0.3)
     panel: FixedScalar = field("Opacity of the panel that it stands on.", "0.7", at_least=0, at_most=1)
 
+    def problems(self) -> Iterator[Problem]:
+        """What mathtext cannot set. It is imported here, and numpy with it, for a script with a formula alone."""
+        if said := overlong(self.tex):
+            yield Problem(said, ("tex",), code="limit-refused")
+            return
+        from sceneql.pictures.mathematics import fault
+
+        if (found := fault(self.tex)) is not None:
+            said, start, end = found
+            yield Problem(said, ("tex",), code="not-tex", part=(self.tex, start, end))
+
     def draw(
         self, pixels: NDArray[uint8], view: View, moment: Moment, develop: Callable[[Any], NDArray[uint8]]
     ) -> None:
-        """Draw it. Raises ValueError for what mathtext cannot read."""
+        """Draw it. Raises ValueError for what is too large to draw."""
         from PIL import Image
 
         from sceneql.pictures.lettering import DARK, LIGHT, Letterer
+        from sceneql.pictures.mathematics import printed
 
         letters = Letterer(pixels, self.size, DARK if self.dark else LIGHT)
         mask = Image.fromarray(printed(self.tex, letters.em))
@@ -50,15 +62,3 @@ class Formula(Overlay):
         letters.panel((left, top, left + block[0], top + block[1]), self.panel)
         letters.stamp(letters.look.ink, mask, (left + room, top + room))
         letters.done()
-
-
-@cache
-def printed(tex: str, em: int) -> NDArray[uint8]:
-    """A formula (h, w) in ink 255 on 0, letters ``em`` pixels high. Raises ValueError for one that cannot be read."""
-    import numpy as np
-    from matplotlib.font_manager import FontProperties
-    from matplotlib.mathtext import MathTextParser
-
-    font = FontProperties(size=1.15 * em, math_fontfamily="cm")
-    image = np.asarray(MathTextParser("agg").parse(f"${tex}$", dpi=72, prop=font).image)
-    return np.ascontiguousarray(image, dtype=np.uint8)

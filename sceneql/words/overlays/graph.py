@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from sceneql.kinds import Color, Expected, FixedScalar, Moment, Overlay, Problem, Quantity, Value, field
+from sceneql.kinds.texts import overlong
 from sceneql.pictures.anchors import MARGIN, Place, corner
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import ScriptError
@@ -70,6 +71,8 @@ class Graph(Overlay):
         across = dim.TIME if self.x is None else self.x.expr.type.dimension
         if self.x is not None and self.x.expr.type.shape:
             yield Problem("what a curve is drawn over is one number at each time", ("x",))
+        if said := overlong(self.title):
+            yield Problem(said, ("title",), code="limit-refused")
         yield from _unfit("unit", self.unit, next(iter(dimensions), None))
         yield from _unfit("x_unit", self.x_unit, across)
         if self.range is not None and not self.range[0] < self.range[1]:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, Literal
 
 from sceneql.kinds import FixedScalar, Moment, ObjectRef, Overlay, Problem, field
+from sceneql.kinds.texts import overlong
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.quantities.units import describe, parse_unit, unit_of
 
@@ -32,7 +33,9 @@ class Legend(Overlay):
     panel: FixedScalar = field("Opacity of the panel that it stands on.", "0.7", at_least=0, at_most=1)
 
     def problems(self) -> Iterator[Problem]:
-        """A unit that there is not."""
+        """A unit that there is not; a title that is too long."""
+        if said := overlong(self.title):
+            yield Problem(said, ("title",), code="limit-refused")
         if self.unit is not None:
             try:
                 parse_unit(self.unit)
