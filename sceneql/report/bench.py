@@ -145,8 +145,11 @@ def _account(runs: Sequence[Measurement], heading: str) -> list[str]:
     lines = [f"  {heading}"]
     for run in runs:
         setting = f"{'tolerance' if run.adaptive else 'step'} {run.setting:.3g}{'' if run.adaptive else ' s'}"
+        of = f"  in {run.worst}" if run.worst else ""
         if run.ok:
-            lines.append(f"    {setting:<20} error {run.error:8.2e}  {run.seconds * 1e3:9.3f} ms  {run.steps:8d} steps")
+            lines.append(
+                f"    {setting:<20} error {run.error:8.2e}  {run.seconds * 1e3:9.3f} ms  {run.steps:8d} steps{of}"
+            )
         else:
             lines.append(f"    {setting:<20} failed {run.outcome}")
     return lines

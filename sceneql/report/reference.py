@@ -13,7 +13,8 @@ from sceneql.graph import Island, SimulationGraph
 from sceneql.kinds import Expect, Solver
 from sceneql.quantities.expression import Call, Expr, Link, Symbol, walk
 from sceneql.quantities.operations import OPERATIONS
-from sceneql.report.work_precision import LONGEST, Reference, at, run
+from sceneql.report.error_measure import ErrorMeasure, name_of
+from sceneql.report.work_precision import LONGEST, LOOKS, TOLERANCE, Reference, at, prepared, run
 from sceneql.run.series import measure
 
 if TYPE_CHECKING:
@@ -31,6 +32,8 @@ METHODS = ("dop853", "dopri5", "radau")
 MOST_CALLS = 200_000
 """Most evaluations of the rate by scipy's method: each goes through Python."""
 ROUNDING = 1e-14
+CONSTANT = 1e-9
+"""Range of a number, relative to it, up to which it counts as constant."""
 
 
 class _TooManyCalls(Exception):
@@ -62,17 +65,25 @@ def reference(
         (moment,) = start.moments([0.0])
         known = sum(_value(expect.of.expr, moment).size for expect in exact.values())
         if known >= _unknowns(start.islands[0]):
-            return Reference(lambda moment, march: _exact_error(exact, moment), f"exact: {', '.join(exact)}", ROUNDING)
+            ranges = _ranges(exact, graph, island, own)
+            return Reference(
+                lambda moment, march: _exact_error(exact, moment, ranges)[0],
+                f"exact: {', '.join(exact)}",
+                ROUNDING,
+                lambda moment, march: _exact_error(exact, moment, ranges)[1],
+            )
     failure: RunFailure | LimitRefused | None = None
     for tight, loose in tolerances:
         for word, solver in own.items():
             try:
-                moment, fine = run(graph, island, at(solver, tight), longest)
+                seen: list[tuple[float, Floats]] = []
+                moment, fine = run(graph, island, at(solver, tight), longest, seen)
                 _, coarse = run(graph, island, at(solver, loose), longest)
             except (RunFailure, LimitRefused) as found:  # a method may refuse so many states
                 failure = failure or found
                 continue
-            return _by_runs(word, (moment, fine), coarse, exact, (tight, loose), most_calls)
+            ranges = _ranges(exact, graph, island, own)
+            return _by_runs(word, (moment, fine), coarse, exact, ranges, (tight, loose), most_calls, seen)
     assert failure is not None
     raise failure
 
@@ -82,13 +93,16 @@ def _by_runs(
     fine: tuple[Instant, IslandRun],
     coarse: IslandRun,
     exact: Mapping[str, Expect],
+    ranges: Mapping[str, float],
     tolerances: tuple[float, float],
     most_calls: int,
+    seen: Sequence[tuple[float, Floats]],
 ) -> Reference:
     """A reference by our own runs, or by scipy's DOP853 where that is quick enough and the rate is all that acts."""
     tight = tolerances[0]
     moment, march = fine
     end, other = _end(march), _end(coarse)
+    errors = ErrorMeasure.of(march, _own(march), seen)
     because = f"our own {word} at tolerance {tight:g}"
     if march.assembly.contact_mode != "none":
         because += ": no other method here knows contacts"
@@ -97,14 +111,26 @@ def _by_runs(
     else:
         with suppress(_TooManyCalls):
             theirs, rough = (_by_dop853(march, tolerance, most_calls) for tolerance in tolerances)
-            if _difference(rough, theirs, march) <= max(ROUNDING, 10.0 * _difference(other, end, march)):
+            if errors.error(rough, theirs)[0] <= max(ROUNDING, 10.0 * errors.error(other, end)[0]):
                 end, other, because = theirs, rough, f"scipy's DOP853 at rtol {tight:g}"
     if exact:
-        because += (
-            f"; {word} at tight tolerance meets the exact {', '.join(exact)} to {_exact_error(exact, moment):.0e}"
-        )
-    uncertainty = max(ROUNDING, _difference(other, end, march))
-    return Reference(lambda moment, march: _difference(_end(march), end, march), because, uncertainty)
+        off, _ = _exact_error(exact, moment, ranges)
+        because += f"; {word} at tight tolerance meets the exact {', '.join(exact)} to {off:.0e}"
+    uncertainty = max(ROUNDING, errors.error(other, end)[0])
+
+    def damped(run: IslandRun, looks: Sequence[tuple[float, Floats]]) -> str:
+        found = errors.damped(looks)
+        if found is None:
+            return ""
+        return f"it is damped to rest: {name_of(run, found[1])} moves {found[0]:.1g} of what it does in truth"
+
+    return Reference(
+        lambda moment, run: errors.error(_end(run), end)[0],
+        because,
+        uncertainty,
+        lambda moment, run: name_of(run, errors.error(_end(run), end)[1]),
+        damped,
+    )
 
 
 def _unknowns(island: IslandRun) -> int:
@@ -136,13 +162,44 @@ def _value(expr: Expr, moment: Instant) -> Floats:
     return np.asarray(measure(expr, series, times), dtype=np.float64)
 
 
-def _exact_error(expectations: Mapping[str, Expect], moment: Instant) -> float:
-    """Largest error of the expected numbers, relative to the largest of them."""
+def _ranges(
+    exact: Mapping[str, Expect], graph: SimulationGraph, island: Island, own: Mapping[str, Solver]
+) -> dict[str, float]:
+    """The range over the run of what each expectation expects at its end, by the first method that reaches the end."""
     import numpy as np
 
-    pairs = [(_value(e.of.expr, moment), _value(e.value.expr, moment)) for e in expectations.values() if e.value]
-    scale = max(float(np.max(np.abs(wanted))) for _, wanted in pairs) or 1.0
-    return max(float(np.max(np.abs(got - wanted))) for got, wanted in pairs) / scale
+    from sceneql.run.run import Run
+
+    end = graph.settings.clock.end
+    for solver in own.values() if exact else ():
+        with suppress(RunFailure, LimitRefused):
+            moments = Run(prepared(graph, island, at(solver, TOLERANCE))).moments(
+                [end * k / LOOKS for k in range(LOOKS + 1)]
+            )
+            found = [[_value(expect.of.expr, moment) for expect in exact.values()] for moment in moments]
+            return {
+                name: float(np.ptp(np.array(values), axis=0).max(initial=0.0))
+                for name, values in zip(exact, zip(*found, strict=True), strict=True)
+            }
+    return {}
+
+
+def _exact_error(expectations: Mapping[str, Expect], moment: Instant, ranges: Mapping[str, float]) -> tuple[float, str]:
+    """Largest error of the expected numbers, each relative to its range over the run, and the expectation's name.
+
+    What keeps its value has no range: its error is relative to that value.
+    """
+    import numpy as np
+
+    worst = (0.0, next(iter(expectations)))
+    for name, expect in expectations.items():
+        if expect.value:
+            got, wanted = _value(expect.of.expr, moment), _value(expect.value.expr, moment)
+            size = float(np.max(np.abs(wanted)))
+            moved = ranges.get(name, 0.0)
+            scale = moved if moved > CONSTANT * size else size or 1.0
+            worst = max(worst, (float(np.max(np.abs(got - wanted))) / scale, name))
+    return worst
 
 
 def _by_dop853(island: IslandRun, tolerance: float, most_calls: int) -> Floats:
@@ -181,11 +238,3 @@ def _own(island: IslandRun) -> NDArray[bool_]:
     for first, last, part, _ in island.march.system.ranges:
         own[first:last] = part in island.island.models
     return own
-
-
-def _difference(y: Floats, reference: Floats, island: IslandRun) -> float:
-    """Largest difference in an entry of the models' states, relative to the largest entry of the reference."""
-    import numpy as np
-
-    own = _own(island)
-    return float(np.max(np.abs(y - reference)[own])) / (float(np.max(np.abs(reference[own]))) or 1.0)

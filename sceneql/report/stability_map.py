@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.failure import LimitRefused, RunFailure
@@ -14,6 +14,9 @@ from sceneql.kinds import Solver
 from sceneql.report.reference import reference
 from sceneql.report.stability_sweep import Sweep, around
 from sceneql.report.work_precision import Reference, TooLong, adaptive, at, prepared, run, setting_of, solvers
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
 
 TOLERANCES = ((1e-10, 1e-9), (1e-7, 1e-6))
 """Tolerances of the references, tight enough to see inaccurate runs."""
@@ -44,7 +47,7 @@ class Cell:
     """Step [s], or relative tolerance."""
     outcome: Literal["stable", "inaccurate", "failed", "skipped"]
     why: str
-    """Reason of a failed or skipped run."""
+    """Reason of a failed or skipped run; of an inaccurate one, in what."""
     error: float
     """Relative error at the end; NaN where there is none."""
     bound: float
@@ -111,15 +114,18 @@ def _cell(
     outcome: Literal["stable", "inaccurate", "failed", "skipped"] = "skipped"
     why, error, seconds, steps = "", math.nan, 0.0, 0
     try:
-        moment, march = run(graph, island, solver, LONGEST)
+        looks: list[tuple[float, Floats]] = []
+        moment, march = run(graph, island, solver, LONGEST, looks)
         error, done = truth.error(moment, march), march.march.statistics
         seconds, steps = done.seconds, done.steps
         if math.isnan(error):
             why = f"it ran, but is compared with {truth.because}"
         elif error > RAN_AWAY:
-            outcome, why = "failed", f"it ran away: its end is off by {error:.2g} times the size of what is right"
+            outcome, why = "failed", f"it ran away: its end is off by {error:.2g} times the range of what is right"
         else:
-            outcome = "stable" if error <= largest_error else "inaccurate"
+            why = truth.damped(march, looks)
+            outcome = "inaccurate" if why or error > largest_error else "stable"
+            why = why or (f"most in {truth.worst(moment, march)}" if outcome == "inaccurate" else "")
     except TooLong as long:
         why = long.message
     except RunFailure as failure:

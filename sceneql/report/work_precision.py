@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import statistics
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
@@ -16,6 +16,7 @@ from sceneql.kinds import Model, Solver
 from sceneql.system import IslandFacts
 
 if TYPE_CHECKING:
+    from sceneql.frame import Floats
     from sceneql.run.instant import Instant
     from sceneql.run.run import IslandRun
 
@@ -29,6 +30,8 @@ ENOUGH_SECONDS = 0.5
 """Seconds of a run after which no smaller step is tried, and of all repeats of a run."""
 LONGEST = 20.0
 """Seconds of compiled steps after which a run is given up."""
+LOOKS = 128
+"""Instants at which a run is looked at for the ranges of its quantities."""
 FIRST_LOOK, NEXT_LOOK = 1e-9, 1.25
 """Part of a run after which its time is first checked, and the factor to each further check."""
 
@@ -51,6 +54,8 @@ class Measurement:
     steps: int
     evaluations: int
     """Evaluations of dy/dt."""
+    worst: str = ""
+    """The quantity with that error."""
 
     @property
     def ok(self) -> bool:
@@ -67,6 +72,10 @@ class Reference:
     because: str
     uncertainty: float
     """Relative error of the reference itself."""
+    worst: Callable[[Instant, IslandRun], str] = lambda moment, march: ""
+    """The quantity with that error."""
+    damped: Callable[[IslandRun, Sequence[tuple[float, Floats]]], str] = lambda march, looks: ""
+    """What has come to rest in a run, by its states at instants [s], and still moves in the reference; else empty."""
 
 
 class TooLong(RunFailure):
@@ -130,14 +139,27 @@ def prepared(graph: SimulationGraph, island: Island, solver: Solver) -> Simulati
     return replace(graph, tasks={**graph.tasks, island.solver: task}, islands=(island,))
 
 
-def run(graph: SimulationGraph, island: Island, solver: Solver, longest: float = math.inf) -> tuple[Instant, IslandRun]:
-    """An island's run by a solver, at its end. Raises RunFailure; TooLong after ``longest`` [s] of compiled steps."""
+def run(
+    graph: SimulationGraph,
+    island: Island,
+    solver: Solver,
+    longest: float = math.inf,
+    seen: list[tuple[float, Floats]] | None = None,
+) -> tuple[Instant, IslandRun]:
+    """An island's run by a solver, at its end. Raises RunFailure; TooLong after ``longest`` [s] of compiled steps.
+
+    ``seen`` is filled with the states at LOOKS instants of the run, and at its start.
+    """
     from sceneql.run.run import Run
 
     whole = Run(prepared(graph, island, solver))
     march, end = whole.islands[0], graph.settings.clock.end
     moment = None
-    for moment in whole.moments(_looks(end) if math.isfinite(longest) else [end]):
+    even = [end * k / LOOKS for k in range(LOOKS)] if seen is not None else []
+    looks = sorted({*even, *(_looks(end) if math.isfinite(longest) else [end])})
+    for moment in whole.moments(looks):
+        if seen is not None:
+            seen.append((moment.time, march.y.copy()))
         if moment.time < end and march.march.statistics.seconds > longest:
             part, span = graph.tasks[island.solver].name, graph.tasks[island.solver].span
             raise TooLong(f"given up after {longest:g} s of run time", part=part, time=moment.time, span=span)
@@ -192,6 +214,7 @@ def measure(
         statistics.median(times),
         done.steps,
         done.evaluations,
+        reference.worst(moment, march),
     )
 
 
