@@ -10,18 +10,21 @@ from sceneql.quantities.diagnostic import Diagnostic
 
 if TYPE_CHECKING:
     from sceneql.run.run import IslandRun
+    from sceneql.system import Grid
 
 FAST = 2.0
 """Step times decay rate above which the trapezoidal rule changes signs."""
 CARRIED = 0.5
 """Part of a mode that remains after a step, from which there is a warning."""
+SHOWN = 1e-4
+"""Lag, relative to the field's spread or to the change at its boundary, from which there is a warning."""
 
 
 def ringing(island: IslandRun) -> Diagnostic | None:
-    """A warning where the initial field has modes that the solver's fixed steps let ring.
+    """A warning where the start has modes that the solver's fixed steps let ring: jumps, or cells at the boundary.
 
-    The decay rate of the roughest mode is estimated by the rate at the start over the spread of the field, with the
-    bound of the cells (Gershgorin). Source: Rannacher (1984), Numer. Math. 43, 309-327.
+    Of jumps, the decay rate of the roughest mode is estimated by the rate at the start over the spread of the field,
+    with the bound of the cells (Gershgorin). Source: Rannacher (1984), Numer. Math. 43, 309-327.
     """
     march, grid = island.march, island.march.system.grid
     control = march.stepper.control
@@ -37,16 +40,56 @@ def ringing(island: IslandRun) -> Diagnostic | None:
     faces = sum(march.floats[at : at + n] for at in grid.faces_at[: 3 if grid.cells.shape[2] > 1 else 2])
     allowed = 4.0 * float((faces / march.floats[grid.volumes_at : grid.volumes_at + n]).max())
     decay = min(change / spread, allowed) if spread > 0.0 else (allowed if change > 0.0 else 0.0)
-    if step * decay <= FAST:
-        return None
-    left = island.solver.growth(np.array([[-decay]]), np.array([-1]), step)
+    left, what = _left(island, step, decay), "it has jumps"
+    if not CARRIED <= left <= 1.0:
+        decay = _lag(island, grid, spread)
+        left, what = (
+            _left(island, step, decay),
+            "values at its boundary vary, and cells there lag by differences",
+        )
     if not CARRIED <= left <= 1.0:
         return None
     name = island.island.models[0]
     word = type(island.solver).__module__.rpartition(".")[2]
     message = (
-        f"'{name}' will ring: it has jumps that decay at {decay:.3g}/s, and a step of {step:.3g} s of {word} turns "
+        f"'{name}' will ring: {what} that decay at {decay:.3g}/s, and a step of {step:.3g} s of {word} turns "
         f"their sign and keeps {100 * left:.0f}% of them"
     )
     help = f"march it by tr_bdf2, or take steps below {FAST / decay:.2g} s"
     return Diagnostic("ringing", message, island.graph.tasks[name].span, help, severity="warning")
+
+
+def _left(island: IslandRun, step: float, decay: float) -> float:
+    """Part of a mode that decays at ``decay`` [1/s] which a step [s] leaves with its sign turned; 0: it does not."""
+    if step * decay <= FAST:
+        return 0.0
+    return island.solver.growth(np.array([[-decay]]), np.array([-1]), step)
+
+
+def _lag(island: IslandRun, grid: Grid, spread: float) -> float:
+    """The rate [1/s] at which the cell follows the boundary that lags behind it most at the start; 0: none that shows.
+
+    A cell that exchanges s/V (value - c) with a boundary value follows it by value' V/s later. It starts without that
+    lag, so a method without damping turns the difference about at every step. All cells raised by the same amount lose
+    by this exchange alone, which tells s/V; the derivative of the rates by time is s/V value'.
+    """
+    march = island.march
+    n = int(np.prod(grid.cells.shape))
+    mine = slice(grid.at, grid.at + n)
+    y, step = march.system.y, march.stepper.control.first_step
+    start = march.rate(0.0, y)[mine]
+    raised = y.copy()
+    raised[mine] += spread or 1.0
+    exchange = (start - march.rate(0.0, raised)[mine]) / (spread or 1.0)
+    change = np.abs(march.rate(step, y)[mine] - start) / step
+    march.rate(0.0, y)
+    carried = [z for z in FAST * 1.1 ** np.arange(80) if CARRIED <= _left(island, step, float(z) / step) <= 1.0]
+    fast = ~grid.cells.outside & (step * exchange >= min(carried, default=np.inf))
+    if not fast.any():
+        return 0.0
+    speeds = np.where(fast, change / np.where(fast, exchange, 1.0), 0.0)
+    lags = np.where(fast, speeds / np.where(fast, exchange, 1.0), 0.0)
+    worst = int(np.argmax(lags))
+    if lags[worst] <= SHOWN * max(spread, float(speeds.max()) * march.end):
+        return 0.0
+    return float(exchange[worst])
