@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 from sceneql.compiled.printer import Constants, Printer, write_term
 from sceneql.quantities.derivative import components, differentiate, simplify
@@ -58,9 +59,18 @@ def jacobian_kernel(system: RateSystem) -> Kernel:
     By the chain rule over the helper quantities w, df/dy = ∂f/∂y + Σ ∂f/∂w · dw/dy, each dw/dy is derived and
     evaluated once however often w is used. Raises TypeError for an operation without a derivative.
     """
+    return _jacobian_kernel(system.states, system.rows, tuple(system.where.items()), system.index)
+
+
+@lru_cache(maxsize=64)
+def _jacobian_kernel(
+    states: tuple[str, ...], rows: tuple[Expr, ...], where: tuple[tuple[str, Expr], ...], index: str | None
+) -> Kernel:
+    """Of a system by what it is made of: `auto` asks anew in each run that becomes stiff."""
+    system = RateSystem(states, rows, dict(where), index)
     constants = Constants()
-    meanings, rows = lifted(system, constants)
-    entries, derived = derivatives(system.states, meanings, rows)
+    meanings, lifted_rows = lifted(system, constants)
+    entries, derived = derivatives(states, meanings, lifted_rows)
     printer = _printer(system, {**meanings, **derived}, constants)
     places = tuple(place for place, entry in enumerate(entries) if entry != ZERO)
     lines = [f"out[block + {k}] += {printer.name(entries[place])}" for k, place in enumerate(places)]

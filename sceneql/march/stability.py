@@ -67,12 +67,19 @@ def stability(march: March, solver: Solver) -> Stability:
     origin = system.origin(modes.leading(worst, system.partner))
     frequency = float(np.abs(np.linalg.eigvals(blocks[worst].jacobian)).max()) * fastest / (2 * math.pi)
     growth = max(reduced.growth_of(block, script * fastest) for block in blocks) if script else 1.0
-    mode = f"a mode of '{origin.part}' at {frequency:.4g} Hz" + (f" ({origin.span})" if origin.span else "")
+    mode = _told(complex(modes.values[worst]), frequency, origin.part) + (f" ({origin.span})" if origin.span else "")
     step = bound / fastest
     text = _text(step, script, growth, mode, control.adaptive)
     if control.adaptive or math.isinf(bound):
         text += _yardstick(simple, fastest)
     return Stability(step, growth, frequency, origin.part, origin.span, text)
+
+
+def _told(value: complex, frequency: float, part: str) -> str:
+    """A mode as a text: an oscillation by its frequency [Hz], what only decays or grows by its rate."""
+    if abs(value.imag) > NEUTRAL * abs(value.real):
+        return f"a mode of '{part}' at {frequency:.4g} Hz"
+    return f"a {'growth' if value.real > 0 else 'decay'} of '{part}' at {2 * math.pi * frequency:.4g}/s"
 
 
 def _yardstick(blocks: list[Block], fastest: float) -> str:
