@@ -63,6 +63,7 @@ class IslandAssembly:
     _size: int = 0
     _bodies: int = 0
     _ranges: list[tuple[int, int, str, tuple[Span | None, ...]]] = field(default_factory=list)
+    _names: list[tuple[int, int, Callable[[int], str]]] = field(default_factory=list)
     _pairs: list[tuple[int, int, int]] = field(default_factory=list)
     _masses: list[tuple[int, int, int]] = field(default_factory=list)
     _numbers: list[Floats] = field(default_factory=lambda: [np.zeros(channels.HEAD)])
@@ -90,7 +91,9 @@ class IslandAssembly:
         finally:
             self._word = before
 
-    def state(self, initial: Any, spans: Sequence[Span | None] | None = None) -> int:
+    def state(
+        self, initial: Any, spans: Sequence[Span | None] | None = None, named: Callable[[int], str] | None = None
+    ) -> int:
         """Reserve entries of y (system.Assembly). Raises LimitRefused when the run would need too much memory."""
         start = np.array(initial, dtype=np.float64).ravel()
         name, span, _ = self._word
@@ -99,6 +102,8 @@ class IslandAssembly:
         self._starts.append(start)
         self._size += len(start)
         self._ranges.append((first, self._size, name, tuple(spans) if spans else (span,)))
+        if named is not None:
+            self._names.append((first, len(start), named))
         return first
 
     def room(self, entries: float, span: Span | None) -> None:
@@ -184,6 +189,14 @@ class IslandAssembly:
         alone = len(self._grids) == 1 and len(self._ranges) == 1
         acted_on = self._pairs or self._exact or self._local or self._after
         return self._grids[0] if alone and not acted_on else None
+
+    @property
+    def moved_by_forces_alone(self) -> bool:
+        """Whether it is masses without springs, pins or contacts of their own, which nothing changes between steps."""
+        others = self._terms["internal"] or self._terms["constrain"] or self._exact or self._local or self._after
+        return (
+            bool(self._masses) and 2 * sum(n for *_, n in self._pairs) + len(self._masses) == self._size and not others
+        )
 
     def object(self, ref: Ref) -> Object:
         """The kind of an object of the script."""
@@ -288,6 +301,7 @@ class IslandAssembly:
             pairs=sum(pairs),
             partner=partner,
             ranges=tuple(self._ranges),
+            names=tuple(self._names),
             largest_step=self._largest_step,
             stops=BreakpointTable.of(self._stops | self.breakpoints.stops),
             pattern=found,

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 from sceneql.island.breakpoint_table import BreakpointTable
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy import int64
     from numpy.typing import NDArray
 
@@ -71,6 +73,16 @@ class System:
     """For each model of masses: offset of velocities in y, offset of inverse masses in floats, number of masses."""
     terms: tuple[Origin, ...] = ()
     """The origins of the terms of the rate, in the order in which they act."""
+
+    names: tuple[tuple[int, int, Callable[[int], str]], ...] = ()
+    """Offset, count and names by number of entries that have names of their own."""
+
+    def name(self, index: int) -> str:
+        """The name of an entry of y, as a state of equations has one; else empty."""
+        for first, count, name in self.names:
+            if first <= index < first + count:
+                return name(index - first)
+        return ""
 
     def origin(self, index: int) -> Origin:
         """Part and line of the script of an entry of y."""

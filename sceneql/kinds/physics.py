@@ -160,6 +160,10 @@ class Force(Kind):
         """Whether it acts between masses alone, each on the other as much: then their momentum stays."""
         return False
 
+    def at_a_distance(self) -> bool:
+        """Whether it is as smooth as the paths of masses in it, as gravity is: no spring, no friction, no far end."""
+        return False
+
     def remark(self, state: ModelState) -> str:
         """What `explain` says of a `mutual` force at the start of the run, as how far it is from exact."""
         return ""

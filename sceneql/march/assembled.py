@@ -65,7 +65,14 @@ class Assembled:
     def facts(self) -> IslandFacts:
         """The facts by which a solver chooses its methods; call it once forces and contacts are added."""
         made = self.assembly
-        return IslandFacts(len(made.start()), "local" in made.contact_mode, made.only_field, made.numbers)
+        forces = [cast(Force, self.graph.tasks[force].kind) for force, _ in self.island.forces]
+        return IslandFacts(
+            entries=len(made.start()),
+            local_contacts="local" in made.contact_mode,
+            grid=made.only_field,
+            floats=made.numbers,
+            orbits=bool(forces) and made.moved_by_forces_alone and all(force.at_a_distance() for force in forces),
+        )
 
     def act(self) -> None:
         """Add the forces and contacts."""

@@ -13,12 +13,13 @@ import sceneql.system.channels as channels
 from sceneql.compiled.generated import function
 from sceneql.compiled.kernels import compiled
 from sceneql.compiled.pointers_kernels import addresses
-from sceneql.failure import LimitRefused, RunFailure
+from sceneql.failure import LimitRefused
 from sceneql.island.breakpoint_table import before, next_breakpoint
 from sceneql.island.island import IslandAssembly
 from sceneql.island.system import System
 from sceneql.march import march_kernels as kernels
 from sceneql.march.driver import driver, jacobian
+from sceneql.march.failing import GROWTH_LIMIT, LEAST, Stopped, blamed, failure
 from sceneql.march.switching import Switch
 from sceneql.system import Prepared
 
@@ -28,9 +29,6 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.system import Stepper
 
-GROWTH_LIMIT = 1e12
-"""A run fails when an entry of y exceeds this times the largest at the start (at least 1, or a change by the rate)."""
-
 TOUCHING = 1e-13
 """Gap that counts as touching, relative to the largest position at the start or 1 m."""
 
@@ -39,12 +37,6 @@ ENTRIES_A_CALL = 20_000_000
 
 LARGEST = 1e100
 """Largest number at the start in SI units, so that the square of its growth does not overflow."""
-MESSAGES = {
-    kernels.NOT_FINITE: "a value is no longer finite: the step is unstable, or the equations have no value there",
-    kernels.GROWTH: f"the state has grown beyond {GROWTH_LIMIT:.0e} times its start: {{}}",
-    kernels.STEP_TOO_SMALL: "the step that the tolerance asks for is below the resolution of time: a singularity",
-    kernels.STUCK: "contacts push against each other at one instant without end",
-}
 
 
 @dataclass(slots=True)
@@ -96,8 +88,10 @@ class March:
         self._counts[kernels.PENDING] = -1
         self._clock[kernels.ERROR] = 1e-4
         self._clock[kernels.LARGEST] = min(stepper.control.largest_step, system.largest_step)
+        self._clock[kernels.LEAST] = LEAST * end
         self._started = False
         self._floats_time = math.nan
+        self._alone, self._sizes = np.zeros(n, dtype=bool), np.zeros(0)
         self._switch = None
         if stiff is not None:
             self._switch = Switch(stepper, stiff, self.rate, system.partner)
@@ -135,12 +129,22 @@ class March:
         self._settings = np.array(prepared.settings, dtype=np.float64)
         self._numbers = np.array(prepared.numbers, dtype=np.int64)
         self._work = np.zeros(prepared.work)
+        self._measure(prepared)
         self.prepared_text = prepared.text
         self._counts[kernels.ADAPTIVE] = control.adaptive
         self._counts[kernels.ORDER] = method.order
         self._counts[kernels.LAST_STAGE] = -1 if local and between else method.last_stage
         self._counts[kernels.CONTROLS] = control.self_controlled
         self._counts[kernels.HALVES] = control.halves
+
+    def _measure(self, prepared: Prepared) -> None:
+        """Go on with the sizes that entries have had, where the method before measured errors by these, too."""
+        alone = np.zeros(len(self.system.y), dtype=bool) if prepared.alone is None else prepared.alone
+        first, count = prepared.scales
+        sizes = self._settings[first : first + count]
+        if len(sizes) == len(self._sizes) and np.array_equal(alone, self._alone):
+            sizes[:] = self._sizes
+        self._alone, self._sizes = alone, sizes
 
     def _look_for_breakpoint(self, time: float) -> None:
         """Find the next breakpoint after an instant: an adaptive step ends a few ulps before it."""
@@ -256,9 +260,8 @@ class March:
             k = int(bad[0])
             finite = math.isfinite(y[k]) and math.isfinite(self._rate1[k])
             what = f"has a value beyond {LARGEST:.0e}" if finite else "has no finite value"
-            self._fail(
-                k, f"the {'state' if abs(y[k]) > LARGEST else 'rate'} {what} at the start", None if finite else 0.0
-            )
+            message = f"the {'state' if abs(y[k]) > LARGEST else 'rate'} {what} at the start"
+            raise blamed(self._stopped(), k, message, () if finite else (0.0,))
         moved = np.abs(self._rate1).max(initial=0.0) * self.end
         self._clock[kernels.LIMIT] = GROWTH_LIMIT * max(1.0, np.abs(y).max(initial=0.0), moved)
         positions = np.abs(y[self.system.partner >= 0]).max(initial=1.0)
@@ -270,9 +273,13 @@ class March:
         self._clock[kernels.STEP] = step
 
     def _first_step(self) -> float:
-        """The first step of an adaptive method (Hairer, Norsett & Wanner 1993, II.4, "starting step size")."""
+        """The first step of an adaptive method (Hairer, Norsett & Wanner 1993, II.4, "starting step size").
+
+        An entry that is measured by its own size counts where it has one: a zero, by its change in such a step.
+        """
         y, rate, control = self._y1, self._rate1, self.stepper.control
         scale = np.asarray(control.absolute) + control.tolerance * np.abs(y)
+        scale = np.where(self._alone, np.where(y == 0.0, np.inf, control.tolerance * np.abs(y)), scale)
 
         def norm(x: Floats) -> float:
             return math.sqrt(float(np.mean((x / scale) ** 2))) if len(x) else 0.0
@@ -280,6 +287,8 @@ class March:
         size, speed = norm(y), norm(rate)
         h = 1e-6 if size < 1e-5 or speed < 1e-5 else 0.01 * size / speed
         h = min(h, control.largest_step, self.end)
+        change = control.tolerance * h * np.abs(rate)
+        scale = np.where(self._alone & (scale == np.inf) & (change > 0.0), change, scale)
         bend = norm(self.rate(h, y + h * rate) - rate) / h
         most = max(speed, bend)
         guess = max(1e-6, 1e-3 * h) if not most > 1e-15 else (0.01 / most) ** (1.0 / self.stepper.method.order)
@@ -341,11 +350,11 @@ class March:
 
     def fail(self, status: int) -> None:
         """Raise the RunFailure of the compiled march's status."""
-        at = int(self._counts[kernels.INDEX])
-        why = "the equations run away" if self.stepper.control.adaptive else "the step is unstable"
-        unsolved = self.stepper.control.unsolved if status == kernels.NOT_FINITE else ""
-        ahead = float(self._clock[kernels.STEP]) if status == kernels.NOT_FINITE and not unsolved else None
-        self._fail(-1 if status == kernels.STUCK else at, unsolved or MESSAGES[status].format(why), ahead)
+        raise failure(self._stopped(), status, int(self._counts[kernels.INDEX]), float(self._clock[kernels.STEP]))
+
+    def _stopped(self) -> Stopped:
+        state = self.stepper.control, self.floats, self.time, self._y1, self._rate1
+        return Stopped(self.system, self.driver, *state, self.end, self.rate)
 
     def _look(self) -> None:
         """Switch methods where it is time to compare and the other one is better."""
@@ -381,18 +390,3 @@ class March:
         clock[kernels.STEP] = switch.stable(t, self._y1, float(clock[kernels.STEP]))
         clock[kernels.ERROR] = 1e-4
         return True
-
-    def _fail(self, entry: int, message: str, ahead: float | None = None) -> None:
-        """Raise RunFailure. ``ahead`` [s]: names a term that is not finite so much later, if there is one."""
-        origin, t = self.system.origin(entry), float(self._clock[kernels.T1])
-        span = origin.span
-        if ahead is not None:
-            from sceneql.march.blame import culprit
-
-            for h in dict.fromkeys((0.0, 0.5 * ahead, ahead)):
-                y = self._y1 + h * self._rate1 if h else self._y1
-                term = culprit(self.system, self.driver, self.floats, t + h, y)
-                if term is not None and term.part != origin.part:
-                    message, span = f"{message.partition(':')[0]}: '{term.part}' gives none", term.span or span
-                    break
-        raise RunFailure(message, part=origin.part, time=t, span=span)

@@ -16,21 +16,27 @@ from sceneql.compiled import pointers_kernels as pointers
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.system.signatures_kernels import AFTER_STEP, BACK_OFF, DENSE, GAP, IMPACT, A, F, I
 
-T0, T1, STEP, ERROR, LARGEST, LIMIT, SLOP, CLOCKS = range(8)
+T0, T1, STEP, ERROR, LARGEST, LIMIT, SLOP, LEAST, CLOCKS = range(9)
 """Ends of the last step [s]; the step to try next, or the fixed one [s]; the last error; largest step [s]; largest |y|;
-gap that counts as touching [m]."""
+gap that counts as touching [m]; step below which even a run's start has no end [s]."""
 
 STEPS, REJECTED, EVENTS, REPEATS, LEFT, INDEX, GRID, PENDING = range(8)
 """Tallies; impacts since time moved; steps left in this call; the entry that a failure names; grid points passed; the
 pair whose impact is due (-1: none)."""
 
-ADAPTIVE, ORDER, LOCAL, LAST_STAGE, CONTROLS, HALVES, HELD, SWAPPED, ACTS, ALTERED, COUNTS = range(8, 19)
+ADAPTIVE, ORDER, LOCAL, LAST_STAGE, CONTROLS, HALVES, HELD, SWAPPED, ACTS, ALTERED, CRAWLED, COUNTS = range(8, 20)
 """Properties of solver and island (system.Stepper); whether a body rests on a local contact (channels.HOLDS); whether
 the arrays of the step's start and end are swapped, for the end of a step is the next one's start; whether there are
-kernels that act after steps (Assembly.after_step), and whether they changed anything after the last one."""
+kernels that act after steps (Assembly.after_step), and whether they changed anything after the last one; successive
+steps that have hardly moved time."""
 
 SHORTEST = 1e-3
 """Part of a fixed step below which it is not halved any more."""
+
+CRAWL = 1e-12
+"""Part of the time reached below which a step hardly moves it."""
+MOST_CRAWLED = 2000
+"""Such steps in a row after which the march is stuck: an impact or a breakpoint takes far fewer to leave."""
 
 REACHED, PAUSED, NOT_FINITE, GROWTH, STEP_TOO_SMALL, STUCK = range(6)
 
@@ -160,7 +166,8 @@ def try_steps(step, functions, t0, t1, y0, rate0, y1, work, settings, numbers, f
             h = min(work[0], 0.9 * h)
         else:
             h *= next_factor(error, 1.0, counts[ORDER], True) if adaptive else 0.5
-        if adaptive and t0 + 0.1 * h <= t0:
+        # A shorter step may round to the same end.
+        if adaptive and not (t0 + 0.1 * h > t0 and t0 + h < t1 and h >= clock[LEAST]):
             return t1, STEP_TOO_SMALL
         if not adaptive and (counts[HALVES] == 0 or h < SHORTEST * clock[STEP]):
             return t1, NOT_FINITE
@@ -293,6 +300,12 @@ def march(
         clock[T0] = t0
         clock[T1] = t1
         counts[STEPS] += 1
-        if counts[ADAPTIVE] == 0 and t1 >= grid:
-            counts[GRID] += 1
+        if counts[ADAPTIVE] == 0:
+            counts[GRID] += t1 >= grid
+        elif clock[STEP] < CRAWL * t1:
+            counts[CRAWLED] += 1
+            if counts[CRAWLED] > MOST_CRAWLED:
+                return STEP_TOO_SMALL
+        else:
+            counts[CRAWLED] = 0
     return REACHED

@@ -21,6 +21,8 @@ HELD = 0.5
 """Part of the stability boundary from which on stability counts as limiting the step."""
 FIRST, LAST = 200, 6400
 """Explicit steps before the first check, and at most between two checks."""
+STAGES = 7
+"""Stages of dopri5, in whose steps costs are measured."""
 TRIAL = 100
 """Steps of a stiff method before a mean step length is measured, and again until it is first judged by that."""
 PATIENCE = 1 / 3
@@ -47,7 +49,7 @@ class Switch:
     @property
     def cost(self) -> float:
         """Explicit steps that one stiff step costs."""
-        return step_cost(self.size)
+        return step_cost(self.size) * STAGES / (len(self.explicit.method.stability) - 1)
 
     @property
     def _often(self) -> int:
@@ -84,8 +86,9 @@ class Switch:
         if gain >= PATIENCE * self.cost:
             return False
         self._take(self.explicit, t, f"a stiff step replaces but {gain:.2g} explicit ones and costs {self.cost:.2g}")
-        # A trial in vain must not cost more than the steps before the next one.
-        self.until_look = max(self.until_look, int(TRIAL * self.cost))
+        # A trial in vain must not cost more than the steps before the next one; it may soon be stiff again.
+        self._between = FIRST
+        self.until_look = max(FIRST, int(TRIAL * self.cost))
         return True
 
     def give_up(self, t: float) -> bool:

@@ -6,21 +6,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sceneql.stepping.error_scales_kernels import GROUP_OF, SHARED
+
 if TYPE_CHECKING:
-    from numpy import int64
+    from numpy import bool_, int64
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats
     from sceneql.island.system import System
+    from sceneql.system import Prepared, Stepper
 
 
 def error_scales(system: System) -> tuple[NDArray[int64], Floats]:
-    """The plan and the scales before the first step. The island must have a pattern.
+    """The plan and the scales before the first step.
 
     Positions of a model's masses share a scale, and so do their velocities, and the cells of a field; other entries
     have their own. Sums on which nothing depends, such as the energy lost by damping, have a scale of at least 1 in SI.
     """
-    assert system.pattern is not None
     group = np.full(len(system.y), -1, dtype=np.int64)
     shared = 0
     for velocity_at, _, count in system.masses:
@@ -31,12 +33,43 @@ def error_scales(system: System) -> tuple[NDArray[int64], Floats]:
     for grid in system.grids:
         group[grid.at : grid.at + int(np.prod(grid.cells.shape))] = shared
         shared += 1
-    tallies = system.pattern.tallies[group[system.pattern.tallies] < 0]
+    sums = _sums(system) if system.pattern is None else system.pattern.tallies
+    tallies = sums[group[sums] < 0]
     group[tallies] = shared + np.arange(len(tallies))
     alone = np.flatnonzero(group < 0)
     shared += len(tallies)
     group[alone] = shared + np.arange(len(alone))
     groups = shared + len(alone)
-    scales = np.zeros(1 + 2 * groups)
+    scales = np.zeros(1 + 4 * groups)
     scales[1 + group[tallies]] = 1.0
     return np.concatenate([[groups, shared, 2 * len(system.masses)], group]), scales
+
+
+def prepare(system: System, stepper: Stepper) -> Prepared:
+    """A tableau's step, its errors measured by the scales (runge_kutta_kernels.py)."""
+    from sceneql.system import Prepared
+
+    method = stepper.method
+    plan, scales = error_scales(system)
+    return Prepared(
+        settings=np.concatenate([method.settings, scales, [np.nan]]),
+        numbers=np.concatenate([method.numbers[:-1], [len(plan)], plan]),
+        work=(method.work + 3) * len(system.y),
+        alone=alone(plan),
+        scales=(len(method.settings), len(scales)),
+    )
+
+
+def alone(plan: NDArray[int64]) -> NDArray[bool_]:
+    """(n,) which entries have a scale of their own."""
+    found: NDArray[bool_] = plan[GROUP_OF:] >= plan[SHARED]
+    return found
+
+
+def _sums(system: System) -> NDArray[int64]:
+    """What models of masses and fields keep besides them, where nothing tells what it depends on."""
+    found = np.zeros(len(system.y), dtype=bool)
+    at = [velocity_at for velocity_at, _, _ in system.masses] + [grid.at for grid in system.grids]
+    for first, last, _, _ in system.ranges:
+        found[first:last] = any(first <= one < last for one in at)
+    return np.flatnonzero(found)

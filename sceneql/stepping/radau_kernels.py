@@ -17,9 +17,9 @@ from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.compiled.pointers_kernels import AT_JACOBIAN, jacobian_at
 from sceneql.stepping import radau_layout as layout
 from sceneql.stepping import radau_stages_kernels as stages
-from sceneql.stepping.error_scales_kernels import foresee, weigh
+from sceneql.stepping.error_scales_kernels import foresee, level, shaken, weigh
 from sceneql.stepping.radau_stages_kernels import C1, C2
-from sceneql.stepping.radau_systems_kernels import factor_at, filter_at
+from sceneql.stepping.radau_systems_kernels import REAL, factor_at, filter_at
 from sceneql.system.signatures_kernels import DENSE, STEP, A, F, I
 
 FINISH = types.void(I, F, F, A, A, I, A, I, A, A)
@@ -173,17 +173,14 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     new = begin(t, y0, work, start, z, before)
     last = layout.HEAD + numbers[layout.TALLIES]
     plan, rows = numbers[last + numbers[layout.SCALED] :], settings[numbers[layout.ROWS_AT] :]
+    small = False
     if numbers[layout.SCALED] > 0:
         later, moved, scales = f[:n], f[n : 2 * n], settings[layout.MEASURES :]
         foresee(functions, t, h, y0, rate0, scales, numbers[last:], later, moved, floats, ints)
-        weigh(new, settings[layout.RELATIVE], h, y0, rate0, later, scales, numbers[last:], weights)
+        small = weigh(new, settings[layout.RELATIVE], h, y0, rate0, later, scales, numbers[last:], weights)
     else:
         for k in range(n):
             weights[k] = 1.0 / (settings[layout.MEASURES + k] + settings[layout.RELATIVE] * abs(y0[k]))
-    for k in range(n):
-        newton[k] = weights[k]
-    for k in range(layout.HEAD, last):
-        newton[numbers[k]] = 0.0
     work[layout.LENGTH] = h
     known = work[layout.BEFORE] > 0.0
     iterations, shorter = 0, 1.0
@@ -197,6 +194,16 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
             work[layout.FACTORED] = h if regular else 0.0
         shorter = 0.5
         if work[layout.FACTORED] > 0.0:
+            if small:
+                scales = settings[layout.MEASURES :]
+                shaken(functions, t, y0, rate0, scales, numbers[last:], f[:n], y1, floats, ints)
+                if filter_at(numbers[layout.FILTER])(plan, work[layout.FACTORED], values, rows, store, f[:n]):
+                    level(REAL, f[:n], scales, numbers[last:], weights)
+                small = False
+            for k in range(n):
+                newton[k] = weights[k]
+            for k in range(layout.HEAD, last):
+                newton[numbers[k]] = 0.0
             guess_stages(n, h / work[layout.BEFORE] if known else 0.0, known, z, before, w, ahead)
             iterations, shorter = stages.iterate(
                 functions, t, h, y0, y1, work, settings, numbers, floats, ints, values, plan, rows, store

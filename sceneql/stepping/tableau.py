@@ -66,17 +66,29 @@ class Tableau:
         return Stepper(self._method(None, 0.0, 0.0), Control(first_step=step))
 
     def adaptive(
-        self, tolerance: float, absolute: float, *, first_step: float = 0.0, largest_step: float = inf
+        self,
+        tolerance: float,
+        absolute: float,
+        *,
+        first_step: float = 0.0,
+        largest_step: float = inf,
+        by_scale: bool = False,
     ) -> Stepper:
         """Steps by the error of the embedded method. Raises ValueError where there is none."""
         if self.b_hat is None:
             raise ValueError("a method without an embedded one has no error estimate")
-        from sceneql.system import Control, Stepper
+        from sceneql.system import Control, Needs, Stepper
 
         control = Control(
-            first_step=first_step, adaptive=True, tolerance=tolerance, absolute=absolute, largest_step=largest_step
+            first_step=first_step,
+            adaptive=True,
+            tolerance=tolerance,
+            absolute=absolute,
+            by_scale=by_scale,
+            largest_step=largest_step,
         )
-        return Stepper(self._method(self.b_hat, tolerance, absolute), control)
+        needs = Needs(prepare="sceneql.stepping.error_scales:prepare") if by_scale else Needs()
+        return Stepper(self._method(self.b_hat, tolerance, absolute), control, needs)
 
     def growth(self, jacobian: Floats, step: float) -> float:
         """max |R(step * lambda)| over the eigenvalues of a (n, n) Jacobian, R(z) = 1 + sum of z^k b A^(k-1) 1."""
@@ -117,7 +129,7 @@ class Tableau:
             order=self.order,
             dense=self.dense,
             settings=(relative, absolute, *self.c, *self.b, *differences, *lower),
-            numbers=(self.stages, int(embedded is not None)),
+            numbers=(self.stages, int(embedded is not None), 0),
             work=self.stages,
             last_stage=self.stages - 1 if self.first_same_as_last else -1,
         )

@@ -22,10 +22,13 @@ Mode = Literal["exact", "local"]
 class Assembly(Protocol):
     """The island under construction, as words see it."""
 
-    def state(self, initial: Any, spans: Sequence[Span | None] | None = None) -> int:
+    def state(
+        self, initial: Any, spans: Sequence[Span | None] | None = None, named: Callable[[int], str] | None = None
+    ) -> int:
         """Reserve len(initial) entries of y with these values at the start; the offset of the first.
 
-        ``spans``, one an entry or one for all, say which line of the script an entry comes from.
+        ``spans``, one an entry or one for all, say which line of the script an entry comes from; ``named`` gives the
+        name of each, for messages.
         """
 
     def pair(self, position_at: int, velocity_at: int, count: int) -> None:

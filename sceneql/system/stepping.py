@@ -24,6 +24,10 @@ class Prepared:
     """Floats of scratch, zero before the first step."""
     text: str = ""
     """How the method solves this island, for `explain`."""
+    alone: Any = None
+    """(n,) bool: entries whose errors are measured by their own sizes; None: none are."""
+    scales: tuple[int, int] = (0, 0)
+    """Where in the settings the sizes begin that entries have had, and how many; another method goes on with them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,3 +124,5 @@ class IslandFacts:
     """The grid, where the island is one field and nothing else."""
     floats: Callable[[], Floats] | None = None
     """The island's floats, which the grid's offsets are into."""
+    orbits: bool = False
+    """Whether it is masses that nothing but forces at a distance moves (Force.at_a_distance)."""

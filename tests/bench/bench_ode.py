@@ -191,7 +191,7 @@ def ours(problem: Problem, folder: Path, alone: bool):
         start = ", ".join(f"{name}: {value}" for name, value in problem.start.items())
         rate = ", ".join(f'{name}: "{text}"' for name, text in problem.rate.items())
         path.write_text(
-            f"clock: {{end: {problem.end:.17g} s, fps: {10 / problem.end:.17g}}}\n"
+            f"clock: {{end: {problem.end:.17g} s, speed: {problem.end:.17g}}}\n"
             f"models: {{system: {{equations: {{start: {{{start}}}, rate: {{{rate}}}}}}}}}\n"
             f"solvers: {{main: {{radau: {{tolerance: {rtol:.17g}{absolute}}}}}}}\n",
             encoding="utf-8",

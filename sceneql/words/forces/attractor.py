@@ -28,6 +28,10 @@ class Attractor(Force):
     exponent: FixedScalar = field("Power of the distance that it falls with.", "2", at_least=-10, at_most=10)
     softening: FixedLength = field("Length below which the pull no longer grows.", "0 m", at_least=0)
 
+    def at_a_distance(self) -> bool:
+        """Smooth wherever no two masses meet."""
+        return True
+
     def fastest(self, name: str, on: On) -> Iterator[Oscillation]:
         """Swings across the pull and, where it grows with the distance, along it."""
         strength, center = number(self.strength), number(self.position)

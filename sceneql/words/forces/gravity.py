@@ -32,6 +32,10 @@ class Gravity(Force):
             raise ValueError("give either the vector `acceleration`, or `strength` and `direction`")
         return given
 
+    def at_a_distance(self) -> bool:
+        """Smooth wherever no two masses meet."""
+        return True
+
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add F = m g to every mass."""
         from sceneql.system import Slopes

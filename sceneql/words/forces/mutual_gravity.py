@@ -43,6 +43,10 @@ class MutualGravity(Force):
         "Angle [rad] from which on the tree opens a group; 0.65 gives errors of some 1e-3.", "0.65", above=0, at_most=1
     )
 
+    def at_a_distance(self) -> bool:
+        """Smooth wherever no two masses meet."""
+        return self.method != "tree" and self.accuracy == "full"
+
     def internal(self) -> bool:
         """Between masses alone."""
         return True

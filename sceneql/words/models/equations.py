@@ -154,7 +154,7 @@ class Equations(Model):
         rows = self.rows
         start = self._start(assembly)
         names = [rows.row_of(state) for state in rows.states]
-        at = assembly.state(start, [self.rate[row].span for row in names] * self.count)
+        at = assembly.state(start, [self.rate[row].span for row in names] * self.count, self._name)
         positions = sum(row.endswith("''") for row in rows.rate)
         for copy in range(self.count if positions else 0):
             first = at + copy * len(names)
@@ -168,6 +168,11 @@ class Equations(Model):
         assembly.term("internal", kernel.name, ints, lambda: _slopes(system, at, self.count, assembly))
         links = [assembly.value(Value(link)) for link in rows.links()]
         assembly.remember(at, *links)
+
+    def _name(self, entry: int) -> str:
+        """The state that an entry is, and of which copy."""
+        copy, number = divmod(entry, len(self.rows.states))
+        return self.rows.states[number] + ("" if self.copies is None else f" of copy {copy}")
 
     def _start(self, assembly: Assembly) -> Floats:
         """(count * states,) start values, after a look at the rates there."""

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import FixedScalar, Methods, Solver, field
 from sceneql.stepping.tableau import DORMAND_PRINCE
+from sceneql.words.solvers.dop853 import Dop853
 from sceneql.words.solvers.exact import Exact
+from sceneql.words.solvers.gauss_radau15 import GaussRadau15
 from sceneql.words.solvers.radau import Radau
 from sceneql.words.solvers.tr_bdf2 import TrBdf2
 
@@ -14,15 +16,23 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.system import IslandFacts, Stepper
 
+TIGHT = 1e-6
+"""Tolerance below which order 8 takes less time than order 5 for the same error (tests/bench/bench_auto.py)."""
+ORBITS = 1e-10
+"""Tolerance from which on order 15 takes less time on orbits, at IN_ORBITS, where it errs by less than 1e-12."""
+IN_ORBITS = 1e-6
+
 
 class Auto(Solver):
-    """The solver that suits: dopri5, and radau where stability rather than the tolerance would hold its steps.
+    """The solver that suits: dopri5, or dop853 for a tolerance below 1e-6, and radau where the scene is stiff.
 
-    The choice is made at the start, by the fastest mode of the island, the step that the tolerance allows and what a
-    step of radau costs with so many unknowns, and looked at again during the run; `explain` says the first and why.
-    (On large nets tr_bdf2 is quicker where errors of 1e-4 will do: ask for it by name.) Local contacts of up to
-    some sixty masses keep it with dopri5. A field on a grid is marched by
-    tr_bdf2, and on a box whose coefficient and boundary do not vary by exact. Sources: see these words; the sign of
+    Stiff is where stability rather than the tolerance would hold the steps of the explicit method. That choice is made
+    at the start, by the fastest mode of the island, the step that the tolerance allows and what a step of radau costs
+    with so many unknowns, and looked at again during the run; `explain` says the first and why. Few masses that nothing
+    but forces at a distance moves (gravity, attractors) are marched by gauss_radau15 for a tolerance of 1e-10 or less.
+    (On large nets tr_bdf2 is quicker where errors of 1e-4 will do: ask for it by name.) Local contacts of up to some
+    sixty masses keep it with dopri5. A field on a grid is marched by tr_bdf2, and on a box whose coefficient and
+    boundary do not vary by exact. Errors are measured as those of `radau` are. Sources: see these words; the sign of
     stiffness is that of Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.2.
     """
 
@@ -32,21 +42,24 @@ class Auto(Solver):
         at_least=1e-14,
         below=1,
     )
+    absolute: FixedScalar | None = field(
+        "Absolute error of a step, in SI units; by default none: errors are relative to how large entries have been.",
+        None,
+        above=0,
+    )
 
     def explanation(self) -> str:
         """What it chooses from."""
+        if self.tolerance < TIGHT:
+            return f"dop853, as its tolerance is below {TIGHT:g}, and radau where the scene is stiff"
         return "dopri5, and radau where the scene is stiff"
 
     def stepper(self) -> Stepper:
-        """That of dopri5."""
-        from dataclasses import replace
-
-        explicit = DORMAND_PRINCE.adaptive(self.tolerance, self.tolerance)
-        named = replace(explicit.method, name="dopri5", stability=DORMAND_PRINCE.stability_function)
-        return replace(explicit, method=named)
+        """That of its explicit method."""
+        return self._order_8() if self.tolerance < TIGHT else self._order_5()
 
     def choose(self, island: IslandFacts) -> Methods:
-        """dopri5 with radau, but for few masses with local contacts; on a grid exact where it applies, else tr_bdf2."""
+        """An explicit method with radau, but for few masses with local contacts and for orbits; on a grid others."""
         from dataclasses import replace
 
         from sceneql.island.jacobian import BY_DIFFERENCES
@@ -56,16 +69,41 @@ class Auto(Solver):
 
             if axes_of(island.grid, island.floats()) is not None:
                 return Exact().choose(island)
-            return TrBdf2(tolerance=min(100.0 * self.tolerance, 0.1)).choose(island)
-        if island.local_contacts and island.entries <= BY_DIFFERENCES:
-            return Methods(self, self.stepper())
-        stiff = Radau(tolerance=self.tolerance).stepper()
+            return TrBdf2(tolerance=min(100.0 * self.tolerance, 0.1), absolute=self.absolute).choose(island)
+        few = island.entries <= BY_DIFFERENCES
+        if island.local_contacts and few:
+            return Methods(self, self._order_5())
+        if island.orbits and few and self.tolerance <= ORBITS:
+            return GaussRadau15(tolerance=IN_ORBITS).choose(island)
+        stiff = Radau(tolerance=self.tolerance, absolute=self.absolute).stepper()
         return Methods(self, self.stepper(), stiff=replace(stiff, method=replace(stiff.method, name="radau")))
 
     def measure(self) -> str:
-        """Those of its two methods."""
-        return f"of an entry plus {self.tolerance} in SI units; by radau of how large entries have been"
+        """As its methods do."""
+        return "of how large entries have been" if self.absolute is None else super().measure()
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
-        """That of dopri5."""
+        """That of its explicit method."""
+        if self.tolerance < TIGHT:
+            return Dop853().growth(jacobian, partner, step)
         return DORMAND_PRINCE.growth(jacobian, step)
+
+    def _order_5(self) -> Stepper:
+        from dataclasses import replace
+
+        absolute = self.tolerance if self.absolute is None else self.absolute
+        stepper = DORMAND_PRINCE.adaptive(self.tolerance, absolute, by_scale=self.absolute is None)
+        named = replace(stepper.method, name="dopri5", stability=DORMAND_PRINCE.stability_function)
+        return replace(stepper, method=named)
+
+    def _order_8(self) -> Stepper:
+        from dataclasses import replace
+
+        from sceneql.stepping.dormand_prince_8 import DORMAND_PRINCE_8
+
+        stepper = Dop853(tolerance=self.tolerance, absolute=self.absolute).stepper()
+        return replace(
+            stepper,
+            method=replace(stepper.method, name="dop853", stability=DORMAND_PRINCE_8.stability_function),
+            control=replace(stepper.control, by_scale=self.absolute is None),
+        )

@@ -56,11 +56,15 @@ class Dop853(Solver):
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
     """The coefficients as the kernels read them; where contacts are exact, every step needs its dense output."""
+    import numpy as np
+
     from sceneql.stepping.dormand_prince_8 import BEND, DORMAND_PRINCE_8, EXTRA, FIFTH, THIRD
+    from sceneql.stepping.error_scales import alone, error_scales
 
     rows = (*DORMAND_PRINCE_8.a, DORMAND_PRINCE_8.b, *EXTRA)
     places = (*DORMAND_PRINCE_8.c, 1.0, *(sum(row) for row in EXTRA))
     bends = (weight for row in BEND for weight in row)
+    plan, scales = error_scales(system) if stepper.control.by_scale else (np.zeros(0, np.int64), np.zeros(0))
     settings = (
         stepper.control.tolerance,
         stepper.control.absolute,
@@ -69,5 +73,13 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
         *FIFTH,
         *THIRD,
         *bends,
+        *scales,
+        np.nan,
     )
-    return Prepared(settings, (int(stepper.control.adaptive), int(system.pairs > 0)), 21 * len(system.y))
+    return Prepared(
+        settings,
+        (int(stepper.control.adaptive), int(system.pairs > 0), len(plan), *plan),
+        (21 + 3 * stepper.control.by_scale) * len(system.y),
+        alone=alone(plan) if len(plan) else None,
+        scales=(len(settings) - len(scales) - 1, len(scales)),
+    )

@@ -1,20 +1,22 @@
 # mypy: ignore-errors
 """One step of Dormand and Prince's method of order 8, and its dense output.
 
-``numbers`` = (1 if the error is wanted, 1 if every step is extended). ``settings`` = (relative tolerance, absolute
+``numbers`` = (1 if the error is wanted, 1 if every step is extended, length of the plan of error_scales_kernels.py,
+which is 0 where an absolute tolerance is given), then that plan. ``settings`` = (relative tolerance, absolute
 tolerance, rows of a below the diagonal for all 16 stages, where row 12 is b, c (16), weights of the fifth-order error
-(12), of the third-order one (12), of the interpolant's last four coefficients (4, 16)). ``work``: 16 stages, of which
-the first is not used (it is ``rate0``) and the thirteenth is the rate at the end; scratch; those four coefficients.
+(12), of the third-order one (12), of the interpolant's last four coefficients (4, 16)), then the scales and the time of
+their last step. ``work``: 16 stages, of which the first is not used (it is ``rate0``) and the thirteenth is the rate at
+the end; scratch; those four coefficients; with scales 3 arrays more.
 """
 
 import math
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
-from sceneql.stepping.runge_kutta_kernels import ABSOLUTE, RELATIVE, add_stages
+from sceneql.stepping.runge_kutta_kernels import ABSOLUTE, RELATIVE, add_stages, weigh_explicitly
 from sceneql.system.signatures_kernels import DENSE, STEP
 
-CONTROLLED, EXTENDED = range(2)
+CONTROLLED, EXTENDED, SCALED, HEAD = range(4)
 STAGES = 12
 LAST = 16
 ROWS = 2
@@ -22,6 +24,7 @@ PLACES = ROWS + LAST * (LAST - 1) // 2
 FIFTH = PLACES + LAST
 THIRD = FIFTH + STAGES
 BENDS = THIRD + STAGES
+SCALES = BENDS + 4 * LAST
 
 
 @lean_inlined
@@ -63,10 +66,18 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         extend(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints)
     if numbers[CONTROLLED] == 0:
         return 0.0
+    weights = work[(LAST + 5) * n :]
+    scaled = numbers[SCALED] > 0
+    if scaled:
+        sizes, plan = settings[SCALES:], numbers[HEAD:]
+        weigh_explicitly(functions, t, h, y0, rate0, settings[RELATIVE], sizes, plan, weights, floats, ints)
     fifths = 0.0
     thirds = 0.0
     for k in range(n):
-        scale = settings[ABSOLUTE] + settings[RELATIVE] * max(abs(y0[k]), abs(y1[k]))
+        if scaled:
+            scale = max(1.0 / weights[k], settings[RELATIVE] * abs(y1[k]))
+        else:
+            scale = settings[ABSOLUTE] + settings[RELATIVE] * max(abs(y0[k]), abs(y1[k]))
         fifth = settings[FIFTH] * rate0[k]
         third = settings[THIRD] * rate0[k]
         for i in range(5, STAGES):

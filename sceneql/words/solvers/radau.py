@@ -82,7 +82,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     """What the step works with: see radau_stages_kernels.py."""
     import numpy as np
 
-    from sceneql.stepping.error_scales import error_scales
+    from sceneql.stepping.error_scales import alone, error_scales
     from sceneql.stepping.radau_layout import MEMORY, VECTORS
     from sceneql.stepping.radau_systems import radau_systems
     from sceneql.system import Prepared
@@ -108,4 +108,6 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
         numbers=np.concatenate([head, systems.kernels, pattern.tallies, scaled, systems.plan]).astype(np.int64),
         work=MEMORY + VECTORS * n + pattern.room + systems.store,
         text=systems.text,
+        alone=alone(scaled) if len(scaled) else None,
+        scales=(3, len(scales)) if len(scaled) else (0, 0),
     )

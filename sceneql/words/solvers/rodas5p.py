@@ -150,7 +150,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     import numpy as np
 
     from sceneql.linear.stage import stage_plan
-    from sceneql.stepping.error_scales import error_scales
+    from sceneql.stepping.error_scales import alone, error_scales
 
     plan = stage_plan(system, exact=True)
     assert system.pattern is not None
@@ -162,4 +162,6 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
         numbers=np.concatenate([[stages, at, room, at + len(plan.scales), len(scaled)], scaled, plan.numbers]),
         work=(4 + stages) * len(system.y) + room + plan.store,
         text=plan.text,
+        alone=alone(scaled) if len(scaled) else None,
+        scales=(at + len(plan.scales), len(sizes)),
     )

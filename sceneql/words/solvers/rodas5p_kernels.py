@@ -18,7 +18,7 @@ from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_JACOBIAN, AT_RATE, jacobian_at, rate_at
 from sceneql.linear.newton_kernels import fail
 from sceneql.linear.stage_kernels import TALLIES, TALLIES_AT, factor_stage, solve_stage
-from sceneql.stepping.error_scales_kernels import foresee, weigh_anew
+from sceneql.stepping.error_scales_kernels import foresee, level, shaken, weigh_anew
 from sceneql.system.signatures_kernels import DENSE, STEP
 
 STAGES, SCALES_AT, ROOM, SIZES_AT, SCALED, HEAD = range(6)
@@ -128,7 +128,10 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     if numbers[SCALED] > 0:
         sizes, groups = settings[numbers[SIZES_AT] :], numbers[HEAD:]
         foresee(functions, t, h, y0, rate0, sizes, groups, sample, drift, floats, ints)
-        weigh_anew(t, settings[RELATIVE], h, y0, rate0, sample, sizes, groups, weights)
+        if weigh_anew(t, settings[RELATIVE], h, y0, rate0, sample, sizes, groups, weights):
+            shaken(functions, t, y0, rate0, sizes, groups, drift, sample, floats, ints)
+            if solve_stage(plan, a, jacobian, scales, store, drift):
+                level(h, drift, sizes, groups, weights)
     else:
         for k in range(n):
             weights[k] = 1.0 / (settings[ABSOLUTE] + settings[RELATIVE] * max(abs(y0[k]), abs(y1[k])))

@@ -1,0 +1,120 @@
+"""What a failed march says: the part, entry, time and line, and whether the equations or the tolerance is at fault."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.failure import RunFailure
+from sceneql.march import march_kernels as kernels
+from sceneql.march.blame import culprit
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from sceneql.frame import Floats
+    from sceneql.island.system import System
+    from sceneql.march.driver import Driver
+    from sceneql.system import Control
+
+GROWTH_LIMIT = 1e12
+"""A run fails when an entry of y exceeds this times the largest at the start (at least 1, or a change by the rate)."""
+
+LEAST = 1e-40
+"""Part of a run below which no step is tried, even at time 0."""
+MESSAGES = {
+    kernels.NOT_FINITE: "a value is no longer finite: the step is unstable, or the equations have no value there",
+    kernels.GROWTH: f"the state has grown beyond {GROWTH_LIMIT:.0e} times its start: {{}}",
+    kernels.STEP_TOO_SMALL: "the step that the tolerance asks for is below the resolution of time: {}",
+    kernels.STUCK: "contacts push against each other at one instant without end",
+}
+AHEAD = 1e-9
+"""Part of the time reached in which a rate without a value is looked for."""
+BEND = 1e-6
+"""Relative change of a rate in some last digits of time from which its solution bends at once."""
+DIGITS = 64
+"""Those last digits."""
+ROUNDING = 1e-9
+"""Part of an entry below which its change in these is rounding."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stopped:
+    """A march where it stopped."""
+
+    system: System
+    driver: Driver
+    control: Control
+    floats: Floats
+    time: float
+    """Of the last good state [s]."""
+    y: Floats
+    rate: Floats
+    end: float
+    """Of the run [s]."""
+    rate_at: Callable[[float, Floats], Floats]
+    """dy/dt (n,) at a time [s] and state."""
+
+
+def failure(march: Stopped, status: int, entry: int, ahead: float) -> RunFailure:
+    """The failure of a march that has stopped with a status; ``ahead``: the step that comes next [s]."""
+    control = march.control
+    if status == kernels.STUCK:
+        return blamed(march, -1, MESSAGES[status])
+    if status == kernels.STEP_TOO_SMALL:
+        return _without_step(march, entry)
+    if status == kernels.NOT_FINITE:
+        if control.unsolved:
+            return blamed(march, entry, control.unsolved)
+        return blamed(march, entry, MESSAGES[status], dict.fromkeys((0.0, 0.5 * ahead, ahead)))
+    why = "the equations run away" if control.adaptive else "the step is unstable"
+    return blamed(march, entry, MESSAGES[status].format(why))
+
+
+def blamed(march: Stopped, entry: int, message: str, aheads: Iterable[float] = ()) -> RunFailure:
+    """The failure at an entry of the state; a term that is not finite at one of some times ahead [s] is named."""
+    t, y, rate = march.time, march.y, march.rate
+    origin = march.system.origin(entry)
+    span = origin.span
+    for h in aheads:
+        term = culprit(march.system, march.driver, march.floats, t + h, y + h * rate if h else y)
+        if term is not None and term.part != origin.part:
+            message, span = f"{message.partition(':')[0]}: '{term.part}' gives none", term.span or span
+            break
+    return RunFailure(message, part=origin.part, time=t, span=span)
+
+
+def _without_step(march: Stopped, entry: int) -> RunFailure:
+    """No step is short enough: the rate has no value ahead, or bends at once, or is known too roughly."""
+    t, y, rate, text = march.time, march.y, march.rate, MESSAGES[kernels.STEP_TOO_SMALL]
+    with np.errstate(all="ignore"):
+        missing = _missing(march, t, y, rate)
+        if missing is not None:
+            at, h = missing
+            return blamed(march, at, text.format(f"a singularity, beyond which {_rate_of(march, at)} no value"), (h,))
+        h = DIGITS * max(float(np.spacing(t)), LEAST * march.end)
+        change = np.abs(march.rate_at(t + h, y + h * rate) - rate)
+        bending = (change > BEND * np.abs(rate)) & (h * np.abs(rate) > ROUNDING * np.abs(y))
+    if bending.any():
+        at = int(np.argmax(np.where(bending, np.abs(rate), 0.0)))
+        return blamed(march, at, text.format(f"a singularity, where {_rate_of(march, at)} no bound"))
+    limit = f"{march.control.tolerance:g}"
+    return blamed(march, entry, text.format(f"rounding alone makes larger errors than its {limit}; take a larger one"))
+
+
+def _missing(march: Stopped, t: float, y: Floats, rate: Floats) -> tuple[int, float] | None:
+    """The first entry whose rate has no value soon after a time [s], and how soon [s]."""
+    h = max(float(np.spacing(t)), LEAST * march.end)
+    while h < AHEAD * max(t, AHEAD * march.end):
+        bad = np.flatnonzero(~np.isfinite(march.rate_at(t + h, y + h * rate)))
+        if len(bad):
+            return int(bad[0]), h
+        h *= 4.0
+    return None
+
+
+def _rate_of(march: Stopped, entry: int) -> str:
+    name = march.system.name(entry)
+    return f"the rate of {name} has" if name else "a rate has"
