@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runs import complaint
-from sceneql.failure import RunFailure
 from sceneql.kinds.texts import written
 from sceneql.pipeline import Report, Tools, load, simulate
+from sceneql.quantities.diagnostic import ScriptError
 
 SCENE = """
 clock: {{end: 4 s, fps: 5}}
@@ -116,5 +116,5 @@ def test_a_formula_is_printed_and_one_that_is_none_is_refused(tmp_path):
     plain = picture(loaded(tmp_path), tmp_path)
     told = picture(loaded(tmp_path, r"{law: {formula: {tex: 'a = \frac{m}{r^2}', panel: 0}}}"), tmp_path)
     assert (plain != told).any(axis=2)[:60, :120].sum() > 60
-    with pytest.raises(RunFailure, match="frak"):
-        picture(loaded(tmp_path, r"{law: {formula: {tex: '\frak{'}}}"), tmp_path)
+    with pytest.raises(ScriptError, match="expected '}'"):
+        loaded(tmp_path, r"{law: {formula: {tex: '\frak{'}}}")

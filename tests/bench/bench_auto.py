@@ -3,8 +3,8 @@
     python tests/bench/bench_auto.py [problem ...]
 
 The ratio is that of its time to the least in which one of the four comes to the same error, by straight lines through
-(log error, log time) of their runs at a tolerance a decade. Times are the least processor time of the march from its first step on. Errors of
-the stiff problems are relative to each state, else to the largest position or state.
+(log error, log time) of their runs at a tolerance a decade. Times are the least processor time of the march from its
+first step on. Errors of the stiff problems are relative to each state, else to the largest position or state.
 """
 
 from __future__ import annotations
