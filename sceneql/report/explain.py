@@ -110,7 +110,7 @@ def _chosen(run: IslandRun) -> list[str]:
     """The method that an automatic solver begins with, and why; nothing where the start fails."""
     if run.solver is not run.graph.tasks[run.island.solver].kind:
         word = type(run.solver).__module__.rpartition(".")[2]
-        return [f"{word} takes its place on a field on a grid"]
+        return [f"{word} takes its place " + (run.methods.remark or "on a field on a grid")]
     with suppress(RunFailure):
         return [f"begins with {why}" for _, why in run.march.choices()[:1]]
     return []
@@ -119,7 +119,8 @@ def _chosen(run: IslandRun) -> list[str]:
 def _why(run: IslandRun) -> tuple[str, ...]:
     """Why it is solved by itself, what its solver chose, how that works here, and what takes over when."""
     march, methods = run.march, run.methods
-    return run.island.reason, run.solver.explanation(), *_chosen(run), march.prepared_text, methods.remark
+    remark = methods.remark if run.solver is run.graph.tasks[run.island.solver].kind else ""
+    return run.island.reason, run.solver.explanation(), *_chosen(run), march.prepared_text, remark
 
 
 def _remarks(graph: SimulationGraph, run: IslandRun) -> dict[str, str]:

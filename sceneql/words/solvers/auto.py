@@ -74,7 +74,8 @@ class Auto(Solver):
         if island.local_contacts and few:
             return Methods(self, self._order_5())
         if island.orbits and few and self.tolerance <= ORBITS:
-            return GaussRadau15(tolerance=IN_ORBITS).choose(island)
+            there = "for few masses that attract each other, at so small a tolerance"
+            return replace(GaussRadau15(tolerance=IN_ORBITS).choose(island), remark=there)
         stiff = Radau(tolerance=self.tolerance, absolute=self.absolute).stepper()
         return Methods(self, self.stepper(), stiff=replace(stiff, method=replace(stiff.method, name="radau")))
 
