@@ -72,6 +72,12 @@ def test_what_is_hit_lies_at_zero_or_under_what_starts_lower(tmp_path, models, h
     assert graph.tasks["floor"].kind.height.number() == pytest.approx(height, abs=1e-12)
 
 
+def test_an_object_that_falls_from_below_zero_has_the_ground_under_it(tmp_path):
+    objects = "objects: {ball: {sphere: {radius: 0.2 m, position: 0 -2 0 m}}}"
+    graph = graph_of(tmp_path, f"{objects}\n{FALL}\nforces: [gravity, collision]")
+    assert graph.tasks["floor"].kind.height.number() == pytest.approx(-2.2, abs=1e-12)
+
+
 def test_a_ball_comes_to_rest_beside_a_step_on_the_ground(tmp_path):
     """Not for ever downwards, as where another object took the ground's place."""
     script = f"""

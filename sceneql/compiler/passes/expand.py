@@ -54,9 +54,20 @@ def expand(
 
 
 def _level(tasks: Mapping[str, Task]) -> Value:
-    """The height of the ground that is hit: 0, or where the lowest model starts."""
-    lows = (task.kind.lowest() for task in tasks.values() if isinstance(task.kind, Model))
+    """The height of the ground that is hit: 0, or where the lowest model, or object that a model drives, starts."""
+    models = [task.kind for task in tasks.values() if isinstance(task.kind, Model)]
+    lows = [model.lowest() for model in models]
+    lows += [_bottom(tasks[name].kind) for model in models for name in model.drives() if name in tasks]
     return Value(Number(min([0.0, *(low for low in lows if low is not None)]), Type((), LENGTH)))
+
+
+def _bottom(kind: Kind) -> float | None:
+    """The height [m] of an object's position less its radius, where its fields alone tell it."""
+    position, radius = (getattr(kind, name, None) for name in ("position", "radius"))
+    if not isinstance(position, Value) or not position.constant:
+        return None
+    deep = radius.number() if isinstance(radius, Value) and radius.constant else 0.0
+    return float(position.number()[1]) - float(deep)
 
 
 def _staged(tasks: Mapping[str, Task]) -> bool:
