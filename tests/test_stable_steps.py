@@ -3,11 +3,13 @@
 import math
 import re
 
+import numpy as np
 import pytest
 
 from sceneql.compiler.passes import stable_steps
 from sceneql.failure import RunFailure
 from sceneql.kinds.stable_step import stable_step
+from sceneql.march.spectrum import dominant
 from sceneql.march.stability import stability
 from sceneql.report.explain import explain, text
 from sceneql.run.run import Run
@@ -195,3 +197,21 @@ def test_the_bound_of_a_large_cloth_is_as_sharp_as_that_of_a_small_one(tmp_path)
 def test_explain_says_what_a_tolerance_is_a_part_of(tmp_path, solver, measure):
     script = PAIR + f"forces: [{{spring: {{from: p.a.position, to: p.b.position}}}}]\nsolvers: {{main: {{{solver}}}}}\n"
     assert f"steps by the tolerance {measure}" in text(explain(loaded(tmp_path, script)))
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_two_masses_on_an_oblique_spring_swing_at_its_frequency(seed):
+    """In 13 entries, the last of them at rest: a Krylov space in which most directions have no rate."""
+    rng = np.random.default_rng(seed)
+    masses, stiffness, places = 10.0 ** rng.uniform(-2, 1, 2), 10.0 ** rng.uniform(0, 8), rng.normal(size=6)
+    length = 0.9 * np.linalg.norm(places[:3] - places[3:])
+
+    def rate(t, y):
+        apart = y[3:6] - y[:3]
+        pull = stiffness * (1.0 - length / np.linalg.norm(apart)) * apart
+        return np.concatenate([y[6:12], pull / masses[0], -pull / masses[1], [0.0]])
+
+    partner = np.array([*range(6, 12), *[-1] * 7])
+    found = dominant(rate, partner, 0.0, np.concatenate([places, np.zeros(7)]))
+    assert found.imag == pytest.approx(math.sqrt(stiffness * np.sum(1.0 / masses)), rel=1e-3)
+    assert abs(found.real) < 1e-3 * found.imag

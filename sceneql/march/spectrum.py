@@ -46,8 +46,10 @@ def dominant(rate_at: Rate, partner: Partners, t: float, y: Floats) -> complex:
         size = 0
         for k in range(SMALL):
             product = (rate_at(t, y + scale * units * basis[k]) - rate) / (scale * units)
-            matrix[: k + 1, k] = basis[: k + 1] @ product
-            product -= matrix[: k + 1, k] @ basis[: k + 1]
+            for _ in range(2):  # once leaves what rounding put back, which grows from vector to vector
+                along = basis[: k + 1] @ product
+                matrix[: k + 1, k] += along
+                product -= along @ basis[: k + 1]
             size = k + 1
             matrix[k + 1, k] = left = np.linalg.norm(product)
             if not left > 1e-10 * np.abs(matrix).max():
@@ -57,7 +59,7 @@ def dominant(rate_at: Rate, partner: Partners, t: float, y: Floats) -> complex:
     if not np.isfinite(matrix).all():
         return 0j
     values = np.linalg.eigvals(matrix)
-    found = complex(values[int(np.argmax(np.abs(values)))])
+    found = complex(values[int(np.argmax(np.abs(values) + 1e-3 * np.abs(values.imag)))])  # of as fast ones, what swings
     return complex(found.real, abs(found.imag))
 
 
@@ -71,7 +73,8 @@ def units_of(rate_at: Rate, partner: Partners, t: float, y: Floats, scale: float
     if len(positions):
         velocities = partner[positions]
         moved = y.copy()
-        moved[positions] += scale * np.random.Generator(np.random.Philox(2)).choice([-1.0, 1.0], len(positions))
+        # Uneven moves: where all masses are moved alike, the springs between them do not pull.
+        moved[positions] += scale * np.random.Generator(np.random.Philox(2)).standard_normal(len(positions))
         pull = (rate_at(t, moved) - rate_at(t, y))[velocities] / scale
         square = float(np.sqrt(np.mean(pull * pull)))
         units[velocities] = np.sqrt(square) if 0.0 < square < np.inf else 1.0
