@@ -117,7 +117,7 @@ DRAPE = """clock: {{end: 4 s}}
 models:
   sheet: {{cloth: {{size: 0.8 0.8 m, cells: 10 10, center: 0 0.61 0 m, stretch: 400 N/m, shear: 100 N/m,
     bend: 40 N/m, damping: 0.2, thickness: 20 mm, pins: [60]}}}}
-objects: {{floor: none, ball: {{sphere: {{radius: 0.6 m}}}}}}
+objects: {{ball: {{sphere: {{radius: 0.6 m}}}}, floor: {{plane: {{height: -5 m}}}}}}
 forces: [gravity, {{drag: {{linear: 5 g/s}}}}]
 contacts: {{hit: {{collision: {{restitution: 0, mode: local}}}}}}
 solvers: {{main: {{{solver}}}}}

@@ -65,7 +65,7 @@ class Filling(Record):
         for name in others:
             if getattr(self, name) is not None:
                 yield Problem(f"{self.cells} have no {name}", (name,), at_key=True)
-        if self.density is not None and self.density * self.spacing**3 < LEAST_MASS:
+        if self.density is not None and self.density * (self.spacing * self.spacing * self.spacing) < LEAST_MASS:
             yield Problem(f"masses of less than {LEAST_MASS:g} kg are too light", ("density",), at_key=True)
         if self.cells == "tetrahedra" and self.retardation is not None and self.modulus is None:
             yield Problem("a retardation needs a `modulus`", ("retardation",), at_key=True)
@@ -80,7 +80,7 @@ class Filling(Record):
             factor = self._lattice().stiffest() / mass
             return factor * stiffness, factor * damping
         if self.density is not None:
-            mass = self.density * self.spacing**3 / 2
+            mass = self.density * (self.spacing * self.spacing * self.spacing) / 2
         factor = 2 * (8 / 3 + 2) / mass
         if self.modulus is None:
             return factor * stiffness, factor * damping

@@ -116,30 +116,37 @@ def put_right(t1, h, k, j, y0, y1, floats, ints):
         y1[ints[layout.WORK]] -= floats[ints[layout.MASS] + k] * min(0.0, floats[memory + layout.PRESS]) * d
 
 
-@lean(types.void(F, A, A, A, A, I), inner=True)
-def list_near(h, y0, y1, found, floats, ints):
-    """List the masses that may touch a surface in the next step; found (bodies,) is scratch."""
-    n = ints[layout.BODIES]
+@lean(types.void(F, A, A, A, A, A, I), inner=True)
+def list_near(h, y0, y1, found, ahead, floats, ints):
+    """List the pairs that may touch in the next step, and the masses that have one.
+
+    ``found`` (bodies,) and ``ahead`` (3 bodies,) are scratch.
+    """
+    n, objects = ints[layout.BODIES], ints[layout.OBJECTS]
     at, to = ints[layout.POSITION], ints[layout.VELOCITY]
     x1, v1 = y1[at : at + 3 * n], y1[to : to + 3 * n]
     change = 0.0
     for c in range(3 * n):
         change = max(change, abs(v1[c] - y0[to + c]))
+        ahead[c] = x1[c] + AHEAD * h * v1[c]
     more = floats[ints[layout.THICKNESS]] + 2.0 * h * change
     radii = floats[ints[layout.RADIUS] : ints[layout.RADIUS] + n]
-    for k in range(n):
-        found[k] = 0.0
-    for j in range(ints[layout.OBJECTS]):
+    for j in range(objects):
         place = layout.HEAD + layout.OBJECT * j
-        if ints[place + layout.MOVING] == 0:
-            near_at(ints[place + layout.NEAR])(floats, ints, place, AHEAD * h, x1, v1, x1, v1, radii, more, found)
+        moving = ints[place + layout.MOVING] != 0
         for k in range(n):
-            memory = ints[layout.PAIRS] + layout.PAIR * (k * ints[layout.OBJECTS] + j)
-            if ints[place + layout.MOVING] != 0 or floats[memory] != layout.FREE:
-                found[k] = 1.0
+            found[k] = 1.0 if moving else 0.0
+        if not moving:
+            near_at(ints[place + layout.NEAR])(floats, ints, place, AHEAD * h, x1, v1, ahead, v1, radii, more, found)
+        for k in range(n):
+            memory = ints[layout.PAIRS] + layout.PAIR * (k * objects + j)
+            floats[memory + layout.LISTED] = 1.0 if floats[memory] != layout.FREE else found[k]
     count = 0
     for k in range(n):
-        if found[k] != 0.0 and floats[ints[layout.INVERSE] + k] != 0.0:
+        listed = False
+        for j in range(objects):
+            listed = listed or floats[ints[layout.PAIRS] + layout.PAIR * (k * objects + j) + layout.LISTED] != 0.0
+        if listed and floats[ints[layout.INVERSE] + k] != 0.0:
             floats[ints[layout.LAST] + layout.LIST + count] = k
             count += 1
     floats[ints[layout.LAST] + layout.RESTING] = count
@@ -164,4 +171,4 @@ def back_off_in_stages(t0, t1, y0, y1, floats, ints):
         if listed[k] != 0.0 and found[k] == 0.0:
             for j in range(ints[layout.OBJECTS]):
                 put_right(t1, h, k, j, y0, y1, floats, ints)
-    list_near(h, y0, y1, found, floats, ints)
+    list_near(h, y0, y1, found, np.empty(3 * found.size), floats, ints)

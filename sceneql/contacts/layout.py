@@ -18,11 +18,12 @@ END, WHOLE, CUTS, RESTING, LIST = range(5)
 """Memory of a contact in `local` mode, from LAST on: end and length of the step before it was cut, number of its cuts;
 the number of resting bodies, and a list of them, which spares a search of all bodies where most fly."""
 
-PRESS, LOAD, PULL, ALONG, EARLIER, TIED, LET_GO, PAIR = 1, 2, 3, 4, *range(7, 11)
+PRESS, LOAD, PULL, ALONG, EARLIER, TIED, LET_GO, LISTED, PAIR = 1, 2, 3, 4, *range(7, 12)
 """A pair is (body k, object j), numbered k * objects + j. Its memory in the floats, from PAIRS on: state, free normal
 acceleration, load (normal force by mass), pull along the surface (force without friction by mass), direction of sliding
 (3), load at the end of the step before (`local` mode; NaN where there was none), and within stages
-(stage_contacts_kernels) the evaluations since it was tied or last under load (0: not tied) and its releases.
+(stage_contacts_kernels) the evaluations since it was tied or last under load (0: not tied), its releases, and 1 where
+it may touch in the step (back_off_in_stages_kernels).
 """
 SLACK = TIED
 """Where ties last whole steps (channels.BETWEEN): the margin [m/s^2] of static friction over the pull along the surface

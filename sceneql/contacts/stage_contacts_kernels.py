@@ -59,7 +59,7 @@ def press(k, a, base, fresh, y, rate, seen, floats, ints):
         d, nx, ny, nz = surface(floats, ints, layout.HEAD + layout.OBJECT * j, y[at], y[at + 1], y[at + 2])
         seen[4 * j], seen[4 * j + 1], seen[4 * j + 2], seen[4 * j + 3] = d - reach, nx, ny, nz
         memory = ints[layout.PAIRS] + layout.PAIR * (k * objects + j)
-        if fresh:
+        if fresh and floats[memory + layout.LISTED] != 0.0:
             change_tie(memory, d - reach, floats)
         ties += floats[memory + layout.TIED] > 0.0
         floats[memory + layout.LOAD] = floats[memory + layout.PULL] = 0.0
