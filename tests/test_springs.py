@@ -137,6 +137,13 @@ def test_a_solid_that_cannot_be_is_told(tmp_path, shape, spacing, pins, said):
     assert "scene.yaml:5" in str(error.value)
 
 
+def test_a_spacing_whose_cube_is_beyond_all_numbers_is_no_crash(tmp_path):
+    path = tmp_path / "scene.yaml"
+    solid = "{solid: {object: body, spacing: 1e297 m, density: 300 kg/m^3}}"
+    path.write_text(f"objects: {{body: sphere}}\nmodels: {{jelly: {{mass_spring: {solid}}}}}\n")
+    assert load(path, pruned=False).islands[0].models == ("jelly",)
+
+
 def test_a_solid_that_is_too_much_is_refused_before_it_is_made(tmp_path):
     path = tmp_path / "scene.yaml"
     path.write_text(SOLID.format(shape="box: {size: 1 1 1 m}", spacing=0.008, pins=""))

@@ -202,6 +202,8 @@ class _Composer:
                             if type(node) is Sequence and key is None and type(here) is Mapping:
                                 node = hole(node.span)  # no key is a list
                             text = node.text if type(node) is Scalar else text
+                        elif faults and any(node.start < at < end for at in faults):
+                            node = hole(node.span)  # a part of it is told already
                         elif "(" in text and text.count("(") > text.count(")") and here is not None and here.flow:
                             self.halves.append(node)
                 elif kind is open_mapping:
