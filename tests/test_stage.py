@@ -78,6 +78,29 @@ def test_an_object_that_falls_from_below_zero_has_the_ground_under_it(tmp_path):
     assert graph.tasks["floor"].kind.height.number() == pytest.approx(-2.2, abs=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("other", "height"),
+    [
+        ("sphere: {radius: 0.6 m, position: 3 0 0 m}", -0.6),
+        ("box: {position: 3 0.2 0 m, rotation: {about: z, angle: 45 deg}}", 0.2 - 0.5**0.5),
+        ("torus: {radius: 1 m, tube: 0.2 m, position: 3 -1 0 m}", -1.2),
+        ("box: {position: 3 4 0 m}", 0.0),
+        ("box: {position: 3 -4 0 m, hidden: yes}", 0.0),
+    ],
+)
+def test_what_is_hit_lies_under_an_object_that_stands_lower(tmp_path, other, height):
+    (tmp_path / "scene.yaml").write_text(f"""
+clock: {{end: 3 s}}
+objects: {{{BALL}, other: {{{other}}}}}
+{FALL}
+forces: [gravity, {{collision: {{restitution: 0}}}}]
+outputs: {{data: {{record: {{of: [fall.position]}}}}}}
+""")
+    *_, end = simulate(load(tmp_path / "scene.yaml"), [0.0, 3.0])
+    assert end.run.graph.tasks["floor"].kind.height.number() == pytest.approx(height, abs=1e-3)
+    assert end.read("fall", "position") == pytest.approx([0, height + 0.2, 0], abs=1e-3)
+
+
 def test_a_ball_comes_to_rest_beside_a_step_on_the_ground(tmp_path):
     """Not for ever downwards, as where another object took the ground's place."""
     script = f"""

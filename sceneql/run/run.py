@@ -14,6 +14,7 @@ from sceneql.kinds import Force, Model, Object, Solver, Value
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.expression import Link
 from sceneql.run.dry_run import DryRun, asked, dry_run
+from sceneql.run.grounded import grounded
 from sceneql.run.history import History
 from sceneql.run.instant import Instant
 from sceneql.run.ranges import ranged
@@ -34,6 +35,8 @@ class Run:
     """
 
     def __init__(self, graph: SimulationGraph, *, marching: bool = True, ahead: bool = False) -> None:
+        if marching:
+            graph = grounded(graph, lambda: Run(graph, marching=False).at(0.0))
         self.graph, self.ahead = graph, ahead
         found = Diagnostics()
         islands = graph.islands if marching else ()
