@@ -175,13 +175,21 @@ def check(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path |
 @SCENE
 @options
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def explain(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None, as_json: bool) -> None:
+@click.option("--defaults", is_flag=True, help="Print what the script leaves unsaid, as entries to paste into it.")
+def explain(
+    scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None, as_json: bool, defaults: bool
+) -> None:
     """Tell what will run, with which solver and step bound, and what is left out and why."""
     from sceneql import pipeline
     from sceneql.report.explain import explain as account
     from sceneql.report.explain import text
     from sceneql.report.progress import bar
 
+    if defaults:
+        from sceneql.report.defaults import defaults as unsaid
+
+        click.echo(unsaid(pipeline.load(scene, variant=variant, sets=sets, words=words)) or "# the script says all")
+        return
     with bar(scene.stem):
         graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
         found = account(graph)

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import pytest
+import yaml
 
 from runs import watch
 from sceneql.frame import Quadric
+from sceneql.kinds import Light
 from sceneql.pipeline import Report, Tools, load, simulate
 from sceneql.quantities.diagnostic import ScriptError
+from sceneql.report.defaults import defaults
+from sceneql.report.explain import explain
+from sceneql.report.explain import text as told
 
 BALL = "ball: {sphere: {radius: 0.2 m, position: 0 2 0 m}}"
 FALL = "models: {fall: {particles: {of: ball, mass: 1 kg}}}"
@@ -124,6 +129,44 @@ def test_a_ground_that_nothing_hits_lies_under_the_lowest_point_of_the_film(tmp_
     assert abs(level[1]) == pytest.approx(9.81 / 2 - 2 + 0.2, abs=1e-6)
 
 
+def test_a_ground_that_takes_a_run_ahead_is_told(tmp_path):
+    falls = f"objects: {{{BALL}}}\n{FALL}\nforces: [gravity]"
+    said = "the physics runs once ahead of the film: camera frames all of it; floor lies under all of it"
+    assert said in told(explain(graph_of(tmp_path, falls))).splitlines()
+    assert "floor lies" not in told(explain(graph_of(tmp_path, falls.replace("gravity", "gravity, collision"))))
+    assert "floor lies" not in told(explain(graph_of(tmp_path, f"objects: {{{BALL}}}")))
+
+
 def test_only_a_default_may_be_none(tmp_path):
     with pytest.raises(ScriptError, match="'none' is no word of objects"):
         graph_of(tmp_path, "objects: {ball: none}")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"objects: {{{BALL}}}",
+        f"objects: {{{BALL}, ring: {{torus: {{position: 1 0 0 m}}}}}}\n{FALL}\nforces: [gravity, collision]",
+        f"objects: {{{BALL}}}\n{FALL}\nforces: [gravity]\ncameras: [orthographic]\nbackground: black",
+    ],
+)
+def test_the_defaults_that_explain_prints_make_the_same_picture_when_pasted(tmp_path, text):
+    def drawn(graph):
+        (moment,) = simulate(graph, [0.0])
+        shapes = Tools(graph, "still", Report(), tmp_path / "it").frame(moment).shapes
+        lights = [task.kind.lower(moment) for task in graph.tasks.values() if isinstance(task.kind, Light)]
+        view = graph.tasks[graph.cameras["still"]].kind.view((64, 36), moment)
+        return sorted(map(repr, [*shapes, *(source for light in lights for source in light)])), repr(view)
+
+    before = graph_of(tmp_path, text)
+    unsaid = yaml.safe_load(defaults(before))
+    written = yaml.safe_load(text)
+    for family, entries in unsaid.items():
+        old = written.get(family, {})
+        written[family] = (
+            [*old, *({name: word} for name, word in entries.items())] if type(old) is list else {**old, **entries}
+        )
+    after = graph_of(tmp_path, yaml.safe_dump(written, sort_keys=False))
+    assert unsaid.keys() >= {"solvers"} if "models" in written else {"lights"}
+    assert [task.name for task in after.tasks.values() if task.span is None] == []
+    assert drawn(after) == drawn(before)

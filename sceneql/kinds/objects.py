@@ -113,6 +113,10 @@ class Object(Kind):
         """Values that it needs over the whole run (`Moment.course`), by the start: then the physics runs once ahead."""
         return ()
 
+    def looks_ahead(self) -> str:
+        """What it takes from the bounds of the whole film (`Moment.bounds`), for `explain`; empty for nothing."""
+        return ""
+
     def _word(self) -> str:
         """Its name in scripts, which is its file's."""
         return type(self).__module__.rpartition(".")[2]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 from sceneql.compiler.catalogue import ROOT, Catalogue
 from sceneql.failure import RunFailure
 from sceneql.graph import SimulationGraph
-from sceneql.kinds import Camera, Contact, Force, Output
+from sceneql.kinds import Camera, Contact, Force, Object, Output
 
 if TYPE_CHECKING:
     from sceneql.run.run import IslandRun
@@ -41,6 +41,7 @@ def explain(graph: SimulationGraph) -> dict[str, Any]:
             for name, task in graph.tasks.items()
         ],
         "ahead": [name for name in dict.fromkeys(graph.cameras.values()) if _looks_ahead(graph, name)],
+        "ahead_objects": _objects_ahead(graph),
         **_solved(graph),
         "left_out": [{"name": part.name, "word": part.word, "why": part.reason} for part in graph.left_out],
         "avoided": {
@@ -55,6 +56,12 @@ def _looks_ahead(graph: SimulationGraph, camera: str) -> bool:
     """Whether a camera needs a dry run of the physics before the film."""
     task = graph.tasks.get(camera)
     return bool(graph.islands) and task is not None and cast(Camera, task.kind).looks_ahead()
+
+
+def _objects_ahead(graph: SimulationGraph) -> dict[str, str]:
+    """What objects take from a dry run of the physics, by their names."""
+    objects = {name: task.kind for name, task in graph.tasks.items() if isinstance(task.kind, Object)}
+    return {name: why for name, kind in objects.items() if graph.islands and (why := kind.looks_ahead())}
 
 
 def _kernels(words: set[tuple[str, str]]) -> set[str]:
@@ -187,10 +194,10 @@ def text(plan: dict[str, Any]) -> str:
         lines += [f"    {contact}: {remark}" for contact, remark in island["contact_remarks"].items()]
         lines.append(f"  solver: {island['solver']}{_control(island)}; {island['why']}")
         lines.append(f"  stability: {island['bound_text']}")
-    if plan["ahead"]:
-        lines += ["", f"the physics runs once ahead of the film: {', '.join(plan['ahead'])} frames all of it"]
-    if plan["ranges"]:
-        lines += ["", f"the physics runs once ahead of the film: the range of {', '.join(plan['ranges'])} is all of it"]
+    ahead = [f"{', '.join(plan['ahead'])} frames all of it"] if plan["ahead"] else []
+    ahead += [f"{name} {why}" for name, why in plan["ahead_objects"].items()]
+    ahead += [f"the range of {', '.join(plan['ranges'])} is all of it"] if plan["ranges"] else []
+    lines += ["", f"the physics runs once ahead of the film: {'; '.join(ahead)}"] if ahead else []
     if plan["left_out"]:
         lines += ["", "left out:"]
         lines += [f"  {part['name']} ({part['word']}): {part['why']}" for part in plan["left_out"]]

@@ -25,6 +25,10 @@ class Ground(Object):
 
     height: Length | None = field("Where it lies; by default under the lowest point of the film.", None)
 
+    def looks_ahead(self) -> str:
+        """Where it lies, if no height is given."""
+        return "lies under all of it" if self.height is None else ""
+
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """A half-space, as a plane's."""
         level = float(moment.bounds(())[0][1]) if self.height is None else float(moment.at(self.height))

@@ -1,0 +1,49 @@
+"""What a script leaves unsaid, as the entries that would say it: to paste behind its own, and then to change."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sceneql.graph import SimulationGraph, Task
+from sceneql.kinds import Kind, Value
+from sceneql.kinds.word import written_name
+
+
+def defaults(graph: SimulationGraph) -> str:
+    """The parts that the defaults added, as YAML by family; empty where the script says all."""
+    families: dict[str, list[str]] = {}
+    for task in _settled(graph).tasks.values():
+        if task.span is None:
+            families.setdefault(task.family, []).append(f"  {task.name}: {{{task.word}: {{{_fields(task)}}}}}")
+    return "\n".join(line for family, entries in families.items() for line in (f"{family}:", *entries))
+
+
+def _settled(graph: SimulationGraph) -> SimulationGraph:
+    """The graph as its run has it: with the floor under what stands lower."""
+    from sceneql.run.grounded import grounded
+    from sceneql.run.run import Run
+
+    return grounded(graph, lambda: Run(graph, marching=False).at(0.0))
+
+
+def _fields(task: Task) -> str:
+    """The fields of a part's own word that have a value."""
+    own = [name for name in type(task.kind).model_fields if not _is_of_family(task.kind, name)]
+    given = [(written_name(name), _written(task.kind, name)) for name in own]
+    return ", ".join(f"{name}: {value}" for name, value in given if value is not None)
+
+
+def _is_of_family(kind: Kind, name: str) -> bool:
+    """Whether all words of the family have the field."""
+    return any(name in base.model_fields for base in type(kind).__mro__[1:] if base.__dict__.get("family"))
+
+
+def _written(kind: Kind, name: str) -> str | None:
+    """A field's value as a script writes it: its default, or the number that the scene gave it."""
+    extra: Any = type(kind).model_fields[name].json_schema_extra
+    default, value = extra["default"], getattr(kind, name)
+    if default in (None, "", (), {}) or isinstance(default, bool) or not isinstance(default, str):
+        return None
+    if isinstance(value, Value) and value != type(kind).model_validate({}).__dict__.get(name) and value.constant:
+        return f"{value.number():.9g} m"
+    return default
