@@ -35,7 +35,8 @@ def _fields(task: Task) -> str:
 
 def _is_of_family(kind: Kind, name: str) -> bool:
     """Whether all words of the family have the field."""
-    return any(name in base.model_fields for base in type(kind).__mro__[1:] if base.__dict__.get("family"))
+    bases = (base for base in type(kind).__mro__[1:] if issubclass(base, Kind) and "family" in base.__dict__)
+    return any(name in base.model_fields for base in bases)
 
 
 def _written(kind: Kind, name: str) -> str | None:
