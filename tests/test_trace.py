@@ -23,6 +23,7 @@ from sceneql.frame import Mesh, PointLight, Points, Segments, Sky, Surface
 from stage import GLOW, WHITE, frame, sun, view
 
 UNIFORM = Sky((1.0, 1.0, 1.0), (1.0, 1.0, 1.0), (1.0, 1.0, 1.0))
+BLACK = Surface(color=(0.0, 0.0, 0.0), specular=0.0)
 MIRROR = Surface(color=(1.0, 1.0, 1.0), roughness=0.0, metallic=1.0)
 
 
@@ -95,7 +96,7 @@ def test_what_shows_a_lamp_throws_no_shadow_in_its_light():
     lamp = PointLight((3.0, 2.0, 0.0), (10.0, 10.0, 10.0), 0.3)
     bare, shown, hidden = (
         draw(stage.floor(), *more, lights=[lamp], seen=seen)
-        for more in ([], [stage.sphere(GLOW, lamp.position, 0.3)], [stage.sphere(GLOW, lamp.position, 0.31)])
+        for more in ([], [stage.sphere(GLOW, lamp.position, 0.3)], [stage.sphere(BLACK, lamp.position, 0.31)])
     )
     assert bare.min() > 0.05
     np.testing.assert_array_equal(shown, bare)

@@ -97,11 +97,11 @@ def shade(scene, record, visibility):
         )
     for c in range(3):
         arriving = max(open_sky[c] - visibility[SKY + c], 0.0)
-        blurred = mirrored_sky[c] + roughness * (open_sky[c] - mirrored_sky[c])
-        share = arriving / open_sky[c] if open_sky[c] > 0.0 else 0.0
+        share = min(arriving / open_sky[c], 1.0) if open_sky[c] > 0.0 else 0.0
+        blurred = arriving + share * (1.0 - roughness) * (mirrored_sky[c] - open_sky[c])
         diffuse = body * record[TINT + c] * (1.0 - specular[c])
         total = diffuse * (arriving + sums[c] / np.pi) + lobes[c] + u[s + layout.EMISSION + c]
-        total += specular[c] * (1.0 - record[TRACED]) * blurred * share
+        total += specular[c] * (1.0 - record[TRACED]) * blurred
         total *= record[WEIGHT + c]
         if c == 0:
             sums = total, sums[1], sums[2]

@@ -22,6 +22,8 @@ BARELY = 1e-6
 """Part of its length by which a ray to a lamp ends before its ball, so that a sphere of the same radius is not hit."""
 BRIGHTEST = 4.0
 """Limit of the radiance of surfaces that hide the sky: small spots near a lamp, hit by few samples, left blotches."""
+SHOWN = 1e-3
+"""Part of a lamp's radius by which a ball that shows it may be larger."""
 AGAIN = 0.5
 """Share of the sky that a surface which hides the sky is assumed to see itself."""
 
@@ -79,6 +81,16 @@ def shadow_width(scene, l, x, y, z, blocker):
 
 
 @part
+def in_a_lamp(scene, x, y, z):
+    """Whether a place is on what shows a lamp: a ball where that stands, as large, whose light counts as the lamp's."""
+    for l in range(int(scene.ints[layout.LIGHT_COUNT])):
+        _, _, _, far, _, _, _ = light_at(scene.reals, l, x, y, z)
+        if far < (1.0 + SHOWN) * scene.reals[layout.LIGHTS + layout.LIGHT * l + 7]:
+            return True
+    return False
+
+
+@part
 def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius):
     """Radiance (3) of a surface that hides the sky: its emission, and lights and sky reflected once, matte."""
     nx, ny, nz, fx, fy, fz, lift, red, green, blue = normal_at(scene, scratch, item, x, y, z)
@@ -100,16 +112,21 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius):
             er += cosine * ir
             eg += cosine * ig
             eb += cosine * ib
-    s = scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT]
+    r, g, b = r * er, g * eg, b * eb
+    s = scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT] + layout.EMISSION
     u = scene.reals
-    r, g, b = r * er + u[s + layout.EMISSION], g * eg + u[s + layout.EMISSION + 1], b * eb + u[s + layout.EMISSION + 2]
+    if max(u[s], max(u[s + 1], u[s + 2])) > 0.0 and not in_a_lamp(scene, x, y, z):
+        r, g, b = r + u[s], g + u[s + 1], b + u[s + 2]
     share = min(1.0, BRIGHTEST / max(max(r, g), max(b, BRIGHTEST)))
     return share * r, share * g, share * b
 
 
 @part
 def sky_loss(scene, scratch, asked, record, sample):
-    """The sky's radiance (3) less the incoming one in the direction of a sample, cosine-distributed."""
+    """The sky's radiance (3) less the incoming one in the direction of a sample, cosine-distributed.
+
+    Where there is no sky that is what surfaces around reflect, less than zero.
+    """
     nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
     ax, ay, az, bx, by, bz = across(nx, ny, nz)
     u, v = SKY_DISK[sample, 0], SKY_DISK[sample, 1]
@@ -166,7 +183,7 @@ def look_around(scene, scratch, asked, record, number, of_sky, of_lights, visibi
     asked[0, layout.OPEN] = 0.0
     for column in range(FIRST_LIGHT + 2 * scene.ints[layout.LIGHT_COUNT]):
         visibility[column] = 0.0
-    if scene.reals[layout.HAS_SKY] != 0.0:
+    if scene.reals[layout.HAS_LIGHT] != 0.0:
         for k in range(of_sky):
             r, g, b = sky_loss(scene, scratch, asked, record, (number * of_sky + k) % SKY_COUNT)
             visibility[SKY] += r / of_sky
