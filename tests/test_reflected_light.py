@@ -31,8 +31,7 @@ def test_a_red_wall_reddens_what_stands_beside_it_with_or_without_a_sky(lit, met
     wall = stage.box(RED, (-1.3, 0.0, 0.0), (0.2, 4.0, 4.0))
     ball = stage.sphere(Surface(color=(0.8, 0.8, 0.8), roughness=1.0, specular=0.0, metallic=metallic), radius=0.7)
     dark, faint, dim = (
-        draw(wall, ball, lights=(lit, *skies), seen=view((0.4, 0.0, 3.0)))
-        for skies in ((), (sky(1e-4),), (sky(1e-2),))
+        draw(wall, ball, lights=(lit, *skies), seen=view((0.4, 0.0, 3.0))) for skies in ((), (sky(1e-4),), (sky(1e-2),))
     )
     beside = dark[40:56, 28:31]
     assert (beside[..., 0] > 1.5 * beside[..., 1]).all()

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Glow(Material):
-    """A black body that shines evenly to all sides: embers, sparks, lamps. It lights what is near, small things faintly.
+    """A black body that shines evenly to all sides: embers, sparks, lamps. It lights what is near.
 
     A sphere of it shows a lamp where a `point` light stands that is as large: it throws no shadow in that light, and
     adds none of its own.
