@@ -28,7 +28,7 @@ def describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, radius, record):
     record[records.OWNER] = scene.ints[layout.ITEMS + 4 * item + layout.SHAPE] + 1
     record[records.RADIUS] = radius
     record[records.LIFT] = lift
-    record[records.TRACED] = 0.0
+    record[records.TRACED] = record[records.IMAGED] = 0.0
     record[records.ITEM] = item
     return outside
 

@@ -81,3 +81,9 @@ def smoothstep(low, high, x):
 def sharpness(roughness):
     """Share of the reflection that is traced as in a mirror; the rest is the sky, blurred."""
     return 1.0 - smoothstep(0.05, 0.4, roughness)
+
+
+@part
+def polish(roughness):
+    """Share of a lamp's reflection that is its image, as in a mirror; the rest is a highlight."""
+    return 1.0 - smoothstep(0.0, 0.1, roughness)

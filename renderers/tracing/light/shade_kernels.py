@@ -8,7 +8,7 @@ from renderers.tracing import layout
 from renderers.tracing.light.albedo_kernels import mean_reflectance
 from renderers.tracing.light.light_kernels import highlight, schlick, sky_ambient, sky_radiance
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, SKY, light_at
-from renderers.tracing.record_kernels import NORMAL, PLACE, SURFACE, TINT, TRACED, VIEW, WEIGHT
+from renderers.tracing.record_kernels import IMAGED, NORMAL, PLACE, SURFACE, TINT, TRACED, VIEW, WEIGHT
 from renderers.tracing.scene_kernels import ROW, SCENE, part
 from sceneql.compiled.kernels import kernel
 
@@ -114,7 +114,7 @@ def shade(scene, record, visibility):
         blurred = arriving + share * (1.0 - roughness) * (mirrored_sky[c] - open_sky[c])
         diffuse = body * record[TINT + c] * (1.0 - specular[c])
         total = diffuse * (arriving + sums[c] / np.pi) + u[s + layout.EMISSION + c]
-        total += lobes[c] * reflected_more(f0[c], once)
+        total += (1.0 - record[IMAGED]) * lobes[c] * reflected_more(f0[c], once)
         total += specular[c] * (1.0 - record[TRACED]) * blurred
         total *= record[WEIGHT + c]
         if c == 0:
