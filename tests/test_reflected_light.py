@@ -57,3 +57,63 @@ def test_the_ball_that_shows_a_lamp_adds_nothing_to_its_light():
         )
         beside = np.s_[:8]
         np.testing.assert_array_equal(lit[beside], hidden[beside])
+
+
+AROUND = view((0, 6, 14), (0, 0, 0.5), (320, 180), 0.07, orthographic=False)
+PLACES = np.array([[d * np.cos(a), 0.0, d * np.sin(a)] for d in (0.6, 0.8, 1.2) for a in np.radians([60, 90, 120])])
+
+
+def on_contact(sphere, floor):
+    """Light of a floor at PLACES under a uniform sky, around where a sphere of radius 1 touches it."""
+    shapes = stage.floor(gray(floor)), stage.sphere(gray(sphere), (0, 1, 0))
+    picture = draw(*shapes, lights=(sky(1.0),), seen=AROUND)[..., 0]
+    away = (PLACES - AROUND.origin) @ AROUND.axes.T
+    scale = 90 / AROUND.half_height / -away[:, 2]
+    return picture[(90 - scale * away[:, 1]).astype(int), (160 + scale * away[:, 0]).astype(int)]
+
+
+def gray(tone):
+    return Surface(color=(tone,) * 3, roughness=1.0, specular=0.0)
+
+
+def followed(start, sphere, floor, rays=8000, turns=30):
+    """Light of the floor at ``start`` by paths that go on until the sky is met (Kajiya 1986)."""
+    random = np.random.default_rng(5)
+    at, normal, weight = np.tile(start, (rays, 1)), np.tile([0.0, 1.0, 0.0], (rays, 1)), np.full(rays, floor)
+    total = 0.0
+    for _ in range(turns):
+        ray = random.normal(size=at.shape)
+        ray = normal + ray / np.linalg.norm(ray, axis=1)[:, None]  # distributed as the cosine to the normal
+        ray /= np.linalg.norm(ray, axis=1)[:, None]
+        from_floor = at[:, 1] < 1e-9
+        off = at - [0.0, 1.0, 0.0]
+        half = (off * ray).sum(axis=1)
+        rest = half**2 - (off**2).sum(axis=1) + 1.0
+        to_ball = np.where(from_floor & (rest > 0) & (half < 0), -half - np.sqrt(np.maximum(rest, 0.0)), np.inf)
+        to_floor = np.where(~from_floor & (ray[:, 1] < 0), at[:, 1] / np.maximum(-ray[:, 1], 1e-12), np.inf)
+        way = np.minimum(to_ball, to_floor)
+        met = np.isfinite(way)
+        total += weight[~met].sum()
+        ball = (to_ball < to_floor)[met, None]
+        at = at[met] + way[met, None] * ray[met]
+        at[:, 1] = np.where(ball[:, 0], at[:, 1], 0.0)
+        normal = np.where(ball, at - [0.0, 1.0, 0.0], [0.0, 1.0, 0.0])
+        weight = weight[met] * np.where(ball[:, 0], sphere, floor)
+    return total / rays
+
+
+def test_a_black_ball_takes_the_sky_that_it_covers_from_the_floor():
+    covered = (1 + (PLACES**2).sum(axis=1)) ** -1.5  # the form factor of a sphere above the plane of a small patch
+    assert on_contact(0.0, 0.8) == pytest.approx(0.8 * (1 - covered), abs=0.015)
+
+
+@pytest.mark.parametrize("tone", [0.2, 0.5, 0.8])
+def test_contacts_get_the_light_that_goes_back_and_forth_between_them(tone):
+    exact = [followed(place, tone, tone) for place in PLACES]
+    assert on_contact(tone, tone) == pytest.approx(exact, abs=0.025)
+
+
+def test_white_contacts_in_a_furnace_are_not_to_be_seen():
+    shapes = stage.floor(gray(1.0)), stage.sphere(gray(1.0), (0, 1, 0)), stage.box(gray(1.0), (1.3, 0.5, 0), (1, 1, 1))
+    picture = draw(*shapes, lights=(sky(1.0),), seen=AROUND)
+    assert np.abs(picture - 1).max() < 0.01
