@@ -22,6 +22,8 @@ BARELY = 1e-6
 """Part of its length by which a ray to a lamp ends before its ball, so that a sphere of the same radius is not hit."""
 BRIGHTEST = 4.0
 """Limit of the radiance of surfaces that hide the sky: small spots near a lamp, hit by few samples, left blotches."""
+BRIGHTEST_AGAIN = 1.0
+"""The same of lamps' light on surfaces seen from these, of which samples tell even less."""
 SHOWN = 1e-3
 """Part of a lamp's radius by which a ball that shows it may be larger."""
 AGAIN = 0.25
@@ -127,13 +129,16 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius, sample):
                 _, _, share = walk(scene, scratch, sx, sy, sz, lx, ly, lz, 0.0, far, True)
                 cosine *= share / np.pi
                 er, eg, eb = er + cosine * ir, eg + cosine * ig, eb + cosine * ib
+        if met > 0:
+            share = min(1.0, BRIGHTEST_AGAIN / max(max(er, eg), max(eb, BRIGHTEST_AGAIN)))
+            er, eg, eb = share * er, share * eg, share * eb
         ended = met == SURFACES - 1
         if ended:
             hr, hg, hb = sky_ambient(u, ny)
             hr, hg, hb = AGAIN * hr, AGAIN * hg, AGAIN * hb
-            er += hr / (1.0 - (1.0 - AGAIN) * r)
-            eg += hg / (1.0 - (1.0 - AGAIN) * g)
-            eb += hb / (1.0 - (1.0 - AGAIN) * b)
+            er += hr / (1.0 - (1.0 - AGAIN) * min(r, 1.0))
+            eg += hg / (1.0 - (1.0 - AGAIN) * min(g, 1.0))
+            eb += hb / (1.0 - (1.0 - AGAIN) * min(b, 1.0))
         else:
             ax, ay, az, bx, by, bz = across(nx, ny, nz)
             v, w = NEXT_DISK[sample, 0], NEXT_DISK[sample, 1]
