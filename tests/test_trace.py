@@ -23,6 +23,7 @@ from sceneql.frame import Mesh, PointLight, Points, Segments, Sky, Surface
 from stage import GLOW, WHITE, frame, sun, view
 
 UNIFORM = Sky((1.0, 1.0, 1.0), (1.0, 1.0, 1.0), (1.0, 1.0, 1.0))
+BLACK = Surface(color=(0.0, 0.0, 0.0), specular=0.0)
 MIRROR = Surface(color=(1.0, 1.0, 1.0), roughness=0.0, metallic=1.0)
 
 
@@ -81,7 +82,7 @@ def test_a_sphere_throws_a_shadow_of_the_right_size_to_the_right_place(angle):
     # From above; the sun stands 45 degrees high, so the shadow lies 3 m off and is an ellipse of area pi r^2 sqrt(2).
     seen = view((3, 9, 0), (3, 0, 0), size=(96, 96), half_height=1.5, up=(0, 0, -1))
     light = sun((-1, 1, 0), (math.pi * math.sqrt(2),) * 3, angle)
-    picture = draw(stage.floor(), stage.sphere(WHITE, (0, 3, 0), 0.5), lights=[light], seen=seen)[..., 0]
+    picture = draw(stage.floor(), stage.sphere(BLACK, (0, 3, 0), 0.5), lights=[light], seen=seen)[..., 0]
     assert picture[:8].min() > 0.999
     dark = 1 - picture
     assert dark.sum() * (3 / 96) ** 2 == pytest.approx(math.pi * 0.25 * math.sqrt(2), rel=0.015)
@@ -95,7 +96,7 @@ def test_what_shows_a_lamp_throws_no_shadow_in_its_light():
     lamp = PointLight((3.0, 2.0, 0.0), (10.0, 10.0, 10.0), 0.3)
     bare, shown, hidden = (
         draw(stage.floor(), *more, lights=[lamp], seen=seen)
-        for more in ([], [stage.sphere(GLOW, lamp.position, 0.3)], [stage.sphere(GLOW, lamp.position, 0.31)])
+        for more in ([], [stage.sphere(GLOW, lamp.position, 0.3)], [stage.sphere(BLACK, lamp.position, 0.31)])
     )
     assert bare.min() > 0.05
     np.testing.assert_array_equal(shown, bare)
@@ -154,7 +155,8 @@ def test_a_checkered_floor_fades_into_its_mean_and_the_horizon_has_no_edge():
 def test_soft_shadow_and_sky_light_have_no_grain():
     lights = [sun((-0.5, 0.9, 0.6), (2.2,) * 3, 0.12), Sky((0.8,) * 3, (0.9,) * 3, (0.3,) * 3)]
     seen = view((2.2, 1.7, 3.2), (0, 0.3, 0), (240, 135), 0.32, orthographic=False)
-    shapes = stage.floor(replace(WHITE, color=(0.6,) * 3)), stage.blob(WHITE, (0, 0.85, 0))
+    clay = replace(WHITE, color=(0.6,) * 3)
+    shapes = stage.floor(clay), stage.blob(clay, (0, 0.85, 0))
     picture = draw(*shapes, lights=lights, seen=seen)[..., 0]
     normals = Normals().draw(frame(*shapes, seen=seen)).linear
     on_floor = (normals == normals[-1, 0]).all(axis=-1)

@@ -191,7 +191,7 @@ def pictures(*shapes, lights, seen, samples=4):
 @pytest.mark.parametrize("orthographic", [True, False])
 def test_pictures_are_the_same_in_packets(surface, orthographic):
     """With lights of no size, whose shadows have no width that depends on where on its way a ray was stopped."""
-    seen = view((1.5, 1.2, 4.0), (0, 0, 0), (70, 45), 1.2 if orthographic else 0.35, orthographic)
+    seen = view((1.5, 1.2, 4.0), (0, 0, 0), (100, 64), 1.2 if orthographic else 0.35, orthographic)
     shapes = stage.floor(WHITE, -0.8), lattice(surface, (-1.0, 0.0, 0.0)), stage.blob(surface, (0.7, 0.1, 0.0))
     lights = SKY, sun((0.5, 0.8, 0.4)), PointLight((-1.0, 3.0, 2.0), (3.0, 3.0, 3.0), 0.0)
     one, other = pictures(*shapes, stage.torus(surface, 0.3, 0.12), lights=lights, seen=seen)

@@ -9,11 +9,12 @@ from numba import types
 
 from renderers.tracing import layout
 from renderers.tracing.camera_kernels import camera_ray
-from renderers.tracing.light.light_kernels import backdrop, dielectric, sharpness, sky_radiance, smoothstep
+from renderers.tracing.light.lamps_kernels import mirrored_lamps
+from renderers.tracing.light.light_kernels import backdrop, dielectric, polish, sharpness, sky_radiance, smoothstep
 from renderers.tracing.light.shade_kernels import facing_ratio, mean_specular, shade
 from renderers.tracing.light.visibility_kernels import look_around
 from renderers.tracing.path_kernels import behind, bend, describe, faded, mirrored, refracted
-from renderers.tracing.record_kernels import TINT, TRACED, WEIGHT, copy_record, erase, start_of
+from renderers.tracing.record_kernels import IMAGED, TINT, TRACED, WEIGHT, copy_record, erase, start_of
 from renderers.tracing.scene_kernels import ROW, SCENE, SCRATCH, part
 from renderers.tracing.solids.intersect_kernels import walk
 from sceneql.compiled.kernels import kernel
@@ -23,6 +24,8 @@ BOUNCES = 8
 """Most surfaces that a ray meets behind the first one."""
 FAINT = 0.025
 """Weight of a mirrored ray below which the sky's reflection replaces it; from twice that on it counts in full."""
+WIDEST = 0.02
+"""Spread of a ray's cone after several mirrors from which on they show no lamps: images would be smeared over it."""
 QUICK = 8
 """Samples of light and sky on surfaces beyond the second record: seen in a reflection or refraction of another."""
 RADIUS, SPREAD, LIGHT_WEIGHT, GATHERED, STRAIGHT, KEEP, BOUNCE, PERSPECTIVE, LIVE, DOUBTED, DARK = (
@@ -36,8 +39,9 @@ RADIUS, SPREAD, LIGHT_WEIGHT, GATHERED, STRAIGHT, KEEP, BOUNCE, PERSPECTIVE, LIV
 refracted, so that it sees the backdrop; whether its second record is still to be found; surfaces so far; whether the
 camera is a perspective one; whether it goes on; whether a root was undecided; whether its last surface is still to be
 lit."""
-WAITING, LATER, LATER_WEIGHT, LATER_RADIUS, LATER_SPREAD, PATH = 21, 22, 28, 29, 30, 31
-"""Glass splits a ray: whether the mirrored one waits, and its begin; numbers of a path."""
+WAITING, LATER, LATER_WEIGHT, LATER_RADIUS, LATER_SPREAD, LATER_LAMPS, LAMPS, PATH = 21, 22, *range(28, 34)
+"""Glass splits a ray: whether the mirrored one waits, and its begin. Share of the lamps that a ray sees: none unless it
+is mirrored. Numbers of a path."""
 
 
 @part
@@ -51,7 +55,7 @@ def begin(reals, px, py, path, first, second):
         path[GATHERED + c] = 0.0
     path[STRAIGHT], path[KEEP], path[BOUNCE], path[LIVE] = 1.0, 1.0, 0.0, 1.0
     path[PERSPECTIVE] = 1.0 if spread > 0.0 else 0.0
-    path[WAITING] = path[DOUBTED] = path[DARK] = 0.0
+    path[WAITING] = path[DOUBTED] = path[DARK] = path[LAMPS] = 0.0
     erase(first)
     erase(second)
 
@@ -74,6 +78,10 @@ def advance(scene, scratch, path, first, second, spare):
     t, item, _ = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, np.inf, False)
     scratch[counter, layout.TOLD] = 0.0
     goes_on = False
+    if path[LAMPS] > 0.0:
+        r, g, b = mirrored_lamps(scene, ox, oy, oz, dx, dy, dz, radius, spread, t)
+        cr, cg, cb = cr + path[LAMPS] * wr * r, cg + path[LAMPS] * wg * g, cb + path[LAMPS] * wb * b
+        path[LAMPS] = 0.0
     if item < 0:
         r, g, b = backdrop(scene.reals, dy) if straight else sky_radiance(scene.reals, dy)
         cr, cg, cb = cr + wr * r, cg + wg * g, cb + wb * b
@@ -100,6 +108,15 @@ def advance(scene, scratch, path, first, second, spare):
                 sr, sg, sb = mean_specular(scene.reals, spare, nv)
             traced *= smoothstep(FAINT, 2.0 * FAINT, traced * max(wr * sr, max(wg * sg, wb * sb)))
         spare[TRACED] = traced
+        turn, lamps = 0.0, 0.0
+        goes_on = (glass or traced > 0.0) and bounce < BOUNCES
+        if goes_on:
+            turn = bend(scene, scratch, spare)
+            if outside or not glass:
+                lamps = polish(scene.reals[s + layout.ROUGHNESS])
+            if bounce > 0:
+                lamps *= 1.0 - smoothstep(0.5 * WIDEST, WIDEST, spread + 2.0 * turn)
+        spare[IMAGED] = traced * lamps
         if bounce == 0:
             copy_record(spare, first)
         elif keep and not glass and scene.reals[s + layout.METALLIC] < 0.5:
@@ -107,9 +124,7 @@ def advance(scene, scratch, path, first, second, spare):
             keep = False
         elif outside or not glass:
             path[DARK] = 1.0
-        goes_on = (glass or traced > 0.0) and bounce < BOUNCES
         if goes_on:
-            turn = bend(scene, scratch, spare)
             back = 1.0
             if glass:
                 ratio = 1.0 / scene.reals[s + layout.INDEX] if outside else scene.reals[s + layout.INDEX]
@@ -122,6 +137,7 @@ def advance(scene, scratch, path, first, second, spare):
                     path[LATER + 3], path[LATER + 4], path[LATER + 5] = mirrored(spare)
                     path[LATER_WEIGHT], path[LATER_RADIUS] = back * wr, radius
                     path[LATER_SPREAD] = spread + 2.0 * turn
+                    path[LATER_LAMPS] = lamps
                 # Reflections inside are not followed: their light is taken to leave here, though it leaves elsewhere.
                 share = clear * (1.0 - back) if outside or bounce == 0 else clear
                 wr, wg, wb = share * wr, share * wg, share * wb
@@ -132,6 +148,7 @@ def advance(scene, scratch, path, first, second, spare):
                 spread += turn * abs(1.0 - ratio)
             else:
                 straight = False
+                path[LAMPS] = lamps
                 wr, wg, wb = traced * sr * wr, traced * sg * wg, traced * sb * wb
                 ox, oy, oz = start_of(spare)
                 dx, dy, dz = mirrored(spare)
@@ -148,7 +165,7 @@ def advance(scene, scratch, path, first, second, spare):
         for k in range(6):
             path[k] = path[LATER + k]
         wr = wg = wb = path[LATER_WEIGHT]
-        radius, spread = path[LATER_RADIUS], path[LATER_SPREAD]
+        radius, spread, path[LAMPS] = path[LATER_RADIUS], path[LATER_SPREAD], path[LATER_LAMPS]
     else:
         path[0], path[1], path[2], path[3], path[4], path[5] = ox, oy, oz, dx, dy, dz
     path[RADIUS], path[SPREAD], path[BOUNCE] = radius, spread, bounce

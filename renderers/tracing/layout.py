@@ -25,8 +25,8 @@ LINK = 3
 """Integers of a node: its skip link (the next node after a miss), first item, number of items (0: an inner node)."""
 
 SKY = 0
-"""Zenith, horizon, ground, visible; whether there is a sky, whether `visible` is given: 14."""
-HAS_SKY, HAS_VISIBLE = 12, 13
+"""Zenith, horizon, ground, visible; whether surfaces have light to reflect, whether `visible` is given: 14."""
+HAS_LIGHT, HAS_VISIBLE = 12, 13
 TOLERANCE, SAMPLES = 14, 15
 """Tolerance of roots of implicit objects, relative to the searched piece of a ray; number of samples on it instead."""
 CAMERA = 16

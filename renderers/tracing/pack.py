@@ -44,7 +44,7 @@ def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certa
     links = np.concatenate([first, links]) + np.array([1, len(endless), 0])
     lights = _lights(frame.lights)
     head = np.zeros(layout.LIGHTS)
-    head[layout.SKY : layout.SKY + 14] = _sky(frame.lights)
+    head[layout.SKY : layout.SKY + 14] = _sky(frame)
     head[[layout.TOLERANCE, layout.SAMPLES]] = tolerance, samples
     head[layout.CAMERA : layout.CAMERA + 16] = _camera(frame.view)
     surfaces_at = layout.LIGHTS + lights.size
@@ -239,13 +239,13 @@ def _lights(lights: tuple[LightSource, ...]) -> Floats:
     return np.array(rows, dtype=np.float64).reshape(-1, layout.LIGHT)
 
 
-def _sky(lights: tuple[LightSource, ...]) -> Floats:
+def _sky(frame: SeenFrame) -> Floats:
     """The sum of all skies; `visible` is that of the last one that has it."""
     row = np.zeros(14)
-    for sky in lights:
+    row[12] = any(frame.lights) or any(any(shape.surface.emission) for shape in frame.shapes)
+    for sky in frame.lights:
         if isinstance(sky, seen.Sky):
             row[:9] += [*sky.zenith, *sky.horizon, *sky.ground]
-            row[12] = 1.0
             if sky.visible is not None:
                 row[9:12] = sky.visible
                 row[13] = 1.0

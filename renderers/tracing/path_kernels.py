@@ -28,7 +28,7 @@ def describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, radius, record):
     record[records.OWNER] = scene.ints[layout.ITEMS + 4 * item + layout.SHAPE] + 1
     record[records.RADIUS] = radius
     record[records.LIFT] = lift
-    record[records.TRACED] = 0.0
+    record[records.TRACED] = record[records.IMAGED] = 0.0
     record[records.ITEM] = item
     return outside
 
@@ -74,8 +74,10 @@ def bend(scene, scratch, record):
     step = record[records.RADIUS] / length
     x, y, z = record[PLACE] + step * hx, record[PLACE + 1] + step * hy, record[PLACE + 2] + step * hz
     mx, my, mz, _, _, _, _, _, _, _ = normal_at(scene, scratch, int(record[records.ITEM]), x, y, z)
-    turn = abs(mx * nx + my * ny + mz * nz)
-    return np.sqrt(max(2.0 - 2.0 * turn, 0.0)) / max(nv, 0.1)
+    side = 1.0 if mx * nx + my * ny + mz * nz >= 0.0 else -1.0
+    # Of the difference: the cosine of a record's normal, in single precision, would turn flat surfaces by 3e-4.
+    mx, my, mz = side * mx - nx, side * my - ny, side * mz - nz
+    return np.sqrt(mx * mx + my * my + mz * mz) / max(nv, 0.1)
 
 
 @part

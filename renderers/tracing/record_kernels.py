@@ -8,11 +8,12 @@ shadow are found for whole pictures of records and filtered there, before anythi
 from renderers.tracing.scene_kernels import part
 
 PLACE, NORMAL, VIEW, TINT, WEIGHT, SURFACE, OWNER, RADIUS, LIFT, TRACED, ITEM = 0, 3, 6, 9, 12, 15, 16, 17, 18, 19, 20
-UNSURE = 21
+UNSURE, IMAGED = 21, 22
 """Columns: point, shading normal, direction to the viewer, color, weight in the pixel, place of the surface, shape
 index + 1 (0: no record), radius of the pixel's cone there, lift of shadow rays, share of the reflection that is traced,
-item; whether a root on the pixel's path is undecided (in the first record only, even if it is empty)."""
-COLUMNS = 22
+item; whether a root on the pixel's path is undecided (in the first record only, even if it is empty);
+share of the lamps that the traced reflection shows."""
+COLUMNS = 23
 FLATTEST = 0.9
 """Cosine between normals from which on two records may lie on one smooth surface."""
 

@@ -43,17 +43,6 @@ def sky_ambient(sky, ny):
 
 
 @part
-def mean_reflectance(roughness, nv):
-    """(scale, bias) with reflectance = F0 scale + F90 bias of GGX under uniform light (the fit of Karis 2014)."""
-    r0 = 1.0 - roughness
-    r1 = 0.0425 - 0.0275 * roughness
-    r2 = 1.04 - 0.572 * roughness
-    r3 = 0.022 * roughness - 0.04
-    a = min(r0 * r0, 2.0 ** (-9.28 * nv)) * r0 + r1
-    return -1.04 * a + r2, 1.04 * a + r3
-
-
-@part
 def highlight(nl, nv, nh, width):
     """GGX distribution times masking over 4 nl nv, without Fresnel (Walter et al. 2007; Heitz 2014, eq. 99)."""
     a2 = width * width
@@ -92,3 +81,9 @@ def smoothstep(low, high, x):
 def sharpness(roughness):
     """Share of the reflection that is traced as in a mirror; the rest is the sky, blurred."""
     return 1.0 - smoothstep(0.05, 0.4, roughness)
+
+
+@part
+def polish(roughness):
+    """Share of a lamp's reflection that is its image, as in a mirror; the rest is a highlight."""
+    return 1.0 - smoothstep(0.0, 0.1, roughness)

@@ -33,10 +33,29 @@ def _second(index):
     return result / 2.0**32
 
 
+def _sobol(degree, middle, starts, index):
+    """A further coordinate of Sobol's sequence, by the inner coefficients of its primitive polynomial as bits."""
+    m = list(starts)
+    while len(m) < 32:
+        new = m[-degree] ^ (m[-degree] << degree)
+        for k in range(1, degree):
+            new ^= (middle >> (degree - 1 - k) & 1) * (m[-k] << k)
+        m.append(new)
+    result = 0
+    for k in range(32):
+        result ^= (index >> k & 1) * (m[k] << (31 - k))
+    return result / 2.0**32
+
+
 def _net(count):
     """(count, 2) points of [0, 1)^2, in the middle of their cells: the first of Sobol's sequence, which make a net."""
     bits = count.bit_length() - 1
     return np.array([(_radical_inverse(bits, k), _second(k)) for k in range(count)]) + 0.5 / count
+
+
+def _further(count):
+    """(count, 2): the third and fourth coordinate of the same points (Joe and Kuo 2008)."""
+    return np.array([(_sobol(2, 1, (1, 3), k), _sobol(3, 1, (1, 3, 1), k)) for k in range(count)]) + 0.5 / count
 
 
 def _disk(points):
@@ -49,6 +68,8 @@ DISK = _disk(_net(COUNT))
 """(COUNT, 2) points of a light's disk."""
 SKY_DISK = _disk(_net(SKY_COUNT))
 """(SKY_COUNT, 2) points of the unit disk; lifted to the hemisphere they are cosine-distributed (Malley)."""
+NEXT_DISK = _disk(_further(SKY_COUNT))
+"""(SKY_COUNT, 2) points of the disk for the directions in which those of SKY_DISK go on from what they meet."""
 JITTER = _net(COUNT)[np.arange(COUNT) * 37 % COUNT, ::-1] - 0.5
 """(COUNT, 2) offsets from a pixel's center, in another order than the points of DISK."""
 

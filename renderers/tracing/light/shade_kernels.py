@@ -5,9 +5,10 @@ import numpy as np
 from numba import types
 
 from renderers.tracing import layout
-from renderers.tracing.light.light_kernels import highlight, mean_reflectance, schlick, sky_ambient, sky_radiance
+from renderers.tracing.light.albedo_kernels import mean_reflectance
+from renderers.tracing.light.light_kernels import highlight, schlick, sky_ambient, sky_radiance
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, SKY, light_at
-from renderers.tracing.record_kernels import NORMAL, PLACE, SURFACE, TINT, TRACED, VIEW, WEIGHT
+from renderers.tracing.record_kernels import IMAGED, NORMAL, PLACE, SURFACE, TINT, TRACED, VIEW, WEIGHT
 from renderers.tracing.scene_kernels import ROW, SCENE, part
 from sceneql.compiled.kernels import kernel
 
@@ -38,14 +39,24 @@ def facing_ratio(record):
 
 
 @part
+def reflected_more(f0, once):
+    """Factor of a specular reflection by which what is scattered again on a rough surface comes back.
+
+    For ``once``, the part of uniform light that is scattered once where the surface absorbs none (Turquin 2019,
+    Practical Multiple Scattering Compensation for Microfacet Models, eq. 16).
+    """
+    return 1.0 + f0 * (1.0 / once - 1.0)
+
+
+@part
 def mean_specular(reals, record, nv):
     """Share (3) of uniform light that a record's surface reflects specularly."""
     scale, bias = mean_reflectance(reals[int(record[SURFACE]) + layout.ROUGHNESS], nv)
     r, g, b = reflectance_at_normal(reals, record)
     return (
-        min(r * scale + edge_reflectance(r) * bias, 1.0),
-        min(g * scale + edge_reflectance(g) * bias, 1.0),
-        min(b * scale + edge_reflectance(b) * bias, 1.0),
+        min((r * scale + edge_reflectance(r) * bias) * reflected_more(r, scale + bias), 1.0),
+        min((g * scale + edge_reflectance(g) * bias) * reflected_more(g, scale + bias), 1.0),
+        min((b * scale + edge_reflectance(b) * bias) * reflected_more(b, scale + bias), 1.0),
     )
 
 
@@ -76,6 +87,8 @@ def shade(scene, record, visibility):
     mirrored_sky = sky_radiance(u, 2.0 * (nx * vx + ny * vy + nz * vz) * ny - vy)
     sums = (0.0, 0.0, 0.0)  # irradiance of the matte part, by channel
     lobes = (0.0, 0.0, 0.0)
+    scale, bias = mean_reflectance(roughness, nv)
+    once = scale + bias
     for l in range(int(scene.ints[layout.LIGHT_COUNT])):
         lx, ly, lz, distance, ir, ig, ib = light_at(u, l, x, y, z)
         nl = nx * lx + ny * ly + nz * lz
@@ -97,11 +110,12 @@ def shade(scene, record, visibility):
         )
     for c in range(3):
         arriving = max(open_sky[c] - visibility[SKY + c], 0.0)
-        blurred = mirrored_sky[c] + roughness * (open_sky[c] - mirrored_sky[c])
-        share = arriving / open_sky[c] if open_sky[c] > 0.0 else 0.0
+        share = min(arriving / open_sky[c], 1.0) if open_sky[c] > 0.0 else 0.0
+        blurred = arriving + share * (1.0 - roughness) * (mirrored_sky[c] - open_sky[c])
         diffuse = body * record[TINT + c] * (1.0 - specular[c])
-        total = diffuse * (arriving + sums[c] / np.pi) + lobes[c] + u[s + layout.EMISSION + c]
-        total += specular[c] * (1.0 - record[TRACED]) * blurred * share
+        total = diffuse * (arriving + sums[c] / np.pi) + u[s + layout.EMISSION + c]
+        total += (1.0 - record[IMAGED]) * lobes[c] * reflected_more(f0[c], once)
+        total += specular[c] * (1.0 - record[TRACED]) * blurred
         total *= record[WEIGHT + c]
         if c == 0:
             sums = total, sums[1], sums[2]

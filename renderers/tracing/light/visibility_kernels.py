@@ -6,7 +6,7 @@ from numba import types
 
 from renderers.tracing import layout
 from renderers.tracing.light.light_kernels import sky_ambient, sky_radiance
-from renderers.tracing.light.sampling_kernels import COUNT, DISK, JITTER, SKY_COUNT, SKY_DISK, across
+from renderers.tracing.light.sampling_kernels import COUNT, DISK, JITTER, NEXT_DISK, SKY_COUNT, SKY_DISK, across
 from renderers.tracing.record_kernels import NORMAL, PLACE, RADIUS, start_of
 from renderers.tracing.scene_kernels import ASKED, ROW, SCENE, SCRATCH, part
 from renderers.tracing.solids.intersect_kernels import ask, walk
@@ -22,8 +22,14 @@ BARELY = 1e-6
 """Part of its length by which a ray to a lamp ends before its ball, so that a sphere of the same radius is not hit."""
 BRIGHTEST = 4.0
 """Limit of the radiance of surfaces that hide the sky: small spots near a lamp, hit by few samples, left blotches."""
-AGAIN = 0.5
-"""Share of the sky that a surface which hides the sky is assumed to see itself."""
+BRIGHTEST_AGAIN = 1.0
+"""The same of lamps' light on surfaces seen from these, of which samples tell even less."""
+SHOWN = 1e-3
+"""Part of a lamp's radius by which a ball that shows it may be larger."""
+AGAIN = 0.25
+"""Share of the sky that the last surface on the way of light from there is assumed to see."""
+SURFACES = 3
+"""Surfaces beside the lit one that light from around is followed to."""
 
 
 @part
@@ -79,37 +85,85 @@ def shadow_width(scene, l, x, y, z, blocker):
 
 
 @part
-def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius):
-    """Radiance (3) of a surface that hides the sky: its emission, and lights and sky reflected once, matte."""
-    nx, ny, nz, fx, fy, fz, lift, red, green, blue = normal_at(scene, scratch, item, x, y, z)
-    if dx * fx + dy * fy + dz * fz > 0.0:
-        nx, ny, nz, fx, fy, fz = -nx, -ny, -nz, -fx, -fy, -fz
-    r, g, b = color_at(scene, item, (red, green, blue), x, y, z, nx, ny, nz, dx, dy, dz, radius)
-    er, eg, eb = sky_ambient(scene.reals, ny)
-    er, eg, eb = AGAIN * er, AGAIN * eg, AGAIN * eb
-    off = 0.05 * radius + 1e-6 * (abs(x) + abs(y) + abs(z)) + lift
-    sx, sy, sz = x + off * fx, y + off * fy, z + off * fz
+def in_a_lamp(scene, x, y, z):
+    """Whether a place is on what shows a lamp: a ball where that stands, as large, whose light counts as the lamp's."""
     for l in range(int(scene.ints[layout.LIGHT_COUNT])):
-        lx, ly, lz, far, ir, ig, ib = light_at(scene.reals, l, sx, sy, sz)
-        cosine = nx * lx + ny * ly + nz * lz
-        if cosine > 0.0 and fx * lx + fy * ly + fz * lz > 0.0:
-            if far < np.inf:
-                far = reach(far, scene.reals[layout.LIGHTS + layout.LIGHT * l + 7], 1.0)
-            _, _, share = walk(scene, scratch, sx, sy, sz, lx, ly, lz, 0.0, far, True)
-            cosine *= share / np.pi
-            er += cosine * ir
-            eg += cosine * ig
-            eb += cosine * ib
-    s = scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT]
+        _, _, _, far, _, _, _ = light_at(scene.reals, l, x, y, z)
+        if far < (1.0 + SHOWN) * scene.reals[layout.LIGHTS + layout.LIGHT * l + 7]:
+            return True
+    return False
+
+
+@part
+def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius, sample):
+    """Radiance (3) of a surface that hides the sky: its emission, and light reflected by it and two more, as if matte.
+
+    Light goes on in one direction from each, and those beyond the first are lit by one lamp in place of all. The last
+    sees a part of the sky between neighbors as bright as itself, so that white in white loses nothing.
+    """
     u = scene.reals
-    r, g, b = r * er + u[s + layout.EMISSION], g * eg + u[s + layout.EMISSION + 1], b * eb + u[s + layout.EMISSION + 2]
-    share = min(1.0, BRIGHTEST / max(max(r, g), max(b, BRIGHTEST)))
-    return share * r, share * g, share * b
+    red, green, blue = 0.0, 0.0, 0.0
+    wr, wg, wb = 1.0, 1.0, 1.0
+    for met in range(SURFACES):
+        nx, ny, nz, fx, fy, fz, lift, pr, pg, pb = normal_at(scene, scratch, item, x, y, z)
+        if dx * fx + dy * fy + dz * fz > 0.0:
+            nx, ny, nz, fx, fy, fz = -nx, -ny, -nz, -fx, -fy, -fz
+        s = scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT] + layout.EMISSION
+        if max(u[s], max(u[s + 1], u[s + 2])) > 0.0 and not in_a_lamp(scene, x, y, z):
+            red, green, blue = red + wr * u[s], green + wg * u[s + 1], blue + wb * u[s + 2]
+        r, g, b = color_at(scene, item, (pr, pg, pb), x, y, z, nx, ny, nz, dx, dy, dz, radius)
+        wr, wg, wb = wr * r, wg * g, wb * b
+        off = 0.05 * radius + 1e-6 * (abs(x) + abs(y) + abs(z)) + lift
+        sx, sy, sz = x + off * fx, y + off * fy, z + off * fz
+        er, eg, eb = 0.0, 0.0, 0.0
+        lights = int(scene.ints[layout.LIGHT_COUNT])
+        for l in range(lights if met == 0 else min(lights, 1)):
+            of = 1.0
+            if met > 0:  # one for all
+                l, of = (sample + met) % lights, float(lights)
+            lx, ly, lz, far, ir, ig, ib = light_at(u, l, sx, sy, sz)
+            cosine = of * (nx * lx + ny * ly + nz * lz)
+            if cosine > 0.0 and fx * lx + fy * ly + fz * lz > 0.0:
+                if far < np.inf:
+                    far = reach(far, u[layout.LIGHTS + layout.LIGHT * l + 7], 1.0)
+                _, _, share = walk(scene, scratch, sx, sy, sz, lx, ly, lz, 0.0, far, True)
+                cosine *= share / np.pi
+                er, eg, eb = er + cosine * ir, eg + cosine * ig, eb + cosine * ib
+        if met > 0:
+            share = min(1.0, BRIGHTEST_AGAIN / max(max(er, eg), max(eb, BRIGHTEST_AGAIN)))
+            er, eg, eb = share * er, share * eg, share * eb
+        ended = met == SURFACES - 1
+        if ended:
+            hr, hg, hb = sky_ambient(u, ny)
+            hr, hg, hb = AGAIN * hr, AGAIN * hg, AGAIN * hb
+            er += hr / (1.0 - (1.0 - AGAIN) * min(r, 1.0))
+            eg += hg / (1.0 - (1.0 - AGAIN) * min(g, 1.0))
+            eb += hb / (1.0 - (1.0 - AGAIN) * min(b, 1.0))
+        else:
+            ax, ay, az, bx, by, bz = across(nx, ny, nz)
+            v, w = NEXT_DISK[sample, 0], NEXT_DISK[sample, 1]
+            up = np.sqrt(max(1.0 - v * v - w * w, 0.0))
+            dx, dy, dz = v * ax + w * bx + up * nx, v * ay + w * by + up * ny, v * az + w * bz + up * nz
+            t, item, _ = walk(scene, scratch, sx, sy, sz, dx, dy, dz, 0.0, np.inf, False)
+            ended = item < 0
+            if ended:
+                hr, hg, hb = sky_radiance(u, dy)
+                er, eg, eb = er + hr, eg + hg, eb + hb
+            else:
+                x, y, z, radius = sx + t * dx, sy + t * dy, sz + t * dz, radius + 0.05 * t
+        red, green, blue = red + wr * er, green + wg * eg, blue + wb * eb
+        if ended:
+            break
+    share = min(1.0, BRIGHTEST / max(max(red, green), max(blue, BRIGHTEST)))
+    return share * red, share * green, share * blue
 
 
 @part
 def sky_loss(scene, scratch, asked, record, sample):
-    """The sky's radiance (3) less the incoming one in the direction of a sample, cosine-distributed."""
+    """The sky's radiance (3) less the incoming one in the direction of a sample, cosine-distributed.
+
+    Where there is no sky that is what surfaces around reflect, less than zero.
+    """
     nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
     ax, ay, az, bx, by, bz = across(nx, ny, nz)
     u, v = SKY_DISK[sample, 0], SKY_DISK[sample, 1]
@@ -123,7 +177,7 @@ def sky_loss(scene, scratch, asked, record, sample):
         asked[0, layout.OPEN] = 1.0
         return 0.0, 0.0, 0.0
     radius = record[RADIUS] + 0.05 * t
-    r, g, b = bounced(scene, scratch, item, x + t * dx, y + t * dy, z + t * dz, dx, dy, dz, radius)
+    r, g, b = bounced(scene, scratch, item, x + t * dx, y + t * dy, z + t * dz, dx, dy, dz, radius, sample)
     hr, hg, hb = sky_radiance(scene.reals, dy)
     return hr - r, hg - g, hb - b
 
@@ -166,7 +220,7 @@ def look_around(scene, scratch, asked, record, number, of_sky, of_lights, visibi
     asked[0, layout.OPEN] = 0.0
     for column in range(FIRST_LIGHT + 2 * scene.ints[layout.LIGHT_COUNT]):
         visibility[column] = 0.0
-    if scene.reals[layout.HAS_SKY] != 0.0:
+    if scene.reals[layout.HAS_LIGHT] != 0.0:
         for k in range(of_sky):
             r, g, b = sky_loss(scene, scratch, asked, record, (number * of_sky + k) % SKY_COUNT)
             visibility[SKY] += r / of_sky

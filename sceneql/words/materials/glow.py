@@ -12,9 +12,10 @@ if TYPE_CHECKING:
 
 
 class Glow(Material):
-    """A black body that shines evenly to all sides: embers, sparks, lamps. It is seen, but lights nothing else.
+    """A black body that shines evenly to all sides: embers, sparks, lamps. It lights what is near.
 
-    A sphere of it shows a lamp where a `point` light stands that is as large: it throws no shadow in that light.
+    A sphere of it shows a lamp where a `point` light stands that is as large: it throws no shadow in that light, and
+    adds none of its own.
     """
 
     color: Color = field("The color of its light.", "1 1 1")
