@@ -186,7 +186,7 @@ def explain(
     from sceneql.report.progress import bar
 
     if defaults:
-        from sceneql.report.defaults import defaults as unsaid
+        from sceneql.report.unsaid import unsaid
 
         click.echo(unsaid(pipeline.load(scene, variant=variant, sets=sets, words=words)) or "# the script says all")
         return

@@ -146,7 +146,7 @@ def render(
         raise
     finally:
         gc.unfreeze()
-    report.warnings = (*missing(report.present, graph.tasks), *watch.warnings())
+    report.warnings = (*missing(report.present, graph.tasks), *watch.warnings(), *run.warnings())
     report.conserved = watch.account()
     seconds, count = _compiled()
     report.compile_seconds, report.compilations = seconds - compiled[0], count - compiled[1]

@@ -10,9 +10,9 @@ from sceneql.frame import Quadric
 from sceneql.kinds import Light
 from sceneql.pipeline import Report, Tools, load, simulate
 from sceneql.quantities.diagnostic import ScriptError
-from sceneql.report.defaults import defaults
 from sceneql.report.explain import explain
 from sceneql.report.explain import text as told
+from sceneql.report.unsaid import unsaid
 
 BALL = "ball: {sphere: {radius: 0.2 m, position: 0 2 0 m}}"
 FALL = "models: {fall: {particles: {of: ball, mass: 1 kg}}}"
@@ -159,14 +159,14 @@ def test_the_defaults_that_explain_prints_make_the_same_picture_when_pasted(tmp_
         return sorted(map(repr, [*shapes, *(source for light in lights for source in light)])), repr(view)
 
     before = graph_of(tmp_path, text)
-    unsaid = yaml.safe_load(defaults(before))
+    missing = yaml.safe_load(unsaid(before))
     written = yaml.safe_load(text)
-    for family, entries in unsaid.items():
+    for family, entries in missing.items():
         old = written.get(family, {})
         written[family] = (
             [*old, *({name: word} for name, word in entries.items())] if type(old) is list else {**old, **entries}
         )
     after = graph_of(tmp_path, yaml.safe_dump(written, sort_keys=False))
-    assert unsaid.keys() >= {"solvers"} if "models" in written else {"lights"}
+    assert missing.keys() >= {"solvers"} if "models" in written else {"lights"}
     assert [task.name for task in after.tasks.values() if task.span is None] == []
     assert drawn(after) == drawn(before)

@@ -118,4 +118,7 @@ class Moment(Protocol):
         """
 
     def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
-        """Low and high corner (3,) of what the named objects draw over the whole film (infinite planes left out)."""
+        """Low and high corner (3,) of what the named objects draw over the whole film (infinite planes left out).
+
+        For no names of all that is drawn, but for what leaves for good.
+        """

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from typing import TYPE_CHECKING, Any
@@ -16,11 +16,12 @@ from sceneql.graph import SimulationGraph
 from sceneql.kinds import Camera, Clock, Object, Overlay, Value
 from sceneql.quantities.expression import Call, Expr, Keys, Link, Symbol, children, holders, rebuilt
 from sceneql.quantities.operations import OPERATIONS
+from sceneql.run.leaving import Leaving, Paths, let_go
 from sceneql.run.series import course
 from sceneql.shapes.world_boxes import surface_box
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats
+    from sceneql.frame import Floats, Shape
     from sceneql.run.instant import Instant, Running
 
     Bounds = dict[str, tuple[Floats, Floats]]
@@ -39,6 +40,10 @@ class DryRun:
     times: list[float]
     rows: Mapping[int, Floats]
     """(times, ...) values of the subexpressions that were asked for, by their id."""
+    leaving: Sequence[Leaving] = ()
+    """What leaves for good."""
+    staying: tuple[Floats, Floats] | None = None
+    """Low and high corner (3,) of everything else; None where nothing leaves."""
 
     def course(self, expr: Expr, until: float) -> tuple[Floats, Floats]:
         """Times (n,) [s] up to ``until``, and values (n, ...) of an expression of `asked`."""
@@ -103,6 +108,7 @@ def dry_run(ahead: Running, *, bounded: bool = True) -> DryRun:
     times: list[float] = []
     asked_for: dict[int, Value] = {}
     rows: dict[int, list[Any]] = {}
+    paths = Paths()
     every = 1
 
     def instants() -> Iterator[float]:
@@ -119,14 +125,20 @@ def dry_run(ahead: Running, *, bounded: bool = True) -> DryRun:
                 rows = {key: [] for key in asked_for}
                 every = BOUNDS_EVERY if over_time else _often(graph.settings.clock) if wanted else 1
             if bounded and k == 0:
+                shapes = {}
                 for name in ahead.orders:
                     moment.asked = False
-                    start = _widened(start, moment, [name])
+                    drawn = moment.lower([name])
+                    start = _widened(start, {name: drawn}, ahead.holders)
                     if moment.asked:
                         changing.append(name)
+                        shapes[name] = drawn
                 now = start
+                paths.see(moment.now, shapes)
             elif bounded and k % every == 0:
-                now = _widened(now, moment, changing)
+                shapes = {name: moment.lower([name]) for name in changing}
+                now = _widened(now, shapes, ahead.holders)
+                paths.see(moment.now, shapes)
             for key, piece in asked_for.items():
                 rows[key].append(moment.measure(piece))
             times.append(moment.now)
@@ -135,9 +147,13 @@ def dry_run(ahead: Running, *, bounded: bool = True) -> DryRun:
     except RunFailure:
         if not times:
             raise
-        now = start
+        now, paths = start, Paths()
     count = len(times)
-    return DryRun(now if bounded else None, times, {key: np.array(row[:count]) for key, row in rows.items()})
+    values = {key: np.array(row[:count]) for key, row in rows.items()}
+    if not bounded:
+        return DryRun(None, times, values)
+    still = [now[name] for name in ahead.orders if name in now and name not in changing]
+    return DryRun(now, times, values, *let_go(paths, still))
 
 
 def _often(clock: Clock) -> int:
@@ -145,14 +161,14 @@ def _often(clock: Clock) -> int:
     return min(BOUNDS_EVERY, math.ceil(len(clock.frames(clock.fps)) / BOUNDS_STEPS))
 
 
-def _widened(bounds: Bounds, moment: Instant, names: Iterable[str]) -> Bounds:
+def _widened(bounds: Bounds, shapes: Mapping[str, Sequence[Shape]], holders: Mapping[str, str]) -> Bounds:
     """Bounds widened by the shapes of some parts at a moment."""
     result = dict(bounds)
-    for name in names:
-        for shape in moment.lower([name]):
+    for name, drawn in shapes.items():
+        for shape in drawn:
             low, high = surface_box(shape)
             if np.isfinite(low).all() and np.isfinite(high).all():
-                for part in {name, *_around(shape.name, moment.run.holders)}:
+                for part in {name, *_around(shape.name, holders)}:
                     old = result.get(part, (low, high))
                     result[part] = np.minimum(old[0], low), np.maximum(old[1], high)
     return result

@@ -52,7 +52,7 @@ class Running(Protocol):
         """The latest state of a model that is solved, or of a contact."""
 
     def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
-        """Low and high corner (3,) of what the parts draw over the whole run."""
+        """Low and high corner (3,) of what the parts draw over the whole run; for no names of all that stays."""
 
     def course(self, value: Value, variant: str | None, until: float) -> tuple[Floats, Floats]:
         """Times (n,) [s] and an asked-for value at each (n, ...), up to an instant, in a variant of the script."""
@@ -156,10 +156,10 @@ class Instant:
         return kind.surface(self, own)
 
     def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
-        """Low and high corner (3,) of what the parts draw over the whole film; of all that is drawn for no names."""
+        """Low and high corner (3,) of what the parts draw over the whole film; for no names of all that stays."""
         if self.run.ahead:
             return np.full(3, -1.0), np.full(3, 1.0)
-        return self.run.bounds(list(names) or list(self.run.orders))
+        return self.run.bounds(names)
 
     def place(self, name: str) -> Floats:
         """(3, 4) map to the world from the coordinates that an object's position is told in."""

@@ -11,12 +11,13 @@ from sceneql.doing import doing
 from sceneql.failure import LimitRefused
 from sceneql.graph import Island, SimulationGraph
 from sceneql.kinds import Force, Model, Object, Solver, Value
-from sceneql.quantities.diagnostic import Diagnostics, ScriptError
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
 from sceneql.quantities.expression import Link
 from sceneql.run.dry_run import DryRun, asked, dry_run
 from sceneql.run.grounded import grounded
 from sceneql.run.history import History
 from sceneql.run.instant import Instant
+from sceneql.run.leaving import warning
 from sceneql.run.ranges import ranged
 
 if TYPE_CHECKING:
@@ -76,15 +77,26 @@ class Run:
         return self.island_of[name].state(name)
 
     def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
-        """Low and high corner (3,) of what the parts draw over the whole run, found by a run ahead of its own."""
+        """Low and high corner (3,) of what the parts draw over the whole run, found by a run ahead of its own.
+
+        For no names all that is drawn, but for what leaves for good.
+        """
         if None not in self._dry_runs or self._dry_runs[None].bounds is None:
             self._dry_runs[None] = dry_run(Run(self.graph, ahead=True))
-        known = self._dry_runs[None].bounds or {}
-        corners = [known[name] for name in names if name in known]
+        named, seen = list(names), self._dry_runs[None]
+        if not named and seen.staying is not None:
+            return seen.staying
+        known = seen.bounds or {}
+        corners = [known[name] for name in named or self.orders if name in known]
         if not corners:
             return np.full(3, -1.0), np.full(3, 1.0)
         lows, highs = np.array([low for low, _ in corners]), np.array([high for _, high in corners])
         return lows.min(axis=0), highs.max(axis=0)
+
+    def warnings(self) -> tuple[Diagnostic, ...]:
+        """A warning for what leaves for good, of a run whose camera looked ahead."""
+        seen = self._dry_runs.get(None)
+        return () if seen is None else tuple(warning(one, self.graph.tasks) for one in seen.leaving)
 
     def course(self, value: Value, variant: str | None, until: float) -> tuple[Floats, Floats]:
         """Times (n,) [s] and an asked-for value at each (n, ...), up to an instant, in a variant of the script."""

@@ -20,7 +20,7 @@ FLAT = 0.2
 class Auto(Camera):
     """A three-quarter view of all that is drawn, from the right front and above, that holds still over the whole film.
 
-    A scene that is flat in z is seen from the front.
+    A scene that is flat in z is seen from the front. The few of many things that leave for good are let go.
     """
 
     field_of_view: Angle = field("Vertical field of view.", "30 deg", above=0, below=math.pi)

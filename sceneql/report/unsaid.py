@@ -9,7 +9,7 @@ from sceneql.kinds import Kind, Value
 from sceneql.kinds.word import written_name
 
 
-def defaults(graph: SimulationGraph) -> str:
+def unsaid(graph: SimulationGraph) -> str:
     """The parts that the defaults added, as YAML by family; empty where the script says all."""
     families: dict[str, list[str]] = {}
     for task in _settled(graph).tasks.values():

@@ -1,0 +1,110 @@
+"""What leaves a scene for good: the few of many that the default camera lets go, so that the others stay large."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.frame import Points
+from sceneql.quantities.diagnostic import Diagnostic
+from sceneql.shapes.world_boxes import surface_box
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Shape
+    from sceneql.graph import Task
+
+MOST = 4096
+"""Moving things that are followed; where there are more, none is let go."""
+FEW = 0.25
+"""Largest share of the moving things that is let go: where more leave, they are what the film is about."""
+NEAR = 1.0
+"""Width of the margin around the scene, in its diagonals, outside which a thing has left it."""
+LAST = 0.25
+"""Part of the film, at its end, during which it must have gone farther and farther away."""
+
+
+@dataclass
+class Paths:
+    """The boxes of moving things at instants of the film: a sphere of many, or a whole part, is one thing."""
+
+    times: list[float] = field(default_factory=list)
+    boxes: dict[str, list[tuple[Floats, Floats]]] = field(default_factory=dict)
+    """By part, at each instant low and high corners (things, 3)."""
+
+    def see(self, time: float, shapes: Mapping[str, Sequence[Shape]]) -> None:
+        """Record the shapes of the parts at an instant [s]."""
+        self.times.append(time)
+        for name, drawn in shapes.items():
+            if len(drawn) == 1 and isinstance(drawn[0], Points) and len(drawn[0].radii) <= MOST:
+                reach = drawn[0].radii[:, None]
+                one = drawn[0].centers - reach, drawn[0].centers + reach
+            else:
+                corners = [surface_box(shape) for shape in drawn] or [(np.full(3, np.inf), np.full(3, -np.inf))]
+                lows, highs = (np.array(side) for side in zip(*corners, strict=True))
+                one = lows.min(axis=0)[None], highs.max(axis=0)[None]
+            self.boxes.setdefault(name, []).append(one)
+
+
+@dataclass(frozen=True, slots=True)
+class Leaving:
+    """The things of a part that leave."""
+
+    part: str
+    count: int
+    of: int
+    """All things of the part."""
+    time: float
+    """When the first has left [s]."""
+
+
+def warning(one: Leaving, tasks: Mapping[str, Task]) -> Diagnostic:
+    """The warning for what leaves of a part."""
+    verb = "leaves" if one.count == 1 else "leave"
+    what = f"'{one.part}' leaves" if one.of == 1 else f"{one.count} of the {one.of} masses of '{one.part}' {verb}"
+    them = "it" if one.count == 1 else "them"
+    text = f"{what} for good, from {one.time:.3g} s on; the default camera lets {them} go"
+    help = f"give {them} something to land on, end the `clock` before, or write a camera that shows all"
+    return Diagnostic("leaves", text, tasks[one.part].span, help, severity="warning")
+
+
+def let_go(paths: Paths, still: Iterable[tuple[Floats, Floats]]) -> tuple[list[Leaving], tuple[Floats, Floats] | None]:
+    """What leaves, and the box of everything else over the film, with what leaves as long as it is near.
+
+    ``still``: boxes of what does not move. The box is None where nothing leaves.
+    """
+    steady = {
+        name: boxes
+        for name, boxes in paths.boxes.items()
+        if len(boxes) == len(paths.times) and len({len(low) for low, _ in boxes}) == 1
+    }
+    if len(paths.times) < 4 or len(steady) < len(paths.boxes):
+        return [], None
+    lows = np.concatenate([np.stack([low for low, _ in boxes], axis=1) for boxes in steady.values()])
+    highs = np.concatenate([np.stack([high for _, high in boxes], axis=1) for boxes in steady.values()])
+    if len(lows) > MOST or not (np.isfinite(lows).all() and np.isfinite(highs).all()):
+        return [], None
+    unmoved = list(still)
+    low = np.min([lows[:, 0].min(axis=0), *(one for one, _ in unmoved)], axis=0)
+    high = np.max([highs[:, 0].max(axis=0), *(one for _, one in unmoved)], axis=0)
+    margin = NEAR * float(np.linalg.norm(high - low))
+    outside = ((lows > high + margin) | (highs < low - margin)).any(axis=2)  # (things, instants)
+    far = np.linalg.norm((lows + highs) / 2 - (low + high) / 2, axis=2)
+    last = max(2, int(LAST * len(paths.times)))
+    leaves = outside[:, -1] & (np.diff(far[:, -last:], axis=1) > 0).all(axis=1)
+    if not 0 < leaves.sum() <= FEW * len(leaves):
+        return [], None
+    # A thing has left from the instant on after which it is outside up to the end.
+    since = outside.shape[1] - np.argmin(outside[:, ::-1], axis=1)
+    kept = np.arange(outside.shape[1])[None, :] < np.where(leaves, since, outside.shape[1])[:, None]
+    found, first = [], 0
+    for name, boxes in steady.items():
+        mine = slice(first, first + len(boxes[0][0]))
+        first = mine.stop
+        if leaves[mine].any():
+            when = paths.times[int(since[mine][leaves[mine]].min())]
+            found.append(Leaving(name, int(leaves[mine].sum()), len(boxes[0][0]), when))
+    whole = np.min([lows[kept].min(axis=0), low], axis=0), np.max([highs[kept].max(axis=0), high], axis=0)
+    return found, whole

@@ -1,0 +1,74 @@
+"""What leaves a scene for good: told with time and line, and let go by the default camera, where it is one of many."""
+
+from __future__ import annotations
+
+import pytest
+
+from sceneql.pipeline import load, render, simulate
+
+STAYING = "a: {position: 0 1 0 m}, b: {position: 0.3 1.2 0 m}, c: {position: -0.4 1.1 0.2 m}, d: {position: 0 1 0.6 m}"
+SCRIPT = """clock: {{end: 4 s}}
+objects: {{table: {{box: {{size: 2 0.2 2 m, position: 0 -0.1 0 m}}}}, floor: none}}
+models:
+  balls: {{particles: {{list: {{{balls}}}, radius: 0.1 m}}}}
+forces: [gravity]
+contacts: [{{collision: {{restitution: 0.5}}}}]
+{camera}outputs: {{still: {{image: {{size: 64 36, time: 4 s}}}}}}
+"""
+
+
+def graph_of(folder, balls, camera=""):
+    (folder / "scene.yaml").write_text(SCRIPT.format(balls=balls, camera=camera))
+    return load(folder / "scene.yaml")
+
+
+def falls_at(x, speed):
+    """When a ball that starts at x [m] rolls over the table's edge at x = 1 m, at the earliest [s]."""
+    return (1 - x) / speed
+
+
+def test_the_default_camera_lets_go_what_falls_off_the_table(tmp_path):
+    graph = graph_of(tmp_path, STAYING + ", lost: {position: 0.8 1 0 m, velocity: 1.5 0 0 m/s}")
+    (moment,) = simulate(graph, [4.0])
+    assert moment.read("balls", "positions")[-1][1] < -20
+    low, high = moment.bounds(())
+    assert -10 < low[1] < -0.2
+    assert high[0] > 1
+    assert high[1] > 1
+    low, _ = moment.bounds(["balls"])
+    assert low[1] < -20
+    (warning,) = render(graph, folder=tmp_path).warnings
+    assert warning.message.startswith("1 of the 5 masses of 'balls' leaves for good, from ")
+    when = float(warning.message.split("from ")[1].split(" s")[0])
+    assert falls_at(0.8, 1.5) < when < 2.5
+    assert warning.span.line == 4
+
+
+@pytest.mark.parametrize(
+    ("balls", "camera"),
+    [
+        (STAYING, ""),
+        ("lost: {position: 0.8 1 0 m, velocity: 1.5 0 0 m/s}", ""),
+        ("a: {position: 0 1 0 m}, lost: {position: 0.8 1 0 m, velocity: 1.5 0 0 m/s}", ""),
+        (
+            STAYING + ", lost: {position: 0.8 1 0 m, velocity: 1.5 0 0 m/s}",
+            "cameras: {c: {perspective: {position: 0 1 5 m, look_at: 0 0 0 m}}}\n",
+        ),
+    ],
+    ids=["all stay", "all leave", "half leaves", "a camera of its own"],
+)
+def test_what_the_film_is_about_is_not_let_go(tmp_path, balls, camera):
+    graph = graph_of(tmp_path, balls, camera)
+    assert [one.code for one in render(graph, folder=tmp_path).warnings] == []
+    if not camera:
+        (moment,) = simulate(graph, [4.0])
+        places = moment.read("balls", "positions")
+        low, _ = moment.bounds(())
+        assert low[1] <= places[:, 1].min() + 1e-9
+
+
+def test_what_flies_far_and_comes_back_is_not_let_go(tmp_path):
+    high = graph_of(tmp_path, STAYING + ", up: {position: 0.8 0.1 0 m, velocity: 0 18 0 m/s}")
+    assert render(high, folder=tmp_path).warnings == ()
+    (moment,) = simulate(high, [4.0])
+    assert moment.bounds(())[1][1] > 15
