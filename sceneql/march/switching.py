@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 HELD = 0.5
 """Part of the stability boundary from which on stability counts as limiting the step."""
-DECAYED = 0.1
+DECAYED = 0.05
 """As HELD, for a decay, where a trial in vain would cost at most a fifth of what is left: below a tolerance of some
 1e-9 the rounding of what has decayed, which the fast mode amplifies in the error, keeps steps as short as that."""
 FIRST, LAST = 200, 6400
@@ -30,8 +30,10 @@ STAGES = 7
 LONG = 100
 """Steps of radau for a decay and what comes after it, at a tolerance of 1e-4; they grow as its power -1/4."""
 SWITCHING = 1500
-"""Explicit steps that a change of the method costs, a small island's being laid out for it: what is left must be more,
+"""Explicit steps that a change of the method costs a small island, which is laid out for it: what is left must be more,
 and a stiff method that has become slow is kept until it has lost as many."""
+LARGE = 100
+"""Unknowns from which on it costs less, as a step takes longer."""
 TRIAL = 100
 """Steps of a stiff method before a mean step length is measured, and again until it is first judged by that."""
 PATIENCE = 1 / 3
@@ -57,6 +59,8 @@ class Switch:
         """Explicit steps that the stiff method has cost too many."""
         self._proven = True
         """Whether the stiff method has replaced as many as it should, or certainly would."""
+        self._part = 1.0
+        """The explicit method's steps, as a part of the longest stable one."""
         self._in_vain = 0
         """Successive trials of the stiff method in vain: each doubles the explicit steps before the next."""
         self._possible = self.size <= LARGEST
@@ -65,6 +69,11 @@ class Switch:
     def cost(self) -> float:
         """Explicit steps that one stiff step costs."""
         return step_cost(self.size) * STAGES / (len(self.explicit.method.stability) - 1)
+
+    @property
+    def switching(self) -> float:
+        """Explicit steps that a change of the method costs."""
+        return SWITCHING / (1.0 + self.size / LARGE)
 
     @property
     def least_run(self) -> float:
@@ -107,22 +116,24 @@ class Switch:
         if self.active is self.explicit:
             held = min(step, mean)
             left = (self._end - t) / held
-            if not self._possible or left < SWITCHING:
+            if not self._possible or left < self.switching:
                 return False
-            part = DECAYED if 5 * (SWITCHING + 2 * TRIAL * self.cost) < left else HELD
+            part = DECAYED if 5 * (self.switching + 2 * TRIAL * self.cost) < left else HELD
             values = self._spectrum(t, y, part * least_boundary(self.explicit.method.stability) / held)
             speed = dominant(values)
             if self._steps(held, speed) < (part if self._dies_out(values) else HELD):
                 return False
-            self._proven = self._steps(held, speed) >= HELD
+            part = self._steps(held, speed)
+            self._proven = part >= HELD
+            self._part = 1.0 if self._proven else part
             self._take(self.stiff, t, f"a mode at {abs(speed):.3g}/s holds the steps, not the tolerance")
             return True
-        gain = self._steps(mean, dominant(self._spectrum(t, y)))
+        gain = self._steps(mean, dominant(self._spectrum(t, y))) / self._part
         self._lost = max(0.0, self._lost + steps * (self.cost - gain))
         if gain >= PATIENCE * self.cost:
             self._in_vain, self._proven = 0, True
             return False
-        if self._proven and self._lost < SWITCHING:
+        if self._proven and self._lost < self.switching:
             return False
         self._take(self.explicit, t, f"a stiff step replaces but {gain:.2g} explicit ones and costs {self.cost:.2g}")
         # A trial in vain must not cost more than the steps before the next one; it may soon be stiff again.
