@@ -18,7 +18,9 @@ def equations(start: str, rate: str) -> str:
 def marched(folder, script: str, solver: str, end: float) -> tuple[np.ndarray, March]:
     """The state at the end, and the march."""
     path = folder / "scene.yaml"
-    path.write_text(f"{script}\nclock: {{end: {end} s, speed: {end}}}\nsolvers: {{main: {{{solver}}}}}\n", encoding="utf-8")
+    path.write_text(
+        f"{script}\nclock: {{end: {end} s, speed: {end}}}\nsolvers: {{main: {{{solver}}}}}\n", encoding="utf-8"
+    )
     graph = load(path, pruned=False)
     island = IslandRun(graph, graph.islands[0])
     return island.march.advance(end)[0], island.march
