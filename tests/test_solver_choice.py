@@ -106,7 +106,23 @@ def test_auto_takes_radau_along_but_for_few_masses_that_touch():
     for entries, touching, both in ((bound, False, True), (bound, True, False), (bound + 1, True, True)):
         methods = Auto().choose(IslandFacts(entries, local_contacts=touching))
         assert (methods.stiff is not None) == both
-        assert methods.first == Auto().stepper()
+
+
+@pytest.mark.parametrize(
+    ("tolerance", "impacts", "name", "taken"),
+    [
+        (1e-3, False, "dopri5", 1e-3),
+        (1e-4, False, "dop853", 1e-5),
+        (1e-6, False, "dop853", 1e-7),
+        (1e-9, False, "dop853", 1e-9),
+        (1e-6, True, "dopri5", 1e-6),
+        (1e-7, True, "dop853", 1e-7),
+    ],
+)
+def test_auto_takes_its_order_by_the_tolerance_and_by_what_acts_between_steps(tolerance, impacts, name, taken):
+    first = Auto(tolerance=tolerance).choose(IslandFacts(12, impacts=impacts)).first
+    assert first.method.name == name
+    assert first.control.tolerance == pytest.approx(taken)
 
 
 def test_auto_marches_a_field_by_another_word():

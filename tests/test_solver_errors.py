@@ -68,7 +68,7 @@ def test_a_singularity_is_told_from_a_tolerance_that_rounding_exceeds(tmp_path, 
         island(tmp_path, script, "gauss_radau15" if why == "rounding" else "auto", 2).march.advance(2.0)
 
 
-@pytest.mark.parametrize(("tolerance", "name"), [(1e-6, "dopri5"), (1e-8, "dop853")])
+@pytest.mark.parametrize(("tolerance", "name"), [(1e-3, "dopri5"), (1e-4, "dop853"), (1e-8, "dop853")])
 def test_auto_takes_order_8_where_its_tolerance_is_tight(tmp_path, tolerance, name):
     script = "models: {m: {equations: {start: {a: 1, a': 0}, rate: {a'': -a}}}}"
     run = island(tmp_path, script, f"{{auto: {{tolerance: {tolerance}}}}}")

@@ -32,6 +32,7 @@ DENSE = {
     "implicit_midpoint": 1,
     "bdf2": 1,  # it starts with a step of implicit Euler
     "dop853": 7,
+    "auto": 7,
     "gauss_radau15": 8,
 }
 """Order of dense output where it is neither the cubic Hermite interpolant's nor 4."""

@@ -275,13 +275,13 @@ def test_auto_comes_near_the_rigid_pendulum_as_one_over_the_stiffness(tmp_path):
 
 def test_auto_stays_explicit_where_nothing_is_stiff(tmp_path):
     _, march = marched(tmp_path, equations("{a: 1, a': 0}", "{a'': -a}"), "auto: {}", 200)
-    assert [why.partition(":")[0] for _, why in march.choices()] == ["dopri5"]
+    assert [why.partition(":")[0] for _, why in march.choices()] == ["dop853"]
 
 
 def test_auto_changes_to_radau_where_a_run_becomes_stiff(tmp_path):
     script = equations("{a: 1, b: 1}", "{a: -b*(a - cos(t)), b: 'where(t > 5, 0, 3)*b'}")
     y, march = marched(tmp_path, script, "auto: {}", 50)
-    assert [why.partition(":")[0] for _, why in march.choices()] == ["dopri5", "radau"]
+    assert [why.partition(":")[0] for _, why in march.choices()] == ["dop853", "radau"]
     assert march.choices()[1][0] < 10
     assert march.statistics.steps < 5000
     assert y[0] == pytest.approx(np.cos(50), abs=1e-5)
@@ -297,7 +297,7 @@ def test_auto_goes_on_explicitly_where_radau_refuses(tmp_path):
     march = run.march
     march._with_jacobian = lambda: replace(run.assembly.finish(jacobian=True), pattern=None)
     march.advance(0.02)
-    assert [why.partition(":")[0] for _, why in march.choices()] == ["radau", "dopri5"]
+    assert [why.partition(":")[0] for _, why in march.choices()] == ["radau", "dop853"]
     assert "Jacobian" in march.choices()[1][1]
 
 

@@ -187,13 +187,17 @@ class IslandAssembly:
     def only_field(self) -> Grid | None:
         """The grid of an island that is one field and nothing that acts on it."""
         alone = len(self._grids) == 1 and len(self._ranges) == 1
-        acted_on = self._pairs or self._exact or self._local or self._after
-        return self._grids[0] if alone and not acted_on else None
+        return self._grids[0] if alone and not self._pairs and not self.changed_between_steps else None
+
+    @property
+    def changed_between_steps(self) -> bool:
+        """Whether contacts, or kernels that act after steps, change the state."""
+        return bool(self._exact or self._local or self._after)
 
     @property
     def moved_by_forces_alone(self) -> bool:
         """Whether it is masses without springs, pins or contacts of their own, which nothing changes between steps."""
-        others = self._terms["internal"] or self._terms["constrain"] or self._exact or self._local or self._after
+        others = self._terms["internal"] or self._terms["constrain"] or self.changed_between_steps
         return (
             bool(self._masses) and 2 * sum(n for *_, n in self._pairs) + len(self._masses) == self._size and not others
         )

@@ -69,6 +69,7 @@ class Assembled:
         return IslandFacts(
             entries=len(made.start()),
             local_contacts="local" in made.contact_mode,
+            impacts=made.changed_between_steps,
             grid=made.only_field,
             floats=made.numbers,
             orbits=bool(forces) and made.moved_by_forces_alone and all(force.at_a_distance() for force in forces),

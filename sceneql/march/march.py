@@ -94,7 +94,7 @@ class March:
         self._alone, self._sizes = np.zeros(n, dtype=bool), np.zeros(0)
         self._switch = None
         if stiff is not None:
-            self._switch = Switch(stepper, stiff, self.rate, system.partner)
+            self._switch = Switch(stepper, stiff, self.rate, system.partner, end)
         self._last_look = 0
         self._look_for_breakpoint(0.0)
         self._engage(stepper)
@@ -269,7 +269,8 @@ class March:
         step = self.stepper.control.first_step or self._first_step()
         if self._switch is not None:
             self._switch.start(y, step)
-            self._change(self._switch, 0.0)
+            if self._switch.active is not self.stepper:
+                self._change(self._switch, 0.0)
         self._clock[kernels.STEP] = step
 
     def _first_step(self) -> float:

@@ -1,7 +1,10 @@
-"""The fastest mode of an island at any moment of its run, by little more than a dozen evaluations of the rate."""
+"""The fastest modes of an island at any moment of its run, by little more than a dozen evaluations of the rate."""
 
 from __future__ import annotations
 
+import cmath
+import math
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,11 +12,12 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy import int64
+    from numpy import complex128, int64
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats
 
+    Complexes = NDArray[complex128]
     Partners = NDArray[int64]
     Rate = Callable[[float, Floats], Floats]
     """dy/dt (n,) at a time [s] and state."""
@@ -22,45 +26,84 @@ SMALL = 12
 """Entries of y up to which the whole Jacobian is found; above, the dimension of the Krylov space."""
 MOVE = 1.5e-8
 """Relative size of differences: the root of the rounding unit."""
+LENGTHS = np.geomspace(0.1, 50.0, 400)
+"""Steps times a mode at which the stability of a method is tried."""
 
 
-def dominant(rate_at: Rate, partner: Partners, t: float, y: Floats) -> complex:
-    """The eigenvalue [1/s] of largest modulus of the rate's Jacobian at a state, the upper one of a pair.
+def dominant(values: Complexes) -> complex:
+    """The eigenvalue of largest modulus, the upper one of a pair; 0 where there is none."""
+    if not len(values):
+        return 0j
+    found = complex(values[int(np.argmax(np.abs(values) + 1e-3 * np.abs(values.imag)))])  # of as fast ones, what swings
+    return complex(found.real, abs(found.imag))
 
-    ``partner`` (n,): for a position entry of y the index of its velocity, else -1.
-    Above SMALL entries by Arnoldi's iteration (Arnoldi 1951), which finds the outermost eigenvalues first.
+
+def spectrum(rate_at: Rate, partner: Partners, t: float, y: Floats, negligible: float = 0.0) -> Complexes:
+    """The outermost eigenvalues [1/s] of the rate's Jacobian at a state.
+
+    ``partner`` (n,): for a position entry of y the index of its velocity, else -1. Where all are below ``negligible``
+    [1/s], as a norm tells, there is none. Above SMALL entries by Arnoldi's iteration (Arnoldi 1951).
     """
     n = len(y)
     rate = rate_at(t, y)
-    if n <= SMALL:
-        moves = MOVE * np.maximum(np.abs(y), 1e-3)
-        columns = [(rate_at(t, y + move * unit) - rate) / move for move, unit in zip(moves, np.eye(n), strict=True)]
-        matrix = np.column_stack(columns)
-    else:
-        scale = MOVE * max(1e-3, float(np.linalg.norm(y)))
-        units = units_of(rate_at, partner, t, y, scale)
-        basis = np.zeros((SMALL + 1, n))
-        matrix = np.zeros((SMALL + 1, SMALL))
-        start = np.random.Generator(np.random.Philox(1)).standard_normal(n)
-        basis[0] = start / np.linalg.norm(start)
-        size = 0
-        for k in range(SMALL):
-            product = (rate_at(t, y + scale * units * basis[k]) - rate) / (scale * units)
-            for _ in range(2):  # once leaves what rounding put back, which grows from vector to vector
-                along = basis[: k + 1] @ product
-                matrix[: k + 1, k] += along
-                product -= along @ basis[: k + 1]
-            size = k + 1
-            matrix[k + 1, k] = left = np.linalg.norm(product)
-            if not left > 1e-10 * np.abs(matrix).max():
-                break
-            basis[k + 1] = product / left
-        matrix = matrix[:size, :size]
-    if not np.isfinite(matrix).all():
-        return 0j
-    values = np.linalg.eigvals(matrix)
-    found = complex(values[int(np.argmax(np.abs(values) + 1e-3 * np.abs(values.imag)))])  # of as fast ones, what swings
-    return complex(found.real, abs(found.imag))
+    matrix = _by_differences(rate_at, rate, t, y) if n <= SMALL else _projected(rate_at, partner, rate, t, y)
+    if (negligible and _radius_at_most(matrix) < negligible) or not np.isfinite(matrix).all():
+        return np.zeros(0, dtype=complex)
+    return np.linalg.eigvals(matrix).astype(complex)
+
+
+def _by_differences(rate_at: Rate, rate: Floats, t: float, y: Floats) -> Floats:
+    """The Jacobian (n, n)."""
+    matrix = np.empty((len(y), len(y)))
+    moved = y.copy()
+    for k, value in enumerate(y.tolist()):
+        move = MOVE * max(abs(value), 1e-3)
+        moved[k] = value + move
+        matrix[:, k] = (rate_at(t, moved) - rate) / move
+        moved[k] = value
+    return matrix
+
+
+def _projected(rate_at: Rate, partner: Partners, rate: Floats, t: float, y: Floats) -> Floats:
+    """The Jacobian on a Krylov space of dimension SMALL or less."""
+    scale = MOVE * max(1e-3, math.sqrt(float(y @ y)))
+    units = scale * units_of(rate_at, partner, t, y, scale)
+    basis = np.zeros((SMALL + 1, len(y)))
+    matrix = np.zeros((SMALL + 1, SMALL))
+    basis[0] = _anywhere(len(y))
+    size, largest = 0, 0.0
+    for k in range(SMALL):
+        product = (rate_at(t, y + units * basis[k]) - rate) / units
+        for _ in range(2):  # once leaves what rounding put back, which grows from vector to vector
+            along = basis[: k + 1] @ product
+            matrix[: k + 1, k] += along
+            product -= along @ basis[: k + 1]
+        size = k + 1
+        matrix[size, k] = left = math.sqrt(float(product @ product))
+        largest = max(largest, left, float(np.abs(matrix[:size, k]).max()))
+        if not left > 1e-10 * largest:
+            break
+        basis[size] = product / left
+    return matrix[:size, :size]
+
+
+@cache
+def _anywhere(n: int) -> Floats:
+    """A unit vector (n,) in no special direction."""
+    found: Floats = np.random.Generator(np.random.Philox(1)).standard_normal(n)
+    found /= np.linalg.norm(found)
+    return found
+
+
+def _radius_at_most(matrix: Floats) -> float:
+    """A bound on the moduli of the eigenvalues: |A^4|^(1/4) in Frobenius' norm; NaN where it overflows.
+
+    The norm of A itself is far larger where positions and velocities differ in size.
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        square = matrix @ matrix
+        fourth = (square @ square).ravel()
+        return math.sqrt(math.sqrt(math.sqrt(float(fourth @ fourth))))
 
 
 def units_of(rate_at: Rate, partner: Partners, t: float, y: Floats, scale: float) -> Floats:
@@ -82,10 +125,24 @@ def units_of(rate_at: Rate, partner: Partners, t: float, y: Floats, scale: float
 
 
 def boundary(coefficients: tuple[float, ...], direction: complex) -> float:
-    """Largest r with |R(s u)| <= 1 for s up to r, u the direction; R a polynomial, its coefficient of z^0 first."""
-    if direction.real > 0:
-        direction = complex(0.0, abs(direction))
-    lengths = np.geomspace(0.1, 50.0, 400)
-    growth = np.abs(np.polyval(coefficients[::-1], lengths * direction / abs(direction)))
+    """Largest r with |R(s u)| <= 1 for s up to r, u the direction; R a polynomial, its coefficient of z^0 first.
+
+    The direction is rounded to a hundredth of a right angle; one of growth counts as that of an oscillation.
+    """
+    along = math.atan2(abs(direction.imag), -direction.real) if direction.real < 0.0 else math.pi / 2
+    return _boundary(coefficients, round(100 * along / (math.pi / 2)))
+
+
+@cache
+def least_boundary(coefficients: tuple[float, ...]) -> float:
+    """The least of `boundary`: that of decays, of oscillations or of what is midway."""
+    return min(_boundary(coefficients, k) for k in (0, 50, 100))
+
+
+@cache
+def _boundary(coefficients: tuple[float, ...], hundredths: int) -> float:
+    """`boundary` at so many hundredths of a right angle from the negative axis."""
+    angle = math.pi * (1.0 - hundredths / 200.0)
+    growth = np.abs(np.polyval(coefficients[::-1], LENGTHS * cmath.exp(1j * angle)))
     unstable = np.flatnonzero(growth > 1.0 + 1e-9)
-    return float(lengths[unstable[0]]) if len(unstable) else float(lengths[-1])
+    return float(LENGTHS[unstable[0] if len(unstable) else -1])

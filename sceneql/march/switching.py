@@ -7,22 +7,33 @@ steps replace more explicit ones than they cost. Costs are counts of steps and o
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
-from sceneql.march.spectrum import boundary, dominant
+from sceneql.march.spectrum import boundary, dominant, least_boundary, spectrum
 from sceneql.stepping.radau_systems import LARGEST, step_cost
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.march.spectrum import Partners, Rate
+    from sceneql.march.spectrum import Complexes, Partners, Rate
     from sceneql.system import Stepper
 
 HELD = 0.5
 """Part of the stability boundary from which on stability counts as limiting the step."""
+DECAYED = 0.05
+"""As HELD, for a decay, where a trial in vain would cost at most a fifth of what is left: below a tolerance of some
+1e-9 the rounding of what has decayed, which the fast mode amplifies in the error, keeps steps as short as that."""
 FIRST, LAST = 200, 6400
 """Explicit steps before the first check, and at most between two checks."""
 STAGES = 7
 """Stages of dopri5, in whose steps costs are measured."""
+LONG = 100
+"""Steps of radau for a decay and what comes after it, at a tolerance of 1e-4; they grow as its power -1/4."""
+SWITCHING = 1500
+"""Explicit steps that a change of the method costs a small island, which is laid out for it: what is left must be more,
+and a stiff method that has become slow is kept until it has lost as many."""
+LARGE = 100
+"""Unknowns from which on it costs less, as a step takes longer."""
 TRIAL = 100
 """Steps of a stiff method before a mean step length is measured, and again until it is first judged by that."""
 PATIENCE = 1 / 3
@@ -32,10 +43,10 @@ PATIENCE = 1 / 3
 class Switch:
     """The choice of the method of one march."""
 
-    def __init__(self, explicit: Stepper, stiff: Stepper, rate_at: Rate, partner: Partners) -> None:
-        """``rate_at``, ``partner``: the island's, see `dominant`."""
+    def __init__(self, explicit: Stepper, stiff: Stepper, rate_at: Rate, partner: Partners, end: float) -> None:
+        """``rate_at``, ``partner``: the island's, see `spectrum`; ``end`` [s]: that of the run."""
         self.explicit, self.stiff = explicit, stiff
-        self._rate_at, self._partner = rate_at, partner
+        self._rate_at, self._partner, self._end = rate_at, partner, end
         self.size = int((partner < 0).sum())
         """Unknowns of the stiff method's linear systems."""
         self.active = explicit
@@ -44,6 +55,14 @@ class Switch:
         self.until_look = self._between = FIRST
         self._since = 0.0
         self._warming = False
+        self._lost = 0.0
+        """Explicit steps that the stiff method has cost too many."""
+        self._proven = True
+        """Whether the stiff method has replaced as many as it should, or certainly would."""
+        self._part = 1.0
+        """The explicit method's steps, as a part of the longest stable one."""
+        self._in_vain = 0
+        """Successive trials of the stiff method in vain: each doubles the explicit steps before the next."""
         self._possible = self.size <= LARGEST
 
     @property
@@ -52,16 +71,34 @@ class Switch:
         return step_cost(self.size) * STAGES / (len(self.explicit.method.stability) - 1)
 
     @property
+    def switching(self) -> float:
+        """Explicit steps that a change of the method costs."""
+        return SWITCHING / (1.0 + self.size / LARGE)
+
+    @property
+    def least_run(self) -> float:
+        """Steps in which the stiff method follows a decay and what comes after it."""
+        return LONG * math.sqrt(math.sqrt(1e-4 / self.stiff.control.tolerance))
+
+    def _dies_out(self, values: Complexes) -> bool:
+        """Whether the fastest mode decays; one of a pair that decays and grows, as near a heavy body, does not."""
+        fastest = dominant(values)
+        return -fastest.real > max(abs(fastest.imag), 10.0 * float(values.real.max(initial=0.0)))
+
+    @property
     def _often(self) -> int:
         """Stiff steps between two checks: as many as cost LAST explicit ones."""
         return max(TRIAL, int(LAST / self.cost))
 
     def start(self, y: Floats, step: float) -> None:
         """Choose the first method; ``step`` [s]: an estimate of the step that the tolerance allows at the start."""
-        speed = self._fastest(0.0, y)
+        values = self._spectrum(0.0, y)
+        speed = dominant(values)
         explicit_steps = self._steps(step, speed)
         if explicit_steps > self.cost and self._possible:
             self._take(self.stiff, 0.0, f"a mode at {abs(speed):.3g}/s makes the scene stiff")
+        elif self._possible and self._dies_out(values) and self._steps(self._end, speed) > self.least_run * self.cost:
+            self._take(self.stiff, 0.0, f"a decay at {abs(speed):.3g}/s is over long before the end of the run")
         elif explicit_steps > 1.0:
             self._take(self.explicit, 0.0, f"a mode at {abs(speed):.3g}/s makes it but mildly stiff")
         else:
@@ -76,19 +113,33 @@ class Switch:
             return False
         self._between = min(LAST, 2 * self._between)
         self.until_look = self._between if self.active is self.explicit else min(self._between, self._often)
-        speed = self._fastest(t, y)
         if self.active is self.explicit:
-            if not self._possible or self._steps(min(step, mean), speed) < HELD:
+            held = min(step, mean)
+            left = (self._end - t) / held
+            if not self._possible or left < self.switching:
                 return False
+            part = DECAYED if 5 * (self.switching + 2 * TRIAL * self.cost) < left else HELD
+            values = self._spectrum(t, y, part * least_boundary(self.explicit.method.stability) / held)
+            speed = dominant(values)
+            if self._steps(held, speed) < (part if self._dies_out(values) else HELD):
+                return False
+            part = self._steps(held, speed)
+            self._proven = part >= HELD
+            self._part = 1.0 if self._proven else part
             self._take(self.stiff, t, f"a mode at {abs(speed):.3g}/s holds the steps, not the tolerance")
             return True
-        gain = self._steps(mean, speed)
+        gain = self._steps(mean, dominant(self._spectrum(t, y))) / self._part
+        self._lost = max(0.0, self._lost + steps * (self.cost - gain))
         if gain >= PATIENCE * self.cost:
+            self._in_vain, self._proven = 0, True
+            return False
+        if self._proven and self._lost < self.switching:
             return False
         self._take(self.explicit, t, f"a stiff step replaces but {gain:.2g} explicit ones and costs {self.cost:.2g}")
         # A trial in vain must not cost more than the steps before the next one; it may soon be stiff again.
         self._between = FIRST
-        self.until_look = max(FIRST, int(TRIAL * self.cost))
+        self.until_look = max(FIRST, int(TRIAL * self.cost)) << self._in_vain
+        self._in_vain = min(self._in_vain + 1, 5)
         return True
 
     def give_up(self, t: float) -> bool:
@@ -109,11 +160,11 @@ class Switch:
 
     def stable(self, t: float, y: Floats, step: float) -> float:
         """``step`` [s], or the largest stable step of the active method if that is shorter."""
-        steps = self._steps(step, self._fastest(t, y)) if self.active is self.explicit else 0.0
+        steps = self._steps(step, dominant(self._spectrum(t, y))) if self.active is self.explicit else 0.0
         return step * min(1.0, HELD / steps) if steps else step
 
-    def _fastest(self, t: float, y: Floats) -> complex:
-        return dominant(self._rate_at, self._partner, t, y)
+    def _spectrum(self, t: float, y: Floats, negligible: float = 0.0) -> Complexes:
+        return spectrum(self._rate_at, self._partner, t, y, negligible)
 
     def _steps(self, length: float, speed: complex) -> float:
         """Stable explicit steps in a length [s]."""
@@ -122,6 +173,7 @@ class Switch:
     def _take(self, stepper: Stepper, t: float, why: str) -> None:
         self.active = stepper
         self._warming = stepper is self.stiff
+        self._lost = 0.0
         if self._warming:
             self.until_look = TRIAL
         self.history.append((t, f"{stepper.method.name}: {why}"))

@@ -129,7 +129,7 @@ class IslandRun:
         self.bodies = made.bodies
         self.assembly = made.assembly
         self.assembly.places = self._places
-        if not self.assembly.fields:  # then the solver's step is known before what acts is made
+        if not self.assembly.fields and not island.contacts:  # the solver's step is known before what acts is made
             compile_beside((solver.stepper().method.step.partition(":")[0],))
         made.act()
         made.found.raise_errors()

@@ -120,6 +120,8 @@ class IslandFacts:
     """Size of its state."""
     local_contacts: bool = False
     """Whether contacts resolve impacts within a step."""
+    impacts: bool = False
+    """Whether contacts of any kind, tears or births change its state between steps."""
     grid: Grid | None = None
     """The grid, where the island is one field and nothing else."""
     floats: Callable[[], Floats] | None = None

@@ -16,19 +16,26 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.system import IslandFacts, Stepper
 
-TIGHT = 1e-6
-"""Tolerance below which order 8 takes less time than order 5 for the same error (tests/bench/bench_auto.py)."""
+TIGHT = 1e-4
+"""Tolerance from which on order 8 takes less time than order 5 for the same error (tests/bench/bench_auto.py)."""
+IN_CONTACT = 1e-6
+"""Tolerance below which it does where steps end at impacts, for which it needs its dense output in each."""
+HOPEFUL = 1e-7
+"""Tolerance above which order 8 gets a tenth: on its long steps it errs more than order 5 with the same would."""
 ORBITS = 1e-10
 """Tolerance from which on order 15 takes less time on orbits, at IN_ORBITS, where it errs by less than 1e-12."""
 IN_ORBITS = 1e-6
 
 
 class Auto(Solver):
-    """The solver that suits: dopri5, or dop853 for a tolerance below 1e-6, and radau where the scene is stiff.
+    """The solver that suits: dop853, or dopri5 for a tolerance above 1e-4, and radau where the scene is stiff.
 
-    Stiff is where stability rather than the tolerance would hold the steps of the explicit method. That choice is made
-    at the start, by the fastest mode of the island, the step that the tolerance allows and what a step of radau costs
-    with so many unknowns, and looked at again during the run; `explain` says the first and why. Few masses that nothing
+    Where contacts, tears or births act it is dopri5 for one of 1e-6 or more. From there up to 1e-4, dop853 has a tenth
+    of the tolerance, with which it errs less than dopri5. Stiff is where stability rather than the tolerance would hold
+    the steps of the explicit method. That choice is made at the start, by the fastest mode of the island, the step that
+    the tolerance allows, the length of the run and what a step of radau costs with so many unknowns, and looked at
+    again as long as enough of the run is left;
+    `explain` says the first and why. Few masses that nothing
     but forces at a distance moves (gravity, attractors) are marched by gauss_radau15 for a tolerance of 1e-10 or less.
     (On large nets tr_bdf2 is quicker where errors of 1e-4 will do: ask for it by name.) Local contacts of up to some
     sixty masses keep it with dopri5. A field on a grid is marched by tr_bdf2, and on a box whose coefficient and
@@ -50,13 +57,15 @@ class Auto(Solver):
 
     def explanation(self) -> str:
         """What it chooses from."""
-        if self.tolerance < TIGHT:
-            return f"dop853, as its tolerance is below {TIGHT:g}, and radau where the scene is stiff"
-        return "dopri5, and radau where the scene is stiff"
+        if self.tolerance > TIGHT:
+            return f"dopri5, as its tolerance is above {TIGHT:g}, and radau where the scene is stiff"
+        if self.tolerance < IN_CONTACT:
+            return f"dop853, as its tolerance is below {IN_CONTACT:g}, and radau where the scene is stiff"
+        return "dop853, or dopri5 where contacts, tears or births act, and radau where the scene is stiff"
 
     def stepper(self) -> Stepper:
         """That of its explicit method."""
-        return self._order_8() if self.tolerance < TIGHT else self._order_5()
+        return self._order_5() if self.tolerance > TIGHT else self._order_8()
 
     def choose(self, island: IslandFacts) -> Methods:
         """An explicit method with radau, but for few masses with local contacts and for orbits; on a grid others."""
@@ -77,7 +86,8 @@ class Auto(Solver):
             there = "for few masses that attract each other, at so small a tolerance"
             return replace(GaussRadau15(tolerance=IN_ORBITS).choose(island), remark=there)
         stiff = Radau(tolerance=self.tolerance, absolute=self.absolute).stepper()
-        return Methods(self, self.stepper(), stiff=replace(stiff, method=replace(stiff.method, name="radau")))
+        first = self._order_5() if island.impacts and self.tolerance >= IN_CONTACT else self.stepper()
+        return Methods(self, first, stiff=replace(stiff, method=replace(stiff.method, name="radau")))
 
     def measure(self) -> str:
         """As its methods do."""
@@ -85,7 +95,7 @@ class Auto(Solver):
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """That of its explicit method."""
-        if self.tolerance < TIGHT:
+        if self.tolerance <= TIGHT:
             return Dop853().growth(jacobian, partner, step)
         return DORMAND_PRINCE.growth(jacobian, step)
 
@@ -102,7 +112,8 @@ class Auto(Solver):
 
         from sceneql.stepping.dormand_prince_8 import DORMAND_PRINCE_8
 
-        stepper = Dop853(tolerance=self.tolerance, absolute=self.absolute).stepper()
+        tolerance = min(self.tolerance, max(0.1 * self.tolerance, HOPEFUL))
+        stepper = Dop853(tolerance=tolerance, absolute=self.absolute).stepper()
         return replace(
             stepper,
             method=replace(stepper.method, name="dop853", stability=DORMAND_PRINCE_8.stability_function),

@@ -1,0 +1,94 @@
+"""The methods that `auto` takes: by the tolerance, by the modes of the island, by how much of the run is left."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sceneql.march.march import March
+from sceneql.march.spectrum import spectrum
+from sceneql.pipeline import load
+from sceneql.run.run import IslandRun
+
+
+def equations(start: str, rate: str) -> str:
+    return f"models: {{system: {{equations: {{start: {start}, rate: {rate}}}}}}}"
+
+
+def marched(folder, script: str, solver: str, end: float) -> tuple[np.ndarray, March]:
+    """The state at the end, and the march."""
+    path = folder / "scene.yaml"
+    path.write_text(
+        f"{script}\nclock: {{end: {end} s, speed: {end}}}\nsolvers: {{main: {{{solver}}}}}\n", encoding="utf-8"
+    )
+    graph = load(path, pruned=False)
+    island = IslandRun(graph, graph.islands[0])
+    return island.march.advance(end)[0], island.march
+
+
+def taken(march: March) -> list[str]:
+    """The methods in turn."""
+    return [why.partition(":")[0] for _, why in march.choices()]
+
+
+ROBERTSON = equations("{a: 1, b: 0, c: 0}", "{a: -p+q, b: p-q-r, c: r}").replace(
+    "rate:", "where: {p: 0.04*a, q: 1e4*b*c, r: 3e7*b^2}, rate:"
+)
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-8, 1e-12])
+def test_auto_takes_no_more_evaluations_than_radau_where_a_decay_is_over_long_before_the_end(tmp_path, tolerance):
+    _, ours = marched(tmp_path, ROBERTSON, f"auto: {{tolerance: {tolerance}}}", 1e11)
+    _, named = marched(tmp_path, ROBERTSON, f"radau: {{tolerance: {tolerance}}}", 1e11)
+    assert ours.choices()[0][1].startswith("radau: a decay at 0.04/s")
+    assert ours.statistics.evaluations < 1.1 * named.statistics.evaluations
+
+
+def test_auto_leaves_a_decay_that_a_growth_mirrors_to_the_explicit_method(tmp_path):
+    """Near a heavy body one direction falls apart as fast as another closes: nothing is over in such a time."""
+    script = """
+models: {b: {particles: {list: {planet: {position: 0.01 0 0 m, velocity: [0, 199^0.5, 0]}}}}}
+forces: [attractor]
+"""
+    _, march = marched(tmp_path, script, "auto: {}", 60)
+    assert taken(march) == ["dop853"]
+
+
+FOLLOWING = equations("{x: 1, y: 0}", "{x: '-2000*(x - cos(y))', y: 1}")
+
+
+def test_auto_finds_stiffness_where_rounding_keeps_steps_below_the_stable_one(tmp_path):
+    """At a tolerance of 1e-11 the steps are a sixth of the longest stable one, 18,175 of them."""
+    y, march = marched(tmp_path, FOLLOWING, "auto: {tolerance: 1e-11}", 10)
+    assert taken(march) == ["dop853", "radau"]
+    assert march.statistics.steps < 2500
+    assert y[0] == pytest.approx((2000**2 * np.cos(10) + 2000 * np.sin(10)) / (2000**2 + 1), abs=1e-11)
+
+
+def test_auto_does_not_change_its_method_for_the_few_steps_that_are_left(tmp_path):
+    """Laying the island out for radau takes longer than some hundred short steps."""
+    script = equations("{a: 1, b: 1}", "{a: -b*(a - cos(t)), b: 'where(t > 5, 0, 3)*b'}")
+    _, march = marched(tmp_path, script, "auto: {}", 3.4)
+    assert taken(march) == ["dop853"]
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-8, 1e-10])
+def test_auto_takes_the_evaluations_of_order_8_on_a_spring(tmp_path, tolerance):
+    spring = equations("{a: 1, a': 0}", "{a'': -a}")
+    y, ours = marched(tmp_path, spring, f"auto: {{tolerance: {tolerance}}}", 50)
+    by_five, five = marched(tmp_path, spring, f"dopri5: {{tolerance: {tolerance}}}", 50)
+    assert ours.statistics.evaluations < 0.8 * five.statistics.evaluations
+    assert abs(y[0] - np.cos(50)) < abs(by_five[0] - np.cos(50))
+
+
+def test_a_look_at_modes_that_are_slow_asks_for_no_eigenvalues(monkeypatch):
+    asked = []
+    monkeypatch.setattr(np.linalg, "eigvals", lambda matrix: asked.append(matrix) or np.zeros(len(matrix)))
+    partner, y = np.array([1, -1]), np.array([1.0, 0.0])
+
+    def rate(t, y):
+        return np.array([y[1], -1e4 * y[0]])
+
+    assert not len(spectrum(rate, partner, 0.0, y, negligible=120.0))
+    assert not asked
+    assert len(spectrum(rate, partner, 0.0, y, negligible=90.0)) == len(asked[0]) == 2
