@@ -9,7 +9,7 @@ import pytest
 from sceneql.compiler.passes import stable_steps
 from sceneql.failure import RunFailure
 from sceneql.kinds.stable_step import stable_step
-from sceneql.march.spectrum import dominant
+from sceneql.march.spectrum import dominant, spectrum
 from sceneql.march.stability import stability
 from sceneql.report.explain import explain, text
 from sceneql.run.run import Run
@@ -212,6 +212,6 @@ def test_two_masses_on_an_oblique_spring_swing_at_its_frequency(seed):
         return np.concatenate([y[6:12], pull / masses[0], -pull / masses[1], [0.0]])
 
     partner = np.array([*range(6, 12), *[-1] * 7])
-    found = dominant(rate, partner, 0.0, np.concatenate([places, np.zeros(7)]))
+    found = dominant(spectrum(rate, partner, 0.0, np.concatenate([places, np.zeros(7)])))
     assert found.imag == pytest.approx(math.sqrt(stiffness * np.sum(1.0 / masses)), rel=1e-3)
     assert abs(found.real) < 1e-3 * found.imag
