@@ -10,7 +10,6 @@ from copy import copy
 from typing import Any
 
 from llvmlite import binding
-from llvmlite.binding import ffi
 from numba import config
 from numba.core import cgutils
 from numba.core.codegen import JITCodeLibrary
@@ -209,12 +208,7 @@ def widen():
             config.CPU_FEATURES = f"{features.flatten()},-prefer-256-bit"
 
 
-def forget_lock_times():
-    """Drop numba's record of how long each call of LLVM holds its lock: the calls are many, and nobody reads it."""
-    ffi.lib._lock._cblist.clear()
-
-
-REPLACEMENTS = [take_elements, *SHORTCUTS, take_builtin_calls, forget_lock_times, widen]
+REPLACEMENTS = [take_elements, *SHORTCUTS, take_builtin_calls, widen]
 """Functions that replace parts of numba for this whole process; the passes above are only for our kernels."""
 
 

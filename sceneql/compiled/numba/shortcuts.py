@@ -14,19 +14,15 @@ from llvmlite.ir._utils import DuplicatedNameError, NameScope
 from numba import types
 from numba.core import (
     base,
-    byteflow,
     cpu,
     entrypoints,
     errors,
     interpreter,
     ir,
-    lowering,
     postproc,
-    ssa,
     transforms,
     typeinfer,
 )
-from numba.core.rewrites.ir_print import RewritePrintCalls
 from numba.core.typing.context import BaseContext
 from numba.np import linalg
 
@@ -111,23 +107,6 @@ def resolve_once():
     typeinfer.CallConstraint.resolve = resolving
 
 
-class Context:
-    """The context of an error, formatted only where there is an error (errors.new_error_context)."""
-
-    def __init__(self, words, *parts, errcls_=None, **named):
-        self.words, self.parts, self.named = words, parts, named
-        loc = named.get("loc")
-        if loc is not None:
-            errors.loc_info.update(named)
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, kind, error, trace):
-        if isinstance(error, errors.NumbaError):
-            error.add_context(errors._format_msg(self.words, self.parts, self.named))
-
-
 def propagate(self, inference):
     """One round of type inference: its errors, which the next may resolve (typeinfer.ConstraintNetwork.propagate)."""
     found = []
@@ -146,11 +125,6 @@ def propagate(self, inference):
 def propagate_quickly():
     """Rounds of type inference format no context for errors that do not occur."""
     typeinfer.ConstraintNetwork.propagate = propagate
-
-
-def describe_rarely():
-    """The context of an error is formatted only where there is an error (errors.new_error_context)."""
-    typeinfer.new_error_context = lowering.new_error_context = Context
 
 
 def refresh_rarely():
@@ -232,16 +206,6 @@ def pass_over():
     interpreter.Interpreter.post_process = processing
 
 
-def look_for_print():
-    """Calls of print are looked for only in functions that name it: numba makes an error for every call of a method."""
-    match = RewritePrintCalls.match
-
-    def matching(self, function, block, typemap, calltypes):
-        return "print" in function.func_id.code.co_names and match(self, function, block, typemap, calltypes)
-
-    RewritePrintCalls.match = matching
-
-
 def remember_sizes():
     """Sizes of types in memory are computed once: numba has LLVM parse a module for each."""
     sizeof = cache(lambda target, kind: kind.get_abi_size(target))
@@ -276,12 +240,6 @@ def remember_places():
     base._has_loc = cache(base._has_loc)
 
 
-def silence():
-    """The debug log of passes, which nobody reads, is not written."""
-    for module in (byteflow, interpreter, ssa, transforms, typeinfer):
-        module._logger.debug = _say_nothing
-
-
 def _say_nothing(*_, **__):
     pass
 
@@ -294,16 +252,13 @@ SHORTCUTS = (
     remember_attributes,
     resolve_once,
     propagate_quickly,
-    describe_rarely,
     refresh_rarely,
     look_once,
     name_quickly,
     pass_over,
-    look_for_print,
     remember_sizes,
     remember_places,
     believe_in_scipy,
     look_for_extensions,
-    silence,
 )
 """All of them, in the order in which they are taken."""
