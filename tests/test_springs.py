@@ -204,6 +204,7 @@ WRONG = {
     "{cloth: {pins: [middle]}}": "no mass is called 'middle'",
     "{cloth: {tear: {at: 1}}}": "must be above 1",
     "{cloth: {facing: 0 0 0}}": "faces nowhere",
+    "{cloth: {size: 2 99999999999 m}}": "at most 1,000,000 times as long as wide",
     "{cloth: {cells: 100000 100000}}": "at most",
     "{mass_spring: {rope: {}, pins: {lid: {}}}}": "no mass is called 'lid'",
     "{mass_spring: {solid: {object: b, spacing: 0 m}}}": "must be above 0",

@@ -25,6 +25,8 @@ SIDES = ("left", "right", "bottom", "top", "back", "front")
 EDGES = ("left", "right", "bottom", "top")
 STEPS = tuple(step for step in product((-1, 0, 1), repeat=3) if step > (0, 0, 0))
 """Offsets from a grid point to its neighbors, each pair once."""
+THINNEST = 1e6
+"""Sides of a cloth's cell, as a quotient, above which the solvers' steps lose its threads in the rounding of each other."""
 CORNERS = ("bottom_left", "bottom_right", "top_left", "top_right")
 
 
@@ -222,9 +224,13 @@ class Cloth(Record):
         return self.center[1] - 0.5 * reach * upright
 
     def problems(self) -> Iterator[Problem]:
-        """More masses than are possible, or no side that faces anywhere."""
+        """More masses than are possible, cells like hairs, or no side that faces anywhere."""
         sorts = 1 + (self.shear > 0) + (self.bend > 0)
         yield from _too_many(self.mass_count(), 2 * sorts * self.mass_count(), "cells")
+        narrow, long = sorted(side / cells for side, cells in zip(self.size, self.cells, strict=True))
+        if not long <= THINNEST * narrow:
+            told = f"cells of {narrow:.3g} by {long:.3g} m: at most {THINNEST:,.0f} times as long as wide are simulated"
+            yield Problem(told, ("size",))
         if not any(self.facing):
             yield Problem("a cloth that faces 0 0 0 faces nowhere", ("facing",))
 
