@@ -127,8 +127,8 @@ def _not_rounded_away(low: Floats, high: Floats) -> None:
     apart = float(np.spacing(farthest))
     if apart > COARSEST * size:
         raise ValueError(
-            f"it reaches {farthest:.3g} m away from the origin, where float64 numbers are {apart:.2g} m apart: too coarse"
-            f" for the surface of a solid of {size:.3g} m"
+            f"it reaches {farthest:.3g} m away from the origin, where float64 numbers are {apart:.2g} m apart:"
+            f" too coarse for the surface of a solid of {size:.3g} m"
         )
 
 

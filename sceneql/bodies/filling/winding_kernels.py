@@ -224,7 +224,7 @@ def turns(corners, links, moments, lids, lid_links, lid_moments, x, y, z):
         w = one + other
         if left + lost < 0.25:
             break
-    return int(math.floor(w + 0.5))
+    return math.floor(w + 0.5)
 
 
 @lean(types.boolean(ROWS, NODES, ROWS, F, F, F, F), inner=True)

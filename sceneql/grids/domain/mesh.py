@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 TILE = 4096
 """Points of one task of a thread."""
 REMEMBERED = 32
-"""Lists of points of which the last distances are kept: those of the cells of a grid, which a run ahead asks for too."""
+"""Lists of points whose distances are kept: those of a grid's cells, which a run ahead of the film asks for too."""
 
 
 class MeshLevel:
