@@ -27,7 +27,7 @@ EDGES = ("left", "right", "bottom", "top")
 STEPS = tuple(step for step in product((-1, 0, 1), repeat=3) if step > (0, 0, 0))
 """Offsets from a grid point to its neighbors, each pair once."""
 THINNEST = 1e6
-"""Length over width of a cloth's cell above which the rounding of the long side moves the masses along the short one."""
+"""Length over width of a cloth's cell above which the rounding of the long side moves masses along the short one."""
 CORNERS = ("bottom_left", "bottom_right", "top_left", "top_right")
 
 
