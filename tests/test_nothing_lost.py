@@ -78,11 +78,14 @@ def test_what_is_killed_leaves_nothing_torn_and_the_next_run_nothing_at_all(tmp_
         number = chance.choice([signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
         process = started(tmp_path, "render", "f.yaml", start_new_session=True)
         with suppress(subprocess.TimeoutExpired):
-            process.wait(chance.uniform(0.25, 1.0) * whole)  # sooner Python itself may be told of it
+            process.wait(chance.uniform(0.0, 1.0) * whole)
         process.send_signal(number)
         said = process.communicate(timeout=60)[1]
-        assert process.returncode in (0, -number, 128 + number), said
-        assert "Traceback" not in said
+        if "Traceback" in said:  # of Python itself, before it reads a line of ours
+            assert number == signal.SIGINT
+            assert str(Path(cli.__file__).parent) not in said
+        else:
+            assert process.returncode in (0, -number, 128 + number), said
         for name, most in (("film", 30), ("film.partial", 30)):
             if (path := tmp_path / f"f.{name}.mp4").exists():
                 assert 0 < frames(path) <= most
