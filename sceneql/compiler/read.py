@@ -255,8 +255,9 @@ class Reader:
         return tuple(result) if origin is tuple else result
 
     def _miscounted(self, node: Node, arms: tuple[Any, ...], what: str, count: int) -> Unreadable:
-        marks = [mark for arm in arms for mark in _unwrap(arm)[1] if isinstance(mark, kinds.Quantity) and mark.shape]
-        help = by_corners(node, what, marks[0].shape[0]) if len(marks) == 2 == len(arms) else None
+        marks = [mark for arm in arms for mark in _unwrap(arm)[1] if isinstance(mark, kinds.Quantity)]
+        vectors = [mark.shape[0] for mark in marks if mark.shape and mark.shape[0]]
+        help = by_corners(node, what, vectors[0]) if len(vectors) == 2 == len(arms) else None
         return self._fail("wrong-count", f"{what} takes {len(arms)} values, not {count}", node.span, help)
 
     def _copies(self, node: Node, annotation: Any) -> list[Node]:
