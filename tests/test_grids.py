@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
@@ -11,8 +11,10 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from sceneql.failure import RunFailure
+from sceneql.grids.domain import sides
 from sceneql.grids.domain.cut import CROWDED, below, cut, frame
-from sceneql.grids.domain.polygon import Polygon, crossing
+from sceneql.grids.domain.polygon import Polygon
+from sceneql.grids.domain.sides import crossing
 from sceneql.march.stability import stability
 from sceneql.pipeline import load
 from sceneql.run.run import IslandRun
@@ -174,6 +176,39 @@ def test_a_cell_is_closed_by_its_boundary():
     outward = faces.points - cells.centers(faces.cells) * [1, 1, 0]
     total = (faces.areas[:, None] * outward / np.linalg.norm(outward, axis=1)[:, None]).sum(axis=0)
     assert np.abs(total).max() < 1e-9
+
+
+def first_crossing(rings):
+    """By all pairs, in order of their left ends."""
+    them = [
+        sides.Side(name, k, ring[k], ring[(k + 1) % len(ring)], len(ring))
+        for name, ring in rings.items()
+        for k in range(len(ring))
+    ]
+    them.sort(key=lambda side: min(side.first[0], side.last[0]))
+    for one, other in combinations(them, 2):
+        if one.wrongly_meets(other):
+            return one.place, other.place
+    return None
+
+
+@given(st.lists(st.tuples(st.integers(0, 30), st.integers(0, 30)), min_size=3, max_size=40), st.booleans())
+@settings(max_examples=60)
+def test_sides_by_boxes_are_found_to_cross_as_by_all_pairs(corners, hatched):
+    if hatched:  # 20 strips over one another
+        corners = [(float(40 * (k % 2)), k + 0.3 * (k % 2)) for k in range(40)] + corners[:1]
+    rings = {"shore": tuple(corners), "isle": ((50, 50), (51, 50), (50, 51))}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sides, "MANY", -1)
+        assert crossing(rings) == first_crossing(rings)
+
+
+def test_sides_that_overlap_along_x_are_not_compared_pair_by_pair(monkeypatch):
+    ring = [(float(100 * (k % 2)), k + 0.3 * (k % 2)) for k in range(2000)]
+    asked, meet = [], sides.Side.wrongly_meets
+    monkeypatch.setattr(sides.Side, "wrongly_meets", lambda one, other: asked.append(0) or meet(one, other))
+    assert crossing({"shore": (*ring, (-1.0, 2000.0), (-1.0, 0.0))}) is None
+    assert len(asked) < 20 * len(ring)
 
 
 @given(st.permutations(range(6)))

@@ -198,12 +198,20 @@ def test_a_heavy_cloth_tears_off_its_pins(tmp_path):
     assert energy == pytest.approx(start, abs=1e-6)
 
 
+@pytest.mark.parametrize("long", [1e-200, 1e300])
+def test_a_cloth_faces_along_a_direction_of_any_length(tmp_path, long):
+    script = "models: {sheet: {cloth: {facing: %s, cells: 2 2}}}\n"
+    one, other = (watch(tmp_path, script % f"{-by} {by} 0", [0], "sheet.positions")[0][0] for by in (1.0, long))
+    np.testing.assert_allclose(other, one, atol=1e-15)
+
+
 WRONG = {
     "{cloth: {stretch: 0 N/m}}": "must be above 0",
     "{cloth: {mass: -1 kg/m^2}}": "must be above 0",
     "{cloth: {pins: [middle]}}": "no mass is called 'middle'",
     "{cloth: {tear: {at: 1}}}": "must be above 1",
     "{cloth: {facing: 0 0 0}}": "faces nowhere",
+    "{cloth: {size: 2 99999999999 m}}": "at most 1,000,000 times as long as wide",
     "{cloth: {cells: 100000 100000}}": "at most",
     "{mass_spring: {rope: {}, pins: {lid: {}}}}": "no mass is called 'lid'",
     "{mass_spring: {solid: {object: b, spacing: 0 m}}}": "must be above 0",

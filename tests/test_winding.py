@@ -13,7 +13,8 @@ from meshes import BALL, TORUS, cut
 from runs import watch
 from sceneql import pipeline
 from sceneql.bodies.filling import winding_kernels as kernels
-from sceneql.bodies.filling.winding import Winding, winding
+from sceneql.bodies.filling.winding import MANY, Winding, winding
+from sceneql.bodies.filling.winding_cells import Cells
 from sceneql.contacts.shapes.closed_mesh import closed
 from sceneql.grids.domain.mesh import MeshLevel
 from sceneql.mesh.holes import described, loops, open_sides, welded
@@ -69,6 +70,20 @@ def shapes():
 
 
 @pytest.mark.parametrize("shape", shapes())
+def test_of_many_places_the_same_are_inside_as_one_by_one(shape, monkeypatch):
+    corners = shapes()[shape]
+    low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+    places = np.random.Generator(np.random.Philox(8)).uniform(low - 0.1, high + 0.1, (MANY, 3))
+    alone = Winding(corners).holds(places[: MANY // 2])
+    asked, inside = [], Cells.around
+    monkeypatch.setattr(Cells, "around", lambda mesh: asked.append(inside(mesh)) or asked[0])
+    together = Winding(corners).holds(places)
+    assert (together[: MANY // 2] == alone).all()
+    crossed = asked[0].turns == kernels.MIXED
+    assert shape == "one triangle" or 0 < crossed.mean() < 0.6
+
+
+@pytest.mark.parametrize("shape", shapes())
 def test_a_place_is_inside_where_the_sum_over_all_triangles_says_so(shape):
     corners = shapes()[shape]
     low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
@@ -84,12 +99,12 @@ def test_a_place_is_inside_where_the_sum_over_all_triangles_says_so(shape):
 
 def test_the_bound_on_what_clusters_leave_out_holds():
     corners = torus()
-    asked = Winding(corners)
+    asked = Winding(corners)._clusters.arrays
     places = np.random.Generator(np.random.Philox(4)).uniform(-1.5, 1.5, (100, 3))
     exact = summed(places, corners)
     widest = 0.0
     for clusters in kernels.WIDEST:
-        found = np.array([kernels.winds(asked._corners, asked._links, asked._moments, *p, clusters) for p in places])
+        found = np.array([kernels.winds(*asked, *p, clusters) for p in places])
         error = np.abs(found[:, 0] - exact)
         assert (error <= found[:, 1] + 1e-12).all()
         widest = max(widest, error.max())
@@ -105,7 +120,7 @@ def test_answers_are_the_same_for_any_number_of_threads(monkeypatch):
         asked = Winding(corners)
         held = asked.holds(places)
         inner, outer = places[held][:200], places[~held][:200]
-        told.append((asked._moments.tobytes(), held.tobytes(), asked.exits(inner, outer).tobytes()))
+        told.append((asked._clusters.arrays[2].tobytes(), held.tobytes(), asked.exits(inner, outer).tobytes()))
     assert told[0] == told[1]
 
 

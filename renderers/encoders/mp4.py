@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 OPTIONS = {"movflags": "+faststart", "fflags": "+bitexact"}
 AT_ONCE = 64
 """Frames, at most, that the encoder holds back."""
-
+USUAL = 48
+"""Bytes of a picture for a byte of film, half a bit a pixel: what a frame takes, as long as none has been seen."""
 
 SEEK = 0.5
 """Seconds of film from key frame to key frame: where a player can go at once."""
@@ -91,7 +92,7 @@ class Writer:
         with held():  # a signal in the encoder's callbacks would break it
             if self._file is None:
                 self._file = self._open()
-            self._leave_room()
+            self._leave_room(picture.size // USUAL)
             from av import ExternalError
 
             try:
@@ -102,12 +103,16 @@ class Writer:
             self._disk.raise_error()
             self.frames += 1
 
-    def _leave_room(self) -> None:
-        """Raise OSError where what the encoder holds back and the index of frames would not fit on the disk."""
-        if self.frames > 2 * AT_ONCE:
-            each = self._made.stat().st_size // (self.frames - AT_ONCE)
-            if shutil.disk_usage(self._made.parent).free < 2 * AT_ONCE * each + 64 * self.frames + 2**16:
-                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    def _leave_room(self, usual: int) -> None:
+        """Raise OSError where what the encoder holds back and the index of frames would not fit on the disk.
+
+        ``usual``: bytes of a frame, as long as too few are written to tell.
+        """
+        out = self.frames - AT_ONCE
+        each = self._made.stat().st_size // out if out > AT_ONCE else usual
+        most = 2 * AT_ONCE * each if out > AT_ONCE else min(self.frames + 1, AT_ONCE) * each
+        if shutil.disk_usage(self._made.parent).free < most + 64 * self.frames + 2**16:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     def close(self) -> list[Path]:
         """Finish; the film appears under its name."""

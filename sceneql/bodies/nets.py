@@ -14,6 +14,7 @@ from sceneql import kinds
 from sceneql.island.memory import bounded_net
 from sceneql.kinds import Exceeds, Problem, Quantity, Record, field
 from sceneql.quantities import dimension as dim
+from sceneql.shapes.placement import unit_vector
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -25,6 +26,8 @@ SIDES = ("left", "right", "bottom", "top", "back", "front")
 EDGES = ("left", "right", "bottom", "top")
 STEPS = tuple(step for step in product((-1, 0, 1), repeat=3) if step > (0, 0, 0))
 """Offsets from a grid point to its neighbors, each pair once."""
+THINNEST = 1e6
+"""Length over width of a cloth's cell above which the rounding of the long side moves masses along the short one."""
 CORNERS = ("bottom_left", "bottom_right", "top_left", "top_right")
 
 
@@ -217,14 +220,18 @@ class Cloth(Record):
 
     def lowest(self) -> float:
         """Height [m] of its lowest masses at the start; of one that is tilted a bound of that."""
-        upright = math.sqrt(max(1 - self.facing[1] ** 2 / sum(c * c for c in self.facing), 0.0))
+        upright = math.sqrt(max(1 - (self.facing[1] / math.hypot(*self.facing)) ** 2, 0.0))
         reach = self.size[1] if upright == 1 else math.hypot(*self.size)
         return self.center[1] - 0.5 * reach * upright
 
     def problems(self) -> Iterator[Problem]:
-        """More masses than are possible, or no side that faces anywhere."""
+        """More masses than are possible, cells like hairs, or no side that faces anywhere."""
         sorts = 1 + (self.shear > 0) + (self.bend > 0)
         yield from _too_many(self.mass_count(), 2 * sorts * self.mass_count(), "cells")
+        narrow, long = sorted(side / cells for side, cells in zip(self.size, self.cells, strict=True))
+        if not long <= THINNEST * narrow:
+            told = f"cells of {narrow:.3g} by {long:.3g} m: at most {THINNEST:,.0f} times as long as wide are simulated"
+            yield Problem(told, ("size",))
         if not any(self.facing):
             yield Problem("a cloth that faces 0 0 0 faces nowhere", ("facing",))
 
@@ -246,7 +253,7 @@ class Cloth(Record):
         """Masses by columns from the left, each from bottom to top."""
         import numpy as np
 
-        normal = np.array(self.facing) / np.linalg.norm(self.facing)
+        normal = unit_vector(self.facing)
         side = np.cross((0.0, 1.0, 0.0), normal)
         length = np.linalg.norm(side)
         right = side / length if length > 1e-6 else np.array([1.0, 0.0, 0.0])

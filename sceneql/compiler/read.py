@@ -16,6 +16,7 @@ from pydantic import BaseModel, ValidationError
 
 from sceneql import kinds
 from sceneql.compiler import limits, paint, values
+from sceneql.compiler.corners import by_corners
 from sceneql.compiler.formulas import Wanted, read_formula
 from sceneql.compiler.names import Names
 from sceneql.compiler.paths import read_path
@@ -239,7 +240,7 @@ class Reader:
         if not fixed:
             items = [one for item in items for one in self._copies(item, arms[0])]
         if fixed and len(items) != len(arms):
-            raise self._fail("wrong-count", f"{what} takes {len(arms)} values, not {len(items)}", node.span)
+            raise self._miscounted(node, arms, what, len(items))
         result, ok = [], True
         for k, item in enumerate(items):
             reader = (
@@ -253,6 +254,12 @@ class Reader:
             raise Unreadable
         return tuple(result) if origin is tuple else result
 
+    def _miscounted(self, node: Node, arms: tuple[Any, ...], what: str, count: int) -> Unreadable:
+        marks = [mark for arm in arms for mark in _unwrap(arm)[1] if isinstance(mark, kinds.Quantity)]
+        vectors = [mark.shape[0] for mark in marks if mark.shape and mark.shape[0]]
+        help = by_corners(node, what, vectors[0]) if len(vectors) == 2 == len(arms) else None
+        return self._fail("wrong-count", f"{what} takes {len(arms)} values, not {count}", node.span, help)
+
     def _copies(self, node: Node, annotation: Any) -> list[Node]:
         """In a list of parts the name of a repeated part, or of an instance, means each part that it stands for."""
         marks = [mark for mark in _unwrap(annotation)[1] if isinstance(mark, kinds.Refers)]
@@ -265,7 +272,7 @@ class Reader:
         """Values of a tuple that are written in one text: ``960 540`` for a pair of whole numbers."""
         words = node.text.replace(",", " ").split()
         if len(words) != len(arms):
-            raise self._fail("wrong-count", f"{what} takes {len(arms)} values, not {len(words)}", node.span)
+            raise self._miscounted(node, arms, what, len(words))
         at, result = node.content.start, []
         for word, arm in zip(words, arms, strict=True):
             start = node.source.text.find(word, at)

@@ -30,7 +30,7 @@ class OfContents(Generic[T]):
         key = digest.digest()
         if key not in self._made:
             made = make()
-            for old in [*self._made][: len(self._made) + 1 - self._most]:
+            for old in [*self._made][: max(0, len(self._made) + 1 - self._most)]:
                 del self._made[old]
             self._made[key] = made
         return self._made[key]

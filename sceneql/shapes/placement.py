@@ -52,6 +52,15 @@ def affine(position: Any, rotation: Any, scale: Any = 1.0) -> Floats:
     return np.column_stack([linear, np.asarray(position, dtype=float)])
 
 
+def unit_vector(vector: Any) -> Floats:
+    """(3,) the direction of a vector of any finite length but zero: no square of it overflows or vanishes."""
+    import numpy as np
+
+    scaled = np.ldexp(np.asarray(vector, dtype=float), -np.frexp(np.abs(vector).max())[1])
+    found: Floats = scaled / np.linalg.norm(scaled)
+    return found
+
+
 def compose(outer: Floats, inner: Floats) -> Floats:
     """(3, 4) map that applies ``inner``, then ``outer``."""
     import numpy as np

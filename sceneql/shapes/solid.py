@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 INFINITY = float("inf")
 LARGEST, SMALLEST = 1e100, 1e-100
 """[m] Sizes of solids that can be drawn: products of a few lengths neither overflow nor vanish."""
+COARSEST = 1e-7
+"""Distance of neighboring float64 numbers, in parts of a traced solid's size, above which no ray meets its surface: the
+search would cut all its rays to ever shorter pieces, of which rounding lets it prove none."""
 MARGIN = 1e-6
 """Margin of the box around a traced field, in parts of the solid's size."""
 CELLS = 96
@@ -66,7 +69,7 @@ class Solid(Placed):
 def traced(solid: Shaped, name: str, place: Floats, moment: Moment) -> Iterable[frame.Implicit]:
     """Any object with a field, as a tape in a box a little larger than itself; nothing where the box is empty.
 
-    Raises TypeError where it is unbounded, ValueError where it is too large or too small for float64.
+    Raises TypeError where it is unbounded, ValueError where it is too large, too small or too far away for float64.
     """
     import numpy as np
 
@@ -81,6 +84,7 @@ def traced(solid: Shaped, name: str, place: Floats, moment: Moment) -> Iterable[
     if not finite:
         raise TypeError(f"{name} is unbounded, and cannot be drawn: intersect it with a box")
     told_by_numbers(low, high)
+    _not_rounded_away(low, high)
     build = TapeBuilder()
     value = solid.implicit(build, *build.affine(inverse(place), build.x, build.y, build.z), moment)
     room = MARGIN * float(np.max(high - low))
@@ -113,6 +117,19 @@ def told_by_numbers(low: Floats, high: Floats) -> None:
         raise ValueError(f"it reaches {farthest:.3g} m away from the origin, more than {LARGEST:g} m")
     if size < SMALLEST:
         raise ValueError(f"its size is {size:.3g} m, less than {SMALLEST:g} m")
+
+
+def _not_rounded_away(low: Floats, high: Floats) -> None:
+    """Raise ValueError where a solid in a box is so far from the origin that float64 does not resolve its surface."""
+    import numpy as np
+
+    farthest, size = float(np.abs([low, high]).max()), float((high - low).max())
+    apart = float(np.spacing(farthest))
+    if apart > COARSEST * size:
+        raise ValueError(
+            f"it reaches {farthest:.3g} m away from the origin, where float64 numbers are {apart:.2g} m apart:"
+            f" too coarse for the surface of a solid of {size:.3g} m"
+        )
 
 
 def measure(solid: Object, output: str, moment: Moment) -> Any:

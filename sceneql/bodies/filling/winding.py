@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sceneql.bodies.filling import winding_kernels
-from sceneql.compiled.kernels import over_tiles
-from sceneql.mesh.box_tree import box_tree
+from sceneql.bodies.filling.clusters import Clusters, tiled
+from sceneql.bodies.filling.winding_cells import Cells
 from sceneql.shapes.of_contents import OfContents
 
 if TYPE_CHECKING:
@@ -18,9 +18,8 @@ if TYPE_CHECKING:
 
     from sceneql.frame import Floats
 
-LEAF = 8
-TILE = 512
-"""Points, segments or clusters of one task of a thread."""
+MANY = 20_000
+"""Places that are asked for at once from which on it is sooner to know the cells around them."""
 ROOM = 1e-8
 """What is added around boxes, in parts of the mesh's size: more than the tolerance at triangles' edges."""
 
@@ -36,16 +35,12 @@ class Winding:
 
         Raises ValueError where there are none.
         """
-        tree = box_tree(corners, LEAF)
-        ordered = corners[tree.order]
-        if _volume(ordered) < 0.0:
-            ordered = ordered[:, ::-1]
-        self._corners = np.ascontiguousarray(ordered.reshape(-1, 9))
-        self._links = tree.links
-        room = ROOM * float((tree.boxes[0, 3:] - tree.boxes[0, :3]).max())
-        self._boxes = tree.boxes + room * np.repeat([-1.0, 1.0], 3)
-        self._moments = np.empty((len(tree.links), winding_kernels.MOMENTS))
-        _tiled(len(tree.links), lambda a, b: winding_kernels.gather(self._corners, self._links, self._moments, a, b))
+        if _volume(corners) < 0.0:
+            corners = corners[:, ::-1]
+        self._clusters = Clusters.of(corners)
+        boxes = self._clusters.boxes
+        room = ROOM * float((boxes[0, 3:] - boxes[0, :3]).max())
+        self._boxes = boxes + room * np.repeat([-1.0, 1.0], 3)
         self._held: OfContents[NDArray[bool_]] = OfContents(1)
         self._left: OfContents[Floats] = OfContents(1)
 
@@ -55,11 +50,18 @@ class Winding:
 
         def ask() -> NDArray[bool_]:
             held = np.empty(len(places), dtype=np.bool_)
-            parts = self._corners, self._links, self._moments, places, held
-            _tiled(len(places), lambda first, last: winding_kernels.hold(*parts, first, last))
+            if len(places) >= MANY:
+                around = *self._clusters.arrays, *self._cells.arrays
+                tiled(len(places), lambda a, b: winding_kernels.hold_in_cells(*around, places, held, a, b))
+            else:
+                tiled(len(places), lambda a, b: winding_kernels.hold(*self._clusters.arrays, places, held, a, b))
             return held
 
         return self._held.get((places,), ask)
+
+    @cached_property
+    def _cells(self) -> Cells:
+        return Cells.around(self._clusters)
 
     def exits(self, inner: Floats, outer: Floats) -> Floats:
         """(n,) fractions (0..1) at which segments from places inside to places outside, each (n, 3), leave."""
@@ -67,8 +69,8 @@ class Winding:
 
         def ask() -> Floats:
             shares = np.empty(len(inner))
-            parts = self._corners, self._links, self._moments, self._boxes, inner, outer, shares
-            _tiled(len(inner), lambda first, last: winding_kernels.leave(*parts, first, last))
+            parts = *self._clusters.arrays, self._boxes, inner, outer, shares
+            tiled(len(inner), lambda first, last: winding_kernels.leave(*parts, first, last))
             return shares
 
         return self._left.get((inner, outer), ask)
@@ -86,7 +88,3 @@ def _volume(corners: Floats) -> float:
     """Six times what triangles (m, 3, 3) enclose, from the middle of their corners."""
     a, b, c = (corners[:, k] - corners.mean(axis=(0, 1)) for k in range(3))
     return float(np.einsum("ij,ij", a, np.cross(b, c)))
-
-
-def _tiled(count: int, work: Callable[[int, int], object]) -> None:
-    over_tiles(-(-count // TILE), lambda tile: work(tile * TILE, min(count, (tile + 1) * TILE)))

@@ -185,6 +185,79 @@ def hold(corners, links, moments, places, held, first, last):
         held[k] = inside(corners, links, moments, places[k, 0], places[k, 1], places[k, 2])
 
 
+MIXED = -(2**31)
+"""Of a cell that a triangle may cross: places in it are asked one by one."""
+CELLS = types.int32[:, :, ::1]
+FEW = 8
+
+
+@lean(types.void(ROWS, ROWS, types.float64, CELLS))
+def mark(corners, low, side, cells):
+    """Makes MIXED the cubes of a ``side``, from the corner ``low`` (1, 3) on, that triangles (m, 9) may cross."""
+    nx, ny, nz = cells.shape
+    room = 1e-6 * side
+    for t in range(len(corners)):
+        ax, ay, az = corners[t, 0] - low[0, 0], corners[t, 1] - low[0, 1], corners[t, 2] - low[0, 2]
+        bx, by, bz = corners[t, 3] - low[0, 0], corners[t, 4] - low[0, 1], corners[t, 5] - low[0, 2]
+        cx, cy, cz = corners[t, 6] - low[0, 0], corners[t, 7] - low[0, 1], corners[t, 8] - low[0, 2]
+        i0, i1 = int((min(ax, bx, cx) - room) / side), int((max(ax, bx, cx) + room) / side)
+        j0, j1 = int((min(ay, by, cy) - room) / side), int((max(ay, by, cy) + room) / side)
+        k0, k1 = int((min(az, bz, cz) - room) / side), int((max(az, bz, cz) + room) / side)
+        few = (i1 - i0 + 1) * (j1 - j0 + 1) * (k1 - k0 + 1) <= FEW
+        px, py, pz = vector_area(corners, t)
+        reach = (0.5 * side + room) * (abs(px) + abs(py) + abs(pz))
+        for i in range(max(i0, 0), min(i1 + 1, nx)):
+            for j in range(max(j0, 0), min(j1 + 1, ny)):
+                for k in range(max(k0, 0), min(k1 + 1, nz)):
+                    away = px * ((i + 0.5) * side - ax) + py * ((j + 0.5) * side - ay) + pz * ((k + 0.5) * side - az)
+                    if few or abs(away) <= reach:
+                        cells[i, j, k] = MIXED
+
+
+@lean(types.int64(ROWS, NODES, ROWS, ROWS, NODES, ROWS, F, F, F))
+def turns(corners, links, moments, lids, lid_links, lid_moments, x, y, z):
+    """How often triangles wind around a point together with the lids that close them: a whole number."""
+    w = 0.0
+    for widest in WIDEST:
+        one, left = winds(corners, links, moments, x, y, z, widest)
+        other, lost = winds(lids, lid_links, lid_moments, x, y, z, widest)
+        w = one + other
+        if left + lost < 0.25:
+            break
+    return math.floor(w + 0.5)
+
+
+@lean(types.boolean(ROWS, NODES, ROWS, F, F, F, F), inner=True)
+def inside_but(lids, links, moments, turned, x, y, z):
+    """As ``inside``, of triangles that wind ``turned`` times around the point together with their lids."""
+    w = 0.0
+    for widest in WIDEST:
+        lid, left = winds(lids, links, moments, x, y, z, widest)
+        w = turned - lid
+        if abs(w - 0.5) > left + ROUNDING:
+            break
+    return w > 0.5
+
+
+@lean(
+    types.void(ROWS, NODES, ROWS, ROWS, NODES, ROWS, ROWS, F, CELLS, ROWS, types.boolean[::1], types.int64, types.int64)
+)
+def hold_in_cells(corners, links, moments, lids, lid_links, lid_moments, low, side, cells, places, held, first, last):
+    """As ``hold``, by the turns around ``cells``, which are the same all over a cell that no triangle crosses."""
+    for p in range(first, last):
+        x, y, z = places[p, 0], places[p, 1], places[p, 2]
+        u, v, w = (x - low[0, 0]) / side, (y - low[0, 1]) / side, (z - low[0, 2]) / side
+        turned = MIXED
+        if 0.0 <= u < cells.shape[0] and 0.0 <= v < cells.shape[1] and 0.0 <= w < cells.shape[2]:
+            turned = cells[int(u), int(v), int(w)]
+        if turned == MIXED:
+            held[p] = inside(corners, links, moments, x, y, z)
+        elif len(lids) == 0:
+            held[p] = turned > 0
+        else:
+            held[p] = inside_but(lids, lid_links, lid_moments, float(turned), x, y, z)
+
+
 @lean_inlined
 def meets_box(boxes, node, x, y, z, dx, dy, dz, after, until):
     """Whether the part after..until of a segment may meet a box."""

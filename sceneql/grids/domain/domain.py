@@ -10,7 +10,7 @@ import numpy as np
 from sceneql.failure import LimitRefused
 from sceneql.grids.domain import cells, cut
 from sceneql.grids.domain.boundary import held_by
-from sceneql.grids.domain.mesh import MeshLevel
+from sceneql.grids.domain.mesh import mesh_level
 from sceneql.island.start import Start
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
@@ -78,7 +78,7 @@ def inside(ref: Ref, flat: bool, start: Moment) -> tuple[Any, Floats, Floats, bo
 
     kind = start.object(ref)
     triangles = getattr(kind, "triangles_at", None)
-    own = kind.domain() if triangles is None else MeshLevel(triangles(start), ref.name)
+    own = kind.domain() if triangles is None else mesh_level(triangles(start), ref.name)
     if own is not None:
         low, high = own.bounds
         return own, low, high, flat or own.flat

@@ -8,6 +8,7 @@ import numpy as np
 
 from sceneql.contacts import layout
 from sceneql.contacts.shapes.closed_mesh import closed
+from sceneql.shapes.of_contents import OfContents
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 
 TILE = 4096
 """Points of one task of a thread."""
+REMEMBERED = 32
+"""Lists of points whose distances are kept: those of a grid's cells, which a run ahead of the film asks for too."""
 
 
 class MeshLevel:
@@ -32,9 +35,13 @@ class MeshLevel:
         self._floats = np.concatenate([mesh.boxes.ravel(), mesh.rows.ravel()])
         data = [0, mesh.boxes.size, len(mesh.boxes), *mesh.tree.ravel().tolist()]
         self._ints = np.array([*[0] * layout.DATA, layout.DATA + 1, *data], dtype=np.int64)
+        self._found: OfContents[Floats] = OfContents(REMEMBERED)
 
     def values(self, points: Floats) -> Floats:
         """Signed distance at points (k, 3), negative inside: (k,)."""
+        return self._found.get((points,), lambda: self._distances(points))
+
+    def _distances(self, points: Floats) -> Floats:
         from sceneql.compiled.kernels import over_tiles
         from sceneql.contacts.shapes.mesh_domain_kernels import distances
 
@@ -50,3 +57,11 @@ class MeshLevel:
     def pieces(self, points: Floats) -> NDArray[int64]:
         """(k,) zeros."""
         return np.zeros(len(points), dtype=np.int64)
+
+
+def mesh_level(corners: Floats, name: str) -> MeshLevel:
+    """The inside of triangles (m, 3, 3) [m] of an object. Raises ValueError for a mesh that is open."""
+    return _KNOWN.get((corners, np.frombuffer(name.encode(), np.uint8)), lambda: MeshLevel(corners, name))
+
+
+_KNOWN: OfContents[MeshLevel] = OfContents()

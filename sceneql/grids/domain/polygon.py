@@ -1,4 +1,4 @@
-"""Polygons as domains: distances, which side is nearest, and whether they cross."""
+"""Polygons as domains: distances, and which side is nearest."""
 
 from __future__ import annotations
 
@@ -15,51 +15,6 @@ GROUP = 12
 """Sides in one box of the search for the nearest."""
 TILE = 4096
 """Points of one task of a thread."""
-
-Corners = tuple[tuple[float, float], ...]
-Place = tuple[str, int]
-
-
-def crossing(rings: Mapping[str, Corners]) -> tuple[Place, Place] | None:
-    """Two sides (ring and number of the first corner) that meet where they should not; None where there are none."""
-    sides = [
-        (name, k, ring[k], ring[(k + 1) % len(ring)], len(ring))
-        for name, ring in rings.items()
-        for k in range(len(ring))
-    ]
-    # Sides in order of their left ends: only those that overlap along x are compared.
-    sides.sort(key=lambda side: min(side[2][0], side[3][0]))
-    for number, (name, k, a, b, count) in enumerate(sides):
-        right = max(a[0], b[0])
-        for other, m, c, d, _ in sides[number + 1 :]:
-            if min(c[0], d[0]) > right:
-                break
-            beside = name == other and (abs(k - m) == 1 or abs(k - m) == count - 1)
-            if (beside and _turn_back(a, b, c, d)) or (not beside and _meet(a, b, c, d)):
-                return (name, k), (other, m)
-    return None
-
-
-def _cross(o: tuple[float, float], a: tuple[float, float], b: tuple[float, float]) -> float:
-    return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])
-
-
-def _meet(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float], d: tuple[float, float]) -> bool:
-    """Whether two segments have a point in common."""
-    if max(min(a[0], b[0]), min(c[0], d[0])) > min(max(a[0], b[0]), max(c[0], d[0])):
-        return False
-    if max(min(a[1], b[1]), min(c[1], d[1])) > min(max(a[1], b[1]), max(c[1], d[1])):
-        return False
-    return _cross(a, b, c) * _cross(a, b, d) <= 0.0 and _cross(c, d, a) * _cross(c, d, b) <= 0.0
-
-
-def _turn_back(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float], d: tuple[float, float]) -> bool:
-    """Whether two sides with a corner in common lie on one another."""
-    if a in (c, d):
-        a, b = b, a
-    far = d if b == c else c
-    along = (a[0] - b[0]) * (far[0] - b[0]) + (a[1] - b[1]) * (far[1] - b[1])
-    return _cross(b, a, far) == 0.0 and along > 0.0
 
 
 class Polygon:

@@ -10,6 +10,7 @@ import numpy as np
 from sceneql.grids.maps.kept import Kept
 from sceneql.grids.maps.seen import level_of
 from sceneql.grids.maps.sheets import Sheet, Side, flat_normals, joined, kept, lattice
+from sceneql.shapes.placement import unit_vector
 from sceneql.shapes.solid import triple
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ def sheet_of(field: Seen, moment: Moment, cut: Numbers, surface: bool) -> Sheet:
     """A flat domain; or the surface of a deep one, cut open by planes; without it their whole sections."""
 
     def make() -> Sheet:
-        planes = [(np.array(through), np.array(normal) / np.linalg.norm(normal)) for through, normal in cut]
+        planes = [(np.array(through), unit_vector(normal)) for through, normal in cut]
         return _made(field.layout, level_of(field, moment), planes, surface)
 
     return _sheets.get(field.model, (field.layout.shape, cut, surface), make)

@@ -10,6 +10,7 @@ from sceneql.bodies import bodies as masses
 from sceneql.kinds import Gives, Model, Moment, Quantity, field, quantity_type
 from sceneql.kinds.stable_step import StaticMass
 from sceneql.quantities import dimension as dim
+from sceneql.shapes.placement import unit_vector
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -158,7 +159,7 @@ def _frame(axis: Floats) -> tuple[Floats, Floats, Floats]:
     """Two unit vectors across an axis, and the axis as a unit vector; right-handed."""
     import numpy as np
 
-    up = axis / np.linalg.norm(axis)
+    up = unit_vector(axis)
     across = np.cross(np.eye(3)[int(np.argmin(np.abs(up)))], up)
     across /= np.linalg.norm(across)
     return across, np.cross(up, across), up

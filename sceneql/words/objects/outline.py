@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from math import isfinite
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from sceneql.grids.domain.polygon import Corners, crossing
+from sceneql.grids.domain.sides import Corners, crossing
 from sceneql.kinds import File, FixedLength, FixedScalar, Length, Moment, Object, Problem, Quantity, Record, field
 from sceneql.quantities import dimension as dim
 

@@ -1,0 +1,54 @@
+"""Triangles in clusters, with the moments by which far ones wind around a point (winding_kernels). Imports numpy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.bodies.filling import winding_kernels
+from sceneql.compiled.kernels import over_tiles
+from sceneql.mesh.box_tree import box_tree
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats
+
+LEAF = 8
+TILE = 512
+"""Points, segments or clusters of one task of a thread."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Clusters:
+    """Triangles in the order of a tree of boxes around them."""
+
+    arrays: tuple[Floats, NDArray[int64], Floats]
+    """Corners (m, 9), links of the tree (b, 3) and moments (b, MOMENTS)."""
+    boxes: Floats
+    """(b, 6) low and high corners."""
+
+    @classmethod
+    def of(cls, corners: Floats) -> Clusters:
+        """Of triangles (m, 3, 3). Raises ValueError where there are none."""
+        tree = box_tree(corners, LEAF)
+        ordered = np.ascontiguousarray(corners[tree.order].reshape(-1, 9))
+        moments = np.empty((len(tree.links), winding_kernels.MOMENTS))
+        tiled(len(moments), lambda first, last: winding_kernels.gather(ordered, tree.links, moments, first, last))
+        return cls((ordered, tree.links, moments), tree.boxes)
+
+    @classmethod
+    def none(cls) -> Clusters:
+        """No triangle at all, which winds around nothing."""
+        return cls(
+            (np.zeros((0, 9)), np.zeros((0, 3), np.int64), np.zeros((0, winding_kernels.MOMENTS))), np.zeros((0, 6))
+        )
+
+
+def tiled(count: int, work: Callable[[int, int], object]) -> None:
+    """Call ``work(first, last)`` for all of ``count`` items, in tiles."""
+    over_tiles(-(-count // TILE), lambda tile: work(tile * TILE, min(count, (tile + 1) * TILE)))

@@ -1,0 +1,28 @@
+"""The line that a box by its corners should have been, where its numbers stand otherwise."""
+
+from __future__ import annotations
+
+import re
+
+from sceneql.language.tree import Node
+
+NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+MOST = 200
+"""Letters of a value beyond which no numbers are looked for."""
+
+
+def by_corners(node: Node, field: str, length: int) -> str | None:
+    """What to write for a field of a low and a high corner of ``length`` components: by six numbers of space as they
+    stand, by three those of a box of this size about the origin; None where the numbers are others."""
+    text = node.span.source.text[node.span.start : node.span.end]
+    numbers = NUMBER.findall(text) if len(text) <= MOST else []
+    if len(numbers) == length:
+        halves = [abs(float(number)) / 2 for number in numbers]
+        corners = [-half for half in halves], halves
+    elif len(numbers) == 2 * length:
+        given = [float(number) for number in numbers]
+        corners = given[:length], given[length:]
+    else:
+        return None
+    low, high = (" ".join(f"{number:g}" for number in corner) for corner in corners)
+    return f"write `{field}: [{low}, {high}]`, its low and its high corner"
