@@ -115,8 +115,8 @@ class Switch:
         self.until_look = self._between if self.active is self.explicit else min(self._between, self._often)
         if self.active is self.explicit:
             held = min(step, mean)
-            left = (self._end - t) / held
-            if not self._possible or left < self.switching:
+            left = (self._end - t) / held if held > 0.0 else math.inf
+            if not self._possible or not self.switching <= left < math.inf:
                 return False
             part = DECAYED if 5 * (self.switching + 2 * TRIAL * self.cost) < left else HELD
             values = self._spectrum(t, y, part * least_boundary(self.explicit.method.stability) / held)
