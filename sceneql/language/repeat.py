@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping as Table
 from dataclasses import dataclass
 from math import inf
@@ -13,6 +14,7 @@ from sceneql.quantities.diagnostic import Diagnostics
 
 MOST_COPIES: Final = 10_000
 _MOST_HOPS: Final = 64
+_NUMBERED = re.compile(r"(\w*)\{(\w+)\}\w*")
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +30,16 @@ class Repeat:
         return Scalar(str(copy), "integer", False, self.node.source, self.node.start, self.node.end)
 
 
+def numbered(name: str) -> str | None:
+    """The help for a name that has its copy's number in braces, ``hook_{i}``; None for other names."""
+    found = _NUMBERED.fullmatch(name)
+    if found is None:
+        return None
+    plain, index = found[1].rstrip("_") or "name", found[2]
+    copies = f"the copies are {plain}.0, {plain}.1, ..."
+    return f"write `{plain}: {{repeat: {{count: 5, as: {index}}}, ...}}`, {copies}: `sceneql words repeat`"
+
+
 def read_repeat(
     node: Node, scope: Scope | None, define: Table[str, Node], lost: Broken, found: Diagnostics
 ) -> Repeat | None:
@@ -35,7 +47,8 @@ def read_repeat(
     if unsure(node):
         return None
     if not isinstance(node, Mapping) or "count" not in node.entries or node.entries.keys() - {"count", "as"}:
-        help = "write `repeat: {count: 5, as: i}`"
+        given = node.text if isinstance(node, Scalar) and node.kind in ("integer", "text") else "5"
+        help = f"write `repeat: {{count: {given}, as: i}}`"
         found.error("repeat-shape", "`repeat` takes a count, and a name for the number", node.span, help=help)
         return None
     index = node.entries.get("as")

@@ -10,7 +10,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Final
 
-from sceneql.language.repeat import read_repeat
+from sceneql.language.repeat import numbered, read_repeat
 from sceneql.language.scope import Broken, Entry, Expanded, Given, Scope
 from sceneql.language.sections import Written, duplicate, empty, read_entry, section, with_known_keys
 from sceneql.language.tree import Mapping, Node, Scalar, broken, hole, unsure
@@ -181,7 +181,8 @@ class _Expander:
         key = section.keys[name]
         if not name.split(".")[0].isidentifier() or (key.text == name and "." in name):
             message = f"'{name}' cannot be the name of a part"
-            help = "a name is made of letters, digits and underscores, and begins with a letter"
+            letters = "a name is made of letters, digits and underscores, and begins with a letter"
+            help = numbered(name) or letters
             self.found.error("part-name", message, key.span, help=help)
             for part in (name, *re.split(r"\W+", name)):  # as it may be written in an expression
                 self.done.broken.add(part)
