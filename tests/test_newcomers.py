@@ -56,7 +56,9 @@ def test_what_can_mean_one_thing_alone_is_read(text, tmp_path):
 
 
 def test_words_of_other_programs_lead_to_names_of_the_language():
-    known = {*FUNCTIONS, *CONSTANTS, "time", *names_in(schema(Catalogue()))}
+    field = Catalogue().load("models", "diffusion")
+    outputs = {name for of in ("temperature", "concentration") for name in field.outputs({"of": of})}
+    known = {*FUNCTIONS, *CONSTANTS, *outputs, "time", *names_in(schema(Catalogue()))}
     assert {name for ours in OURS.values() for name in ours} <= known
 
 

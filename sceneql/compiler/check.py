@@ -21,7 +21,7 @@ from sceneql.compiler.unknown import report_unknown
 from sceneql.compiler.values import read_expr
 from sceneql.graph import Task
 from sceneql.kinds import Gives, Kind, Object, Quantity, Ref, Refers, Settings, Text, Value, written_name
-from sceneql.language.scope import Entry
+from sceneql.language.scope import Entry, Scope
 from sceneql.language.script import Script
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, unsure, whole, written
@@ -315,7 +315,8 @@ class _Checker:
             return None
         if isinstance(node, MappingNode) and len(node.entries) == 1:
             (word, fields), (key,) = next(iter(node.entries.items())), node.keys.values()
-            return self._in_place(Entry(anonymous, word, fields, node.span, key.span, entry.scope), mark.family)
+            scope = entry.scope if node.index is None else Scope({}, dict([node.index]), entry.scope)
+            return self._in_place(Entry(anonymous, word, fields, node.span, key.span, scope), mark.family)
         if unsure(node):
             return None
         message = f"a name, or one entry `{{word: {{fields}}}}`, stands here for a part of {mark}"

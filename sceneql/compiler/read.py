@@ -22,6 +22,7 @@ from sceneql.compiler.paths import read_path
 from sceneql.compiler.texts import read_text
 from sceneql.compiler.unknown import meant_field, report_unknown
 from sceneql.language.repeat import numbered
+from sceneql.language.scope import Scope
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, broken, unsure, whole
 from sceneql.language.tree import written as plainly
@@ -151,6 +152,9 @@ class Reader:
                     raise Unreadable  # a template's field that was not given: reported at the instance
                 return replace(self, names=outer).read(node, annotation, what)
         base, marks = _unwrap(annotation)
+        if isinstance(node, MappingNode) and node.index and not any(isinstance(mark, kinds.Refers) for mark in marks):
+            names = replace(self.names, scope=Scope({}, dict([node.index]), self.names.scope))
+            return replace(self, names=names).read(replace(node, index=None), annotation, what)
         for mark in marks:
             if isinstance(mark, kinds.Quantity):
                 return self._quantity(node, base, mark, what)

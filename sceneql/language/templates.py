@@ -10,6 +10,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Final
 
+from sceneql.language.copies import Copies
 from sceneql.language.repeat import numbered, read_repeat
 from sceneql.language.scope import Broken, Entry, Expanded, Given, Scope
 from sceneql.language.sections import Written, duplicate, empty, read_entry, section, with_known_keys
@@ -95,6 +96,7 @@ class _Expander:
         self.read: dict[str, _Template | None] = {}
         self.made: set[str] = set()
         self.sections = self.done.sections
+        self.inner = Copies(self.define, self.done.broken, found)
         self.count = 0
 
     def named(self, mapping: Mapping, key: str) -> dict[str, Node]:
@@ -225,6 +227,7 @@ class _Expander:
         assert isinstance(section, Mapping)
         span, word = section.keys[key].span, written.word.text
         fields = filled(word, written.fields, self.defaults, written.word.span)
+        fields = self.inner.written_out(fields, scope)
         entry = Entry(name, word, fields, span, written.word.span, scope)
         self.sections.setdefault(family, {})[name] = entry
         for front, names in place.around:
